@@ -23,6 +23,7 @@ use crate::input::{Document, Provenance};
 use crate::report::checks;
 use crate::report::model_words::{self, mm, short};
 use crate::report::run::refuse_beforehand;
+use crate::report::shape::shape;
 use crate::report::specimen_picture::{scene_svg, specimen_svg};
 use crate::runner::{Kind, Task};
 use crate::sweep::design::{self, CASES_MAX};
@@ -42,6 +43,8 @@ pub struct Checked {
     pub warnings: Vec<String>,
     /// Specimen, cracks, loads and supports as SVG.
     pub drawing: String,
+    /// The same for others to draw ([`shape`]); `null` of scenes.
+    pub shape: Value,
     /// The input as it was given.
     pub echo: Value,
     /// Files that were read for it.
@@ -64,7 +67,7 @@ impl Checked {
         }
         json!({
             "ok": true, "kind": self.kind, "name": self.name, "understood": understood, "warnings": self.warnings,
-            "case": self.echo,
+            "shape": self.shape, "case": self.echo,
         })
     }
 }
@@ -127,27 +130,29 @@ fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: 
     let mut lines = case_lines(case, preview.points);
     lines.push(line("computing", budget.words()));
     let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
-    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, echo: case.echo.clone(), provenance })
+    let shape = shape(case);
+    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, shape, echo: case.echo.clone(), provenance })
 }
 
 /// A fit of laws has a plate only where its rates come from readings.
 fn checked_laws(document: &Document, case: &LawCase) -> Checked {
     let mut lines = vec![rates_line(case)];
-    let mut drawing = String::new();
+    let (mut drawing, mut of_test) = (String::new(), Value::Null);
     if let Some(test) = &case.test {
         lines.extend(case_lines(&test.case, "none: rates over handbook K".to_owned()));
-        drawing = specimen_svg(&test.case);
+        (drawing, of_test) = (specimen_svg(&test.case), shape(&test.case));
     }
     let provenance = document.folder.opened().so_far();
     let (name, warnings, echo) = (case.name.clone(), case.warnings.clone(), case.echo.clone());
-    Checked { kind: "calibration", name, lines, warnings, drawing, echo, provenance }
+    Checked { kind: "calibration", name, lines, warnings, drawing, shape: of_test, echo, provenance }
 }
 
 fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
     let (lines, of_points) = scene_lines(scene).map_err(|error| document.locate(error))?;
     let (name, echo, provenance) = (scene.name.clone(), scene.echo.clone(), scene.provenance.clone());
     let warnings = [&scene.warnings[..], &of_points].concat();
-    Ok(Checked { kind: "fracture", name, lines, warnings, drawing: scene_drawing(scene), echo, provenance })
+    let drawing = scene_drawing(scene);
+    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, shape: Value::Null, echo, provenance })
 }
 
 /// Lines about loads and supports that fit below the drawing of a scene.

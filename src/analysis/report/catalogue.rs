@@ -12,12 +12,13 @@ use crate::case::{Failure, Lot, Method};
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
+use crate::fatigue::growth_law::description::Constant;
 use crate::fatigue::growth_law::table::TableEnds;
 use crate::fatigue::{Ageing, Driver};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind};
 use crate::fracture::scene::{Calibration, DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
-use crate::input::Folder;
+use crate::input::{Folder, Quantity};
 use crate::kinds::KindLine;
 use crate::loading::{Grip, LoadingKind, Transverse};
 use crate::material::{Plane, library};
@@ -111,10 +112,18 @@ pub fn lines() -> Vec<(String, String, String)> {
     all
 }
 
-/// The same as one object.
+/// The same as one object, with the constants of every growth law: keys of `[fatigue]`, units, and whether a case has to give them.
 pub fn json() -> Value {
     let kinds = lines().into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
-    json!({ "kinds": kinds.collect::<Vec<_>>() })
+    let constant = |constant: &Constant| {
+        let Quantity { what, unit, .. } = constant.quantity;
+        json!({ "key": constant.key, "unit": unit, "what": what, "needed": constant.default.is_none() })
+    };
+    let law = |law: GrowthLawKind| {
+        let constants: Vec<Value> = law.0.constants.iter().map(constant).collect();
+        json!({ "name": law.name(), "meaning": law.meaning(), "constants": constants })
+    };
+    json!({ "kinds": kinds.collect::<Vec<_>>(), "laws": GrowthLawKind::all().map(law).collect::<Vec<_>>() })
 }
 
 /// The lines of a second choice for a key that do not stand in the first one already.

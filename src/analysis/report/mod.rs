@@ -19,6 +19,7 @@ pub mod provenance;
 pub mod resample;
 pub mod quality;
 pub mod run;
+pub mod shape;
 pub mod speed;
 pub mod specimen_picture;
 pub mod stability;

@@ -1,74 +1,99 @@
-// Charts of our own: lines, points and bands on linear or logarithmic axes, as SVG. A chart can be read by pointer, by
-// arrow keys (with a readout that is spoken) and as a table.
+// Charts: lines, points, bands, limits and what is not known, on linear or logarithmic axes, as SVG. Scales, ticks and smooth curves are those
+// of d3-scale and d3-shape (vendor/d3.js). A chart is read by pointer, by arrow keys (with a readout that is spoken) and as a table.
 
-import { domainOf, scaleOf } from "./chart_scale.js";
 import { button, element, shape, show, table, uniqueId } from "./dom.js";
-import { significant } from "./format.js";
+import { plain, powerOf, significant, whole } from "./format.js";
 
+const { d3 } = window;
 const TONES = 8;
 const TABLE_ROWS = 400;
 const POINTER_REACH = 48;
-const HINT = "Point at the curve, or focus it and use the arrow keys, to read values.";
-// Told apart without colour too: every tone has its own marker and, on lines, its own dashes.
-const DASHES = ["", "7 4", "2 3", "9 3 2 3", "12 5", "4 2", "1 4", "9 3 2 3 2 3"];
+/** Lines that are named at their ends; more of them are named above the chart. */
+const NAMED_AT_ENDS = 4;
 
-function marker(kind, x, y, r) {
-  const [left, top, side] = [x - r, y - r, 2 * r];
-  switch (kind % 5) {
-    case 0: return `M${left} ${y}a${r} ${r} 0 1 0 ${side} 0a${r} ${r} 0 1 0 ${-side} 0z`;
-    case 1: return `M${left} ${top}h${side}v${side}h${-side}z`;
-    case 2: return `M${left} ${y + r}h${side}L${x} ${top}z`;
-    case 3: return `M${left} ${y}L${x} ${top}L${x + r} ${y}L${x} ${y + r}z`;
-    default: return `M${left} ${top}h${side}L${x} ${y + r}z`;
-  }
+const tone = (one) => `tone-${(one.tone ?? 0) % TONES}`;
+const finite = ([x, y]) => Number.isFinite(x + y);
+
+/** "K_II" as K with a lowered II. */
+export function lowered(text) {
+  const [head, low] = String(text).split("_");
+  return low ? [head, shape("tspan", { dy: "0.3em", "font-size": "0.75em" }, low)] : [text];
 }
 
-const short = (value) => Math.round(value * 10) / 10;
+function tickText(value, scale) {
+  const far = scale === "log" && (value < 0.01 || value >= 1e4);
+  if (!far) return Math.abs(value) >= 1e4 ? whole(value) : plain(value, 6);
+  const [mantissa, exponent] = value.toExponential(0).split("e");
+  return `${mantissa === "1" ? "" : `${mantissa}·`}10${powerOf(Number(exponent))}`;
+}
+
+/** Ends of an axis that hold all values; a linear one that starts near nought starts there. */
+function domainOf(values, axis) {
+  let [low, high] = [axis.from ?? Infinity, axis.to ?? -Infinity];
+  for (const value of values) {
+    if (!Number.isFinite(value) || (axis.scale === "log" && value <= 0)) continue;
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  if (low > high) [low, high] = axis.scale === "log" ? [1, 10] : [0, 1];
+  if (axis.scale === "log") return [low / 1.08, Math.max(high, 1.2 * low) * 1.08];
+  if (low === high) [low, high] = [low - Math.max(1, 0.1 * Math.abs(low)), high + Math.max(1, 0.1 * Math.abs(high))];
+  if (axis.from === undefined && low >= 0 && low < 0.25 * high) low = 0;
+  return [low, high];
+}
 
 /**
- * Builds a chart in `container`. An axis is {label, unit, scale: "linear" | "log", from, to, format}; a series is
- * {id, name, kind: "line" | "points" | "band" | "rule", x, y, tone, dashed}; a band has a second edge x2, y2; a rule is an
- * upright line at x[0]. Gives {set(series), extend(id, x, y), destroy()}.
+ * Builds a chart in `container`. An axis is {label, unit, scale: "linear" | "log", from, to, format}; a series is {id, name, kind, x, y, tone}:
+ * "line" (smooth: "x" | "y"), "thin", "points", "band" (second edge x2, y2), "rule" (upright at x[0]), "limit" (at x[0] or y[0], named),
+ * "outside" (hatched, above y[0] or below y2[0]) or "end" (a cross at its last point). `tools`: buttons of its head.
+ * Gives {set(series), extend(id, x, y), move(at, dots), pick(take), destroy()}.
  */
-export function createChart(container, { name, label, x: xAxis, y: yAxis, ratio = 0.58 }) {
+export function createChart(container, { name, label, title, x: xAxis, y: yAxis, ratio = 0.52, tools = [], note }) {
   let series = [];
-  let size = { width: 0, height: 0 };
+  let width = 0;
   let place = null; // scales of the last drawing
   let cursor = null; // {id, index}
-  let axesKey = "";
+  let shared = null; // [at, dots] of the place that all pictures of a page share
+  let taker = null;
   let frame = 0;
-  const hidden = new Set();
-  const drawn = new Map();
 
-  const hintId = uniqueId("chart-hint");
-  const axes = shape("g", { class: "chart-axes" });
-  const marks = shape("g");
-  const crosshair = shape("g", { class: "chart-cursor", visibility: "hidden" },
-    shape("line"), shape("line"), shape("circle", { r: 5 }));
-  const svg = shape("svg", { tabindex: "0", role: "application", "aria-roledescription": "chart", "aria-label": label, "aria-describedby": hintId },
-    axes, marks, crosshair);
-  const legend = element("ul", { class: "chart-legend", "aria-label": "Legend: press to hide or show a curve" });
-  const readout = element("p", { class: "chart-readout", "aria-live": "polite", id: hintId }, HINT);
+  const readoutId = uniqueId("chart-readout");
+  const hatch = uniqueId("hatch");
+  const clip = uniqueId("clip");
+  const marks = shape("g", { "clip-path": `url(#${clip})` });
+  const axes = shape("g");
+  const above = shape("g");
+  const crosshair = shape("g", { class: "chart-cursor" });
+  const svg = shape("svg", { tabindex: "0", role: "application", "aria-roledescription": "chart", "aria-label": label, "aria-describedby": readoutId, "data-curves": name },
+    axes, marks, crosshair, above);
+  const legend = element("p", { class: "quiet", hidden: true });
+  const readout = element("p", { class: "chart-readout", "aria-live": "polite", id: readoutId });
   const sheet = element("div", { hidden: true });
-  const toggle = button("Show as table", toggleTable, { class: "button small", "aria-expanded": "false" });
-  const plot = element("div", { class: "chart-plot" }, svg);
-  const figure = element("figure", { class: "chart", "data-chart": name },
-    element("div", { class: "chart-head" }, legend, toggle), plot, readout, sheet);
-  show(container, figure);
+  const toggle = button("Table", () => {
+    sheet.hidden = !sheet.hidden;
+    toggle.setAttribute("aria-expanded", String(!sheet.hidden));
+    drawTable();
+  }, { class: "button bare", "aria-expanded": "false" });
+  const plot = element("div", null, svg);
+  show(container, element("figure", { class: "chart", "data-chart": name },
+    element("div", { class: "chart-head" }, title ? element("h2", null, title) : element("span"), element("div", { class: "tool-row" }, tools, toggle)),
+    legend, plot, readout, note && element("figcaption", null, note), sheet));
 
   const observer = new ResizeObserver(([entry]) => {
-    const width = Math.floor(entry.contentRect.width);
-    if (width === size.width || width === 0) return;
-    size = { width, height: Math.round(Math.min(Math.max(width * ratio, 240), 430)) };
-    svg.setAttribute("width", size.width);
-    svg.setAttribute("height", size.height);
+    const next = Math.floor(entry.contentRect.width);
+    if (next === width || next === 0) return;
+    width = next;
     draw();
   });
   observer.observe(plot);
 
-  const visible = () => series.filter((one) => !hidden.has(one.id));
-  const readable = () => visible().filter((one) => (one.kind === "line" || one.kind === "points") && one.x.length > 0);
+  const readable = () => series.filter((one) => ["line", "points"].includes(one.kind) && one.x.length > 0);
   const format = (axis, value) => `${(axis.format ?? significant)(value)}${axis.unit ? ` ${axis.unit}` : ""}`;
+  const titleOf = (axis) => (axis.unit ? `${axis.label}, ${axis.unit}` : axis.label);
+  const atEnds = () => {
+    const lines = series.filter((one) => one.kind === "line" && one.name);
+    return lines.length > 1 && lines.length <= NAMED_AT_ENDS ? lines : [];
+  };
 
   /** Many calls between two frames make one drawing. */
   function schedule() {
@@ -77,136 +102,145 @@ export function createChart(container, { name, label, x: xAxis, y: yAxis, ratio 
   }
 
   function draw() {
-    if (size.width === 0) return;
-    const shown = visible();
-    const ends = (axis, first, second) => domainOf(shown.flatMap((one) => [one[first], one[second] ?? []]), axis.scale, axis);
-    const domains = [ends(xAxis, "x", "x2"), ends(yAxis, "y", "y2")];
-    drawAxes(domains);
-    for (const [id, node] of drawn) {
-      if (!shown.some((one) => one.id === id)) {
-        node.remove();
-        drawn.delete(id);
-      }
-    }
-    for (const one of shown) drawSeries(one);
-    drawCursor();
-  }
-
-  function drawAxes(domains) {
-    const rows = Math.max(3, Math.floor(size.height / 56));
-    const probe = scaleOf(yAxis.scale, domains[1], [0, 1]).ticks(rows);
-    const left = 14 + 7.2 * Math.max(...probe.map((tick) => tick.label.length), 2);
-    // The last label across stands half beyond the axis.
-    const frameOf = { left, right: size.width - 32, top: 28, bottom: size.height - 42 };
-    place = {
-      ...frameOf,
-      x: scaleOf(xAxis.scale, domains[0], [frameOf.left, frameOf.right]),
-      y: scaleOf(yAxis.scale, domains[1], [frameOf.bottom, frameOf.top]),
+    if (width === 0) return;
+    const height = Math.round(Math.min(Math.max(width * ratio, 220), 340));
+    svg.setAttribute("width", width);
+    svg.setAttribute("height", height);
+    const counts = series.filter((one) => !["limit", "outside"].includes(one.kind));
+    const all = (...keys) => counts.flatMap((one) => keys.flatMap((key) => Array.from(one[key] ?? [])));
+    const scale = (axis, values, range) => {
+      const made = (axis.scale === "log" ? d3.scaleLog() : d3.scaleLinear()).domain(domainOf(values, axis)).range(range);
+      return axis.scale === "log" ? made : made.nice(axis.from === undefined || axis.to === undefined ? 5 : undefined);
     };
-    const key = JSON.stringify([domains, size]);
-    if (key === axesKey) return;
-    axesKey = key;
-    const across = spaced(place.x.ticks(Math.max(2, Math.floor((frameOf.right - left) / 84))), place.x);
-    const up = place.y.ticks(rows);
-    const title = (axis) => (axis.unit ? `${axis.label}, ${axis.unit}` : axis.label);
+    const y = scale(yAxis, all("y", "y2"), [height - 40, 30]);
+    const ticksOf = (axis, made, room) => (axis.scale === "log"
+      ? made.ticks().filter((value) => [1, 2, 5].includes(Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9)))) : made.ticks(Math.max(2, Math.floor(room))));
+    const up = ticksOf(yAxis, y, (height - 70) / 52);
+    const left = 12 + 7 * Math.max(2, ...up.map((value) => tickText(value, yAxis.scale).length));
+    const right = width - (atEnds().length > 0 ? 12 + 7 * Math.max(...atEnds().map((one) => one.name.length)) : 14);
+    const x = scale(xAxis, all("x", "x2"), [left, right]);
+    const across = ticksOf(xAxis, x, (right - left) / 96);
+    place = { x, y, left, right, top: 30, bottom: height - 40 };
     show(axes,
-      across.map(({ value, label: text }) => [
-        shape("line", { x1: short(place.x.at(value)), x2: short(place.x.at(value)), y1: place.top, y2: place.bottom, class: "grid" }),
-        shape("text", { x: short(place.x.at(value)), y: place.bottom + 17, "text-anchor": "middle" }, text)]),
-      up.map(({ value, label: text }) => [
-        shape("line", { x1: place.left, x2: place.right, y1: short(place.y.at(value)), y2: short(place.y.at(value)), class: "grid" }),
-        shape("text", { x: place.left - 8, y: short(place.y.at(value)) + 4, "text-anchor": "end" }, text)]),
-      shape("path", { class: "axis", d: `M${place.left} ${place.top}V${place.bottom}H${place.right}` }),
-      shape("text", { class: "axis-title", x: place.right, y: size.height - 6, "text-anchor": "end" }, title(xAxis)),
-      shape("text", { class: "axis-title", x: 2, y: 14 }, title(yAxis)));
+      shape("defs", null,
+        shape("pattern", { id: hatch, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+          shape("line", { x1: 0, x2: 0, y1: 0, y2: 6, class: "series limit", "stroke-opacity": 0.5, "stroke-dasharray": "none" })),
+        shape("clipPath", { id: clip }, shape("rect", { x: left, y: place.top - 4, width: right - left + 4, height: place.bottom - place.top + 4 }))),
+      up.map((value) => [shape("line", { class: "grid", x1: left, x2: right, y1: y(value), y2: y(value) }),
+        shape("text", { x: left - 8, y: y(value) + 4, "text-anchor": "end" }, tickText(value, yAxis.scale))]),
+      across.map((value) => [
+        yAxis.scale === "log" && shape("line", { class: "grid", x1: x(value), x2: x(value), y1: place.top, y2: place.bottom }),
+        shape("line", { class: "axis", x1: x(value), x2: x(value), y1: place.bottom, y2: place.bottom + 4 }),
+        shape("text", { x: x(value), y: place.bottom + 18, "text-anchor": x(value) > right - 16 ? "end" : "middle" }, tickText(value, xAxis.scale))]).flat(),
+      shape("line", { class: "axis", x1: left, x2: right, y1: place.bottom, y2: place.bottom }),
+      shape("text", { class: "axis-title", x: 0, y: 13 }, titleOf(yAxis)),
+      shape("text", { class: "axis-title", x: right, y: place.bottom + 36, "text-anchor": "end" }, titleOf(xAxis)));
+    const order = { outside: 0, band: 1, thin: 2 };
+    const drawn = [...series].sort((one, other) => (order[one.kind] ?? 3) - (order[other.kind] ?? 3));
+    show(marks, drawn.map(mark));
+    show(above, drawn.map(words), atEnds().map((one) => {
+      const last = one.x.map((value, index) => [value, one.y[index]]).filter(finite).at(-1);
+      return last && shape("text", { class: "halo strong", x: x(last[0]) + 8, y: y(last[1]) + 4 }, lowered(one.name));
+    }));
+    const shown = series.filter((one) => one.name && ["line", "points", "thin"].includes(one.kind));
+    legend.hidden = atEnds().length > 0 || shown.length < 2;
+    show(legend, shown.map((one) => element("span", { class: "nowrap" },
+      shape("svg", { width: 26, height: 10, "aria-hidden": "true" }, swatch(one)), ` ${one.name}  `)));
+    drawCursor();
+    if (shared) move(...shared);
   }
 
-  /** Labels that would run into each other give way, those between the decades first. */
-  function spaced(ticks, scale) {
-    const kept = [];
-    for (const tick of [...ticks].sort((first, second) => second.strong - first.strong)) {
-      const clear = kept.every((other) => Math.abs(scale.at(tick.value) - scale.at(other.value)) > 4 * (tick.label.length + other.label.length) + 8);
-      if (clear && tick.label) kept.push(tick);
-    }
-    return ticks.map((tick) => (kept.includes(tick) ? tick : { ...tick, label: "" }));
-  }
+  const swatch = (one) => (one.kind === "points" ? shape("circle", { class: `series points ${tone(one)}`, cx: 13, cy: 5, r: 3.5 })
+    : shape("path", { class: `series ${one.kind} ${tone(one)}`, d: "M1 5h24", "stroke-dasharray": dashes(one) }));
+  const dashes = (one) => (one.dashed && one.tone > 0 ? ["6 3", "2 3", "9 3 2 3", "12 5", "4 2", "1 4", "9 3 2 3 2 3"][(one.tone - 1) % 7] : null);
 
-  function drawSeries(one) {
-    let node = drawn.get(one.id);
-    if (!node) {
-      node = shape("path", { class: `series ${one.kind} tone-${one.tone % TONES}`, "data-series": one.id });
-      if (one.kind === "line" && one.dashed) node.setAttribute("stroke-dasharray", DASHES[one.tone % TONES]);
-      drawn.set(one.id, node);
-      if (one.kind === "band") marks.prepend(node);
-      else marks.append(node);
-    }
-    node.setAttribute("d", outline(one));
-  }
-
-  function outline(one) {
-    if (one.kind === "rule") return one.x.length > 0 ? `M${short(place.x.at(one.x[0]))} ${place.top}V${place.bottom}` : "";
-    if (one.kind === "points") {
-      const radius = one.x.length > 300 ? 1.5 : 3.5;
-      return pixels(one.x, one.y, 0).map(([x, y]) => (Number.isFinite(x + y) ? marker(one.tone, x, y, radius) : "")).join("");
-    }
-    if (one.kind === "band") {
-      const edge = [...pixels(one.x, one.y, 0.5), ...pixels(one.x2, one.y2, 0.5).reverse()].filter(([x, y]) => Number.isFinite(x + y));
-      return edge.length > 2 ? `M${edge.map((point) => point.join(" ")).join("L")}z` : "";
-    }
-    let pen = "M";
-    return pixels(one.x, one.y, 0.7).map(([x, y]) => {
-      if (!Number.isFinite(x + y)) {
-        pen = "M"; // unknown values leave a gap
-        return "";
+  function mark(one) {
+    const { x, y, top, bottom, left, right } = place;
+    const attributes = { class: `series ${one.kind} ${tone(one)}`, "data-series": one.id };
+    const points = Array.from(one.x ?? [], (value, index) => [value, one.y?.[index], one.x2?.[index], one.y2?.[index]]);
+    switch (one.kind) {
+      case "rule": return points.length > 0 && shape("path", { ...attributes, d: `M${x(one.x[0])} ${top}V${bottom}` });
+      case "limit": return shape("path", { ...attributes, d: one.y?.length ? `M${left} ${y(one.y[0])}H${right}` : `M${x(one.x[0])} ${top}V${bottom}` });
+      case "outside": {
+        const [from, to] = one.y?.length ? [top, y(one.y[0])] : [y(one.y2[0]), bottom];
+        return to > from && shape("rect", { x: left, width: right - left, y: from, height: to - from, fill: `url(#${hatch})` });
       }
-      const step = `${pen}${x} ${y}`;
-      pen = "L";
-      return step;
-    }).join("");
+      case "points": {
+        const radius = points.length > 300 ? 1.5 : 3;
+        return shape("path", { ...attributes, d: points.filter(finite).map(([px, py]) => {
+          const [cx, cy] = [x(px).toFixed(1), y(py).toFixed(1)];
+          return `M${cx - radius} ${cy}a${radius} ${radius} 0 1 0 ${2 * radius} 0a${radius} ${radius} 0 1 0 ${-2 * radius} 0z`;
+        }).join("") });
+      }
+      case "band": {
+        const area = d3.area().defined(finite).x0((at) => x(at[0])).x1((at) => x(at[2] ?? at[0])).y0((at) => y(at[1])).y1((at) => y(at[3] ?? at[1]));
+        return shape("path", { ...attributes, d: area(points) });
+      }
+      case "end": return null;
+      default: {
+        // Unknown values leave a gap.
+        const line = d3.line().defined(finite).x((at) => x(at[0])).y((at) => y(at[1]));
+        if (one.smooth) line.curve(one.smooth === "y" ? d3.curveMonotoneY : d3.curveMonotoneX);
+        return shape("path", { ...attributes, "stroke-dasharray": dashes(one), d: line(thinned(points)) ?? "" });
+      }
+    }
   }
 
-  /** Places on the screen, thinned to steps of `least` pixels: a run of 30 000 blocks draws as fast as one of 300. */
-  function pixels(xs, ys, least) {
-    const result = [];
-    let [lastX, lastY] = [Infinity, Infinity];
-    for (let index = 0; index < xs.length; index += 1) {
-      const [x, y] = [short(place.x.at(xs[index])), short(place.y.at(ys[index]))];
-      const near = Math.abs(x - lastX) < least && Math.abs(y - lastY) < least;
-      if (near && index < xs.length - 1) continue;
-      result.push([x, y]);
-      [lastX, lastY] = [x, y];
+  /** Steps below half a pixel are left out: a run of 30 000 blocks draws as fast as one of 300. */
+  function thinned(points) {
+    if (points.length < 2000) return points;
+    let last = [Infinity, Infinity];
+    return points.filter((point, index) => {
+      const at = [place.x(point[0]), place.y(point[1])];
+      const near = Math.abs(at[0] - last[0]) < 0.5 && Math.abs(at[1] - last[1]) < 0.5;
+      if (near && index < points.length - 1) return false;
+      last = at;
+      return true;
+    });
+  }
+
+  function words(one) {
+    const { x, y, top, left, right } = place;
+    if (one.kind === "limit" && one.y?.length) return shape("text", { class: "halo remark", x: left + 6, y: y(one.y[0]) - 5 }, one.name);
+    if (one.kind === "limit") return shape("text", { class: "halo remark", x: x(one.x[0]) + 6, y: top + 10 }, one.name);
+    if (one.kind === "outside") {
+      const at = one.y?.length ? top + 14 : place.bottom - 6;
+      return (one.y?.length ? y(one.y[0]) > top + 18 : y(one.y2[0]) < place.bottom - 18) && shape("text", { class: "halo remark", x: left + 8, y: at }, one.name);
     }
-    return result;
+    if (one.kind !== "end" || one.x.length === 0) return null;
+    const [cx, cy] = [x(one.x[0]), y(one.y[0])];
+    const early = cx > 0.5 * (left + right);
+    return [shape("path", { class: "end-mark", d: `M${cx - 5} ${cy - 5}l10 10m0 -10l-10 10` }),
+      one.name && shape("text", { class: "halo strong", x: cx + (early ? -10 : 10), y: cy - 8, "text-anchor": early ? "end" : "start" }, one.name)];
   }
 
   function drawCursor() {
     const one = cursor && readable().find((candidate) => candidate.id === cursor.id);
     const index = one ? Math.min(cursor.index, one.x.length - 1) : -1;
-    const [x, y] = one ? [place.x.at(one.x[index]), place.y.at(one.y[index])] : [NaN, NaN];
-    const seen = Number.isFinite(x + y);
-    crosshair.setAttribute("visibility", seen ? "visible" : "hidden");
-    if (!seen) return;
-    const [upright, level, ring] = crosshair.children;
-    const set = (node, values) => Object.entries(values).forEach(([key, value]) => node.setAttribute(key, short(value)));
-    set(upright, { x1: x, x2: x, y1: place.top, y2: place.bottom });
-    set(level, { x1: place.left, x2: place.right, y1: y, y2: y });
-    set(ring, { cx: x, cy: y });
-    const words = `${one.name}: ${xAxis.label} ${format(xAxis, one.x[index])}, ${yAxis.label} ${format(yAxis, one.y[index])}`;
-    if (readout.textContent !== words) readout.textContent = words;
+    const at = one ? [one.x[index], one.y[index]] : [NaN, NaN];
+    if (!finite(at)) {
+      if (!shared) show(crosshair);
+      return;
+    }
+    move(at[0], [at]);
+    shared = null;
+    const text = `${one.name}: ${xAxis.label} ${format(xAxis, at[0])}, ${yAxis.label} ${format(yAxis, at[1])}`;
+    if (readout.textContent !== text) readout.textContent = text;
   }
 
-  function moveCursor(next) {
-    cursor = next;
-    drawCursor();
-    if (!next) readout.textContent = HINT;
+  /** Shows a place along x and what stands there. */
+  function move(at, dots = []) {
+    shared = [at, dots];
+    if (!place || !Number.isFinite(at)) return;
+    show(crosshair, shape("line", { x1: place.x(at), x2: place.x(at), y1: place.top, y2: place.bottom }),
+      dots.filter(finite).map(([px, py]) => shape("circle", { class: "dot", cx: place.x(px), cy: place.y(py), r: 4.5 })));
   }
 
   function nearest(px, py, candidates, acrossOnly = false) {
     let best = { distance: Infinity };
     for (const one of candidates) {
       for (let index = 0; index < one.x.length; index += 1) {
-        const [dx, dy] = [place.x.at(one.x[index]) - px, acrossOnly ? 0 : place.y.at(one.y[index]) - py];
-        const distance = Math.hypot(dx, dy);
+        const distance = Math.hypot(place.x(one.x[index]) - px, acrossOnly ? 0 : place.y(one.y[index]) - py);
         if (distance < best.distance) best = { distance, id: one.id, index };
       }
     }
@@ -216,8 +250,19 @@ export function createChart(container, { name, label, x: xAxis, y: yAxis, ratio 
   svg.addEventListener("pointermove", (event) => {
     if (!place) return;
     const box = svg.getBoundingClientRect();
+    if (taker) {
+      if (event.buttons) taker(place.x.invert(event.clientX - box.left));
+      return;
+    }
     const found = nearest(event.clientX - box.left, event.clientY - box.top, readable());
-    if (found.distance < POINTER_REACH) moveCursor({ id: found.id, index: found.index });
+    if (found.distance < POINTER_REACH) [cursor] = [{ id: found.id, index: found.index }];
+    drawCursor();
+  });
+
+  svg.addEventListener("pointerdown", (event) => {
+    if (!taker || !place) return;
+    svg.setPointerCapture(event.pointerId);
+    taker(place.x.invert(event.clientX - svg.getBoundingClientRect().left));
   });
 
   svg.addEventListener("keydown", (event) => {
@@ -231,75 +276,43 @@ export function createChart(container, { name, label, x: xAxis, y: yAxis, ratio 
     const steps = { ArrowRight: index + 1, ArrowLeft: index - 1, PageUp: index + leap, PageDown: index - leap, Home: 0, End: last };
     const turn = { ArrowUp: -1, ArrowDown: 1 }[event.key];
     if (event.key in steps) {
-      moveCursor({ id: one.id, index: Math.min(Math.max(steps[event.key], 0), last) });
+      cursor = { id: one.id, index: Math.min(Math.max(steps[event.key], 0), last) };
     } else if (turn) {
       const other = lines[(at + turn + lines.length) % lines.length];
-      moveCursor(index < 0 ? { id: one.id, index: 0 } : { id: other.id, index: nearest(place.x.at(one.x[index]), 0, [other], true).index ?? 0 });
+      cursor = index < 0 ? { id: one.id, index: 0 } : { id: other.id, index: nearest(place.x(one.x[index]), 0, [other], true).index ?? 0 };
     } else if (event.key === "Escape" && cursor) {
-      moveCursor(null);
+      cursor = null;
+      readout.textContent = "";
     } else {
       return;
     }
+    drawCursor();
+    if (taker && cursor) taker(lines.find((line) => line.id === cursor.id).x[cursor.index]);
     event.preventDefault();
   });
 
-  function drawLegend() {
-    show(legend, series.map((one) => {
-      const sample = shape("svg", { width: 26, height: 14, "aria-hidden": "true" }, swatch(one));
-      const press = button([sample, one.name], () => {
-        if (!hidden.delete(one.id)) hidden.add(one.id);
-        press.setAttribute("aria-pressed", String(!hidden.has(one.id)));
-        schedule();
-      }, { class: null, "aria-pressed": String(!hidden.has(one.id)) });
-      return element("li", null, press);
-    }));
-  }
-
-  function swatch(one) {
-    const attributes = { class: `series ${one.kind} tone-${one.tone % TONES}` };
-    if (one.kind === "points") return shape("path", { ...attributes, d: marker(one.tone, 13, 7, 4) });
-    if (one.kind === "band") return shape("path", { ...attributes, d: "M1 2h24v10h-24z" });
-    if (one.kind === "rule") return shape("path", { ...attributes, d: "M13 0v14" });
-    return shape("path", { ...attributes, d: "M1 7h24", "stroke-dasharray": one.dashed ? DASHES[one.tone % TONES] : null });
-  }
-
-  function toggleTable() {
-    sheet.hidden = !sheet.hidden;
-    toggle.setAttribute("aria-expanded", String(!sheet.hidden));
-    toggle.textContent = sheet.hidden ? "Show as table" : "Hide table";
-    drawTable();
-  }
-
   function drawTable() {
     if (sheet.hidden) return;
-    const curves = visible().filter((one) => one.kind !== "rule");
+    const curves = series.filter((one) => ["line", "points", "band", "thin"].includes(one.kind));
     const perCurve = Math.max(20, Math.floor(TABLE_ROWS / Math.max(1, curves.length)));
-    let thinned = false;
+    const thin = curves.some((one) => one.x.length > perCurve);
     const rows = curves.flatMap((one) => {
       const stride = Math.ceil(one.x.length / perCurve);
-      thinned ||= stride > 1;
-      const row = (values, others, index) => format({ ...values, unit: "" }, others[index]);
-      return one.x.map((_, index) => index).filter((index) => index % stride === 0 || index === one.x.length - 1).map((index) => {
-        const range = (axis, first, second) => (one.kind === "band" && second[index] !== first[index]
-          ? `${row(axis, first, index)} to ${row(axis, second, index)}` : row(axis, first, index));
-        return [one.name, range(xAxis, one.x, one.x2), range(yAxis, one.y, one.y2)];
-      });
+      const range = (axis, first, second, index) => {
+        const text = (values) => format({ ...axis, unit: "" }, values[index]);
+        return second && second[index] !== first[index] ? `${text(first)} to ${text(second)}` : text(first);
+      };
+      return Array.from(one.x.keys()).filter((index) => index % stride === 0 || index === one.x.length - 1)
+        .map((index) => [one.name, range(xAxis, one.x, one.x2, index), range(yAxis, one.y, one.y2, index)]);
     });
     const columns = [{ title: "Curve" }, ...[xAxis, yAxis].map((axis) => ({ title: axis.label, unit: axis.unit, numeric: true }))];
-    show(sheet, table(thinned ? `${label} (every row is in the download; here a selection)` : label, columns, rows));
+    show(sheet, table(thin ? `${label} (every row is in the download; here a selection)` : label, columns, rows));
   }
 
   return {
-    /** Replaces all curves; those that were hidden stay hidden. */
+    /** Replaces all series. */
     set(next) {
-      const names = (list) => JSON.stringify(list.map((one) => [one.id, one.name, one.kind, one.tone]));
-      const same = names(next) === names(series);
       series = next;
-      if (!same) {
-        drawn.forEach((node) => node.remove());
-        drawn.clear();
-        drawLegend();
-      }
       drawTable();
       schedule();
     },
@@ -311,6 +324,12 @@ export function createChart(container, { name, label, x: xAxis, y: yAxis, ratio 
         one.y.push(ys[index]);
       });
       schedule();
+    },
+    move,
+    /** A press or drag in the chart, or an arrow key on a curve, gives the place along x. */
+    pick(take) {
+      taker = take;
+      svg.classList.add("picked");
     },
     destroy() {
       observer.disconnect();

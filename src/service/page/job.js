@@ -69,6 +69,7 @@ export function createJobHead(first, { actions = [] } = {}) {
   let job = first;
   let spoken = "";
   const badge = element("span");
+  const what = element("p");
   const facts = element("p", { class: "quiet" });
   const bar = element("progress", { max: "1", "aria-label": "Progress" });
   const figures = element("div");
@@ -93,7 +94,7 @@ export function createJobHead(first, { actions = [] } = {}) {
   const node = element("header", { class: "job-head", id: "job", "data-job-kind": job.kind },
     element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, nameOf(job)), badge,
       element("div", { class: "tool-row end" }, actions, cancel, discard)),
-    facts, progress, aloud, trouble);
+    what, facts, progress, aloud, trouble);
 
   function update(next) {
     job = { ...job, ...next };
@@ -107,7 +108,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     discard.hidden = !ended;
     const took = job.started && job.finished ? `, took ${duration((new Date(job.finished) - new Date(job.started)) / 1000)}` : "";
     const again = job.attempts > 1 ? `, attempt ${job.attempts}` : "";
-    facts.textContent = `${sentence(job.kind)} ${job.id}, submitted ${moment(job.created)}${took}${again}`;
+    facts.textContent = `${sentence(job.kind)} of ${moment(job.created)}${took}${again}`;
     progress.hidden = ended;
     if (!ended) showProgress();
     speak();
@@ -145,6 +146,10 @@ export function createJobHead(first, { actions = [] } = {}) {
   update(first);
   return {
     node, update,
+    /** What the run is of, in a sentence. */
+    describe(text) {
+      what.textContent = text;
+    },
     connection(live) {
       link.hidden = live;
     },

@@ -1,5 +1,4 @@
-// A plate to scale: outline, holes, notches, cracks, and the ways its crack tips went. The stage keeps the scale;
-// the sketch (to draw in) and the live picture (to look at) both stand on it.
+// A plate to draw in, to scale: outline, holes, notches, cracks.
 
 import { button, element, shape, show } from "./dom.js";
 
@@ -7,33 +6,12 @@ const MARGIN = 30;
 const HEIGHT_MAX = 430;
 const RULE_STRIP = 16; // below the picture, so that the rule never lies on the load
 
-/** Outline, holes, cracks and notches of a specimen of the input file, mm. Null when sizes are missing. */
+/** Outline, holes, cracks and notches of a plate of the input file, mm. Null when sizes are missing. */
 export function geometryOf(specimen) {
-  const { kind, width_mm: w, length_mm: l, crack_length_mm: a } = specimen ?? {};
-  const rectangle = (left, right, bottom, top) => [[left, bottom], [right, bottom], [right, top], [left, top]];
-  const strip = () => rectangle(-w / 2, w / 2, -l / 2, l / 2);
-  const bare = { holes: [], notches: [], cracks: [], pinned: false };
-  const crack = (from, to) => ({ from_mm: [from, 0], to_mm: [to, 0] });
-  const sized = w > 0 && (l > 0 || kind === "compact_tension");
-  switch (kind) {
-    case "middle_tension": return sized ? { ...bare, outline: strip(), cracks: a > 0 ? [crack(-a, a)] : [] } : null;
-    case "single_edge_tension": return sized ? { ...bare, outline: strip(), cracks: a > 0 ? [crack(-w / 2, -w / 2 + a)] : [] } : null;
-    case "double_edge_tension":
-      return sized ? { ...bare, outline: strip(), cracks: a > 0 ? [crack(-w / 2, -w / 2 + a), crack(w / 2, w / 2 - a)] : [] } : null;
-    case "compact_tension": return sized ? {
-      ...bare,
-      outline: rectangle(-0.25 * w, w, -0.6 * w, 0.6 * w),
-      holes: [1, -1].map((side) => ({ x_mm: 0, y_mm: side * 0.275 * w, diameter_mm: 0.25 * w })),
-      cracks: a > 0 ? [crack(-0.25 * w, a)] : [],
-      pinned: true,
-    } : null;
-    case "plate": {
-      const d = specimen.diameter_mm;
-      const outline = specimen.outline_mm ?? (d > 0 ? disc(d / 2) : sized ? strip() : null);
-      return outline && { ...bare, outline, holes: specimen.holes ?? [], cracks: straightCracks(specimen.cracks ?? []), notches: specimen.notches ?? [] };
-    }
-    default: return null;
-  }
+  const { width_mm: w, length_mm: l, diameter_mm: d } = specimen;
+  const strip = [[-w / 2, -l / 2], [w / 2, -l / 2], [w / 2, l / 2], [-w / 2, l / 2]];
+  const outline = specimen.outline_mm ?? (d > 0 ? disc(d / 2) : w > 0 && l > 0 ? strip : null);
+  return outline && { outline, holes: specimen.holes ?? [], cracks: straightCracks(specimen.cracks ?? []), notches: specimen.notches ?? [] };
 }
 
 /** Cracks with bends as straight ones that share their corners, which are joined. */
@@ -57,8 +35,8 @@ function boxOf(points) {
 }
 
 /** Part of the plate with its cracks and holes, and air around them; never more than the plate. */
-function closeBox(geometry, more) {
-  const points = [...geometry.cracks, ...geometry.notches].flatMap((one) => [one.from_mm, one.to_mm]).concat(more)
+function closeBox(geometry) {
+  const points = [...geometry.cracks, ...geometry.notches].flatMap((one) => [one.from_mm, one.to_mm])
     .filter((point) => Number.isFinite(point[0] + point[1]));
   const whole = boxOf(geometry.outline);
   if (points.length === 0) return whole;
@@ -73,7 +51,6 @@ function closeBox(geometry, more) {
 /** An SVG that fits a plate into its container. `drawMore(stage)` adds what stands above the plate. */
 export function createStage(container, { label, role = "img", drawMore }) {
   let geometry = null;
-  let followed = [];
   let width = 0;
   let close = false;
   let view = null;
@@ -102,10 +79,6 @@ export function createStage(container, { label, role = "img", drawMore }) {
       geometry = next;
       draw();
     },
-    /** Points that the close view must hold too. */
-    follow(points) {
-      followed = points;
-    },
     draw,
     toPixels: ([x, y]) => [view.x + (x - view.box.left) * view.scale, view.y + (view.box.top - y) * view.scale],
     toMillimetres: ([px, py]) => [(px - view.x) / view.scale + view.box.left, view.box.top - (py - view.y) / view.scale],
@@ -123,7 +96,7 @@ export function createStage(container, { label, role = "img", drawMore }) {
       svg.setAttribute("height", 0);
       return;
     }
-    const box = close ? closeBox(geometry, followed) : boxOf(geometry.outline);
+    const box = close ? closeBox(geometry) : boxOf(geometry.outline);
     const [across, up] = [box.right - box.left, box.top - box.bottom];
     const room = width - 2 * MARGIN;
     const height = Math.min(Math.max((room * up) / across, 150), HEIGHT_MAX - 2 * MARGIN) + 2 * MARGIN;
@@ -144,7 +117,7 @@ export function createStage(container, { label, role = "img", drawMore }) {
   const whole = (one) => [...one.from_mm, ...one.to_mm].every(Number.isFinite);
 
   function drawPlate() {
-    const { outline, holes, cracks, notches, pinned } = geometry;
+    const { outline, holes, cracks, notches } = geometry;
     show(base,
       shape("path", { class: "plate-body", d: polygon(outline) }),
       holes.filter((hole) => hole.diameter_mm > 0 && Number.isFinite(hole.x_mm + hole.y_mm)).map((hole) => {
@@ -153,7 +126,7 @@ export function createStage(container, { label, role = "img", drawMore }) {
       }),
       notches.filter(whole).map((notch) => line(notch, { class: "plate-notch", "stroke-width": notch.width_mm * view.scale })),
       cracks.filter(whole).map((crack) => line(crack, { class: "plate-crack" })),
-      close || pinned ? null : arrows(boxOf(outline)), rule());
+      close ? null : arrows(boxOf(outline)), rule());
   }
 
   /** The load pulls at both ends. */
@@ -175,39 +148,4 @@ export function createStage(container, { label, role = "img", drawMore }) {
   }
 
   return stage;
-}
-
-/** A picture to look at: the plate and the ways of its crack tips, which may grow. */
-export function createPlatePicture(container, label) {
-  let paths = [];
-  const stage = createStage(container, { label, drawMore: drawPaths });
-
-  function drawPaths() {
-    const pixel = (point) => stage.toPixels(point).map((value) => Math.round(value * 10) / 10);
-    show(stage.above, paths.map((path) => {
-      const points = path.filter((point) => Number.isFinite(point[0] + point[1])).map(pixel);
-      if (points.length === 0) return null;
-      const [cx, cy] = points[points.length - 1];
-      return shape("g", null,
-        shape("path", { class: "plate-path", d: `M${points.map((point) => point.join(" ")).join("L")}` }),
-        shape("circle", { class: "plate-tip", cx, cy, r: 3.5 }));
-    }));
-  }
-
-  return {
-    setSpecimen(specimen) {
-      stage.setGeometry(geometryOf(specimen));
-    },
-    get known() {
-      return stage.ready;
-    },
-    /** `next`: per tip its points [x, y], mm. */
-    setPaths(next) {
-      paths = next;
-      const points = next.flat();
-      stage.follow(points);
-      if (stage.ready) stage.draw();
-    },
-    destroy: () => stage.destroy(),
-  };
 }

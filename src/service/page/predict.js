@@ -21,6 +21,13 @@ const START = {
   model: {},
 };
 
+const BY_HAND = "law:paris";
+const NAMES = { nasgro: "NASGRO", bond_law: "A and p of fatigue bonds" };
+const SYMBOLS = {
+  paris_c_mm_per_cycle: "C", paris_m: "m", walker_gamma: "γ", forman_c_mm_per_cycle: "C", forman_m: "m", k_c_mpa_sqrt_m: "Kc",
+  nasgro_c_mm_per_cycle: "C", nasgro_n: "n", nasgro_p: "p", nasgro_q: "q", nasgro_alpha: "α", nasgro_smax_over_flow: "Smax/σ0",
+  nasgro_delta_k_0_mpa_sqrt_m: "ΔK0", nasgro_c_th: "Cth", nasgro_c_th_negative: "Cth, R below 0", a: "A", p: "p", horizon_mm: "Horizon of A",
+};
 /** Builds the view; gives {setMaterials, open(query)}. */
 export function createPredictView() {
   const form = createForm(() => {
@@ -34,18 +41,21 @@ export function createPredictView() {
   const specimen = createSpecimen(form, { plate });
   const material = createMaterial(form);
   const loading = createLoading(form);
-  const law = form.choice("calibration", { label: "Taken from", options: [{ value: "", title: "Constants given here" }] });
-  const constants = {
-    a: form.number("fatigue.a", { label: "A", unit: "1/cycle" }),
-    p: form.number("fatigue.p", { label: "Exponent p", hint: "not the Paris exponent m" }),
-    horizon_mm: form.number("fatigue.horizon_mm", { label: "At horizon", unit: "mm", hint: "A holds for this horizon" }),
-  };
+  const law = form.choice("calibration", { label: "Growth law", options: [{ value: "law:paris", title: "C and m (Paris)" }] });
   law.node.classList.add("wide");
   const lawNote = element("div", { class: "law-note" });
+  // Constants of every law, as the service lists them; A and p with the horizon that A holds for.
+  const constants = element("div", { class: "fields" });
+  const threshold = form.number("fatigue.delta_k_threshold_mpa_sqrt_m", { label: "Threshold ΔK", unit: "MPa√m", optional: true, hint: "without it nothing stands still" });
+  let laws = [];
+  let fieldsOfLaw = {};
   const length = { unit: "mm", optional: true };
-  const spacing = form.number("model.spacing_mm", {
-    ...length, label: "Spacing of points", hint: "left empty: the program chooses the model",
+  const spacing = form.number("model.spacing_mm", { ...length, label: "Spacing of points", hint: "of points and bonds only" });
+  const method = form.choice("model.method", {
+    label: "Method", options: [["", "Chosen by the program"], ["handbook", "Handbook formula"], ["element_free_galerkin", "Nodes"], ["peridynamics", "Points and bonds"]]
+      .map(([value, title]) => ({ value, title })),
   });
+  const tolerance = form.number("model.tolerance_percent", { label: "Error of life wanted", unit: "%", optional: true, hint: "2 where nothing is given" });
   const stopLength = form.number("stop.crack_length_mm", { ...length, label: "Stop at crack length" });
   const stopCycles = form.number("stop.cycles_max", { label: "Stop after", unit: "cycles", optional: true });
   const name = form.text("name", { label: "Name of the prediction", optional: true });
@@ -57,10 +67,24 @@ export function createPredictView() {
     const kind = specimen.fields.kind.input.value;
     loading.suit(kind);
     if (kind === "plate") plate.draw();
-    for (const field of Object.values(constants)) field.node.hidden = law.input.value !== "" || fields.hidden;
+    const own = laws.find((one) => `law:${one.name}` === law.input.value);
+    if (constants.dataset.law !== (own?.name ?? "")) drawConstants(own);
+    constants.hidden = fields.hidden;
+    spacing.node.hidden = !["", "peridynamics"].includes(method.input.value);
+    tolerance.node.hidden = !["", "element_free_galerkin"].includes(method.input.value);
     const chosen = calibrations.find((one) => one.id === law.input.value);
-    show(lawNote, chosen?.summary ? describe(chosen) : calibrations.length === 0 && element("p", { class: "quiet" },
-      "No calibration has been made here yet: ", element("a", { href: "#/measure" }, "fit measured curves"), ", or give constants."));
+    show(lawNote, chosen?.summary ? describe(chosen) : element("p", { class: "quiet" }, own?.meaning ?? "",
+      calibrations.length === 0 && [" No calibration has been made here yet: ", element("a", { href: "#/measure" }, "fit measured curves"), "."]));
+  }
+
+  /** Fields for the constants of a law. */
+  function drawConstants(own) {
+    form.drop(Object.values(fieldsOfLaw));
+    fieldsOfLaw = Object.fromEntries((own?.constants ?? []).map(({ key, unit, what, needed }) => [key,
+      form.number(`fatigue.${key}`, { label: SYMBOLS[key] ?? words(key), unit, hint: what, optional: !needed, signed: true })]));
+    constants.dataset.law = own?.name ?? "";
+    const hasOwn = Object.keys(fieldsOfLaw).some((key) => key.includes("delta_k"));
+    show(constants, Object.values(fieldsOfLaw).map((field) => field.node), own && !hasOwn && threshold.node);
   }
 
   function describe({ id, summary: s }) {
@@ -72,16 +96,32 @@ export function createPredictView() {
       element("a", { href: `#/calibrations/${encodeURIComponent(id)}` }, "Open the calibration"));
   }
 
+  const isFitted = () => !law.input.value.startsWith("law:");
+
+  function fatigueOf() {
+    const name = law.input.value.replace("law:", "");
+    const given = Object.fromEntries(Object.entries(fieldsOfLaw).map(([key, field]) => [key, numberIn(field)]));
+    // Bonds and powers of ΔK are told by their constants.
+    const named = ["paris", "bond_law"].includes(name) ? {} : { growth_law: name };
+    return compact({ ...named, ...given, delta_k_threshold_mpa_sqrt_m: threshold.node.isConnected ? numberIn(threshold) : undefined });
+  }
+
   function collect() {
-    const given = Object.fromEntries(Object.entries(constants).map(([key, field]) => [key, numberIn(field)]));
     return {
       specimen: specimen.collect(),
       material: material.collect(),
       loading: loading.collect(),
-      model: compact({ spacing_mm: numberIn(spacing) }),
-      ...(law.input.value ? {} : { fatigue: compact(given) }),
+      model: compact({ method: method.input.value, tolerance_percent: tolerance.node.hidden ? undefined : numberIn(tolerance),
+        spacing_mm: spacing.node.hidden ? undefined : numberIn(spacing) }),
+      ...(isFitted() ? {} : { fatigue: fatigueOf() }),
       stop: compact({ crack_length_mm: numberIn(stopLength), cycles_max: numberIn(stopCycles) }),
     };
+  }
+
+  /** The law that a case names, or whose constants it gives. */
+  function lawOf(fatigue) {
+    const has = (one) => one.constants.filter(({ needed }) => needed).every(({ key }) => key in fatigue);
+    return laws.find((one) => one.name === fatigue.growth_law) ?? laws.find((one) => ["paris", "bond_law"].includes(one.name) && has(one));
   }
 
   /** Only what the form can show: anything else stays text. */
@@ -89,27 +129,33 @@ export function createPredictView() {
     const { specimen: s, material: m, loading: l, model = {}, fatigue = {}, stop = {}, ...others } = input;
     const filled = (table) => Object.keys(table ?? {}).length > 0;
     const beyond = (table, known) => Object.keys(table).some((key) => !known.includes(key));
-    const lawHere = law.input.value === "";
-    const tooMuch = Object.values(others).some(filled) || beyond(model, ["spacing_mm"]) || beyond(stop, ["crack_length_mm", "cycles_max"]) ||
-      (lawHere && beyond(fatigue, Object.keys(constants))) || (!lawHere && beyond(fatigue, ["fitted"]));
+    const own = isFitted() || !filled(fatigue) ? null : lawOf(fatigue);
+    const tooMuch = Object.values(others).some(filled) || beyond(model, ["spacing_mm", "method", "tolerance_percent"]) || beyond(stop, ["crack_length_mm", "cycles_max"]) ||
+      (own && beyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...own.constants.map(({ key }) => key)])) ||
+      (!own && beyond(fatigue, ["fitted"]));
     if (tooMuch || !specimen.fill(s) || !material.fill(m) || !loading.fill(l)) return false;
+    fillIn(method, model.method === "auto" ? "" : model.method);
+    fillIn(tolerance, model.tolerance_percent);
     fillIn(spacing, model.spacing_mm);
     fillIn(stopLength, stop.crack_length_mm);
     fillIn(stopCycles, stop.cycles_max);
-    if (lawHere) Object.entries(constants).forEach(([key, field]) => fillIn(field, fatigue[key]));
+    if (own) fillIn(law, `law:${own.name}`);
     arrange();
+    if (own) Object.entries(fieldsOfLaw).forEach(([key, field]) => fillIn(field, fatigue[key]));
+    if (own) fillIn(threshold, fatigue.delta_k_threshold_mpa_sqrt_m);
     return true;
   }
 
   show(fields, specimen.element, material.element, loading.element,
-    group("Model and stop", grid(spacing.node, stopLength.node, stopCycles.node, name.node)));
-  show(byId("law-fields"), group("Growth law", grid(law.node, ...Object.values(constants).map((field) => field.node)), lawNote));
+    group("End", grid(stopLength.node, stopCycles.node, name.node)),
+    group("How it is computed", grid(method.node, tolerance.node, spacing.node)));
+  show(byId("law-fields"), group("Growth law", grid(law.node), constants, lawNote));
 
   // While another run's input is on its way, what stands in the form is not what the user means to start.
   let opening = false;
   const editor = createEditor({
     host: byId("plate-editor"), fields, panel: byId("plate-check"), form, collect, fill,
-    context: () => (law.input.value ? { calibration: law.input.value } : {}),
+    context: () => (isFitted() ? { calibration: law.input.value } : {}),
     onResult: (ok) => {
       start.disabled = !ok || opening;
     },
@@ -126,6 +172,7 @@ export function createPredictView() {
   /** Finished calibrations as laws to choose from; the newest is the choice until the user makes one. */
   async function loadLaws(wanted) {
     try {
+      if (laws.length === 0) laws = (await getJson("/v1/kinds")).laws.filter((one) => one.constants.length > 0);
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;
       // One that is asked for by its address may be older than these.
       const known = calibrations.some((one) => one.id === wanted);
@@ -135,10 +182,13 @@ export function createPredictView() {
       show(byId("law-problem"), problemBox(error, () => loadLaws(wanted)));
       return;
     }
-    const chosen = wanted ?? (law.touched ? law.input.value : calibrations[0]?.id ?? "");
-    show(law.input, calibrations.map((one) => element("option", { value: one.id }, one.name || one.id)),
-      element("option", { value: "" }, "Constants given here"));
-    law.input.value = calibrations.some((one) => one.id === chosen) ? chosen : "";
+    const chosen = wanted ?? (law.touched ? law.input.value : calibrations[0]?.id ?? BY_HAND);
+    const option = (value, title) => element("option", { value }, title);
+    show(law.input, option(BY_HAND, "C and m (Paris)"),
+      calibrations.length > 0 && element("optgroup", { label: "Fitted here" }, calibrations.map((one) => option(one.id, one.name || one.id))),
+      element("optgroup", { label: "Other laws" }, laws.filter((one) => one.name !== "paris")
+        .map((one) => option(`law:${one.name}`, NAMES[one.name] ?? sentence(words(one.name))))));
+    law.input.value = [...law.input.options].some((one) => one.value === chosen) ? chosen : BY_HAND;
     arrange();
     editor.check.soon();
   }
@@ -167,7 +217,7 @@ export function createPredictView() {
       try {
         const job = await getJson(`/v1/predictions/${encodeURIComponent(from)}`);
         if (job.calibration) await loadLaws(job.calibration);
-        else fillIn(law, "");
+        else fillIn(law, BY_HAND);
         opened = true;
         await editor.start(job.input);
       } catch (error) {

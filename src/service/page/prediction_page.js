@@ -1,159 +1,179 @@
-// Page of one prediction: while it runs the curve, the crack path and the damage field grow; afterwards the life and what follows from it.
+// Page of one prediction: the answer first, then one place along the life for plate, curve and K. While it runs, curve and path grow.
 
+import { answerCard, errorWords, leadOf, quantilesOf } from "./answer.js";
 import { getBlob, getJson, getText, postJson } from "./api.js";
 import { createChart } from "./chart.js";
 import { warningList } from "./check.js";
-import { button, element, readCsv, section, show, showPage, terms } from "./dom.js";
+import { button, element, readCsv, show, showPage, terms } from "./dom.js";
 import { follow } from "./events.js";
-import { bandOf, count, cycles, deserved, duration, fixed, lifeOf, scientific, sentence, significant, whole, words } from "./format.js";
+import { count, cycles, deserved, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
 import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
-import { createPlatePicture } from "./plate_drawing.js";
+import { createPlatePath } from "./plate_path.js";
 import { createRemaining } from "./remaining.js";
+
+const STEPS = 1000;
+const PLAY_MS = 5000;
+/** Pictures of the end of a run, by the model that has them. */
+const FIELDS = { "von_mises.png": "Von Mises stress at maximum load, at the end of the run.", "damage.png": "Share of bonds cut or broken, at the end of the run." };
 
 export async function openPrediction(root, id, signal) {
   const job = await getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal);
-  const address = `#/predict?from=${encodeURIComponent(id)}`;
-  const again = element("a", { class: "button", href: address, "data-action": "again" }, "Start a new one from this");
+  const again = element("a", { class: "button", href: `#/predict?from=${encodeURIComponent(id)}`, "data-action": "again" }, "Change and run again");
   const head = createJobHead(job, { actions: [again] });
   const outcome = element("div", { class: "job-body" });
   const below = element("div", { class: "job-body" });
-  const chartPlace = element("div");
-  const ratePlace = element("div");
-  const picturePlace = element("div");
-  const { node: damage, image } = createPicture("Damage or stress over the plate, with the crack path");
-  const imageNote = element("p", { class: "quiet" }, "No picture yet.");
-  const rates = section("rates", "Growth rate", ratePlace);
-  rates.hidden = true;
-  const pictures = element("div", { class: "columns wide-left" },
-    element("div", { class: "stack" }, section("curve", "Crack length against cycles", chartPlace),
-      section("damage", "Plate", damage, imageNote)),
-    element("div", { class: "stack" }, section("path", "Crack path", picturePlace), rates));
-  showPage(root, head.node, outcome, pictures, below);
+  const [platePlace, curvePlace, factorPlace] = [0, 1, 2].map(() => element("div"));
+  const { node: field, image } = createPicture("Stress or damage over the plate, with the crack path");
+  const fieldNote = element("figcaption");
+  const fieldFigure = element("figure", { class: "card figure", "data-part": "damage", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Field")), field, fieldNote);
+  const factors = element("div", { class: "card figure", hidden: true }, factorPlace);
+  const plateFigure = element("figure", { class: "card figure", "data-part": "path" },
+    element("div", { class: "chart-head" }, element("h2", null, "Crack path")), platePlace,
+    element("figcaption", null, "Colour: share of life, as on the slider; marks at 25, 50, 75 and 90 %. Dotted: still to come."));
+  const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, fieldFigure),
+    element("div", { class: "stack" }, element("div", { class: "card figure" }, curvePlace), factors));
+  showPage(root, head.node, outcome, element("div", { class: "job-body" }, pictures), below);
 
-  const chart = createChart(chartPlace, {
-    name: "life",
-    label: "Predicted crack length against cycles",
+  const chart = createChart(curvePlace, {
+    name: "life", title: "Crack length over cycles", label: "Predicted crack length against cycles",
     x: { label: "Cycles N", format: (value) => cycles(Math.round(value)), from: 0 },
-    y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
+    y: { label: "Crack length a", unit: "mm", format: (value) => fixed(value, 2) },
   });
-  const plate = createPlatePicture(picturePlace, "The plate with its cracks and the way every crack tip has gone");
+  const plate = createPlatePath(platePlace, "The plate with its cracks and the way every crack tip has gone");
   signal.addEventListener("abort", () => {
     chart.destroy();
     plate.destroy();
   });
-  const curve = { id: "curve", name: "Predicted", kind: "line", tone: 0, x: [], y: [] };
-  const today = { id: "today", name: "Today", kind: "points", tone: 1, x: [], y: [] };
+  const curve = { id: "curve", name: "computed", kind: "line", tone: 0, x: [], y: [] };
+  let drawn = null; // shape of the specimen, as the service says it
+  let paths = [];
   chart.set([curve]);
-  drawSpecimen();
 
-  /** The job says what was submitted as text; the check reads it and gives the specimen to draw. */
-  async function drawSpecimen() {
-    try {
-      const body = { input: job.input, ...(job.calibration ? { calibration: job.calibration } : {}) };
-      const specimen = job.case?.specimen ?? (await postJson("/v1/check", body, { signal })).case?.specimen;
-      plate.setSpecimen(specimen);
-    } catch (error) {
-      // An input with files of its own cannot be read again here: the path then stands in the damage picture alone.
-      if (error.name === "AbortError") return;
-      const words = "The outline of this plate cannot be drawn from its input; the damage picture shows the path.";
-      picturePlace.prepend(element("p", { class: "quiet" }, words));
+  async function drawPlate() {
+    if (!drawn) {
+      try {
+        const body = { input: job.input, ...(job.calibration ? { calibration: job.calibration } : {}) };
+        drawn = (await postJson("/v1/check", body, { signal })).shape;
+      } catch (error) {
+        if (error.name === "AbortError") return;
+      }
     }
+    plateFigure.hidden = !drawn;
+    plate.set(drawn, paths, curve.x.at(-1) ?? 1);
   }
 
-  let paths = [];
   function grow({ from, cycles: steps, crack_length_mm: lengths, tips }) {
     if (from < curve.x.length) {
       curve.x.length = from;
       curve.y.length = from;
       paths = paths.map((path) => path.slice(0, from));
     }
-    if (curve.x.length === 0) chart.set([curve]);
     chart.extend("curve", steps, lengths);
-    for (const entry of tips ?? []) {
-      entry.forEach((point, tip) => {
-        paths[tip] ??= [];
-        paths[tip].push(point);
-      });
-    }
-    plate.setPaths(paths);
+    (tips ?? []).forEach((entry, row) => entry.forEach(([x, y], tip) => {
+      paths[tip] ??= [];
+      paths[tip].push([steps[row], x, y]);
+    }));
+    plate.set(drawn, paths, steps.at(-1) || 1);
   }
 
   let revision = -1;
-  async function showPicture({ revision: next, href, cycles: at, crack_length_mm: length }) {
+  async function showPicture({ revision: next, href, cycles: moment, crack_length_mm: length }) {
     if (next <= revision) return;
     revision = next;
     try {
       const blob = await getBlob(href, signal);
       if (revision !== next) return; // a newer one is on its way
+      fieldFigure.hidden = false;
       await showBlob(image, blob);
-      imageNote.textContent = `At ${cycles(Math.round(at))} cycles, crack length ${fixed(length, 2)} mm.`;
+      fieldNote.textContent = `At ${cycles(Math.round(moment))} cycles, crack length ${fixed(length, 2)} mm.`;
     } catch {
       // The next picture comes soon; the run itself is not touched by this.
     }
   }
 
   async function finish(last) {
-    const whole = { ...job, ...last, input: job.input };
-    if (whole.state !== "succeeded") show(outcome, failureOf(whole));
-    else show(outcome, result(whole.summary), checksOf(whole.summary), whole.summary.warnings?.length > 0
-      && element("details", { class: "quiet" }, element("summary", null, "All that was noticed"), warningList(whole.summary.warnings)));
-    const special = { "a_n.csv": curveChoices };
-    show(below, downloadList(whole, special), inputText(whole));
-    await loadFiles(whole);
-    // A run that failed or was cancelled before its first block has nothing to show.
-    pictures.hidden = curve.x.length === 0;
-  }
-
-  async function loadFiles(whole) {
-    const has = (name) => whole.files?.some((file) => file.name === name);
-    const path = (name) => `${pathOf(whole)}/files/${name}`;
+    const done = { ...job, ...last, input: job.input };
+    show(below, downloadList(done, { "a_n.csv": curveChoices }), inputText(done));
     try {
-      if (has("a_n.csv")) {
-        const columns = readCsv(await getText(path("a_n.csv"), signal));
-        Object.assign(curve, { x: columns.cycles, y: columns.crack_length_mm });
-        chart.set([curve, today]);
-        drawRates(columns);
-        if (whole.state === "succeeded" && !whole.summary.refused) {
-          outcome.append(createRemaining(whole, columns, (at, length) => {
-            Object.assign(today, { x: at === null ? [] : [at], y: at === null ? [] : [length] });
-            chart.set([curve, today]);
-          }, signal));
-        }
-      }
-      if (has("crack_path.csv")) plate.setPaths(pathsOf(readCsv(await getText(path("crack_path.csv"), signal))));
-      const picture = Object.keys(PICTURES).find(has);
-      if (picture) {
-        revision = Infinity;
-        await showBlob(image, await getBlob(path(picture), signal));
-        imageNote.textContent = PICTURES[picture];
-      } else if (isFinal(whole)) {
-        imageNote.textContent = "A hand calculation has no field.";
-      }
+      if (done.state === "succeeded") await showResult(done);
+      else show(outcome, failureOf(done));
+      await showCurves(done);
+      // A run that failed or was cancelled before its first block has nothing to show.
+      pictures.hidden = curve.x.length === 0;
     } catch (error) {
-      if (error.name !== "AbortError") below.prepend(problemBox(error, () => finish(whole)));
+      if (error.name !== "AbortError") below.prepend(problemBox(error, () => finish(done)));
     }
   }
 
-  function drawRates({ delta_k_mpa_sqrt_m: k = [], da_dn_mm_per_cycle: rate = [] }) {
-    const good = k.map((value, index) => [value, rate[index]]).filter(([value, other]) => value > 0 && other > 0);
-    rates.hidden = good.length < 3;
-    if (rates.hidden) return;
-    const rateChart = createChart(ratePlace, {
-      name: "rates",
-      label: "Growth rate against range of stress intensity, logarithmic axes",
-      x: { label: "ΔK", unit: "MPa√m", scale: "log", format: (value) => significant(value, 4) },
-      y: { label: "da/dN", unit: "mm/cycle", scale: "log", format: (value) => scientific(value, 3) },
+  const has = (done, name) => done.files?.some((file) => file.name === name);
+  const pathTo = (done, name) => `${pathOf(done)}/files/${name}`;
+  let result = null;
+
+  async function showResult(done) {
+    result = has(done, "result.json") ? JSON.parse(await getText(pathTo(done, "result.json"), signal)) : done.summary;
+    drawn = result.shape ?? drawn;
+    show(outcome, answerCard({ ...done.summary, ...result }));
+    head.describe(describe(result));
+    below.prepend(element("div", { class: "two" }, howComputed(done, result),
+      result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "All that was noticed"))));
+  }
+
+  async function showCurves(done) {
+    if (!has(done, "a_n.csv")) return;
+    const columns = readCsv(await getText(pathTo(done, "a_n.csv"), signal));
+    const lead = result ? leadOf(result) : null;
+    const lengths = lead === null ? columns.crack_length_mm : lengthsOfTip(columns, result.tips, lead);
+    Object.assign(curve, { x: columns.cycles, y: lengths, smooth: "y" });
+    if (has(done, "crack_path.csv")) paths = pathsOf(readCsv(await getText(pathTo(done, "crack_path.csv"), signal)));
+    await drawPlate();
+    const picture = Object.keys(FIELDS).find((name) => has(done, name));
+    if (picture) {
+      revision = Infinity;
+      fieldFigure.hidden = false;
+      await showBlob(image, await getBlob(pathTo(done, picture), signal));
+      fieldNote.textContent = FIELDS[picture];
+    }
+    chart.set([...bandOf(columns, lengths), curve, ...limitsOf(result, columns, lengths), endOf(columns.cycles, lengths)]);
+    const factorChart = drawFactors(columns, lengths, lead ?? 0);
+    if (done.state === "succeeded" && !result.refused && columns.cycles.at(-1) > 0) {
+      const place = createPlace({ columns, lengths, lead: lead ?? 0, band: quantilesOf(result), chart, factorChart, plate });
+      outcome.append(place.node);
+      const remaining = createRemaining(done, { columns, lengths, lead }, place.go, signal);
+      place.onLength(remaining.setLength);
+      below.prepend(remaining.node);
+    }
+  }
+
+  function drawFactors(columns, lengths, tip) {
+    const [k, kk] = [columns[`tip${tip}_k_i_mpa_sqrt_m`], columns[`tip${tip}_k_ii_mpa_sqrt_m`]];
+    factors.hidden = !k || k.filter(Number.isFinite).length < 3;
+    if (factors.hidden) return null;
+    const made = createChart(factorPlace, {
+      name: "factors", title: "Stress intensity over crack length", label: `K_I and K_II of tip ${tip} at maximum load over crack length`,
+      x: { label: "Crack length a", unit: "mm", format: (value) => fixed(value, 2) },
+      y: { label: "K", unit: "MPa√m", format: (value) => significant(value, 4) },
+      note: "At maximum load. Hatched: ΔK outside the range of the law. Where K was not read nothing is drawn.",
     });
-    signal.addEventListener("abort", () => rateChart.destroy());
-    rateChart.set([{ id: "rate", name: "Predicted", kind: "points", tone: 0, x: good.map((pair) => pair[0]), y: good.map((pair) => pair[1]) }]);
+    signal.addEventListener("abort", () => made.destroy());
+    const ratio = columns.delta_k_mpa_sqrt_m[0] / Math.hypot(k[0], kk[0] ?? 0);
+    const { delta_k_min_mpa_sqrt_m: least, delta_k_max_mpa_sqrt_m: most } = result?.law ?? {};
+    const share = Number.isFinite(ratio) && ratio <= 1.001 ? ratio : 1;
+    made.set([
+      least && { id: "below", kind: "outside", name: "below the measured ΔK", y2: [least / share] },
+      most && { id: "above", kind: "outside", name: "above the measured ΔK", y: [most / share] },
+      { id: "k1", name: "K_I", kind: "line", smooth: "x", tone: 0, x: lengths, y: k },
+      kk && { id: "k2", name: "K_II", kind: "line", smooth: "x", tone: 1, dashed: true, x: lengths, y: kk },
+    ].filter(Boolean));
+    return made;
   }
 
   if (isFinal(job)) {
     await finish(job);
     return;
   }
+  drawPlate();
   await follow(`${pathOf(job)}/events`, {
     signal,
     connection: head.connection,
@@ -168,84 +188,134 @@ export async function openPrediction(root, id, signal) {
   });
 }
 
-function pathsOf({ tip, x_mm: xs, y_mm: ys }) {
+/** Length of the crack that a tip ends, row by row, mm: with the growth of its other end. */
+function lengthsOfTip(columns, tips, lead) {
+  const same = tips.map((_, tip) => tip).filter((tip) => tips[tip].crack === tips[lead].crack);
+  return columns.cycles.map((_, row) => same.reduce((sum, tip) => sum + columns[`tip${tip}_growth_mm`][row], tips[lead].crack_length_initial_mm));
+}
+
+function pathsOf({ tip, cycles: steps, x_mm: xs, y_mm: ys }) {
   const byTip = new Map();
   tip.forEach((name, index) => {
     if (!byTip.has(name)) byTip.set(name, []);
-    byTip.get(name).push([xs[index], ys[index]]);
+    byTip.get(name).push([steps[index], xs[index], ys[index]]);
   });
   return [...byTip.values()];
 }
 
-/** Pictures of the end of a run, by the model that has them. */
-const PICTURES = {
-  "damage.png": "Share of bonds cut by initial cracks or broken, at the end of the run.",
-  "von_mises.png": "Von Mises stress at maximum load, at the end of the run.",
-};
+const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id: "band", name: "9 of 10 specimens", kind: "band", tone: 0, x: low, x2: high, y: lengths }] : []);
 
-/** How wrong the life may be as a solution of its case; nothing of runs before such bounds were stated. */
-function errorWords(s) {
-  if (typeof s.error_estimate_percent === "number") {
-    const path = s.path_error_estimate_mm > 0 ? `, ${s.path_error_estimate_mm} mm of the path` : "";
-    return `at most ${s.error_estimate_percent} % of life${path}`;
-  }
-  return s.no_error_estimate && `not stated: ${s.no_error_estimate}`;
+/** Where small-scale yielding ends: said in the crack length of the plate, shown in that of the crack that ends the life. */
+function limitsOf(result, columns, lengths) {
+  const from = result?.plastic_zone?.too_large_from_mm;
+  const row = from ? columns.crack_length_mm.findIndex((length) => length >= from) : -1;
+  return row < 0 ? [] : [{ id: "yielding", kind: "limit", name: `small-scale yielding ends, ${fixed(lengths[row], 1)} mm`, y: [lengths[row]] }];
 }
 
-function result(s) {
-  const life = [
-    [s.stop_reason === "entered_hole" ? "Cycles to the hole" : "Life", element("strong", { class: "large", "data-value": "life_cycles" }, lifeWords(s))],
-    [s.band ? "Band" : "No band", bandWords(s)],
-  ];
-  return element("section", { class: "result", "aria-labelledby": "result-title", "data-part": "result" },
-    element("h2", { id: "result-title", class: "visually-hidden" }, "Result"),
-    s.refused && element("p", { class: "notice bad", "data-value": "refused" }, element("strong", null, "No life: "), s.refused),
+const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: `${fixed(lengths.at(-1), 1)} mm`, x: [steps.at(-1)], y: [lengths.at(-1)] });
+
+/** One sentence on what was computed: plate, material, load. */
+function describe({ case: given, shape }) {
+  const { specimen = {}, material = {} } = given ?? {};
+  const size = [specimen.width_mm, specimen.length_mm, specimen.thickness_mm].filter(Boolean).join(" × ");
+  return [`${sentence(words(specimen.kind ?? "plate"))}${size && ` ${size} mm`}`, material.name, shape?.load].filter(Boolean).join(", ");
+}
+
+function howComputed(job, r) {
+  const law = r.law ?? {};
+  const rate = law.rate_at_pivot_mm_per_cycle && `da/dN ${scientific(law.rate_at_pivot_mm_per_cycle, 3)} mm/cycle at ΔK ${significant(law.pivot_delta_k_mpa_sqrt_m, 4)} MPa√m`;
+  const given = !rate && law.paris_c_mm_per_cycle && `da/dN = ${scientific(law.paris_c_mm_per_cycle, 4)} ΔK^m mm/cycle (ΔK in MPa√m)`;
+  const paris = law.paris_m && `m ${significant(law.paris_m, 4)}${law.paris_m_error ? ` ± ${significant(law.paris_m_error, 2)}` : ""}`;
+  const range = law.delta_k_min_mpa_sqrt_m && `ΔK ${significant(law.delta_k_min_mpa_sqrt_m, 3)} to ${significant(law.delta_k_max_mpa_sqrt_m, 3)} MPa√m`;
+  const isNodes = r.model?.method === "element_free_galerkin";
+  const model = r.points > 0 ? `${count(r.points, isNodes ? "node" : "point")}, ${count(r.solves, "solution")}, ${duration(r.wall_s)}` : `hand calculation, ${duration(r.wall_s)}`;
+  return element("section", { class: "card", "aria-labelledby": "computed-title" }, element("h2", { id: "computed-title" }, "How it was computed"),
     terms([
-      ...(s.refused ? [] : life),
-      ["Crack length", lengthWords(s)],
-      s.critical && ["Critical crack length", `${fixed(s.critical.crack_length_mm, 2)} mm: ${words(s.critical.criterion)}`],
-      ["Stopped because", sentence(s.stop_meaning ?? words(s.stop_reason))],
-      !s.refused && errorWords(s) && ["Numerical error", errorWords(s)],
-      ["Computed", `${whole(s.points)} points in ${duration(s.wall_s)}`],
-    ].filter(Boolean), "result"));
+      ["Growth law", [rate || given, paris].filter(Boolean).join(", ") || words(law.source)],
+      range && ["Calibrated", range],
+      ["Model", `${sentence(words(r.model?.method))}: ${r.model?.why?.method ?? ""}`],
+      ["", model],
+      errorWords(r) && ["Numerical error", errorWords(r)],
+      r.cross_check && ["Second opinion", `${whole(r.cross_check.life_cycles)} cycles by ${words(r.cross_check.method)}`],
+      ["Record", `perilife ${r.version}, run ${job.id}`],
+    ].filter(Boolean), "computed"));
 }
 
-/** In a plate the length of the crack whose tip ends the life comes first, then what all cracks sum to. */
-function lengthWords(s) {
-  const all = `${fixed(s.crack_length_initial_mm, 2)} to ${fixed(s.crack_length_final_mm, 2)} mm`;
-  const tip = (s.tips ?? []).findIndex((one) => one.leads && one.crack !== null && one.crack !== undefined);
-  if (tip < 0) return all;
-  const { crack_length_initial_mm: from, crack_length_final_mm: to } = s.tips[tip];
-  return `${fixed(from, 2)} to ${fixed(to, 2)} mm, the crack of tip ${tip}${new Set(s.tips.map((one) => one.crack)).size > 1 ? `; all cracks ${all}` : ""}`;
-}
+/** One place along the life that moves plate, curve and K. Gives {node, go(cycles), onLength(take)}. */
+function createPlace({ columns, lengths, lead, band, chart, factorChart, plate }) {
+  const steps = columns.cycles;
+  const life = steps.at(-1);
+  const cell = (name, wide) => [name, element("dd"), wide];
+  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell("Remaining life"), band: cell("9 of 10 specimens", true) };
+  const told = element("b");
+  const share = element("span");
+  const slider = element("input", { type: "range", id: "place", min: "0", max: String(STEPS), value: "0" });
+  let listener = () => {};
 
-/** What the life rests on: the verdict, and every condition that does not hold or could not be checked, with its remedy. */
-function checksOf({ verdict, checks }) {
-  if (!verdict) return null;
-  const open = (checks ?? []).filter((check) => check.verdict !== "holds");
-  return element("section", { class: "checks", "aria-labelledby": "checks-title", "data-part": "checks" },
-    element("h2", { id: "checks-title" }, "Verdict"),
-    element("p", { "data-value": "verdict" }, sentence(verdict)),
-    open.length > 0 && element("ul", null, open.map((check) => element("li", { "data-check": check.name, "data-verdict": check.verdict },
-      check.words, check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)))));
-}
+  /** A column at a number of cycles, linear between rows. */
+  function value(column, at) {
+    if (!column) return NaN;
+    const found = steps.findIndex((step) => step >= at);
+    const next = found < 0 ? steps.length - 1 : Math.max(found, 1);
+    const part = (at - steps[next - 1]) / (steps[next] - steps[next - 1] || 1);
+    return column[next - 1] + part * (column[next] - column[next - 1]);
+  }
 
-/** The life: the median of its band where there is one, with the digits that it deserves. */
-function lifeWords(s) {
-  if (s.life_cycles === null) return lifeOf(s);
-  const band = quantiles(s);
-  return band ? `${s.life_is_lower_bound ? "≥ " : ""}${deserved(band[1], band)} cycles` : `${lifeOf(s)} cycles`;
-}
+  function go(at, isOwn = false) {
+    const here = Math.min(Math.max(at, 0), life);
+    const [a, k, kk] = [value(lengths, here), value(columns[`tip${lead}_k_i_mpa_sqrt_m`], here), value(columns[`tip${lead}_k_ii_mpa_sqrt_m`], here)];
+    chart.move(here, [[here, a]]);
+    factorChart?.move(a, [[a, k], [a, kk]]);
+    plate.to(here);
+    const unit = (text, of) => [text, " ", element("small", null, of)];
+    told.textContent = cycles(Math.round(here));
+    share.textContent = `${Math.round((100 * here) / life)} % of life`;
+    show(cells.a[1], unit(fixed(a, 2), "mm"));
+    show(cells.k[1], Number.isFinite(k) ? unit(fixed(k, 1), "MPa√m") : "not read");
+    show(cells.kk[1], Number.isFinite(kk) ? unit(fixed(kk, 1), "MPa√m") : "not read");
+    const quantiles = band && ["05", "50", "95"].map((name) => value(columns[`remaining_cycles_p${name}`], here));
+    show(cells.left[1], unit(quantiles?.[1] > 0 ? deserved(quantiles[1], quantiles) : cycles(Math.round(life - here)), "cycles"));
+    show(cells.band[1], quantiles?.[1] > 0 ? `${deserved(quantiles[0], quantiles)} to ${deserved(quantiles[2], quantiles)}` : "no band");
+    slider.setAttribute("aria-valuetext", `${cycles(Math.round(here))} cycles, crack length ${fixed(a, 2)} mm`);
+    if (document.activeElement !== slider || !isOwn) slider.value = String(Math.round((STEPS * here) / life));
+    if (isOwn) listener(a);
+  }
 
-function bandWords(s) {
-  const band = quantiles(s);
-  if (!band) return s.no_band ?? "an earlier version of the program wrote this result";
-  const { specimens, assumed_scatter: assumed, lot } = s.band;
-  return `${bandOf(band)} cycles: ${count(specimens, "specimen")}, ${lot === "same" ? "their lot" : "another lot"}${assumed ? ", assumed scatter" : ""}`;
-}
-
-function quantiles({ band }) {
-  return band ? [band.cycles_p05, band.cycles_p50, band.cycles_p95] : null;
+  let playing = 0;
+  const play = button("▶", () => {
+    if (playing) {
+      cancelAnimationFrame(playing);
+      playing = 0;
+      play.textContent = "▶";
+      return;
+    }
+    const began = performance.now();
+    play.textContent = "❚❚";
+    const step = (time) => {
+      const part = Math.min(1, (time - began) / PLAY_MS);
+      go(life * part, part === 1);
+      playing = part < 1 ? requestAnimationFrame(step) : 0;
+      if (!playing) play.textContent = "▶";
+    };
+    playing = requestAnimationFrame(step);
+  }, { "aria-label": "Play the growth" });
+  slider.addEventListener("input", () => go((life * Number(slider.value)) / STEPS, true));
+  chart.pick((at) => go(at, true));
+  factorChart?.pick((length) => {
+    const next = lengths.findIndex((one) => one >= length);
+    go(next < 0 ? life : steps[next], true);
+  });
+  const node = element("section", { class: "card place", "aria-label": "One place along the life for plate, curve and K", "data-part": "place" },
+    element("div", { class: "play" }, play, element("div", null, element("label", { for: "place" }, element("span", null, "Cycles ", told), share), slider)),
+    element("dl", { class: "read" }, Object.values(cells).map(([name, of, isWide]) => element("div", { class: isWide ? "wide-only" : null }, element("dt", null, name), of))));
+  go(0);
+  return {
+    node,
+    go,
+    onLength(take) {
+      listener = take;
+    },
+  };
 }
 
 /** The curve as it was computed, or at equally spaced cycles. */

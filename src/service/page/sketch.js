@@ -1,7 +1,6 @@
 // The plate as a sketch to draw in: new cracks and holes by pointer, ends and centres to drag or to move by arrow keys.
 // The tables beside it hold the numbers; the sketch only changes them.
 
-import { niceStep } from "./chart_scale.js";
 import { button, element, shape, show } from "./dom.js";
 import { plain } from "./format.js";
 import { createStage, geometryOf } from "./plate_drawing.js";
@@ -38,7 +37,7 @@ export function createSketch(container, { plate, edits }) {
     place.textContent = HINTS[name];
   }
 
-  const grid = () => niceStep(Math.max(plate().width_mm || 1, 1), 200);
+  const grid = () => stepOf(Math.max(plate().width_mm || 1, 1) / 200);
   const snap = ([x, y]) => [x, y].map((value) => Number((Math.round(value / grid()) * grid()).toFixed(6)));
   const say = ([x, y]) => {
     place.textContent = `x ${plain(x)} mm, y ${plain(y)} mm`;
@@ -141,4 +140,10 @@ export function createSketch(container, { plate, edits }) {
       stage.setGeometry(geometryOf({ ...plate(), kind: "plate" }));
     },
   };
+}
+
+/** The next of 1, 2 or 5 times a power of ten. */
+function stepOf(least) {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return power * [1, 2, 5, 10].find((factor) => factor * power >= least * 0.9999);
 }

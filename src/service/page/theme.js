@@ -17,10 +17,10 @@
   system.addEventListener("change", apply);
   apply();
   document.addEventListener("DOMContentLoaded", () => {
-    const select = document.getElementById("theme");
-    select.value = choice;
-    select.addEventListener("change", () => {
-      choice = select.value;
+    document.getElementById("theme").addEventListener("click", () => {
+      const other = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
+      // Back at what the system has, the page follows it again.
+      choice = (other === "dark") === system.matches ? "auto" : other;
       try {
         localStorage.setItem("perilife.theme", choice);
       } catch {

@@ -82,6 +82,18 @@ pub fn never_on_front(chart: &Chart) -> Vec<Family> {
     Family::ALL.iter().copied().filter(never).collect()
 }
 
+/// When to take a method; `None` of what is a choice within one.
+fn when(family: Family) -> Option<&'static str> {
+    match family {
+        Family::Auto => Some("always, but for the reasons below"),
+        Family::Handbook => Some("a standard specimen within the range of its formula"),
+        Family::ElementFree => Some("any other plate: curved, short and several cracks, holes, edges, flanks in contact"),
+        Family::TipField => Some("bonds and their remaining life, damage, bond laws; a second opinion"),
+        Family::BondStrain => Some("cracks that begin at slots; the published law"),
+        Family::BondLaw | Family::Solver => None,
+    }
+}
+
 /// The summary.
 pub fn markdown(chart: &Chart, origin: &Origin) -> String {
     // Writing to a String cannot fail.
@@ -90,6 +102,16 @@ pub fn markdown(chart: &Chart, origin: &Origin) -> String {
         let _ = writeln!(text, "- {sentence}");
     }
     let growing = overall(chart);
+    let methods = Family::ALL.iter().filter_map(|family| {
+        let choice = growing.iter().find(|choice| choice.name == family.name())?;
+        let (error, time) = (digits(choice.worst_percent), seconds(choice.median_s));
+        when(*family).map(|when| format!("| {} | {when} | {error} % | {time} |\n", choice.name))
+    });
+    let methods: String = methods.collect();
+    if !methods.is_empty() {
+        text += "\n| method | when to take it | largest error of life | median time |\n|---|---|---|---|\n";
+        text += &methods;
+    }
     if !growing.is_empty() {
         text += "\nOver the scenes in which cracks grow:\n\n| choice | largest error of life | in | median time | on the front of | results |\n\
                  |---|---|---|---|---|---|\n";

@@ -1,0 +1,107 @@
+// The answer of a prediction in one card: the life with its band, why it ends, whether it is valid.
+
+import { element, shape, terms } from "./dom.js";
+import { bandOf, count, cycles, deserved, fixed, sentence, whole, words } from "./format.js";
+
+const CHECKS_SHOWN = 5;
+/** What the number is, by the reason of the end. */
+const TO_THE_END = { entered_hole: "to the hole", crack_length_reached: "to the length asked for", run_out: "asked for, and the plate lives on" };
+const BROKEN_OFF = ["ligament_unresolved", "no_growth", "no_convergence"];
+
+const MARKS = {
+  ok: ["Holds: ", "M9 1a8 8 0 1 0 0.01 0z", "M5.2 9.2l2.6 2.7 5-5.6"],
+  note: ["Remark: ", "M9 1.6L17 16H1z", "M9 6.5v4.4M9 12.6v1.6"],
+  bad: ["Not valid: ", "M5.8 1h6.4L17 5.8v6.4L12.2 17H5.8L1 12.2V5.8z", "M6 6l6 6m0-6l-6 6"],
+};
+const OF_VERDICT = { holds: "ok", doubtful: "note", not_checked: "note", fails: "bad" };
+
+/** A small mark with its word for those who do not see it. */
+export function mark(kind) {
+  const [said, outline, sign] = MARKS[kind];
+  const line = (d) => shape("path", { d, fill: "none", stroke: "currentColor", "stroke-width": 1.6, "stroke-linejoin": "round" });
+  return [shape("svg", { class: `mark is-${kind}`, viewBox: "0 0 18 18", "aria-hidden": "true" }, line(outline), line(sign)),
+    element("span", { class: "visually-hidden" }, said)];
+}
+
+/** Quantiles of the life: 5, 50 and 95 % of specimens; null without a band. */
+export const quantilesOf = ({ band }) => (band ? [band.cycles_p05, band.cycles_p50, band.cycles_p95] : null);
+
+/** The tip that ends the life, where the plate has lengths of its own; else null. */
+export function leadOf(s) {
+  const tip = (s.tips ?? []).findIndex((one) => one.leads && one.crack !== null && one.crack !== undefined);
+  return tip < 0 ? null : tip;
+}
+
+/** Lengths at the start and at the end, mm: of the crack that ends the life, or of the specimen. */
+export function lengthsOf(s) {
+  const of = leadOf(s) === null ? s : s.tips[leadOf(s)];
+  return [of.crack_length_initial_mm, of.crack_length_final_mm];
+}
+
+function large(s) {
+  const value = (text, unit) => element("p", { class: "life", "data-value": "life_cycles" }, text, unit && element("small", null, unit));
+  const said = (title, text, more) => [element("h2", null, title), element("p", { class: "life words", "data-value": "life_cycles" }, text), element("p", { class: "beside" }, more)];
+  const [from, to] = lengthsOf(s);
+  if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, s.refused));
+  if (s.life_cycles === null) return said("Life", "No growth", "Every tip stays below the threshold of the law under this load: there is no number of cycles to give.");
+  const band = quantilesOf(s);
+  const number = band ? deserved(band[1], band) : cycles(Math.round(s.life_cycles));
+  const start = `from a crack of ${fixed(from, 2)} mm`;
+  const end = TO_THE_END[s.stop_reason];
+  const title = BROKEN_OFF.includes(s.stop_reason) ? `Computed up to ${fixed(to, 1)} mm only` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
+  return [element("h2", null, title), value(`${s.life_is_lower_bound ? "≥ " : ""}${number}`, "cycles"),
+    element("p", { class: "beside" }, bandWords(s)),
+    element("p", { class: "quiet" }, errorWords(s) && `Numerical error: ${errorWords(s)}`)];
+}
+
+function bandWords(s) {
+  const band = quantilesOf(s);
+  if (!band) return [element("strong", null, "No band: "), s.no_band ?? "an earlier version of the program wrote this result"];
+  const { specimens, assumed_scatter: assumed, lot } = s.band;
+  return [element("strong", null, bandOf(band)), ` (${count(specimens, "specimen")}, ${lot === "same" ? "their lot" : "another lot"}${assumed ? ", assumed scatter" : ""})`];
+}
+
+/** How wrong the life may be as a solution of its case; nothing of runs before such bounds were stated. */
+export function errorWords(s) {
+  if (typeof s.error_estimate_percent === "number") {
+    const path = s.path_error_estimate_mm > 0 ? `, ${s.path_error_estimate_mm} mm of the path` : "";
+    return `at most ${s.error_estimate_percent} % of life${path}`;
+  }
+  return s.no_error_estimate && `not stated: ${s.no_error_estimate}`;
+}
+
+function why(s, more) {
+  const [from, to] = lengthsOf(s);
+  const lead = leadOf(s);
+  const tips = s.tips ?? [];
+  // The length of all cracks together is none that anyone measures.
+  const isEnd = s.critical && Math.abs(s.critical.crack_length_mm - s.crack_length_final_mm) < 1e-6;
+  const critical = s.critical && (lead === null || isEnd) && fixed(isEnd ? to : s.critical.crack_length_mm, 2);
+  const facts = [
+    [tips.length > 1 && lead !== null ? `Crack of tip ${lead}` : "Crack length", `${fixed(from, 2)} to ${fixed(to, 2)} mm`],
+    critical && ["Critical", `${critical} mm: ${words(s.critical.criterion)}`],
+    s.inspection && ["Inspect every", `${whole(Math.floor(s.inspection.interval_cycles))} cycles, from a detectable crack of ${fixed(s.inspection.from_mm ?? from, 1)} mm`],
+    ...more,
+  ].filter(Boolean);
+  return [element("h2", null, s.life_cycles === null ? "Because" : "It ends because"),
+    element("p", { class: "why", "data-value": "stop" }, s.stop_meaning ?? words(s.stop_reason)), terms(facts, "result")];
+}
+
+const line = (check) => element("li", { "data-check": check.name, "data-verdict": check.verdict },
+  mark(OF_VERDICT[check.verdict] ?? "note")[0],
+  element("span", null, mark(OF_VERDICT[check.verdict] ?? "note")[1], sentence(check.words), check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)));
+
+function valid({ verdict, checks = [] }) {
+  if (!verdict) return element("p", { class: "quiet" }, "An earlier version of the program wrote this result.");
+  const kind = verdict.startsWith("stands:") ? "ok" : verdict.startsWith("stands") ? "note" : "bad";
+  const [shown, rest] = [checks.slice(0, CHECKS_SHOWN), checks.slice(CHECKS_SHOWN)];
+  return [element("h2", null, "Is it valid?"), element("p", { class: `verdict is-${kind}`, "data-value": "verdict" }, sentence(verdict)),
+    element("ul", { class: "checks" }, shown.map(line)),
+    rest.length > 0 && element("details", null, element("summary", null, `${count(rest.length, "more check")}`), element("ul", { class: "checks" }, rest.map(line)))];
+}
+
+/** The card. `more`: further terms beside why it ends. */
+export function answerCard(s, more = []) {
+  return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
+    element("div", null, large(s)), element("div", null, why(s, more)), element("div", { "data-part": "checks" }, valid(s)));
+}
