@@ -64,7 +64,7 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
   const axes = shape("g");
   const above = shape("g");
   const crosshair = shape("g", { class: "chart-cursor" });
-  const svg = shape("svg", { tabindex: "0", role: "application", "aria-roledescription": "chart", "aria-label": label, "aria-describedby": readoutId, "data-curves": name },
+  const svg = shape("svg", { tabindex: "0", role: "application", "aria-roledescription": "chart", "aria-label": label, "aria-describedby": readoutId },
     axes, marks, crosshair, above);
   const legend = element("p", { class: "quiet", hidden: true });
   const readout = element("p", { class: "chart-readout", "aria-live": "polite", id: readoutId });

@@ -1,13 +1,17 @@
 // Checks the input while the user types: draws the plate, says what was understood, and puts a problem where it belongs.
 
+import { mark } from "./answer.js";
 import { Problem, postInput } from "./api.js";
 import { debounce, element, show, terms } from "./dom.js";
 import { excerpt } from "./excerpt.js";
 import { sentence, words } from "./format.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
+import { createPlatePath } from "./plate_path.js";
 
 const WAIT_MS = 350;
+/** What is read first of what was understood; all else stands below. */
+const FIRST = ["specimen", "crack", "material", "loading", "model", "points", "stop", "computing"];
 
 /**
  * `collect()` gives {input, files, calibration} or a sentence that says what is still missing. The result stands in `panel`.
@@ -15,9 +19,12 @@ const WAIT_MS = 350;
  */
 export function createCheck(panel, { form, collect, onResult = () => {} }) {
   const state = element("p", { class: "check-state", role: "status" });
-  const { node: figure, image } = createPicture("Drawing of the specimen as understood: outline, cracks, loads and supports");
+  // A scene is drawn by the service; of a specimen its shape is known.
+  const { node: figure, image } = createPicture("Drawing of the scene as understood: outline, cracks, loads and supports");
+  const place = element("div", { class: "figure" });
+  const plate = createPlatePath(place, "The specimen as understood: outline, cracks, loads and supports");
   const details = element("div");
-  show(panel, state, figure, details);
+  show(panel, state, place, figure, details);
 
   let last = null; // what the service answered to the present input, null where it refused
   let running = null;
@@ -63,10 +70,11 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
       const result = await postInput("/v1/check", body, { signal: own.signal });
       if (own.signal.aborted) return false;
       // Tables of rates have no plate.
-      if (result.drawing) await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
-      else image.hidden = true;
-      show(details, result.warnings.length > 0 && warningList(result.warnings),
-        terms(Object.entries(result.understood).map(([key, value]) => [sentence(words(key)), String(value)]), "understood"));
+      place.hidden = !result.shape;
+      if (result.shape) plate.set(result.shape, [], 1);
+      image.hidden = Boolean(result.shape) || !result.drawing;
+      if (!image.hidden) await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
+      show(details, result.warnings.length > 0 && warningList(result.warnings), understood(result.understood));
       finish(result, "Checked: no errors.", "ok");
       return true;
     } catch (error) {
@@ -93,6 +101,15 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
       finish(null, atField ? "One field needs a correction." : "The run was not started.", "problem");
     },
   };
+}
+
+/** What was understood: the plate and its load, what a life will rest on, and all else to be unfolded. */
+function understood({ verdict, rests_on: conditions, ...lines }) {
+  const pairs = (wanted) => Object.entries(lines).filter(([key]) => FIRST.includes(key) === wanted).map(([key, value]) => [sentence(words(key)), String(value)]);
+  const [first, others] = [pairs(true), pairs(false)];
+  return [terms(first.length > 0 ? first : others, "understood"),
+    conditions && element("ul", { class: "checks" }, conditions.split("; ").map((text) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], sentence(text))))),
+    first.length > 0 && others.length > 0 && element("details", { class: "quiet" }, element("summary", null, "All that was understood"), terms(others, "understood-all"))];
 }
 
 /** The text a problem speaks of: a measured file, or the TOML that was written. */

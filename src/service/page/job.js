@@ -12,6 +12,7 @@ export const FINAL = ["succeeded", "failed", "cancelled"];
 export const collectionOf = ({ kind }) => (kind === "sif" ? kind : `${kind}s`);
 export const hrefOf = (job) => `#/${collectionOf(job)}/${encodeURIComponent(job.id)}`;
 export const pathOf = (job) => `/v1/${collectionOf(job)}/${encodeURIComponent(job.id)}`;
+export const kindOf = ({ kind }) => (kind === "sif" ? "Stress intensity" : sentence(kind));
 export const nameOf = (job) => job.name || job.id;
 export const isFinal = (job) => FINAL.includes(job.state);
 
@@ -24,7 +25,7 @@ export function stateBadge({ state, summary }) {
 /** Asks before a run is deleted; true when it is gone. */
 export async function confirmDelete(job) {
   const dialog = byId("delete-dialog");
-  byId("delete-what").textContent = `${sentence(job.kind)} “${nameOf(job)}” and all its files will be deleted. This cannot be undone.`;
+  byId("delete-what").textContent = `${kindOf(job)} “${nameOf(job)}” and all its files will be deleted. This cannot be undone.`;
   dialog.returnValue = "";
   dialog.showModal();
   await new Promise((resolve) => {
@@ -108,7 +109,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     discard.hidden = !ended;
     const took = job.started && job.finished ? `, took ${duration((new Date(job.finished) - new Date(job.started)) / 1000)}` : "";
     const again = job.attempts > 1 ? `, attempt ${job.attempts}` : "";
-    facts.textContent = `${sentence(job.kind)} of ${moment(job.created)}${took}${again}`;
+    facts.textContent = `${kindOf(job)} of ${moment(job.created)}${took}${again}`;
     progress.hidden = ended;
     if (!ended) showProgress();
     speak();

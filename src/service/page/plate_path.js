@@ -1,7 +1,7 @@
 // The plate of a result: outline, holes, slots, pins and loads as the service says them (`shape`), and the ways of its crack tips coloured by
 // cycles. `to(cycles)` shows it at a moment: what has grown in colour, what is to come dotted.
 
-import { shape as node, show } from "./dom.js";
+import { shape as node, show, uniqueId } from "./dom.js";
 
 const STOPS = 5;
 const MARKS = [0.25, 0.5, 0.75, 0.9];
@@ -78,11 +78,11 @@ export function createPlatePath(container, label) {
 
 function createView(label, isWhole) {
   const [base, grown, words] = [node("g"), node("g"), node("g")];
-  const clip = node("clipPath", { id: isWhole ? "whole-plate" : "framed-plate" });
+  const clip = node("clipPath", { id: uniqueId("framed-plate") });
   const svg = node("svg", { role: "img", "aria-label": label, "data-plate": isWhole ? "whole" : "framed" }, node("defs", null, clip), base, grown, words);
   let data = null;
   let pixel = null;
-  if (!isWhole) [base, grown].forEach((group) => group.setAttribute("clip-path", "url(#framed-plate)"));
+  if (!isWhole) [base, grown].forEach((group) => group.setAttribute("clip-path", `url(#${clip.id})`));
   const line = (points) => `M${points.map((point) => pixel(point).map((value) => value.toFixed(1)).join(" ")).join("L")}`;
 
   function draw(next, box, frame, width) {

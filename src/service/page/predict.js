@@ -61,6 +61,7 @@ export function createPredictView() {
   const name = form.text("name", { label: "Name of the prediction", optional: true });
   const fields = byId("plate-fields");
   const start = byId("predict");
+  const factors = byId("factors");
   let calibrations = [];
 
   function arrange() {
@@ -158,6 +159,7 @@ export function createPredictView() {
     context: () => (isFitted() ? { calibration: law.input.value } : {}),
     onResult: (ok) => {
       start.disabled = !ok || opening;
+      factors.disabled = start.disabled;
     },
     onMode: arrange,
   });
@@ -193,12 +195,14 @@ export function createPredictView() {
     editor.check.soon();
   }
 
-  start.addEventListener("click", async () => {
+  const starts = (own, path, what) => own.addEventListener("click", async () => {
     if (!(await editor.check.now())) return;
-    startRun("/v1/predictions", { ...editor.body(), name: name.input.value.trim() || defaultName() }, {
-      button: start, status: byId("predict-status"), refuse: editor.check.refuse,
+    startRun(path, { ...editor.body(), name: name.input.value.trim() || `${what}${defaultName()}` }, {
+      button: own, status: byId("predict-status"), refuse: editor.check.refuse,
     });
   });
+  starts(start, "/v1/predictions", "");
+  starts(factors, "/v1/sif", "K of ");
 
   let opened = false;
   return {

@@ -1,12 +1,13 @@
-// List of all runs: open, cancel, delete, and tick predictions to compare them.
+// List of all runs with their answers: open, cancel, delete, and tick predictions to compare them.
 
 import { getJson } from "./api.js";
 import { button, byId, element, show } from "./dom.js";
 import { count, duration, fixed, lifeOf, moment, percent, scientific, words } from "./format.js";
-import { cancelJob, confirmDelete, hrefOf, isFinal, nameOf, stateBadge } from "./job.js";
+import { cancelJob, confirmDelete, hrefOf, isFinal, kindOf, nameOf, stateBadge } from "./job.js";
 import { problemBox } from "./notices.js";
 
 const PAGE = 20;
+const COLLECTIONS = ["predictions", "calibrations", "scenes", "sweeps", "sif"];
 const REFRESH_MS = 3000;
 export const COMPARE_MAX = 8;
 
@@ -22,11 +23,15 @@ export function createRunsView() {
   let running = null;
   let shown = "";
 
-  function address() {
+  /** A page of one kind; of all kinds the newest, since their pages do not go together. */
+  async function fetchPage(signal) {
     const query = new URLSearchParams({ limit: PAGE });
     if (pages.at(-1)) query.set("after", pages.at(-1));
     if (state.value) query.set("state", state.value);
-    return `/v1/${kind.value}?${query}`;
+    if (kind.value) return getJson(`/v1/${kind.value}?${query}`, signal);
+    const lists = await Promise.all(COLLECTIONS.map((one) => getJson(`/v1/${one}?${query}`, signal)));
+    const items = lists.flatMap((list) => list.items).sort((one, other) => other.created.localeCompare(one.created));
+    return { items: items.slice(0, 2 * PAGE), next: null };
   }
 
   async function load({ quietly = false } = {}) {
@@ -39,7 +44,7 @@ export function createRunsView() {
       show(place, element("p", { class: "quiet", role: "status" }, "Loading …"));
     }
     try {
-      const list = await getJson(address(), own.signal);
+      const list = await fetchPage(own.signal);
       if (own.signal.aborted) return;
       next = list.next;
       render(list.items);
@@ -65,45 +70,47 @@ export function createRunsView() {
   }
 
   function empty() {
-    const what = kind.selectedOptions[0].text.toLowerCase();
+    const what = kind.value ? kind.selectedOptions[0].text.toLowerCase() : "runs";
     if (state.value || pages.length > 1) return element("p", { class: "empty" }, `No ${state.value} ${what} here.`);
-    const [href, title] = BEGINNINGS[kind.value] ?? ["/docs", "Programs submit them: the interface"];
+    const [href, title] = BEGINNINGS[kind.value || "predictions"] ?? ["/docs", "Programs submit them: the interface"];
     return element("div", { class: "empty" }, element("p", null, `No ${what} yet.`),
       element("p", null, element("a", { href, class: "button" }, title)));
   }
 
   function tableOf(items) {
-    const predictions = kind.value === "predictions";
-    const figures = predictions
-      ? [["Life, cycles", "number"], ["Final length, mm", "number"], ["Stop reason", ""]]
-      : kind.value === "calibrations" ? [["Rate at pivot, mm/cycle", "number"], ["m", "number"], ["rms life error", "number"]] : [];
-    const heads = [predictions && ["Compare", ""], ["Name", ""], ["State", ""], ...figures, ["Submitted", ""], ["Took", "number"], ["Actions", ""]]
-      .filter(Boolean);
-    return element("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-label": `List of ${kind.value}` },
+    const predictions = items.some((job) => job.kind === "prediction");
+    const heads = [predictions && ["Compare", ""], ["Name", ""], ["State", ""], ["Answer", ""], ["Submitted", ""], ["Took", "number"], ["Actions", ""]].filter(Boolean);
+    const what = kind.value ? kind.value : "runs";
+    return element("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-label": `List of ${what}` },
       element("table", { class: "runs" },
-        element("caption", { class: "visually-hidden" }, `List of ${kind.value}, newest first`),
+        element("caption", { class: "visually-hidden" }, `List of ${what}, newest first`),
         element("thead", null, element("tr", null, heads.map(([title, type]) => element("th", { scope: "col", class: type || null }, title)))),
         element("tbody", null, items.map((job) => row(job, predictions)))));
   }
 
+  /** What came of a run, in a line or two; nothing while it is not done. */
+  function answerOf({ kind: of, summary: s }) {
+    if (!s) return "";
+    if (of === "prediction") {
+      const why = s.refused ? "refused" : s.stop_meaning ?? words(s.stop_reason);
+      return [element("strong", null, s.life_cycles === null || s.refused ? lifeOf(s) : `${lifeOf(s)} cycles`), element("span", { class: "row-unit" }, why)];
+    }
+    if (of === "calibration" && s.paris_m) {
+      return [element("strong", null, `m ${fixed(s.paris_m, 3)}`),
+        element("span", { class: "row-unit" }, `${scientific(s.rate_at_pivot_mm_per_cycle, 4)} mm/cycle at the pivot, rms of lives ${percent(s.rms_life_error, 2)}`)];
+    }
+    return words(s.stop_reason ?? "");
+  }
+
   function row(job, predictions) {
-    const s = job.summary;
-    const number = (text) => element("td", { class: "number" }, text);
     const took = job.started && job.finished ? (new Date(job.finished) - new Date(job.started)) / 1000 : NaN;
-    const known = (text) => (s ? text() : ""); // a run that is not done has no figures
-    const figures = predictions
-      ? [number(known(() => lifeOf(s))), number(known(() => fixed(s.crack_length_final_mm, 2))),
-        element("td", { title: s?.stop_meaning }, known(() => words(s.stop_reason)))]
-      : job.kind === "calibration"
-        ? [number(known(() => scientific(s.rate_at_pivot_mm_per_cycle, 4))), number(known(() => fixed(s.paris_m, 3))),
-          number(known(() => percent(s.rms_life_error, 2)))]
-        : [];
     return element("tr", { "data-job": job.id, "data-job-state": job.state },
-      predictions && element("td", { class: "tick" }, tick(job)),
-      element("th", { scope: "row" }, element("a", { href: hrefOf(job), "data-focus": `open-${job.id}` }, nameOf(job))),
+      predictions && element("td", { class: "tick" }, job.kind === "prediction" && tick(job)),
+      element("th", { scope: "row" }, element("a", { href: hrefOf(job), "data-focus": `open-${job.id}` }, nameOf(job)),
+        !kind.value && element("span", { class: "row-unit" }, kindOf(job))),
       element("td", null, stateBadge(job), job.state === "running" && job.progress ? ` ${percent(job.progress.share, 0)}` : null),
-      figures,
-      element("td", { class: "nowrap" }, moment(job.created)), number(Number.isFinite(took) ? duration(took) : ""),
+      element("td", null, answerOf(job)),
+      element("td", { class: "nowrap" }, moment(job.created)), element("td", { class: "number" }, Number.isFinite(took) ? duration(took) : ""),
       element("td", null, isFinal(job) ? action(job, "Delete", remove) : action(job, "Cancel", cancel)));
   }
 
@@ -150,7 +157,7 @@ export function createRunsView() {
 
   function drawCompare() {
     // There before anything is ticked, so that the list does not move under the hand.
-    compareBar.hidden = kind.value !== "predictions" || place.querySelector(".tick") === null;
+    compareBar.hidden = place.querySelector(".tick") === null;
     byId("compare-clear").hidden = ticked.size === 0;
     const told = [...ticked.values()];
     byId("compare-count").textContent = ticked.size < 2
@@ -167,7 +174,7 @@ export function createRunsView() {
   }
 
   kind.addEventListener("change", () => {
-    location.replace(`#/runs?kind=${kind.value}`);
+    location.replace(kind.value ? `#/runs?kind=${kind.value}` : "#/runs");
   });
   state.addEventListener("change", restart);
   byId("compare-clear").addEventListener("click", () => {
@@ -187,7 +194,7 @@ export function createRunsView() {
   return {
     open(query) {
       const wanted = query.get("kind");
-      kind.value = [...kind.options].some((one) => one.value === wanted) ? wanted : "predictions";
+      kind.value = [...kind.options].some((one) => one.value === wanted) ? wanted : "";
       restart();
     },
     close() {
