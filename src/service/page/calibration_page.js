@@ -1,5 +1,6 @@
 // Page of one calibration: the fit beside the readings, its constants with their errors, files to take away.
 
+import { mark } from "./answer.js";
 import { getBlob, getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, section, show, showPage, table, terms } from "./dom.js";
@@ -7,7 +8,7 @@ import { cycles, deviation, fixed, percent, plain, scientific, significant, word
 import { createJobHead, downloadList, inputText, pathOf, showAtEnd } from "./job.js";
 import { warningList } from "./check.js";
 import { lawSections } from "./law_page.js";
-import { loadInto, problemBox } from "./notices.js";
+import { loadInto } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
 
 const STRESS_INTENSITY = "MPa√m";
@@ -20,40 +21,38 @@ export async function openCalibration(root, id, signal) {
   const head = createJobHead(job, { actions: [use] });
   const body = element("div", { class: "job-body" });
   showPage(root, head.node, body);
-  let chart = null;
-  signal.addEventListener("abort", () => chart?.destroy());
+  const charts = [];
+  signal.addEventListener("abort", () => charts.forEach((chart) => chart.destroy()));
 
   async function finish(whole) {
     use.hidden = false;
-    const curves = element("div");
-    const { node: rates, image } = createPicture("Growth rate against range of stress intensity, readings and fitted law, logarithmic axes");
     const files = whole.files ?? [];
     const has = (name) => files.some((file) => file.name === name);
-    const path = (name) => `${pathOf(whole)}/files/${name}`;
-    if (has("fit_rates.svg")) {
-      getBlob(path("fit_rates.svg"), signal).then((blob) => showBlob(image, blob))
-        .catch((error) => error.name === "AbortError" || rates.after(problemBox(error)));
-    }
+    const read = (name) => (has(name) ? getText(`${pathOf(whole)}/files/${name}`, signal).then(readCsv) : null);
+    const [curves, rates] = [element("div"), element("div")];
+    const warnings = whole.summary.warnings ?? [];
     // Laws over K, which were fitted to rates: there is no curve.
     if (whole.summary.candidates) {
-      show(body,
-        whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings),
-        section("rates", "Growth rates", rates), lawSections(whole.summary), downloadList(whole), inputText(whole));
+      const { node, image } = createPicture("Growth rate against range of stress intensity, readings and fitted law, logarithmic axes");
+      show(body, warnings.length > 0 && warningList(warnings), section("rates", "Growth rates", rates), lawSections(whole.summary), downloadList(whole), inputText(whole));
+      if (has("fit_rates.svg")) {
+        loadInto(rates, async () => {
+          await showBlob(image, await getBlob(`${pathOf(whole)}/files/fit_rates.svg`, signal));
+          show(rates, node);
+        });
+      }
       return;
     }
-    show(body,
-      whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings),
-      element("div", { class: "columns wide-left" },
-        element("div", { class: "stack" }, section("fit", "Readings and fitted curve", curves),
-          has("fit_rates.svg") && section("rates", "Growth rates", rates)),
-        element("div", { class: "stack" }, section("constants", "Constants", constants(whole.summary)))),
-      specimens(whole.summary),
+    show(body, lawCard(whole.summary),
+      element("div", { class: "pictures" }, element("div", { class: "card figure" }, curves), has("rates.csv") && element("div", { class: "card figure" }, rates)),
+      element("div", { class: "two" }, element("section", { class: "card", "aria-label": "Constants" }, element("h2", null, "Constants"), constants(whole.summary)),
+        element("div", { class: "stack" }, specimens(whole.summary), warnings.length > 0 && warningList(warnings, "All that was noticed"))),
       downloadList(whole), inputText(whole));
     loadInto(curves, async () => {
-      const names = ["fit_curves.csv", "fit_band.csv", "quantiles.csv"];
-      const [fit, band, quantiles] = await Promise.all(names.map((name) => (has(name) ? getText(path(name), signal).then(readCsv) : null)));
-      chart = drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band)]);
+      const [fit, band, quantiles] = await Promise.all(["fit_curves.csv", "fit_band.csv", "quantiles.csv"].map(read));
+      charts.push(drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band)]));
     });
+    if (has("rates.csv")) loadInto(rates, async () => charts.push(drawRates(rates, await read("rates.csv"), whole.summary)));
   }
 
   const announced = "The fit, its band and its constants appear here when the calibration is done.";
@@ -86,24 +85,58 @@ function scatterBand(quantiles) {
 
 function drawFit(place, fit, curves) {
   const chart = createChart(place, {
-    name: "fit",
+    name: "fit", title: "Readings and fitted curve",
     label: "Crack length against cycles: readings, fitted curve and its 95 % band",
     x: { label: "Cycles N", format: cycles, from: 0 },
     y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
+    note: "Thin lines: specimens. Circles: readings, of many specimens their median. Blue: the fitted law with its band.",
   });
   const median = "median";
   const names = [...new Set(fit.specimen)];
   const specimens = names.filter((name) => name !== median || names.length === 1);
-  const points = (id, name, tone, wanted) => {
-    const only = (column) => column.filter((_, index) => wanted(fit.specimen[index]));
-    return { id, name: `${name}, measured`, kind: "points", tone, x: only(fit.cycles_measured), y: only(fit.crack_length_mm) };
-  };
-  // Dozens of specimens are told apart by nobody: they share a mark, and the median has its own.
-  const readings = specimens.length > SPECIMENS_APART
-    ? [points("all", `${specimens.length} specimens`, 1, (name) => name !== median), points(median, median, 2, (name) => name === median)]
-    : names.map((own, index) => points(`measured-${own}`, own, index + 1, (name) => name === own));
-  chart.set([...curves, ...readings]);
+  const rows = (wanted, column) => column.filter((_, index) => fit.specimen[index] === wanted);
+  const isMany = specimens.length > SPECIMENS_APART;
+  const curveOf = (own, kind, tone) => ({ id: `${kind}-${own}`, name: `${own}, measured`, kind, tone, x: rows(own, fit.cycles_measured), y: rows(own, fit.crack_length_mm) });
+  // Dozens of specimens are told apart by nobody: they are thin lines, and the median has the marks.
+  const thin = isMany ? specimens.map((own) => ({ ...curveOf(own, "thin", 2), name: undefined })) : [];
+  const marked = isMany ? names.filter((name) => name === median) : names;
+  chart.set([...curves, ...thin, ...marked.map((own, index) => curveOf(own, "points", isMany ? 2 : 2 + index))]);
   return chart;
+}
+
+/** Rates of the readings, and the law where it was measured. */
+function drawRates(place, rates, s) {
+  const chart = createChart(place, {
+    name: "rates", title: "Growth rate over ΔK", label: "Growth rate against range of stress intensity: readings and fitted law, logarithmic axes",
+    x: { label: "ΔK", unit: STRESS_INTENSITY, scale: "log", format: (value) => significant(value, 4) },
+    y: { label: "da/dN", unit: "mm/cycle", scale: "log", format: (value) => scientific(value, 3) },
+    note: "Circles: rates of the readings. Blue: the fitted law, drawn only where it was measured.",
+  });
+  const pairs = rates.delta_k_mpa_sqrt_m.map((k, index) => [k, rates.da_dn_mm_per_cycle[index]]).filter(([k, rate]) => k > 0 && rate > 0);
+  const ends = [s.delta_k_min_mpa_sqrt_m, s.delta_k_max_mpa_sqrt_m];
+  chart.set([
+    { id: "rates", name: "readings", kind: "points", tone: 2, x: pairs.map((pair) => pair[0]), y: pairs.map((pair) => pair[1]) },
+    { id: "law", name: "fitted law", kind: "line", tone: 0, x: ends, y: ends.map((k) => s.rate_at_pivot_mm_per_cycle * (k / s.pivot_delta_k_mpa_sqrt_m) ** s.paris_m) },
+  ]);
+  return chart;
+}
+
+/** The law first: its rate where the readings fix it best, its exponent, where it holds. */
+function lawCard(s) {
+  const remarks = misfit(s.misfit_at_ends);
+  return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
+    element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}, where the readings fix it best`),
+      element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), element("small", null, "mm/cycle")),
+      element("p", { class: "beside" }, element("strong", null, `± ${percent(s.rate_at_pivot_relative_error, 1)}`), " (one standard error)"),
+      element("p", { class: "quiet" }, `C = ${scientific(s.paris_c_mm_per_cycle, 3)}, quoted only together with m.`)),
+    element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, fixed(s.paris_m, 2)),
+      terms([
+        Number.isFinite(s.paris_m_error) && ["±", fixed(s.paris_m_error, 2)],
+        ["Life", `measured ${cycles(s.life_measured)}, fitted ${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
+        ["Misfit", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
+    element("div", null, element("h2", null, "Is it valid?"),
+      element("p", { class: "verdict" }, `For ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}`),
+      element("ul", { class: "checks" }, remarks.map(([name, text]) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], element("b", null, `${name}: `), text))))));
 }
 
 function constants(s) {

@@ -45,7 +45,7 @@ function domainOf(values, axis) {
 /**
  * Builds a chart in `container`. An axis is {label, unit, scale: "linear" | "log", from, to, format}; a series is {id, name, kind, x, y, tone}:
  * "line" (smooth: "x" | "y"), "thin", "points", "band" (second edge x2, y2), "rule" (upright at x[0]), "limit" (at x[0] or y[0], named),
- * "outside" (hatched, above y[0] or below y2[0]) or "end" (a cross at its last point). `tools`: buttons of its head.
+ * "outside" (hatched, above y[0], or below y2[0] down to nought) or "end" (a cross at its last point). `tools`: buttons of its head.
  * Gives {set(series), extend(id, x, y), move(at, dots), pick(take), destroy()}.
  */
 export function createChart(container, { name, label, title, x: xAxis, y: yAxis, ratio = 0.52, tools = [], note }) {
@@ -124,7 +124,7 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
     show(axes,
       shape("defs", null,
         shape("pattern", { id: hatch, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
-          shape("line", { x1: 0, x2: 0, y1: 0, y2: 6, class: "series limit", "stroke-opacity": 0.5, "stroke-dasharray": "none" })),
+          shape("line", { x1: 0, x2: 0, y1: 0, y2: 6, class: "hatch" })),
         shape("clipPath", { id: clip }, shape("rect", { x: left, y: place.top - 4, width: right - left + 4, height: place.bottom - place.top + 4 }))),
       up.map((value) => [shape("line", { class: "grid", x1: left, x2: right, y1: y(value), y2: y(value) }),
         shape("text", { x: left - 8, y: y(value) + 4, "text-anchor": "end" }, tickText(value, yAxis.scale))]),
@@ -162,7 +162,7 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
       case "rule": return points.length > 0 && shape("path", { ...attributes, d: `M${x(one.x[0])} ${top}V${bottom}` });
       case "limit": return shape("path", { ...attributes, d: one.y?.length ? `M${left} ${y(one.y[0])}H${right}` : `M${x(one.x[0])} ${top}V${bottom}` });
       case "outside": {
-        const [from, to] = one.y?.length ? [top, y(one.y[0])] : [y(one.y2[0]), bottom];
+        const [from, to] = one.y?.length ? [top, y(one.y[0])] : [y(one.y2[0]), Math.min(bottom, yAxis.scale === "log" ? bottom : y(0))];
         return to > from && shape("rect", { x: left, width: right - left, y: from, height: to - from, fill: `url(#${hatch})` });
       }
       case "points": {
@@ -204,8 +204,8 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
     if (one.kind === "limit" && one.y?.length) return shape("text", { class: "halo remark", x: left + 6, y: y(one.y[0]) - 5 }, one.name);
     if (one.kind === "limit") return shape("text", { class: "halo remark", x: x(one.x[0]) + 6, y: top + 10 }, one.name);
     if (one.kind === "outside") {
-      const at = one.y?.length ? top + 14 : place.bottom - 6;
-      return (one.y?.length ? y(one.y[0]) > top + 18 : y(one.y2[0]) < place.bottom - 18) && shape("text", { class: "halo remark", x: left + 8, y: at }, one.name);
+      const at = one.y?.length ? top + 14 : y(one.y2[0]) + 13;
+      return (one.y?.length ? y(one.y[0]) > top + 18 : Math.abs(y(one.y2[0]) - y(0)) > 18) && shape("text", { class: "halo remark", x: left + 8, y: at }, one.name);
     }
     if (one.kind !== "end" || one.x.length === 0) return null;
     const [cx, cy] = [x(one.x[0]), y(one.y[0])];

@@ -24,7 +24,9 @@ export function whole(value) {
 /** Fixed number of decimals, thousands grouped. */
 export function fixed(value, decimals) {
   if (!Number.isFinite(value)) return NONE;
-  const [head, tail] = value.toFixed(decimals).split(".");
+  const text = value.toFixed(decimals);
+  // No minus before nought.
+  const [head, tail] = (Number(text) === 0 ? text.replace("-", "") : text).split(".");
   return withMinus(head.replace(/\d+/, group) + (tail ? `.${tail}` : ""));
 }
 

@@ -100,7 +100,7 @@ function createView(label, isWhole) {
     show(base,
       !isWhole && node("rect", { class: "window", x: left, y: margin, width: across, height: up }),
       node("path", { class: "plate-body", d: `${line(shape.outline_mm)}z` }),
-      shape.holes.map((hole) => holeOf(hole, scale)),
+      shape.holes.flatMap((hole) => holeOf(hole, scale)).flat(),
       shape.slots.map((slot) => node("path", { class: "plate-hole", d: `${line(slot)}z` })),
       isWhole && [arrows(shape), holds(shape), frame && node("path", { class: "frame", d: `${line([[frame[0], frame[1]], [frame[2], frame[1]], [frame[2], frame[3]], [frame[0], frame[3]]])}z` })],
       ruleOf(scale, left, height, box[2] - box[0]));

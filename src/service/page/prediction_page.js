@@ -15,6 +15,8 @@ import { createRemaining } from "./remaining.js";
 
 const STEPS = 1000;
 const PLAY_MS = 5000;
+/** Share of the life that is shown first: most of the path has its colours there. */
+const START = 0.9;
 /** Pictures of the end of a run, by the model that has them. */
 const FIELDS = { "von_mises.png": "Von Mises stress at maximum load, at the end of the run.", "damage.png": "Share of bonds cut or broken, at the end of the run." };
 
@@ -308,7 +310,7 @@ function createPlace({ columns, lengths, lead, band, chart, factorChart, plate }
   const node = element("section", { class: "card place", "aria-label": "One place along the life for plate, curve and K", "data-part": "place" },
     element("div", { class: "play" }, play, element("div", null, element("label", { for: "place" }, element("span", null, "Cycles ", told), share), slider)),
     element("dl", { class: "read" }, Object.values(cells).map(([name, of, isWide]) => element("div", { class: isWide ? "wide-only" : null }, element("dt", null, name), of))));
-  go(0);
+  go(START * life);
   return {
     node,
     go,
