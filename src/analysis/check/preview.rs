@@ -3,7 +3,7 @@
 use super::understood::{built, points_words};
 use crate::body::lattice::Lattice;
 use crate::case::budget::Budget;
-use crate::case::{Case, Model, PointSettings};
+use crate::case::{Case, Engine, Model, PointSettings};
 use crate::element_free::resolution::ElementFreeSettings;
 use crate::error::{Error, InputError, Result};
 use crate::fatigue::ageing::stuck;
@@ -41,6 +41,8 @@ pub(super) struct Preview {
 
 /// Seconds of an increment on two processors for every node, with the look for its error.
 const SECONDS_OF_NODE: f64 = 3.5e-5;
+/// The same for every point.
+const SECONDS_OF_POINT: f64 = 1.5e-6;
 /// Increments of a life, and how many more of them every tip takes.
 const INCREMENTS: [f64; 2] = [12.0, 7.0];
 
@@ -48,17 +50,22 @@ const INCREMENTS: [f64; 2] = [12.0, 7.0];
 fn of_nodes(case: &Case, ElementFreeSettings { resolution, .. }: &ElementFreeSettings) -> Result<Preview> {
     let plate = initial_plate(case).map_err(as_input)?;
     let finest = plate.nodes.spacing.iter().copied().fold(f64::INFINITY, f64::min);
-    let increments = INCREMENTS[0] + INCREMENTS[1] * case.specimen.tips.len() as f64;
-    let seconds = SECONDS_OF_NODE * increments * plate.nodes.at.len() as f64;
     let points = format!(
-        "{} nodes, {} unknowns; spacing {} mm, {} mm at the finest, radius of influence {} spacings; a life in some {seconds:.1} s",
+        "{} nodes, {} unknowns; spacing {} mm, {} mm at the finest, radius of influence {} spacings{}",
         plate.nodes.at.len(),
         plate.unknowns(),
         mm(resolution.far),
         mm(finest),
-        resolution.support
+        resolution.support,
+        time_words(case, SECONDS_OF_NODE * plate.nodes.at.len() as f64)
     );
     Ok(Preview { points, warnings: Vec::new() })
+}
+
+/// What a life takes, by the seconds of an increment; within a factor of three.
+fn time_words(case: &Case, seconds: f64) -> String {
+    let increments = INCREMENTS[0] + INCREMENTS[1] * case.specimen.tips.len() as f64;
+    format!("; a life in some {:.1} s", increments * seconds)
 }
 
 /// Lays the lattice and, where that is quick, builds the body.
@@ -66,7 +73,13 @@ pub(super) fn preview(case: &Case) -> Result<Preview> {
     match &case.model {
         Model::Handbook(_) => Ok(Preview { points: "none: hand calculation".to_owned(), warnings: Vec::new() }),
         Model::Nodes(nodes) => of_nodes(case, nodes),
-        Model::Points(points) => of_points(case, points),
+        Model::Points(points) => {
+            let mut preview = of_points(case, points)?;
+            if case.engine() == Engine::Points {
+                preview.points += &time_words(case, SECONDS_OF_POINT * Budget::of(case).points);
+            }
+            Ok(preview)
+        }
     }
 }
 

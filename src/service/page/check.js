@@ -10,6 +10,7 @@ import { createPicture, showBlob } from "./picture.js";
 import { createPlatePath } from "./plate_path.js";
 
 const WAIT_MS = 350;
+const SKETCH_HEIGHT = 200;
 /** What is read first of what was understood; all else stands below. */
 const FIRST = ["specimen", "crack", "material", "loading", "model", "points", "stop", "computing"];
 
@@ -21,8 +22,8 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
   const state = element("p", { class: "check-state", role: "status" });
   // A scene is drawn by the service; of a specimen its shape is known.
   const { node: figure, image } = createPicture("Drawing of the scene as understood: outline, cracks, loads and supports");
-  const place = element("div", { class: "figure" });
-  const plate = createPlatePath(place, "The specimen as understood: outline, cracks, loads and supports");
+  const place = element("div");
+  const plate = createPlatePath(place, "The specimen as understood: outline, cracks, loads and supports", SKETCH_HEIGHT);
   const details = element("div");
   show(panel, state, place, figure, details);
 

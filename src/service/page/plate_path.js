@@ -43,11 +43,11 @@ function frameOf(shape, paths) {
   return share < 0.5 ? frame : null;
 }
 
-/** Draws the whole plate, and the part with the cracks below where they are small in it. Gives {set(shape, paths, life), to(cycles), destroy()}. */
-export function createPlatePath(container, label) {
+/** Draws the whole plate, no higher than `height` pixels, and the part with the cracks below where they are small in it. Gives {set(shape, paths, life), to(cycles), destroy()}. */
+export function createPlatePath(container, label, height = HEIGHT_MAX) {
   let now = null;
   let data = null;
-  const views = [createView(label, true), createView(`${label}: the framed part`, false)];
+  const views = [createView(label, true, height), createView(`${label}: the framed part`, false, height)];
   show(container, views.map((view) => view.svg));
   const observer = new ResizeObserver(draw);
   observer.observe(container);
@@ -76,7 +76,7 @@ export function createPlatePath(container, label) {
   };
 }
 
-function createView(label, isWhole) {
+function createView(label, isWhole, heightMax) {
   const [base, grown, words] = [node("g"), node("g"), node("g")];
   const clip = node("clipPath", { id: uniqueId("framed-plate") });
   const svg = node("svg", { role: "img", "aria-label": label, "data-plate": isWhole ? "whole" : "framed" }, node("defs", null, clip), base, grown, words);
@@ -89,7 +89,7 @@ function createView(label, isWhole) {
     data = next;
     const { shape } = data;
     const margin = isWhole ? MARGIN : 1;
-    const scale = Math.min((width - 2 * margin) / (box[2] - box[0]), HEIGHT_MAX / (box[3] - box[1]));
+    const scale = Math.min((width - 2 * margin) / (box[2] - box[0]), heightMax / (box[3] - box[1]));
     const [across, up] = [(box[2] - box[0]) * scale, (box[3] - box[1]) * scale];
     const left = (width - across) / 2;
     pixel = ([x, y]) => [left + (x - box[0]) * scale, margin + (box[3] - y) * scale];
