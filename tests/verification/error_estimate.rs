@@ -2,7 +2,7 @@
 
 use perilife::predict::error_estimate::error_estimate;
 use perilife::predict::{Silent, predict};
-use perilife::verify::cases::{AUTO, POINTS};
+use perilife::verify::cases::{AUTO, POINTS, case, pulled_plate};
 use perilife::verify::references::{Reference, compare, largest};
 
 #[test]
@@ -50,4 +50,20 @@ fn nothing_is_stated_of_bonds() {
     let case = case.unwrap();
     let run = predict(&case, &Silent).unwrap();
     assert!(error_estimate(&case, &run).unwrap_err().contains("own strain"));
+}
+
+/// A crack that passes a hole at 0.03 mm hardly grows behind its rim: finite elements with steps of 0.004 mm give 1.04 million cycles, nodes 0.81 to 0.96
+/// by how fine they are. The gap is less than what the path is known to.
+#[test]
+fn nothing_is_stated_of_a_crack_that_grazes_a_hole() {
+    let text = pulled_plate(
+        "width_mm = 80\nlength_mm = 160\n\
+         holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 14 }, { x_mm = -24, y_mm = 2, diameter_mm = 10 }, { x_mm = 24, y_mm = 5, diameter_mm = 8 }]\n\
+         cracks = [{ from_mm = [7, 0], to_mm = [10, 0] }]",
+    );
+    let case = case(&text, &format!("loading.stress_max_mpa=60 stop.crack_length_mm=22 {AUTO}")).unwrap();
+    let run = predict(&case, &Silent).unwrap();
+    let why = error_estimate(&case, &run).unwrap_err();
+    println!("{why}");
+    assert!(why.contains("passes a rim"), "{why}");
 }

@@ -49,7 +49,9 @@ pub fn shape(case: &Case) -> Value {
 /// Stretches of the outline that are held or moved.
 fn held(specimen: &Specimen) -> Vec<Value> {
     let stretches = specimen.supports.iter().filter_map(|support| match support {
-        Support::Fixed { from, to, .. } | Support::Moved { from, to, .. } => Some(json!({ "from_mm": mm(*from), "to_mm": mm(*to) })),
+        Support::Fixed { from, to, .. } | Support::Moved { from, to, .. } => {
+            Some(json!({ "from_mm": mm(*from), "to_mm": mm(*to) }))
+        }
         Support::ClampedEnds | Support::RigidEnds | Support::Elsewhere => None,
     });
     stretches.collect()

@@ -1,8 +1,8 @@
 //! One increment of all cracks, call by call ([`crate::predict::increment`]).
 
 use super::meeting::Segment;
-use super::tip::{Reading, Tip, pair_twins};
 use super::step::Course;
+use super::tip::{Reading, Tip, pair_twins};
 use super::{CrackedPlate, Cracks, Parted, kink, step};
 use crate::error::Error;
 use crate::fatigue::crack_tip::TipState;
@@ -250,10 +250,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let ([rate, factor], growths, last) = (then, step.growths(), self.last());
         let is_by_root = self.scales.by_root || step.is_kink;
         let rise = (step.root * step.root + growths[step.lead]).sqrt() - step.root;
-        let course = Course {
-            weight: if is_by_root { [step.root, rise] } else { [1.0, 0.0] },
-            gain: (rate / step.rate).ln(),
-        };
+        let course = Course { weight: if is_by_root { [step.root, rise] } else { [1.0, 0.0] }, gain: (rate / step.rate).ln() };
         let row_at = |t: f64| {
             let mut row = next.clone().between(last, t);
             let of_lead = course.growth(t);
