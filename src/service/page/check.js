@@ -71,9 +71,9 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
       const result = await postInput("/v1/check", body, { signal: own.signal });
       if (own.signal.aborted) return false;
       // Tables of rates have no plate.
-      place.hidden = !result.shape;
-      if (result.shape) plate.set(result.shape, [], 1);
-      image.hidden = Boolean(result.shape) || !result.drawing;
+      place.hidden = !result.plate;
+      if (result.plate) plate.set(result.plate, [], 1);
+      image.hidden = Boolean(result.plate) || !result.drawing;
       if (!image.hidden) await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
       show(details, result.warnings.length > 0 && warningList(result.warnings), understood(result.understood));
       finish(result, "Checked: no errors.", "ok");

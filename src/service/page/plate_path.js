@@ -1,4 +1,4 @@
-// The plate of a result: outline, holes, slots, pins and loads as the service says them (`shape`), and the ways of its crack tips coloured by
+// The plate of a result: outline, holes, slots, pins and loads as the service says them (`plate` of a check and of a result), and the ways of its crack tips coloured by
 // cycles. `to(cycles)` shows it at a moment: what has grown in colour, what is to come dotted.
 
 import { shape as node, show, uniqueId } from "./dom.js";
@@ -19,6 +19,9 @@ function colourOf(share) {
 const boxOf = (points) => [Math.min(...points.map((p) => p[0])), Math.min(...points.map((p) => p[1])),
   Math.max(...points.map((p) => p[0])), Math.max(...points.map((p) => p[1]))];
 
+/** Loads of pins have one place. */
+const isPin = ({ from_mm: from, to_mm: to }) => from[0] === to[0] && from[1] === to[1];
+
 /** Place on a path of [cycles, x, y] at a number of cycles. */
 export function at(path, cycles) {
   const next = path.findIndex((point) => point[0] >= cycles && point[0] > 0);
@@ -30,7 +33,7 @@ export function at(path, cycles) {
 
 /** The part that cracks and their ways take, with air around it; null where that is most of the plate. */
 function frameOf(shape, paths) {
-  const points = [...shape.cracks.flat(), ...paths.flat().map((point) => point.slice(1))];
+  const points = [...shape.cracks_mm.flat(), ...paths.flat().map((point) => point.slice(1))];
   if (points.length === 0) return null;
   const whole = boxOf(shape.outline_mm);
   const box = boxOf(points);
@@ -43,7 +46,7 @@ function frameOf(shape, paths) {
   return share < 0.5 ? frame : null;
 }
 
-/** Draws the whole plate, no higher than `height` pixels, and the part with the cracks below where they are small in it. Gives {set(shape, paths, life), to(cycles), destroy()}. */
+/** Draws the whole plate, no higher than `height` pixels, and the part with the cracks below where they are small in it. Gives {set(plate, paths, life), to(cycles), destroy()}. */
 export function createPlatePath(container, label, height = HEIGHT_MAX) {
   let now = null;
   let data = null;
@@ -100,20 +103,25 @@ function createView(label, isWhole, heightMax) {
     show(base,
       !isWhole && node("rect", { class: "window", x: left, y: margin, width: across, height: up }),
       node("path", { class: "plate-body", d: `${line(shape.outline_mm)}z` }),
-      shape.holes.flatMap((hole) => holeOf(hole, scale)).flat(),
-      shape.slots.map((slot) => node("path", { class: "plate-hole", d: `${line(slot)}z` })),
+      shape.holes.map((hole) => holeOf(hole, scale)),
+      shape.loads.filter(isPin).flatMap((load) => pinOf(load, scale)).flat(),
+      shape.slots_mm.map((slot) => node("path", { class: "plate-hole", d: `${line(slot)}z` })),
       isWhole && [arrows(shape), holds(shape), frame && node("path", { class: "frame", d: `${line([[frame[0], frame[1]], [frame[2], frame[1]], [frame[2], frame[3]], [frame[0], frame[3]]])}z` })],
       ruleOf(scale, left, height, box[2] - box[0]));
   }
 
-  function holeOf({ x_mm: x, y_mm: y, diameter_mm: diameter, pin }, scale) {
+  function holeOf({ x_mm: x, y_mm: y, diameter_mm: diameter }, scale) {
     const [cx, cy] = pixel([x, y]);
-    const r = (diameter / 2) * scale;
-    if (!pin) return node("circle", { class: "plate-hole", cx, cy, r });
-    const [dx, dy] = [pin[0], -pin[1]];
-    const reach = (from) => [cx + dx * (r + from), cy + dy * (r + from)];
-    return [node("circle", { class: "plate-hole", cx, cy, r }), node("circle", { class: "plate-pin", cx: cx + dx, cy: cy + dy, r: Math.max(r - 2, 1) }),
-      arrow(reach(3), [dx, dy], 16)];
+    return node("circle", { class: "plate-hole", cx, cy, r: (diameter / 2) * scale });
+  }
+
+  /** A pin that presses on the rim of its hole, and its way. */
+  function pinOf({ from_mm: at, direction }, scale) {
+    const hole = data.shape.holes.find((one) => Math.hypot(one.x_mm - at[0], one.y_mm - at[1]) < 1e-6);
+    const [[cx, cy], r] = [pixel(at), ((hole?.diameter_mm ?? 0) / 2) * scale];
+    const [dx, dy] = [direction[0], -direction[1]];
+    return [node("circle", { class: "plate-pin", cx: cx + dx, cy: cy + dy, r: Math.max(r - 2, 1) }),
+      arrow([cx + dx * (r + 3), cy + dy * (r + 3)], [dx, dy], 16)];
   }
 
   /** An arrow from a place, pixels. */
@@ -126,9 +134,8 @@ function createView(label, isWhole, heightMax) {
 
   /** Loads of straight edges, and what they are, once. */
   function arrows(shape) {
-    const drawn = shape.loads.flatMap(({ from_mm: from, to_mm: to, traction: [tx, ty] }) => {
-      const size = Math.hypot(tx, ty);
-      const way = [tx / size, -ty / size];
+    const drawn = shape.loads.filter((load) => !isPin(load)).flatMap(({ from_mm: from, to_mm: to, direction }) => {
+      const way = [direction[0], -direction[1]];
       const length = Math.hypot(to[0] - from[0], to[1] - from[1]);
       const [a, b] = [pixel(from), pixel(to)];
       const number = Math.max(2, Math.min(7, Math.round(Math.hypot(b[0] - a[0], b[1] - a[1]) / 50)));
@@ -143,7 +150,7 @@ function createView(label, isWhole, heightMax) {
 
   /** Held stretches are hatched. */
   function holds(shape) {
-    return shape.held.flatMap(({ from_mm: from, to_mm: to }) => {
+    return shape.held_mm.flatMap(([from, to]) => {
       const [a, b] = [pixel(from), pixel(to)];
       const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
       return Array.from({ length: Math.floor(length / 8) }, (_, index) => {
@@ -183,7 +190,7 @@ function createView(label, isWhole, heightMax) {
       above.push(node("circle", { class: "dot", cx, cy, r: isWhole ? 3.5 : 5 }));
       if (paths.length > 1) above.push(node("text", { class: "halo strong", x: cx + 8, y: cy - 8 }, String(number)));
     });
-    lines.push(...shape.cracks.map((crack) => node("path", { class: "flaw", d: line(crack) })));
+    lines.push(...shape.cracks_mm.map((crack) => node("path", { class: "flaw", d: line(crack) })));
     show(grown, lines);
     show(words, above);
   }

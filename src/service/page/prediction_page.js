@@ -49,7 +49,7 @@ export async function openPrediction(root, id, signal) {
     plate.destroy();
   });
   const curve = { id: "curve", name: "computed", kind: "line", tone: 0, x: [], y: [] };
-  let drawn = null; // shape of the specimen, as the service says it
+  let drawn = null; // the plate, as the service says it
   let paths = [];
   chart.set([curve]);
 
@@ -57,7 +57,7 @@ export async function openPrediction(root, id, signal) {
     if (!drawn) {
       try {
         const body = { input: job.input, ...(job.calibration ? { calibration: job.calibration } : {}) };
-        drawn = (await postJson("/v1/check", body, { signal })).shape;
+        drawn = (await postJson("/v1/check", body, { signal })).plate;
       } catch (error) {
         if (error.name === "AbortError") return;
       }
@@ -115,7 +115,7 @@ export async function openPrediction(root, id, signal) {
 
   async function showResult(done) {
     result = has(done, "result.json") ? JSON.parse(await getText(pathTo(done, "result.json"), signal)) : done.summary;
-    drawn = result.shape ?? drawn;
+    drawn = result.plate ?? drawn;
     show(outcome, answerCard({ ...done.summary, ...result }));
     head.describe(describe(result));
     below.prepend(element("div", { class: "two" }, howComputed(done, result),
@@ -217,10 +217,8 @@ function limitsOf(result, columns, lengths) {
 const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: `${fixed(lengths.at(-1), 1)} mm`, x: [steps.at(-1)], y: [lengths.at(-1)] });
 
 /** One sentence on what was computed: plate, material, load. */
-function describe({ case: given, shape }) {
-  const { specimen = {}, material = {} } = given ?? {};
-  const size = [specimen.width_mm, specimen.length_mm, specimen.thickness_mm].filter(Boolean).join(" × ");
-  return [`${sentence(words(specimen.kind ?? "plate"))}${size && ` ${size} mm`}`, material.name, shape?.load].filter(Boolean).join(", ");
+function describe({ plate }) {
+  return plate ? [sentence(plate.specimen), plate.material, plate.load].filter(Boolean).join("; ") : "";
 }
 
 function howComputed(job, r) {

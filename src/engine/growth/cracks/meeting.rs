@@ -10,6 +10,8 @@ use crate::specimen::geometry::{along, direction, distance};
 const ALL: f64 = 0.999;
 /// Distance of a tip that another faces over the way to its crack, at the most.
 const ALIKE: f64 = 1.1;
+/// Way straight on to a rim over the distance from the nearest rim, up to which a tip heads for it.
+const AHEAD: f64 = 1.5;
 /// Cosine of the angle between a tip and the way to a rim below which it passes that.
 const PASSING: f64 = 0.5;
 
@@ -96,9 +98,13 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let (gap, faces) = self.gap(index);
         // Both come towards each other.
         let of_both = |other: usize| tip.rate / (tip.rate + self.state.tips[other].rate);
-        let length = faces.map_or_else(|| gap.min(self.room(index)), |other| gap * of_both(other));
+        let (room, scales) = (self.room(index), &self.scales.step);
+        // A tip that passes a rim does not run into it, however few cycles are left.
+        let aside = if room < scales.last_aside { room } else { f64::INFINITY };
+        let ahead = if gap < AHEAD * room { gap } else { f64::INFINITY };
+        let length = faces.map_or_else(|| ahead.min(aside), |other| gap * of_both(other));
         let cycles = self.curve.last().map_or(0.0, |row| row.cycles);
-        let [reach, at_once] = self.scales.step.last;
+        let [reach, at_once] = scales.last;
         let is_last = length < reach && (length < self.scales.step.share_left * cycles * tip.rate || length < at_once);
         (is_last && tip.growth > 0.0).then_some(LastWay { length, faces })
     }

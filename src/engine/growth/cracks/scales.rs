@@ -64,6 +64,8 @@ pub struct StepScales {
     pub share_left: f64,
     /// How far ahead a rim or tip may be that is reached in one step where cycles are few, and how near it is reached at once.
     pub last: [f64; 2],
+    /// How near a rim is that is reached in one step though it lies aside.
+    pub last_aside: f64,
 }
 
 /// Scales of directions.
@@ -137,6 +139,7 @@ impl Scales {
                 share_left: 5e-4,
                 // What is left of the plate there is nearly a mechanism, and says nothing about its life.
                 last: [4.0 * horizon, 0.0],
+                last_aside: 4.0 * horizon,
             },
             steering: SteeringScales {
                 // Steps are short where a crack curves; a line through more than that would trail behind. Like all lengths here no multiple
@@ -197,6 +200,7 @@ impl Scales {
                 turn_unless: 0.0,
                 share_left: 2e-3,
                 last: [4.0 * Discretisation::size(&case.specimen), 2e-3 * far],
+                last_aside: 2e-3 * far,
             },
             steering: SteeringScales {
                 memory_steps: 0.0,
