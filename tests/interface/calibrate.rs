@@ -62,7 +62,7 @@ fn a_calibration_with_a_prediction_and_its_export() {
     }
 
     // The files that are promised, and no temporary ones.
-    for file in ["fitted.toml", "fit.json", "fit_curves.csv", "rates.csv", "fit.svg", "fit_rates.svg", ".perilife"] {
+    for file in ["fitted.toml", "fit.json", "fit_curves.csv", "rates.csv", "fit.svg", "da_dn.svg", ".perilife"] {
         assert!(fs::metadata(fit.join(file)).unwrap().len() > 0, "{file}");
     }
     for file in ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "damage.png", "factors.csv", "beta.txt"] {

@@ -172,7 +172,8 @@ pub fn parse_a_n(text: &str, path: &Path) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn bad_table(path: &Path, line: usize, column: Option<&str>, value: Option<&str>, problem: &str) -> Error {
+/// A cell or line of a table that is not as it was written.
+pub(super) fn bad_table(path: &Path, line: usize, column: Option<&str>, value: Option<&str>, problem: &str) -> Error {
     Error::Input(Box::new(InputError {
         file: Some(path.to_path_buf()),
         line: Some(line),

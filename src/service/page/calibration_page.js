@@ -30,8 +30,8 @@ export async function openCalibration(root, id, signal) {
     const files = whole.files ?? [];
     const has = (name) => files.some((file) => file.name === name);
     const path = (name) => `${pathOf(whole)}/files/${name}`;
-    if (has("fit_rates.svg")) {
-      getBlob(path("fit_rates.svg"), signal).then((blob) => showBlob(image, blob))
+    if (has("da_dn.svg")) {
+      getBlob(path("da_dn.svg"), signal).then((blob) => showBlob(image, blob))
         .catch((error) => error.name === "AbortError" || rates.after(problemBox(error)));
     }
     // Laws over K, which were fitted to rates: there is no curve.
@@ -45,7 +45,7 @@ export async function openCalibration(root, id, signal) {
       whole.summary.warnings?.length > 0 && warningList(whole.summary.warnings),
       element("div", { class: "columns wide-left" },
         element("div", { class: "stack" }, section("fit", "Readings and fitted curve", curves),
-          has("fit_rates.svg") && section("rates", "Growth rates", rates)),
+          has("da_dn.svg") && section("rates", "Growth rates", rates)),
         element("div", { class: "stack" }, section("constants", "Constants", constants(whole.summary)))),
       specimens(whole.summary),
       downloadList(whole), inputText(whole));
