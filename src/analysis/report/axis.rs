@@ -19,15 +19,16 @@ pub struct Axis {
 impl Axis {
     /// Linear axis that holds all `values`, from zero where that wastes little.
     pub fn linear(values: impl Iterator<Item = f64>) -> Axis {
-        Self::linear_in(values, 6.0)
-    }
-
-    /// The same with steps between its ticks of about that part of its range.
-    pub fn linear_in(values: impl Iterator<Item = f64>, parts: f64) -> Axis {
-        let (mut low, mut high) = bounds(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
+        let (mut low, high) = bounds(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
         if low > 0.0 && low < 0.5 * high {
             low = 0.0;
         }
+        Self::linear_in([low, high].into_iter(), 6.0)
+    }
+
+    /// Linear axis that holds all `values` and no more, in about so many steps.
+    pub fn linear_in(values: impl Iterator<Item = f64>, parts: f64) -> Axis {
+        let (mut low, mut high) = bounds(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
         if high - low <= 1e-9 * high.abs().max(1e-300) {
             (low, high) = (low - 0.05 * low.abs().max(1.0), high + 0.05 * high.abs().max(1.0));
         }

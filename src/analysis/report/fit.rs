@@ -5,21 +5,18 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::chart::{self, LARGE, Mark, Series};
+use super::chart::LARGE;
 use super::output::write_file;
-use super::pictures::fit::{BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, READINGS_FILE};
+use super::pictures::fit::{BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, law_svg, rates_fitted};
 use super::pictures::plate::Plate;
 use super::{provenance, test_record};
 use crate::calibration::calibrate::Fitted;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::Fit;
-use crate::calibration::laws::LawFits;
-use crate::calibration::laws::case::LawCase;
 use crate::calibration::readings::readings_csv;
 use crate::calibration::results::{fit_curves_csv, fitted_rates_csv, rates_csv, rates_taken_csv};
 use crate::error::{Error, Result};
-use crate::measured::RateRow;
-use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use crate::units::{MM, MPA_SQRT_M};
 
 /// Table of the rates that a law was fitted to.
 const RATES_FILE: &str = "rates.csv";
@@ -62,10 +59,10 @@ pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
         }
         Fitted::Rates(case, fits) => {
             put("fitted.toml", &law)?;
-            put("fit_rates.csv", &rates_csv(case, fits))?;
+            let rates = rates_csv(case, fits);
+            put(RATES_FITTED_FILE, &rates)?;
             put(RATES_FILE, &rates_taken_csv(case))?;
-            let title = format!("{}: {}", case.name, fits.law().kind);
-            chart::growth_rate(&folder.join(DA_DN_FILE), &title, &series(case, fits))?;
+            put(DA_DN_FILE, &law_svg(&rates_fitted(&rates)?, LARGE))?;
         }
     }
     put(FIT_FILE, &format!("{json:#}\n"))
@@ -119,27 +116,4 @@ fn write_tables(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Resu
 #[cfg(not(feature = "tables"))]
 fn write_tables(_folder: &Path, _calibration: &CalibrationCase, _fit: &Fit) -> Result<()> {
     Ok(())
-}
-
-/// Most stress ratios that a picture tells apart.
-const RATIOS_DRAWN: usize = 6;
-
-/// Measured rates of every stress ratio, and those of the law at the same rows.
-fn series(case: &LawCase, fits: &LawFits) -> Vec<Series> {
-    let ratios = case.ratios();
-    if ratios.len() > RATIOS_DRAWN {
-        return pair("all stress ratios", case, fits, &|_| true);
-    }
-    ratios.iter().flat_map(|ratio| pair(&format!("R = {ratio}"), case, fits, &|of| (of - ratio).abs() < 0.0051)).collect()
-}
-
-fn pair(name: &str, case: &LawCase, fits: &LawFits, is_of: &dyn Fn(f64) -> bool) -> Vec<Series> {
-    let rows = || case.rows.iter().zip(&fits.law().residuals).filter(|(row, _)| is_of(row.ratio));
-    let point = |(row, share): (&RateRow, f64)| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE * share);
-    let mut law: Vec<(f64, f64)> = rows().map(|(row, residual)| point((row, (-residual).exp()))).collect();
-    law.sort_by(|a, b| a.0.total_cmp(&b.0));
-    vec![
-        Series { name: name.to_owned(), points: rows().map(|(row, _)| point((row, 1.0))).collect(), mark: Mark::Circles },
-        Series { name: format!("{}, {name}", fits.law().kind), points: law, mark: Mark::Line },
-    ]
 }

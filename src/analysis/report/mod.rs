@@ -15,6 +15,7 @@ pub mod fracture;
 pub mod json;
 pub mod model_words;
 pub mod output;
+pub mod paper;
 pub mod pictures;
 pub mod provenance;
 pub mod resample;

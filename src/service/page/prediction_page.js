@@ -181,6 +181,7 @@ function pathsOf({ tip, x_mm: xs, y_mm: ys }) {
 const PICTURES = {
   "damage.png": "Share of bonds cut by initial cracks or broken, at the end of the run.",
   "von_mises.png": "Von Mises stress at maximum load, at the end of the run.",
+  "plate.svg": "The plate to scale, its load, the first crack and its way, coloured by cycles.",
 };
 
 /** How wrong the life may be as a solution of its case; nothing of runs before such bounds were stated. */

@@ -134,7 +134,9 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
     let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 9 } else { 4 });
     if let Some([low, high]) = calibrated(result) {
         frame.unknown(high, true, "above the ΔK of the law");
-        frame.unknown(low, false, "below the ΔK of the law");
+        if tips.iter().any(|tip| points(*tip, 0).iter().any(|point| point[1] < low)) {
+            frame.unknown(low, false, "below the ΔK of the law");
+        }
     }
     for (mode, colour, dash) in [(1, SECOND, "6 3"), (0, COMPUTED, "")] {
         tips.iter().for_each(|tip| frame.pieces(&points(*tip, mode), colour, 2.0, dash));

@@ -20,6 +20,12 @@ pub const CURVES_FILE: &str = "fit_curves.csv";
 pub const BAND_FILE: &str = "fit_band.csv";
 /// Every reading.
 pub const READINGS_FILE: &str = "readings.csv";
+/// Rates that a law over K was fitted to.
+pub const RATES_FITTED_FILE: &str = "fit_rates.csv";
+/// Stress ratios that count as one.
+const RATIO_ALIKE: f64 = 0.0051;
+/// Most stress ratios that a picture tells apart.
+const RATIOS_DRAWN: usize = 6;
 /// Most circles of a picture; of more readings every second, third and so on is drawn.
 const CIRCLES_MAX: usize = 160;
 /// Share of an area that the band of the fit covers with its colour.
@@ -63,6 +69,8 @@ pub fn lives_svg(curves: &[Lives], fitted_to: &str, band: &[[f64; 3]], size: Siz
 /// A law over the range of ΔK that was measured: its curve, `[ΔK, da/dN]`, and the pivot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LawCurve {
+    /// Name at its end; may be empty.
+    pub name: String,
     /// In order of ΔK.
     pub points: Vec<Point>,
     /// Where the errors of rate and exponent have no correlation.
@@ -76,13 +84,17 @@ pub fn rates_svg(readings: &[Point], laws: &[LawCurve], size: Size) -> String {
     let all: Vec<Point> = readings.iter().chain(laws.iter().flat_map(|law| &law.points)).filter(is_positive).copied().collect();
     let axes = [0, 1].map(|axis| Axis::logarithmic(all.iter().map(|point| point[axis])));
     let names = if size.width < 500.0 { ["ΔK, MPa√m", "da/dN, mm/cycle"] } else { OF_RATES };
-    let mut frame = Frame::with_names(size, axes, names, 0);
+    let letters = laws.iter().map(|law| law.name.chars().count()).max().unwrap_or(0);
+    let mut frame = Frame::with_names(size, axes, names, letters);
     match readings.len() {
         0..=2000 => frame.circles(&readings),
         _ => frame.dots(&readings, INK),
     }
     for law in laws {
         frame.line(&law.points, COMPUTED, 2.0, "");
+        if let Some(last) = law.points.last().filter(|_| !law.name.is_empty()) {
+            frame.name(*last, &law.name, COMPUTED);
+        }
         law.pivot.into_iter().for_each(|pivot| frame.ring(pivot, COMPUTED));
     }
     frame.finish(&format!("Growth rate over the range of K: {} readings and the law over their range", readings.len()))
@@ -148,6 +160,7 @@ impl FitTables {
         let rate = |delta_k: f64| Some(figure("paris_c_mm_per_cycle")? * delta_k.powf(figure("paris_m")?));
         let ends = ["delta_k_min_mpa_sqrt_m", "delta_k_max_mpa_sqrt_m"].map(figure);
         let law = LawCurve {
+            name: String::new(),
             points: ends.into_iter().flatten().filter_map(|delta_k| point(delta_k, rate(delta_k))).collect(),
             pivot: figure("pivot_delta_k_mpa_sqrt_m").and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
         };
@@ -166,6 +179,44 @@ impl FitTables {
         let points: Vec<Point> = counted.filter_map(|r| Some([r.delta_k_mpa_sqrt_m?, r.da_dn_mm_per_cycle?])).collect();
         rates_svg(&points, std::slice::from_ref(&self.law), size)
     }
+}
+
+/// A row of `fit_rates.csv`: a rate that a law was fitted to, and that of the law.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct RateFitted {
+    /// Test that it is from.
+    pub series: String,
+    /// R.
+    pub stress_ratio: f64,
+    /// ΔK, MPa√m.
+    pub delta_k_mpa_sqrt_m: f64,
+    /// Measured rate, mm/cycle.
+    pub da_dn_mm_per_cycle: f64,
+    /// Rate of the law there, mm/cycle.
+    pub da_dn_fitted_mm_per_cycle: f64,
+}
+
+/// Rates of a fit of laws over K, by the text of `fit_rates.csv`.
+/// Errors: a line that is not as the fit wrote it.
+pub fn rates_fitted(text: &str) -> Result<Vec<RateFitted>> {
+    rows(text, RATES_FITTED_FILE)
+}
+
+/// `da_dn.svg` of a fit of laws over K: rates as circles, the law over the rates of every stress ratio.
+pub fn law_svg(rates: &[RateFitted], size: Size) -> String {
+    let mut ratios: Vec<f64> = rates.iter().map(|rate| rate.stress_ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.dedup_by(|a, b| (*a - *b).abs() < RATIO_ALIKE);
+    let of_ratio = |ratio: &f64| {
+        let own = rates.iter().filter(|rate| (rate.stress_ratio - ratio).abs() < RATIO_ALIKE);
+        let mut points: Vec<Point> = own.map(|rate| [rate.delta_k_mpa_sqrt_m, rate.da_dn_fitted_mm_per_cycle]).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        LawCurve { name: format!("R = {ratio}"), points, pivot: None }
+    };
+    // More of them than a picture can tell apart have no lines.
+    let laws: Vec<LawCurve> = if ratios.len() > RATIOS_DRAWN { Vec::new() } else { ratios.iter().map(of_ratio).collect() };
+    let measured: Vec<Point> = rates.iter().map(|rate| [rate.delta_k_mpa_sqrt_m, rate.da_dn_mm_per_cycle]).collect();
+    rates_svg(&measured, &laws, size)
 }
 
 /// Rows of a table with a header.

@@ -6,11 +6,11 @@ use super::tables::RunTables;
 use crate::case::Case;
 use crate::monotone::Monotone;
 use crate::report::chart::{INK, Size};
-use crate::report::model_words::{clean, loading};
+use crate::report::model_words::{clean, loading, short};
 use crate::report::specimen_picture::sketch::Sketch;
 use crate::specimen::geometry::{along, bounding_box, distance};
 use crate::specimen::{Load, Point, Specimen, Support};
-use crate::units::MM;
+use crate::units::{GPA, MM, MPA, MPA_SQRT_M};
 
 /// Size of the picture in a file of its own.
 pub const SIZE: Size = Size { width: 760.0, height: 520.0, text: 13.0 };
@@ -45,6 +45,12 @@ pub struct Plate {
     pub held_mm: Vec<[Point; 2]>,
     /// The load in words.
     pub load: String,
+    /// The specimen in words: kind and sizes.
+    #[serde(default)]
+    pub specimen: String,
+    /// The material in words.
+    #[serde(default)]
+    pub material: String,
 }
 
 /// A hole.
@@ -86,8 +92,30 @@ impl Plate {
             loads: loads(specimen),
             held_mm: held(specimen),
             load: loading(case),
+            specimen: specimen_words(case),
+            material: material_words(case),
         }
     }
+}
+
+fn specimen_words(case: &Case) -> String {
+    let specimen = &case.specimen;
+    let [low, high] = bounding_box(&specimen.outline);
+    let [width, length, thickness] = [high[0] - low[0], high[1] - low[1], specimen.thickness].map(|size| short(size / MM));
+    let of = [(specimen.holes.len(), "hole"), (specimen.slots.len(), "slot"), (specimen.crack_lines().len(), "crack")];
+    let words = |(count, name): &(usize, &str)| format!(", {count} {name}{}", if *count == 1 { "" } else { "s" });
+    let more: String = of.iter().filter(|(count, _)| *count > 0).map(words).collect();
+    format!("{}, {width} × {length} × {thickness} mm{more}", specimen.kind.name().replace('_', " "))
+}
+
+fn material_words(case: &Case) -> String {
+    let material = &case.material;
+    let yields = material.yield_strength.map_or("no yield strength".to_owned(), |strength| format!("σ_Y {} MPa", short(strength / MPA)));
+    let tough = material.toughness.map_or("no toughness".to_owned(), |k| format!("K_c {} MPa√m", short(k / MPA_SQRT_M)));
+    let modulus = short(material.youngs_modulus / GPA);
+    let (name, ratio) = (&material.name, short(material.poisson_ratio));
+    let name = if name.is_empty() { "given by constants" } else { name };
+    format!("{name}: E {modulus} GPa, ν {ratio}, {yields}, {tough}, plane {}", material.plane.name())
 }
 
 fn mm(point: &Point) -> Point {
@@ -268,28 +296,30 @@ impl Drawing<'_> {
 
     /// Where the tip was at shares of the life.
     fn marks(&self, sketch: &mut Sketch, way: &Way) {
-        let mut free: Option<Point> = None;
-        for share in MARKS {
+        for (place, share) in MARKS.into_iter().enumerate() {
             let Some(length) = way.length_at(share / 100.0 * self.life) else { continue };
             let at = sketch.place(way.at(length));
             let step = 0.02 * way.whole();
             let (from, to) = (sketch.place(way.at((length - step).max(0.0))), sketch.place(way.at(length + step)));
             let reach = distance(from, to).max(1e-9);
-            // Across the way, on its upper side, or right of one that runs up.
+            // Across the way, first on its upper side, or right of one that runs up, then on the other.
             let mut across = [(to[1] - from[1]) / reach, -(to[0] - from[0]) / reach];
             if across[1] > 0.2 || across[1].abs() <= 0.2 && across[0] < 0.0 {
+                across = across.map(|part| -part);
+            }
+            if place % 2 == 1 {
                 across = across.map(|part| -part);
             }
             let far = [at[0] + 17.0 * across[0], at[1] + 17.0 * across[1]];
             sketch.path(&[at, far], INK, 1.0, "");
             sketch.ring(at, 3.0, INK, 1.3);
-            // Words that would touch those before are left out.
-            if free.is_none_or(|place| distance(place, far) > 2.9 * self.text) {
-                let anchor = if across[0].abs() < 0.5 { "middle" } else if across[0] > 0.0 { "start" } else { "end" };
-                let below = if across[1] < -0.5 { -3.0 } else { 0.35 * self.text };
-                sketch.name([far[0] + 3.0 * across[0], far[1] + below], &format!("{share:.0} %"), anchor, self.text, INK);
-                free = Some(far);
-            }
+            let anchor = if across[0].abs() < 0.5 { "middle" } else if across[0] > 0.0 { "start" } else { "end" };
+            let height = match across[1] {
+                up if up < -0.5 => -3.0,
+                down if down > 0.5 => 0.95 * self.text,
+                _ => 0.35 * self.text,
+            };
+            sketch.name([far[0] + 3.0 * across[0], far[1] + height], &format!("{share:.0} %"), anchor, self.text, INK);
         }
     }
 
@@ -354,11 +384,12 @@ impl Drawing<'_> {
 
     /// A frame with the cracks and their ways, enlarged.
     fn detail(&self, sketch: &mut Sketch, [low, high]: [Point; 2], size: Size) {
-        let place = [0.47 * size.width, 24.0];
-        let frame = [0.53 * size.width - 8.0, size.height - 24.0 - BELOW - 10.0];
+        let whole = [0.53 * size.width - 8.0, size.height - 24.0 - BELOW - 10.0];
         let room = 0.22 * (high[0] - low[0]).max(high[1] - low[1]).max(1e-6);
         let spans = [high[0] - low[0] + 2.0 * room, high[1] - low[1] + 2.0 * room];
-        let scale = (frame[0] / spans[0]).min(frame[1] / spans[1]);
+        let scale = (whole[0] / spans[0]).min(whole[1] / spans[1]);
+        let frame = [whole[0], (spans[1] * scale).max(0.55 * whole[0]).min(whole[1])];
+        let place = [0.47 * size.width, 24.0 + 0.5 * (whole[1] - frame[1])];
         let middle = along(low, high, 0.5);
         let mut inner = Sketch::new(scale, [0.5 * frame[0] - middle[0] * scale, 0.5 * frame[1] + middle[1] * scale]);
         self.body(&mut inner);
