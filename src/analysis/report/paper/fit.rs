@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::numbers::{fixed, power, short, whole};
-use super::{CHART, Signed, figure, hashes, letter, mark, quoted, recorded, signatures, terms};
+use super::{CHART, Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
 use crate::report::chart::Size;
 use crate::report::pictures::fit::{FitTables, RateFitted, Reading, law_svg};
 use crate::report::pictures::plate::{Plate, plate_svg};
@@ -63,7 +63,7 @@ fn answer(fit: &Value) -> String {
     format!(
         "<div class=\"answer\"><div><h2>Growth rate at ΔK = {} MPa√m</h2><p class=\"big\">{} <small>mm/cycle</small></p>\
          <p>± {} % (one standard error)</p></div><div><h2>Exponent m</h2><p class=\"big\">{}</p><p>± {}; C = {} mm/cycle at 1 MPa√m</p></div>\
-         <div><h2>Valid for ΔK</h2><p class=\"big\">{} to {} <small>MPa√m</small></p><p>R = {ratio}</p></div></div>\n",
+         <div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p><p>MPa√m, R = {ratio}</p></div></div>\n",
         fixed(number("pivot_delta_k_mpa_sqrt_m"), 2),
         power(number("rate_at_pivot_mm_per_cycle"), 4),
         fixed(100.0 * number("rate_at_pivot_relative_error"), 1),
@@ -77,7 +77,7 @@ fn answer(fit: &Value) -> String {
 
 fn criteria(fit: &Value) -> String {
     let row = |criterion: &Value| {
-        let text = |key: &str| quoted(criterion[key].as_str().unwrap_or("")).replace("P_max", "P<sub>max</sub>").replace("K_max", "K<sub>max</sub>").replace("σ_YS", "σ<sub>YS</sub>");
+        let text = |key: &str| prose(criterion[key].as_str().unwrap_or(""));
         let holds = match criterion["holds"].as_bool() {
             Some(true) => Some(true),
             // What does not hold of a test is a remark: the reader judges what it does to the law.
@@ -240,8 +240,8 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
     let ratios: Vec<String> = fit["stress_ratios"].as_array().into_iter().flatten().filter_map(Value::as_f64).map(short).collect();
     page += &format!(
         "<div class=\"answer\"><div><h2>Law</h2><p class=\"big\">{}</p><p>fitted to {} rates</p></div><div><h2>Scatter of ln(da/dN)</h2>\
-         <p class=\"big\">{}</p><p>root mean square</p></div><div><h2>Valid for ΔK</h2><p class=\"big\">{} to {} <small>MPa√m</small></p>\
-         <p>R = {}</p></div></div>\n",
+         <p class=\"big\">{}</p><p>root mean square</p></div><div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p>\
+         <p>MPa√m, R = {}</p></div></div>\n",
         quoted(law),
         whole(number("rates")),
         fixed(number("rms_log_rate"), 3),

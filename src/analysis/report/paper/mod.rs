@@ -63,6 +63,13 @@ fn quoted(text: &str) -> String {
     escaped(text).replace('"', "&quot;")
 }
 
+/// Text with the indices of its symbols lowered, as markup.
+fn prose(text: &str) -> String {
+    const INDICES: [(&str, &str); 6] =
+        [("K_max", "K<sub>max</sub>"), ("P_max", "P<sub>max</sub>"), ("σ_YS", "σ<sub>YS</sub>"), ("σ_Y ", "σ<sub>Y</sub> "), ("K_c ", "K<sub>c</sub> "), ("K_II", "K<sub>II</sub>")];
+    INDICES.iter().fold(quoted(text), |text, (plain, lowered)| text.replace(plain, lowered))
+}
+
 /// Laboratory, name of the report, dates.
 fn letter(signed: &Signed, name: &str, finished: Option<&str>) -> String {
     let [laboratory, date, finished] = [signed.laboratory.as_deref(), signed.date.as_deref(), finished].map(recorded);

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::numbers::{by_band, fixed, power, short, whole};
-use super::{CHART, Signed, figure, hashes, letter, mark, quoted, recorded, signatures, terms};
+use super::{Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
 use crate::report::chart::Size;
 use crate::report::pictures::curves::{a_n_svg, end_words, k_svg};
 use crate::report::pictures::plate::{Plate, plate_svg};
@@ -14,7 +14,9 @@ const CHECKS_MOST: usize = 5;
 /// Files whose hashes are printed, at the most.
 const HASHES_MOST: usize = 5;
 /// Size of the plate, px.
-const PLATE: Size = Size { width: 690.0, height: 250.0, text: 11.0 };
+const PLATE: Size = Size { width: 365.0, height: 290.0, text: 10.5 };
+/// Size of the charts beside it, px.
+const CHART: Size = Size { width: 315.0, height: 140.0, text: 10.0 };
 /// Reasons to end at which a run was cut off by its model, not by the plate or by what was asked for.
 const CUT_OFF: [&str; 4] = ["ligament_unresolved", "left_refinement", "no_growth", "no_convergence"];
 
@@ -127,9 +129,9 @@ fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String 
         Some(plate) => figure(
             &plate_svg(plate, tables, PLATE),
             "Figure 1. Plate to scale, load, first crack (black) and its way, coloured by cycles; marks at 25, 50, 75 and 90 % of the life.",
-            "wide",
+            "tall",
         ),
-        None => format!("<p class=\"wide\">Figure 1, the plate: {}</p>", recorded(None)),
+        None => format!("<p class=\"tall\">Figure 1, the plate: {}</p>", recorded(None)),
     };
     figures += &figure(&a_n_svg(result, tables, CHART), &format!("Figure 2. Crack length over cycles{band}."), "");
     let k = "Figure 3. K at maximum load over crack length; hatched: outside the ΔK of the law.";
@@ -137,16 +139,16 @@ fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String 
         Some(svg) => figure(&svg, k, ""),
         None => format!("<p>Figure 3, K over crack length: {}; bonds drive the crack by their own strain.</p>", recorded(None)),
     };
-    format!("<div class=\"figs\">\n{figures}</div>\n")
+    format!("<div class=\"figs run\">\n{figures}</div>\n")
 }
 
 /// The case as it was understood.
 fn understood(result: &Value, plate: Option<&Plate>) -> Vec<(&'static str, String)> {
     let text = |value: Option<&str>| recorded(value);
-    let lengths = ["crack_length_initial_mm", "crack_length_final_mm"].map(|key| result[key].as_f64().map_or("–".to_owned(), short));
+    let lengths = ["crack_length_initial_mm", "crack_length_final_mm"].map(|key| result[key].as_f64().map_or("–".to_owned(), |length| short((100.0 * length).round() / 100.0)));
     let mut rows = vec![
         ("Specimen", text(plate.map(|plate| &*plate.specimen))),
-        ("Material", text(plate.map(|plate| &*plate.material))),
+        ("Material", plate.map_or_else(|| recorded(None), |plate| prose(&plate.material))),
         ("Load", text(plate.map(|plate| &*plate.load))),
         ("Crack length", format!("{} mm to {} mm", lengths[0], lengths[1])),
         ("Computed on", model(result)),
@@ -225,7 +227,7 @@ fn checks(result: &Value) -> String {
         format!(
             "<tr><td>{} {}</td><td>{}</td><td>{}</td></tr>\n",
             mark(holds),
-            quoted(check["words"].as_str().unwrap_or("")),
+            prose(check["words"].as_str().unwrap_or("")),
             effect(check),
             quoted(check["remedy"].as_str().unwrap_or(""))
         )
@@ -239,7 +241,7 @@ fn checks(result: &Value) -> String {
         rows += &format!("<tr><td colspan=\"3\">{} holds: {}</td></tr>\n", mark(Some(true)), names.join(", "));
     }
     format!(
-        "<h2>Is it valid?</h2>\n<div class=\"scroll\"><table><thead><tr><th>What the life rests on</th><th>Effect on life</th><th>What to do</th></tr></thead><tbody>\n\
+        "<h2>Is it valid?</h2>\n<div class=\"scroll\"><table class=\"checks\"><thead><tr><th>What the life rests on</th><th>Effect on life</th><th>What to do</th></tr></thead><tbody>\n\
          {rows}</tbody></table></div>\n"
     )
 }

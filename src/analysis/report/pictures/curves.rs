@@ -71,7 +71,7 @@ pub fn smooth(cycles: &[f64], lengths: &[f64]) -> Vec<Point> {
 }
 
 fn parts(pixels: f64, each: f64) -> f64 {
-    (pixels / each).clamp(2.0, 7.0)
+    (pixels / each).clamp(2.0, 6.0)
 }
 
 /// Crack length over cycles: band of the specimens where there is one, curve, and a cross at the end with the reason.
@@ -82,8 +82,8 @@ pub fn a_n_svg(result: &Value, tables: &RunTables, size: Size) -> String {
     let all_cycles = cycles.iter().copied().chain(ends).chain([0.0]);
     let all_lengths: Vec<f64> = curves.iter().flat_map(|(_, lengths, _)| lengths.iter().copied()).collect();
     let axes = [
-        Axis::linear_in(all_cycles, parts(size.width, 130.0)),
-        Axis::linear_in(all_lengths.into_iter(), parts(size.height, 60.0)),
+        Axis::linear_in(all_cycles, parts(size.width, 95.0)),
+        Axis::linear_in(all_lengths.into_iter(), parts(size.height, 45.0)),
     ];
     let is_by_tip = curves.len() > 1;
     let names = ["Cycles N", if is_by_tip { "Growth of each tip, mm" } else { "Crack length a, mm" }];
@@ -127,8 +127,8 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
         return None;
     }
     let axes = [
-        Axis::linear_in(all.iter().map(|point| point[0]), parts(size.width, 130.0)),
-        Axis::linear_in(all.iter().map(|point| point[1]).chain([0.0]), parts(size.height, 60.0)),
+        Axis::linear_in(all.iter().map(|point| point[0]), parts(size.width, 95.0)),
+        Axis::linear_in(all.iter().map(|point| point[1]).chain([0.0]), parts(size.height, 45.0)),
     ];
     let names = [if is_by_tip { "Growth of the tip, mm" } else { "Crack length a, mm" }, "K at maximum load, MPa√m"];
     let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 9 } else { 4 });

@@ -213,7 +213,9 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     let largest = |[low, high]: [Point; 2]| (high[0] - low[0]).max(high[1] - low[1]);
     let is_small = largest(of_cracks) < SMALL * largest([low, high]);
     let width = if is_small { 0.45 * size.width } else { size.width };
-    let room = [width - 2.0 * AROUND, size.height - 2.0 * AROUND - BELOW];
+    // Beside the plate there is room for loads only where some act there.
+    let beside = if plate.loads.iter().any(|load| load.direction[0].abs() > 0.5) { AROUND } else { 14.0 };
+    let room = [width - 2.0 * beside, size.height - 2.0 * AROUND - BELOW];
     let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
     let middle = along(low, high, 0.5);
     let origin = [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale];
@@ -222,11 +224,13 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     drawing.body(&mut sketch);
     drawing.loads(&mut sketch);
     drawing.cracks(&mut sketch, !is_small);
-    scale_bar(&mut sketch, [AROUND, size.height - 8.0], high[0] - low[0], size.text);
+    scale_bar(&mut sketch, [14.0, size.height - 8.0], high[0] - low[0], size.text);
     if is_small {
         drawing.detail(&mut sketch, of_cracks, size);
     }
-    ramp(&mut sketch, size);
+    if !ways.is_empty() {
+        ramp(&mut sketch, size);
+    }
     let sentence = format!("Plate, {}; the ways of {} crack tips, coloured by cycles", plate.load, ways.len());
     sketch.picture([size.width, size.height], &sentence)
 }
@@ -352,7 +356,10 @@ impl Drawing<'_> {
                 is_named = true;
                 let middle = along(from, to, 0.5);
                 let place = [middle[0] + (start + 22.0) * way[0], middle[1] + (start + 22.0) * way[1] - 3.0];
-                let (place, anchor) = if is_pin { ([middle[0] + 12.0, place[1] + 14.0], "start") } else { (place, "middle") };
+                let (place, anchor) = if is_pin { ([middle[0] + 12.0, place[1] + 14.0], "start") } else {
+                    // Words wider than the plate stay within the picture.
+                    ([place[0].max(4.0 + 0.27 * self.text * self.plate.load.chars().count() as f64), place[1]], "middle")
+                };
                 sketch.name(place, &self.plate.load, anchor, self.text, INK);
             }
         }
