@@ -65,7 +65,9 @@ fn a_calibration_with_a_prediction_and_its_export() {
     for file in ["fitted.toml", "fit.json", "fit_curves.csv", "rates.csv", "fit.svg", "da_dn.svg", "readings.csv", ".perilife"] {
         assert!(fs::metadata(fit.join(file)).unwrap().len() > 0, "{file}");
     }
-    for file in ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "plate.svg", "k.svg", "factors.csv", "beta.txt"] {
+    for file in
+        ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "plate.svg", "k.svg", "factors.csv", "beta.txt"]
+    {
         assert!(fs::metadata(fit.join("panel").join(file)).unwrap().len() > 0, "{file}");
     }
     assert_eq!(fs::read_dir(dir.path().join("out")).unwrap().count(), 1, "nothing but the fit stands there");

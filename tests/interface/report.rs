@@ -36,7 +36,13 @@ fn readings() -> String {
             let length = 8.2 + 0.8 * f64::from(step) - if step == 20 { 0.7 } else { 0.0 };
             text += &format!("{name},{:.0},{length:.2}\n", share * cycles);
             let k = 48.28 * (std::f64::consts::PI * length / 1e3 / (std::f64::consts::PI * length / 152.4).cos()).sqrt();
-            let to_next = if step == 19 { 0.1 } else if step == 20 { 1.5 } else { 0.8 };
+            let to_next = if step == 19 {
+                0.1
+            } else if step == 20 {
+                1.5
+            } else {
+                0.8
+            };
             cycles += to_next / (8.95422e-8 * k.powf(2.874));
         }
     }
@@ -78,7 +84,8 @@ fn assert_alone(page: &str) {
 #[test]
 fn a_run_has_a_page_with_life_validity_and_hashes() {
     let dir = folders();
-    let page = report(dir.path(), "run", &["--laboratory", "Lab <1> & \"Co\"", "--operator", "A. Tester", "--date", "26 Nov 2026"]);
+    let page =
+        report(dir.path(), "run", &["--laboratory", "Lab <1> & \"Co\"", "--operator", "A. Tester", "--date", "26 Nov 2026"]);
     assert_alone(&page);
     let result: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
     let hash = result["inputs"][0]["sha256"].as_str().unwrap();
@@ -153,8 +160,10 @@ fn what_cannot_be_reported_is_refused_with_words() {
     fs::create_dir(here.join("empty")).unwrap();
     fs::write(here.join("notes.html"), "my notes").unwrap();
     let (result, fit) = ("run/result.json", "fit/fit.json");
-    let kept: Vec<(&str, Vec<u8>)> =
-        [result, fit, "run/a_n.csv", "fit/readings.csv"].into_iter().map(|file| (file, fs::read(here.join(file)).unwrap())).collect();
+    let kept: Vec<(&str, Vec<u8>)> = [result, fit, "run/a_n.csv", "fit/readings.csv"]
+        .into_iter()
+        .map(|file| (file, fs::read(here.join(file)).unwrap()))
+        .collect();
     let text = |file: &str| String::from_utf8(kept.iter().find(|(name, _)| *name == file).unwrap().1.clone()).unwrap();
     let with = |file: &str, key: &str, value: Value| {
         let mut object: Value = serde_json::from_str(&text(file)).unwrap();
@@ -199,7 +208,11 @@ fn what_cannot_be_reported_is_refused_with_words() {
     // A result without hashes, as of an earlier version, whose table is broken: by file, line, column and value.
     fs::write(here.join(result), with(result, "tables", Value::Null).unwrap()).unwrap();
     fs::write(here.join("run/a_n.csv"), text("run/a_n.csv").replacen(",9.000000000,", ",nine,", 1)).unwrap();
-    assert_refused(&perilife(here, &["report", "run", "--out", "bad.html"]), 2, &["run/a_n.csv:2", "crack_length_mm", "\"nine\""]);
+    assert_refused(
+        &perilife(here, &["report", "run", "--out", "bad.html"]),
+        2,
+        &["run/a_n.csv:2", "crack_length_mm", "\"nine\""],
+    );
     fs::write(here.join(result), text(result)).unwrap();
     fs::write(here.join("run/a_n.csv"), text("run/a_n.csv")).unwrap();
 
@@ -221,5 +234,9 @@ fn a_fracture_scene_has_no_life_to_report() {
     let dir = tempdir().unwrap();
     fs::create_dir(dir.path().join("scene")).unwrap();
     fs::write(dir.path().join("scene/result.json"), "{\"peak_load_n\": 3.0, \"stop_reason\": \"steps_done\"}").unwrap();
-    assert_refused(&perilife(dir.path(), &["report", "scene", "--out", "r.html"]), 2, &["scene", "fracture scene", "perilife predict"]);
+    assert_refused(
+        &perilife(dir.path(), &["report", "scene", "--out", "r.html"]),
+        2,
+        &["scene", "fracture scene", "perilife predict"],
+    );
 }

@@ -142,7 +142,20 @@ impl CalibrationCase {
         warnings.extend(case.warnings.iter().cloned());
         case.provenance = folder.opened().so_far();
         let left_out = keys.leave_out;
-        Ok(CalibrationCase { case, curves, read, window: window_ends, yield_strength, exponent, criterion, sources, left_out, warnings, input, formula })
+        Ok(CalibrationCase {
+            case,
+            curves,
+            read,
+            window: window_ends,
+            yield_strength,
+            exponent,
+            criterion,
+            sources,
+            left_out,
+            warnings,
+            input,
+            formula,
+        })
     }
 
     /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.

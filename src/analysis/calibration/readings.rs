@@ -53,10 +53,8 @@ fn of_curve(text: &mut String, read: &MeasuredCurve, calibration: &CalibrationCa
             None => "",
         };
         let known = |value: f64, words: String| if value.is_finite() { words } else { String::new() };
-        let [delta_k, rate] = [
-            known(delta_k, format!("{:.10}", delta_k / MPA_SQRT_M)),
-            known(rate, format!("{:.10e}", rate / MM_PER_CYCLE)),
-        ];
+        let [delta_k, rate] =
+            [known(delta_k, format!("{:.10}", delta_k / MPA_SQRT_M)), known(rate, format!("{:.10e}", rate / MM_PER_CYCLE))];
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,

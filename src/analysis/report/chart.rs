@@ -132,8 +132,8 @@ pub struct Frame {
     /// Left, top, right and bottom of the plot, px.
     room: [f64; 4],
     size: Size,
-    /// Heights at which names stand beside the plot.
-    named: Vec<f64>,
+    /// Places at which names stand beside curves.
+    named: Vec<Point>,
 }
 
 /// Width of words, px, about.
@@ -312,10 +312,10 @@ impl Frame {
     pub fn name(&mut self, point: Point, words: &str, colour: &str) {
         let text = self.size.text;
         for [x, mut y] in self.pixels(&[point]) {
-            while self.named.iter().any(|other| (other - y).abs() < 1.05 * text) {
+            while self.named.iter().any(|other| (other[1] - y).abs() < 1.05 * text && (other[0] - x).abs() < 5.0 * text) {
                 y += 0.3 * text;
             }
-            self.named.push(y);
+            self.named.push([x, y]);
             self.sketch.name([x + 6.0, y + 0.35 * text], words, "start", text, colour);
         }
     }

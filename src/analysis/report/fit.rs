@@ -7,7 +7,9 @@ use serde_json::{Value, json};
 
 use super::chart::LARGE;
 use super::output::write_file;
-use super::pictures::fit::{BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, law_svg, rates_fitted};
+use super::pictures::fit::{
+    BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, law_svg, rates_fitted,
+};
 use super::pictures::plate::Plate;
 use super::{provenance, test_record};
 use crate::calibration::calibrate::Fitted;

@@ -200,7 +200,8 @@ pub fn room(case: &Case) -> Room {
     Room { tables, all: tables + Budget::of(case).disk_bytes as u64 }
 }
 
-/// The pictures of a run: plate, crack length, K and rates; damage where bonds that break drive the cracks; nodes and stress of a plate of nodes.
+/// The pictures of a run: plate, crack length, K and rates; damage where bonds drive the cracks by their own strain; nodes and stress of a
+/// plate of nodes.
 fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_n, path]: [&str; 2]) -> Result<()> {
     let tables = RunTables::read([a_n, csv::A_N_FILE], [path, CRACK_PATH_FILE])?;
     let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
@@ -213,13 +214,12 @@ fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_
         .into_iter()
         .map(|path| path.into_iter().map(|(_, position)| position).collect())
         .collect();
+    put("plate.svg", &plate_svg(&Plate::of(case), &tables, plate::SIZE))?;
     let is_by_bonds = case.spends_bond_life();
-    if !is_by_bonds {
-        put("plate.svg", &plate_svg(&Plate::of(case), &tables, plate::SIZE))?;
-    }
     if let Some(snapshot) = prediction.snapshots.last().filter(|snapshot| is_by_bonds || !snapshot.stress.is_empty()) {
         let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
-        let (field, file) = if is_by_bonds { (PointField::Damage, "damage.png") } else { (PointField::VonMises, "von_mises.png") };
+        let (field, file) =
+            if is_by_bonds { (PointField::Damage, "damage.png") } else { (PointField::VonMises, "von_mises.png") };
         DamagePicture { grid: &prediction.grid, snapshot, field, cracks, paths: &paths, caption: &caption }
             .write(&folder.join(file))?;
     }

@@ -81,7 +81,13 @@ fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) ->
         _ => "W − a ≥ (4/π) (K_max/σ_YS)²",
     };
     let Some(ligament) = specimen.ligament(longest) else {
-        return criterion(NAME, rule.to_owned(), "not known".to_owned(), None, "cannot be judged: no standard specimen".to_owned());
+        return criterion(
+            NAME,
+            rule.to_owned(),
+            "not known".to_owned(),
+            None,
+            "cannot be judged: no standard specimen".to_owned(),
+        );
     };
     let found = format!("{:.1} mm", ligament / MM);
     let Some(strength) = calibration.yield_strength else {
@@ -95,16 +101,20 @@ fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) ->
 }
 
 fn steps(curves: &[MeasuredCurve]) -> Value {
-    let of_curve = |curve: &MeasuredCurve| curve.crack_length.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect::<Vec<f64>>();
+    let of_curve =
+        |curve: &MeasuredCurve| curve.crack_length.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect::<Vec<f64>>();
     let steps: Vec<f64> = curves.iter().flat_map(of_curve).collect();
     let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
     let short = steps.iter().filter(|step| **step < STEP_MIN * (1.0 - 1e-6)).count();
-    let remark = if short == 0 {
-        "holds".to_owned()
-    } else {
-        format!("{short} of {} steps are shorter; kept and marked", steps.len())
-    };
-    criterion("Step between readings, least (8.6.2)", "Δa ≥ 0.25 mm".to_owned(), format!("{:.2} mm", least / MM), Some(short == 0), remark)
+    let remark =
+        if short == 0 { "holds".to_owned() } else { format!("{short} of {} steps are shorter; kept and marked", steps.len()) };
+    criterion(
+        "Step between readings, least (8.6.2)",
+        "Δa ≥ 0.25 mm".to_owned(),
+        format!("{:.2} mm", least / MM),
+        Some(short == 0),
+        remark,
+    )
 }
 
 fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Value {

@@ -83,7 +83,14 @@ fn criteria(fit: &Value) -> String {
             // What does not hold of a test is a remark: the reader judges what it does to the law.
             Some(false) | None => None,
         };
-        format!("<tr><td>{}</td><td>{}</td><td>{}</td><td>{} {}</td></tr>\n", text("name"), text("asked"), text("found"), mark(holds), text("remark"))
+        format!(
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{} {}</td></tr>\n",
+            text("name"),
+            text("asked"),
+            text("found"),
+            mark(holds),
+            text("remark")
+        )
     };
     let rows: String = fit["criteria"].as_array().into_iter().flatten().map(row).collect();
     let rows = if rows.is_empty() { format!("<tr><td colspan=\"4\">{}</td></tr>", recorded(None)) } else { rows };
@@ -97,7 +104,8 @@ fn criteria(fit: &Value) -> String {
 fn details(fit: &Value) -> String {
     let test = &fit["test"];
     let text = |key: &str| recorded(test[key].as_str());
-    let number = |key: &str, unit: &str| test[key].as_f64().map_or_else(|| recorded(None), |value| format!("{} {unit}", short(value)));
+    let number =
+        |key: &str, unit: &str| test[key].as_f64().map_or_else(|| recorded(None), |value| format!("{} {unit}", short(value)));
     let specimen = [
         ("Type", text("specimen_kind").replace('_', " ")),
         ("Material", text("material")),
@@ -109,7 +117,8 @@ fn details(fit: &Value) -> String {
         ("Specimens", test["specimens"].as_f64().map_or_else(|| recorded(None), whole)),
         ("Readings", test["readings"].as_f64().map_or_else(|| recorded(None), whole)),
     ];
-    let mut of_test = vec![("Load", text("load")), ("Largest load", text("load_max")), ("Stress ratio R", number("stress_ratio", ""))];
+    let mut of_test =
+        vec![("Load", text("load")), ("Largest load", text("load_max")), ("Stress ratio R", number("stress_ratio", ""))];
     of_test.extend(UNRECORDED.iter().map(|what| (*what, recorded(None))));
     let mut page = format!(
         "<div class=\"cols paged\"><div><h2>Specimen</h2>{}</div><div><h2>Test</h2>{}</div></div>\n",
@@ -119,10 +128,15 @@ fn details(fit: &Value) -> String {
     let plate: Option<Plate> = fit.get("plate").and_then(|plate| serde_json::from_value(plate.clone()).ok());
     let drawing = plate.map_or_else(String::new, |plate| {
         let bare = RunTables { rows: Vec::new(), tips: Vec::new(), band: None, paths: Vec::new() };
-        figure(&plate_svg(&plate, &bare, SPECIMEN), "Figure 3. The specimen to scale with its first crack, as it was computed.", "")
+        figure(
+            &plate_svg(&plate, &bare, SPECIMEN),
+            "Figure 3. The specimen to scale with its first crack, as it was computed.",
+            "",
+        )
     });
     page += &format!("<div class=\"figs\"><div>{drawing}</div><div>{}</div></div>\n", how(fit));
-    let warnings: Vec<String> = fit["warnings"].as_array().into_iter().flatten().filter_map(|one| Some(quoted(one.as_str()?))).collect();
+    let warnings: Vec<String> =
+        fit["warnings"].as_array().into_iter().flatten().filter_map(|one| Some(quoted(one.as_str()?))).collect();
     if !warnings.is_empty() {
         page += &format!("<h2>Remarks of the fit</h2>\n<ul class=\"small\"><li>{}</li></ul>\n", warnings.join("</li><li>"));
     }
@@ -189,9 +203,15 @@ fn specimens(fit: &Value) -> String {
         return String::new();
     }
     let row = |one: &Value| {
-        let [measured, fitted, rms] = ["life_measured", "life_fitted", "rms_life_error"].map(|key| one[key].as_f64().unwrap_or(f64::NAN));
+        let [measured, fitted, rms] =
+            ["life_measured", "life_fitted", "rms_life_error"].map(|key| one[key].as_f64().unwrap_or(f64::NAN));
         let name = quoted(one["name"].as_str().unwrap_or(""));
-        format!("<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n", whole(measured), whole(fitted), fixed(100.0 * rms, 2))
+        format!(
+            "<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
+            whole(measured),
+            whole(fitted),
+            fixed(100.0 * rms, 2)
+        )
     };
     format!(
         "<h2>Specimens</h2>\n<table class=\"readings\"><thead><tr><th>Specimen</th><th class=\"n\">Life measured, cycles</th>\
@@ -208,8 +228,10 @@ fn readings(readings: &[Reading]) -> String {
         let rate = reading.da_dn_mm_per_cycle.map_or("–".to_owned(), |rate| power(rate, 3));
         let by = if reading.method == "secant" { " secant" } else { "" };
         let marks = quoted(&reading.marks.replace('_', " "));
-        let left_out = if reading.left_out.is_empty() { String::new() } else { format!("left out: {}", quoted(&reading.left_out)) };
-        let remarks: Vec<String> = [marks, by.trim().to_owned(), left_out].into_iter().filter(|words| !words.is_empty()).collect();
+        let left_out =
+            if reading.left_out.is_empty() { String::new() } else { format!("left out: {}", quoted(&reading.left_out)) };
+        let remarks: Vec<String> =
+            [marks, by.trim().to_owned(), left_out].into_iter().filter(|words| !words.is_empty()).collect();
         format!(
             "<tr{out}><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{delta_k}</td><td class=\"n\">{rate}</td><td>{}</td></tr>\n",
             place + 1,
@@ -237,7 +259,8 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
     let mut page = letter(signed, &name, fit["finished"].as_str());
     page += &format!("<h1>Law of fatigue crack growth: {}</h1>\n", quoted(&name));
     let number = |key: &str| fit[key].as_f64().unwrap_or(f64::NAN);
-    let ratios: Vec<String> = fit["stress_ratios"].as_array().into_iter().flatten().filter_map(Value::as_f64).map(short).collect();
+    let ratios: Vec<String> =
+        fit["stress_ratios"].as_array().into_iter().flatten().filter_map(Value::as_f64).map(short).collect();
     page += &format!(
         "<div class=\"answer\"><div><h2>Law</h2><p class=\"big\">{}</p><p>fitted to {} rates</p></div><div><h2>Scatter of ln(da/dN)</h2>\
          <p class=\"big\">{}</p><p>root mean square</p></div><div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p>\
@@ -250,7 +273,8 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
         ratios.join(", ")
     );
     let caption = "Figure 1. Growth rate over ΔK: rates (circles), the law over its range (lines), by stress ratio.";
-    page += &format!("<div class=\"figs\">\n{}<div>{}</div></div>\n", figure(&law_svg(rates, CHART), caption, ""), constants(fit));
+    page +=
+        &format!("<div class=\"figs\">\n{}<div>{}</div></div>\n", figure(&law_svg(rates, CHART), caption, ""), constants(fit));
     page += &candidates(fit);
     page += &signatures(signed, "Tested by");
     page += "<h2>Rates as they were read</h2>\n";

@@ -66,7 +66,12 @@ impl Files<'_> {
         let result = self.object(RESULT_FILE, "perilife predict")?;
         if result["life_cycles"].is_null() && result.get("peak_load_n").is_some() {
             let problem = "holds a fracture scene, which has no life to report";
-            return Err(input("DIR", self.folder.display(), problem, "give the --out folder of `perilife predict` or `perilife calibrate`"));
+            return Err(input(
+                "DIR",
+                self.folder.display(),
+                problem,
+                "give the --out folder of `perilife predict` or `perilife calibrate`",
+            ));
         }
         let wanted: [(&str, fn(&Value) -> bool, &str); 6] = [
             ("name", Value::is_string, "text"),
@@ -92,8 +97,11 @@ impl Files<'_> {
     fn fit(&self) -> Result<Source> {
         let fit = self.object(FIT_FILE, "perilife calibrate")?;
         if fit.get("law").is_some() {
-            let wanted: [(&str, fn(&Value) -> bool, &str); 3] =
-                [("law", Value::is_string, "text"), ("constants", Value::is_object, "a table"), ("version", Value::is_string, "text")];
+            let wanted: [(&str, fn(&Value) -> bool, &str); 3] = [
+                ("law", Value::is_string, "text"),
+                ("constants", Value::is_object, "a table"),
+                ("version", Value::is_string, "text"),
+            ];
             self.check_keys(&fit, FIT_FILE, &wanted)?;
             let rates = rates_fitted(&self.table(RATES_FITTED_FILE, &fit, FIT_FILE)?).map_err(|error| self.within(error))?;
             return Ok(Source::Laws { fit, rates });

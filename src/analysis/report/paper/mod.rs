@@ -65,8 +65,14 @@ fn quoted(text: &str) -> String {
 
 /// Text with the indices of its symbols lowered, as markup.
 fn prose(text: &str) -> String {
-    const INDICES: [(&str, &str); 6] =
-        [("K_max", "K<sub>max</sub>"), ("P_max", "P<sub>max</sub>"), ("σ_YS", "σ<sub>YS</sub>"), ("σ_Y ", "σ<sub>Y</sub> "), ("K_c ", "K<sub>c</sub> "), ("K_II", "K<sub>II</sub>")];
+    const INDICES: [(&str, &str); 6] = [
+        ("K_max", "K<sub>max</sub>"),
+        ("P_max", "P<sub>max</sub>"),
+        ("σ_YS", "σ<sub>YS</sub>"),
+        ("σ_Y ", "σ<sub>Y</sub> "),
+        ("K_c ", "K<sub>c</sub> "),
+        ("K_II", "K<sub>II</sub>"),
+    ];
     INDICES.iter().fold(quoted(text), |text, (plain, lowered)| text.replace(plain, lowered))
 }
 
@@ -109,7 +115,9 @@ fn mark(holds: Option<bool>) -> String {
     let (class, word, drawing) = match holds {
         Some(true) => ("ok", "Holds", "<circle cx=\"9\" cy=\"9\" r=\"8\"/><path d=\"M5.2 9.2l2.6 2.7 5-5.6\"/>"),
         None => ("note", "Remark", "<path d=\"M9 1.6L17 16H1z\"/><path d=\"M9 6.5v4.4M9 12.6v1.6\"/>"),
-        Some(false) => ("bad", "Does not hold", "<path d=\"M5.8 1h6.4L17 5.8v6.4L12.2 17H5.8L1 12.2V5.8z\"/><path d=\"M6 6l6 6m0-6l-6 6\"/>"),
+        Some(false) => {
+            ("bad", "Does not hold", "<path d=\"M5.8 1h6.4L17 5.8v6.4L12.2 17H5.8L1 12.2V5.8z\"/><path d=\"M6 6l6 6m0-6l-6 6\"/>")
+        }
     };
     format!(
         "<svg class=\"mark {class}\" viewBox=\"0 0 18 18\" aria-hidden=\"true\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.6\">\

@@ -13,10 +13,12 @@ use crate::report::pictures::tables::RunTables;
 const CHECKS_MOST: usize = 5;
 /// Files whose hashes are printed, at the most.
 const HASHES_MOST: usize = 5;
+/// Constants of a law that are printed, at the most.
+const CONSTANTS_MOST: usize = 8;
 /// Size of the plate, px.
-const PLATE: Size = Size { width: 365.0, height: 290.0, text: 10.5 };
+const PLATE: Size = Size { width: 365.0, height: 262.0, text: 10.5 };
 /// Size of the charts beside it, px.
-const CHART: Size = Size { width: 315.0, height: 140.0, text: 10.0 };
+const CHART: Size = Size { width: 315.0, height: 130.0, text: 10.0 };
 /// Reasons to end at which a run was cut off by its model, not by the plate or by what was asked for.
 const CUT_OFF: [&str; 4] = ["ligament_unresolved", "left_refinement", "no_growth", "no_convergence"];
 
@@ -37,7 +39,9 @@ pub fn body(result: &Value, tables: &RunTables, signed: &Signed) -> (String, Str
     );
     page += &checks(result);
     page += &signatures(signed, "Computed by");
-    let commit = result["commit"].as_str().map_or_else(String::new, |commit| format!(", commit {}", quoted(commit)));
+    let commit = result["commit"]
+        .as_str()
+        .map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())));
     page += &format!(
         "<p class=\"small quiet\">perilife {}{commit}. Units: mm, MPa, MPa√m, mm/cycle. Input and law as they were read:</p>\n",
         quoted(&version)
@@ -106,12 +110,7 @@ fn life(result: &Value, reason: &str) -> String {
     let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| result["band"][key].as_f64());
     if let (Some(low), Some(middle), Some(high)) = (low, middle, high) {
         let of = |value: f64| by_band(value, low, high);
-        let below = format!(
-            "9 of 10 plates: {} to {}; the fitted constants alone give {}",
-            of(low),
-            of(high),
-            whole(life)
-        );
+        let below = format!("9 of 10 plates: {} to {}; the fitted constants alone give {}", of(low), of(high), whole(life));
         return card(&format!("{title}, median"), &cycles(of(middle)), &below);
     }
     let error = result["error_estimate_percent"].as_f64().unwrap_or(1.0) / 100.0;
@@ -134,9 +133,11 @@ fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String 
         None => format!("<p class=\"tall\">Figure 1, the plate: {}</p>", recorded(None)),
     };
     figures += &figure(&a_n_svg(result, tables, CHART), &format!("Figure 2. Crack length over cycles{band}."), "");
-    let k = "Figure 3. K at maximum load over crack length; hatched: outside the ΔK of the law.";
     figures += &match k_svg(result, tables, CHART) {
-        Some(svg) => figure(&svg, k, ""),
+        Some(svg) => {
+            let hatched = if svg.contains("of the law") { "; hatched: outside the ΔK of the law" } else { "" };
+            figure(&svg, &format!("Figure 3. K at maximum load over crack length{hatched}."), "")
+        }
         None => format!("<p>Figure 3, K over crack length: {}; bonds drive the crack by their own strain.</p>", recorded(None)),
     };
     format!("<div class=\"figs run\">\n{figures}</div>\n")
@@ -145,7 +146,8 @@ fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String 
 /// The case as it was understood.
 fn understood(result: &Value, plate: Option<&Plate>) -> Vec<(&'static str, String)> {
     let text = |value: Option<&str>| recorded(value);
-    let lengths = ["crack_length_initial_mm", "crack_length_final_mm"].map(|key| result[key].as_f64().map_or("–".to_owned(), |length| short((100.0 * length).round() / 100.0)));
+    let lengths = ["crack_length_initial_mm", "crack_length_final_mm"]
+        .map(|key| result[key].as_f64().map_or("–".to_owned(), |length| short((100.0 * length).round() / 100.0)));
     let mut rows = vec![
         ("Specimen", text(plate.map(|plate| &*plate.specimen))),
         ("Material", plate.map_or_else(|| recorded(None), |plate| prose(&plate.material))),
@@ -177,38 +179,54 @@ fn law(result: &Value) -> Vec<(&'static str, String)> {
     let number = |key: &str| law[key].as_f64().or_else(|| law["record"][key].as_f64());
     let mut rows = Vec::new();
     if let (Some(rate), Some(pivot)) = (number("rate_at_pivot_mm_per_cycle"), number("pivot_delta_k_mpa_sqrt_m")) {
-        let error = number("rate_at_pivot_relative_error").map_or_else(String::new, |error| format!(" ± {} %", fixed(100.0 * error, 1)));
+        let error =
+            number("rate_at_pivot_relative_error").map_or_else(String::new, |error| format!(" ± {} %", fixed(100.0 * error, 1)));
         rows.push(("Growth rate", format!("{} mm/cycle{error} at ΔK {} MPa√m", power(rate, 3), fixed(pivot, 1))));
     }
     if let Some(c) = number("paris_c_used_mm_per_cycle").or(number("paris_c_mm_per_cycle")) {
         rows.push(("C as used", format!("{} mm/cycle at 1 MPa√m", power(c, 4))));
     }
     if let Some(m) = number("paris_m").or(number("p")) {
-        let error = number("paris_m_error").filter(|error| *error > 0.0).map_or_else(String::new, |error| format!(" ± {}", fixed(error, 2)));
+        let error = number("paris_m_error")
+            .filter(|error| *error > 0.0)
+            .map_or_else(String::new, |error| format!(" ± {}", fixed(error, 2)));
         rows.push(("Exponent m", format!("{}{error}", fixed(m, 3))));
     }
     let constants = law["constants_si"].as_object().or_else(|| law["record"]["fatigue"].as_object());
-    for (key, value) in constants.into_iter().flatten().take(8) {
-        let value = value.as_f64().map_or_else(|| quoted(&value.to_string()), |value| power(value, 4));
+    for (key, value) in constants.into_iter().flatten().take(CONSTANTS_MOST) {
+        let value = match value {
+            Value::Number(number) => power(number.as_f64().unwrap_or(f64::NAN), 4),
+            Value::String(text) => quoted(text),
+            Value::Array(rows) => format!("{} tables", rows.len()),
+            _ => continue,
+        };
         rows.push(("Constant", format!("{} {value}", quoted(key))));
     }
     let range = (number("delta_k_min_mpa_sqrt_m"), number("delta_k_max_mpa_sqrt_m"));
-    rows.push(("Calibrated", match range {
-        (Some(low), Some(high)) => format!("ΔK {} to {} MPa√m", fixed(low, 1), fixed(high, 1)),
-        _ => recorded(None),
-    }));
+    rows.push((
+        "Calibrated",
+        match range {
+            (Some(low), Some(high)) => format!("ΔK {} to {} MPa√m", fixed(low, 1), fixed(high, 1)),
+            _ => recorded(None),
+        },
+    ));
     let band = &result["band"];
     let specimens = band["specimens"].as_u64().map(|count| {
         let assumed = if band["assumed_scatter"] == true { ", scatter assumed" } else { "" };
         format!("{count} specimen{}{assumed}", if count == 1 { "" } else { "s" })
     });
-    rows.push(("From", match law["source"].as_str() {
-        Some("fitted") => specimens.unwrap_or_else(|| "a fit; number of specimens not recorded".to_owned()),
-        Some("inline") => "constants given in the case".to_owned(),
-        other => recorded(other),
-    }));
+    rows.push((
+        "From",
+        match law["source"].as_str() {
+            Some("fitted") => specimens.unwrap_or_else(|| "a fit; number of specimens not recorded".to_owned()),
+            Some("inline") => "constants given in the case".to_owned(),
+            other => recorded(other),
+        },
+    ));
     let inspection = &result["inspection"];
-    if let (Some(interval), Some(length)) = (inspection["inspection_interval_cycles"].as_f64(), inspection["crack_length_mm"].as_f64()) {
+    if let (Some(interval), Some(length)) =
+        (inspection["inspection_interval_cycles"].as_f64(), inspection["crack_length_mm"].as_f64())
+    {
         let digits = 10f64.powf(interval.max(1.0).log10().floor() - 2.0).max(1.0);
         let interval = whole((interval / digits).floor() * digits);
         rows.push(("Inspect every", format!("{interval} cycles, from a crack of {} mm", short(length))));
@@ -236,21 +254,26 @@ fn checks(result: &Value) -> String {
     if open.len() > CHECKS_MOST {
         rows += &format!("<tr><td colspan=\"3\">and {} more in result.json</td></tr>\n", open.len() - CHECKS_MOST);
     }
-    let names: Vec<String> = all.iter().filter(|check| !is_open(check)).filter_map(|check| check["name"].as_str()).map(|name| quoted(&name.replace('_', " "))).collect();
+    let names: Vec<String> = all
+        .iter()
+        .filter(|check| !is_open(check))
+        .filter_map(|check| check["name"].as_str())
+        .map(|name| quoted(&name.replace('_', " ")))
+        .collect();
     if !names.is_empty() {
         rows += &format!("<tr><td colspan=\"3\">{} holds: {}</td></tr>\n", mark(Some(true)), names.join(", "));
     }
     format!(
-        "<h2>Is it valid?</h2>\n<div class=\"scroll\"><table class=\"checks\"><thead><tr><th>What the life rests on</th><th>Effect on life</th><th>What to do</th></tr></thead><tbody>\n\
+        "<h2>Is it valid?</h2>\n<div class=\"scroll\"><table class=\"checks\"><thead><tr><th>What the life rests on</th><th>Computed life</th><th>What to do</th></tr></thead><tbody>\n\
          {rows}</tbody></table></div>\n"
     )
 }
 
 fn effect(check: &Value) -> String {
     let side = match check["side"].as_str() {
-        Some("safe") => "computed life too short",
-        Some("unsafe") => "computed life too long",
-        Some(_) => "either way",
+        Some("safe") => "too short",
+        Some("unsafe") => "too long",
+        Some(_) => "too long or too short",
         None => "",
     };
     match check["effect_percent"].as_f64() {

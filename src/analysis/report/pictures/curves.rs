@@ -40,13 +40,13 @@ fn by_tip(result: &Value, tables: &RunTables) -> bool {
     tables.tips.len() > 1 && result["tips"].as_array().is_some_and(|tips| tips.iter().any(|tip| !tip["crack"].is_null()))
 }
 
-/// One curve of a chart over cycles: its name, its length at every row, mm, and whether it ends the life.
-fn lengths(result: &Value, tables: &RunTables) -> Vec<(String, Vec<f64>, bool)> {
+/// The curves of a chart over cycles: length at every row, mm, and whether it ends the life.
+fn lengths(result: &Value, tables: &RunTables) -> Vec<(Vec<f64>, bool)> {
     if !by_tip(result, tables) {
-        return vec![(String::new(), tables.rows.iter().map(|row| row.crack_length_mm).collect(), true)];
+        return vec![(tables.rows.iter().map(|row| row.crack_length_mm).collect(), true)];
     }
     let leads = |tip: usize| result["tips"][tip]["leads"] == true;
-    let of_tip = |(tip, rows): (usize, &super::tables::TipRows)| (format!("tip {tip}"), rows.growth_mm.clone(), leads(tip));
+    let of_tip = |(tip, rows): (usize, &super::tables::TipRows)| (rows.growth_mm.clone(), leads(tip));
     tables.tips.iter().enumerate().map(of_tip).collect()
 }
 
@@ -74,21 +74,46 @@ fn parts(pixels: f64, each: f64) -> f64 {
     (pixels / each).clamp(2.0, 6.0)
 }
 
+/// Names of the tips whose curves end within a fiftieth of the chart of each other, so that both could not be told apart.
+fn tips_together(ends: &[(usize, Point)], spans: Point) -> Vec<(String, Point)> {
+    let mut groups: Vec<(Vec<usize>, Point)> = Vec::new();
+    for (tip, end) in ends {
+        let is_near = |(_, other): &&mut (Vec<usize>, Point)| (0..2).all(|i| (other[i] - end[i]).abs() < 0.02 * spans[i]);
+        match groups.iter_mut().find(is_near) {
+            Some((tips, _)) => tips.push(*tip),
+            None => groups.push((vec![*tip], *end)),
+        }
+    }
+    let name = |tips: &[usize]| match tips {
+        [tip] => format!("tip {tip}"),
+        tips => format!("tips {}", tips.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    };
+    groups.into_iter().map(|(tips, end)| (name(&tips), end)).collect()
+}
+
+/// Largest distance of points along both axes.
+fn spans(points: &[Point]) -> Point {
+    [0, 1].map(|axis| {
+        let values = || points.iter().map(|point| point[axis]);
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    })
+}
+
 /// Crack length over cycles: band of the specimens where there is one, curve, and a cross at the end with the reason.
 pub fn a_n_svg(result: &Value, tables: &RunTables, size: Size) -> String {
     let curves = lengths(result, tables);
     let cycles: Vec<f64> = tables.rows.iter().map(|row| row.cycles).collect();
     let ends = tables.band.iter().flatten().flatten().copied();
     let all_cycles = cycles.iter().copied().chain(ends).chain([0.0]);
-    let all_lengths: Vec<f64> = curves.iter().flat_map(|(_, lengths, _)| lengths.iter().copied()).collect();
+    let all_lengths: Vec<f64> = curves.iter().flat_map(|(lengths, _)| lengths.iter().copied()).collect();
     let axes = [
         Axis::linear_in(all_cycles, parts(size.width, 95.0)),
         Axis::linear_in(all_lengths.into_iter(), parts(size.height, 45.0)),
     ];
     let is_by_tip = curves.len() > 1;
     let names = ["Cycles N", if is_by_tip { "Growth of each tip, mm" } else { "Crack length a, mm" }];
-    let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 6 } else { 0 });
-    for (_, lengths, leads) in &curves {
+    let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 9 } else { 0 });
+    for (lengths, leads) in &curves {
         if let Some(band) = tables.band.as_ref().filter(|_| *leads) {
             let of = |end: usize| smooth(&band.iter().map(|ends| ends[end]).collect::<Vec<_>>(), lengths);
             frame.band(&of(0), &of(1), BAND);
@@ -97,16 +122,23 @@ pub fn a_n_svg(result: &Value, tables: &RunTables, size: Size) -> String {
     if let Some(from) = result["plastic_zone"]["too_large_from_mm"].as_f64().filter(|_| !is_by_tip) {
         frame.limit(from, "small-scale yielding ends");
     }
-    for (_, lengths, _) in &curves {
+    for (lengths, _) in &curves {
         frame.line(&smooth(&cycles, lengths), COMPUTED, 2.0, "");
     }
     let [why, sentence] = end_words(result["stop_reason"].as_str().unwrap_or(""));
-    for (name, lengths, leads) in &curves {
+    let mut ends = Vec::new();
+    let mut is_ended = false;
+    for (tip, (lengths, leads)) in curves.iter().enumerate() {
         let last = [tables.life(), lengths.last().copied().unwrap_or(f64::NAN)];
-        if *leads {
+        if *leads && !is_ended {
             frame.end(last, why);
+            is_ended = true;
         }
-        frame.name(last, name, COMPUTED);
+        ends.push((tip, last));
+    }
+    if is_by_tip {
+        let all: Vec<Point> = ends.iter().map(|(_, end)| *end).chain([[0.0; 2]]).collect();
+        tips_together(&ends, spans(&all)).iter().for_each(|(name, end)| frame.name(*end, name, COMPUTED));
     }
     frame.finish(&format!("{} over cycles to {:.0}; it ends because {sentence}", names[1], tables.life()))
 }
@@ -131,7 +163,7 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
         Axis::linear_in(all.iter().map(|point| point[1]).chain([0.0]), parts(size.height, 45.0)),
     ];
     let names = [if is_by_tip { "Growth of the tip, mm" } else { "Crack length a, mm" }, "K at maximum load, MPa√m"];
-    let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 9 } else { 4 });
+    let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 13 } else { 4 });
     if let Some([low, high]) = calibrated(result) {
         frame.unknown(high, true, "above the ΔK of the law");
         if tips.iter().any(|tip| points(*tip, 0).iter().any(|point| point[1] < low)) {
@@ -142,11 +174,11 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
         tips.iter().for_each(|tip| frame.pieces(&points(*tip, mode), colour, 2.0, dash));
     }
     for (mode, name, colour) in [(0, "K_I", COMPUTED), (1, "K_II", SECOND)] {
-        for tip in &tips {
-            let name = if is_by_tip { format!("{name} tip {tip}") } else { name.to_owned() };
-            if let Some(last) = points(*tip, mode).into_iter().rfind(known) {
-                frame.name(last, &name, colour);
-            }
+        let last = |tip: &usize| Some((*tip, points(*tip, mode).into_iter().rfind(known)?));
+        let ends: Vec<(usize, Point)> = tips.iter().filter_map(last).collect();
+        for (of_tips, end) in tips_together(&ends, spans(&all)) {
+            let words = if is_by_tip { format!("{name} {of_tips}") } else { name.to_owned() };
+            frame.name(end, &words, colour);
         }
     }
     Some(frame.finish(&format!("{} over {}", names[1], names[0])))
@@ -161,4 +193,3 @@ fn calibrated(result: &Value) -> Option<[f64; 2]> {
     let share = 1.0 - ratio.max(0.0);
     Some([limit("delta_k_min_mpa_sqrt_m")? / share, limit("delta_k_max_mpa_sqrt_m")? / share])
 }
-

@@ -1,5 +1,7 @@
 //! `plate.svg`: the plate to scale with its loads, the first crack and the way of every tip, coloured by cycles.
 
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 
 use super::tables::RunTables;
@@ -110,11 +112,14 @@ fn specimen_words(case: &Case) -> String {
 
 fn material_words(case: &Case) -> String {
     let material = &case.material;
-    let yields = material.yield_strength.map_or("no yield strength".to_owned(), |strength| format!("σ_Y {} MPa", short(strength / MPA)));
+    let yields =
+        material.yield_strength.map_or("no yield strength".to_owned(), |strength| format!("σ_Y {} MPa", short(strength / MPA)));
     let tough = material.toughness.map_or("no toughness".to_owned(), |k| format!("K_c {} MPa√m", short(k / MPA_SQRT_M)));
     let modulus = short(material.youngs_modulus / GPA);
     let (name, ratio) = (&material.name, short(material.poisson_ratio));
-    let name = if name.is_empty() { "given by constants" } else { name };
+    // Of a file its stem: where it lay is no part of what it says.
+    let stem = Path::new(name).file_stem().filter(|_| name.ends_with(".toml")).map(|stem| stem.to_string_lossy());
+    let name = stem.unwrap_or_else(|| if name.is_empty() { "given by constants".into() } else { name.into() });
     format!("{name}: E {modulus} GPa, ν {ratio}, {yields}, {tough}, plane {}", material.plane.name())
 }
 
@@ -224,7 +229,7 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     drawing.body(&mut sketch);
     drawing.loads(&mut sketch);
     drawing.cracks(&mut sketch, !is_small);
-    scale_bar(&mut sketch, [14.0, size.height - 8.0], high[0] - low[0], size.text);
+    scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
     if is_small {
         drawing.detail(&mut sketch, of_cracks, size);
     }
@@ -283,9 +288,10 @@ impl Drawing<'_> {
         for [from, to] in &self.plate.cracks_mm {
             sketch.path(&[sketch.place(*from), sketch.place(*to)], INK, if is_large { 5.0 } else { 3.2 }, "");
         }
+        let mut taken = Vec::new();
         for (number, way) in self.ways.iter().enumerate() {
             if is_large {
-                self.marks(sketch, way);
+                self.marks(sketch, way, &mut taken);
             }
             let end = sketch.place(way.at(way.whole()));
             sketch.ring(end, if is_large { 4.5 } else { 3.0 }, INK, 1.8);
@@ -298,32 +304,31 @@ impl Drawing<'_> {
         }
     }
 
-    /// Where the tip was at shares of the life.
-    fn marks(&self, sketch: &mut Sketch, way: &Way) {
-        for (place, share) in MARKS.into_iter().enumerate() {
+    /// Where the tip was at shares of the life; `taken` are the middles of words that stand already.
+    fn marks(&self, sketch: &mut Sketch, way: &Way, taken: &mut Vec<Point>) {
+        for share in MARKS {
             let Some(length) = way.length_at(share / 100.0 * self.life) else { continue };
             let at = sketch.place(way.at(length));
             let step = 0.02 * way.whole();
             let (from, to) = (sketch.place(way.at((length - step).max(0.0))), sketch.place(way.at(length + step)));
             let reach = distance(from, to).max(1e-9);
-            // Across the way, first on its upper side, or right of one that runs up, then on the other.
-            let mut across = [(to[1] - from[1]) / reach, -(to[0] - from[0]) / reach];
-            if across[1] > 0.2 || across[1].abs() <= 0.2 && across[0] < 0.0 {
-                across = across.map(|part| -part);
+            // Across the way: its upper side first, or the right of one that runs up.
+            let across = [(to[1] - from[1]) / reach, -(to[0] - from[0]) / reach];
+            let is_lower = across[1] > 0.2 || across[1].abs() <= 0.2 && across[0] < 0.0;
+            let upper = if is_lower { across.map(|part| -part) } else { across };
+            let half = [1.4 * self.text, 0.6 * self.text];
+            let place = |side: f64, out: f64| [0, 1].map(|i| at[i] + side * upper[i] * (out + half[i]));
+            let is_free =
+                |middle: &Point| !taken.iter().any(|other| (0..2).all(|i| (other[i] - middle[i]).abs() < 2.0 * half[i]));
+            let places = [(1.0, 10.0), (-1.0, 10.0), (1.0, 24.0), (-1.0, 24.0)];
+            // Where all is taken the mark has no words.
+            if let Some((side, out)) = places.into_iter().find(|(side, out)| is_free(&place(*side, *out))) {
+                let middle = place(side, out);
+                sketch.path(&[at, [0, 1].map(|i| at[i] + side * out * upper[i])], INK, 1.0, "");
+                sketch.name([middle[0], middle[1] + 0.35 * self.text], &format!("{share:.0} %"), "middle", self.text, INK);
+                taken.push(middle);
             }
-            if place % 2 == 1 {
-                across = across.map(|part| -part);
-            }
-            let far = [at[0] + 17.0 * across[0], at[1] + 17.0 * across[1]];
-            sketch.path(&[at, far], INK, 1.0, "");
             sketch.ring(at, 3.0, INK, 1.3);
-            let anchor = if across[0].abs() < 0.5 { "middle" } else if across[0] > 0.0 { "start" } else { "end" };
-            let height = match across[1] {
-                up if up < -0.5 => -3.0,
-                down if down > 0.5 => 0.95 * self.text,
-                _ => 0.35 * self.text,
-            };
-            sketch.name([far[0] + 3.0 * across[0], far[1] + height], &format!("{share:.0} %"), anchor, self.text, INK);
         }
     }
 
@@ -341,7 +346,13 @@ impl Drawing<'_> {
             let held = self.plate.held_mm.iter().any(|[one, other]| *one == load.from_mm || *other == load.from_mm);
             let hole = self.plate.holes.iter().find(|hole| is_pin && [hole.x_mm, hole.y_mm] == load.from_mm);
             let radius = hole.map_or(0.0, |hole| 0.5 * hole.diameter_mm * sketch.scale);
-            let start = if is_pin { radius + 3.0 } else if held { 11.0 } else { 3.0 };
+            let start = if is_pin {
+                radius + 3.0
+            } else if held {
+                11.0
+            } else {
+                3.0
+            };
             let count = if is_pin { 1 } else { (reach / 28.0).round().clamp(1.0, 9.0) as usize };
             if is_pin {
                 sketch.dot(from, (radius - 2.0).max(2.0), "#7b8794");
@@ -356,7 +367,9 @@ impl Drawing<'_> {
                 is_named = true;
                 let middle = along(from, to, 0.5);
                 let place = [middle[0] + (start + 22.0) * way[0], middle[1] + (start + 22.0) * way[1] - 3.0];
-                let (place, anchor) = if is_pin { ([middle[0] + 12.0, place[1] + 14.0], "start") } else {
+                let (place, anchor) = if is_pin {
+                    ([middle[0] + 12.0, place[1] + 14.0], "start")
+                } else {
                     // Words wider than the plate stay within the picture.
                     ([place[0].max(4.0 + 0.27 * self.text * self.plate.load.chars().count() as f64), place[1]], "middle")
                 };
@@ -391,17 +404,17 @@ impl Drawing<'_> {
 
     /// A frame with the cracks and their ways, enlarged.
     fn detail(&self, sketch: &mut Sketch, [low, high]: [Point; 2], size: Size) {
-        let whole = [0.53 * size.width - 8.0, size.height - 24.0 - BELOW - 10.0];
+        let whole = [0.53 * size.width - 8.0, size.height - 24.0 - 2.0 * BELOW];
         let room = 0.22 * (high[0] - low[0]).max(high[1] - low[1]).max(1e-6);
         let spans = [high[0] - low[0] + 2.0 * room, high[1] - low[1] + 2.0 * room];
         let scale = (whole[0] / spans[0]).min(whole[1] / spans[1]);
         let frame = [whole[0], (spans[1] * scale).max(0.55 * whole[0]).min(whole[1])];
         let place = [0.47 * size.width, 24.0 + 0.5 * (whole[1] - frame[1])];
+        scale_bar(sketch, [place[0] + 1.0, place[1] + frame[1] + 1.5 * self.text], [scale, whole[0] / scale], self.text);
         let middle = along(low, high, 0.5);
         let mut inner = Sketch::new(scale, [0.5 * frame[0] - middle[0] * scale, 0.5 * frame[1] + middle[1] * scale]);
         self.body(&mut inner);
         self.cracks(&mut inner, true);
-        scale_bar(&mut inner, [10.0, frame[1] - 10.0], frame[0] / scale, self.text);
         sketch.within(place, frame, inner);
         let corner = |x: f64, y: f64| [place[0] + x * frame[0], place[1] + y * frame[1]];
         sketch.path(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0), corner(0.0, 0.0)], EDGE, 1.0, "");
@@ -426,16 +439,17 @@ fn contains(outline: &[Point], [x, y]: Point) -> bool {
 fn colour(share: f64) -> String {
     let at = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
     let first = (at as usize).min(RAMP.len() - 2);
-    let [r, g, b] = [0, 1, 2].map(|i| (RAMP[first][i] + (at - first as f64) * (RAMP[first + 1][i] - RAMP[first][i])).round() as u8);
+    let [r, g, b] =
+        [0, 1, 2].map(|i| (RAMP[first][i] + (at - first as f64) * (RAMP[first + 1][i] - RAMP[first][i])).round() as u8);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// A length of 1, 2 or 5 times a power of ten, mm.
-fn scale_bar(sketch: &mut Sketch, [x, y]: Point, span: f64, text: f64) {
+fn scale_bar(sketch: &mut Sketch, [x, y]: Point, [scale, span]: [f64; 2], text: f64) {
     let most = 0.3 * span;
     let power = 10f64.powf(most.log10().floor());
     let length = [5.0, 2.0, 1.0].into_iter().map(|part| part * power).find(|length| *length <= most).unwrap_or(power);
-    let end = x + length * sketch.scale;
+    let end = x + length * scale;
     sketch.path(&[[x, y - 5.0], [x, y], [end, y], [end, y - 5.0]], EDGE, 1.2, "");
     sketch.name([end + 6.0, y], &format!("{length} mm"), "start", text, QUIET);
 }

@@ -82,9 +82,11 @@ impl<'t> Cells<'t> {
         let Some(place) = self.head.iter().position(|name| *name == column) else { return Ok(vec![f64::NAN; self.lines.len()]) };
         let number = |(line, cells): (usize, &Vec<&str>)| match cells.get(place).copied().unwrap_or("") {
             "" => Ok(f64::NAN),
-            cell => cell.parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
-                bad_table(Path::new(self.name), line, Some(column), Some(cell), "is not a number")
-            }),
+            cell => cell
+                .parse::<f64>()
+                .ok()
+                .filter(|value| value.is_finite())
+                .ok_or_else(|| bad_table(Path::new(self.name), line, Some(column), Some(cell), "is not a number")),
         };
         (2..).zip(&self.lines).map(number).collect()
     }
