@@ -282,7 +282,8 @@ fn the_way_of_a_tip_is_marked_by_shares_of_the_life() {
 #[test]
 fn a_small_crack_gets_a_picture_of_its_own() {
     let (plate, mut tables) = straight_growth();
-    assert!(!plate_svg(&plate, &tables, SIZE).contains("overflow=\"hidden\""), "half the plate is not small");
+    tables.paths[0].push([8e3, 40.0, 0.0]);
+    assert!(!plate_svg(&plate, &tables, SIZE).contains("overflow=\"hidden\""), "nine tenths of the plate are not small");
     tables.paths[0].truncate(3);
     assert!(plate_svg(&plate, &tables, SIZE).contains("overflow=\"hidden\""));
 }
@@ -295,6 +296,10 @@ fn no_line_is_drawn_where_k_was_not_read() {
     assert_eq!(pieces(&k_svg(&result, &tables, LARGE).unwrap()), 2, "K is unknown in one row");
     tables.tips[0].factors[4] = [16.0, -0.5];
     assert_eq!(pieces(&k_svg(&result, &tables, LARGE).unwrap()), 1);
+    // The last of a section goes: K beyond bounds is said, and hides nothing.
+    tables.tips[0].factors[8] = [4e7, 0.0];
+    let svg = k_svg(&result, &tables, LARGE).unwrap();
+    assert!(svg.contains("at the end to 4.0e7, not drawn") && svg.contains(">20</text>"), "{svg}");
     tables.tips[0].factors.fill([f64::NAN; 2]);
     assert_eq!(k_svg(&result, &tables, LARGE), None);
 }

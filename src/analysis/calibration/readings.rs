@@ -71,9 +71,9 @@ fn reasons(curve: &MeasuredCurve, windows: &[LeaveOut], is_alone: bool) -> Vec<O
     let names = |window: &&LeaveOut| window.specimen.as_ref().map_or(is_alone, |name| *name == curve.specimen);
     let mut reasons = vec![None; curve.cycles.len()];
     for window in windows.iter().filter(names) {
-        for place in 1..curve.cycles.len() {
-            if window.covers(curve.cycles[place - 1], curve.cycles[place]) {
-                reasons[place] = Some(window.reason.clone());
+        for (pair, reason) in curve.cycles.windows(2).zip(reasons.iter_mut().skip(1)) {
+            if window.covers(pair[0], pair[1]) {
+                *reason = Some(window.reason.clone());
             }
         }
     }

@@ -308,6 +308,12 @@ impl Frame {
         }
     }
 
+    /// A remark in the upper left corner of the plot.
+    pub fn remark(&mut self, words: &str) {
+        let ([left, top, _, _], text) = (self.room, self.size.text);
+        self.sketch.name([left + 6.0, top + 1.1 * text], words, "start", text, NOTE);
+    }
+
     /// The name of a curve right of its last point, moved down where another one stands.
     pub fn name(&mut self, point: Point, words: &str, colour: &str) {
         let text = self.size.text;

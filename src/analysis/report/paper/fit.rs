@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::numbers::{fixed, power, short, whole};
+use super::numbers::{fixed, power, short, sized, whole};
 use super::{CHART, Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
 use crate::report::chart::Size;
 use crate::report::pictures::fit::{FitTables, RateFitted, Reading, law_svg};
@@ -31,7 +31,11 @@ pub fn of_lives(fit: &Value, tables: &FitTables, signed: &Signed) -> (String, St
     let fitted_to = fit["fitted_to"].as_str().unwrap_or("readings");
     let material = fit["test"]["material"].as_str().unwrap_or("");
     let version = fit["version"].as_str().unwrap_or("").to_owned();
-    let name = if material.is_empty() { fitted_to.to_owned() } else { format!("{material}, {fitted_to}") };
+    let fitted_to = match fit["test"]["specimens"].as_u64() {
+        Some(count) if count > 1 => format!("{fitted_to} of {count} specimens"),
+        _ => fitted_to.to_owned(),
+    };
+    let name = if material.is_empty() { fitted_to } else { format!("{material}, {fitted_to}") };
     let mut page = letter(signed, &name, fit["finished"].as_str());
     page += &format!("<h1>Fatigue crack growth rate: {}</h1>\n", quoted(&name));
     let (kind, load) = (fit["test"]["specimen_kind"].as_str().unwrap_or(""), fit["test"]["load"].as_str().unwrap_or(""));
@@ -61,7 +65,7 @@ fn answer(fit: &Value) -> String {
     let number = |key: &str| fit[key].as_f64().unwrap_or(f64::NAN);
     let ratio = fit["test"]["stress_ratio"].as_f64().map_or_else(|| recorded(None), short);
     format!(
-        "<div class=\"answer\"><div><h2>Growth rate at ΔK = {} MPa√m</h2><p class=\"big\">{} <small>mm/cycle</small></p>\
+        "<div class=\"answer fit\"><div><h2>Growth rate at ΔK = {} MPa√m</h2><p class=\"big\">{} <small>mm/cycle</small></p>\
          <p>± {} % (one standard error)</p></div><div><h2>Exponent m</h2><p class=\"big\">{}</p><p>± {}; C = {} mm/cycle at 1 MPa√m</p></div>\
          <div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p><p>MPa√m, R = {ratio}</p></div></div>\n",
         fixed(number("pivot_delta_k_mpa_sqrt_m"), 2),
@@ -142,7 +146,9 @@ fn details(fit: &Value) -> String {
     }
     page += "<h2>Readings and input as they were read</h2>\n";
     page += &hashes(if fit["inputs"].is_array() { &fit["inputs"] } else { &fit["sources"] }, HASHES_MOST);
-    let commit = fit["commit"].as_str().map_or_else(String::new, |commit| format!(", commit {}", quoted(commit)));
+    let commit = fit["commit"]
+        .as_str()
+        .map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())));
     let version = recorded(fit["version"].as_str());
     page += &format!("<p class=\"small quiet\">perilife {version}{commit}. Units: mm, MPa√m, mm/cycle.</p>\n");
     page
@@ -300,8 +306,8 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
 
 fn constants(fit: &Value) -> String {
     let rows = fit["constants"].as_object().into_iter().flatten().map(|(key, value)| {
-        let error = fit["standard_errors"][key].as_f64().map_or_else(String::new, |error| format!(" ± {}", power(error, 2)));
-        let value = value.as_f64().map_or_else(|| quoted(&value.to_string()), |value| power(value, 5));
+        let error = fit["standard_errors"][key].as_f64().map_or_else(String::new, |error| format!(" ± {}", sized(error, 2)));
+        let value = value.as_f64().map_or_else(|| quoted(&value.to_string()), |value| sized(value, 5));
         format!("<tr><td>{}</td><td>{value}{error}</td></tr>\n", quoted(key))
     });
     format!("<h2>Constants (± one standard error)</h2>\n<table><tbody>\n{}</tbody></table>\n", rows.collect::<String>())

@@ -56,6 +56,9 @@ pub fn read(folder: &Path, opened: &Opened) -> Result<Source> {
     Err(input("DIR", folder.display(), problem, "give the --out folder of `perilife predict` or `perilife calibrate`"))
 }
 
+/// A key that has to be there: its name, whether a value is right, and what it should be.
+type Key = (&'static str, fn(&Value) -> bool, &'static str);
+
 struct Files<'f> {
     folder: &'f Path,
     opened: &'f Opened,
@@ -73,7 +76,7 @@ impl Files<'_> {
                 "give the --out folder of `perilife predict` or `perilife calibrate`",
             ));
         }
-        let wanted: [(&str, fn(&Value) -> bool, &str); 6] = [
+        let wanted: [Key; 6] = [
             ("name", Value::is_string, "text"),
             ("stop_reason", Value::is_string, "text"),
             ("life_cycles", |value| value.is_null() || value.as_f64().is_some_and(|life| life >= 0.0), "cycles"),
@@ -97,7 +100,7 @@ impl Files<'_> {
     fn fit(&self) -> Result<Source> {
         let fit = self.object(FIT_FILE, "perilife calibrate")?;
         if fit.get("law").is_some() {
-            let wanted: [(&str, fn(&Value) -> bool, &str); 3] = [
+            let wanted: [Key; 3] = [
                 ("law", Value::is_string, "text"),
                 ("constants", Value::is_object, "a table"),
                 ("version", Value::is_string, "text"),
@@ -143,7 +146,7 @@ impl Files<'_> {
         if value.is_object() { Ok(value) } else { Err(self.damaged(name, format!("is no object that `{command}` wrote"))) }
     }
 
-    fn check_keys(&self, object: &Value, name: &str, wanted: &[(&str, fn(&Value) -> bool, &str)]) -> Result<()> {
+    fn check_keys(&self, object: &Value, name: &str, wanted: &[Key]) -> Result<()> {
         match wanted.iter().find(|(key, is_right, _)| object.get(key).is_none_or(|value| !is_right(value))) {
             Some((key, _, what)) => Err(self.bad(name, key, &object[*key], &format!("is not {what}"))),
             None => Ok(()),

@@ -29,6 +29,16 @@ pub fn by_band(value: f64, low: f64, high: f64) -> String {
     whole((value / unit).round() * unit)
 }
 
+/// With so many significant digits, as markup: plain where that is short, else by a power of ten.
+pub fn sized(value: f64, digits: usize) -> String {
+    let size = value.abs();
+    if value == 0.0 || !(1e-2..1e4).contains(&size) {
+        return if value == 0.0 { "0".to_owned() } else { power(value, digits) };
+    }
+    let before = size.log10().floor() as i32 + 1;
+    fixed(value, usize::try_from(digits as i32 - before).unwrap_or(0))
+}
+
 /// With so many significant digits, as markup: 2.15 × 10⁻⁴.
 pub fn power(value: f64, digits: usize) -> String {
     let text = format!("{value:.*e}", digits.saturating_sub(1));

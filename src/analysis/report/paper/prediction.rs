@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::numbers::{by_band, fixed, power, short, whole};
+use super::numbers::{by_band, fixed, power, short, sized, whole};
 use super::{Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
 use crate::report::chart::Size;
 use crate::report::pictures::curves::{a_n_svg, end_words, k_svg};
@@ -68,7 +68,6 @@ fn capital(text: &str) -> String {
 fn answer(result: &Value, tables: &RunTables) -> String {
     let reason = result["stop_reason"].as_str().unwrap_or("");
     let [_, sentence] = end_words(reason);
-    let length = tables.rows.last().map_or(f64::NAN, |row| row.crack_length_mm);
     let verdict = result["verdict"].as_str();
     let holds = verdict.map(|verdict| verdict.starts_with("stands: ")).filter(|holds| *holds);
     let fails = verdict.is_some_and(|verdict| verdict.starts_with("not to be used")) || result["refused"].is_string();
@@ -82,13 +81,29 @@ fn answer(result: &Value, tables: &RunTables) -> String {
         (None, None) => "Numerical error not estimated".to_owned(),
     };
     format!(
-        "<div class=\"answer\"><div>{}</div><div><h2>It ends because</h2><p class=\"why\">{sentence}</p><p>crack length {} mm</p></div>\
+        "<div class=\"answer\"><div>{}</div><div><h2>It ends because</h2><p class=\"why\">{sentence}</p><p>{}</p></div>\
          <div><h2>Is it valid?</h2><p>{} {}</p><p>{error}</p></div></div>\n",
         life(result, reason),
-        fixed(length, 1),
+        end_length(result, tables),
         mark(if fails { Some(false) } else { holds }),
         recorded(verdict),
     )
+}
+
+/// The crack that ends the life, in a plate with several tips; their sum is nobody's crack.
+fn leading_crack(result: &Value) -> Option<(usize, [f64; 2])> {
+    let tips = result["tips"].as_array().filter(|tips| tips.len() > 1)?;
+    let leads = tips.iter().position(|tip| tip["leads"] == true && !tip["crack"].is_null())?;
+    let length = |key: &str| tips[leads][key].as_f64();
+    Some((leads, [length("crack_length_initial_mm")?, length("crack_length_final_mm")?]))
+}
+
+fn end_length(result: &Value, tables: &RunTables) -> String {
+    match (leading_crack(result), tables.rows.last()) {
+        (Some((tip, [_, last])), _) => format!("crack of tip {tip}: {} mm long", fixed(last, 1)),
+        (None, Some(row)) => format!("crack length {} mm", fixed(row.crack_length_mm, 1)),
+        (None, None) => String::new(),
+    }
 }
 
 fn life(result: &Value, reason: &str) -> String {
@@ -146,13 +161,20 @@ fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String 
 /// The case as it was understood.
 fn understood(result: &Value, plate: Option<&Plate>) -> Vec<(&'static str, String)> {
     let text = |value: Option<&str>| recorded(value);
-    let lengths = ["crack_length_initial_mm", "crack_length_final_mm"]
-        .map(|key| result[key].as_f64().map_or("–".to_owned(), |length| short((100.0 * length).round() / 100.0)));
+    let two_decimals = |length: f64| short((100.0 * length).round() / 100.0);
+    let lengths = match leading_crack(result) {
+        Some((tip, [first, last])) => format!("of tip {tip}: {} mm to {} mm", two_decimals(first), two_decimals(last)),
+        None => {
+            let [first, last] = ["crack_length_initial_mm", "crack_length_final_mm"]
+                .map(|key| result[key].as_f64().map_or("–".to_owned(), two_decimals));
+            format!("{first} mm to {last} mm")
+        }
+    };
     let mut rows = vec![
         ("Specimen", text(plate.map(|plate| &*plate.specimen))),
         ("Material", plate.map_or_else(|| recorded(None), |plate| prose(&plate.material))),
         ("Load", text(plate.map(|plate| &*plate.load))),
-        ("Crack length", format!("{} mm to {} mm", lengths[0], lengths[1])),
+        ("Crack length", lengths),
         ("Computed on", model(result)),
     ];
     if let Some(overrides) = result["overrides"].as_array().filter(|overrides| !overrides.is_empty()) {
@@ -195,7 +217,7 @@ fn law(result: &Value) -> Vec<(&'static str, String)> {
     let constants = law["constants_si"].as_object().or_else(|| law["record"]["fatigue"].as_object());
     for (key, value) in constants.into_iter().flatten().take(CONSTANTS_MOST) {
         let value = match value {
-            Value::Number(number) => power(number.as_f64().unwrap_or(f64::NAN), 4),
+            Value::Number(number) => sized(number.as_f64().unwrap_or(f64::NAN), 4),
             Value::String(text) => quoted(text),
             Value::Array(rows) => format!("{} tables", rows.len()),
             _ => continue,

@@ -15,6 +15,11 @@ const PARTS: usize = 8;
 /// Rows from which a curve is dense enough without them.
 const DENSE: usize = 200;
 
+/// Percent of the rows whose K counts as usual, and times that value up to which K is drawn.
+const USUAL_PERCENT: usize = 90;
+/// See [`USUAL_PERCENT`].
+const BEYOND: f64 = 10.0;
+
 /// Why a run ended, in the words of a picture and as a sentence, by its `stop_reason`.
 pub fn end_words(reason: &str) -> [&'static str; 2] {
     match reason {
@@ -154,10 +159,15 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
     // Tips of a standard specimen are alike: the first stands for both.
     let tips: Vec<usize> = (0..if is_by_tip { tables.tips.len() } else { 1.min(tables.tips.len()) }).collect();
     let known = |point: &Point| point.iter().all(|value| value.is_finite());
-    let all: Vec<Point> = tips.iter().flat_map(|tip| [0, 1].map(|mode| points(*tip, mode))).flatten().filter(known).collect();
-    if all.is_empty() {
+    let read: Vec<Point> = tips.iter().flat_map(|tip| [0, 1].map(|mode| points(*tip, mode))).flatten().filter(known).collect();
+    if read.is_empty() {
         return None;
     }
+    let (most, largest) = drawn_to(&read);
+    let points = |tip: usize, mode: usize| -> Vec<Point> {
+        points(tip, mode).into_iter().map(|[x, k]| [x, if k.abs() <= most { k } else { f64::NAN }]).collect()
+    };
+    let all: Vec<Point> = read.into_iter().filter(|point| point[1].abs() <= most).collect();
     let axes = [
         Axis::linear_in(all.iter().map(|point| point[0]), parts(size.width, 95.0)),
         Axis::linear_in(all.iter().map(|point| point[1]).chain([0.0]), parts(size.height, 45.0)),
@@ -169,6 +179,9 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
         if tips.iter().any(|tip| points(*tip, 0).iter().any(|point| point[1] < low)) {
             frame.unknown(low, false, "below the ΔK of the law");
         }
+    }
+    if largest > most {
+        frame.remark(&format!("at the end to {largest:.1e}, not drawn"));
     }
     for (mode, colour, dash) in [(1, SECOND, "6 3"), (0, COMPUTED, "")] {
         tips.iter().for_each(|tip| frame.pieces(&points(*tip, mode), colour, 2.0, dash));
@@ -182,6 +195,15 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
         }
     }
     Some(frame.finish(&format!("{} over {}", names[1], names[0])))
+}
+
+/// Size of K up to which it is drawn, and the largest: where the last of a section goes K grows beyond bounds, and would hide all before it.
+fn drawn_to(read: &[Point]) -> (f64, f64) {
+    let mut sizes: Vec<f64> = read.iter().map(|point| point[1].abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let usual = sizes[(sizes.len() - 1) * USUAL_PERCENT / 100];
+    let largest = sizes[sizes.len() - 1];
+    (if largest > BEYOND * usual && usual > 0.0 { BEYOND * usual } else { largest }, largest)
 }
 
 /// K at maximum load between which the law was fitted, MPa√m; `None` where that is not known.

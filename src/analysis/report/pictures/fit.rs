@@ -28,6 +28,8 @@ const RATIO_ALIKE: f64 = 0.0051;
 const RATIOS_DRAWN: usize = 6;
 /// Most circles of a picture; of more readings every second, third and so on is drawn.
 const CIRCLES_MAX: usize = 160;
+/// Rates from which circles would hide the law and each other: dots then.
+const CIRCLES_OF_RATES_MAX: usize = 400;
 /// Share of an area that the band of the fit covers with its colour.
 const BAND: f64 = 0.3;
 
@@ -87,7 +89,7 @@ pub fn rates_svg(readings: &[Point], laws: &[LawCurve], size: Size) -> String {
     let letters = laws.iter().map(|law| law.name.chars().count()).max().unwrap_or(0);
     let mut frame = Frame::with_names(size, axes, names, letters);
     match readings.len() {
-        0..=2000 => frame.circles(&readings),
+        0..=CIRCLES_OF_RATES_MAX => frame.circles(&readings),
         _ => frame.dots(&readings, INK),
     }
     for law in laws {

@@ -25,7 +25,7 @@ const RAMP: [[f64; 3]; 5] =
 /// Shares of the life that are marked along the path, percent.
 const MARKS: [f64; 4] = [25.0, 50.0, 75.0, 90.0];
 /// Share of the plate below which cracks and their ways get a picture of their own.
-const SMALL: f64 = 0.45;
+const SMALL: f64 = 0.7;
 /// Room around the plate for loads, and below it for the scale, px.
 const AROUND: f64 = 44.0;
 const BELOW: f64 = 26.0;
