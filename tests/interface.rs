@@ -20,6 +20,7 @@ mod laws;
 mod nothing_lost;
 mod practice;
 mod rates;
+mod report;
 mod service;
 mod sif;
 mod stability;

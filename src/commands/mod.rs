@@ -13,6 +13,7 @@ pub mod job;
 pub mod list;
 pub mod predict;
 pub mod rates;
+pub mod report;
 #[cfg(feature = "service")]
 pub mod serve;
 pub mod sif;
@@ -88,6 +89,8 @@ commands! {
     Calibrate: calibrate,
     /// Resample the a-N curve of a finished run
     Export: export,
+    /// One page of a run or a fit, to be printed and signed
+    Report: report,
     /// Stress intensity factors of every crack tip, beside the handbook value
     Sif: sif,
     /// Growth rate da/dN against ΔK from measured a-N curves

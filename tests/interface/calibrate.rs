@@ -62,10 +62,12 @@ fn a_calibration_with_a_prediction_and_its_export() {
     }
 
     // The files that are promised, and no temporary ones.
-    for file in ["fitted.toml", "fit.json", "fit_curves.csv", "rates.csv", "fit.svg", "fit_rates.svg", ".perilife"] {
+    for file in ["fitted.toml", "fit.json", "fit_curves.csv", "rates.csv", "fit.svg", "da_dn.svg", "readings.csv", ".perilife"] {
         assert!(fs::metadata(fit.join(file)).unwrap().len() > 0, "{file}");
     }
-    for file in ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "damage.png", "factors.csv", "beta.txt"] {
+    for file in
+        ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "plate.svg", "k.svg", "factors.csv", "beta.txt"]
+    {
         assert!(fs::metadata(fit.join("panel").join(file)).unwrap().len() > 0, "{file}");
     }
     assert_eq!(fs::read_dir(dir.path().join("out")).unwrap().count(), 1, "nothing but the fit stands there");

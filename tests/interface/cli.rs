@@ -122,7 +122,7 @@ fn a_prediction_writes_what_it_promises() {
     let written: serde_json::Value = serde_json::from_str(&fs::read_to_string(run.join("result.json")).unwrap()).unwrap();
     assert_eq!(printed, written);
     assert_eq!(written["stop_reason"], "crack_length_reached");
-    for file in ["a_n.csv", "crack_path.csv", "a_n.svg", "da_dn.svg", "damage.png", "factors.csv", "beta.txt"] {
+    for file in ["a_n.csv", "crack_path.csv", "a_n.svg", "da_dn.svg", "plate.svg", "k.svg", "factors.csv", "beta.txt"] {
         assert!(run.join(file).is_file(), "{file}");
     }
     assert!(!run.join("paraview").exists(), "nobody asked for it");

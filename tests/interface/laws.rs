@@ -67,7 +67,7 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     for words in ["law            walker (best by AICc", "paris_c_mm_per_cycle", "walker_gamma", "left out: ", "panel: life"] {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }
-    for file in ["fitted.toml", "fit.json", "fit_rates.csv", "fit_rates.svg", "panel/a_n.csv"] {
+    for file in ["fitted.toml", "fit.json", "fit_rates.csv", "da_dn.svg", "panel/a_n.csv"] {
         assert!(fs::metadata(here.join("fit").join(file)).unwrap().len() > 0, "{file}");
     }
     let report = json(&here.join("fit/fit.json"));

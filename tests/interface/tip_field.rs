@@ -52,7 +52,7 @@ fn constants_of_k_choose_the_driver_of_tips() {
     // da/dN is C dK^m of the same row.
     let rate = 8.95422e-8 * first[column("delta_k_mpa_sqrt_m")].powf(2.874);
     assert!((first[column("da_dn_mm_per_cycle")] / rate - 1.0).abs() < 1e-6, "{first:?}");
-    assert!(dir.path().join("run/damage.png").exists() && dir.path().join("run/crack_path.csv").exists());
+    assert!(dir.path().join("run/plate.svg").exists() && dir.path().join("run/crack_path.csv").exists());
 
     // The same again, as a driver that is asked for.
     let again = perilife(dir.path(), &["predict", "plate.toml", "--out", "again", "--json", "--set", "fatigue.driver=tip_field"]);

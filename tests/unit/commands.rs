@@ -30,7 +30,8 @@ fn a_run_leaves_all_its_files() {
     let mut case = made_up_case::case();
     case.output.paraview = true;
     keep(&case, made_up_run::prediction(0.0), &out).unwrap();
-    let files = ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "damage.png", "paraview/run.pvd"];
+    let files =
+        ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "plate.svg", "damage.png", "paraview/run.pvd"];
     for file in files.into_iter().chain(["paraview/plate_0002.vti", ".perilife"]) {
         assert!(fs::metadata(out.join(file)).unwrap().len() > 0, "{file}");
     }

@@ -4,8 +4,13 @@ use std::fs;
 
 use perilife::case::Case;
 use perilife::report::chart::{self, Mark, Series};
+use perilife::report::chart::{COMPUTED, LARGE};
+use perilife::report::csv::Row;
 use perilife::report::damage::{DamagePicture, PointField, cycles_and_length};
 use perilife::report::labels::{Box2, along, place_labels};
+use perilife::report::pictures::curves::{a_n_svg, k_svg};
+use perilife::report::pictures::plate::{HoleDrawn, LoadDrawn, Plate, SIZE, plate_svg};
+use perilife::report::pictures::tables::{RunTables, TipRows};
 use perilife::report::specimen_picture::sketch::{CRACK, Sketch};
 use perilife::report::specimen_picture::specimen_svg;
 use perilife::report::{csv, vtk};
@@ -217,4 +222,94 @@ fn everything_of_the_specimen_is_drawn() {
 fn drawn_to_scale_with_y_up() {
     let sketch = Sketch::new(1000.0, [100.0, 500.0]);
     assert_eq!(sketch.place([0.01, 0.02]), [110.0, 480.0]);
+}
+
+/// A square plate of 100 mm with a crack from its left side that grows 40 mm, as far in every thousand cycles.
+fn straight_growth() -> (Plate, RunTables) {
+    let arrow = |y: f64, way: f64| LoadDrawn { from_mm: [-50.0, y], to_mm: [50.0, y], direction: [0.0, way] };
+    let plate = Plate {
+        outline_mm: vec![[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]],
+        holes: vec![HoleDrawn { x_mm: 20.0, y_mm: 30.0, diameter_mm: 10.0 }],
+        slots_mm: Vec::new(),
+        cracks_mm: vec![[[-50.0, 0.0], [-40.0, 0.0]]],
+        loads: vec![arrow(50.0, 1.0), arrow(-50.0, -1.0)],
+        held_mm: Vec::new(),
+        load: "stress 5 to 50 MPa, R = 0.1 <&>".into(),
+        specimen: String::new(),
+        material: String::new(),
+    };
+    let steps = || (0..=8).map(f64::from);
+    let row = |step: f64| Row {
+        cycles: 1e3 * step,
+        crack_length_mm: 10.0 + 5.0 * step,
+        delta_k_mpa_sqrt_m: 10.0 + step,
+        da_dn_mm_per_cycle: 5e-3,
+    };
+    let factors = steps().map(|step| if step == 4.0 { [f64::NAN; 2] } else { [12.0 + step, -0.5] }).collect();
+    let path = [[0.0, -50.0, 0.0]].into_iter().chain(steps().map(|step| [1e3 * step, -40.0 + 5.0 * step, 0.0])).collect();
+    let tips = vec![TipRows { growth_mm: steps().map(|step| 5.0 * step).collect(), factors }];
+    (plate, RunTables { rows: steps().map(row).collect(), tips, band: None, paths: vec![path] })
+}
+
+fn numbers_of(svg: &str, element: &str, key: &str) -> Vec<f64> {
+    let value = |part: &str| part.split(&format!(" {key}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+    svg.split(element).skip(1).map(value).collect()
+}
+
+#[test]
+fn the_way_of_a_tip_is_marked_by_shares_of_the_life() {
+    let (plate, tables) = straight_growth();
+    let svg = plate_svg(&plate, &tables, SIZE);
+    for words in
+        ["25 %", "50 %", "75 %", "90 %", "stress 5 to 50 MPa, R = 0.1 &lt;&amp;&gt;", "cycles: 0", " mm</text>", "aria-label"]
+    {
+        assert!(svg.contains(words), "{words}");
+    }
+    assert!(!svg.contains("NaN") && svg.matches("R = 0.1").count() == 2, "the load stands there once, and in the sentence");
+    // Four marks, then the tip; growth is even over the cycles.
+    let rings: Vec<f64> = numbers_of(&svg, "fill=\"white\" stroke=\"#12171d\"", "stroke-width");
+    assert_eq!(rings, [1.3, 1.3, 1.3, 1.3, 1.8]);
+    let circles = svg.split("<circle").skip(1).map(|part| part.split("/>").next().unwrap());
+    let of_ways: String =
+        circles.filter(|part| part.contains("stroke=\"#12171d\"")).map(|part| format!("<circle{part}/>")).collect();
+    let x = numbers_of(&of_ways, "<circle", "cx");
+    for (mark, share) in [0.25, 0.5, 0.75, 0.9].into_iter().enumerate() {
+        let expected = x[0] + (share - 0.25) / 0.75 * (x[4] - x[0]);
+        assert!((x[mark] - expected).abs() < 0.3, "{share}: {} and {expected}", x[mark]);
+    }
+}
+
+#[test]
+fn a_small_crack_gets_a_picture_of_its_own() {
+    let (plate, mut tables) = straight_growth();
+    tables.paths[0].push([8e3, 40.0, 0.0]);
+    assert!(!plate_svg(&plate, &tables, SIZE).contains("overflow=\"hidden\""), "nine tenths of the plate are not small");
+    tables.paths[0].truncate(3);
+    assert!(plate_svg(&plate, &tables, SIZE).contains("overflow=\"hidden\""));
+}
+
+#[test]
+fn no_line_is_drawn_where_k_was_not_read() {
+    let (_, mut tables) = straight_growth();
+    let pieces = |svg: &str| svg.matches(&format!("stroke=\"{COMPUTED}\" stroke-width=\"2\"")).count();
+    let result = serde_json::json!({ "stop_reason": "toughness", "tips": [{ "crack": 0, "leads": true }] });
+    assert_eq!(pieces(&k_svg(&result, &tables, LARGE).unwrap()), 2, "K is unknown in one row");
+    tables.tips[0].factors[4] = [16.0, -0.5];
+    assert_eq!(pieces(&k_svg(&result, &tables, LARGE).unwrap()), 1);
+    // The last of a section goes: K beyond bounds is said, and hides nothing.
+    tables.tips[0].factors[8] = [4e7, 0.0];
+    let svg = k_svg(&result, &tables, LARGE).unwrap();
+    assert!(svg.contains("at the end to 4.0e7, not drawn") && svg.contains(">20</text>"), "{svg}");
+    tables.tips[0].factors.fill([f64::NAN; 2]);
+    assert_eq!(k_svg(&result, &tables, LARGE), None);
+}
+
+#[test]
+fn the_curve_has_its_band_and_says_why_it_ends() {
+    let (_, mut tables) = straight_growth();
+    let result = serde_json::json!({ "stop_reason": "toughness" });
+    let bare = a_n_svg(&result, &tables, LARGE);
+    assert!(bare.contains("fracture") && !bare.contains("fill-opacity"), "no band, none drawn");
+    tables.band = Some(tables.rows.iter().map(|row| [0.8 * row.cycles, 1.3 * row.cycles]).collect());
+    assert_eq!(a_n_svg(&result, &tables, LARGE).matches("fill-opacity").count(), 1);
 }

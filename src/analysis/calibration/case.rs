@@ -29,6 +29,12 @@ pub struct CalibrationCase {
     pub case: Case,
     /// Measured curves inside the fit window, cycles counted from its first reading.
     pub curves: Vec<MeasuredCurve>,
+    /// Measured curves as they were read, whole.
+    pub read: Vec<MeasuredCurve>,
+    /// Ends of the fit window, m.
+    pub window: [f64; 2],
+    /// Yield strength of the material, Pa, by which readings are judged.
+    pub yield_strength: Option<f64>,
     /// The exponent: fitted, given, or of a record.
     pub exponent: Exponent,
     /// Which lives count.
@@ -113,7 +119,9 @@ impl CalibrationCase {
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
         measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        let read = measured.curves.clone();
         measured.leave_out(&keys.leave_out)?;
+        let window_ends = window_ends(&keys)?;
         let Measured { curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &curves)?;
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
@@ -129,12 +137,25 @@ impl CalibrationCase {
         case.stop.crack_length = longest;
         case.stop.required = None;
         case.material.toughness = None;
-        case.material.yield_strength = None;
+        let yield_strength = case.material.yield_strength.take();
         warnings.extend(unrecorded(&case));
         warnings.extend(case.warnings.iter().cloned());
         case.provenance = folder.opened().so_far();
         let left_out = keys.leave_out;
-        Ok(CalibrationCase { case, curves, exponent, criterion, sources, left_out, warnings, input, formula })
+        Ok(CalibrationCase {
+            case,
+            curves,
+            read,
+            window: window_ends,
+            yield_strength,
+            exponent,
+            criterion,
+            sources,
+            left_out,
+            warnings,
+            input,
+            formula,
+        })
     }
 
     /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.
@@ -196,6 +217,13 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> crate::Result<(Measured, V
 /// What the record says about a measured file.
 pub fn source(file: &str, bytes: &[u8]) -> SourceFile {
     SourceFile { file: file.to_owned(), sha256: sha256(bytes) }
+}
+
+/// Ends of the fit window with their slack, m.
+fn window_ends(keys: &MeasuredSlice) -> crate::Result<[f64; 2]> {
+    let from = LENGTH.read_optional("measured.from_crack_length_mm", keys.from_crack_length_mm)?;
+    let to = LENGTH.read_optional("measured.to_crack_length_mm", keys.to_crack_length_mm)?;
+    Ok([from.unwrap_or(0.0) - LENGTH_SLACK, to.unwrap_or(f64::INFINITY) + LENGTH_SLACK])
 }
 
 fn window(measured: &Measured, keys: &MeasuredSlice) -> crate::Result<Measured> {

@@ -21,5 +21,6 @@ pub mod paris;
 pub mod population;
 pub mod power_law;
 pub mod rates;
+pub mod readings;
 pub mod results;
 pub mod search;

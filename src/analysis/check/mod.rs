@@ -23,7 +23,7 @@ use crate::input::{Document, Provenance};
 use crate::report::checks;
 use crate::report::model_words::{self, mm, short};
 use crate::report::run::refuse_beforehand;
-use crate::report::shape::shape;
+use crate::report::pictures::plate::Plate;
 use crate::report::specimen_picture::{scene_svg, specimen_svg};
 use crate::runner::{Kind, Task};
 use crate::sweep::design::{self, CASES_MAX};
@@ -43,8 +43,8 @@ pub struct Checked {
     pub warnings: Vec<String>,
     /// Specimen, cracks, loads and supports as SVG.
     pub drawing: String,
-    /// The same for others to draw ([`shape`]); `null` of scenes.
-    pub shape: Value,
+    /// The same for others to draw; none of scenes.
+    pub plate: Option<Plate>,
     /// The input as it was given.
     pub echo: Value,
     /// Files that were read for it.
@@ -67,7 +67,7 @@ impl Checked {
         }
         json!({
             "ok": true, "kind": self.kind, "name": self.name, "understood": understood, "warnings": self.warnings,
-            "shape": self.shape, "case": self.echo,
+            "plate": self.plate, "case": self.echo,
         })
     }
 }
@@ -130,21 +130,21 @@ fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: 
     let mut lines = case_lines(case, preview.points);
     lines.push(line("computing", budget.words()));
     let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
-    let shape = shape(case);
-    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, shape, echo: case.echo.clone(), provenance })
+    let plate = Some(Plate::of(case));
+    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, plate, echo: case.echo.clone(), provenance })
 }
 
 /// A fit of laws has a plate only where its rates come from readings.
 fn checked_laws(document: &Document, case: &LawCase) -> Checked {
     let mut lines = vec![rates_line(case)];
-    let (mut drawing, mut of_test) = (String::new(), Value::Null);
+    let (mut drawing, mut plate) = (String::new(), None);
     if let Some(test) = &case.test {
         lines.extend(case_lines(&test.case, "none: rates over handbook K".to_owned()));
-        (drawing, of_test) = (specimen_svg(&test.case), shape(&test.case));
+        (drawing, plate) = (specimen_svg(&test.case), Some(Plate::of(&test.case)));
     }
     let provenance = document.folder.opened().so_far();
     let (name, warnings, echo) = (case.name.clone(), case.warnings.clone(), case.echo.clone());
-    Checked { kind: "calibration", name, lines, warnings, drawing, shape: of_test, echo, provenance }
+    Checked { kind: "calibration", name, lines, warnings, drawing, plate, echo, provenance }
 }
 
 fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
@@ -152,7 +152,7 @@ fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
     let (name, echo, provenance) = (scene.name.clone(), scene.echo.clone(), scene.provenance.clone());
     let warnings = [&scene.warnings[..], &of_points].concat();
     let drawing = scene_drawing(scene);
-    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, shape: Value::Null, echo, provenance })
+    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, plate: None, echo, provenance })
 }
 
 /// Lines about loads and supports that fit below the drawing of a scene.

@@ -19,14 +19,20 @@ pub struct Axis {
 impl Axis {
     /// Linear axis that holds all `values`, from zero where that wastes little.
     pub fn linear(values: impl Iterator<Item = f64>) -> Axis {
-        let (mut low, mut high) = bounds(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
+        let (mut low, high) = bounds(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
         if low > 0.0 && low < 0.5 * high {
             low = 0.0;
         }
+        Self::linear_in([low, high].into_iter(), 6.0)
+    }
+
+    /// Linear axis that holds all `values` and no more, in about so many steps.
+    pub fn linear_in(values: impl Iterator<Item = f64>, parts: f64) -> Axis {
+        let (mut low, mut high) = bounds(values.filter(|v| v.is_finite())).unwrap_or((0.0, 1.0));
         if high - low <= 1e-9 * high.abs().max(1e-300) {
             (low, high) = (low - 0.05 * low.abs().max(1.0), high + 0.05 * high.abs().max(1.0));
         }
-        let step = nice_step((high - low) / 6.0);
+        let step = nice_step((high - low) / parts);
         (low, high) = ((low / step + 1e-9).floor() * step, (high / step - 1e-9).ceil() * step);
         let count = ((high - low) / step).round() as usize;
         let labelled: Vec<f64> = (0..=count).map(|i| low + i as f64 * step).collect();
@@ -68,6 +74,25 @@ impl Axis {
     pub fn labels(&self) -> usize {
         self.labelled.len()
     }
+
+    /// Labelled ticks with their words.
+    pub fn ticks(&self) -> Vec<(f64, String)> {
+        self.labelled.iter().map(|value| (*value, self.format_ext(value))).collect()
+    }
+
+    /// Ends.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.low, self.high]
+    }
+
+    /// Part of the way from the low end at which a value stands.
+    pub fn share(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            (value.max(1e-300) / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        }
+    }
 }
 
 impl Ranged for Axis {
@@ -75,12 +100,7 @@ impl Ranged for Axis {
     type ValueType = f64;
 
     fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        let share = if self.logarithmic {
-            (value.max(1e-300) / self.low).ln() / (self.high / self.low).ln()
-        } else {
-            (value - self.low) / (self.high - self.low)
-        };
-        from + (share * f64::from(to - from)).round() as i32
+        from + (self.share(*value) * f64::from(to - from)).round() as i32
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {

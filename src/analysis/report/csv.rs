@@ -172,7 +172,8 @@ pub fn parse_a_n(text: &str, path: &Path) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn bad_table(path: &Path, line: usize, column: Option<&str>, value: Option<&str>, problem: &str) -> Error {
+/// A cell or line of a table that is not as it was written.
+pub(super) fn bad_table(path: &Path, line: usize, column: Option<&str>, value: Option<&str>, problem: &str) -> Error {
     Error::Input(Box::new(InputError {
         file: Some(path.to_path_buf()),
         line: Some(line),
@@ -218,6 +219,24 @@ fn pad(mut text: String, wanted: usize) -> String {
     text
 }
 
+/// What a result says of one of its tables; `None` of an earlier version.
+pub fn listed<'r>(result: &'r Value, name: &str) -> Option<&'r Value> {
+    result["tables"].as_array().into_iter().flatten().find(|entry| entry["file"] == name)
+}
+
+/// Compares a table with the entry of a result about it.
+/// Errors: one that is cut off, or not the one that was written; `by` names the file that says so.
+pub fn check_listed(path: &Path, table: &[u8], entry: &Value, by: &str) -> Result<()> {
+    let bytes = entry["bytes"].as_u64().unwrap_or(0);
+    let problem = match table.len() as u64 {
+        length if length < bytes => format!("is cut off: {length} of the {bytes} bytes that the run wrote"),
+        _ if entry["sha256"] != sha256(table) => format!("is not the table that the run wrote, by {by}"),
+        _ => return Ok(()),
+    };
+    let remedy = "copy the folder again, or run the case again".to_owned();
+    Err(Error::Input(Box::new(InputError { file: Some(path.to_path_buf()), problem, remedy, ..InputError::default() })))
+}
+
 /// Compares a table with what `result.json` beside it says of it; without that file there is nothing to compare with.
 pub fn check_whole(folder: &Path, name: &str, table: &[u8], opened: &Opened) -> Result<()> {
     let (path, beside) = (folder.join(name), folder.join(RESULT_FILE));
@@ -232,14 +251,8 @@ pub fn check_whole(folder: &Path, name: &str, table: &[u8], opened: &Opened) -> 
     let Ok(result) = serde_json::from_slice::<Value>(&opened.read(&beside, RESULT_FILE)?) else {
         return refuse(format!("stands beside a {RESULT_FILE} that is cut off or damaged"));
     };
-    let said = result["tables"].as_array().into_iter().flatten().find(|entry| entry["file"] == name);
-    if let Some(entry) = said {
-        let bytes = entry["bytes"].as_u64().unwrap_or(0);
-        return match table.len() as u64 {
-            length if length < bytes => refuse(format!("is cut off: {length} of the {bytes} bytes that the run wrote")),
-            _ if entry["sha256"] != sha256(table) => refuse(format!("is not the table that the run wrote, by {RESULT_FILE}")),
-            _ => Ok(()),
-        };
+    if let Some(entry) = listed(&result, name) {
+        return check_listed(&path, table, entry, RESULT_FILE);
     }
     // A run of an earlier version says its life alone.
     let last = parse_a_n(&String::from_utf8_lossy(table), &path)?.last().map(|row| row.cycles);

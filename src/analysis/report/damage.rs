@@ -1,6 +1,5 @@
 //! Picture of the damaged plate: one square a point, coloured by the fraction of its bonds that cracks of the start cut or
-//! that broke, or by the fraction of life that its
-//! bonds have spent, or by stress on the deformed plate; crack path, colour bar, scale.
+//! that broke, or by stress on the deformed plate; crack path, colour bar, scale.
 
 use std::path::Path;
 
@@ -28,8 +27,6 @@ const PATH: Rgb = [0, 150, 255];
 pub enum PointField {
     /// Fraction of a point's bonds that are gone: cut by a crack of the start, or broken.
     Damage,
-    /// 1 - λ of the bond of a point that has the least remaining life.
-    LifeSpent,
     /// Von Mises stress, on the deformed plate.
     VonMises,
 }
@@ -38,7 +35,6 @@ impl PointField {
     fn value(self, snapshot: &Snapshot, point: usize) -> f64 {
         match self {
             PointField::Damage => snapshot.damage.get(point).copied().unwrap_or(0.0),
-            PointField::LifeSpent => 1.0 - snapshot.remaining_life.get(point).copied().unwrap_or(1.0),
             PointField::VonMises => snapshot.stress.get(point).copied().unwrap_or(0.0) / MPA,
         }
     }
@@ -46,7 +42,6 @@ impl PointField {
     fn words(self) -> [&'static str; 2] {
         match self {
             PointField::Damage => ["damage", "bonds cut or broken"],
-            PointField::LifeSpent => ["1 - remaining life", "of the most used bond"],
             PointField::VonMises => ["von Mises stress, MPa", "crack drawn open"],
         }
     }
@@ -55,31 +50,9 @@ impl PointField {
     fn full_scale(self, snapshot: &Snapshot) -> f64 {
         match self {
             PointField::Damage => full_scale(&snapshot.damage),
-            PointField::LifeSpent => 1.0,
             PointField::VonMises => high_end(&snapshot.stress) / MPA,
         }
     }
-}
-
-/// The points within `reach`, m, of a place, in a grid of their own.
-pub fn around(grid: &PointGrid, place: Point, reach: f64) -> PointGrid {
-    let mut part = grid.clone();
-    for (index, point) in part.point_at.iter_mut().enumerate() {
-        let [x, y] = position_of(grid, index);
-        if (x - place[0]).abs() > reach || (y - place[1]).abs() > reach {
-            *point = None;
-        }
-    }
-    part
-}
-
-/// Place of the point whose bonds have the least remaining life, m; `None` where all are whole.
-pub fn most_used(grid: &PointGrid, snapshot: &Snapshot) -> Option<Point> {
-    let lives = grid.point_at.iter().enumerate().filter_map(|(place, point)| {
-        let life = *snapshot.remaining_life.get((*point)? as usize)?;
-        (life < 1.0).then_some((place, life))
-    });
-    lives.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(place, _)| position_of(grid, place))
 }
 
 /// What the picture shows.

@@ -3,23 +3,27 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::chart::{self, Mark, Series};
+use super::chart::LARGE;
 use super::output::write_file;
-use super::provenance;
+use super::pictures::fit::{
+    BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, law_svg, rates_fitted,
+};
+use super::pictures::plate::Plate;
+use super::{provenance, test_record};
 use crate::calibration::calibrate::Fitted;
 use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::Fit;
-use crate::calibration::laws::LawFits;
-use crate::calibration::laws::case::LawCase;
+use crate::calibration::readings::readings_csv;
 use crate::calibration::results::{fit_curves_csv, fitted_rates_csv, rates_csv, rates_taken_csv};
 use crate::error::{Error, Result};
-use crate::measured::RateRow;
-use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use crate::units::{MM, MPA_SQRT_M};
 
 /// Table of the rates that a law was fitted to.
 const RATES_FILE: &str = "rates.csv";
+/// Growth rate over ΔK with the law.
+const DA_DN_FILE: &str = "da_dn.svg";
 
 /// Writes all files of a fit into `folder`; `report` is the content of `fit.json`.
 pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
@@ -33,22 +37,37 @@ pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
         Fitted::Lives(calibration, fit) => {
             let (curves, band, rates) = (fit_curves_csv(fit), band(calibration, fit), fitted_rates_csv(calibration, fit));
             let provenance = &calibration.case.provenance;
-            let tables = [("fitted.toml", &*law), ("fit_curves.csv", &*curves), ("fit_band.csv", &*band), (RATES_FILE, &*rates)];
+            let delta_k = |length: f64| fit.delta_k(calibration, length);
+            let readings = readings_csv(calibration, &delta_k);
+            let tables = [
+                ("fitted.toml", &*law),
+                (CURVES_FILE, &*curves),
+                (BAND_FILE, &*band),
+                (RATES_FILE, &*rates),
+                (READINGS_FILE, &*readings),
+            ];
+            if let Some(object) = json.as_object_mut() {
+                object.insert("test".to_owned(), test_record::test(calibration));
+                object.insert("criteria".to_owned(), test_record::criteria(calibration, &delta_k).into());
+                object.insert("plate".to_owned(), json!(Plate::of(&calibration.case)));
+            }
             provenance::add(&mut json, provenance, &tables);
             tables.iter().try_for_each(|(name, text)| put(name, text))?;
             provenance::write(folder, "calibrate", calibration.input.clone(), provenance)?;
             write_tables(folder, calibration, fit)?;
-            draw(folder, calibration, fit)?;
+            let tables = FitTables::read(&json, [&curves, &band, &readings])?;
+            put("fit.svg", &tables.lives_svg(LARGE))?;
+            put(DA_DN_FILE, &tables.rates_svg(LARGE))?;
         }
         Fitted::Rates(case, fits) => {
             put("fitted.toml", &law)?;
-            put("fit_rates.csv", &rates_csv(case, fits))?;
+            let rates = rates_csv(case, fits);
+            put(RATES_FITTED_FILE, &rates)?;
             put(RATES_FILE, &rates_taken_csv(case))?;
-            let title = format!("{}: {}", case.name, fits.law().kind);
-            chart::growth_rate(&folder.join("fit_rates.svg"), &title, &series(case, fits))?;
+            put(DA_DN_FILE, &law_svg(&rates_fitted(&rates)?, LARGE))?;
         }
     }
-    put("fit.json", &format!("{json:#}\n"))
+    put(FIT_FILE, &format!("{json:#}\n"))
 }
 
 /// Standard errors from the middle of a 95 % band to its ends.
@@ -99,72 +118,4 @@ fn write_tables(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Resu
 #[cfg(not(feature = "tables"))]
 fn write_tables(_folder: &Path, _calibration: &CalibrationCase, _fit: &Fit) -> Result<()> {
     Ok(())
-}
-
-/// `fit.svg`: measured points with the fitted curve.
-fn draw(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
-    let points = |cycles: &[f64], lengths: &[f64]| cycles.iter().zip(lengths).map(|(n, a)| (*n, a / MM)).collect();
-    let series = |name: &str, cycles: &[f64], lengths: &[f64], mark| Series {
-        name: name.to_owned(),
-        points: points(cycles, lengths),
-        mark,
-    };
-    let record = &fit.record;
-    let name = if fit.specimens.len() > 1 { "measured, median of all specimens" } else { "measured" };
-    let mut all = vec![
-        series(name, &record.cycles_measured, &record.crack_length, Mark::Circles),
-        series("fitted", &record.cycles_fitted, &record.crack_length, Mark::Line),
-    ];
-    if fit.specimens.len() > 1 {
-        let every = fit.specimens.iter().flat_map(|curve| curve.cycles_measured.iter().copied()).collect::<Vec<f64>>();
-        let lengths = fit.specimens.iter().flat_map(|curve| curve.crack_length.iter().copied()).collect::<Vec<f64>>();
-        all.insert(0, series("measured, every specimen", &every, &lengths, Mark::Dots));
-    }
-    chart::crack_length(&folder.join("fit.svg"), &format!("{}: fit", calibration.case.name), &all)?;
-    draw_rates(folder, calibration, fit)
-}
-
-/// `fit_rates.svg`: the fitted curve's rates against ΔK with the straight line through them.
-fn draw_rates(folder: &Path, calibration: &CalibrationCase, fit: &Fit) -> Result<()> {
-    let record = &fit.record;
-    let delta_k = |length: f64| fit.delta_k(calibration, length) / MPA_SQRT_M;
-    let rates = |cycles: &[f64]| -> Vec<(f64, f64)> {
-        (1..cycles.len())
-            .map(|i| {
-                let (a, before) = (record.crack_length[i], record.crack_length[i - 1]);
-                (delta_k(0.5 * (a + before)) * record.load_factor[i], (a - before) / (cycles[i] - cycles[i - 1]) / MM_PER_CYCLE)
-            })
-            .filter(|(_, rate): &(f64, f64)| rate.is_finite())
-            .collect()
-    };
-    let line = [fit.paris.delta_k_min, fit.paris.delta_k_max].map(|k| (k, fit.paris.c * k.powf(fit.paris.m))).to_vec();
-    let all = [
-        Series { name: "measured (secant)".to_owned(), points: rates(&record.cycles_measured), mark: Mark::Circles },
-        Series { name: "fitted model".to_owned(), points: rates(&record.cycles_fitted), mark: Mark::Dots },
-        Series { name: format!("da/dN = {:.3e} ΔK^{:.3}", fit.paris.c, fit.paris.m), points: line, mark: Mark::Dashes },
-    ];
-    chart::growth_rate(&folder.join("fit_rates.svg"), &format!("{}: growth rate", calibration.case.name), &all)
-}
-
-/// Most stress ratios that a picture tells apart.
-const RATIOS_DRAWN: usize = 6;
-
-/// Measured rates of every stress ratio, and those of the law at the same rows.
-fn series(case: &LawCase, fits: &LawFits) -> Vec<Series> {
-    let ratios = case.ratios();
-    if ratios.len() > RATIOS_DRAWN {
-        return pair("all stress ratios", case, fits, &|_| true);
-    }
-    ratios.iter().flat_map(|ratio| pair(&format!("R = {ratio}"), case, fits, &|of| (of - ratio).abs() < 0.0051)).collect()
-}
-
-fn pair(name: &str, case: &LawCase, fits: &LawFits, is_of: &dyn Fn(f64) -> bool) -> Vec<Series> {
-    let rows = || case.rows.iter().zip(&fits.law().residuals).filter(|(row, _)| is_of(row.ratio));
-    let point = |(row, share): (&RateRow, f64)| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE * share);
-    let mut law: Vec<(f64, f64)> = rows().map(|(row, residual)| point((row, (-residual).exp()))).collect();
-    law.sort_by(|a, b| a.0.total_cmp(&b.0));
-    vec![
-        Series { name: name.to_owned(), points: rows().map(|(row, _)| point((row, 1.0))).collect(), mark: Mark::Circles },
-        Series { name: format!("{}, {name}", fits.law().kind), points: law, mark: Mark::Line },
-    ]
 }

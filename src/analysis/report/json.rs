@@ -14,7 +14,6 @@ use super::checks;
 use super::fit_use::extrapolated;
 pub use super::fit_use::life_share_extrapolated;
 use super::model_words::{self, clean};
-use super::shape::shape;
 
 /// Name of the file.
 pub const RESULT_FILE: &str = "result.json";
@@ -58,7 +57,6 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "checks": checks::json(&checks),
         "warnings": warnings,
         "version": env!("CARGO_PKG_VERSION"),
-        "shape": shape(case),
         "case": case.echo,
     })
 }

@@ -1,4 +1,4 @@
-//! Results to files: tables, `result.json`, charts, the damage picture and ParaView files.
+//! Results to files: tables, `result.json`, charts, pictures and ParaView files.
 //!
 //! A run writes into an [`output::OutputFolder`], which appears under its name only once it is whole.
 
@@ -15,17 +15,19 @@ pub mod fracture;
 pub mod json;
 pub mod model_words;
 pub mod output;
+pub mod paper;
+pub mod pictures;
 pub mod provenance;
 pub mod resample;
 pub mod quality;
 pub mod run;
-pub mod shape;
 pub mod speed;
 pub mod specimen_picture;
 pub mod stability;
 pub mod stability_picture;
 pub mod stresses;
 pub mod sweep;
+pub mod test_record;
 pub mod time;
 pub mod verification;
 pub mod vtk;

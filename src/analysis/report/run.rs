@@ -3,15 +3,18 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use toml::Table;
 
 use super::band::Lives;
-use super::chart::{self, Mark, Series};
-use super::csv::{self, Row};
-use super::damage::{DamagePicture, PointField, around, cycles_and_length, most_used};
+use super::chart::{self, LARGE, Mark, Series};
+use super::csv;
+use super::damage::{DamagePicture, PointField, cycles_and_length};
 pub use super::json::result;
 use super::output::{Room, write_file};
+use super::pictures::curves::{a_n_svg, k_svg};
+use super::pictures::plate::{self, Plate, plate_svg};
+use super::pictures::tables::RunTables;
 use super::quality::Quality;
 use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{checks, factors, fit_use, json, provenance, vtk};
@@ -22,15 +25,12 @@ use crate::predict::plastic_zone::{self, PlasticZone};
 use crate::predict::record::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::residual_strength::Strength;
 use crate::predict::{Prediction, StopReason};
-use crate::specimen::geometry::distance;
 use crate::specimen::handbook::handbook;
 use crate::specimen::{LoadMeasure, Point};
 use crate::units::{KN, MM, MPA, MPA_SQRT_M};
 
-/// Half the width of the picture of the fatigue zone, in horizons.
-const ZONE_HORIZONS: f64 = 4.0;
 /// Table of the ways of the tips.
-const CRACK_PATH_FILE: &str = "crack_path.csv";
+pub const CRACK_PATH_FILE: &str = "crack_path.csv";
 
 /// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
 /// Errors: [`Error::Mechanics`] if the run ended before the crack grew.
@@ -160,6 +160,9 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives,
     quality.add_to(&mut result);
     let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement()));
     let path = csv::crack_path(prediction, &case.specimen.cracks);
+    if let Some(object) = result.as_object_mut() {
+        object.insert("plate".to_owned(), json!(Plate::of(case)));
+    }
     provenance::add(&mut result, &case.provenance, &[(csv::A_N_FILE, &a_n), (CRACK_PATH_FILE, &path)]);
     if let (Some(refusal), Some(object)) = (refusal(case, prediction), result.as_object_mut()) {
         object.insert("refused".to_owned(), refusal.to_string().into());
@@ -175,26 +178,7 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives,
     }
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     provenance::write(folder, "predict", input_of(case), &case.provenance)?;
-    draw_curves(folder, case, prediction, lives)?;
-    let paths: Vec<Vec<Point>> = csv::paths(prediction, &case.specimen.cracks)
-        .into_iter()
-        .map(|path| path.into_iter().map(|(_, position)| position).collect())
-        .collect();
-    if let Some(snapshot) = prediction.snapshots.last() {
-        let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
-        // A plate of nodes has no bonds that are damaged, but a stress.
-        let (field, file) =
-            if snapshot.stress.is_empty() { (PointField::Damage, "damage.png") } else { (PointField::VonMises, "von_mises.png") };
-        DamagePicture { grid: &prediction.grid, snapshot, field, cracks, paths: &paths, caption: &caption }
-            .write(&folder.join(file))?;
-    }
-    if matches!(case.model, Model::Nodes(_)) {
-        write_file(&folder.join("nodes.svg"), nodes_svg(case, &paths)?.as_bytes())?;
-        if let Some(around_tip) = tip_svg(case, &paths)? {
-            write_file(&folder.join("nodes_tip.svg"), around_tip.as_bytes())?;
-        }
-    }
-    draw_remaining_life(&folder.join("remaining_life.png"), prediction, &paths)?;
+    draw(folder, case, prediction, &result, [&a_n, &path])?;
     vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)?;
     Ok(result)
 }
@@ -216,53 +200,46 @@ pub fn room(case: &Case) -> Room {
     Room { tables, all: tables + Budget::of(case).disk_bytes as u64 }
 }
 
-/// The fatigue zone ahead of a tip, in the middle of the snapshots that have one.
-fn draw_remaining_life(path: &Path, prediction: &Prediction, paths: &[Vec<Point>]) -> Result<()> {
-    let grid = &prediction.grid;
-    let with_zone: Vec<_> =
-        prediction.snapshots.iter().filter_map(|snapshot| Some((snapshot, most_used(grid, snapshot)?))).collect();
-    let Some(&(snapshot, tip)) = with_zone.get(with_zone.len() / 2) else { return Ok(()) };
-    let grid = &around(grid, tip, ZONE_HORIZONS * prediction.figures.horizon);
-    let [cycles, length] = cycles_and_length(snapshot);
-    let place = format!("at x {:.2}, y {:.2} mm", tip[0] / MM, tip[1] / MM);
-    // The path beyond the zone, and after this moment, is left out with the points.
-    let is_near = |at: &Point| grid.point_at.len() > 1 && distance(*at, tip) < ZONE_HORIZONS * prediction.figures.horizon;
-    let near: Vec<Vec<Point>> = paths.iter().map(|path| path.iter().copied().filter(is_near).collect()).collect();
-    let picture = DamagePicture {
-        grid,
-        snapshot,
-        field: PointField::LifeSpent,
-        cracks: &[],
-        paths: &near,
-        caption: &[cycles, length, place],
-    };
-    picture.write(path)
-}
-
-/// `a_n.svg`, and `da_dn.svg` where ΔK and da/dN are known.
-fn draw_curves(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives) -> Result<()> {
-    let rows: Vec<Row> = prediction.curve.iter().map(Row::of).collect();
-    let series = |name: &str, mark, pick: fn(&Row) -> (f64, f64)| Series {
-        name: name.to_owned(),
-        mark,
-        points: rows.iter().map(pick).collect(),
-    };
-    let curve = series("predicted", Mark::Line, |row| (row.cycles, row.crack_length_mm));
-    let mut curves = vec![curve];
-    if let Ok((_, band)) = &lives.band {
-        let of = |share: usize, name: &str| {
-            let points = band.reached.iter().zip(&rows).map(|(cycles, row)| (cycles[share], row.crack_length_mm)).collect();
-            Series { name: name.to_owned(), mark: Mark::Dashes, points }
-        };
-        curves.extend([of(0, "reached by 5 % of specimens"), of(2, "reached by 95 %")]);
+/// The pictures of a run: plate, crack length, K and rates; damage where bonds drive the cracks by their own strain; nodes and stress of a
+/// plate of nodes.
+fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_n, path]: [&str; 2]) -> Result<()> {
+    let tables = RunTables::read([a_n, csv::A_N_FILE], [path, CRACK_PATH_FILE])?;
+    let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
+    put("a_n.svg", &a_n_svg(result, &tables, LARGE))?;
+    if let Some(k) = k_svg(result, &tables, LARGE) {
+        put("k.svg", &k)?;
     }
-    let rates =
-        series("predicted, one point per cycle block", Mark::Dots, |row| (row.delta_k_mpa_sqrt_m, row.da_dn_mm_per_cycle));
-    chart::crack_length(&folder.join("a_n.svg"), &format!("{}: crack length over life", case.name), &curves)?;
-    if rates.points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
-        chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
+    draw_rates(folder, case, &tables)?;
+    let paths: Vec<Vec<Point>> = csv::paths(prediction, &case.specimen.cracks)
+        .into_iter()
+        .map(|path| path.into_iter().map(|(_, position)| position).collect())
+        .collect();
+    put("plate.svg", &plate_svg(&Plate::of(case), &tables, plate::SIZE))?;
+    let is_by_bonds = case.spends_bond_life();
+    if let Some(snapshot) = prediction.snapshots.last().filter(|snapshot| is_by_bonds || !snapshot.stress.is_empty()) {
+        let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
+        let (field, file) =
+            if is_by_bonds { (PointField::Damage, "damage.png") } else { (PointField::VonMises, "von_mises.png") };
+        DamagePicture { grid: &prediction.grid, snapshot, field, cracks, paths: &paths, caption: &caption }
+            .write(&folder.join(file))?;
+    }
+    if matches!(case.model, Model::Nodes(_)) {
+        put("nodes.svg", &nodes_svg(case, &paths)?)?;
+        if let Some(around_tip) = tip_svg(case, &paths)? {
+            put("nodes_tip.svg", &around_tip)?;
+        }
     }
     Ok(())
+}
+
+/// `da_dn.svg` where ΔK and da/dN are known.
+fn draw_rates(folder: &Path, case: &Case, tables: &RunTables) -> Result<()> {
+    let points: Vec<(f64, f64)> = tables.rows.iter().map(|row| (row.delta_k_mpa_sqrt_m, row.da_dn_mm_per_cycle)).collect();
+    if !points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
+        return Ok(());
+    }
+    let rates = Series { name: "predicted, one point per cycle block".to_owned(), mark: Mark::Dots, points };
+    chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])
 }
 
 /// What came of a run, in words.

@@ -22,6 +22,14 @@ pub struct LeaveOut {
     pub reason: String,
 }
 
+impl LeaveOut {
+    /// Whether it covers or cuts the growth between two readings, by their cycles.
+    pub fn covers(&self, before: f64, after: f64) -> bool {
+        let slack = 1e-9 * self.to_cycles.abs();
+        before < self.to_cycles - slack && after > self.from_cycles + slack
+    }
+}
+
 /// Most names of specimens in a message.
 const NAMES_MAX: usize = 20;
 
@@ -81,8 +89,7 @@ impl Measured {
         }
         let curve = &mut self.curves[place];
         let count = curve.cycles.len();
-        let slack = 1e-9 * to_cycles.abs();
-        let covered = |step: usize| curve.cycles[step - 1] < to_cycles - slack && curve.cycles[step] > from_cycles + slack;
+        let covered = |step: usize| window.covers(curve.cycles[step - 1], curve.cycles[step]);
         let steps: Vec<usize> = (1..count).filter(|&step| covered(step)).collect();
         if steps.is_empty() {
             let problem = format!("covers no growth of specimen {}", curve.specimen);

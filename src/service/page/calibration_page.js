@@ -35,9 +35,9 @@ export async function openCalibration(root, id, signal) {
     if (whole.summary.candidates) {
       const { node, image } = createPicture("Growth rate against range of stress intensity, readings and fitted law, logarithmic axes");
       show(body, warnings.length > 0 && warningList(warnings), section("rates", "Growth rates", rates), lawSections(whole.summary), downloadList(whole), inputText(whole));
-      if (has("fit_rates.svg")) {
+      if (has("da_dn.svg")) {
         loadInto(rates, async () => {
-          await showBlob(image, await getBlob(`${pathOf(whole)}/files/fit_rates.svg`, signal));
+          await showBlob(image, await getBlob(`${pathOf(whole)}/files/da_dn.svg`, signal));
           show(rates, node);
         });
       }

@@ -210,7 +210,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     // Files come down as they are.
     let downloads = tempdir().unwrap();
     page.download_into(downloads.path());
-    for name in ["a_n.csv", "result.json", "damage.png"] {
+    for name in ["a_n.csv", "result.json", "plate.svg"] {
         page.click(&format!("[data-file='{name}'] button"));
         let (file, begun) = (downloads.path().join(name), Instant::now());
         while fs::read(&file).is_ok_and(|bytes| bytes.is_empty()) || !file.exists() {

@@ -149,7 +149,7 @@ fn a_calibration_has_the_files_of_the_command_and_serves_predictions() {
         let job = service.submit("calibrations", &json!({ "name": name, "input": text, "files": { "curve.csv": curve } }));
         let done = service.succeeded(&job);
         let tables: &[&str] = if cfg!(feature = "tables") { &["fit_curves.parquet"] } else { &[] };
-        for file in ["fitted.toml", "fit_curves.csv", "fit_band.csv", "fit.svg", "fit_rates.svg"].iter().chain(tables) {
+        for file in ["fitted.toml", "fit_curves.csv", "fit_band.csv", "fit.svg", "da_dn.svg"].iter().chain(tables) {
             assert!(service.file(&job, file) == fs::read(folder.join(name).join(file)).unwrap(), "{name}: {file} differs");
         }
         let form = multipart(&[

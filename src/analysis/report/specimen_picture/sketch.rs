@@ -105,9 +105,72 @@ impl Sketch {
         ));
     }
 
+    /// Line through pixels; `dash` as in SVG, empty for a full line.
+    pub fn path(&mut self, places: &[Point], stroke: &str, width: f64, dash: &str) {
+        let points = pixels(places);
+        let dash = if dash.is_empty() { String::new() } else { format!(r#" stroke-dasharray="{dash}""#) };
+        self.push(format_args!(
+            r#"<polyline points="{points}" fill="none" stroke="{stroke}" stroke-width="{width}" stroke-linejoin="round"{dash}/>"#
+        ));
+    }
+
+    /// Filled polygon of pixels without an edge, that lets what is below shine through.
+    pub fn area(&mut self, places: &[Point], fill: &str, opacity: f64) {
+        let points = pixels(places);
+        self.push(format_args!(r#"<polygon points="{points}" fill="{fill}" fill-opacity="{opacity}"/>"#));
+    }
+
+    /// Open circle of fixed size in pixels.
+    pub fn ring(&mut self, [x, y]: Point, radius: f64, stroke: &str, width: f64) {
+        self.push(format_args!(
+            r#"<circle cx="{x:.1}" cy="{y:.1}" r="{radius}" fill="white" stroke="{stroke}" stroke-width="{width}"/>"#
+        ));
+    }
+
+    /// Lines at 45 degrees over an upright rectangle of pixels between two corners: not known there.
+    pub fn hatch(&mut self, [x0, y0]: Point, [x1, y1]: Point, stroke: &str) {
+        let (width, height) = (x1 - x0, y1 - y0);
+        let count = ((width + height) / 7.0).clamp(0.0, 2000.0) as usize;
+        for line in 1..=count {
+            let along = line as f64 * 7.0;
+            let from = [x0 + along.min(width), y0 + (along - width).max(0.0)];
+            let to = [x0 + (along - height).max(0.0), y0 + along.min(height)];
+            self.push(format_args!(
+                r#"<path d="M{:.1} {:.1}L{:.1} {:.1}" stroke="{stroke}" stroke-opacity="0.35"/>"#,
+                from[0], from[1], to[0], to[1]
+            ));
+        }
+    }
+
+    /// Words at a pixel that stay readable over lines; `K_I` is written with a lowered index.
+    pub fn name(&mut self, [x, y]: Point, words: &str, anchor: &str, size: f64, fill: &str) {
+        let words = lowered(&escaped(words));
+        self.push(format_args!(
+            r#"<text x="{x:.1}" y="{y:.1}" text-anchor="{anchor}" font-size="{size}" fill="{fill}" paint-order="stroke" stroke="white" stroke-width="3" stroke-linejoin="round">{words}</text>"#
+        ));
+    }
+
+    /// Puts another drawing into an upright rectangle of pixels; nothing of it shows outside.
+    pub fn within(&mut self, [x, y]: Point, [width, height]: Point, inner: Sketch) {
+        self.push(format_args!(r#"<svg x="{x:.1}" y="{y:.1}" width="{width:.1}" height="{height:.1}" overflow="hidden">"#));
+        self.body.push_str(&inner.body);
+        self.push(format_args!("</svg>"));
+    }
+
+    /// The whole picture of this size, with a sentence for those who do not see it.
+    pub fn picture(self, [width, height]: Point, sentence: &str) -> String {
+        let sentence = escaped(sentence).replace('"', "&quot;");
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
+             role=\"img\" aria-label=\"{sentence}\" font-family=\"IBM Plex Sans, Segoe UI, Helvetica, Arial, sans-serif\">\n  \
+             <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
+            self.body
+        )
+    }
+
     /// Words at a pixel; `anchor` is start, middle or end.
     pub fn text(&mut self, [x, y]: Point, words: &str, anchor: &str, size: u32, fill: &str) {
-        let words = words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        let words = escaped(words);
         self.push(format_args!(
             r#"<text x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" font-size="{size}" fill="{fill}">{words}</text>"#
         ));
@@ -138,4 +201,21 @@ impl Sketch {
             self.body
         )
     }
+}
+
+fn pixels(places: &[Point]) -> String {
+    places.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ")
+}
+
+/// Text as markup takes it.
+pub fn escaped(text: &str) -> String {
+    // What no document of markup may hold is left out.
+    let text: String = text.chars().filter(|c| !c.is_control() || *c == '\n').collect();
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// The index of K lowered.
+fn lowered(text: &str) -> String {
+    let low = |index: &str| format!("<tspan dy=\"3\" font-size=\"75%\">{index}</tspan><tspan dy=\"-3\">\u{200b}</tspan>");
+    ["II", "I"].iter().fold(text.to_owned(), |text, index| text.replace(&format!("K_{index}"), &format!("K{}", low(index))))
 }
