@@ -5,7 +5,7 @@ import { getBlob, getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, section, show, showPage, table, terms } from "./dom.js";
 import { cycles, deviation, fixed, percent, plain, scientific, significant, words } from "./format.js";
-import { createJobHead, downloadList, inputText, pathOf, showAtEnd } from "./job.js";
+import { createJobHead, downloadList, inputText, pathOf, reportButton, showAtEnd } from "./job.js";
 import { warningList } from "./check.js";
 import { lawSections } from "./law_page.js";
 import { loadInto } from "./notices.js";
@@ -26,6 +26,7 @@ export async function openCalibration(root, id, signal) {
 
   async function finish(whole) {
     use.hidden = false;
+    head.offer(reportButton(whole));
     const files = whole.files ?? [];
     const has = (name) => files.some((file) => file.name === name);
     const read = (name) => (has(name) ? getText(`${pathOf(whole)}/files/${name}`, signal).then(readCsv) : null);

@@ -147,6 +147,10 @@ export function createJobHead(first, { actions = [] } = {}) {
   update(first);
   return {
     node, update,
+    /** Adds a button before the others. */
+    offer(own) {
+      if (own) node.querySelector(".tool-row.end").prepend(own);
+    },
     /** What the run is of, in a sentence. */
     describe(text) {
       what.textContent = text;
@@ -167,6 +171,12 @@ export function failureOf(job) {
   const { line, file } = problem.input ?? {};
   const ofInput = line && job.input && !/\.csv$/i.test(file ?? "");
   return element("div", null, problemBox(problem), ofInput && excerpt(job.input, [line], "Input"));
+}
+
+/** The report of a run, to be printed and signed; nothing of runs of before. */
+export function reportButton(job, name = nameOf(job)) {
+  const report = job.files?.find((file) => file.name === "report.html");
+  return report && button("Report", () => download(report.href, `${name}.html`), { "data-action": "report" });
 }
 
 /** Everything to take away; `special`: {name: node} where a file has choices of its own. */

@@ -7,7 +7,7 @@ import { warningList } from "./check.js";
 import { button, element, readCsv, show, showPage, terms } from "./dom.js";
 import { follow } from "./events.js";
 import { count, cycles, deserved, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
-import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf } from "./job.js";
+import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf, reportButton } from "./job.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
 import { createPlatePath } from "./plate_path.js";
@@ -117,6 +117,7 @@ export async function openPrediction(root, id, signal) {
     result = has(done, "result.json") ? JSON.parse(await getText(pathTo(done, "result.json"), signal)) : done.summary;
     drawn = result.plate ?? drawn;
     show(outcome, answerCard({ ...done.summary, ...result }));
+    head.offer(reportButton(done));
     head.describe(describe(result));
     below.prepend(element("div", { class: "two" }, howComputed(done, result),
       result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "All that was noticed"))));

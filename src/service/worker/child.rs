@@ -18,12 +18,16 @@ use super::telling::Teller;
 use super::{bytes, free_bytes, packed};
 use crate::calibration::calibrate::Calibration;
 use crate::error::{Error, Result};
+use crate::input::Opened;
 use crate::problem::Problem;
 use crate::report::json::RESULT_FILE;
 use crate::report::output::{Room, write_file};
+use crate::report::paper::{self, Signed};
 use crate::runner::{self, Task, TaskCheckpoint};
 use crate::store::Growth;
 
+/// The report of a run or a fit among its files.
+const REPORT_FILE: &str = "report.html";
 /// Time between two tellings.
 const TELL_EVERY: Duration = Duration::from_millis(400);
 
@@ -137,6 +141,11 @@ fn run_task(folder: &Path, task: &Task, from: Option<TaskCheckpoint>, teller: &T
     }
     // A run of cycles that is refused is shown as such.
     let summary = if matches!(task, Task::Prediction { .. }) { summary } else { summary.counted()? };
+    // A report of what cannot be read again is no reason to lose the run.
+    let is_reported = matches!(task, Task::Prediction { .. } | Task::Fit(_));
+    if let Some(source) = is_reported.then(|| paper::read(folder, &Opened::default()).ok()).flatten() {
+        write_file(&folder.join(REPORT_FILE), paper::html(&source, &Signed::default()).as_bytes())?;
+    }
     packed(folder)?;
     Ok(summary.figures)
 }
