@@ -195,6 +195,15 @@ fn the_page_leads_from_readings_to_remaining_life() {
     assert_eq!(done["calibration"], fit.as_str());
     walk.look("07_predicted");
 
+    // One place along the life for plate, curve and K; a report to take away.
+    page.run(
+        "const place = document.querySelector('#place'); place.value = 500; place.dispatchEvent(new Event('input', { bubbles: true }));",
+    );
+    page.until("document.querySelector('[data-part=place]').textContent.includes('50 % of life')");
+    page.see("[data-plate=whole] .path");
+    page.see("[data-chart=factors] path[data-series=k1]");
+    page.see("[data-action=report]");
+
     // What is left from a length on, and when to look again.
     let [from, to] = ["crack_length_initial_mm", "crack_length_final_mm"].map(|key| done["summary"][key].as_f64().unwrap());
     let today = format!("{:.1}", 0.5 * (from + to));
