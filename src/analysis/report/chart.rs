@@ -308,10 +308,10 @@ impl Frame {
         }
     }
 
-    /// A remark in the upper left corner of the plot.
+    /// A remark in the lower left corner of the plot.
     pub fn remark(&mut self, words: &str) {
-        let ([left, top, _, _], text) = (self.room, self.size.text);
-        self.sketch.name([left + 6.0, top + 1.1 * text], words, "start", text, NOTE);
+        let ([left, _, _, bottom], text) = (self.room, self.size.text);
+        self.sketch.name([left + 6.0, bottom - 0.5 * text], words, "start", text, NOTE);
     }
 
     /// The name of a curve right of its last point, moved down where another one stands.
