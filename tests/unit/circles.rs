@@ -161,20 +161,20 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("report", 7543),
+    ("report", 10024),
     ("fracture", 6916),
-    ("calibration", 6010),
-    ("service", 5627),
+    ("calibration", 6123),
+    ("service", 5636),
     ("solver", 5287),
-    ("growth", 5015),
+    ("growth", 5133),
     ("verify", 4917),
     ("element_free", 4015),
-    ("measured", 3727),
-    ("commands", 2720),
+    ("measured", 3734),
+    ("commands", 2786),
     ("case", 2560),
     ("body", 2534),
     ("specimen", 2483),
-    ("predict", 1775),
+    ("predict", 1796),
     ("levels", 1728),
     ("fatigue", 1681),
     ("sweep", 1074),
@@ -182,13 +182,13 @@ const LINES: &[(&str, usize)] = &[
     ("loading", 831),
     ("input", 734),
     ("stress_intensity", 681),
-    ("check", 570),
+    ("check", 588),
     ("bond_law", 394),
     ("tables", 342),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 71765;
+const LINES_OF_ALL: usize = 74598;
 
 #[test]
 fn rooms_do_not_grow() {

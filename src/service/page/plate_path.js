@@ -6,6 +6,7 @@ import { shape as node, show, uniqueId } from "./dom.js";
 const STOPS = 5;
 const MARKS = [0.25, 0.5, 0.75, 0.9];
 const MARGIN = 36; // for load arrows
+const WORD = 34; // room of a mark's words
 const HEIGHT_MAX = 380;
 const BAR = 24; // for the rule
 
@@ -185,7 +186,7 @@ function createView(label, isWhole, heightMax) {
         lines.push(piece);
         last = point;
       }
-      if (!isWhole) above.push(...MARKS.map((share) => markOf(path, share, share * life <= cycles, number)));
+      if (!isWhole) above.push(...marksOf(path, cycles, number === 0));
       const [cx, cy] = pixel(tip.slice(1));
       above.push(node("circle", { class: "dot", cx, cy, r: isWhole ? 3.5 : 5 }));
       if (paths.length > 1) above.push(node("text", { class: "halo strong", x: cx + 8, y: cy - 8 }, String(number)));
@@ -195,14 +196,19 @@ function createView(label, isWhole, heightMax) {
     show(words, above);
   }
 
-  /** Where a tip stands at a share of the life. */
-  function markOf(path, share, isPast, number) {
-    const [x, y] = pixel(at(path, share * data.life).slice(1));
-    const dy = (MARKS.indexOf(share) % 2 === 0 ? 1 : -1) * 30;
-    const group = node("g", { opacity: isPast ? 1 : 0.45 }, node("path", { class: "leader", d: `M${x} ${y}v${dy}` }),
-      node("circle", { class: "dot", cx: x, cy: y, r: 2.5 }));
-    if (number === 0) group.append(node("text", { class: "strong halo", x, y: y + dy + (dy > 0 ? 13 : -4), "text-anchor": "middle" }, `${Math.round(100 * share)} %`));
-    return group;
+  /** Where a tip stands at shares of the life; of the first one in words, where there is room for them. */
+  function marksOf(path, cycles, isNamed) {
+    const ends = { "-1": -Infinity, 1: -Infinity }; // of the words above and below
+    return MARKS.map((share, index) => {
+      const [x, y] = pixel(at(path, share * data.life).slice(1));
+      const side = index % 2 === 0 ? 1 : -1;
+      const hasRoom = isNamed && Math.abs(x - ends[side]) > WORD;
+      if (hasRoom) ends[side] = x;
+      return node("g", { opacity: share * data.life <= cycles ? 1 : 0.45 },
+        hasRoom && node("path", { class: "leader", d: `M${x} ${y}v${30 * side}` }),
+        node("circle", { class: "dot", cx: x, cy: y, r: 2.5 }),
+        hasRoom && node("text", { class: "strong halo", x, y: y + 30 * side + (side > 0 ? 13 : -4), "text-anchor": "middle" }, `${Math.round(100 * share)} %`));
+    });
   }
 
   return { svg, draw, to };

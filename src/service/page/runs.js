@@ -2,7 +2,7 @@
 
 import { getJson } from "./api.js";
 import { button, byId, element, show } from "./dom.js";
-import { count, duration, fixed, lifeOf, moment, percent, scientific, words } from "./format.js";
+import { count, cycles, duration, fixed, lifeOf, moment, percent, scientific, words } from "./format.js";
 import { cancelJob, confirmDelete, hrefOf, isFinal, kindOf, nameOf, stateBadge } from "./job.js";
 import { problemBox } from "./notices.js";
 
@@ -15,10 +15,11 @@ export const COMPARE_MAX = 8;
 const BEGINNINGS = { calibrations: ["#/measure", "Calibrate from measured curves"], predictions: ["#/predict", "Predict a plate"] };
 
 export function createRunsView() {
-  const [kind, state, place, pager, compareBar] = ["runs-kind", "runs-state", "runs-list", "runs-pager", "compare-bar"].map(byId);
+  const [kind, state, search, place, pager, compareBar] = ["runs-kind", "runs-state", "runs-search", "runs-list", "runs-pager", "compare-bar"].map(byId);
   const ticked = new Map(); // id to name, over all pages of the list
   let pages = [""]; // `after` of every page up to the one shown
   let next = null;
+  let items = []; // of the page shown
   let timer = 0;
   let running = null;
   let shown = "";
@@ -47,7 +48,8 @@ export function createRunsView() {
       const list = await fetchPage(own.signal);
       if (own.signal.aborted) return;
       next = list.next;
-      render(list.items);
+      items = list.items;
+      render();
       if (list.items.some((job) => !isFinal(job))) timer = setTimeout(() => load({ quietly: true }), REFRESH_MS);
     } catch (error) {
       if (own.signal.aborted) return;
@@ -56,12 +58,14 @@ export function createRunsView() {
     }
   }
 
-  function render(items) {
-    const text = JSON.stringify([kind.value, items]);
+  function render() {
+    const wanted = search.value.trim().toLowerCase();
+    const found = items.filter((job) => nameOf(job).toLowerCase().includes(wanted));
+    const text = JSON.stringify([kind.value, found]);
     if (text === shown) return; // nothing new: no flicker, and the focus stays
     shown = text;
     const focused = document.activeElement?.dataset?.focus;
-    show(place, items.length === 0 ? empty() : tableOf(items));
+    show(place, found.length > 0 ? tableOf(found) : items.length === 0 ? empty() : element("p", { class: "empty" }, "None of these has that in its name."));
     if (focused) place.querySelector(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
     byId("runs-newer").disabled = pages.length === 1;
     byId("runs-older").disabled = !next;
@@ -99,6 +103,9 @@ export function createRunsView() {
       return [element("strong", null, `m ${fixed(s.paris_m, 3)}`),
         element("span", { class: "row-unit" }, `${scientific(s.rate_at_pivot_mm_per_cycle, 4)} mm/cycle at the pivot, rms of lives ${percent(s.rms_life_error, 2)}`)];
     }
+    const factors = (s.tips ?? []).flatMap((tip) => Object.values(tip.methods ?? {}).map((read) => read.k_i_mpa_sqrt_m)).filter(Number.isFinite);
+    if (of === "sif" && factors.length > 0) return element("strong", null, `K up to ${fixed(Math.max(...factors), 2)} MPa√m`);
+    if (of === "sweep" && s.life_cycles?.p50) return element("strong", null, `median ${cycles(Math.round(s.life_cycles.p50))} cycles`);
     return words(s.stop_reason ?? "");
   }
 
@@ -177,6 +184,7 @@ export function createRunsView() {
     location.replace(kind.value ? `#/runs?kind=${kind.value}` : "#/runs");
   });
   state.addEventListener("change", restart);
+  search.addEventListener("input", render);
   byId("compare-clear").addEventListener("click", () => {
     ticked.clear();
     shown = "";

@@ -229,6 +229,26 @@ fn the_page_leads_from_readings_to_remaining_life() {
         assert!(fs::read(&file).unwrap() == service.file(&format!("/v1/predictions/{first}"), name), "{name} differs");
     }
 
+    // The report is a page of its own, which needs no service.
+    page.click("[data-action=report]");
+    let report = || {
+        let files = fs::read_dir(downloads.path()).unwrap().map(|entry| entry.unwrap().path());
+        files.into_iter().find(|path| path.extension().is_some_and(|end| end == "html"))
+    };
+    let begun = Instant::now();
+    let file = loop {
+        if let Some(file) = report().filter(|file| fs::read(file).is_ok_and(|bytes| bytes.ends_with(b"</html>\n"))) {
+            break file;
+        }
+        assert!(begun.elapsed() < crate::support::server::PATIENCE, "the report does not come");
+        std::thread::sleep(Duration::from_millis(50));
+    };
+    let here = page.run("return location.href").as_str().unwrap().to_owned();
+    page.open(&format!("file://{}", file.display()));
+    fs::write(walk.pictures.join("15_report.png"), page.picture()).unwrap();
+    assert!(page.text("main").contains("Is it valid?"));
+    page.open(&here);
+
     // A second run, and both side by side.
     page.click("[data-action=again]");
     page.see("#predict:not([disabled])");
