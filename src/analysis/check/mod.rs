@@ -22,8 +22,8 @@ use crate::fracture::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSuppo
 use crate::input::{Document, Provenance};
 use crate::report::checks;
 use crate::report::model_words::{self, mm, short};
-use crate::report::run::refuse_beforehand;
 use crate::report::pictures::plate::Plate;
+use crate::report::run::refuse_beforehand;
 use crate::report::specimen_picture::{scene_svg, specimen_svg};
 use crate::runner::{Kind, Task};
 use crate::sweep::design::{self, CASES_MAX};

@@ -156,7 +156,8 @@ export function createPredictView() {
   let opening = false;
   const editor = createEditor({
     host: byId("plate-editor"), fields, panel: byId("plate-check"), form, collect, fill,
-    context: () => (isFitted() ? { calibration: law.input.value } : {}),
+    // Before its laws are known the form is not whole.
+    context: () => (laws.length === 0 ? "The growth laws are being read." : isFitted() ? { calibration: law.input.value } : {}),
     onResult: (ok) => {
       start.disabled = !ok || opening;
       factors.disabled = start.disabled;
