@@ -209,7 +209,7 @@ fn straight_lines_between_rows_are_the_curve() {
 }
 
 /// Finite elements with first steps of 0.004 mm (`tests/reference`): the crack passes the hole at 3.2 mm in the last 0.2 % of its life, and is at
-/// (30.00, 1.41) mm after 122 139 cycles.
+/// (30.00, 1.41) mm after 1 221 390 cycles. Steps count by their cycles, so that the way behind the hole is known to half a millimetre.
 #[test]
 fn a_crack_that_passes_a_hole_does_not_run_into_it_however_few_cycles_are_left() {
     let end = [-40.0 + 9.0 * 0.5_f64.cos(), 9.0 * 0.5_f64.sin()];
@@ -221,5 +221,5 @@ fn a_crack_that_passes_a_hole_does_not_run_into_it_however_few_cycles_are_left()
     let [[x0, y0], [x1, y1]] = [places[beyond - 1], places[beyond]];
     let y = y0 + (30.0 - x0) / (x1 - x0) * (y1 - y0);
     println!("{:.0} cycles, y {y:.2} mm, {}", run.curve[beyond].cycles, run.stop);
-    assert!((run.curve[beyond].cycles / 122_139.0 - 1.0).abs() < 3e-3 && (y - 1.41).abs() < 0.3, "{y} mm");
+    assert!((run.curve[beyond].cycles / 1_221_390.0 - 1.0).abs() < 3e-3 && (y - 1.41).abs() < 0.5, "{y} mm");
 }
