@@ -132,9 +132,9 @@ export async function openPrediction(root, id, signal) {
     if (has(done, "crack_path.csv")) paths = pathsOf(readCsv(await getText(pathTo(done, "crack_path.csv"), signal)));
     await drawPlate();
     const picture = Object.keys(FIELDS).find((name) => has(done, name));
+    fieldFigure.hidden = !picture;
     if (picture) {
       revision = Infinity;
-      fieldFigure.hidden = false;
       await showBlob(image, await getBlob(pathTo(done, picture), signal));
       fieldNote.textContent = FIELDS[picture];
     }

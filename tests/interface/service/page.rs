@@ -151,7 +151,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let exponent = format!("{:.4}", summary["paris_m"].as_f64().unwrap());
     assert!(page.text("[data-table=constants]").contains(&exponent), "{exponent} in {}", page.text("[data-table=constants]"));
 
-    // A plate with this law, drawn with a second crack that goes again; on points, whose damage is shown while it grows.
+    // A plate with this law, drawn with a second crack that goes again; on points, which take long enough to look on.
     page.click("[data-action=use-law]");
     page.fill("#view-predict [data-key='model.spacing_mm']", "0.8");
     page.see("#predict:not([disabled])");
@@ -180,7 +180,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
         "document.querySelector('#job[data-job-state=succeeded]') || \
          document.querySelector('[data-chart=life] path[data-series]').getAttribute('d').length > {early}"
     ));
-    page.see("[data-part=damage] img[src^='blob:']");
+    page.see("#view-run [data-plate=whole] .plate-body");
     walk.look("06_running");
     page.see("#job[data-job-state=succeeded]");
     page.see("[data-value=remaining_cycles]");
@@ -200,7 +200,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
         "const place = document.querySelector('#place'); place.value = 500; place.dispatchEvent(new Event('input', { bubbles: true }));",
     );
     page.until("document.querySelector('[data-part=place]').textContent.includes('50 % of life')");
-    page.see("[data-plate=whole] .path");
+    page.see("#view-run [data-plate=whole] .path");
     page.see("[data-chart=factors] path[data-series=k1]");
     page.see("[data-action=report]");
 
