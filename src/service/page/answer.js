@@ -1,7 +1,7 @@
 // The answer of a prediction in one card: the life with its band, why it ends, whether it is valid.
 
 import { element, shape, terms } from "./dom.js";
-import { bandOf, count, cycles, deserved, fixed, sentence, whole, words } from "./format.js";
+import { bandOf, count, cycles, deserved, fixed, sentence, words } from "./format.js";
 
 const CHECKS_SHOWN = 5;
 /** What the number is, by the reason of the end. */
@@ -80,7 +80,6 @@ function why(s, more) {
   const facts = [
     [tips.length > 1 && lead !== null ? `Crack of tip ${lead}` : "Crack length", `${fixed(from, 2)} to ${fixed(to, 2)} mm`],
     critical && ["Critical", `${critical} mm: ${words(s.critical.criterion)}`],
-    s.inspection && ["Inspect every", `${whole(Math.floor(s.inspection.interval_cycles))} cycles, from a detectable crack of ${fixed(s.inspection.from_mm ?? from, 1)} mm`],
     ...more,
   ].filter(Boolean);
   return [element("h2", null, s.life_cycles === null ? "Because" : "It ends because"),

@@ -15,7 +15,7 @@ const tone = (one) => `tone-${(one.tone ?? 0) % TONES}`;
 const finite = ([x, y]) => Number.isFinite(x + y);
 
 /** "K_II" as K with a lowered II. */
-export function lowered(text) {
+function lowered(text) {
   const [head, low] = String(text).split("_");
   return low ? [head, shape("tspan", { dy: "0.3em", "font-size": "0.75em" }, low)] : [text];
 }
@@ -329,7 +329,6 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
     /** A press or drag in the chart, or an arrow key on a curve, gives the place along x. */
     pick(take) {
       taker = take;
-      svg.classList.add("picked");
     },
     destroy() {
       observer.disconnect();
