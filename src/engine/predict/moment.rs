@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::fatigue::crack_tip::TipState;
 use crate::growth::nodes::initial_plate;
 use crate::growth::record::{CurvePoint, TipRecord};
-use crate::specimen::{Specimen, TipSeed};
+use crate::specimen::{CrackLine, Specimen, TipSeed};
 
 /// Share of the cycles at which the stress of a plate is shown: cracks are long then, and the plate is not yet about to part.
 const SHOWN_AT: f64 = 0.9;
@@ -19,8 +19,8 @@ const SHOWN_AT: f64 = 0.9;
 pub struct StressField {
     /// Cycles; 0 of a plate before its first.
     pub cycles: f64,
-    /// Crack length in the convention of the specimen, m.
-    pub crack_length: f64,
+    /// Cracks as they stand.
+    pub cracks: Vec<CrackLine>,
     /// Convex pieces of the plate that rims and cracks bound.
     pub pieces: Vec<Vec<Corner>>,
 }
@@ -36,7 +36,7 @@ pub fn stress_field(case: &Case, prediction: &Prediction) -> Result<Option<Stres
     let Some(at) = rows.iter().rposition(|row| row.is_solved && row.cycles <= SHOWN_AT * life) else { return Ok(None) };
     let case = Case { specimen: grown(&case.specimen, &rows[..=at]), ..case.clone() };
     let pieces = pieces(&case, &initial_plate(&case)?)?;
-    Ok(Some(StressField { cycles: rows[at].cycles, crack_length: rows[at].crack_length, pieces }))
+    Ok(Some(StressField { cycles: rows[at].cycles, cracks: case.specimen.crack_lines(), pieces }))
 }
 
 fn pieces(case: &Case, plate: &Discretisation) -> Result<Vec<Vec<Corner>>> {

@@ -2,7 +2,8 @@
 
 mod drawing;
 
-pub use drawing::{SIZE, plate_svg};
+pub(in crate::report) use drawing::scale_bar;
+pub use drawing::{MOVING, SIZE, growth_svg, plate_svg};
 
 use std::path::Path;
 
