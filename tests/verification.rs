@@ -14,6 +14,7 @@ mod error_estimate;
 mod fatigue;
 mod fracture_relaxation;
 mod grips;
+mod growth_data;
 mod hand_calculation;
 mod hard_plates;
 mod joined_cracks;

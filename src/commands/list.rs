@@ -1,12 +1,15 @@
 //! `perilife list`: every kind of every key.
 
 use super::console::Console;
-use crate::error::Result;
+use crate::error::{Result, input};
 use crate::report::catalogue::{json, lines};
 
 /// Arguments of `perilife list`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
+    /// Only keys whose name contains this: `materials`, `loading`, `growth_law`
+    #[arg(value_name = "WHAT")]
+    pub what: Option<String>,
     /// What is printed.
     #[command(flatten)]
     pub console: Console,
@@ -14,7 +17,12 @@ pub struct Args {
 
 /// Prints the list in aligned columns, or as JSON.
 pub fn run(args: &Args) -> Result<()> {
-    let lines = lines();
+    let what = args.what.as_deref().map(|what| what.to_lowercase().trim_end_matches('s').to_owned());
+    let is_asked = |key: &str| what.as_ref().is_none_or(|what| key.contains(what.as_str()));
+    let lines: Vec<_> = lines().into_iter().filter(|(key, ..)| is_asked(key)).collect();
+    if let (true, Some(given)) = (lines.is_empty(), &args.what) {
+        return Err(input("WHAT", given, "is part of no key", "use `perilife list` for all of them"));
+    }
     let widest =
         |pick: fn(&(String, String, String)) -> &String| lines.iter().map(|line| pick(line).chars().count()).max().unwrap_or(0);
     let (key_width, name_width) = (widest(|line| &line.0), widest(|line| &line.1));

@@ -13,6 +13,7 @@ pub mod job;
 pub mod list;
 pub mod predict;
 pub mod rates;
+mod rates_of_materials;
 pub mod report;
 #[cfg(feature = "service")]
 pub mod serve;

@@ -6,12 +6,13 @@ use serde_json::{Value, json};
 
 use super::case_without_law;
 use super::console::Console;
+use super::rates_of_materials::{self, MaterialRates};
 use crate::calibration::outliers::doubts;
 use crate::calibration::paris::doubt_of;
 use crate::calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table};
 use crate::case::Case;
 use crate::error::{Result, input};
-use crate::input::{Opened, STREAM};
+use crate::input::{Opened, STREAM, number};
 use crate::measured::{
     ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,
 };
@@ -19,12 +20,24 @@ use crate::report::output::{OutputFile, Sort};
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
+/// Thickness of plates where no case says it, mm: K_c of records depends on it.
+const THICKNESS_MM: f64 = 2.5;
+
 /// Arguments of `perilife rates`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Measured a-N curves
-    #[arg(value_name = "MEASURED.csv", required = true)]
+    #[arg(value_name = "MEASURED.csv", required_unless_present = "materials")]
     pub measured: Vec<PathBuf>,
+    /// Growth laws of these materials of the library, of own material files or of folders of them, beside what was measured
+    #[arg(long, value_name = "NAME", num_args = 1.., help_heading = "Input")]
+    pub materials: Vec<String>,
+    /// Stress ratio of these laws; that of the case where --specimen names one
+    #[arg(long, value_name = "R", requires = "materials", help_heading = "Input")]
+    pub stress_ratio: Option<f64>,
+    /// Picture of these laws and of what was measured
+    #[arg(long, value_name = "FILE.svg", requires = "materials", help_heading = "Output")]
+    pub picture: Option<PathBuf>,
     /// Case or calibration file that says specimen, load and yield strength; without it there is no ΔK
     #[arg(long, value_name = "CASE.toml", help_heading = "Input")]
     pub specimen: Option<PathBuf>,
@@ -90,12 +103,25 @@ impl Args {
 pub fn run(args: &Args) -> Result<()> {
     let method: RateMethod = args.method.parse()?;
     let opened = Opened::default();
-    let mut measured = read_into(&opened, &args.measured, &args.import()?)?;
+    let mut measured =
+        if args.measured.is_empty() { Measured::default() } else { read_into(&opened, &args.measured, &args.import()?)? };
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
         measured.set_against(&case.specimen, &case.material, &case.loading)?;
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
+    let ratio = args.stress_ratio.or(case.as_ref().map(|case| case.loading.ratio)).unwrap_or(0.0);
+    let ratio = number("a ratio", -2.0, 0.99).read("stress_ratio", ratio)?;
+    let thickness_mm = case.as_ref().map_or(THICKNESS_MM, |case| case.specimen.thickness / MM);
+    let materials = MaterialRates::all(&args.materials, ratio, thickness_mm)?;
+    if let Some(path) = &args.picture {
+        let points = specimens.iter().flat_map(|specimen| &specimen.points);
+        let in_units = |point: &RatePoint| (point.delta_k / MPA_SQRT_M, point.rate / MM_PER_CYCLE);
+        rates_of_materials::draw(path, &materials, ratio, points.map(in_units).collect())?;
+    }
+    if !materials.is_empty() {
+        args.console.say(&rates_of_materials::table(&materials, ratio));
+    }
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
     for warning in measured.warnings.iter().chain(&of_specimens) {
         args.console.warn(warning);

@@ -14,7 +14,7 @@ pub mod record;
 
 pub use boundaries::first_load;
 pub use fatigue_keys::{Lot, remove_law};
-pub use law_source::{LIBRARY, fitted_record};
+pub use law_source::{LIBRARY, fitted_record, library_law};
 pub use model::coarse_points;
 pub use model_keys::{finer_nodes, usual_nodes};
 pub use read::{RECORD, SECTIONS};

@@ -10,11 +10,11 @@ use super::{LawSource, law};
 use crate::case::record::{FittedRecord, LawRecord};
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::description::{Constant, GAMMA, Given, K_C, keys_of_laws, law_keys};
-use crate::fatigue::growth_law::{FactorLaw, GrowthLawKind, bonds, paris};
+use crate::fatigue::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker, bonds, paris};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, STEADY_EXPONENTS, unsteady};
 use crate::input::{Document, Folder, slice, value_at};
-use crate::material::library;
+use crate::material::{Material, Plane, library};
 
 /// The growth law that stands with its material.
 pub const LIBRARY: &str = "library";
@@ -179,6 +179,21 @@ pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, fold
     }
     table.extend(keys);
     Ok(Some((Value::Table(table), words)))
+}
+
+/// The growth law of a material of the library, for a plate of this thickness, m, at a stress ratio.
+/// Errors: a material that has none, or no law over K; files that cannot be read.
+pub fn library_law(name: &str, thickness: f64, ratio: f64, folder: &Folder) -> Result<Box<dyn GrowthLaw>> {
+    let no_law = || input("materials", format!("\"{name}\""), "has no growth law over K", "see `perilife list materials`");
+    let (keys, _) = library::growth(name, thickness, folder)?.ok_or_else(no_law)?;
+    // Strengths and elastic constants do not act on rates; a law that needs K_c has to have it.
+    let material = Material::elastic(f64::NAN, f64::NAN, Plane::Stress);
+    let (section, threshold) = (Value::Table(keys), 0.0);
+    match read(threshold, None, &Given { section: &section, material: &material, ratio, folder })? {
+        Some(LawSource::Factor(law)) => Ok(Box::new(law)),
+        Some(LawSource::Paris(paris)) => Ok(Box::new(Walker { paris, gamma: 1.0, threshold })),
+        _ => Err(no_law()),
+    }
 }
 
 /// Refuses a power of ΔK at another stress ratio than that of its rates; what is to be said of other laws there.

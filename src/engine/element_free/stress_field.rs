@@ -7,15 +7,17 @@ use super::cells::{Dividers, middle};
 use super::field::{Discretisation, Local};
 use super::solve::Stress;
 use crate::material::Plane;
-use crate::specimen::geometry::{along, distance_to_segment};
+use crate::specimen::geometry::{along, bounding_box, distance_to_segment};
 use crate::specimen::{Point, Specimen};
 
-/// Pieces at the least over the larger side of the plate.
+/// Pieces at the least over the larger side of the plate, and over the cracks and their surroundings.
 const ACROSS: f64 = 56.0;
+/// See [`ACROSS`].
+const ACROSS_CRACKS: f64 = 30.0;
 /// Way from a corner to the middle of its piece at which the corner is read, over the whole way.
 const INWARDS: f64 = 1e-3;
 /// Distance from a rim or crack, over the spacing, within which a side of a piece lies on it.
-const ON_RIM: f64 = 1e-6;
+const ON_RIM: f64 = 1e-2;
 
 /// A corner of a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +35,12 @@ pub struct Corner {
 /// Convex pieces of the whole plate, counter-clockwise; both of them times `share`.
 pub fn stress_pieces(specimen: &Specimen, plate: &Discretisation, u: &[f64], plane: Plane, share: f64) -> Vec<Vec<Corner>> {
     let (grid, dividers) = (&plate.grid, Dividers::of(plate));
-    let finest = Discretisation::size(specimen) / ACROSS;
+    let of_cracks: Vec<Point> = specimen.cracks.iter().flat_map(|crack| [crack.from, crack.to]).collect();
+    let [low, high] = bounding_box(&of_cracks);
+    let cracked = (high[0] - low[0]).max(high[1] - low[1]);
+    let size = Discretisation::size(specimen);
+    let finest =
+        if of_cracks.is_empty() { size / ACROSS } else { (size / ACROSS).min(cracked / ACROSS_CRACKS).max(0.2 * size / ACROSS) };
     let leaves: Vec<usize> = grid.leaves().collect();
     let of_leaf = |local: &mut Local, &leaf: &usize| {
         let (near, spacing) = (dividers.of_cell(leaf), grid.spacing(leaf));

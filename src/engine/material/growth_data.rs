@@ -5,7 +5,7 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::library::{MaterialFile, Property};
-use crate::fatigue::growth_law::nasgro::opening;
+use crate::fatigue::growth_law::nasgro::{LAW, opening};
 
 /// A record of the file, in its units.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -81,20 +81,13 @@ impl GrowthRecord {
     pub fn keys(&self, thickness_mm: f64) -> Table {
         let (_, a0) = opening(self.alpha, self.smax_over_flow, 0.0);
         let threshold = self.delta_k_1_ksi_sqrt_in * MPA_SQRT_M_PER_KSI_SQRT_IN * (1.0 - a0).powf(-(1.0 + self.c_th));
-        let numbers = [
-            ("nasgro_c_mm_per_cycle", self.c_in_per_cycle * MM_PER_INCH / MPA_SQRT_M_PER_KSI_SQRT_IN.powf(self.n)),
-            ("nasgro_n", self.n),
-            ("nasgro_p", self.p),
-            ("nasgro_q", self.q),
-            ("nasgro_alpha", self.alpha),
-            ("nasgro_smax_over_flow", self.smax_over_flow),
-            ("nasgro_delta_k_0_mpa_sqrt_m", threshold),
-            ("nasgro_c_th", self.c_th),
-            ("nasgro_c_th_negative", self.c_th_negative),
-            ("k_c_mpa_sqrt_m", self.toughness(thickness_mm)),
-        ];
-        let law = ("growth_law".to_owned(), Value::String("nasgro".to_owned()));
-        numbers.into_iter().map(|(key, number)| (key.to_owned(), Value::Float(number))).chain([law]).collect()
+        let level = self.c_in_per_cycle * MM_PER_INCH / MPA_SQRT_M_PER_KSI_SQRT_IN.powf(self.n);
+        // In the order of the law's constants.
+        let (alpha, flow, c_th, below) = (self.alpha, self.smax_over_flow, self.c_th, self.c_th_negative);
+        let numbers = [level, self.n, self.p, self.q, alpha, flow, threshold, c_th, below, self.toughness(thickness_mm)];
+        let constants =
+            LAW.constants.iter().zip(numbers).map(|(constant, number)| (constant.key.to_owned(), Value::Float(number)));
+        constants.chain([("growth_law".to_owned(), Value::String(LAW.name.to_owned()))]).collect()
     }
 
     /// What it says of the material beside its growth.

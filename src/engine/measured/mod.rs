@@ -17,6 +17,7 @@ mod loads;
 mod names;
 mod numerals;
 pub mod rates;
+mod wide_rates;
 mod readings;
 mod table;
 

@@ -14,6 +14,7 @@ use super::import::{ColumnNames, Decimal, Import, IntensityUnit, RateUnit, Sheet
 use super::names::{Column, Named, Role};
 use super::readings::value;
 use super::table::{self, Fault, Table, whole_file};
+use super::wide_rates;
 use crate::error::{Result, input_missing};
 use crate::input::{Folder, number};
 use crate::units::MM_PER_CYCLE;
@@ -144,7 +145,8 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         of_rates: true,
         ..Import::default()
     };
-    let cells = table::read(bytes, file, &import)?;
+    let wide = wide_rates::as_table(bytes, file).transpose()?;
+    let cells = table::read(wide.as_ref().map_or(bytes, |text| text.as_bytes()), file, &import)?;
     let columns = columns_of(&cells.header, &cells.names, &import);
     let of = |role: Role| {
         let mut own = columns.iter().copied().filter(move |column| column.role == role);

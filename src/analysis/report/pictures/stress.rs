@@ -75,7 +75,7 @@ pub fn stress_svg(field: &StressField, material: &Material) -> String {
         let left = place as f64 * 0.5 * (SIZE.width + GAP) + 8.0;
         sketch.name([left, HEAD - 12.0], of.title(), "start", SIZE.text, INK);
         let mut inner = Sketch::new(scale, [-seen[0][0] * scale, seen[1][1] * scale]);
-        let bands = Bands::of(field, of);
+        let bands = Bands { seen: [size(0) * scale, size(1) * scale], ..Bands::of(field, of) };
         draw(&mut inner, field, &moved, &bands, material.yield_strength.filter(|_| of == Of::VonMises));
         sketch.within([left, HEAD], [size(0) * scale, size(1) * scale], inner);
         bands.bar(&mut sketch, [left + size(0) * scale + 16.0, HEAD], (size(1) * scale).clamp(120.0, 320.0));
@@ -166,6 +166,8 @@ struct Bands {
     of: Of,
     levels: Vec<f64>,
     colours: Vec<&'static str>,
+    /// Width and height of what is seen, px.
+    seen: Point,
 }
 
 impl Bands {
@@ -203,7 +205,7 @@ impl Bands {
                 Of::AlongY => ABOVE_ZERO[lower.min(7) as usize],
             }
         };
-        Bands { of, colours: (0..=levels.len()).map(colour).collect(), levels }
+        Bands { of, colours: (0..=levels.len()).map(colour).collect(), levels, seen: [0.0; 2] }
     }
 
     /// Bounds of a band.
@@ -231,7 +233,15 @@ impl Bands {
 fn draw(sketch: &mut Sketch, field: &StressField, moved: &[Vec<Point>], bands: &Bands, strength: Option<f64>) {
     let mut of_band: Vec<Vec<Vec<Point>>> = vec![Vec::new(); bands.colours.len()];
     let [mut zero, mut yielding, mut rims] = [const { Vec::new() }; 3];
+    let [width, height] = bands.seen;
     for (piece, places) in field.pieces.iter().zip(moved) {
+        let is_seen = |place: &Point| {
+            let [x, y] = sketch.place(*place);
+            (0.0..=width).contains(&x) && (0.0..=height).contains(&y)
+        };
+        if !places.iter().any(is_seen) {
+            continue;
+        }
         let corners: Vec<(Point, f64)> =
             piece.iter().zip(places).map(|(corner, place)| (sketch.place(*place), bands.of.value(&corner.stress))).collect();
         let [least, largest] =

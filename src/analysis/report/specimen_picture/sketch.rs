@@ -125,7 +125,7 @@ impl Sketch {
         let way: String = polygons.iter().map(|polygon| format!("M{}Z", corners(polygon))).collect();
         if !way.is_empty() {
             self.push(format_args!(
-                r#"<path d="{way}" fill="{fill}" stroke="{fill}" stroke-width="0.5" stroke-linejoin="round"/>"#
+                r#"<path d="{way}" fill="{fill}" stroke="{fill}" stroke-width="0.7" stroke-linejoin="round"/>"#
             ));
         }
     }

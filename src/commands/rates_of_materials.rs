@@ -1,0 +1,72 @@
+//! `perilife rates --materials`: growth laws of the library beside measured rates.
+
+use std::path::Path;
+
+use crate::case::library_law;
+use crate::error::Result;
+use crate::input::Folder;
+use crate::report::chart::{Mark, Series, growth_rate};
+use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+
+/// ΔK between which a law is drawn, MPa√m, and the points over them.
+const RANGE: [f64; 2] = [1.0, 200.0];
+const POINTS: usize = 240;
+/// Rates beyond which nothing is drawn, mm/cycle.
+const RATES: [f64; 2] = [1e-8, 1e-1];
+/// ΔK of the table, MPa√m.
+const LISTED: [f64; 4] = [5.0, 10.0, 20.0, 30.0];
+
+/// One law over ΔK.
+pub struct MaterialRates {
+    name: String,
+    /// ΔK, MPa√m, and da/dN, mm/cycle.
+    points: Vec<(f64, f64)>,
+    listed: [f64; 4],
+}
+
+impl MaterialRates {
+    /// Of materials by name, or by the path of a file or of a folder of files, at a stress ratio and a thickness, mm.
+    /// Errors: as [`library_law`]; a folder that cannot be read.
+    pub fn all(names: &[String], ratio: f64, thickness_mm: f64) -> Result<Vec<MaterialRates>> {
+        let folder = Folder::from(Path::new(""));
+        let mut all = Vec::new();
+        for name in names.iter().flat_map(|name| files(name)) {
+            let law = library_law(&name, thickness_mm * MM, ratio, &folder)?;
+            let rate = |delta_k: f64| law.rate(delta_k * MPA_SQRT_M / (1.0 - ratio.max(0.0)), ratio) / MM_PER_CYCLE;
+            let at = |k: usize| RANGE[0] * (RANGE[1] / RANGE[0]).powf(k as f64 / POINTS as f64);
+            let known = |(_, rate): &(f64, f64)| (RATES[0]..=RATES[1]).contains(rate);
+            let points = (0..=POINTS).map(|k| (at(k), rate(at(k)))).filter(known).collect();
+            all.push(MaterialRates { name, points, listed: LISTED.map(rate) });
+        }
+        Ok(all)
+    }
+}
+
+/// A name itself, or every material file of a folder.
+fn files(name: &str) -> Vec<String> {
+    let Ok(entries) = std::fs::read_dir(name) else { return vec![name.to_owned()] };
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut files: Vec<String> =
+        paths.filter(|path| path.extension().is_some_and(|end| end == "toml")).map(|path| path.display().to_string()).collect();
+    files.sort();
+    files
+}
+
+/// A line a material: rates at some ΔK.
+pub fn table(materials: &[MaterialRates], ratio: f64) -> String {
+    let head: String = LISTED.iter().map(|k| format!(",da_dn_at_{k}_mm_per_cycle")).collect();
+    let row = |one: &MaterialRates| {
+        format!("{},{ratio}{}\n", one.name, one.listed.iter().map(|rate| format!(",{rate:.4e}")).collect::<String>())
+    };
+    format!("material,stress_ratio{head}\n{}", materials.iter().map(row).collect::<String>())
+}
+
+/// Laws as lines, measured rates `(ΔK, da/dN)` as circles.
+pub fn draw(path: &Path, materials: &[MaterialRates], ratio: f64, measured: Vec<(f64, f64)>) -> Result<()> {
+    let mut series: Vec<Series> =
+        materials.iter().map(|one| Series { name: one.name.clone(), mark: Mark::Line, points: one.points.clone() }).collect();
+    if !measured.is_empty() {
+        series.push(Series { name: "measured".to_owned(), mark: Mark::Circles, points: measured });
+    }
+    growth_rate(path, &format!("Growth rates at R = {ratio}"), &series)
+}
