@@ -20,6 +20,7 @@ mod laws;
 mod nothing_lost;
 mod practice;
 mod rates;
+mod readme;
 mod report;
 mod service;
 mod sif;

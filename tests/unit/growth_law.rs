@@ -7,6 +7,7 @@ use perilife::fatigue::growth_law::nasgro::opening;
 use perilife::fatigue::growth_law::table::{Curve, Table};
 use perilife::fatigue::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind};
 use perilife::input::Folder;
+use perilife::measured::rates::RateFile;
 use perilife::predict::{Silent, predict};
 use perilife::quadrature::integrate;
 use perilife::units::{MM, MPA_SQRT_M};
@@ -224,4 +225,39 @@ fn wrong_laws_are_refused() {
     }
     let missing = Case::from_toml(&format!("{PANEL}[fatigue]\n{TABLE}"), "panel", Path::new("/nowhere"), &[]).unwrap_err();
     assert_eq!(missing.exit_code(), 4, "{missing}");
+}
+
+/// Tables of other programs, several ratios side by side: the rows that they stand for.
+#[test]
+fn wide_tables_of_other_programs_are_read() {
+    let dadn = "# easigrow\n0.0 0.5\n1e-10 5.0 3.0\n1e-9 10.0 6.0\n1e-8 20.0 12.0\n";
+    let lkpx = r#"<?xml version="1.0"?><Material units="English"><PropertyData property="tlookup"><DataTable>
+        <Fields><Field pos="1" property="dadn"/><Field pos="2" property="r_0.5"/><Field pos="3" property="r_0.0"/></Fields>
+        <Data><row><FieldData pos="1">1e-8</FieldData><FieldData pos="2">3</FieldData><FieldData pos="3">5</FieldData></row>
+        <row><FieldData pos="1">1e-7</FieldData><FieldData pos="2">6</FieldData><FieldData pos="3">10</FieldData></row></Data>
+        </DataTable></PropertyData></Material>"#;
+    let read = |name: &str, text: &str| {
+        let folder = Folder::at_hand([(name.to_owned(), text.as_bytes().to_vec())]);
+        RateFile::Name(name.to_owned()).keys().read(&folder, "fatigue.growth_table").map(|(table, _)| table)
+    };
+    let table = read("a.dadn", dadn).unwrap();
+    assert_eq!(table.rows.len(), 6);
+    let row = &table.rows[4];
+    near(row.delta_k, 6.0 * MPA_SQRT_M, 1e-12);
+    near(row.rate, 1e-9, 1e-12);
+    assert_eq!(row.ratio, 0.5);
+    let table = read("a.lkpx", lkpx).unwrap();
+    assert_eq!(table.rows.iter().map(|row| row.ratio).collect::<Vec<_>>(), [0.0, 0.0, 0.5, 0.5]);
+    near(table.rows[1].delta_k, 10.0 * 1.098_843 * MPA_SQRT_M, 1e-5);
+    near(table.rows[1].rate, 1e-7 * 0.0254, 1e-9);
+    for (name, text, problem) in [
+        ("a.dadn", "0.0 0.5\n1e-10 5.0\n", "has 2 numbers, and 3 are wanted"),
+        ("a.dadn", "0.0\n1e-10 five\n", "is no number"),
+        ("a.dadn", "# nothing\n", "has no rows"),
+        ("a.lkpx", "<Material></Material>", "no table of rates"),
+        ("a.lkpx", "<Material><a></b></Material>", "is no XML"),
+    ] {
+        let error = read(name, text).unwrap_err().to_string();
+        assert!(error.contains(problem), "{error}");
+    }
 }
