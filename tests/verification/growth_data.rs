@@ -2,8 +2,9 @@
 
 use perilife::case::{Case, library_law};
 use perilife::fatigue::growth_law::GrowthLaw;
+use perilife::fatigue::growth_law::nasgro::keys_of;
 use perilife::input::Folder;
-use perilife::material::growth_data::records;
+use perilife::material::growth_data::{record, records};
 use perilife::predict::{Silent, predict};
 use perilife::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -72,7 +73,7 @@ fn a_case_takes_the_law_of_its_material() {
     assert!(of_library.growth_data.as_ref().unwrap().contains("2024-T3"));
     let run = predict(&of_library, &Silent).unwrap();
     // The same constants given in the case.
-    let keys = perilife::material::growth_data::record("al2024-t3-clad-lt").unwrap().keys(2.54);
+    let keys = keys_of(&record("al2024-t3-clad-lt").unwrap(), 2.54);
     let given = case(&toml::to_string(&keys).unwrap()).unwrap();
     let same = predict(&given, &Silent).unwrap();
     assert_eq!(run.life_cycles(), same.life_cycles());

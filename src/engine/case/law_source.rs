@@ -4,17 +4,19 @@
 //! `fatigue.fitted`, as if they stood in the case. A driver that needs a law of the other kind, of bonds (A, p) or over
 //! K (C, m), takes what the given one stands for.
 
-use toml::Value;
+use toml::{Table, Value};
 
 use super::{LawSource, law};
 use crate::case::record::{FittedRecord, LawRecord};
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::description::{Constant, GAMMA, Given, K_C, keys_of_laws, law_keys};
+use crate::fatigue::growth_law::nasgro::keys_of;
 use crate::fatigue::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker, bonds, paris};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, STEADY_EXPONENTS, unsteady};
 use crate::input::{Document, Folder, slice, value_at};
-use crate::material::{Material, Plane, library};
+use crate::material::{Material, Plane, growth_data, library};
+use crate::units::MM;
 
 /// The growth law that stands with its material.
 pub const LIBRARY: &str = "library";
@@ -168,7 +170,7 @@ pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, fold
         let problem = "is missing, and fatigue.growth_law is \"library\"";
         return Err(input_missing("material.name", problem, REMEDY));
     };
-    let Some((keys, words)) = library::growth(name, thickness, folder)? else {
+    let Some((keys, words)) = growth_keys(name, thickness, folder)? else {
         return Err(input("material.name", format!("\"{name}\""), "has no growth law in the library", REMEDY));
     };
     let mut table = fatigue.as_table().cloned().unwrap_or_default();
@@ -181,11 +183,21 @@ pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, fold
     Ok(Some((Value::Table(table), words)))
 }
 
+/// The growth law of a material, as keys of `[fatigue]`, for a plate of this thickness, m, and what it is; `None` of one without.
+/// Errors: as [`library::find`].
+fn growth_keys(name: &str, thickness: f64, folder: &Folder) -> Result<Option<(Table, String)>> {
+    if let Some(record) = growth_data::record(name) {
+        return Ok(Some((keys_of(&record, thickness / MM), format!("{}: {}", record.title(), growth_data::SOURCE))));
+    }
+    let file = library::find(name, folder)?;
+    Ok(file.growth.map(|keys| (keys, file.title)))
+}
+
 /// The growth law of a material of the library, for a plate of this thickness, m, at a stress ratio.
 /// Errors: a material that has none, or no law over K; files that cannot be read.
 pub fn library_law(name: &str, thickness: f64, ratio: f64, folder: &Folder) -> Result<Box<dyn GrowthLaw>> {
     let no_law = || input("materials", format!("\"{name}\""), "has no growth law over K", "see `perilife list materials`");
-    let (keys, _) = library::growth(name, thickness, folder)?.ok_or_else(no_law)?;
+    let (keys, _) = growth_keys(name, thickness, folder)?.ok_or_else(no_law)?;
     // Strengths and elastic constants do not act on rates; a law that needs K_c has to have it.
     let material = Material::elastic(f64::NAN, f64::NAN, Plane::Stress);
     let (section, threshold) = (Value::Table(keys), 0.0);

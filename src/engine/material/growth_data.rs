@@ -1,11 +1,8 @@
 //! Growth data of the library: `data/materials/growth.csv`, constants of the NASGRO equation by alloy, form, orientation and environment, and the
 //! `[growth]` of a user's own material file, which has the keys of a law in `[fatigue]`.
 
-use serde::Deserialize;
-use toml::{Table, Value};
-
 use super::library::{MaterialFile, Property};
-use crate::fatigue::growth_law::nasgro::{LAW, opening};
+use serde::Deserialize;
 
 /// A record of the file, in its units.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -28,21 +25,23 @@ pub struct GrowthRecord {
     k_1c_ksi_sqrt_in: f64,
     a_k: f64,
     b_k: f64,
-    c_in_per_cycle: f64,
-    n: f64,
-    p: f64,
-    q: f64,
-    delta_k_1_ksi_sqrt_in: f64,
-    c_th: f64,
-    c_th_negative: f64,
-    alpha: f64,
-    smax_over_flow: f64,
+    pub(crate) c_in_per_cycle: f64,
+    pub(crate) n: f64,
+    pub(crate) p: f64,
+    pub(crate) q: f64,
+    pub(crate) delta_k_1_ksi_sqrt_in: f64,
+    pub(crate) c_th: f64,
+    pub(crate) c_th_negative: f64,
+    pub(crate) alpha: f64,
+    pub(crate) smax_over_flow: f64,
 }
 
-/// MPa in a ksi, mm in an inch, and MPa√m in a ksi√in.
+/// MPa in a ksi.
 const MPA_PER_KSI: f64 = 6.894_757_293;
-const MM_PER_INCH: f64 = 25.4;
-const MPA_SQRT_M_PER_KSI_SQRT_IN: f64 = 1.098_843_4;
+/// mm in an inch.
+pub(crate) const MM_PER_INCH: f64 = 25.4;
+/// MPa√m in a ksi√in.
+pub(crate) const MPA_SQRT_M_PER_KSI_SQRT_IN: f64 = 1.098_843_4;
 
 const FILE: &str = include_str!("../../../data/materials/growth.csv");
 /// Where its figures come from.
@@ -72,22 +71,6 @@ impl GrowthRecord {
         let t0 = 2.5 * (self.k_1c_ksi_sqrt_in / self.yield_ksi).powi(2) * MM_PER_INCH;
         let k_1c = self.k_1c_ksi_sqrt_in * MPA_SQRT_M_PER_KSI_SQRT_IN;
         k_1c * (1.0 + self.b_k * (-(self.a_k * thickness_mm / t0).powi(2)).exp())
-    }
-
-    /// Its law at a thickness, mm, as the keys of `[fatigue]`.
-    ///
-    /// The file has the threshold as `ΔK₁ [(1-R)/(1-f)]^(1 + R C_th) / (1-A₀)^((1-R) C_th)`, which is that of the law with
-    /// `ΔK₀ = ΔK₁ (1-A₀)^-(1 + C_th)`; below R = 0 both have the same form with the C_th of there.
-    pub fn keys(&self, thickness_mm: f64) -> Table {
-        let (_, a0) = opening(self.alpha, self.smax_over_flow, 0.0);
-        let threshold = self.delta_k_1_ksi_sqrt_in * MPA_SQRT_M_PER_KSI_SQRT_IN * (1.0 - a0).powf(-(1.0 + self.c_th));
-        let level = self.c_in_per_cycle * MM_PER_INCH / MPA_SQRT_M_PER_KSI_SQRT_IN.powf(self.n);
-        // In the order of the law's constants.
-        let (alpha, flow, c_th, below) = (self.alpha, self.smax_over_flow, self.c_th, self.c_th_negative);
-        let numbers = [level, self.n, self.p, self.q, alpha, flow, threshold, c_th, below, self.toughness(thickness_mm)];
-        let constants =
-            LAW.constants.iter().zip(numbers).map(|(constant, number)| (constant.key.to_owned(), Value::Float(number)));
-        constants.chain([("growth_law".to_owned(), Value::String(LAW.name.to_owned()))]).collect()
     }
 
     /// What it says of the material beside its growth.

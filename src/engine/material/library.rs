@@ -16,7 +16,6 @@ use toml::Value;
 use super::growth_data;
 use crate::error::{Error, InputError, Result, input};
 use crate::input::{Document, Folder, slice};
-use crate::units::MM;
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../data/materials");
 
@@ -54,16 +53,6 @@ pub struct MaterialFile {
     pub tensile_strength_mpa: Option<Property>,
     /// Its growth law: keys of `[fatigue]`, files in them from the folder of the case.
     pub growth: Option<toml::Table>,
-}
-
-/// The growth law of a material, as keys of `[fatigue]`, for a plate of this thickness, m, and what it is; `None` of one without.
-/// Errors: as [`find`].
-pub fn growth(name: &str, thickness: f64, folder: &Folder) -> Result<Option<(toml::Table, String)>> {
-    if let Some(record) = growth_data::record(name) {
-        return Ok(Some((record.keys(thickness / MM), format!("{}: {}", record.title(), growth_data::SOURCE))));
-    }
-    let file = find(name, folder)?;
-    Ok(file.growth.map(|keys| (keys, file.title)))
 }
 
 /// Names of the built-in materials, sorted.

@@ -4,8 +4,11 @@
 
 use std::f64::consts::PI;
 
+use toml::{Table, Value};
+
 use super::description::{Constant, Description, K_C, NEAR_FRACTURE, NEAR_THRESHOLD, RATE, RATIOS, Role, UNSAID};
 use crate::input::{INTENSITY, Quantity, number};
+use crate::material::growth_data::{GrowthRecord, MM_PER_INCH, MPA_SQRT_M_PER_KSI_SQRT_IN};
 use crate::units::MPA_SQRT_M;
 
 const EXPONENT: Quantity = number("an exponent", 0.0, 20.0);
@@ -83,4 +86,28 @@ fn rate(law: &[f64], k_max: f64, ratio: f64) -> f64 {
     let (f, _) = opening(alpha, s, ratio);
     let effective = (1.0 - f) * k_max / MPA_SQRT_M;
     c * effective.powf(n) * (1.0 - threshold / delta_k).powf(p) / left.powf(q)
+}
+
+/// The law of a record of the library at a thickness, mm, as the keys of `[fatigue]`.
+///
+/// Records have the threshold as `ΔK₁ [(1-R)/(1-f)]^(1 + R C_th) / (1-A₀)^((1-R) C_th)`, which is that of the law with
+/// `ΔK₀ = ΔK₁ (1-A₀)^-(1 + C_th)`; below R = 0 both have the same form with the C_th of there.
+pub fn keys_of(record: &GrowthRecord, thickness_mm: f64) -> Table {
+    let (_, a0) = opening(record.alpha, record.smax_over_flow, 0.0);
+    let threshold = record.delta_k_1_ksi_sqrt_in * MPA_SQRT_M_PER_KSI_SQRT_IN * (1.0 - a0).powf(-(1.0 + record.c_th));
+    // In the order of the law's constants.
+    let numbers = [
+        record.c_in_per_cycle * MM_PER_INCH / MPA_SQRT_M_PER_KSI_SQRT_IN.powf(record.n),
+        record.n,
+        record.p,
+        record.q,
+        record.alpha,
+        record.smax_over_flow,
+        threshold,
+        record.c_th,
+        record.c_th_negative,
+        record.toughness(thickness_mm),
+    ];
+    let constants = LAW.constants.iter().zip(numbers).map(|(constant, number)| (constant.key.to_owned(), Value::Float(number)));
+    constants.chain([("growth_law".to_owned(), Value::String(LAW.name.to_owned()))]).collect()
 }
