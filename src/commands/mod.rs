@@ -6,6 +6,7 @@ pub mod calibrate;
 pub mod chart;
 pub mod check;
 pub mod collect;
+pub mod completions;
 pub mod export;
 pub mod fracture;
 #[cfg(feature = "service")]
@@ -106,6 +107,8 @@ commands! {
     Check: check,
     /// List every kind of every key of the input files
     List: list,
+    /// Print what a shell needs to complete commands, or the manual page
+    Completions: completions,
     /// Serve calibrations and predictions over HTTP, with a web page
     #[cfg(feature = "service")]
     Serve: serve,

@@ -190,3 +190,31 @@ fn unreadable_and_unwritable_places() {
     fs::set_permissions(&locked, fs::Permissions::from_mode(0o755)).unwrap();
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3, "nothing new stands there");
 }
+
+#[test]
+fn shells_and_the_manual_know_every_command() {
+    for (form, words) in
+        [("bash", ["complete", "predict"]), ("zsh", ["#compdef perilife", "calibrate"]), ("man", [".TH", "stability"])]
+    {
+        let (stdout, stderr) = texts(&perilife(Path::new("."), &["completions", form]));
+        assert!(words.iter().all(|word| stdout.contains(word)) && stderr.is_empty(), "{form}: {stderr}");
+    }
+    let (listed, _) = texts(&perilife(Path::new("."), &["list", "materials"]));
+    assert!(listed.lines().count() > 30 && listed.lines().all(|line| line.starts_with("material.name")), "{listed}");
+    let unknown = perilife(Path::new("."), &["list", "cheese"]);
+    assert_refused(&unknown, 2, &["cheese", "perilife list"]);
+}
+
+#[test]
+fn rates_of_materials_stand_beside_measured_ones() {
+    let dir = tempdir().unwrap();
+    let drawn =
+        ["rates", "--materials", "al2024-t3-clad-lt", "al7075-t6-sheet-lt", "--stress-ratio", "0.1", "--picture", "r.svg"];
+    let (stdout, stderr) = texts(&perilife(dir.path(), &drawn));
+    // 2024-T3 L-T at R = 0 and ΔK = 10 MPa√m: 6.985e-5 mm/cycle by NASGRO 4; at R = 0.1 more.
+    assert!(stdout.contains("al2024-t3-clad-lt,0.1,") && stderr.is_empty(), "{stdout}{stderr}");
+    let svg = fs::read_to_string(dir.path().join("r.svg")).unwrap();
+    assert!(svg.contains("al7075-t6-sheet-lt") && svg.contains("MPa√m"));
+    let refused = perilife(dir.path(), &["rates", "--materials", "al2024-t3"]);
+    assert_refused(&refused, 2, &["al2024-t3", "no growth law", "list materials"]);
+}

@@ -1,0 +1,57 @@
+//! `perilife completions`: what a shell needs to complete commands and flags, and the manual page, both made from the arguments themselves.
+
+use std::path::Path;
+
+use clap::CommandFactory;
+use clap_complete::{Shell, generate};
+
+use super::CommandLine;
+use super::console::Console;
+use crate::error::{Error, Result};
+use crate::input::STREAM;
+
+/// What is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Form {
+    /// For bash.
+    Bash,
+    /// For elvish.
+    Elvish,
+    /// For fish.
+    Fish,
+    /// For PowerShell.
+    Powershell,
+    /// For zsh.
+    Zsh,
+    /// A page of the manual (roff), for `man -l`
+    Man,
+}
+
+/// Arguments of `perilife completions`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// Shell, or `man`
+    #[arg(value_name = "SHELL")]
+    pub form: Form,
+}
+
+/// Prints it.
+pub fn run(args: &Args) -> Result<()> {
+    let mut command = CommandLine::command();
+    let shell = match args.form {
+        Form::Bash => Shell::Bash,
+        Form::Elvish => Shell::Elvish,
+        Form::Fish => Shell::Fish,
+        Form::Powershell => Shell::PowerShell,
+        Form::Zsh => Shell::Zsh,
+        Form::Man => {
+            let mut page = Vec::new();
+            let made = clap_mangen::Man::new(command).render(&mut page);
+            made.map_err(|error| Error::file(Path::new(STREAM), "cannot write", error))?;
+            return Console::default().result(&String::from_utf8_lossy(&page));
+        }
+    };
+    let mut script = Vec::new();
+    generate(shell, &mut command, "perilife", &mut script);
+    Console::default().result(&String::from_utf8_lossy(&script))
+}
