@@ -16,7 +16,7 @@ mod standard;
 
 pub use crack_line::{CrackLine, LineEnd};
 pub use geometry::{Component, Edge};
-pub use part_through::PartThrough;
+pub use part_through::{FrontTip, PartThrough};
 pub use read::{PART_THROUGH, from_value};
 
 /// A point of the plate, metres.

@@ -31,7 +31,8 @@ const PART_THROUGH_KEYS: &[&str] = &[
 
 /// What to give for a flaw that does not go through.
 fn give_a_kind() -> String {
-    let known: Vec<&str> = SpecimenKind::ALL.iter().filter(|kind| kind.part_through().is_some()).map(|kind| kind.name()).collect();
+    let known: Vec<&str> =
+        SpecimenKind::ALL.iter().filter(|kind| kind.part_through().is_some()).map(|kind| kind.name()).collect();
     format!("use one of {} with crack_depth_mm and crack_half_length_mm", known.join(", "))
 }
 

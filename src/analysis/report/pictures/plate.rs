@@ -3,6 +3,7 @@
 mod drawing;
 
 pub use drawing::{SIZE, plate_svg};
+pub(super) use drawing::{colour, scale_bar};
 
 use std::path::Path;
 

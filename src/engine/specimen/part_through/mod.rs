@@ -31,6 +31,9 @@ pub const STATED_ERROR: f64 = 0.05;
 /// Where K comes from, in words.
 pub const SOURCE: &str = "Newman and Raju 1984, NASA TM-85793";
 
+/// How well, in words.
+pub const RANGE: &str = "5 % for a/t up to 0.8, a/c from 0.2 to 2, and a crack of less than half of the width";
+
 /// What one kind is.
 pub struct Description {
     /// Its name in `specimen.kind`.
@@ -81,11 +84,17 @@ pub struct Limit {
     pub high: f64,
 }
 
+impl Limit {
+    /// In words.
+    pub fn in_words(&self) -> String {
+        let Limit { name, low, high, .. } = self;
+        if *low > 0.0 { format!("{name} {low} to {high}") } else { format!("{name} up to {high}") }
+    }
+}
+
 /// Ranges of every kind.
-const SHAPE: [Limit; 2] = [
-    Limit { name: "a/t", of: Front::depth, low: 0.0, high: 0.8 },
-    Limit { name: "a/c", of: Front::aspect, low: 0.2, high: 2.0 },
-];
+const SHAPE: [Limit; 2] =
+    [Limit { name: "a/t", of: Front::depth, low: 0.0, high: 0.8 }, Limit { name: "a/c", of: Front::aspect, low: 0.2, high: 2.0 }];
 /// Ranges of cracks in the middle of the width.
 const CENTRAL: &[Limit] =
     &[SHAPE[0], SHAPE[1], Limit { name: "c/half width", of: |front| front.c / front.b, low: 0.0, high: 0.5 }];

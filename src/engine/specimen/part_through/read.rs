@@ -69,7 +69,8 @@ fn hole(description: &Description, input: &Input, width: f64) -> Result<(f64, us
             (None, None) => Ok((0.0, 1)),
         };
     }
-    let diameter = input.hole_diameter_mm.ok_or_else(|| input_missing(DIAMETER, "is missing", "give the diameter of the hole"))?;
+    let diameter =
+        input.hole_diameter_mm.ok_or_else(|| input_missing(DIAMETER, "is missing", "give the diameter of the hole"))?;
     let radius = LENGTH.read(DIAMETER, diameter)? / 2.0;
     if 2.0 * radius >= width {
         let problem = format!("is not below the width {} mm of the plate", input.width_mm);
@@ -88,13 +89,20 @@ fn check_sizes(flaw: &PartThrough, given: &Input) -> Result<()> {
     let mm = |length: f64| (length / MM * 1e6).round() / 1e6;
     if flaw.depth >= flaw.through_depth() {
         let (t, half) = (mm(flaw.through_depth()), if flaw.through_depth() < flaw.thickness { "half " } else { "" });
-        let problem = format!("is not below {half}the thickness, {t} mm: a/t = {:.3}, the crack is through", given.crack_depth_mm / t);
+        let problem =
+            format!("is not below {half}the thickness, {t} mm: a/t = {:.3}, the crack is through", given.crack_depth_mm / t);
         let remedy = "give a smaller depth, or a through crack in kind = \"plate\"";
         return Err(input("specimen.crack_depth_mm", given.crack_depth_mm, problem, remedy));
     }
     if flaw.half_length >= flaw.room() {
-        let problem = format!("is not below the {} mm that the plate has for it: the crack is wider than the plate", mm(flaw.room()));
-        return Err(input("specimen.crack_half_length_mm", given.crack_half_length_mm, problem, "give a shorter crack or a wider plate"));
+        let problem =
+            format!("is not below the {} mm that the plate has for it: the crack is wider than the plate", mm(flaw.room()));
+        return Err(input(
+            "specimen.crack_half_length_mm",
+            given.crack_half_length_mm,
+            problem,
+            "give a shorter crack or a wider plate",
+        ));
     }
     Ok(())
 }

@@ -1,9 +1,14 @@
 //! A crack seen from the front, and the through crack of the same plate that it becomes.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use super::PartThrough;
 use crate::error::Result;
 use crate::specimen::placement::place_cracks;
 use crate::specimen::{Crack, Point, Specimen, SpecimenKind, TipSeed};
+
+/// Straight pieces of a front that is drawn.
+const PARTS: usize = 72;
 
 impl PartThrough {
     /// Both ends of every crack of length c, m, as it is seen from the front, and whether each is a tip.
@@ -28,6 +33,27 @@ impl PartThrough {
             [starts.then(|| tip(*from, *to)), ends.then(|| tip(*to, *from))].into_iter().flatten()
         });
         (cracks, tips.collect())
+    }
+
+    /// The fronts with semi-axes [a, c], m, as they are seen in the section: x along the width, y = 0 the face at which a crack begins.
+    pub fn seen_in_section(&self, [a, c]: [f64; 2]) -> Vec<Vec<Point>> {
+        let full = self.description.share_of_ellipse >= 1.0;
+        let below = if full { -0.5 * self.thickness } else { 0.0 };
+        let front = |line: [(Point, bool); 2]| {
+            let [(from, starts), (to, _)] = line;
+            let side = (to[0] - from[0]).signum();
+            let (middle, turn) = match (starts, full) {
+                (true, true) => (0.0, 2.0 * PI),
+                (true, false) => (0.0, PI),
+                (false, _) => (from[0], FRAC_PI_2),
+            };
+            let at = |part: usize| {
+                let (sin, cos) = (turn * part as f64 / PARTS as f64).sin_cos();
+                [middle + side * c * cos, below - a * sin]
+            };
+            (0..=PARTS).map(at).collect()
+        };
+        self.lines(c).into_iter().map(front).collect()
     }
 
     /// The plate of a specimen of this kind with a through crack of length c, m, in the place of its own: where a/t = 1 the crack has its length

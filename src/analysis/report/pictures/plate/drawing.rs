@@ -300,7 +300,7 @@ fn contains(outline: &[Point], [x, y]: Point) -> bool {
 }
 
 /// Colour of a share of the life.
-fn colour(share: f64) -> String {
+pub(in crate::report::pictures) fn colour(share: f64) -> String {
     let at = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
     let first = (at as usize).min(RAMP.len() - 2);
     let [r, g, b] =
@@ -309,7 +309,7 @@ fn colour(share: f64) -> String {
 }
 
 /// A length of 1, 2 or 5 times a power of ten, mm.
-fn scale_bar(sketch: &mut Sketch, [x, y]: Point, [scale, span]: [f64; 2], text: f64) {
+pub(in crate::report::pictures) fn scale_bar(sketch: &mut Sketch, [x, y]: Point, [scale, span]: [f64; 2], text: f64) {
     let most = 0.3 * span;
     let power = 10f64.powf(most.log10().floor());
     let length = [5.0, 2.0, 1.0].into_iter().map(|part| part * power).find(|length| *length <= most).unwrap_or(power);
