@@ -7,8 +7,8 @@ use super::{Load, LoadMeasure, Specimen, SpecimenKind};
 use crate::error::{Result, input};
 
 impl SpecimenKind {
-    /// How many cracks, or halves of one, share the width of a standard kind, and the name of what each of them has; `None` for a `plate` and for cracks that do not go
-    /// through.
+    /// How many cracks, or halves of one, share the width of a standard kind, and the name of what each of them has; `None` for a `plate`
+    /// and for cracks that do not go through.
     pub fn sharing(self) -> Option<(f64, &'static str)> {
         match self {
             SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => Some((2.0, "half width")),

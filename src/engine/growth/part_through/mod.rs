@@ -143,8 +143,8 @@ impl<'a> PartThroughGrowth<'a> {
                 breaks(StopReason::NetSectionYield)
             }
             [a, _] if a >= flaw.through_depth() => Some(self.through_or_end()),
-            // K of the formulas is infinite where the crack takes the whole width.
-            _ if factor.is_infinite() => Some(Ending::Stop(StopReason::Severed)),
+            // K of most formulas is infinite where the crack takes the whole width.
+            [_, c] if c >= flaw.room() || factor.is_infinite() => Some(Ending::Stop(StopReason::Severed)),
             _ if cycles >= case.stop.cycles_max => Some(Ending::Stop(StopReason::RunOut)),
             _ => None,
         }
