@@ -43,7 +43,7 @@ pub struct Args {
 /// Errors: wrong input; files that cannot be read or written; [`Error::Mechanics`] where the scene ended without convergence or
 /// blew up, whose histories are written all the same.
 pub fn run(args: &Args) -> Result<()> {
-    let document = Document::read(&args.case, &super::with_paraview(&args.set, args.paraview))?;
+    let document = Document::read(&args.case, &super::with_output(&args.set, [("paraview", args.paraview)]))?;
     let task = Task::read(Kind::Scene, &document, &[])?;
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     args.console.object(&summary.result)?;

@@ -47,10 +47,10 @@ fn case_without_law(path: &Path, overrides: &[String]) -> Result<Case> {
     Ok(case)
 }
 
-/// The overrides with what `--paraview` stands for.
-fn with_paraview(set: &[String], paraview: bool) -> Vec<String> {
-    let key = paraview.then(|| "output.paraview=true".to_owned());
-    set.iter().cloned().chain(key).collect()
+/// The overrides with what flags of `[output]` stand for.
+fn with_output<const N: usize>(set: &[String], flags: [(&str, bool); N]) -> Vec<String> {
+    let keys = flags.into_iter().filter(|(_, is_given)| *is_given).map(|(key, _)| format!("output.{key}=true"));
+    set.iter().cloned().chain(keys).collect()
 }
 
 /// Refuses a task that this machine has no memory for, before anything is laid out.

@@ -33,6 +33,9 @@ pub struct Args {
     /// Also write the fields of some moments for ParaView (paraview/run.pvd), as the key output.paraview does
     #[arg(long, help_heading = "Output")]
     pub paraview: bool,
+    /// Also draw the cracks as they grow (growth.svg, which moves in a browser), as the key output.animation does
+    #[arg(long, help_heading = "Output")]
+    pub animate: bool,
     /// Readings of this very plate (cycles, crack length), which narrow the band of what it has left
     #[arg(long, value_name = "READINGS.csv", help_heading = "Input")]
     pub measured: Option<PathBuf>,
@@ -61,7 +64,8 @@ pub struct Args {
 
 /// Runs `perilife predict`.
 pub fn run(args: &Args) -> Result<()> {
-    let document = Document::read(&args.case, &super::with_paraview(&args.set, args.paraview))?;
+    let document =
+        Document::read(&args.case, &super::with_output(&args.set, [("paraview", args.paraview), ("animation", args.animate)]))?;
     let mut task = Task::read(Kind::Prediction, &document, &[])?;
     if let Some(file) = &args.measured {
         task.read_plate(&document, file).map_err(|error| document.locate(error))?;

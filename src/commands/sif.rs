@@ -13,7 +13,7 @@ use crate::runner::{self, Kind, Task};
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "On nodes (--method element_free_galerkin) a plate needs no crack: printed are the largest and least stress along every rim, where they\n\
-                       are, and the stress concentration over the gross stress. DIR gets result.json, von_mises.png and nodes.svg."
+                       are, and the stress concentration over the gross stress. DIR gets result.json, stress.svg and nodes.svg."
 )]
 pub struct Args {
     /// Case file (a calibration file does as well); its fatigue law is not needed
@@ -39,7 +39,7 @@ pub struct Args {
 /// Runs `perilife sif`.
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
-    let document = Document::read(&args.case, &super::with_paraview(&args.set, args.paraview))?;
+    let document = Document::read(&args.case, &super::with_output(&args.set, [("paraview", args.paraview)]))?;
     let task = Task::read(Kind::Sif, &document, &args.method)?;
     super::within_machine(&task, &document)?;
     let work = |folder: Option<&Path>| runner::run(&task, None, folder, console).map_err(|error| document.locate(error));

@@ -14,7 +14,7 @@ pub mod record;
 
 pub use boundaries::first_load;
 pub use fatigue_keys::{Lot, remove_law};
-pub use law_source::fitted_record;
+pub use law_source::{LIBRARY, fitted_record};
 pub use model::coarse_points;
 pub use model_keys::{finer_nodes, usual_nodes};
 pub use read::{RECORD, SECTIONS};
@@ -262,4 +262,6 @@ pub struct Case {
     pub choices: Choices,
     /// The record that its law over K comes from.
     pub law_record: Option<Box<LawRecord>>,
+    /// What the growth law of the library is that it takes.
+    pub growth_data: Option<String>,
 }

@@ -10,6 +10,7 @@ pub mod checkpoint;
 pub mod error_estimate;
 pub mod factor_curve;
 pub mod laws;
+pub mod moment;
 mod outcome;
 pub mod part_through;
 pub mod plastic_zone;

@@ -10,6 +10,7 @@ use crate::element_free::field::Discretisation;
 use crate::element_free::resolution::Resolution;
 use crate::element_free::rim_stress::{RimStress, rim_stresses};
 use crate::element_free::solve::{raster, raster_fields, solve};
+use crate::element_free::stress_field::{Corner, stress_pieces};
 use crate::error::{Error, Result};
 use crate::growth::nodes::initial_cracks;
 use crate::levels::PointGrid;
@@ -52,6 +53,8 @@ pub struct Stressed {
     pub displacement: Vec<Point>,
     /// Von Mises stress of its points, Pa.
     pub stress: Vec<f64>,
+    /// Stress over the plate as convex pieces.
+    pub pieces: Vec<Vec<Corner>>,
 }
 
 impl Stressed {
@@ -95,6 +98,7 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
             let (displacement, stress) = raster_fields(specimen, &plate, &solution.u, far, case.material.plane, share);
             let grid = raster(specimen, far);
             return Ok(Stressed {
+                pieces: stress_pieces(specimen, &plate, &solution.u, case.material.plane, share),
                 gross: specimen.gross_stress(share * load),
                 moved: most_moved(&grid, &displacement),
                 resolution,

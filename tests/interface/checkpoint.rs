@@ -148,7 +148,7 @@ fn a_killed_scene_goes_on_to_the_same_files() {
     let (_, stderr) = texts(&rest);
     assert!(rest.status.success(), "{stderr}");
     assert!(stderr.contains("torn: goes on from run.ckpt: step "), "{stderr}");
-    for file in ["history.csv", "crack_path.csv", "damage.png"] {
+    for file in ["history.csv", "crack_path.csv", "damage.svg"] {
         let [run, whole] = ["run", "whole"].map(|out| fs::read(folder.join(out).join(file)).unwrap());
         assert!(run == whole, "{file} differs");
     }

@@ -54,7 +54,7 @@ fn a_scene_writes_what_it_promises() {
     let written = json(&run.join("result.json"));
     assert_eq!(printed, written);
     let charts = ["load_displacement.svg", "load_time.svg", "energies.svg", "broken_bonds.svg"];
-    for file in ["damage_first.png", "damage.png", "paraview/run.pvd"].iter().chain(&charts) {
+    for file in ["damage_first.svg", "damage.svg", "paraview/run.pvd"].iter().chain(&charts) {
         assert!(run.join(file).is_file(), "{file}");
     }
     for file in charts {

@@ -51,7 +51,7 @@ fn a_hand_calculation_leaves_the_files_of_a_run() {
     for file in ["crack_path.csv", "a_n.svg", "da_dn.svg", "residual_strength.svg"] {
         assert!(fs::metadata(run.join(file)).unwrap().len() > 0, "{file}");
     }
-    assert!(!run.join("paraview").exists() && !run.join("damage.png").exists(), "there are no points to draw");
+    assert!(!run.join("paraview").exists() && !run.join("damage.svg").exists(), "there are no points to draw");
 
     // The residual strength: no toughness is given, so the net section governs; it starts at 345 (1 - 18/152.4) MPa.
     let table = fs::read_to_string(run.join("residual_strength.csv")).unwrap();

@@ -31,7 +31,7 @@ fn a_run_leaves_all_its_files() {
     case.output.paraview = true;
     keep(&case, made_up_run::prediction(0.0), &out).unwrap();
     let files =
-        ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "plate.svg", "damage.png", "paraview/run.pvd"];
+        ["a_n.csv", "crack_path.csv", "result.json", "a_n.svg", "da_dn.svg", "plate.svg", "damage.svg", "paraview/run.pvd"];
     for file in files.into_iter().chain(["paraview/plate_0002.vti", ".perilife"]) {
         assert!(fs::metadata(out.join(file)).unwrap().len() > 0, "{file}");
     }

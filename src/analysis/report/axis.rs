@@ -1,12 +1,7 @@
 //! An axis of a chart: range, ticks and how numbers are written along it. Linear or logarithmic.
 
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-
-/// Linear or logarithmic axis with ticks of its own choice.
-///
-/// The chart library's logarithmic axis labels whole decades only, which leaves a ΔK axis from 8 to 40 MPa√m with one number.
+/// Linear or logarithmic axis. Ticks of a logarithmic one are not of whole decades only, which would leave ΔK from 8 to 40 MPa√m with one
+/// number.
 #[derive(Debug, Clone)]
 pub struct Axis {
     low: f64,
@@ -61,23 +56,23 @@ impl Axis {
             d if d > 0.7 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
             _ => &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 7.0, 8.0, 9.0],
         };
-        let whole: Vec<f64> = (1..10).map(f64::from).collect();
         let ticks = |multiples: &[f64]| {
             let exponents = (low.log10().floor() as i32)..=(high.log10().ceil() as i32);
             let all = exponents.flat_map(|e| multiples.iter().map(move |m| m * 10f64.powi(e)).collect::<Vec<_>>());
             all.filter(|v| (low..=high).contains(v)).collect::<Vec<f64>>()
         };
-        Axis { low, high, logarithmic: true, labelled: ticks(multiples), faint: ticks(&whole) }
+        let faint = ticks(if decades > 2.0 { &[1.0] } else { multiples });
+        Axis { low, high, logarithmic: true, labelled: ticks(multiples), faint }
     }
 
-    /// Number of labelled ticks.
-    pub fn labels(&self) -> usize {
-        self.labelled.len()
+    /// Where a logarithmic axis has lines across: whole decades, or every labelled tick of one that is shorter than two.
+    pub fn faint(&self) -> &[f64] {
+        &self.faint
     }
 
     /// Labelled ticks with their words.
     pub fn ticks(&self) -> Vec<(f64, String)> {
-        self.labelled.iter().map(|value| (*value, self.format_ext(value))).collect()
+        self.labelled.iter().map(|value| (*value, self.format(*value))).collect()
     }
 
     /// Ends.
@@ -95,32 +90,15 @@ impl Axis {
     }
 }
 
-impl Ranged for Axis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        from + (self.share(*value) * f64::from(to - from)).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        if hint.weight().allow_light_points() && self.logarithmic { self.faint.clone() } else { self.labelled.clone() }
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.low..self.high
-    }
-}
-
-impl ValueFormatter<f64> for Axis {
-    fn format_ext(&self, value: &f64) -> String {
+impl Axis {
+    fn format(&self, value: f64) -> String {
         if self.logarithmic {
-            return tick_text(*value, 0.0, 0);
+            return tick_text(value, 0.0, 0);
         }
         // All labels of a linear axis carry as many decimals as the one that needs most: 10.00, 10.01.
         let decimals_of = |v: &f64| trimmed(&format!("{v:.6}")).split_once('.').map_or(0, |(_, decimals)| decimals.len());
         let decimals = self.labelled.iter().map(decimals_of).max().unwrap_or(0);
-        tick_text(*value, self.high.abs().max(self.low.abs()), decimals)
+        tick_text(value, self.high.abs().max(self.low.abs()), decimals)
     }
 }
 
@@ -129,7 +107,7 @@ fn bounds(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 }
 
 /// 1, 2, 2.5 or 5 times a power of ten, not below `rough`.
-fn nice_step(rough: f64) -> f64 {
+pub(super) fn nice_step(rough: f64) -> f64 {
     let power = 10f64.powf(rough.log10().floor());
     [1.0, 2.0, 2.5, 5.0, 10.0].into_iter().map(|m| m * power).find(|step| *step >= rough * (1.0 - 1e-9)).unwrap_or(rough)
 }

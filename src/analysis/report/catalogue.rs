@@ -8,7 +8,7 @@ use crate::calibration::exponent::Parameter;
 use crate::calibration::laws::FitLaw;
 use crate::calibration::rates::RateMethod;
 use crate::case::record::Estimate;
-use crate::case::{Failure, Lot, Method};
+use crate::case::{Failure, LIBRARY, Lot, Method};
 use crate::element_free::basis::{BasisKind, Enrichment};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
@@ -21,6 +21,7 @@ use crate::fracture::scene::{Calibration, DamageEntry, DamageLaw, Discretisation
 use crate::input::{Folder, Quantity};
 use crate::kinds::KindLine;
 use crate::loading::{Grip, LoadingKind, Transverse};
+use crate::material::growth_data::{self, GrowthRecord};
 use crate::material::{Plane, library};
 use crate::measured::{CycleUnit, Decimal, IntensityUnit, LengthUnit, LoadUnit, RangeKind, RateUnit};
 use crate::predict::StopReason;
@@ -99,7 +100,16 @@ pub fn lines() -> Vec<(String, String, String)> {
         );
         ("material.name".to_owned(), name, meaning)
     }));
+    let record =
+        |record: GrowthRecord| ("material.name".to_owned(), record.name.clone(), format!("{}; with growth data", record.title()));
+    all.extend(growth_data::records().into_iter().map(record));
     all.extend(of_the_model.into_iter().flatten().map(words));
+    all.push((
+        GrowthLawKind::KEY.to_owned(),
+        LIBRARY.to_owned(),
+        "the growth data of the material that material.name names".to_owned(),
+    ));
+    all.push(("output.animation".to_owned(), "true".to_owned(), "also growth.svg: the cracks as they grow".to_owned()));
     all.push(("output.paraview".to_owned(), "true".to_owned(), "also the fields of some moments, for ParaView".to_owned()));
     all.extend(of_calibration.into_iter().flatten().map(words));
     all.extend(of_sweeps.into_iter().flatten().map(words));

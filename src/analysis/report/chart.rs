@@ -22,7 +22,7 @@ const QUIET: &str = "#55606d";
 const AXIS: &str = "#7b8794";
 const GRID: &str = "#e3e7ec";
 /// Colours of several series, which differ in lightness too.
-const COLOURS: [&str; 6] = [COMPUTED, SECOND, "#1b8a6b", "#8a4fa3", NOTE, "#4fa3d1"];
+pub const COLOURS: [&str; 6] = [COMPUTED, SECOND, "#1b8a6b", "#8a4fa3", NOTE, "#4fa3d1"];
 /// Size of a chart in a file of its own, px, and of its numbers.
 pub const LARGE: Size = Size { width: 900.0, height: 560.0, text: 14.0 };
 
@@ -137,7 +137,7 @@ pub struct Frame {
 }
 
 /// Width of words, px, about.
-fn width_of(words: &str, text: f64) -> f64 {
+pub fn width_of(words: &str, text: f64) -> f64 {
     0.56 * text * words.chars().count() as f64
 }
 
@@ -200,6 +200,10 @@ impl Frame {
             self.sketch.path(&[[left, y], [right, y]], GRID, 1.0, "");
             self.sketch.name([left - 0.6 * text, y + 0.35 * text], &words, "end", text, QUIET);
         }
+        for value in self.axes[0].faint() {
+            let x = self.at([*value, self.axes[1].ends()[0]])[0];
+            self.sketch.path(&[[x, top], [x, bottom]], GRID, 1.0, "");
+        }
         self.sketch.path(&[[left, bottom], [right, bottom]], AXIS, 1.0, "");
         let mut free = f64::NEG_INFINITY;
         for (value, words) in self.axes[0].ticks() {
@@ -219,7 +223,7 @@ impl Frame {
     }
 
     /// Pixel of values.
-    fn at(&self, [x, y]: Point) -> Point {
+    pub fn at(&self, [x, y]: Point) -> Point {
         let [left, top, right, bottom] = self.room;
         [left + self.axes[0].share(x) * (right - left), bottom - self.axes[1].share(y) * (bottom - top)]
     }
@@ -244,6 +248,28 @@ impl Frame {
         for piece in points.split(|point| !point.iter().all(|value| value.is_finite())) {
             self.line(piece, colour, width, dash);
         }
+    }
+
+    /// Left, top, right and bottom of the plot, px.
+    pub fn room(&self) -> [f64; 4] {
+        self.room
+    }
+
+    /// What else is drawn over the plot, in pixels.
+    pub fn sketch(&mut self) -> &mut Sketch {
+        &mut self.sketch
+    }
+
+    /// The drawing, to be put into a larger one.
+    pub fn into_sketch(self) -> Sketch {
+        self.sketch
+    }
+
+    /// Fills what lies below a value along y, from one x to another.
+    pub fn below(&mut self, y: f64, [from, to]: [f64; 2], colour: &str, opacity: f64) {
+        let bottom = self.room[3];
+        let [[left, top], [right, _]] = [from, to].map(|x| self.at([x, y]));
+        self.sketch.area(&[[left, bottom], [left, top], [right, top], [right, bottom]], colour, opacity);
     }
 
     /// The area between two lines.

@@ -9,6 +9,7 @@ use super::fit_use;
 use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource};
 use crate::loading::LoadControl;
+use crate::material::growth_data::BATCH_FACTOR;
 use crate::predict::plastic_zone::plastic_zone;
 use crate::predict::{CurvePoint, Prediction, StopReason};
 use crate::specimen::SpecimenKind;
@@ -100,6 +101,7 @@ pub fn of_case(case: &Case) -> Vec<Check> {
     checks.extend(thickness(case));
     checks.extend(size(case));
     checks.extend(lack_of_fit(case));
+    checks.extend(growth_data(case));
     sorted(checks)
 }
 
@@ -114,7 +116,16 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(thickness(case));
     checks.extend(size(case));
     checks.extend(lack_of_fit(case));
+    checks.extend(growth_data(case));
     sorted(checks)
+}
+
+/// Growth data of the library are those of one batch.
+fn growth_data(case: &Case) -> Option<Check> {
+    case.growth_data.as_ref()?;
+    let percent = 100.0 * (1.0 - 1.0 / BATCH_FACTOR);
+    let words = format!("growth data of the library: a batch may differ by a factor of {BATCH_FACTOR} in rate");
+    Some(Check::sized("growth_data", percent, true, Side::Either, words, "calibrate the law to tests of this batch"))
 }
 
 fn sorted(mut checks: Vec<Check>) -> Vec<Check> {

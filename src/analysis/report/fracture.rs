@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::chart::{self, Mark, Series};
 use super::csv::{exact, number};
-use super::damage::{DamagePicture, PointField};
+use super::damage::DamagePicture;
 use super::model_words::{self, clean};
 use super::output::{Room, write_file};
 use super::{provenance, vtk};
@@ -118,22 +118,15 @@ fn draw_charts(folder: &Path, scene: &Scene, fracture: &Fracture) -> Result<()> 
     chart("energies.svg", "energies over time", [TIME, "Energy, J"], &energies)
 }
 
-/// `damage_first.png` and `damage.png`: the plate at the start and at the end.
+/// `damage_first.svg` and `damage.svg`: the plate at the start and at the end.
 fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Snapshot]) -> Result<()> {
     let paths = paths(fracture);
     let none = Vec::new();
-    let first = snapshots.first().map(|snapshot| ("damage_first.png", snapshot, &none));
-    let last = snapshots.last().map(|snapshot| ("damage.png", snapshot, &paths));
+    let first = snapshots.first().map(|snapshot| ("damage_first.svg", snapshot, &none));
+    let last = snapshots.last().map(|snapshot| ("damage.svg", snapshot, &paths));
     for (file, snapshot, paths) in first.into_iter().chain(last) {
         let caption = caption(scene, fracture, snapshot);
-        let picture = DamagePicture {
-            grid: &fracture.grid,
-            field: PointField::Damage,
-            snapshot,
-            cracks: &scene.specimen.cracks,
-            paths,
-            caption: &caption,
-        };
+        let picture = DamagePicture { grid: &fracture.grid, snapshot, cracks: &scene.specimen.cracks, paths, caption: &caption };
         picture.write(&folder.join(file))?;
     }
     Ok(())

@@ -40,12 +40,14 @@ impl Box2 {
     }
 }
 
-/// Rectangles of the given sizes beside the `named` ones of `points`, inside the frame and off the `line`. Where all tried places
+/// Rectangles of the given sizes beside the `named` ones of `points`, inside the frame and off the `line`, which is broken where it is not
+/// finite. Where all tried places
 /// are taken, the one that covers least is.
 pub fn place_labels(frame: Box2, points: &[[f64; 2]], line: &[[f64; 2]], named: &[usize], sizes: &[[f64; 2]]) -> Vec<Box2> {
     let around = |p: [f64; 2], room: f64| Box2 { low: p.map(|v| v - room), high: p.map(|v| v + room) };
     let mut taken: Vec<Box2> = points.iter().map(|p| around(*p, POINT)).collect();
-    taken.extend(line.windows(2).flat_map(|ends| along(ends[0], ends[1])).map(|p| around(p, 1.0)));
+    let is_drawn = |ends: &&[[f64; 2]]| ends.iter().flatten().all(|x| x.is_finite());
+    taken.extend(line.windows(2).filter(is_drawn).flat_map(|ends| along(ends[0], ends[1])).map(|p| around(p, 1.0)));
     let mut placed = Vec::with_capacity(named.len());
     for (&i, size) in named.iter().zip(sizes) {
         let candidates = DISTANCES.iter().flat_map(|&gap| DIRECTIONS.iter().map(move |&way| (gap, way)));

@@ -33,6 +33,5 @@ pub mod verification;
 pub mod vtk;
 
 mod axis;
-mod plot;
 pub mod labels;
 mod raster;

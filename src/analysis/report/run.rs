@@ -9,12 +9,13 @@ use toml::Table;
 use super::band::Lives;
 use super::chart::{self, LARGE, Mark, Series};
 use super::csv;
-use super::damage::{DamagePicture, PointField, cycles_and_length};
+use super::damage::{DamagePicture, cycles_and_length};
 pub use super::json::result;
 use super::output::{Room, write_file};
 use super::pictures::curves::{a_n_svg, k_svg};
-use super::pictures::plate::{self, Plate, plate_svg};
+use super::pictures::plate::{self, Plate, growth_svg, plate_svg};
 use super::pictures::section::section_svg;
+use super::pictures::stress::stress_svg;
 use super::pictures::tables::RunTables;
 use super::quality::Quality;
 use super::specimen_picture::{nodes_svg, tip_svg};
@@ -23,6 +24,7 @@ use crate::case::budget::Budget;
 use crate::case::{Case, Model, RECORD, first_load};
 use crate::error::{Error, Result, input};
 use crate::growth::record::DepthRecord;
+use crate::predict::moment::stress_field;
 use crate::predict::part_through::PartThroughLife;
 use crate::predict::plastic_zone::{self, PlasticZone};
 use crate::predict::record::BLOCKS_WITHOUT_GROWTH;
@@ -218,17 +220,24 @@ fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_
         .into_iter()
         .map(|path| path.into_iter().map(|(_, position)| position).collect())
         .collect();
-    put("plate.svg", &plate_svg(&Plate::of(case), &tables, plate::SIZE))?;
+    let plate = Plate::of(case);
+    put("plate.svg", &plate_svg(&plate, &tables, plate::SIZE))?;
     if let Some(section) = section_svg(case, prediction) {
         put("section.svg", &section)?;
     }
-    let is_by_bonds = case.spends_bond_life();
-    if let Some(snapshot) = prediction.snapshots.last().filter(|snapshot| is_by_bonds || !snapshot.stress.is_empty()) {
+    if case.output.animation {
+        put("growth.svg", &growth_svg(&plate, result, &tables, plate::MOVING))?;
+    }
+    if let Some(snapshot) = prediction.snapshots.last().filter(|_| case.spends_bond_life()) {
         let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
-        let (field, file) =
-            if is_by_bonds { (PointField::Damage, "damage.png") } else { (PointField::VonMises, "von_mises.png") };
-        DamagePicture { grid: &prediction.grid, snapshot, field, cracks, paths: &paths, caption: &caption }
-            .write(&folder.join(file))?;
+        DamagePicture { grid: &prediction.grid, snapshot, cracks, paths: &paths, caption: &caption }
+            .write(&folder.join("damage.svg"))?;
+    }
+    match stress_field(case, prediction) {
+        Ok(Some(field)) => put("stress.svg", &stress_svg(&field, &case.material))?,
+        Ok(None) => {}
+        // The answer counts without this picture.
+        Err(error) => tracing::warn!("stress.svg is left out: {error}"),
     }
     if matches!(case.model, Model::Nodes(_)) {
         put("nodes.svg", &nodes_svg(case, &paths)?)?;

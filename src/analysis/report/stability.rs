@@ -32,6 +32,21 @@ pub fn range(record: &Record) -> String {
     }
 }
 
+/// The safe range of the map: its unit stands beside the parameter.
+pub fn ends(record: &Record) -> String {
+    let sweep = record.sweep;
+    let [first, last] = sweep.range();
+    match (record.is_safe, record.ends) {
+        (None, _) => "not judged".to_owned(),
+        (Some(false), _) => format!("never within {} %", sweep.bound_percent),
+        (Some(true), [None, None]) => format!("within {} % everywhere", sweep.bound_percent),
+        (Some(true), [low, high]) => {
+            let end = |end: Option<f64>, whole: f64| short(end.unwrap_or(whole));
+            format!("within {} % from {} to {}", sweep.bound_percent, end(low, first), end(high, last))
+        }
+    }
+}
+
 /// Four significant digits.
 pub fn short(value: f64) -> String {
     let rounded = format!("{value:.3e}").parse::<f64>().unwrap_or(value);

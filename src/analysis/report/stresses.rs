@@ -1,12 +1,12 @@
-//! Stresses of a plate on nodes: `result.json`, `von_mises.png`, `nodes.svg` and ParaView files.
+//! Stresses of a plate on nodes: `result.json`, `stress.svg`, `nodes.svg` and ParaView files.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::damage::{DamagePicture, PointField};
 use super::output::{Room, write_file};
+use super::pictures::stress::stress_svg;
 use super::specimen_picture::nodes_svg;
 use super::{json::RESULT_FILE, provenance, vtk};
 use crate::case::{Case, Model};
@@ -14,6 +14,7 @@ use crate::element_free::resolution::ElementFreeSettings;
 use crate::element_free::rim_stress::{Rim, StressAt};
 use crate::error::Result;
 use crate::predict::Snapshot;
+use crate::predict::moment::StressField;
 use crate::stress_concentration::{SETTLED, Stressed};
 use crate::units::{MM, MPA};
 
@@ -114,6 +115,11 @@ pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) ->
     write_file(&folder.join(RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     let command = "sif --method element_free_galerkin";
     provenance::write(folder, command, provenance::table_of(&case.echo), &case.provenance)?;
+    let field = StressField { cycles: 0.0, cracks: case.specimen.crack_lines(), pieces: stressed.pieces.clone() };
+    write_file(&folder.join("stress.svg"), stress_svg(&field, &case.material).as_bytes())?;
+    let mut of_nodes = case.clone();
+    of_nodes.model = Model::Nodes(ElementFreeSettings { resolution: stressed.resolution, ..case.nodes() });
+    write_file(&folder.join("nodes.svg"), nodes_svg(&of_nodes, &[])?.as_bytes())?;
     let snapshot = Snapshot {
         cycles: 0.0,
         crack_length: case.specimen.crack_length,
@@ -122,19 +128,5 @@ pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) ->
         remaining_life: Vec::new(),
         stress: stressed.stress.clone(),
     };
-    let caption = ["at maximum load".to_owned()];
-    let cracks = &case.specimen.cracks;
-    DamagePicture {
-        grid: &stressed.grid,
-        snapshot: &snapshot,
-        field: PointField::VonMises,
-        cracks,
-        paths: &[],
-        caption: &caption,
-    }
-    .write(&folder.join("von_mises.png"))?;
-    let mut of_nodes = case.clone();
-    of_nodes.model = Model::Nodes(ElementFreeSettings { resolution: stressed.resolution, ..case.nodes() });
-    write_file(&folder.join("nodes.svg"), nodes_svg(&of_nodes, &[])?.as_bytes())?;
     vtk::write_wanted(folder, case.output, &stressed.grid, &[snapshot])
 }

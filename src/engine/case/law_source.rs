@@ -14,7 +14,10 @@ use crate::fatigue::growth_law::{FactorLaw, GrowthLawKind, bonds, paris};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::{FatigueLaw, STEADY_EXPONENTS, unsteady};
 use crate::input::{Document, Folder, slice, value_at};
+use crate::material::library;
 
+/// The growth law that stands with its material.
+pub const LIBRARY: &str = "library";
 /// Slack of a stress ratio against those of the rates.
 const RATIO_SLACK: f64 = 0.02;
 
@@ -152,6 +155,30 @@ pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value
     }
     table.extend(record.fatigue.clone());
     Ok(Some((Value::Table(table), Box::new(record))))
+}
+
+/// `[fatigue]` with the growth law of the material it asks for by `growth_law = "library"`, and what that is; `None` where it does not.
+/// Errors: a material that has none, or a second law.
+pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, folder: &Folder) -> Result<Option<(Value, String)>> {
+    if value_at(fatigue, "growth_law").and_then(Value::as_str) != Some(LIBRARY) {
+        return Ok(None);
+    }
+    const REMEDY: &str = "name a record of `perilife list materials`, or an own file with [growth]";
+    let Some(name) = value_at(material, "name").and_then(Value::as_str) else {
+        let problem = "is missing, and fatigue.growth_law is \"library\"";
+        return Err(input_missing("material.name", problem, REMEDY));
+    };
+    let Some((keys, words)) = library::growth(name, thickness, folder)? else {
+        return Err(input("material.name", format!("\"{name}\""), "has no growth law in the library", REMEDY));
+    };
+    let mut table = fatigue.as_table().cloned().unwrap_or_default();
+    table.remove("growth_law");
+    if let Some(key) = law_keys().chain([GAMMA.key]).find(|key| table.contains_key(*key)) {
+        let problem = "stands beside growth_law = \"library\": the law is given twice";
+        return Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or give all constants in the case"));
+    }
+    table.extend(keys);
+    Ok(Some((Value::Table(table), words)))
 }
 
 /// Refuses a power of ΔK at another stress ratio than that of its rates; what is to be said of other laws there.

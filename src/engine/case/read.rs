@@ -117,8 +117,11 @@ impl Case {
         };
         let (model, chosen) = model::from_value(&asked, (&specimen, &material, &loading), &mut choices, &mut warnings)?;
         let (with_law, law_record) = law_source::expanded(sections.optional("fatigue"), folder)?.unzip();
+        let section = with_law.as_ref().unwrap_or(sections.optional("fatigue"));
+        let of_library = law_source::of_library(section, sections.required("material")?, specimen.thickness, folder)?;
+        let (with_growth, growth_data) = of_library.unzip();
         let fatigue = fatigue::from_value(
-            with_law.as_ref().unwrap_or(sections.optional("fatigue")),
+            with_growth.as_ref().unwrap_or(section),
             model.method(),
             (&specimen, &material, &loading),
             folder,
@@ -143,6 +146,7 @@ impl Case {
             lot: fatigue.lot,
             choices,
             law_record,
+            growth_data,
         };
         if matches!(case.engine(), Engine::Points | Engine::Handbook) && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
@@ -180,6 +184,7 @@ impl Case {
             keys.insert("fitted".into(), serde_json::to_value(&record).unwrap_or_default());
         }
         self.law_record = None;
+        self.growth_data = None;
         if let Ok(text) = toml::to_string(&record) {
             let file = OpenedFile { name: RECORD.to_owned(), path: None, id: None, content: text.into_bytes().into() };
             self.provenance.files.push(file);

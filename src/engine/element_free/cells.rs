@@ -55,33 +55,95 @@ pub struct QuadraturePoint {
     pub area: f64,
 }
 
-/// Points of integration of every cell with material.
-pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Vec<QuadraturePoint>)> {
-    let grid = &plate.grid;
-    let near_sides = by_leaf(grid, plate.sides.iter().copied(), 0.0);
-    let pieces: Vec<[Point; 2]> =
-        plate.obstacles.cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]).collect();
-    let near_pieces = by_leaf(grid, pieces.iter().copied(), 0.0);
-    let mut tips: HashMap<usize, Vec<(Point, Point)>> = HashMap::new();
-    for axes in &plate.axes {
-        let reach = BESIDE_TIP * axes.spacing;
-        grid.visit(axes.at.map(|x| x - reach), axes.at.map(|x| x + reach), &mut |leaf| {
-            let [low, high] = grid.bounds(leaf);
-            let nearest = [0, 1].map(|i| axes.at[i].clamp(low[i], high[i]));
-            tips.entry(leaf).or_default().push((nearest, axes.ahead));
-        });
+/// What divides the cells of a plate.
+pub struct Dividers {
+    sides: Vec<[Point; 2]>,
+    cracks: Vec<[Point; 2]>,
+    sides_near: HashMap<usize, Vec<u32>>,
+    cracks_near: HashMap<usize, Vec<u32>>,
+    tips: HashMap<usize, Vec<(Point, Point)>>,
+}
+
+/// What divides one cell: sides of rims, pieces of cracks, and tips with the directions ahead of them.
+pub struct OfCell {
+    /// Sides of rims.
+    pub sides: Vec<[Point; 2]>,
+    /// Pieces of cracks.
+    pub cracks: Vec<[Point; 2]>,
+    tips: Vec<(Point, Point)>,
+}
+
+impl Dividers {
+    /// Those of a plate with its cracks.
+    pub fn of(plate: &Discretisation) -> Self {
+        let grid = &plate.grid;
+        let pieces = plate.obstacles.cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]);
+        let cracks: Vec<[Point; 2]> = pieces.collect();
+        let mut tips: HashMap<usize, Vec<(Point, Point)>> = HashMap::new();
+        for axes in &plate.axes {
+            let reach = BESIDE_TIP * axes.spacing;
+            grid.visit(axes.at.map(|x| x - reach), axes.at.map(|x| x + reach), &mut |leaf| {
+                let [low, high] = grid.bounds(leaf);
+                let nearest = [0, 1].map(|i| axes.at[i].clamp(low[i], high[i]));
+                tips.entry(leaf).or_default().push((nearest, axes.ahead));
+            });
+        }
+        let [sides_near, cracks_near] = [&plate.sides, &cracks].map(|segments| by_leaf(grid, segments.iter().copied(), 0.0));
+        Dividers { sides: plate.sides.clone(), cracks, sides_near, cracks_near, tips }
     }
-    let leaves: Vec<usize> = grid.leaves().collect();
-    let of_leaf = |&leaf: &usize| {
+
+    /// Those of a cell.
+    pub fn of_cell(&self, leaf: usize) -> OfCell {
         let beside = |near: &HashMap<usize, Vec<u32>>, all: &[[Point; 2]]| -> Vec<[Point; 2]> {
             near.get(&leaf).into_iter().flatten().map(|&index| all[index as usize]).collect()
         };
-        let (sides, cracks) = (beside(&near_sides, &plate.sides), beside(&near_pieces, &pieces));
-        let at_tips = tips.get(&leaf).cloned().unwrap_or_default();
-        let points = if sides.is_empty() && cracks.is_empty() && at_tips.is_empty() {
+        OfCell {
+            sides: beside(&self.sides_near, &self.sides),
+            cracks: beside(&self.cracks_near, &self.cracks),
+            tips: self.tips.get(&leaf).cloned().unwrap_or_default(),
+        }
+    }
+}
+
+impl OfCell {
+    fn is_empty(&self) -> bool {
+        self.sides.is_empty() && self.cracks.is_empty() && self.tips.is_empty()
+    }
+
+    /// The material of convex pieces of a cell of this spacing, m, as convex pieces.
+    pub fn divide(&self, specimen: &Specimen, mut pieces: Vec<Vec<Point>>, spacing: f64) -> Vec<Vec<Point>> {
+        let least = SLIVER * spacing * spacing;
+        for &side in &self.sides {
+            divide(&mut pieces, side, least);
+        }
+        pieces.retain(|piece| specimen.contains(middle(piece)));
+        for &crack in &self.cracks {
+            divide(&mut pieces, crack, least);
+        }
+        for &(tip, [x, y]) in &self.tips {
+            let reach = 2.0 * spacing;
+            for [x, y] in [[x, y], [-y, x]] {
+                let across = [[tip[0] - reach * x, tip[1] - reach * y], [tip[0] + reach * x, tip[1] + reach * y]];
+                let (mut holding, others): (Vec<_>, Vec<_>) =
+                    pieces.into_iter().partition(|piece| holds(piece, tip, AT_TIP * spacing));
+                divide(&mut holding, across, least);
+                pieces = [others, holding].concat();
+            }
+        }
+        pieces
+    }
+}
+
+/// Points of integration of every cell with material.
+pub fn quadrature(specimen: &Specimen, plate: &Discretisation) -> Vec<(usize, Vec<QuadraturePoint>)> {
+    let (grid, dividers) = (&plate.grid, Dividers::of(plate));
+    let leaves: Vec<usize> = grid.leaves().collect();
+    let of_leaf = |&leaf: &usize| {
+        let near = dividers.of_cell(leaf);
+        let points = if near.is_empty() {
             if specimen.contains(grid.middle(leaf)) { whole(grid, leaf) } else { Vec::new() }
         } else {
-            divided(specimen, grid, leaf, [&sides, &cracks], &at_tips)
+            divided(specimen, grid, leaf, &near)
         };
         (!points.is_empty()).then_some((leaf, points))
     };
@@ -96,39 +158,13 @@ fn whole(grid: &Grid, leaf: usize) -> Vec<QuadraturePoint> {
     points
 }
 
-/// Points of a cell that sides of rims and pieces of cracks divide, and tips with the directions ahead of them.
-fn divided(
-    specimen: &Specimen,
-    grid: &Grid,
-    leaf: usize,
-    [sides, cracks]: [&[[Point; 2]]; 2],
-    tips: &[(Point, Point)],
-) -> Vec<QuadraturePoint> {
-    let [low, high] = grid.bounds(leaf);
-    let spacing = grid.spacing(leaf);
-    let least = SLIVER * spacing * spacing;
-    let mut pieces = vec![vec![low, [high[0], low[1]], high, [low[0], high[1]]]];
-    for &side in sides {
-        divide(&mut pieces, side, least);
-    }
-    pieces.retain(|piece| specimen.contains(middle(piece)));
-    for &crack in cracks {
-        divide(&mut pieces, crack, least);
-    }
-    for &(tip, [x, y]) in tips {
-        let reach = 2.0 * spacing;
-        for [x, y] in [[x, y], [-y, x]] {
-            let across = [[tip[0] - reach * x, tip[1] - reach * y], [tip[0] + reach * x, tip[1] + reach * y]];
-            let (mut holding, others): (Vec<_>, Vec<_>) =
-                pieces.into_iter().partition(|piece| holds(piece, tip, AT_TIP * spacing));
-            divide(&mut holding, across, least);
-            pieces = [others, holding].concat();
-        }
-    }
+/// Points of a cell that something divides.
+fn divided(specimen: &Specimen, grid: &Grid, leaf: usize, near: &OfCell) -> Vec<QuadraturePoint> {
+    let ([low, high], spacing) = (grid.bounds(leaf), grid.spacing(leaf));
     let mut points = Vec::new();
-    for piece in pieces {
+    for piece in near.divide(specimen, vec![vec![low, [high[0], low[1]], high, [low[0], high[1]]]], spacing) {
         let corner = |tip: &Point| piece.iter().position(|corner| distance(*corner, *tip) < AT_TIP * spacing);
-        match tips.iter().find_map(|(tip, _)| corner(tip)) {
+        match near.tips.iter().find_map(|(tip, _)| corner(tip)) {
             Some(corner) => fan(&piece, corner, &mut points),
             None => convex(&piece, spacing, &mut points),
         }
@@ -144,7 +180,8 @@ fn holds(piece: &[Point], at: Point, slack: f64) -> bool {
     })
 }
 
-fn middle(piece: &[Point]) -> Point {
+/// Mean of the corners of a piece.
+pub fn middle(piece: &[Point]) -> Point {
     [0, 1].map(|i| piece.iter().map(|corner| corner[i]).sum::<f64>() / piece.len() as f64)
 }
 

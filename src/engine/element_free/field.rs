@@ -221,7 +221,12 @@ impl Discretisation {
 
     /// Displacement, m, and its gradient ∂u_i/∂x_j at a point, of the unknowns `u`; `None` where nodes in reach do not span the basis.
     pub fn displacement(&self, u: &[f64], at: Point, local: &mut Local) -> Option<(Point, [[f64; 2]; 2])> {
-        if !self.at(self.grid.leaf(at), at, local) {
+        self.displacement_in(self.grid.leaf(at), u, at, local)
+    }
+
+    /// The same of a point of a leaf.
+    pub fn displacement_in(&self, leaf: usize, u: &[f64], at: Point, local: &mut Local) -> Option<(Point, [[f64; 2]; 2])> {
+        if !self.at(leaf, at, local) {
             return None;
         }
         let (mut sum, mut slope) = ([0.0; 2], [[0.0; 2]; 2]);

@@ -22,3 +22,4 @@ pub mod resolution;
 pub mod rim_stress;
 pub mod rims;
 pub mod solve;
+pub mod stress_field;

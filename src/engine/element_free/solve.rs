@@ -14,6 +14,7 @@ use crate::levels::PointGrid;
 use crate::material::Plane;
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::{Point, Specimen};
+use crate::williams::Elasticity;
 
 /// Displacement of a plate under its loads.
 #[derive(Debug, Clone)]
@@ -154,6 +155,41 @@ pub fn raster(specimen: &Specimen, far: f64) -> PointGrid {
     PointGrid { spacing, columns, rows, origin, angle: 0.0, point_at }
 }
 
+/// Stress at a point, Pa.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stress {
+    /// σ_x.
+    pub x: f64,
+    /// σ_y.
+    pub y: f64,
+    /// τ_xy.
+    pub xy: f64,
+    /// σ_z: 0 in plane stress, ν (σ_x + σ_y) in plane strain.
+    pub across: f64,
+}
+
+impl Stress {
+    /// Of a gradient of displacement ∂u_i/∂x_j.
+    pub fn of(elasticity: Elasticity, plane: Plane, gradient: &[[f64; 2]; 2]) -> Self {
+        let [x, y, xy] = elasticity.stress(gradient);
+        // κ = 3 - 4ν in plane strain.
+        let across = if plane == Plane::Strain { 0.25 * (3.0 - elasticity.kappa) * (x + y) } else { 0.0 };
+        Stress { x, y, xy, across }
+    }
+
+    /// A multiple of it.
+    pub fn times(self, share: f64) -> Self {
+        let Stress { x, y, xy, across } = self;
+        Stress { x: share * x, y: share * y, xy: share * xy, across: share * across }
+    }
+
+    /// That of von Mises, `√(½[(σ_x-σ_y)² + (σ_y-σ_z)² + (σ_z-σ_x)²] + 3 τ_xy²)`.
+    pub fn von_mises(&self) -> f64 {
+        let Stress { x, y, xy, across } = *self;
+        (0.5 * ((x - y).powi(2) + (y - across).powi(2) + (across - x).powi(2)) + 3.0 * xy * xy).sqrt()
+    }
+}
+
 /// Displacement, m, and von Mises stress, Pa, of the points of the raster, times `share`.
 pub fn raster_fields(
     specimen: &Specimen,
@@ -166,14 +202,9 @@ pub fn raster_fields(
     let PointGrid { spacing, columns, origin, point_at, .. } = raster(specimen, far);
     let at = |place: usize| [origin[0] + (place % columns) as f64 * spacing, origin[1] + (place / columns) as f64 * spacing];
     let places: Vec<usize> = (0..point_at.len()).filter(|&place| point_at[place].is_some()).collect();
-    let elasticity = plate.elasticity();
     let of_place = |local: &mut Local, &place: &usize| {
         let Some((u, gradient)) = plate.displacement(u, at(place), local) else { return ([0.0; 2], 0.0) };
-        let [x, y, xy] = elasticity.stress(&gradient);
-        // κ = 3 - 4ν in plane strain.
-        let across = if plane == Plane::Strain { 0.25 * (3.0 - elasticity.kappa) * (x + y) } else { 0.0 };
-        let squares = (x - y).powi(2) + (y - across).powi(2) + (across - x).powi(2) + 6.0 * xy * xy;
-        (u.map(|u| share * u), share * (0.5 * squares).sqrt())
+        (u.map(|u| share * u), share * Stress::of(plate.elasticity(), plane, &gradient).von_mises())
     };
     places.par_iter().map_init(Local::default, of_place).unzip()
 }

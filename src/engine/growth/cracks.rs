@@ -117,11 +117,11 @@ pub trait CrackedPlate: Sized {
         None
     }
 
-    /// The points that pictures show.
-    fn grid(&self, case: &Case) -> PointGrid;
+    /// The points of the files for ParaView; `None` of nodes where nobody wants these.
+    fn grid(&self, case: &Case) -> Option<PointGrid>;
 
     /// Displacement and damage of these points.
-    fn fields(&mut self, case: &Case, cracks: &CracksState) -> Result<Fields>;
+    fn fields(&mut self, case: &Case, cracks: &CracksState) -> Result<Option<Fields>>;
 
     /// What it took.
     fn statistics(&self) -> SolverStatistics;

@@ -198,11 +198,14 @@ impl CrackedPlate for NodePlate {
         if let State::Nodes(run) = state { Some(run) } else { None }
     }
 
-    fn grid(&self, case: &Case) -> PointGrid {
-        raster(&case.specimen, self.resolution().far)
+    fn grid(&self, case: &Case) -> Option<PointGrid> {
+        case.output.paraview.then(|| raster(&case.specimen, self.resolution().far))
     }
 
-    fn fields(&mut self, case: &Case, cracks: &CracksState) -> Result<Fields> {
+    fn fields(&mut self, case: &Case, cracks: &CracksState) -> Result<Option<Fields>> {
+        if !case.output.paraview {
+            return Ok(None);
+        }
         if self.solved.is_none() {
             // Of a resumed run: no solve of its increments.
             let state = self.state.clone();
@@ -214,7 +217,7 @@ impl CrackedPlate for NodePlate {
             raster_fields(&case.specimen, plate, &solution.u, far, case.material.plane, share)
         };
         let (displacement, stress) = self.solved.as_ref().map(of_plate).unwrap_or_default();
-        Ok(Fields { damage: vec![0.0; displacement.len()], remaining_life: Vec::new(), displacement, stress })
+        Ok(Some(Fields { damage: vec![0.0; displacement.len()], remaining_life: Vec::new(), displacement, stress }))
     }
 
     fn statistics(&self) -> SolverStatistics {

@@ -313,14 +313,14 @@ impl CrackedPlate for PointPlate {
         Some(self.body.clone())
     }
 
-    fn grid(&self, _case: &Case) -> PointGrid {
-        PointGrid::of_body(&self.body)
+    fn grid(&self, _case: &Case) -> Option<PointGrid> {
+        Some(PointGrid::of_body(&self.body))
     }
 
-    fn fields(&mut self, case: &Case, _cracks: &CracksState) -> Result<Fields> {
+    fn fields(&mut self, case: &Case, _cracks: &CracksState) -> Result<Option<Fields>> {
         let share = case.loading.share(self.work());
         let displacement: Vec<f64> = self.displacement.iter().map(|u| share * u).collect();
-        Ok(plate::fields(&self.body, &self.bonds, &displacement, &self.remaining_life))
+        Ok(Some(plate::fields(&self.body, &self.bonds, &displacement, &self.remaining_life)))
     }
 
     fn statistics(&self) -> SolverStatistics {

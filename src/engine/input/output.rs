@@ -12,6 +12,8 @@ use crate::error::Result;
 pub struct Output {
     /// Whether the fields of some moments are written for ParaView, which takes most of the room of a run.
     pub paraview: bool,
+    /// Whether a run draws its cracks as they grow.
+    pub animation: bool,
 }
 
 impl Output {

@@ -6,14 +6,17 @@
 //! value = 73.1
 //! source = "..."
 //! ```
-//! Every number stands with its source. There is no fatigue law here: that is what `calibration/<name>/fitted.toml` holds.
+//! Every number stands with its source. Growth data are those of [`super::growth_data`]; the law of a test of one's own is what
+//! `calibration/<name>/fitted.toml` holds.
 
 use include_dir::{Dir, include_dir};
 use serde::Deserialize;
 use toml::Value;
 
+use super::growth_data;
 use crate::error::{Error, InputError, Result, input};
 use crate::input::{Document, Folder, slice};
+use crate::units::MM;
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../data/materials");
 
@@ -49,6 +52,18 @@ pub struct MaterialFile {
     pub density_kg_m3: Option<Property>,
     /// Tensile strength, MPa.
     pub tensile_strength_mpa: Option<Property>,
+    /// Its growth law: keys of `[fatigue]`, files in them from the folder of the case.
+    pub growth: Option<toml::Table>,
+}
+
+/// The growth law of a material, as keys of `[fatigue]`, for a plate of this thickness, m, and what it is; `None` of one without.
+/// Errors: as [`find`].
+pub fn growth(name: &str, thickness: f64, folder: &Folder) -> Result<Option<(toml::Table, String)>> {
+    if let Some(record) = growth_data::record(name) {
+        return Ok(Some((record.keys(thickness / MM), format!("{}: {}", record.title(), growth_data::SOURCE))));
+    }
+    let file = find(name, folder)?;
+    Ok(file.growth.map(|keys| (keys, file.title)))
 }
 
 /// Names of the built-in materials, sorted.
@@ -71,7 +86,11 @@ pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
     }
     let text = FILES.get_file(format!("{name}.toml")).and_then(|file| file.contents_utf8());
     let Some(text) = text else {
-        let remedy = format!("use one of {}, or the path of an own .toml file", names().join(", "));
+        if let Some(record) = growth_data::record(name) {
+            return Ok(record.file());
+        }
+        let files = names().join(", ");
+        let remedy = format!("use one of {files}, a record of `perilife list materials`, or the path of an own .toml file");
         return Err(input("material.name", format!("\"{name}\""), "is not a known material", remedy));
     };
     let document = Document::parse(text, name, Folder::none(), &[])?;

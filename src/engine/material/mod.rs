@@ -2,6 +2,7 @@
 //!
 //! `[material]` of an input file: a name, or constants written inline, or both (inline ones win).
 
+pub mod growth_data;
 pub mod library;
 
 use serde::Deserialize;

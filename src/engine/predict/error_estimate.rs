@@ -6,6 +6,7 @@
 
 use super::Prediction;
 use super::laws::growth_law;
+use super::moment::{grown, rows_before_meeting};
 use crate::case::{Case, Engine, Model, finer_nodes};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
@@ -14,7 +15,6 @@ use crate::growth::cracks::steering::{equivalent_factor, kink_angle};
 use crate::growth::nodes::NodePlate;
 use crate::growth::record::{CurvePoint, StopReason, TipRecord};
 use crate::specimen::handbook::handbook;
-use crate::specimen::{Specimen, TipSeed};
 use crate::units::MM;
 
 /// Shares of the cycles at which nodes are asked again, of a run on nodes: as many as take half of its time at the most.
@@ -116,13 +116,6 @@ fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Resu
     })
 }
 
-/// The last row before which no tip has met anything.
-fn rows_before_meeting(curve: &[CurvePoint]) -> &[CurvePoint] {
-    let has_met = |tip: &TipRecord| !matches!(tip.state, TipState::Active | TipState::Closed);
-    let is_read = |row: &CurvePoint| row.tips.iter().all(|tip| !has_met(tip) && tip.factors.is_some());
-    &curve[..curve.iter().position(|row| !is_read(row)).unwrap_or(curve.len())]
-}
-
 fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, shares: &[f64]) -> Result<ErrorEstimate, String> {
     let (life, rows) = (prediction.life_cycles(), rows_before_meeting(&prediction.curve));
     let end = rows.last().map_or(0.0, |row| row.cycles);
@@ -212,27 +205,4 @@ impl Difference {
         let at = rows[row].crack_length / MM;
         is_known.then_some(difference).ok_or_else(|| format!("at {at:.3} mm the leading tip is at the threshold of its law"))
     }
-}
-
-/// The specimen with its cracks as the rows have left them, the last one's tips as initial ones.
-fn grown(specimen: &Specimen, rows: &[CurvePoint]) -> Specimen {
-    let mut lines = specimen.crack_lines();
-    let mut after = specimen.clone();
-    let Some(last) = rows.last() else { return after };
-    for tip in 0..last.tips.len() {
-        let Some(end) = specimen.line_end(tip) else { continue };
-        let line = &mut lines[end.line];
-        let mut grown = 0.0;
-        for row in rows.iter().filter(|row| row.is_solved) {
-            let TipRecord { growth, position, .. } = row.tips[tip];
-            if growth > grown {
-                line.grow(end.at_last, position);
-                grown = growth;
-            }
-        }
-        after.tips[tip] = TipSeed { position: line.end(end.at_last), direction: line.direction(end.at_last), from_slot: false };
-    }
-    after.crack_length = last.crack_length;
-    after.set_crack_lines(&lines);
-    after
 }

@@ -147,7 +147,7 @@ impl Follower {
             self.seen.picture = revision;
             let mut about: serde_json::Value = serde_json::from_str(&about).unwrap_or_else(|_| json!({}));
             about["revision"] = revision.into();
-            about["href"] = format!("/v1/{}/{}/live/damage.png", self.kind.collection(), self.id).into();
+            about["href"] = format!("/v1/{}/{}/live/damage.svg", self.kind.collection(), self.id).into();
             self.send("picture", &about).await;
         }
         Ok(())

@@ -152,16 +152,16 @@ pub async fn input_file(
 }
 
 /// The plate of a running prediction as it was last seen: damage and crack paths.
-#[utoipa::path(get, path = "/v1/{collection}/{id}/live/damage.png", tag = "results",
+#[utoipa::path(get, path = "/v1/{collection}/{id}/live/damage.svg", tag = "results",
     params(("collection" = String, Path), ("id" = String, Path)),
-    responses((status = 200, description = "PNG", content_type = "image/png"), (status = 404, body = Problem)))]
+    responses((status = 200, description = "SVG", content_type = "image/svg+xml"), (status = 404, body = Problem)))]
 pub async fn picture(Shared(app): Shared<App>, Path((collection, id)): Path<(String, String)>) -> Answer<Response> {
     super::collections::kind_of(&collection)?;
     if !is_id(&id) {
         return Err(Problem::not_found("picture"));
     }
     let picture = app.store.picture(&id).await?.ok_or_else(|| Problem::not_found("picture"))?;
-    Ok(([(header::CONTENT_TYPE, "image/png")], picture).into_response())
+    Ok(([(header::CONTENT_TYPE, "image/svg+xml")], picture).into_response())
 }
 
 /// From which length on, and with which factor.

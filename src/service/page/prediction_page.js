@@ -18,7 +18,7 @@ const PLAY_MS = 5000;
 /** Share of the life that is shown first: most of the path has its colours there. */
 const START = 0.9;
 /** Pictures of the end of a run, by the model that has them. */
-const FIELDS = { "von_mises.png": "Von Mises stress at maximum load, at the end of the run.", "damage.png": "Share of bonds cut or broken, at the end of the run." };
+const FIELDS = { "stress.svg": "Stress at maximum load, late in the life; cracks drawn open.", "damage.svg": "Share of bonds cut or broken, at the end of the run." };
 
 export async function openPrediction(root, id, signal) {
   const job = await getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal);

@@ -8,7 +8,7 @@ use crate::fracture::{SceneObserver, SceneProgress};
 use crate::job::JobProgress;
 use crate::predict::checkpoint::Checkpoint;
 use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
-use crate::report::damage::{DamagePicture, PointField, cycles_and_length};
+use crate::report::damage::{DamagePicture, cycles_and_length};
 use crate::runner::Watcher;
 use crate::specimen::{Crack, Point};
 use crate::store::Growth;
@@ -28,13 +28,13 @@ struct LivePicture {
 }
 
 impl LivePicture {
-    /// What is said of the picture, JSON, and its PNG; `None` if it cannot be drawn.
+    /// What is said of the picture, JSON, and its SVG; `None` if it cannot be drawn.
     fn draw(&self) -> Option<(String, Vec<u8>)> {
         let LivePicture { snapshot, grid, cracks, paths } = self;
         let caption = cycles_and_length(snapshot);
-        let picture = DamagePicture { grid, field: PointField::Damage, snapshot, cracks, paths, caption: &caption };
+        let picture = DamagePicture { grid, snapshot, cracks, paths, caption: &caption };
         let about = serde_json::json!({ "cycles": snapshot.cycles, "crack_length_mm": snapshot.crack_length / MM });
-        Some((about.to_string(), picture.png().ok()?))
+        Some((about.to_string(), picture.svg().ok()?.into_bytes()))
     }
 }
 

@@ -60,7 +60,7 @@ fn a_job_is_watched_to_its_end() {
         let life = last["summary"]["life_cycles"].as_f64().unwrap();
         assert!(live.last().unwrap().0 <= life * 1.001);
         assert!(
-            events.iter().any(|(name, picture)| name == "picture" && picture["href"].as_str().unwrap().ends_with("damage.png"))
+            events.iter().any(|(name, picture)| name == "picture" && picture["href"].as_str().unwrap().ends_with("damage.svg"))
         );
         // Whoever comes late, or back with the last id, is told the end.
         let id = format!("{}.1.9.1", last["revision"]);

@@ -89,11 +89,11 @@ fn requests_that_cannot_be_read_are_refused() {
     for path in [
         nul,
         "/v1/predictions/%00",
-        "/v1/predictions/%00/live/damage.png",
+        "/v1/predictions/%00/live/damage.svg",
         "/v1/predictions/no",
         "/v1/predictions/no/events",
         "/v1/predictions/no/files/a_n.csv",
-        "/v1/predictions/no/live/damage.png",
+        "/v1/predictions/no/live/damage.svg",
         "/v1/predictions/no/files/..%2f..%2fetc%2fpasswd",
         "/v1/predictions/no/remaining?crack_length_mm=1",
         "/../Cargo.toml",

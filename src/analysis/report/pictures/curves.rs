@@ -6,6 +6,7 @@ use super::tables::RunTables;
 use crate::monotone::Monotone;
 use crate::report::axis::Axis;
 use crate::report::chart::{COMPUTED, Frame, SECOND, Size};
+use crate::report::specimen_picture::sketch::Sketch;
 use crate::specimen::Point;
 
 /// Share of an area that the band of the specimens covers with its colour.
@@ -106,6 +107,24 @@ fn spans(points: &[Point]) -> Point {
 
 /// Crack length over cycles: band of the specimens where there is one, curve, and a cross at the end with the reason.
 pub fn a_n_svg(result: &Value, tables: &RunTables, size: Size) -> String {
+    let [_, sentence] = end_words(result["stop_reason"].as_str().unwrap_or(""));
+    let name = if by_tip(result, tables) { "Growth of each tip" } else { "Crack length" };
+    a_n(result, tables, size).finish(&format!("{name} in mm over cycles to {:.0}; it ends because {sentence}", tables.life()))
+}
+
+/// The same with a dot on every curve that follows the cycles.
+pub(super) fn a_n_moving(result: &Value, tables: &RunTables, size: Size) -> Sketch {
+    let mut frame = a_n(result, tables, size);
+    let life = tables.life();
+    let times: Vec<f64> = tables.rows.iter().map(|row| row.cycles / life).collect();
+    for (lengths, _) in lengths(result, tables) {
+        let places: Vec<Point> = tables.rows.iter().zip(lengths).map(|(row, length)| frame.at([row.cycles, length])).collect();
+        frame.sketch().moving(&places, &times, 4.5, COMPUTED);
+    }
+    frame.into_sketch()
+}
+
+fn a_n(result: &Value, tables: &RunTables, size: Size) -> Frame {
     let curves = lengths(result, tables);
     let cycles: Vec<f64> = tables.rows.iter().map(|row| row.cycles).collect();
     let ends = tables.band.iter().flatten().flatten().copied();
@@ -130,7 +149,7 @@ pub fn a_n_svg(result: &Value, tables: &RunTables, size: Size) -> String {
     for (lengths, _) in &curves {
         frame.line(&smooth(&cycles, lengths), COMPUTED, 2.0, "");
     }
-    let [why, sentence] = end_words(result["stop_reason"].as_str().unwrap_or(""));
+    let [why, _] = end_words(result["stop_reason"].as_str().unwrap_or(""));
     let mut ends = Vec::new();
     let mut is_ended = false;
     for (tip, (lengths, leads)) in curves.iter().enumerate() {
@@ -145,7 +164,7 @@ pub fn a_n_svg(result: &Value, tables: &RunTables, size: Size) -> String {
         let all: Vec<Point> = ends.iter().map(|(_, end)| *end).chain([[0.0; 2]]).collect();
         tips_together(&ends, spans(&all)).iter().for_each(|(name, end)| frame.name(*end, name, COMPUTED));
     }
-    frame.finish(&format!("{} over cycles to {:.0}; it ends because {sentence}", names[1], tables.life()))
+    frame
 }
 
 /// K_I and K_II of every tip at maximum load over crack length; `None` where no K was read.

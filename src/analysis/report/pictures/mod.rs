@@ -6,4 +6,5 @@ pub mod curves;
 pub mod fit;
 pub mod plate;
 pub mod section;
+pub mod stress;
 pub mod tables;

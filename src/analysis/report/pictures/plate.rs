@@ -2,8 +2,9 @@
 
 mod drawing;
 
-pub use drawing::{SIZE, plate_svg};
-pub(super) use drawing::{colour, scale_bar};
+pub(super) use drawing::colour;
+pub(in crate::report) use drawing::scale_bar;
+pub use drawing::{MOVING, SIZE, growth_svg, plate_svg};
 
 use std::path::Path;
 

@@ -120,6 +120,26 @@ impl Sketch {
         self.push(format_args!(r#"<polygon points="{points}" fill="{fill}" fill-opacity="{opacity}"/>"#));
     }
 
+    /// Filled polygons of pixels that share sides: a thin edge of their colour hides these.
+    pub fn areas(&mut self, polygons: &[Vec<Point>], fill: &str) {
+        let way: String = polygons.iter().map(|polygon| format!("M{}Z", corners(polygon))).collect();
+        if !way.is_empty() {
+            self.push(format_args!(
+                r#"<path d="{way}" fill="{fill}" stroke="{fill}" stroke-width="0.5" stroke-linejoin="round"/>"#
+            ));
+        }
+    }
+
+    /// Many lines through pixels of one colour.
+    pub fn lines(&mut self, lines: &[Vec<Point>], stroke: &str, width: f64) {
+        let way: String = lines.iter().map(|line| format!("M{}", corners(line))).collect();
+        if !way.is_empty() {
+            self.push(format_args!(
+                r#"<path d="{way}" fill="none" stroke="{stroke}" stroke-width="{width}" stroke-linecap="round"/>"#
+            ));
+        }
+    }
+
     /// Open circle of fixed size in pixels.
     pub fn ring(&mut self, [x, y]: Point, radius: f64, stroke: &str, width: f64) {
         self.push(format_args!(
@@ -148,6 +168,34 @@ impl Sketch {
         self.push(format_args!(
             r#"<text x="{x:.1}" y="{y:.1}" text-anchor="{anchor}" font-size="{size}" fill="{fill}" paint-order="stroke" stroke="white" stroke-width="3" stroke-linejoin="round">{words}</text>"#
         ));
+    }
+
+    /// A PNG, base64, with its upper left corner at a pixel, turned clockwise about it by degrees; its pixels stay squares.
+    pub fn image(&mut self, [x, y]: Point, [width, height]: Point, turned: f64, png: &str) {
+        self.push(format_args!(
+            r#"<image x="0" y="0" width="{width:.3}" height="{height:.3}" transform="translate({x:.3} {y:.3}) rotate({turned:.4})" preserveAspectRatio="none" style="image-rendering:pixelated" href="data:image/png;base64,{png}"/>"#
+        ));
+    }
+
+    /// A line that grows along its pixels as time goes, `at` which share of the time each is reached; again and again.
+    pub fn growing(&mut self, places: &[Point], at: &[f64], stroke: &str, width: f64) {
+        let mut ways = vec![0.0];
+        for pair in places.windows(2) {
+            ways.push(ways[ways.len() - 1] + (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]));
+        }
+        let whole = ways[ways.len() - 1];
+        let left: Vec<f64> = ways.iter().map(|way| if whole > 0.0 { 1.0 - way / whole } else { 0.0 }).collect();
+        let (points, time) = (pixels(places), animated("stroke-dashoffset", &left, at));
+        self.push(format_args!(
+            r#"<polyline points="{points}" fill="none" stroke="{stroke}" stroke-width="{width}" stroke-linejoin="round" pathLength="1" stroke-dasharray="1 1">{time}</polyline>"#
+        ));
+    }
+
+    /// A dot that moves along pixels as time goes, as [`Self::growing`].
+    pub fn moving(&mut self, places: &[Point], at: &[f64], radius: f64, fill: &str) {
+        let [x, y] =
+            [("cx", 0), ("cy", 1)].map(|(name, axis)| animated(name, &places.iter().map(|p| p[axis]).collect::<Vec<_>>(), at));
+        self.push(format_args!(r#"<circle r="{radius}" fill="{fill}">{x}{y}</circle>"#));
     }
 
     /// Puts another drawing into an upright rectangle of pixels; nothing of it shows outside.
@@ -205,6 +253,26 @@ impl Sketch {
 
 fn pixels(places: &[Point]) -> String {
     places.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect::<Vec<_>>().join(" ")
+}
+
+/// Seconds in which an animation goes once from its start to its end, and the share of them after which it waits there.
+const SECONDS: f64 = 10.0;
+const MOVES: f64 = 0.85;
+
+/// An attribute that takes values at shares of the time, rising, then keeps the last one until it begins anew.
+fn animated(attribute: &str, values: &[f64], at: &[f64]) -> String {
+    let list = |numbers: &mut dyn Iterator<Item = f64>| numbers.map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(";");
+    let last = values.last().copied();
+    let values = list(&mut values.iter().copied().chain(last));
+    let times = list(&mut at.iter().map(|time| MOVES * time.clamp(0.0, 1.0)).chain([1.0]));
+    format!(
+        r#"<animate attributeName="{attribute}" dur="{SECONDS}s" repeatCount="indefinite" values="{values}" keyTimes="{times}"/>"#
+    )
+}
+
+/// Pixels of a path, half of a tenth of a pixel apart at the most from where they are.
+fn corners(places: &[Point]) -> String {
+    places.iter().map(|[x, y]| format!("{x:.1} {y:.1}")).collect::<Vec<_>>().join("L")
 }
 
 /// Text as markup takes it.

@@ -141,7 +141,7 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
         damage,
         procedure: loading.procedure,
         refinement,
-        output: Output::from_value(sections.optional("output"))?,
+        output: read_output(sections.optional("output"))?,
         warnings,
         echo,
         provenance: Provenance::default(),
@@ -155,4 +155,18 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
     scene.warnings.extend(lines);
     scene.provenance = folder.opened().so_far();
     Ok(scene)
+}
+
+/// `[output]` of a scene, which has no cycles over which cracks would be shown to grow.
+fn read_output(value: &Value) -> Result<Output> {
+    let output = Output::from_value(value)?;
+    if output.animation {
+        return Err(input(
+            "output.animation",
+            true,
+            "is of a case: a scene has no cycles",
+            "leave it out; paraview = true shows its moments",
+        ));
+    }
+    Ok(output)
 }

@@ -96,11 +96,11 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
     }
 
     fn grid(&self) -> Option<PointGrid> {
-        Some(self.plate.grid(self.case))
+        self.plate.grid(self.case)
     }
 
     fn fields(&mut self) -> Result<Option<Fields>> {
-        self.plate.fields(self.case, &self.state).map(Some)
+        self.plate.fields(self.case, &self.state)
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {

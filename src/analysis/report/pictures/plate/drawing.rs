@@ -1,8 +1,11 @@
 //! `plate.svg`: the plate to scale with its loads, the first crack and the way of every tip, coloured by cycles.
 
+use serde_json::Value;
+
 use super::Plate;
 use crate::monotone::Monotone;
-use crate::report::chart::{INK, Size};
+use crate::report::chart::{COMPUTED, INK, Size};
+use crate::report::pictures::curves::a_n_moving;
 use crate::report::pictures::tables::RunTables;
 use crate::report::specimen_picture::sketch::Sketch;
 use crate::specimen::Point;
@@ -10,6 +13,8 @@ use crate::specimen::geometry::{along, distance};
 
 /// Size of the picture in a file of its own.
 pub const SIZE: Size = Size { width: 760.0, height: 520.0, text: 13.0 };
+/// Size of the one that moves, with its curve.
+pub const MOVING: Size = Size { width: 1120.0, height: 520.0, text: 13.0 };
 const PLATE: &str = "#e3e8ee";
 const EDGE: &str = "#44505d";
 const QUIET: &str = "#55606d";
@@ -20,6 +25,8 @@ const RAMP: [[f64; 3]; 5] =
 const MARKS: [f64; 4] = [25.0, 50.0, 75.0, 90.0];
 /// Share of the plate below which cracks and their ways get a picture of their own.
 const SMALL: f64 = 0.7;
+/// Places of a tip between which an animation moves it evenly.
+const FRAMES: usize = 40;
 /// Room around the plate for loads, and below it for the scale, px.
 const AROUND: f64 = 44.0;
 const BELOW: f64 = 26.0;
@@ -102,6 +109,30 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     }
     let sentence = format!("Plate, {}; the ways of {} crack tips, coloured by cycles", plate.load, ways.len());
     sketch.picture([size.width, size.height], &sentence)
+}
+
+/// The plate at the left with cracks that grow as cycles go by, and at the right the curve with a dot that follows; SVG that moves by itself.
+pub fn growth_svg(plate: &Plate, result: &Value, tables: &RunTables, size: Size) -> String {
+    let ways: Vec<Way> = tables.paths.iter().filter(|path| !path.is_empty()).map(|path| Way::of(path)).collect();
+    let [low, high] = bounds(plate.outline_mm.iter());
+    let (width, life) = (0.5 * size.width, tables.life());
+    let room = [width - 2.0 * AROUND, size.height - 2.0 * AROUND - BELOW];
+    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
+    let middle = along(low, high, 0.5);
+    let mut sketch = Sketch::new(scale, [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale]);
+    let drawing = Drawing { plate, ways: &[], life, text: size.text };
+    drawing.body(&mut sketch);
+    drawing.loads(&mut sketch);
+    drawing.cracks(&mut sketch, true);
+    for way in &ways {
+        let lengths = || (0..=FRAMES).map(|frame| way.whole() * frame as f64 / FRAMES as f64);
+        let places: Vec<Point> = lengths().map(|length| sketch.place(way.at(length))).collect();
+        let times: Vec<f64> = lengths().map(|length| way.cycles.at(length) / life).collect();
+        sketch.growing(&places, &times, COMPUTED, 3.5);
+    }
+    scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
+    sketch.within([width, 0.0], [width, size.height], a_n_moving(result, tables, Size { width, ..size }));
+    sketch.picture([size.width, size.height], &format!("Cracks as they grow over {life:.0} cycles, {}", plate.load))
 }
 
 fn bounds<'p>(points: impl Iterator<Item = &'p Point>) -> [Point; 2] {
@@ -309,7 +340,7 @@ pub(in crate::report::pictures) fn colour(share: f64) -> String {
 }
 
 /// A length of 1, 2 or 5 times a power of ten, mm.
-pub(in crate::report::pictures) fn scale_bar(sketch: &mut Sketch, [x, y]: Point, [scale, span]: [f64; 2], text: f64) {
+pub(in crate::report) fn scale_bar(sketch: &mut Sketch, [x, y]: Point, [scale, span]: [f64; 2], text: f64) {
     let most = 0.3 * span;
     let power = 10f64.powf(most.log10().floor());
     let length = [5.0, 2.0, 1.0].into_iter().map(|part| part * power).find(|length| *length <= most).unwrap_or(power);
