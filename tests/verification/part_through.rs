@@ -142,6 +142,10 @@ fn surface(a: f64, c: f64, set: &[&str]) -> Prediction {
     hand_run(&keys, &[&["loading.stress_range_mpa=100", "model.method=auto"], set].concat())
 }
 
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() < 1e-9
+}
+
 fn depth(row: &CurvePoint) -> f64 {
     row.depth.unwrap().depth / MM
 }
@@ -154,7 +158,7 @@ fn both_ends_of_a_front_grow() {
         assert_eq!(run.stop, StopReason::CrackDepthReached);
         let last = run.curve.last().unwrap();
         println!("{a} {c}: {} cycles, c {}, {} rows", last.cycles, last.crack_length / MM, run.curve.len());
-        assert!((last.cycles / cycles - 1.0).abs() < 1e-3 && depth(last) == 5.08, "{last:?}");
+        assert!((last.cycles / cycles - 1.0).abs() < 1e-3 && same(depth(last), 5.08), "{last:?}");
         assert!((depth(last) / (last.crack_length / MM) / shape - 1.0).abs() < 1e-3);
         for rows in run.curve.windows(2) {
             assert!(rows[1].cycles > rows[0].cycles && rows[1].crack_length >= rows[0].crack_length);
@@ -173,11 +177,11 @@ fn both_ends_of_a_front_grow() {
 #[test]
 fn fronts_end_as_they_should() {
     let life = surface(1.27, 1.27, &["stop.at_break_through=true"]);
-    assert_eq!((life.stop, depth(life.curve.last().unwrap())), (StopReason::BrokenThrough, 6.35));
+    assert!(life.stop == StopReason::BrokenThrough && same(depth(life.curve.last().unwrap()), 6.35));
     let half = surface(1.27, 1.27, &[&format!("stop.cycles_max={:?}", 0.5 * life.life_cycles())]);
     assert_eq!((half.stop, half.life_cycles()), (StopReason::RunOut, 0.5 * life.life_cycles()));
     let length = surface(1.27, 1.27, &["stop.crack_length_mm=3"]);
-    assert_eq!((length.stop, length.crack_length_final_mm()), (StopReason::CrackLengthReached, 3.0));
+    assert!(length.stop == StopReason::CrackLengthReached && same(length.crack_length_final_mm(), 3.0));
     // K of the first row: a little more toughness than that, and none.
     let k_max = life.curve[0].delta_k / 0.8 / 1e6;
     let tough = |factor: f64| {
@@ -200,7 +204,7 @@ fn fronts_end_as_they_should() {
     };
     assert_eq!((with(1.001 * high).stop, with(1.001 * high).life()), (StopReason::NothingAges, None));
     let between = with(0.5 * (low + high));
-    assert!(depth(&between.curve[1]) == 1.27 && between.stop == StopReason::BrokenThrough);
+    assert!(same(depth(&between.curve[1]), 1.27) && between.stop == StopReason::BrokenThrough);
     assert!(between.life_cycles() > life.life_cycles());
     // K up and down by 5 %: at m = 2.874 the life is that many times.
     let case = hand_case(
@@ -259,7 +263,7 @@ fn a_through_crack_goes_on_as_that_of_a_plate() {
     }
     // An embedded crack goes through both faces at once, half of the thickness deep; bending ends with break-through.
     let embedded = hand_run(&flaw(KINDS[2], ""), &["model.method=auto", "stop.at_break_through=true"]);
-    assert_eq!((embedded.stop, depth(embedded.curve.last().unwrap())), (StopReason::BrokenThrough, 2.0));
+    assert!(embedded.stop == StopReason::BrokenThrough && same(depth(embedded.curve.last().unwrap()), 2.0));
     let bent = hand_run(&flaw(KINDS[0], ""), &["model.method=auto", "loading.bending_ratio=0.5"]);
     assert!(bent.stop == StopReason::BrokenThrough && bent.warnings.iter().any(|line| line.contains("bending out of the plane")));
 }
