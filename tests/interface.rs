@@ -18,6 +18,7 @@ mod fracture;
 mod hand_calculation;
 mod laws;
 mod nothing_lost;
+mod part_through;
 mod practice;
 mod rates;
 mod readme;

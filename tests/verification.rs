@@ -23,6 +23,7 @@ mod loads;
 mod mechanics_field;
 mod mirror_images;
 mod near_tip_fields;
+mod part_through;
 mod pressed_cracks;
 mod product;
 mod quasi_static;

@@ -125,7 +125,7 @@ commands! {
 
 /// Fatigue-life prediction of cracked plates by peridynamics.
 ///
-/// Through cracks in plates only: part-through and corner cracks are refused.
+/// Cracks go through the plate, or are surface, corner and embedded cracks, by hand calculation until they do.
 #[derive(Debug, Parser)]
 #[command(
     name = "perilife",

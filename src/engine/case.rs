@@ -49,7 +49,7 @@ crate::kinds! {
         Auto = "auto": "what the scene needs: handbook inside its range, else element_free_galerkin; peridynamics where a key of points or bonds is given",
         Peridynamics = "peridynamics": "points and bonds",
         ElementFreeGalerkin = "element_free_galerkin": "nodes without elements, near-tip fields as unknowns; cracks driven by the K of their tips",
-        Handbook = "handbook": "hand calculation: handbook K(a) of a standard specimen, Paris law, quadrature",
+        Handbook = "handbook": "hand calculation: handbook K of a standard specimen or a crack that does not go through, law over K, quadrature",
     }
 }
 
@@ -58,6 +58,8 @@ crate::kinds! {
 pub enum Engine {
     /// K(a) of a handbook.
     Handbook,
+    /// K of a crack that does not go through; once it does, nodes.
+    PartThrough,
     /// Nodes without elements, and the K of their tips.
     Nodes,
     /// Points and bonds, and the K of their tips.
@@ -194,6 +196,10 @@ impl Case {
 pub struct Stop {
     /// Crack length, m; infinite = none.
     pub crack_length: f64,
+    /// Depth of a crack that does not go through, m; infinite = none.
+    pub crack_depth: f64,
+    /// Whether the life ends where such a crack is through.
+    pub at_break_through: bool,
     /// Run-out.
     pub cycles_max: f64,
     /// Load that the plate has to bear over the largest of a cycle, at least 1: the life ends where it no longer does.

@@ -1,9 +1,9 @@
 //! THE MAIN PAGE: from a case to its a-N curve.
 //!
 //! A plate of points and bonds is in equilibrium under the maximum load. Every crack is a line whose tips grow by their own stress
-//! intensity; [`increment`] is that theory, one equation a call. Two other drivers are advanced by the same record of the run: bonds
+//! intensity; [`increment`] is that theory, one equation a call. Other drivers are advanced by the same record of the run: bonds
 //! that fail by their own strain (`fatigue.driver = "bond_strain"`), which hand a crack from a slot over to the K of its tip, and K of a
-//! handbook (`model.method = "handbook"`). Command, service
+//! handbook (`model.method = "handbook"`), which hands a crack that has grown through the thickness over to the K of its tips. Command, service
 //! and calibration all come through here. The theory in the order of the rooms stands in `src/README.md`.
 
 pub mod checkpoint;
@@ -12,6 +12,7 @@ pub mod factor_curve;
 pub mod laws;
 pub mod moment;
 mod outcome;
+pub mod part_through;
 pub mod plastic_zone;
 pub mod record;
 pub mod residual_strength;
@@ -33,6 +34,7 @@ use crate::growth::cracks::{CrackedPlate, Cracks};
 use crate::growth::hand_calculation::HandCalculation;
 use crate::growth::hand_over::HandOver;
 use crate::growth::nodes::ElementFree;
+use crate::growth::part_through::PartThroughGrowth;
 use crate::growth::points::TipField;
 use crate::parallel::in_pool;
 use crate::watch;
@@ -66,6 +68,10 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
     match case.engine() {
         Engine::Handbook => {
             record.follow(&mut HandCalculation::start(case, laws::growth_law(case)?)?, |hand| hand.next_interval())
+        }
+        Engine::PartThrough => {
+            let (later, laws) = (OnceCell::new(), [laws::growth_law(case)?, laws::growth_law(case)?]);
+            record.follow(&mut PartThroughGrowth::start(case, &later, laws)?, |run| run.advance(increment))
         }
         Engine::Points => record.follow(&mut TipField::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),
         Engine::Nodes => record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),

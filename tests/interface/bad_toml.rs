@@ -105,9 +105,17 @@ const BAD: &[Bad] = &[
     ),
     panel("kind = \"middle_tension\"", "kind = 7", &[":2:", "specimen.kind", "text in quotes"]),
     panel("kind = \"middle_tension\"\n", "", &["specimen.kind", "missing", "compact_tension"]),
-    panel("kind = \"middle_tension\"", "kind = \"corner_crack\"", &[":2:", "corner_crack", "only through cracks"]),
-    panel("kind = \"middle_tension\"", "kind = \"surface_crack\"", &[":2:", "surface_crack", "only through cracks"]),
-    panel("crack_length_mm = 9.0", "crack_length_mm = 9.0\ndepth_mm = 2", &["specimen.depth_mm", "only through cracks"]),
+    panel(
+        "kind = \"middle_tension\"",
+        "kind = \"corner_crack\"",
+        &["specimen.crack_length_mm", "not a known key", "crack_depth_mm"],
+    ),
+    panel("kind = \"middle_tension\"", "kind = \"thumbnail_crack\"", &[":2:", "thumbnail_crack", "surface_crack, corner_crack"]),
+    panel(
+        "crack_length_mm = 9.0",
+        "crack_length_mm = 9.0\ndepth_mm = 2",
+        &["specimen.depth_mm", "does not go through", "surface_crack"],
+    ),
     panel(
         "crack_length_mm = 9.0",
         "crack_length_mm = 76.2",

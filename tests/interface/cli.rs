@@ -40,7 +40,7 @@ fn every_command_explains_itself() {
     let here = Path::new(".");
     let (help, _) = texts(&perilife(here, &["--help"]));
     assert!(help.contains("Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble"), "{help}");
-    assert!(help.contains("Through cracks in plates only"), "{help}");
+    assert!(help.contains("surface, corner and embedded cracks"), "{help}");
     assert!(!subcommands().is_empty());
     for name in subcommands() {
         assert!(help.contains(&format!("\n  {name} ")), "{name} in {help}");

@@ -74,6 +74,7 @@ fn curve() -> Vec<CurvePoint> {
             limit_load: None,
             broken_bonds: 9 * step,
             tips: vec![tip(-1.0), tip(1.0)],
+            depth: None,
         });
     }
     curve

@@ -25,6 +25,7 @@ impl Steady {
             limit_load: None,
             broken_bonds: 0,
             tips: vec![TipRecord { state: TipState::Active, position: [growth, 0.0], growth, factors: None, t_stress: None }],
+            depth: None,
         });
     }
 }

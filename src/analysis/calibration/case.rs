@@ -116,6 +116,7 @@ impl CalibrationCase {
         }
         check_walker(&case)?;
         check_growth_rate(&case)?;
+        check_through(&case.specimen)?;
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
         measured.set_against(&case.specimen, &case.material, &case.loading)?;
@@ -236,6 +237,13 @@ fn window(measured: &Measured, keys: &MeasuredSlice) -> crate::Result<Measured> 
         return Err(input("measured.to_crack_length_mm", to / MM, problem, "give a window that holds at least 5 readings"));
     }
     measured.window(from, to)
+}
+
+/// Refuses a crack that does not go through: its K depends on its shape, and that on the law which is asked for.
+fn check_through(specimen: &Specimen) -> crate::Result<()> {
+    let Some(flaw) = &specimen.part_through else { return Ok(()) };
+    let problem = "does not go through: its shape, and so its K, depends on the law that is to be fitted";
+    Err(input("specimen.kind", format!("\"{}\"", flaw.kind()), problem, "fit the law to cracks that go through"))
 }
 
 /// The model starts at the specimen's crack length, so no reading may come before it.

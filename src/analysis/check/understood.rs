@@ -9,6 +9,7 @@ use crate::measured::MeasuredCurve;
 use crate::report::fit_use;
 use crate::report::model_words::{self, Choice, mm, short};
 use crate::specimen::handbook::handbook;
+use crate::specimen::part_through::{RANGE, SOURCE};
 use crate::specimen::{Specimen, Support};
 use crate::sweep::{DesignKind, DrawnCase, Sweep};
 use crate::units::{GPA, MM, MM_PER_CYCLE};
@@ -121,17 +122,18 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         Some(Support::ClampedEnds) => "rigid ends that cannot rotate",
         Some(Support::RigidEnds) => "rigid ends that rotate about pins",
     };
-    let formula = handbook(specimen).map_or_else(
-        || "none for this specimen".to_owned(),
-        |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range),
-    );
+    let of_front = || specimen.part_through.map_or_else(|| "none for this specimen".to_owned(), |_| format!("{SOURCE}; {RANGE}"));
+    let formula =
+        handbook(specimen).map_or_else(of_front, |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range));
     let end = Some(case.stop.crack_length).filter(|length| length.is_finite());
-    let end = end.map_or_else(String::new, |length| format!("crack length {} mm, or ", mm(length)));
-    let mut lines = plate_lines(
-        specimen,
-        &case.material,
-        ("crack", specimen.cracks.len(), format!("; length {} mm", mm(specimen.crack_length))),
-    );
+    let mut end = end.map_or_else(String::new, |length| format!("crack length {} mm, or ", mm(length)));
+    if case.stop.crack_depth.is_finite() {
+        end += &format!("crack depth {} mm, or ", mm(case.stop.crack_depth));
+    }
+    if case.stop.at_break_through {
+        end += "break-through, or ";
+    }
+    let mut lines = plate_lines(specimen, &case.material, ("crack", specimen.cracks.len(), crack_words(specimen)));
     let cycles = format!("{}; {held}", model_words::loading(case));
     lines.push(line("loading", cycles));
     let by_points = matches!(case.model, Model::Points(_));
@@ -154,6 +156,12 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let bears = case.stop.required.map(|factor| format!("not bearing {factor:.4} times the largest load, or "));
     lines.push(line("stop", format!("{end}{}{} cycles", bears.unwrap_or_default(), case.stop.cycles_max)));
     lines
+}
+
+/// Its size.
+fn crack_words(specimen: &Specimen) -> String {
+    let depth = specimen.part_through.map(|flaw| format!(", depth {} mm of {} mm", mm(flaw.depth), mm(flaw.through_depth())));
+    format!("; length {} mm{}", mm(specimen.crack_length), depth.unwrap_or_default())
 }
 
 fn law_words(case: &Case) -> String {

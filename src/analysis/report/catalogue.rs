@@ -37,7 +37,6 @@ use crate::verify::stability::SWEEPS;
 pub fn lines() -> Vec<(String, String, String)> {
     let of_the_test = [
         SpecimenKind::lines(),
-        vec![SpecimenKind::not_covered()],
         Ends::lines(),
         Plane::lines(),
         LoadingKind::lines(),

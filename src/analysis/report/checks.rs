@@ -1,5 +1,7 @@
 //! What stands behind a life: every condition that it rests on, whether that holds, what it may do to the life, and what to do about it.
 
+mod part_through;
+
 use serde::Serialize;
 use serde_json::Value;
 
@@ -109,6 +111,7 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(small_scale_yielding(case, prediction));
     checks.extend(extrapolation(case, prediction));
     checks.extend(cross_check(case, prediction));
+    checks.extend(part_through::checks(case, prediction));
     checks.extend(stress_ratio(case));
     checks.extend(thickness(case));
     checks.extend(size(case));

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::json::RESULT_FILE;
 use crate::error::{Error, InputError, Result};
+use crate::growth::record::DepthRecord;
 use crate::input::{Opened, sha256};
 use crate::predict::{CurvePoint, Prediction};
 use crate::specimen::{Crack, Point};
@@ -51,12 +52,16 @@ impl Row {
 }
 
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
-/// (load squared times compliance), the force where the cycles are of a `displacement`, m, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
+/// (load squared times compliance), the force where the cycles are of a `displacement`, m, of a crack that did not go through at the start its depth, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
 pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
     if displacement.is_some() {
         text.push_str(",force_max_n");
+    }
+    let has_depth = prediction.curve.iter().any(|point| point.depth.is_some());
+    if has_depth {
+        text.push_str(DEPTH_COLUMNS);
     }
     // Fatigue bonds, driven by their own strain know no K of a tip.
     let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors.is_some());
@@ -76,6 +81,9 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
         if let Some(displacement) = displacement {
             let _ = write!(text, ",{}", number(point.work / displacement));
         }
+        if has_depth {
+            text.push_str(&depth_fields(point.depth));
+        }
         for tip in &point.tips {
             for length in [tip.position[0], tip.position[1], tip.growth] {
                 let _ = write!(text, ",{}", number(length / MM));
@@ -90,6 +98,15 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
         text.push('\n');
     }
     text
+}
+
+/// Columns of a crack that did not go through at the start: its depth a, K_I at maximum load and growth rate there, empty once it is through.
+const DEPTH_COLUMNS: &str = ",crack_depth_mm,depth_k_i_mpa_sqrt_m,depth_da_dn_mm_per_cycle";
+
+fn depth_fields(depth: Option<DepthRecord>) -> String {
+    let of = |pick: fn(DepthRecord) -> Option<f64>, unit: f64| number(depth.and_then(pick).unwrap_or(f64::NAN) / unit);
+    let size = of(|depth| Some(depth.depth), MM);
+    format!(",{size},{},{}", of(|depth| depth.k_i, MPA_SQRT_M), of(|depth| depth.growth_rate, MM_PER_CYCLE))
 }
 
 /// A table of the four columns alone.

@@ -6,6 +6,7 @@ use super::csv::{exact, number};
 use crate::case::Case;
 use crate::error::Result;
 use crate::fatigue::crack_tip::TipState;
+use crate::fatigue::growth_law::GrowthLaw;
 use crate::growth::cracks::steering::equivalent_factor;
 use crate::predict::laws::growth_law;
 use crate::predict::{CurvePoint, Prediction};
@@ -102,6 +103,7 @@ pub fn are_known(prediction: &Prediction) -> bool {
 /// β = K_eq/(σ √(πa)) with the gross stress σ at maximum load, empty where the load is a force or a displacement. Its a, `beta_length_mm`,
 /// is the crack length of the specimen's convention for standard kinds. For a `plate` it is half the length of the tip's own crack, kinks
 /// included, or its whole length where that has one tip; empty for the end of a slot.
+/// Last comes what a crack that did not go through does in the thickness, as tip `depth`.
 /// Errors: a law whose rate is not known.
 pub fn factors(case: &Case, prediction: &Prediction) -> Result<String> {
     let (law, of_case) = (growth_law(case)?, Factors::of(case));
@@ -119,7 +121,24 @@ pub fn factors(case: &Case, prediction: &Prediction) -> Result<String> {
             let _ = writeln!(text, "{tip},{},{lengths},{known},{beta},{}", exact(point.cycles), number(rate / MM_PER_CYCLE));
         }
     }
+    text.push_str(&in_depth(case, prediction, &*law));
     Ok(text)
+}
+
+/// Rows of the deepest point of a crack that did not go through at the start, as tip `depth`: its own growth, and β with a the depth.
+fn in_depth(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> String {
+    let (mut text, stress) = (String::new(), Factors::of(case).stress.unwrap_or(f64::NAN));
+    let start = case.specimen.part_through.map_or(f64::NAN, |flaw| flaw.depth);
+    for point in &prediction.curve {
+        let Some((depth, k_i)) = point.depth.and_then(|record| Some((record.depth, record.k_i?))) else { continue };
+        let lengths = [point.crack_length, depth - start].map(|length| number(length / MM)).join(",");
+        let known = [k_i, 0.0, k_i, case.loading.range_share() * k_i].map(|k| number(k / MPA_SQRT_M)).join(",");
+        let beta = [depth / MM, k_i / (stress * (std::f64::consts::PI * depth).sqrt())].map(number).join(",");
+        let rate = law.rate(k_i, case.loading.ratio) / MM_PER_CYCLE;
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "depth,{},{lengths},{known},{beta},{}", exact(point.cycles), number(rate));
+    }
+    text
 }
 
 /// `beta.txt`: lines of a, mm, and β of `factors.csv` for the tip that grows farthest, with a rising: a table as AFGROW takes it for

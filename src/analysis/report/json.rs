@@ -6,8 +6,10 @@ use crate::case::{Case, LawSource};
 use crate::growth::end_of_life::critical_length;
 use crate::growth::record::TipRecord;
 use crate::predict::laws::paris_law;
+use crate::predict::part_through::PartThroughLife;
 use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
+use crate::specimen::part_through::{Limit, STATED_ERROR};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 use super::checks;
@@ -36,6 +38,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "crack_length_final_mm": clean(prediction.crack_length_final() / MM),
         "critical": critical(case, prediction),
         "tips": tips(case, prediction),
+        "part_through": part_through(case, prediction),
         "life_share_extrapolated": life_share_extrapolated(case, prediction),
         "plastic_zone": plastic_zone(case, prediction),
         "k_cross_check": prediction.cross_check.map(|check| json!({
@@ -68,6 +71,27 @@ fn critical(case: &Case, prediction: &Prediction) -> Value {
     let by_formula = || critical_length(case).map(|end| (end.crack_length, end.reason));
     by_run.or_else(by_formula).map_or(Value::Null, |(length, reason)| {
         json!({ "crack_length_mm": clean(length / MM), "criterion": reason.name(), "meaning": reason.meaning() })
+    })
+}
+
+/// What became of a crack that did not go through at the start; `null` of through cracks.
+fn part_through(case: &Case, prediction: &Prediction) -> Value {
+    let found = case.specimen.part_through.zip(PartThroughLife::of(case, &prediction.curve));
+    let Some((flaw, PartThroughLife { cycles, axes, is_through, life_factors, outside, .. })) = found else { return Value::Null };
+    let life = prediction.life_cycles();
+    let [depth, length] = axes.map(|length| clean(length / MM));
+    let share = |(limit, cycles): &(&Limit, f64)| json!({ "of": limit.name, "range": [limit.low, limit.high], "life_share": clean(cycles / life) });
+    json!({
+        "kind": flaw.kind().name(),
+        "cycles_at_break_through": is_through.then_some(cycles),
+        "crack_length_at_break_through_mm": is_through.then_some(length),
+        "crack_depth_initial_mm": clean(flaw.depth / MM),
+        "crack_depth_final_mm": depth,
+        "aspect_ratio_final": clean(axes[0] / axes[1]),
+        "k_error_percent": 100.0 * STATED_ERROR,
+        "life_cycles_if_k_is_larger": life * life_factors[0],
+        "life_cycles_if_k_is_smaller": Some(life * life_factors[1]).filter(|cycles| cycles.is_finite()),
+        "outside_range": outside.iter().map(share).collect::<Vec<_>>(),
     })
 }
 

@@ -3,12 +3,13 @@
 use serde_json::{Map, Value};
 
 use crate::bond_law::BondLawKind;
-use crate::case::{Case, LawSource, Model, PointSettings};
+use crate::case::{Case, LawSource, Method, Model, PointSettings};
 use crate::element_free::resolution::ElementFreeSettings;
 use crate::fracture::scene::{Discretisation, Scene, SceneLaw};
 use crate::predict::RunFigures;
 use crate::solver::SolverUsed;
 use crate::specimen::handbook::handbook;
+use crate::specimen::part_through::{RANGE, SOURCE};
 use crate::specimen::{LoadMeasure, Specimen, Support};
 use crate::units::{KN, MM, MPA};
 
@@ -137,6 +138,24 @@ fn why_method(case: &Case) -> String {
 
 /// The formula of method `handbook`. Other keys of `[model]` say nothing there.
 fn hand_calculation(case: &Case) -> Vec<Choice> {
+    if let Some(flaw) = &case.specimen.part_through {
+        let choice = |key, value: String, why| Choice { key, value: value.into(), why };
+        return vec![
+            choice("method", case.model.method().name().to_owned(), Some(why_method(case))),
+            choice(
+                "formula",
+                format!("Newman and Raju, {}", flaw.kind().name().replace('_', " ")),
+                Some("that of the kind of specimen".to_owned()),
+            ),
+            choice("source", SOURCE.to_owned(), None),
+            choice("range", RANGE.to_owned(), None),
+            choice(
+                "once_through",
+                Method::ElementFreeGalerkin.name().to_owned(),
+                Some("the through crack of the same plate".to_owned()),
+            ),
+        ];
+    }
     let formula = handbook(&case.specimen);
     let choice = |key, value: Option<&str>, why: Option<&str>| Choice { key, value: value.into(), why: why.map(str::to_owned) };
     vec![
@@ -223,7 +242,9 @@ pub fn loading(case: &Case) -> String {
     };
     let sides =
         if loading.parallel_ratio == 0.0 { String::new() } else { format!(", {} of it on the sides", loading.parallel_ratio) };
-    format!("{cycles}{sides}, R = {}", loading.ratio)
+    let bent = specimen.part_through.map_or(0.0, |flaw| flaw.bending_ratio);
+    let bending = if bent == 0.0 { String::new() } else { format!(", bending of {} of it at the face", short(bent)) };
+    format!("{cycles}{sides}{bending}, R = {}", loading.ratio)
 }
 
 /// What cycles of a displacement move, in words.

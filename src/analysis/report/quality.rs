@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::case::{Case, Model, coarse_points, usual_nodes};
+use crate::case::{Case, Method, Model, coarse_points, usual_nodes};
 use crate::predict::error_estimate::{ErrorEstimate, error_estimate};
 use crate::predict::{Prediction, Silent, predict};
 use crate::units::MM;
@@ -75,6 +75,10 @@ impl Quality {
 
 /// The life by the engine that shares nothing with that of the run: nodes beside points and handbook, points beside nodes.
 fn second_opinion(case: &Case, prediction: &Prediction) -> SecondOpinion {
+    if !case.specimen.is_through() {
+        let cycles = Err("no other method knows a crack that does not go through".to_owned());
+        return SecondOpinion { method: Method::ElementFreeGalerkin.name(), cycles };
+    }
     let model = match case.model {
         Model::Nodes(_) => Model::Points(coarse_points(case)),
         Model::Handbook(_) | Model::Points(_) => Model::Nodes(usual_nodes(&case.specimen)),

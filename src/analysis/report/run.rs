@@ -14,6 +14,7 @@ pub use super::json::result;
 use super::output::{Room, write_file};
 use super::pictures::curves::{a_n_svg, k_svg};
 use super::pictures::plate::{self, Plate, growth_svg, plate_svg};
+use super::pictures::section::section_svg;
 use super::pictures::stress::stress_svg;
 use super::pictures::tables::RunTables;
 use super::quality::Quality;
@@ -22,13 +23,16 @@ use super::{checks, factors, fit_use, json, provenance, vtk};
 use crate::case::budget::Budget;
 use crate::case::{Case, Model, RECORD, first_load};
 use crate::error::{Error, Result, input};
+use crate::growth::record::DepthRecord;
 use crate::predict::moment::stress_field;
+use crate::predict::part_through::PartThroughLife;
 use crate::predict::plastic_zone::{self, PlasticZone};
 use crate::predict::record::BLOCKS_WITHOUT_GROWTH;
 use crate::predict::residual_strength::Strength;
 use crate::predict::{Prediction, StopReason};
 use crate::specimen::handbook::handbook;
-use crate::specimen::{LoadMeasure, Point};
+use crate::specimen::part_through::{SOURCE, STATED_ERROR};
+use crate::specimen::{LoadMeasure, PartThrough, Point};
 use crate::units::{KN, MM, MPA, MPA_SQRT_M};
 
 /// Table of the ways of the tips.
@@ -218,6 +222,9 @@ fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_
         .collect();
     let plate = Plate::of(case);
     put("plate.svg", &plate_svg(&plate, &tables, plate::SIZE))?;
+    if let Some(section) = section_svg(case, prediction) {
+        put("section.svg", &section)?;
+    }
     if case.output.animation {
         put("growth.svg", &growth_svg(&plate, result, &tables, plate::MOVING))?;
     }
@@ -271,6 +278,7 @@ pub fn words(case: &Case, prediction: &Prediction, lives: &Lives, quality: &Qual
         format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
         format!("  verdict        {}", checks::verdict(&checks)),
     ];
+    lines.extend(through_words(case, prediction).map(|words| format!("  break-through  {words}")));
     lines.extend(lives.words());
     lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
     lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
@@ -298,8 +306,25 @@ fn length_words(case: &Case, prediction: &Prediction) -> String {
             };
             format!("tip {tip}: its crack {:.3} mm to {:.3} mm{all}", first / MM, last / MM)
         }
-        None => format!("{from:.3} mm to {to:.3} mm"),
+        None => format!("{from:.3} mm to {to:.3} mm{}", depth_words(case, prediction)),
     }
+}
+
+/// The same in the thickness, of a crack that did not go through at the start.
+fn depth_words(case: &Case, prediction: &Prediction) -> String {
+    let ends = case.specimen.part_through.zip(prediction.curve.last().and_then(|row| row.depth));
+    let words =
+        |(flaw, last): (PartThrough, DepthRecord)| format!(", depth {:.3} mm to {:.3} mm", flaw.depth / MM, last.depth / MM);
+    ends.map_or_else(String::new, words)
+}
+
+/// When a crack was through, and what the error of its K does to the life.
+fn through_words(case: &Case, prediction: &Prediction) -> Option<String> {
+    let found = PartThroughLife::of(case, &prediction.curve)?;
+    let [shorter, longer] = found.life_factors.map(|factor| factor * prediction.life_cycles());
+    let longer = if longer.is_finite() { format!("{longer:.0}") } else { "no end".to_owned() };
+    let when = if found.is_through { format!("after {:.1} cycles (a/t = 1)", found.cycles) } else { "not reached".to_owned() };
+    Some(format!("{when}; with K of the part-through crack ±{:.0} % life {shorter:.0} to {longer}", 100.0 * STATED_ERROR))
 }
 
 /// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.
@@ -328,7 +353,13 @@ fn computed(case: &Case, prediction: &Prediction) -> String {
             figures.points, figures.blocks, figures.solves, figures.wall_s
         ),
         Model::Handbook(_) => {
-            let formula = handbook(&case.specimen).map_or("", |formula| formula.name);
+            let of_front = case.specimen.part_through.map(|_| SOURCE);
+            let formula = handbook(&case.specimen).map(|formula| formula.name).or(of_front).unwrap_or("");
+            if figures.solves > 0 {
+                let (points, rows) = (figures.points, figures.blocks + 1);
+                let nodes = format!("then {} solves on up to {points} nodes", figures.solves);
+                return format!("by hand calculation: {formula}, {nodes}, {rows} rows, {:.2} s", figures.wall_s);
+            }
             format!("by hand calculation: {formula}, {} rows, {:.2} ms", figures.blocks + 1, 1e3 * figures.wall_s)
         }
     }

@@ -246,7 +246,7 @@ fn draw_sizes(sketch: &mut Sketch, specimen: &Specimen, [low, high]: [Point; 2])
                 sketch.text([x, y + 20.0], &format!("a = {}", mm(specimen.crack_length)), anchor, 13, CRACK);
             }
         }
-        SpecimenKind::Plate | SpecimenKind::CompactTension => {}
+        _ => {}
     }
 }
 

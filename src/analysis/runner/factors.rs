@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Summary, Watcher};
 use crate::case::Case;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
 use crate::predict::tip_factors::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
 use crate::report::stresses;
@@ -22,6 +22,10 @@ pub(super) fn run(
     folder: Option<&Path>,
     watcher: &dyn Watcher,
 ) -> Result<Summary> {
+    if let (Some(folder), false) = (folder, case.specimen.is_through()) {
+        let problem = "takes the stress of the plate on nodes, which do not know a crack that does not go through";
+        return Err(input("--out", folder.display(), problem, "leave it out"));
+    }
     let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);
     let (mut found, mut tables, mut lines) = (Map::new(), String::new(), Vec::new());
     if has_cracks || !on_nodes {
@@ -48,6 +52,9 @@ pub(super) fn run(
 /// What the methods say of their results, each once.
 fn notes(case: &Case, tips: &[TipResult]) -> Result<Vec<String>> {
     let results = || tips.iter().flat_map(|tip| &tip.methods);
+    if tips.iter().all(|tip| tip.methods.is_empty()) {
+        return Ok(Vec::new());
+    }
     if results().all(|result| result.intensity.k_i.is_none()) {
         let why = results().find_map(|result| result.note.as_deref()).unwrap_or("no method gives a factor");
         return Err(Error::Mechanics(format!("{}: {why}", case.name)));
@@ -83,10 +90,14 @@ fn object(tip: &TipResult) -> Value {
         methods.insert(method.name().to_owned(), entry);
     }
     let [x, y] = tip.tip.position;
-    json!({
+    let mut object = json!({
         "x_mm": x / MM, "y_mm": y / MM, "direction": tip.tip.direction,
         "methods": methods, "handbook_k_i_mpa_sqrt_m": in_mpa(tip.handbook_k_i)
-    })
+    });
+    if let Some(end) = tip.end {
+        object["end"] = json!(end.name());
+    }
+    object
 }
 
 /// One line a tip and method; K in MPa√m.
@@ -98,6 +109,12 @@ fn table(tips: &[TipResult]) -> String {
     let words = |factor: Option<f64>| in_mpa(factor).map_or_else(|| "-".to_owned(), |k| format!("{k:.4}"));
     for tip in tips {
         let [x, y] = tip.tip.position.map(|metres| metres / MM);
+        if let Some(end) = tip.end {
+            // Writing to a String cannot fail.
+            let k_i = words(tip.handbook_k_i);
+            let _ =
+                writeln!(text, "{x:>10.4} {y:>10.4}  {:<14} {k_i:>12} {:>12} {:>9} {k_i:>12} {:>8.2}", end.name(), "-", "-", 0.0);
+        }
         for result in &tip.methods {
             // Writing to a String cannot fail.
             let _ = writeln!(

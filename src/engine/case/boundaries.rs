@@ -12,14 +12,14 @@ use crate::material::Plane;
 use crate::specimen::LoadMeasure;
 use crate::specimen::geometry::{distance, edges, meeting_share, segments_touch};
 use crate::specimen::handbook::handbook;
-use crate::specimen::{CrackLine, Hole, Point, Specimen};
+use crate::specimen::{CrackLine, FrontTip, Hole, PartThrough, Point, Specimen};
 use crate::units::{KN, MPA, MPA_SQRT_M};
 
 /// A line for every safe range that the case lies beyond.
 pub(super) fn lines(case: &Case) -> Vec<String> {
     let mut lines = Vec::new();
     match case.engine() {
-        Engine::Handbook => {}
+        Engine::Handbook | Engine::PartThrough => {}
         Engine::Nodes => {
             lines.extend(influence_line(case));
             lines.extend(poisson_line(case, Some("element_free_galerkin")));
@@ -202,7 +202,10 @@ pub(super) fn first_load_warning(case: &Case) -> Option<String> {
         return None;
     }
     let (length, load) = (case.specimen.crack_length, case.loading.maximum);
-    let factor = handbook(&case.specimen).map(|formula| formula.k_i(length, load));
+    let of_front =
+        |flaw: &PartThrough| FrontTip::ALL.map(|tip| flaw.k_i(flaw.start(), load, tip)).into_iter().fold(0.0, f64::max);
+    let by_formula = || handbook(&case.specimen).map(|formula| formula.k_i(length, load));
+    let factor = case.specimen.part_through.as_ref().map(of_front).or_else(by_formula);
     first_load(case, load, factor.filter(|k| k.is_finite()))
 }
 

@@ -219,6 +219,8 @@ impl Budget {
     /// What a case takes up.
     pub fn of(case: &Case) -> Budget {
         let budget = match &case.model {
+            // Once its crack is through it grows on nodes.
+            Model::Handbook(_) if !case.specimen.is_through() => of_nodes(&case.specimen, &case.nodes()),
             Model::Handbook(_) => Budget { bytes: BASE, disk_bytes: DISK_BASE, ..Budget::none() },
             Model::Nodes(nodes) => of_nodes(&case.specimen, nodes),
             Model::Points(points) => {

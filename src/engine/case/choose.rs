@@ -8,6 +8,7 @@ use crate::input::value_at;
 use crate::loading::Loading;
 use crate::specimen::Specimen;
 use crate::specimen::handbook::handbook;
+use crate::specimen::part_through::SOURCE;
 
 /// Error of a life over that of K where the law is not yet known: the exponent of most metals.
 const EXPONENT_USUAL: f64 = 3.0;
@@ -21,6 +22,9 @@ pub(super) struct Sections<'a> {
 
 /// The method for a case that leaves it open, and why, for an error of life asked for in percent.
 pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loading, percent: f64) -> (Method, String) {
+    if let Some(flaw) = &specimen.part_through {
+        return (Method::Handbook, format!("the crack does not go through: K of {SOURCE} ({})", flaw.kind()));
+    }
     match telling_key(asked.model) {
         Some((key, Method::Peridynamics)) => return (Method::Peridynamics, format!("model.{key} asks for points and bonds")),
         Some((key, method)) => return (method, format!("model.{key} asks for nodes")),

@@ -9,7 +9,7 @@ use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::growth_law::description::{Given, law_keys};
 use crate::fatigue::{Ageing, Driver, FatigueSettings, OVERLOAD_STRETCH, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS};
-use crate::input::{Folder, INTENSITY, LENGTH, number, slice, slice_beside};
+use crate::input::{Folder, INTENSITY, LENGTH, number, refuse_given, slice, slice_beside};
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
@@ -125,6 +125,8 @@ fn read_step_error(slice: &FatigueKeys, has_tips: bool) -> Result<f64> {
 #[serde(deny_unknown_fields)]
 struct StopInput {
     crack_length_mm: Option<f64>,
+    crack_depth_mm: Option<f64>,
+    at_break_through: Option<bool>,
     cycles_max: Option<f64>,
     required_strength_mpa: Option<f64>,
     limit_load_factor: Option<f64>,
@@ -158,10 +160,36 @@ pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Sp
             ));
         }
     }
+    let (crack_depth, at_break_through) = stop_in_depth(&slice, specimen)?;
     let cycles_max = number("a number of cycles", 1.0, 1e15).read("stop.cycles_max", slice.cycles_max.unwrap_or(CYCLES_MAX))?;
     let required = required_load(&slice, specimen, material, loading)?;
     let [by_toughness, by_net_section] = [slice.toughness, slice.net_section].map(|asked| asked.unwrap_or(true));
-    Ok(Stop { crack_length: crack_length.unwrap_or(f64::INFINITY), cycles_max, required, by_toughness, by_net_section })
+    let crack_length = crack_length.unwrap_or(f64::INFINITY);
+    Ok(Stop { crack_length, crack_depth, at_break_through, cycles_max, required, by_toughness, by_net_section })
+}
+
+/// Depth, m, at which the run of a crack that does not go through ends, and whether it does where it is through.
+fn stop_in_depth(slice: &StopInput, specimen: &Specimen) -> Result<(f64, bool)> {
+    const DEPTH: &str = "stop.crack_depth_mm";
+    let depth = LENGTH.read_optional(DEPTH, slice.crack_depth_mm)?;
+    let Some(flaw) = &specimen.part_through else {
+        let problem = format!("belongs to cracks that do not go through, and that of {} does", specimen.kind);
+        let given = [("crack_depth_mm", depth.is_some()), ("at_break_through", slice.at_break_through.is_some())];
+        refuse_given("stop", &given, &problem, "leave it out")?;
+        return Ok((f64::INFINITY, false));
+    };
+    if let Some((depth, given)) = depth.zip(slice.crack_depth_mm) {
+        let [start, through] = [flaw.depth, flaw.through_depth()].map(super::model::round_mm);
+        if depth <= flaw.depth {
+            let problem = format!("is not beyond the initial crack depth {start} mm");
+            return Err(input(DEPTH, given, problem, "give a larger depth, or leave it out"));
+        }
+        if depth > flaw.through_depth() {
+            let problem = format!("is beyond {through} mm, where the crack is through");
+            return Err(input(DEPTH, given, problem, "give a smaller depth, or at_break_through = true"));
+        }
+    }
+    Ok((depth.unwrap_or(f64::INFINITY), slice.at_break_through == Some(true)))
 }
 
 /// The load that the plate has to bear, over the largest of a cycle.

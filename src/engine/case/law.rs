@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use super::{Case, Engine, LawSource, Method, Model};
+use super::{Case, Engine, LawSource, Method, Model, usual_nodes};
 use crate::case::record::FittedRecord;
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::paris::ParisLaw;
@@ -177,6 +177,7 @@ impl Case {
     /// What computes its growth.
     pub fn engine(&self) -> Engine {
         match (&self.model, self.fatigue.driver) {
+            (Model::Handbook(_), _) if !self.specimen.is_through() => Engine::PartThrough,
             (Model::Handbook(_), _) => Engine::Handbook,
             (Model::Nodes(_), _) => Engine::Nodes,
             (Model::Points(_), Driver::TipField) => Engine::Points,
@@ -197,6 +198,14 @@ impl Case {
         if self.choices.surface_correction.is_none() && !matches!(self.law, LawSource::Fitted(_)) {
             case.model.take_most_accurate_rim();
         }
+        case
+    }
+
+    /// The same case of which the crack is through after some cycles, on this plate of nodes.
+    pub fn with_through_crack(&self, specimen: Specimen, cycles: f64) -> Case {
+        let mut case = Case { model: Model::Nodes(usual_nodes(&specimen)), specimen, ..self.clone() };
+        case.fatigue.driver = Driver::TipField;
+        (case.stop.crack_depth, case.stop.cycles_max) = (f64::INFINITY, case.stop.cycles_max - cycles);
         case
     }
 

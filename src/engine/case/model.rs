@@ -33,6 +33,7 @@ pub(super) fn from_value(
         }
         method => (method, None),
     };
+    check_part_through(specimen, method)?;
     refuse_strangers(sections.model, method, why.as_deref())?;
     Ok((of_method(method, &input, (specimen, material), choices, warnings)?, why))
 }
@@ -131,9 +132,18 @@ fn tiny_flaw(specimen: &Specimen) -> Option<String> {
     })
 }
 
+/// A crack that does not go through is known to hand calculation alone.
+fn check_part_through(specimen: &Specimen, method: Method) -> Result<()> {
+    let Some(flaw) = specimen.part_through.as_ref().filter(|_| method != Method::Handbook) else { return Ok(()) };
+    let problem = format!("knows plates in their plane, and the crack of a {} does not go through", flaw.kind());
+    let remedy =
+        format!("use model.method = \"{}\", or leave it out: once the crack is through it grows on nodes", Method::Handbook);
+    Err(input("model.method", format!("\"{method}\""), problem, remedy))
+}
+
 /// Hand calculation needs a formula for K(a).
 fn check_formula(specimen: &Specimen) -> Result<()> {
-    if handbook(specimen).is_some() {
+    if handbook(specimen).is_some() || !specimen.is_through() {
         return Ok(());
     }
     let problem = format!("has no K(a) for this specimen ({})", specimen.kind);

@@ -224,7 +224,12 @@ fn check_load(case: &Case) -> Result<()> {
     };
     if !case.is_driven_by_tips() {
         let problem = format!("{what} known to peridynamics driven by the field of every tip alone");
-        return Err(input(key, value, problem, "use model.method = \"peridynamics\" and fatigue.driver = \"tip_field\""));
+        let remedy = if case.specimen.is_through() {
+            "use model.method = \"peridynamics\" and fatigue.driver = \"tip_field\""
+        } else {
+            "give cycles of a load: K of a crack that does not go through is known under those alone"
+        };
+        return Err(input(key, value, problem, remedy));
     }
     let correction = case.points().bond_law.surface_correction;
     let is_on_points = case.model.method() == Method::Peridynamics;

@@ -94,6 +94,7 @@ impl<'a> HandCalculation<'a> {
                     t_stress: None,
                 })
                 .collect(),
+            depth: None,
         }
     }
 

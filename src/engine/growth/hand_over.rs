@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 use super::bond_strain::BondStrain;
 use super::cross_check::CrossCheck;
+use super::later::{HandedOver, Later};
 use super::points::TipField;
 use super::record::{CurvePoint, StopReason, TipRecord};
 use super::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
@@ -39,26 +40,8 @@ pub struct HandOver<'a> {
     later: &'a OnceCell<Case>,
     law: Option<Box<dyn GrowthLaw>>,
     bonds: BondStrain<'a>,
-    tips: Option<Tips<'a>>,
-}
-
-/// The run from the hand-over on.
-struct Tips<'a> {
-    growth: TipField<'a>,
-    /// The rows up to the hand-over, at which the last one stands.
-    before: Vec<CurvePoint>,
-    /// What the run took until then.
-    took: SolverStatistics,
-    /// The tips of the last row, which count their growth from N = 0.
-    now: Vec<TipRecord>,
-}
-
-/// State of a run after its hand-over.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct HandedOver {
-    before: Vec<CurvePoint>,
-    took: SolverStatistics,
-    tips: Box<State>,
+    /// The run from the hand-over on.
+    tips: Option<Later<TipField<'a>>>,
 }
 
 impl<'a> HandOver<'a> {
@@ -86,8 +69,7 @@ impl<'a> HandOver<'a> {
         if reason.is_none() && self.is_due() {
             let (before, took) = (self.bonds.curve(), self.bonds.statistics());
             if let Some(mut tips) = self.tips_after(before, took)? {
-                tips.growth.open()?;
-                tips.look();
+                tips.open()?;
                 self.tips = Some(tips);
             }
         }
@@ -103,14 +85,14 @@ impl<'a> HandOver<'a> {
     }
 
     /// The run from the last of some rows on, before its first equilibrium; `None` where it was begun before, or there are no rows.
-    fn tips_after(&mut self, before: Vec<CurvePoint>, took: SolverStatistics) -> Result<Option<Tips<'a>>> {
+    fn tips_after(&mut self, before: Vec<CurvePoint>, took: SolverStatistics) -> Result<Option<Later<TipField<'a>>>> {
         let (Some(last), Some(law)) = (before.last(), self.law.take()) else { return Ok(None) };
         let later = self.later.get_or_init(|| {
             let mut later = self.case.driven_by_tips(cracked(self.case, &last.tips));
             later.stop.cycles_max -= last.cycles;
             later
         });
-        Ok(Some(Tips { growth: TipField::start(later, law)?, now: last.tips.clone(), before, took }))
+        Ok(Later::new(TipField::start(later, law)?, before, took))
     }
 
     fn now_growing(&self) -> &dyn CrackGrowth {
@@ -126,23 +108,6 @@ impl<'a> HandOver<'a> {
             None => &mut self.bonds,
         }
     }
-}
-
-impl Tips<'_> {
-    /// The row at the hand-over.
-    fn start(&self) -> &CurvePoint {
-        &self.before[self.before.len() - 1]
-    }
-
-    /// Takes in where the tips are.
-    fn look(&mut self) {
-        self.now = since_start(self.growth.now().tips, self.start());
-    }
-}
-
-/// Tips whose growth counts from the row at the hand-over, with the growth before.
-fn since_start(tips: &[TipRecord], start: &CurvePoint) -> Vec<TipRecord> {
-    tips.iter().zip(&start.tips).map(|(tip, before)| TipRecord { growth: before.growth + tip.growth, ..*tip }).collect()
 }
 
 /// The specimen with the cracks as their tips have left them: of each the growth as a straight piece towards its place.
@@ -175,34 +140,18 @@ impl CrackGrowth for HandOver<'_> {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        let Some(tips) = &self.tips else { return self.bonds.now() };
-        let now = tips.growth.now();
-        let cycles = tips.start().cycles + now.cycles;
-        GrowthStatus { cycles, tips: &tips.now, ..now }
+        self.tips.as_ref().map_or_else(|| self.bonds.now(), Later::now)
     }
 
     fn curve(&mut self) -> Vec<CurvePoint> {
-        let Some(tips) = &mut self.tips else { return self.bonds.curve() };
-        let mut curve = std::mem::take(&mut tips.before);
-        // The row at the hand-over is that which knows K.
-        if let Some(start) = curve.pop() {
-            curve.extend(tips.growth.curve().into_iter().map(|row| CurvePoint {
-                cycles: start.cycles + row.cycles,
-                broken_bonds: start.broken_bonds + row.broken_bonds,
-                tips: since_start(&row.tips, &start),
-                ..row
-            }));
+        match &mut self.tips {
+            Some(tips) => tips.curve(),
+            None => self.bonds.curve(),
         }
-        curve
     }
 
     fn state(&self) -> State {
-        match &self.tips {
-            None => self.bonds.state(),
-            Some(Tips { growth, before, took, .. }) => {
-                State::HandedOver(HandedOver { before: before.clone(), took: *took, tips: Box::new(growth.state()) })
-            }
-        }
+        self.tips.as_ref().map_or_else(|| self.bonds.state(), Later::state)
     }
 
     fn restore(&mut self, state: State) -> Result<bool> {
@@ -214,9 +163,8 @@ impl CrackGrowth for HandOver<'_> {
             return Ok(false);
         }
         let Some(mut after) = self.tips_after(before, took)? else { return Ok(false) };
-        let fits = after.growth.restore(*tips)?;
+        let fits = after.restore(*tips)?;
         if fits {
-            after.look();
             self.tips = Some(after);
         }
         Ok(fits)
@@ -247,9 +195,7 @@ impl CrackGrowth for HandOver<'_> {
     }
 
     fn statistics(&self) -> SolverStatistics {
-        let before = self.tips.as_ref().map(|tips| tips.took).unwrap_or_default();
-        let now = self.now_growing().statistics();
-        SolverStatistics { solves: before.solves + now.solves, iterations: before.iterations + now.iterations, ..now }
+        self.tips.as_ref().map_or_else(|| self.bonds.statistics(), Later::statistics)
     }
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
@@ -257,7 +203,7 @@ impl CrackGrowth for HandOver<'_> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        let note = match self.tips.as_ref().map(Tips::start) {
+        let note = match self.tips.as_ref().map(Later::start) {
             Some(row) => format!(
                 "the cracks began at slots by the lives of their bonds; from {:.0} cycles on, at a crack length of {:.3} mm, they grew by the K \
                  of their tips",

@@ -2,7 +2,8 @@
 //!
 //! [`crate::predict::predict`] advances one [`CrackGrowth`] until there is a reason to stop: K of every tip ([`cracks`]), on points and bonds
 //! ([`points`]) or on nodes ([`nodes`]), fatigue bonds that fail by their own strain ([`bond_strain`]), first these and then K for cracks
-//! from slots ([`hand_over`]), or K of a handbook without any plate ([`hand_calculation`]).
+//! from slots ([`hand_over`]), K of a handbook without any plate ([`hand_calculation`]), or that of a crack that does not go through, and of its
+//! tips once it does ([`part_through`]).
 
 pub mod bond_strain;
 pub mod cracks;
@@ -10,7 +11,9 @@ pub mod cross_check;
 pub mod end_of_life;
 pub mod hand_calculation;
 pub mod hand_over;
+pub mod later;
 pub mod nodes;
+pub mod part_through;
 pub mod plate;
 pub mod points;
 pub mod record;
@@ -152,10 +155,10 @@ pub enum State {
     Bonds(bond_strain::BondStrainState),
     /// Of tips driven by their K.
     Tips(cracks::CracksRun<points::PointState>),
-    /// Of tips that fatigue bonds have handed over to their K.
-    HandedOver(hand_over::HandedOver),
+    /// Of tips that another engine has handed over.
+    HandedOver(later::HandedOver),
     /// Of tips on a plate of nodes.
     Nodes(cracks::CracksRun<nodes::NodeState>),
-    /// Of a hand calculation: its rows.
+    /// Of a hand calculation, also of a crack that is not through yet: its rows.
     Rows(Vec<CurvePoint>),
 }

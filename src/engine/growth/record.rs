@@ -10,6 +10,8 @@ crate::kinds! {
     /// Why a run ended.
     pub enum StopReason for "stop_reason" {
         CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
+        CrackDepthReached = "crack_depth_reached": "the crack reached stop.crack_depth_mm",
+        BrokenThrough = "broken_through": "the crack has grown through the thickness: what the through crack does is not computed",
         Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
         NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
         Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
@@ -26,11 +28,11 @@ crate::kinds! {
 }
 
 impl StopReason {
-    /// Whether a plate that has ended so lives on: what a crack does behind a hole, or one that has joined others, is not computed, nor
-    /// what comes after the cycles that were asked for.
+    /// Whether a plate that has ended so lives on: what a crack does behind a hole, or one that has joined others or has just grown
+    /// through, is not computed, nor what comes after the cycles that were asked for.
     pub fn is_lower_bound(self) -> bool {
-        use StopReason::{CracksJoined, EnteredHole, LigamentUnresolved, RunOut};
-        matches!(self, EnteredHole | CracksJoined | LigamentUnresolved | RunOut)
+        use StopReason::{BrokenThrough, CracksJoined, EnteredHole, LigamentUnresolved, RunOut};
+        matches!(self, BrokenThrough | EnteredHole | CracksJoined | LigamentUnresolved | RunOut)
     }
 
     /// Whether the load breaks a plate that has ended so.
@@ -52,6 +54,17 @@ pub struct TipRecord {
     pub factors: Option<[f64; 2]>,
     /// Stress along the crack T at maximum load, Pa; `None` where `factors` is.
     pub t_stress: Option<f64>,
+}
+
+/// The end in the thickness of the front of a crack that did not go through at the start, at a recorded step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DepthRecord {
+    /// Semi-axis a, m; where the crack is through, that at which it was.
+    pub depth: f64,
+    /// K_I there at maximum load, Pa√m; `None` once the crack is through.
+    pub k_i: Option<f64>,
+    /// Growth rate there, m/cycle; `None` once the crack is through.
+    pub growth_rate: Option<f64>,
 }
 
 /// One cycle block of a finished run.
@@ -77,6 +90,8 @@ pub struct CurvePoint {
     pub broken_bonds: usize,
     /// Tips, in the order of `Specimen::tips`.
     pub tips: Vec<TipRecord>,
+    /// What a crack that did not go through at the start does in the thickness; `None` of through cracks.
+    pub depth: Option<DepthRecord>,
 }
 
 impl CurvePoint {
@@ -107,6 +122,7 @@ impl CurvePoint {
             work,
             broken_bonds,
             tips,
+            depth: None,
         }
     }
 
@@ -138,6 +154,7 @@ impl CurvePoint {
             limit_load: before.limit_load.zip(self.limit_load).map(|(before, now)| mix(before, now)),
             broken_bonds: self.broken_bonds,
             tips: before.tips.iter().zip(&self.tips).map(tip).collect(),
+            depth: self.depth,
         }
     }
 }

@@ -55,6 +55,7 @@ struct Input {
     crack_pressure_mpa: Option<f64>,
     stress_ratio: Option<f64>,
     stress_parallel_ratio: Option<f64>,
+    bending_ratio: Option<f64>,
     edges: Option<Vec<Edge>>,
     direction: Option<Value>,
     pins: Option<Vec<Value>>,

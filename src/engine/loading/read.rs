@@ -58,6 +58,7 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
     let parallel_ratio =
         number("a ratio", -10.0, 10.0).read("loading.stress_parallel_ratio", input.stress_parallel_ratio.unwrap_or(0.0))?;
     let area = boundary::apply(&input, supports, specimen, parallel_ratio)?;
+    read_bending(&input, specimen)?;
     // A range is maximum - minimum, hence maximum (1 - R), also where R is negative.
     let largest = if magnitude.is_range { magnitude.value / (1.0 - ratio) } else { magnitude.value };
     let (maximum, control) = match (specimen.load_measure, magnitude.of) {
@@ -120,6 +121,26 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
         return Err(error::input(KEY, given, "presses on nothing: the plate has no crack", "give specimen.cracks"));
     }
     Ok(Some(pressure))
+}
+
+/// Puts the bending that goes with the tension on a crack that does not go through.
+fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
+    const KEY: &str = "loading.bending_ratio";
+    let Some(given) = input.bending_ratio else { return Ok(()) };
+    let ratio = number("a ratio of stresses", 0.0, 1000.0).read(KEY, given)?;
+    let kind = specimen.kind;
+    match specimen.part_through.as_mut() {
+        Some(flaw) if flaw.knows_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
+        Some(_) => {
+            let problem = format!("does not go with {kind}, whose K is known under tension alone");
+            return Err(error::input(KEY, given, problem, "leave it out"));
+        }
+        None => {
+            let problem = format!("is bending out of the plane of the plate, which {kind}, a through crack, does not know");
+            return Err(error::input(KEY, given, problem, "leave it out"));
+        }
+    }
+    Ok(())
 }
 
 fn input_error(magnitude: &Magnitude, problem: String, remedy: &str) -> crate::Error {

@@ -78,7 +78,9 @@ fn zone(case: &Case, point: &CurvePoint, k_max: f64, strength: f64) -> Zone {
     };
     let size = (k_max / strength).powi(2) / (PI * constraint);
     let way = || point.tips.iter().map(|tip| way_to_edge(&case.specimen, tip.position)).fold(f64::INFINITY, f64::min);
-    let ligament = case.specimen.ligament(point.crack_length).unwrap_or_else(way);
+    // Of a crack that does not go through that beside it: the one below it yields long before its end.
+    let beside = case.specimen.part_through.map(|flaw| flaw.room() - point.crack_length);
+    let ligament = case.specimen.ligament(point.crack_length).or(beside).unwrap_or_else(way);
     Zone { crack_length: point.crack_length, k_max, size, ligament }
 }
 

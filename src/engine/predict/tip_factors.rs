@@ -13,15 +13,15 @@ mod energy_release;
 use std::time::Instant;
 
 use crate::case::Case;
-use crate::error::{Error, Result, input_missing};
+use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::crack_tip::TipState;
 use crate::growth::cracks::{InitialTips, initial_tips};
 use crate::growth::cross_check::largest_difference;
 use crate::growth::nodes::NodePlate;
 use crate::growth::points::PointPlate;
 use crate::growth::record::TipRecord;
-use crate::specimen::TipSeed;
 use crate::specimen::handbook::handbook;
+use crate::specimen::{FrontTip, PartThrough, TipSeed};
 use crate::units::MPA_SQRT_M;
 
 crate::kinds! {
@@ -154,6 +154,31 @@ pub struct TipResult {
     pub methods: Vec<MethodResult>,
     /// K_I by the handbook, Pa√m, where there is a formula and it holds.
     pub handbook_k_i: Option<f64>,
+    /// Which end of its front it is of a crack that does not go through, which no method but the handbook knows.
+    pub end: Option<FrontTip>,
+}
+
+/// K of the ends of a crack front in the thickness and on the face, by the handbook alone.
+/// Errors: [`Error::Input`] where methods are asked for by name.
+fn of_front(case: &Case, flaw: &PartThrough, methods: &[StressIntensityMethod]) -> Result<Vec<TipResult>> {
+    if let Some(method) = methods.first().filter(|_| methods != StressIntensityMethod::ALL) {
+        let problem = "looks at the plate in its plane, and the crack does not go through: its K is that of the handbook";
+        return Err(input(StressIntensityMethod::KEY, method, problem, "leave it out"));
+    }
+    let specimen = &case.specimen;
+    let on_face =
+        specimen.tips.last().copied().unwrap_or(TipSeed { position: [0.0; 2], direction: [1.0, 0.0], from_slot: false });
+    let deepest = [0, 1].map(|i| on_face.position[i] - flaw.half_length * on_face.direction[i]);
+    let at = |end: FrontTip| match end {
+        // Seen from the front it points nowhere.
+        FrontTip::Depth => TipSeed { position: deepest, direction: [0.0; 2], from_slot: false },
+        FrontTip::Surface => on_face,
+    };
+    let result = |end: FrontTip| {
+        let k_i = flaw.k_i(flaw.start(), case.loading.maximum, end);
+        TipResult { tip: at(end), methods: Vec::new(), handbook_k_i: Some(k_i), end: Some(end) }
+    };
+    Ok(FrontTip::ALL.map(result).to_vec())
 }
 
 /// Stress intensity factors of every crack tip of a case at its maximum load.
@@ -161,6 +186,9 @@ pub struct TipResult {
 /// End faces of slots are no crack tips and left out.
 /// Errors: a case without crack tips, mechanics without equilibrium.
 pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Result<Vec<TipResult>> {
+    if let Some(flaw) = &case.specimen.part_through {
+        return of_front(case, flaw, methods);
+    }
     let tips: Vec<usize> = (0..case.specimen.tips.len()).filter(|&tip| !case.specimen.tips[tip].from_slot).collect();
     if tips.is_empty() {
         return Err(input_missing(
@@ -174,7 +202,12 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
         .map(|formula| formula.k_i(case.specimen.crack_length, case.loading.maximum));
     let mut results: Vec<TipResult> = tips
         .iter()
-        .map(|&tip| TipResult { tip: case.specimen.tips[tip], methods: Vec::with_capacity(methods.len()), handbook_k_i })
+        .map(|&tip| TipResult {
+            tip: case.specimen.tips[tip],
+            methods: Vec::with_capacity(methods.len()),
+            handbook_k_i,
+            end: None,
+        })
         .collect();
     for &method in methods {
         let columns = match method {

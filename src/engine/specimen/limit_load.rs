@@ -63,8 +63,11 @@ pub fn weakest_section(specimen: &Specimen, cracks: &[CrackLine]) -> Option<Sect
 
 impl Specimen {
     /// Nominal load, Pa or N, at which a section is fully plastic at this yield strength, Pa: of a standard kind by its crack length, m
-    /// ([`Specimen::net_section_stress`]), of a plate by its cracks.
+    /// ([`Specimen::net_section_stress`]), of a plate by its cracks, of a crack that does not go through by its size at the start.
     pub fn limit_load(&self, crack_length: f64, cracks: &[CrackLine], yield_strength: f64) -> Option<f64> {
+        if let Some(flaw) = &self.part_through {
+            return Some(flaw.limit_stress(flaw.start(), yield_strength));
+        }
         match self.net_section_stress(crack_length, 1.0) {
             Some(stress) => Some(yield_strength / stress),
             None => weakest_section(self, cracks).map(|section| yield_strength * section.load_over_strength),

@@ -1,13 +1,14 @@
 //! What is tested: a flat plate with an outline, holes, slots, cracks, loads and supports.
 //!
 //! Lengths in metres, the load direction of the standard specimens is y. A [`Specimen`] is fixed once built:
-//! nothing in a run changes it. Cracks go through the thickness; part-through and corner cracks are refused by name.
+//! nothing in a run changes it. Cracks go through the thickness but for those of [`part_through`].
 
 mod crack_line;
 pub mod geometry;
 pub mod handbook;
 pub mod limit_load;
 pub mod net_section;
+pub mod part_through;
 mod placement;
 mod plate;
 mod read;
@@ -15,6 +16,7 @@ mod standard;
 
 pub use crack_line::{CrackLine, LineEnd};
 pub use geometry::{Component, Edge};
+pub use part_through::{FrontTip, PartThrough};
 pub use read::{PART_THROUGH, from_value};
 
 /// A point of the plate, metres.
@@ -28,6 +30,10 @@ crate::kinds! {
         DoubleEdgeTension = "double_edge_tension": "plate with two equal edge cracks; crack length = length of each",
         CompactTension = "compact_tension": "C(T) of ASTM E647, loaded by pins; crack length from the load line",
         Plate = "plate": "any outline with round holes, slots and straight through cracks at any angle",
+        SurfaceCrack = "surface_crack": "half of an ellipse on the face of a plate; crack length = half length c, by hand calculation until it is through",
+        CornerCrack = "corner_crack": "quarter of an ellipse on an edge of a plate; crack length = c from the edge, by hand calculation until it is through",
+        EmbeddedCrack = "embedded_crack": "ellipse in the middle of a plate; crack length = half length c, by hand calculation until it is through",
+        CornerCrackAtHole = "corner_crack_at_hole": "quarter of an ellipse at a round hole, on one side or both; crack length = c from the hole, by hand calculation until it is through",
     }
 }
 
@@ -214,6 +220,8 @@ pub struct Specimen {
     pub load_measure: LoadMeasure,
     /// Supports; empty means the loads are in equilibrium by themselves and the plate floats.
     pub supports: Vec<Support>,
+    /// What of its crack does not go through the thickness; `cracks` and `tips` are then those that are seen from the front.
+    pub part_through: Option<PartThrough>,
 }
 
 impl Specimen {
@@ -241,6 +249,7 @@ impl Specimen {
             load_measure: LoadMeasure::Stress,
             crack_pressure: 0.0,
             supports: Vec::new(),
+            part_through: None,
         }
     }
 

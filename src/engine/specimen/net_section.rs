@@ -7,13 +7,14 @@ use super::{Load, LoadMeasure, Specimen, SpecimenKind};
 use crate::error::{Result, input};
 
 impl SpecimenKind {
-    /// How many cracks, or halves of one, share the width of a standard kind, and the name of what each of them has; `None` for a `plate`.
+    /// How many cracks, or halves of one, share the width of a standard kind, and the name of what each of them has; `None` for a `plate`
+    /// and for cracks that do not go through.
     pub fn sharing(self) -> Option<(f64, &'static str)> {
         match self {
             SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension => Some((2.0, "half width")),
             SpecimenKind::SingleEdgeTension => Some((1.0, "width")),
             SpecimenKind::CompactTension => Some((1.0, "width from the load line")),
-            SpecimenKind::Plate => None,
+            _ => None,
         }
     }
 }
@@ -21,6 +22,9 @@ impl SpecimenKind {
 impl Specimen {
     /// Largest crack length the specimen has room for, m, and its name.
     pub fn length_limit(&self) -> (f64, &'static str) {
+        if let Some(flaw) = &self.part_through {
+            return (flaw.room(), "room beside the crack");
+        }
         let size = (self.gross_width.max(self.length()), "size");
         self.kind.sharing().map_or(size, |(cracks, name)| (self.width / cracks, name))
     }

@@ -2,38 +2,38 @@
 
 use toml::Value;
 
-use super::{Specimen, SpecimenKind, plate, standard};
+use super::{Specimen, SpecimenKind, part_through, plate, standard};
 use crate::error::{Result, input, input_missing};
 use crate::input::{shorten, table_of};
-use crate::kinds::KindLine;
 
-/// Flaws that do not go through the thickness. They are refused by name, never treated as through cracks.
+/// Other names of flaws that do not go through the thickness, never treated as through cracks.
 pub const PART_THROUGH: &[&str] = &[
     "part_through",
     "part_through_crack",
-    "surface_crack",
-    "corner_crack",
-    "embedded_crack",
     "elliptical_crack",
     "semi_elliptical_crack",
+    "quarter_elliptical_crack",
     "thumbnail_crack",
+    "surface_crack_at_hole",
 ];
 
 /// Keys that only such a flaw has.
-const PART_THROUGH_KEYS: &[&str] =
-    &["depth_mm", "crack_depth_mm", "surface_length_mm", "crack_shape", "aspect_ratio", "a_over_c", "corner_radius_mm"];
+const PART_THROUGH_KEYS: &[&str] = &[
+    "crack_depth_mm",
+    "crack_half_length_mm",
+    "depth_mm",
+    "surface_length_mm",
+    "crack_shape",
+    "aspect_ratio",
+    "a_over_c",
+    "corner_radius_mm",
+];
 
-const ONLY_THROUGH: &str = "only through cracks in plates are supported: the crack has the same length on both faces";
-
-impl SpecimenKind {
-    /// The line of `perilife list` that says what no kind covers.
-    pub fn not_covered() -> KindLine {
-        KindLine {
-            key: Self::KEY,
-            name: "(not: part-through)",
-            meaning: "through cracks in plates only; part-through, surface, corner and embedded cracks are refused by name",
-        }
-    }
+/// What to give for a flaw that does not go through.
+fn give_a_kind() -> String {
+    let known: Vec<&str> =
+        SpecimenKind::ALL.iter().filter(|kind| kind.part_through().is_some()).map(|kind| kind.name()).collect();
+    format!("use one of {} with crack_depth_mm and crack_half_length_mm", known.join(", "))
 }
 
 impl Specimen {
@@ -62,16 +62,21 @@ pub fn from_value(value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
         Some(other) => return Err(input("specimen.kind", shorten(other), "is not text in quotes", "give the name of a kind")),
     };
     if PART_THROUGH.contains(&kind.as_str()) {
-        return Err(input("specimen.kind", format!("\"{kind}\""), "is not a through crack", ONLY_THROUGH));
+        let problem = "is not the name of a crack that does not go through";
+        return Err(input("specimen.kind", format!("\"{kind}\""), problem, give_a_kind()));
+    }
+    let kind = kind.parse::<SpecimenKind>()?;
+    if let Some(description) = kind.part_through() {
+        return part_through::from_value(description, value, notes);
     }
     if let Some(key) = PART_THROUGH_KEYS.iter().find(|key| table.contains_key(**key)) {
-        let key = format!("specimen.{key}");
-        return Err(input(&key, shorten(&table[&key[9..]]), "describes a crack that does not go through", ONLY_THROUGH));
+        let problem = format!("describes a crack that does not go through, and the crack of {kind} does");
+        return Err(input(&format!("specimen.{key}"), shorten(&table[*key]), problem, give_a_kind()));
     }
-    match kind.parse()? {
-        kind @ (SpecimenKind::MiddleTension | SpecimenKind::DoubleEdgeTension) => standard::from_value(kind, value),
+    match kind {
         SpecimenKind::SingleEdgeTension => standard::single_edge_from_value(value),
         SpecimenKind::CompactTension => standard::compact_from_value(value),
         SpecimenKind::Plate => plate::from_value(value, notes),
+        _ => standard::from_value(kind, value),
     }
 }

@@ -131,6 +131,9 @@ pub fn lot_of(case: &Case) -> Result<std::result::Result<Population, NoBand>> {
         let (given, recorded) = (case.loading.ratio, record.stress_ratio);
         return Ok(Err(format!("the stress ratio {given} is not that of the calibration, {recorded}")));
     }
+    if !case.specimen.is_through() {
+        return Ok(Err("how two ends of a front scatter that grow apart is not known".to_owned()));
+    }
     if case.specimen.convention == LengthConvention::SumOfTips && case.spends_bond_life() {
         return Ok(Err("bonds that spend their own life do not tell K of every tip of a drawn plate".to_owned()));
     }

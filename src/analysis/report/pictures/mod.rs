@@ -5,5 +5,6 @@
 pub mod curves;
 pub mod fit;
 pub mod plate;
+pub mod section;
 pub mod stress;
 pub mod tables;

@@ -2,6 +2,7 @@
 
 mod drawing;
 
+pub(super) use drawing::colour;
 pub(in crate::report) use drawing::scale_bar;
 pub use drawing::{MOVING, SIZE, growth_svg, plate_svg};
 

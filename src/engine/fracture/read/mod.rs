@@ -115,6 +115,10 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
     let echo = sections.echo()?;
     let mut warnings = Vec::new();
     let mut specimen = specimen::from_value(sections.required("specimen")?, &mut warnings)?;
+    if !specimen.is_through() {
+        let problem = "is a crack that does not go through, which no scene in the plane of the plate knows";
+        return Err(input("specimen.kind", format!("\"{}\"", specimen.kind), problem, "give a through crack"));
+    }
     // The standard kinds serve as geometry: their loads and grips belong to fatigue tests.
     specimen.loads.clear();
     specimen.supports.clear();

@@ -244,6 +244,7 @@ impl GrowthHistory {
             work: row.work,
             broken_bonds: row.broken_bonds,
             tips: row.tips.clone(),
+            depth: None,
         };
         rows.iter().enumerate().map(point).collect()
     }

@@ -331,7 +331,7 @@ fn contains(outline: &[Point], [x, y]: Point) -> bool {
 }
 
 /// Colour of a share of the life.
-fn colour(share: f64) -> String {
+pub(in crate::report::pictures) fn colour(share: f64) -> String {
     let at = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
     let first = (at as usize).min(RAMP.len() - 2);
     let [r, g, b] =

@@ -1,0 +1,137 @@
+//! Cracks that do not go through: what is refused, and what a run, `check`, `sif` and `list` say of them.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::tempdir;
+
+use crate::interface::cli::{assert_refused, perilife, texts};
+
+const EXAMPLE: &str = include_str!("../../data/cases/corner_crack_at_hole.toml");
+
+fn write(folder: &Path, change: [&str; 2]) {
+    assert!(EXAMPLE.contains(change[0]), "{}", change[0]);
+    fs::write(folder.join("hole.toml"), EXAMPLE.replace(change[0], change[1])).unwrap();
+}
+
+#[test]
+fn bad_input_is_refused_by_name() {
+    let rows: [([&str; 2], &[&str]); 16] = [
+        (
+            ["crack_depth_mm = 1.27", "crack_depth_mm = 5.5"],
+            &["hole.toml:1", "specimen.crack_depth_mm = 5.5", "a/t = 1.100", "through crack"],
+        ),
+        (
+            ["crack_half_length_mm = 1.27", "crack_half_length_mm = 36"],
+            &["specimen.crack_half_length_mm = 36", "36 mm", "wider than the plate"],
+        ),
+        (["hole_diameter_mm = 8.0", "hole_diameter_mm = 80"], &["specimen.hole_diameter_mm = 80", "not below the width 80"]),
+        (["hole_diameter_mm = 8.0\n", ""], &["specimen.hole_diameter_mm", "missing"]),
+        (["cracks = 1 ", "cracks = 3 "], &["specimen.cracks = 3", "not 1 or 2"]),
+        (["cracks = 1 ", "# "], &["specimen.cracks", "missing", "give 1"]),
+        (["crack_depth_mm = 1.27 ", "# "], &["specimen.crack_depth_mm", "missing"]),
+        (["crack_depth_mm = 1.27", "crack_depth_mm = -1.27"], &["specimen.crack_depth_mm", "above zero"]),
+        (["crack_depth_mm = 1.27", "crack_depth_mm = nan"], &["specimen.crack_depth_mm", "finite"]),
+        (
+            ["\"corner_crack_at_hole\"", "\"surface_crack\""],
+            &["specimen.hole_diameter_mm = 8", "surface_crack", "corner_crack_at_hole"],
+        ),
+        (
+            ["\"corner_crack_at_hole\"", "\"thumbnail_crack\""],
+            &["specimen.kind", "thumbnail_crack", "surface_crack, corner_crack"],
+        ),
+        (
+            ["[fatigue]", "[model]\nmethod = \"element_free_galerkin\"\n[fatigue]"],
+            &["model.method", "does not go through", "\"handbook\""],
+        ),
+        (["[fatigue]", "[model]\nmethod = \"peridynamics\"\n[fatigue]"], &["model.method", "does not go through", "on nodes"]),
+        (
+            ["[fatigue]", "[stop]\ncrack_depth_mm = 1\n[fatigue]"],
+            &["stop.crack_depth_mm = 1", "not beyond the initial crack depth 1.27 mm"],
+        ),
+        (["[fatigue]", "[stop]\ncrack_depth_mm = 6\n[fatigue]"], &["stop.crack_depth_mm = 6", "beyond 5 mm"]),
+        (["stress_ratio = 0.1", "stress_ratio = 0.1\nbending_ratio = -1"], &["loading.bending_ratio", "beyond reason"]),
+    ];
+    let dir = tempdir().unwrap();
+    for (change, words) in rows {
+        write(dir.path(), change);
+        for command in [&["predict", "hole.toml", "--out", "run"][..], &["check", "hole.toml"]] {
+            assert_refused(&perilife(dir.path(), command), 2, words);
+        }
+    }
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1, "nothing half-written");
+    // Keys of such cracks do not go with others; nodes do not know them.
+    let panel = include_str!("../../data/cases/hand_calculation.toml");
+    for (key, words) in [
+        ("loading.bending_ratio=1", &["loading.bending_ratio", "through crack"][..]),
+        ("stop.crack_depth_mm=1", &["stop.crack_depth_mm", "middle_tension"]),
+        ("specimen.crack_depth_mm=1", &["specimen.crack_depth_mm", "surface_crack"]),
+    ] {
+        fs::write(dir.path().join("panel.toml"), panel).unwrap();
+        assert_refused(&perilife(dir.path(), &["check", "panel.toml", "--set", key]), 2, words);
+    }
+    write(dir.path(), ["", ""]);
+    for more in [&["--method", "ring"][..], &["--method", "element_free_galerkin"], &["--out", "sif"]] {
+        assert_refused(&perilife(dir.path(), &[&["sif", "hole.toml"], more].concat()), 2, &["does not go through"]);
+    }
+}
+
+#[test]
+fn the_example_runs_through_break_through_to_its_end() {
+    let dir = tempdir().unwrap();
+    write(dir.path(), ["", ""]);
+    let output = perilife(dir.path(), &["predict", "hole.toml", "--out", "run", "--json"]);
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    let result: Value = serde_json::from_str(&stdout).unwrap();
+    let part = &result["part_through"];
+    let number = |key: &str| part[key].as_f64().unwrap();
+    let life = result["life_cycles"].as_f64().unwrap();
+    assert!(number("cycles_at_break_through") < life && number("crack_depth_final_mm") == 5.0, "{part}");
+    assert!(number("life_cycles_if_k_is_larger") < life && life < number("life_cycles_if_k_is_smaller"), "{part}");
+    assert!(part["outside_range"].as_array().unwrap().iter().any(|range| range["of"] == "a/t"), "{part}");
+    assert_eq!(result["model"]["method"], "handbook");
+    assert!(result["solves"].as_u64().unwrap() > 0 && result["no_error_estimate"].as_str().unwrap().contains("±5 %"));
+    let names: Vec<&str> = result["checks"].as_array().unwrap().iter().map(|check| check["name"].as_str().unwrap()).collect();
+    assert!(names.contains(&"part_through_factors") && names.contains(&"part_through_range"), "{names:?}");
+    let run = dir.path().join("run");
+    let table = fs::read_to_string(run.join("a_n.csv")).unwrap();
+    let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let place = |name: &str| head.iter().position(|column| *column == name).unwrap();
+    let depths: Vec<f64> =
+        table.lines().skip(1).map(|row| row.split(',').nth(place("crack_depth_mm")).unwrap().parse().unwrap()).collect();
+    assert!(depths[0] == 1.27 && depths.windows(2).all(|pair| pair[0] <= pair[1]) && depths.last() == Some(&5.0));
+    assert!(table.lines().last().unwrap().split(',').nth(place("depth_k_i_mpa_sqrt_m")) == Some(""));
+    assert!(fs::read_to_string(run.join("factors.csv")).unwrap().lines().any(|row| row.starts_with("depth,0")));
+    for picture in ["section.svg", "plate.svg", "k.svg", "a_n.svg"] {
+        assert!(fs::read_to_string(run.join(picture)).unwrap().contains("</svg>"), "{picture}");
+    }
+    // Page, export and words take it.
+    for command in [&["report", "run", "--out", "page.html"][..], &["export", "run", "--points", "20", "--out", "e.csv"]] {
+        let output = perilife(dir.path(), command);
+        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+    }
+    let (stdout, stderr) =
+        texts(&perilife(dir.path(), &["predict", "hole.toml", "--out", "run", "--cross-check", "--residual-strength"]));
+    println!("{stderr}{stdout}");
+    assert!(stdout.contains("break-through  after") && stdout.contains("depth 1.270 mm to 5.000 mm"), "{stdout}");
+    assert!(stdout.contains("second opinion") && stdout.contains("no other method"), "{stdout}");
+    assert!(stderr.contains("K in depth: ±5 % by its source"), "{stderr}");
+    let (stdout, _) = texts(&perilife(dir.path(), &["check", "hole.toml"]));
+    assert!(stdout.contains("Newman and Raju 1984") && stdout.contains("depth 1.27 mm of 5 mm"), "{stdout}");
+}
+
+#[test]
+fn sif_gives_k_of_both_ends() {
+    let dir = tempdir().unwrap();
+    write(dir.path(), ["", ""]);
+    let object: Value = serde_json::from_str(&texts(&perilife(dir.path(), &["sif", "hole.toml", "--json"])).0).unwrap();
+    let tips = object["tips"].as_array().unwrap();
+    assert_eq!((tips.len(), &tips[0]["end"], &tips[1]["end"]), (2, &"depth".into(), &"surface".into()));
+    assert_eq!((&tips[0]["x_mm"], &tips[1]["x_mm"]), (&4.0.into(), &5.27.into()));
+    let k = |tip: usize| tips[tip]["handbook_k_i_mpa_sqrt_m"].as_f64().unwrap();
+    assert!(k(0) > k(1) && k(1) > 5.0, "{object}");
+    let (stdout, _) = texts(&perilife(dir.path(), &["sif", "hole.toml"]));
+    assert!(stdout.contains("depth") && stdout.contains("surface"), "{stdout}");
+}
