@@ -14,6 +14,7 @@ mod outcome;
 pub mod plastic_zone;
 pub mod record;
 pub mod residual_strength;
+mod retarded;
 mod snapshot;
 pub mod tip_factors;
 
