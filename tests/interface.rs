@@ -23,6 +23,7 @@ mod rates;
 mod report;
 mod service;
 mod sif;
+mod spectrum;
 mod stability;
 mod sweep;
 mod time_limit;

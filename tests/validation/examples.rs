@@ -47,7 +47,7 @@ fn every_example_has_a_number() {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         // Fracture scenes have a folder of their own.
-        .filter(|path| path.is_file())
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
         .map(|path| path.file_stem().unwrap().to_str().unwrap().to_owned())
         .collect();
     files.sort();

@@ -32,14 +32,9 @@ impl SpectrumLaw {
     /// The law of the cycles of a spectrum; ratios below `least` count as that, where the law knows none lower.
     pub fn new(law: Box<dyn GrowthLaw>, spectrum: &Spectrum, least: f64) -> Self {
         let clamp = |class: Class| Class { ratio: class.ratio.max(least), ..class };
-        let classes: Vec<Class> = spectrum.classes().into_iter().map(clamp).collect();
+        let classes: Vec<Class> = spectrum.classes.iter().copied().map(clamp).collect();
         let nodes = if classes.len() > SUMMED { ((ENDS[1] - ENDS[0]) / STEP) as usize } else { 0 };
         SpectrumLaw { law, classes, table: (0..nodes).map(|_| OnceLock::new()).collect() }
-    }
-
-    /// How many classes of cycles the mean is taken over.
-    pub fn classes(&self) -> usize {
-        self.classes.len()
     }
 
     /// The mean itself.

@@ -57,7 +57,9 @@ impl Snapshots {
 
     /// Takes the cycles of another count of the same rows, and leaves out what lies beyond its end.
     pub fn recount(&mut self, before: &[CurvePoint], now: &[CurvePoint]) {
-        let (Some(end), Some(cycles)) = (now.last().map(|row| row.crack_length), now.last().map(|row| row.cycles)) else { return };
+        let (Some(end), Some(cycles)) = (now.last().map(|row| row.crack_length), now.last().map(|row| row.cycles)) else {
+            return;
+        };
         let first = self.taken.iter().position(|snapshot| snapshot.crack_length >= end);
         self.taken.truncate(first.map_or(self.taken.len(), |first| first + 1));
         for snapshot in &mut self.taken {

@@ -5,4 +5,5 @@
 pub mod curves;
 pub mod fit;
 pub mod plate;
+pub mod spectrum;
 pub mod tables;

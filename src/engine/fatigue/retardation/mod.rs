@@ -24,8 +24,7 @@ use crate::loading::Loading;
 use crate::material::{Material, Plane};
 
 /// Every model, in the order of `perilife list`. A new one is a line here and its file.
-const MODELS: &[&Description] =
-    &[&description::NONE, &wheeler::MODEL, &willenborg::MODEL, &closure::MODEL, &newman::MODEL];
+const MODELS: &[&Description] = &[&description::NONE, &wheeler::MODEL, &willenborg::MODEL, &closure::MODEL, &newman::MODEL];
 
 crate::kinds! {
     /// Which model of retardation a case has.
@@ -78,7 +77,11 @@ impl Retardation {
         let is_own = |key: &str| key == KEY || kind.0.constants.iter().any(|constant| constant.key == key);
         if let Some(key) = retardation_keys().into_iter().find(|key| given(key).is_some() && !is_own(key)) {
             let problem = format!("is no key of retardation = \"{kind}\"");
-            return Err(input_missing(&format!("loading.{key}"), problem, "leave it out, or choose its model by loading.retardation"));
+            return Err(input_missing(
+                &format!("loading.{key}"),
+                problem,
+                "leave it out, or choose its model by loading.retardation",
+            ));
         }
         if kind.0.rate.is_none() {
             return Ok(None);

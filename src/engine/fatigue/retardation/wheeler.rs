@@ -14,8 +14,6 @@ pub static MODEL: Description = Description {
         default: |_, _| None,
         remedy: "give that of tests with overloads, 1 to 2 for many aluminium alloys",
     }],
-    rate: Some(|constants, law, now, zone| {
-        (now.size / (zone.end() - now.a)).powf(constants[0]) * law.rate(now.k_max, now.ratio)
-    }),
+    rate: Some(|constants, law, now, zone| (now.size / (zone.end() - now.a)).powf(constants[0]) * law.rate(now.k_max, now.ratio)),
     underload: "does not know underloads",
 };

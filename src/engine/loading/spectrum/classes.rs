@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Cycle, Spectrum};
+use super::Cycle;
 
 /// Kinds of cycles up to which each is a class of its own.
 const EXACT: usize = 1024;
@@ -23,46 +23,43 @@ pub struct Class {
     pub share: f64,
 }
 
-impl Spectrum {
-    /// Kinds of cycles: pairs of maximum and minimum that differ, with how often a pass has each, those that open no crack among them.
-    pub fn kinds(&self) -> Vec<Cycle> {
-        let mut kinds: HashMap<[u64; 2], usize> = HashMap::new();
-        let mut found: Vec<Cycle> = Vec::new();
-        for cycle in &self.cycles {
-            let place = *kinds.entry([cycle.max.to_bits(), cycle.min.to_bits()]).or_insert(found.len());
-            match found.get_mut(place) {
-                Some(known) => known.count += cycle.count,
-                None => found.push(*cycle),
-            }
+/// Kinds of cycles: pairs of maximum and minimum that differ, with how often there is each, those that open no crack among them.
+pub(super) fn kinds(cycles: &[Cycle]) -> Vec<Cycle> {
+    let mut kinds: HashMap<[u64; 2], usize> = HashMap::new();
+    let mut found: Vec<Cycle> = Vec::new();
+    for cycle in cycles {
+        let place = *kinds.entry([cycle.max.to_bits(), cycle.min.to_bits()]).or_insert(found.len());
+        match found.get_mut(place) {
+            Some(known) => known.count += cycle.count,
+            None => found.push(*cycle),
         }
-        found
     }
+    found
+}
 
-    /// Classes of the cycles whose maximum opens the crack, few enough for sums over them: every kind by itself up to a thousand, else those
-    /// within 1.25 % in maximum and in range together, which keeps means of powers 2 to 5 of both within 1e-4.
-    pub fn classes(&self) -> Vec<Class> {
-        let kinds = self.kinds();
-        let class = |max: f64, ratio: f64, count: f64| Class { max, ratio, share: count / self.per_pass };
-        if kinds.len() <= EXACT {
-            return kinds.iter().filter_map(|kind| Some(class(kind.max, kind.ratio()?, kind.count))).collect();
-        }
-        let mut bins: HashMap<[i32; 2], [f64; 3]> = HashMap::new();
-        let bin = |value: f64| (value.ln() / WIDTH).floor() as i32;
-        for kind in kinds.iter().filter(|kind| kind.max > 0.0) {
-            // The whole range, also below zero: laws differ in what compression counts.
-            let sums = bins.entry([bin(kind.max), bin(kind.range())]).or_default();
-            let terms = [1.0, kind.max.powf(ORDER), kind.range().powf(ORDER)];
-            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += kind.count * term);
-        }
-        let mut classes: Vec<Class> = bins
-            .into_values()
-            .map(|[count, max, range]| {
-                let [max, range] = [max, range].map(|sum| (sum / count).powf(1.0 / ORDER));
-                class(max, 1.0 - range / max, count)
-            })
-            .collect();
-        // Sums over them are the same in every run.
-        classes.sort_by(|a, b| a.max.total_cmp(&b.max).then(a.ratio.total_cmp(&b.ratio)));
-        classes
+/// Classes of the kinds whose maximum opens the crack, few enough for sums over them: every kind by itself up to a thousand, else those
+/// within 1.25 % in maximum and in range together, which keeps means of powers 2 to 5 of both within 1e-4; `per_pass` are all cycles.
+pub(super) fn classes(kinds: &[Cycle], per_pass: f64) -> Vec<Class> {
+    let class = |max: f64, ratio: f64, count: f64| Class { max, ratio, share: count / per_pass };
+    if kinds.len() <= EXACT {
+        return kinds.iter().filter_map(|kind| Some(class(kind.max, kind.ratio()?, kind.count))).collect();
     }
+    let mut bins: HashMap<[i32; 2], [f64; 3]> = HashMap::new();
+    let bin = |value: f64| (value.ln() / WIDTH).floor() as i32;
+    for kind in kinds.iter().filter(|kind| kind.max > 0.0) {
+        // The whole range, also below zero: laws differ in what compression counts.
+        let sums = bins.entry([bin(kind.max), bin(kind.range())]).or_default();
+        let terms = [1.0, kind.max.powf(ORDER), kind.range().powf(ORDER)];
+        sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += kind.count * term);
+    }
+    let mut classes: Vec<Class> = bins
+        .into_values()
+        .map(|[count, max, range]| {
+            let [max, range] = [max, range].map(|sum| (sum / count).powf(1.0 / ORDER));
+            class(max, 1.0 - range / max, count)
+        })
+        .collect();
+    // Sums over them are the same in every run.
+    classes.sort_by(|a, b| a.max.total_cmp(&b.max).then(a.ratio.total_cmp(&b.ratio)));
+    classes
 }

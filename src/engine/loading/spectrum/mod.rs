@@ -60,6 +60,10 @@ pub struct Spectrum {
     pub repeats: Option<f64>,
     /// Smallest and largest stress ratio of the cycles whose maximum opens the crack.
     pub ratios: [f64; 2],
+    /// Cycles that are alike, those that open no crack left out.
+    pub classes: Vec<Class>,
+    /// How many kinds of cycles there are: pairs of maximum and minimum that differ.
+    pub kinds: usize,
     /// SHA-256 of the file.
     sha256: String,
 }

@@ -44,8 +44,7 @@ pub fn turning_points(history: &[f64]) -> Vec<(usize, f64)> {
 /// With X the range under consideration and Y the one before it: while X ≥ Y, Y is a cycle and its two points are taken out, or, where it
 /// holds the starting point, a half cycle and only that point is taken out.
 pub fn rainflow(history: &[f64]) -> Vec<Counted> {
-    let counted =
-        |[from, to]: [(usize, f64); 2], count| Counted { ends: [from.1, to.1], places: [from.0, to.0], count };
+    let counted = |[from, to]: [(usize, f64); 2], count| Counted { ends: [from.1, to.1], places: [from.0, to.0], count };
     let (mut open, mut found): (Vec<(usize, f64)>, Vec<Counted>) = (Vec::new(), Vec::new());
     for turn in turning_points(history) {
         open.push(turn);

@@ -1,6 +1,6 @@
 //! A spectrum from its file: which format it has, what it says, and what of it is left out.
 
-
+use super::classes::{classes, kinds};
 use super::rainflow::{Counted, rainflow};
 use super::rows::{fault, rows};
 use super::{Cycle, Spectrum, fastran, spx, sub, table};
@@ -73,7 +73,13 @@ impl Spectrum {
             let format = input.spectrum_format.unwrap_or_else(|| guess(file, text));
             let cycles = checked(content(format, text)?)?;
             let sha256 = crate::input::sha256(&bytes);
-            Spectrum::of(cycles, [omission, truncation]).map(|spectrum| Spectrum { file: file.to_owned(), format, repeats, sha256, ..spectrum })
+            Spectrum::of(cycles, [omission, truncation]).map(|spectrum| Spectrum {
+                file: file.to_owned(),
+                format,
+                repeats,
+                sha256,
+                ..spectrum
+            })
         };
         read().map_err(|error| error.in_file(&folder.path(file)))
     }
@@ -95,6 +101,7 @@ impl Spectrum {
         let least = omission * left.iter().map(Cycle::range).fold(0.0, f64::max);
         left.retain(|cycle| cycle.range() >= least);
         let per_pass = left.iter().map(|cycle| cycle.count).sum();
+        let kinds = kinds(&left);
         let ratios = left.iter().filter_map(Cycle::ratio);
         let ratios = ratios.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], ratio| [low.min(ratio), high.max(ratio)]);
         Ok(Spectrum {
@@ -106,6 +113,8 @@ impl Spectrum {
             largest: [most, cut],
             repeats: None,
             ratios,
+            classes: classes(&kinds, per_pass),
+            kinds: kinds.len(),
             sha256: String::new(),
         })
     }
