@@ -65,7 +65,8 @@ fn every_format_says_the_same_cycles() {
         assert_eq!(loading.spectrum.as_ref().unwrap().format, format, "{file}");
         // Scaled by 2 MPa; R of the largest cycle.
         assert!((loading.maximum - 100e6).abs() < 1e-3 && (loading.ratio - 0.2).abs() < 1e-12, "{file}: {loading:?}");
-        assert_eq!(loading.ratios(), [-5.0 / 30.0, 0.2]);
+        let [low, high] = loading.ratios();
+        assert!((low + 1.0 / 6.0).abs() < 1e-12 && (high - 0.2).abs() < 1e-12);
     }
 }
 
@@ -73,7 +74,7 @@ fn every_format_says_the_same_cycles() {
 #[test]
 fn turning_points_are_counted_in_their_order() {
     let points = [0.0, 50.0, 20.0, 30.0, 0.0, 40.0];
-    let wanted = [[50.0, 0.0, 0.5], [50.0, 0.0, 0.5], [30.0, 20.0, 1.0], [40.0, 0.0, 0.5], [40.0, 0.0, 0.5]];
+    let wanted = [[50.0, 0.0, 0.5], [50.0, 0.0, 0.5], [30.0, 20.0, 1.0], [40.0, 0.0, 1.0]];
     let column: String = points.map(|point| format!("{point}\n")).concat();
     // FASTRAN: -20 stands for 0 and 80 for 50.
     let whole = points.map(|point| (2.0 * point - 20.0).to_string()).join(" ");

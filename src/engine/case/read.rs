@@ -295,8 +295,9 @@ fn compression_line(case: &Case) -> Option<String> {
     let [ratio, _] = case.loading.ratios();
     (ratio < 0.0 && !counts).then(|| {
         format!(
-            "stress ratio {ratio}: the compression in a cycle counts as nothing, as if the ratio were 0; growth_law = \"{law}\" takes \
-             it into account"
+            "stress ratio {}: the compression in a cycle counts as nothing, as if the ratio were 0; growth_law = \"{law}\" takes \
+             it into account",
+            (1e4 * ratio).round() / 1e4
         )
     })
 }

@@ -48,6 +48,10 @@ pub(super) fn recount(case: &Case, curve: &[CurvePoint], stop: StopReason) -> Re
         let gain = (last / first).ln();
         let k = |a: f64| first * (gain * ((a - way[0]) / (way[1] - way[0])).clamp(0.0, 1.0)).exp();
         let before = march.cycles;
+        if !(first > 0.0 && last > 0.0) {
+            // Nothing is known of K there: the cycles are those of the run.
+            (march.a, march.cycles) = (way[1], (march.cycles + to.cycles - from.cycles).min(case.stop.cycles_max));
+        }
         let end = match march.advance(&k, way[1], case.stop.cycles_max) {
             Marched::Reached => None,
             Marched::RunOut => Some(StopReason::RunOut),

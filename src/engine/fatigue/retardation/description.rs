@@ -4,6 +4,9 @@ use crate::fatigue::growth_law::GrowthLaw;
 use crate::input::Quantity;
 use crate::material::Plane;
 
+/// da/dN, m/cycle, by the constants of a model, the law of a cycle alone, the cycle, and the zone that it lies in.
+pub type Rate = fn(&[f64], &dyn GrowthLaw, &Now, &Zone) -> f64;
+
 /// A model of retardation.
 pub struct Description {
     /// Name in input and result files.
@@ -14,7 +17,7 @@ pub struct Description {
     pub constants: &'static [Constant],
     /// da/dN, m/cycle, of a cycle whose plastic zone stays within that of an overload, by the constants in SI units; `None` where nothing is
     /// retarded.
-    pub rate: Option<fn(&[f64], &dyn GrowthLaw, &Now, &Zone) -> f64>,
+    pub rate: Option<Rate>,
     /// What the model says of underloads.
     pub underload: &'static str,
 }

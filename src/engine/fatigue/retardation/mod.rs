@@ -74,6 +74,10 @@ impl Retardation {
             Some(toml::Value::String(name)) => name.parse()?,
             Some(other) => return Err(input(RetardationKind::KEY, other, "is not text in quotes", "give the name of a model")),
         };
+        if kind.0.rate.is_none() {
+            // Constants stay where a model is turned off.
+            return Ok(None);
+        }
         let is_own = |key: &str| key == KEY || kind.0.constants.iter().any(|constant| constant.key == key);
         if let Some(key) = retardation_keys().into_iter().find(|key| given(key).is_some() && !is_own(key)) {
             let problem = format!("is no key of retardation = \"{kind}\"");
@@ -82,9 +86,6 @@ impl Retardation {
                 problem,
                 "leave it out, or choose its model by loading.retardation",
             ));
-        }
-        if kind.0.rate.is_none() {
-            return Ok(None);
         }
         let strength = material.yield_strength.ok_or_else(|| {
             let problem = "needs the plastic zone of a tip, and the material has no yield strength";

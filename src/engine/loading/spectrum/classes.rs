@@ -23,18 +23,17 @@ pub struct Class {
     pub share: f64,
 }
 
-/// Kinds of cycles: pairs of maximum and minimum that differ, with how often there is each, those that open no crack among them.
+/// Kinds of cycles: pairs of maximum and minimum that differ, with how often there is each, by rising size; those that open no crack among
+/// them.
 pub(super) fn kinds(cycles: &[Cycle]) -> Vec<Cycle> {
-    let mut kinds: HashMap<[u64; 2], usize> = HashMap::new();
-    let mut found: Vec<Cycle> = Vec::new();
-    for cycle in cycles {
-        let place = *kinds.entry([cycle.max.to_bits(), cycle.min.to_bits()]).or_insert(found.len());
-        match found.get_mut(place) {
-            Some(known) => known.count += cycle.count,
-            None => found.push(*cycle),
-        }
-    }
-    found
+    let mut sorted = cycles.to_vec();
+    sorted.sort_unstable_by(|a, b| a.max.total_cmp(&b.max).then(a.min.total_cmp(&b.min)).then(a.count.total_cmp(&b.count)));
+    sorted.dedup_by(|next, kept| {
+        let is_same = next.max == kept.max && next.min == kept.min;
+        kept.count += if is_same { next.count } else { 0.0 };
+        is_same
+    });
+    sorted
 }
 
 /// Classes of the kinds whose maximum opens the crack, few enough for sums over them: every kind by itself up to a thousand, else those

@@ -2,7 +2,7 @@
 //!
 //! The largest of the numbers stands for Smax and the smallest for Smin, others between them in proportion.
 
-use super::read::Content;
+use super::content::Content;
 use super::rows::{Row, cells, fault, number};
 use crate::error::Result;
 

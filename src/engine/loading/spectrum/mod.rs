@@ -4,6 +4,7 @@
 //! fractions of the stress or force of `loading.spectrum_scale_mpa` or `spectrum_scale_n`; inside they are fractions of the largest load.
 
 mod classes;
+mod content;
 mod fastran;
 pub mod rainflow;
 mod read;

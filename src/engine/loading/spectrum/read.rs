@@ -1,6 +1,7 @@
 //! A spectrum from its file: which format it has, what it says, and what of it is left out.
 
 use super::classes::{classes, kinds};
+use super::content::{Content, RawCycle};
 use super::rainflow::{Counted, rainflow};
 use super::rows::{fault, rows};
 use super::{Cycle, Spectrum, fastran, spx, sub, table};
@@ -17,21 +18,6 @@ crate::kinds! {
         Sub = "sub": "AFGROW .sub: a title with the number of rows, then rows max min cycles",
         Fastran = "fastran": "FASTRAN: a title, points Smax Smin INVERT ICLIP, then turning points as whole numbers",
     }
-}
-
-/// Cycles or turning points as a file has them.
-pub(super) enum Content {
-    Cycles(Vec<RawCycle>),
-    Points(Vec<f64>),
-}
-
-/// A cycle of a file, in its line.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct RawCycle {
-    pub line: usize,
-    pub max: f64,
-    pub min: f64,
-    pub count: f64,
 }
 
 /// Keys that belong to a spectrum, beside its scale.
@@ -130,7 +116,8 @@ fn guess(file: &str, text: &str) -> SpectrumFormat {
         "sub" => SpectrumFormat::Sub,
         _ if first.starts_with('<') => SpectrumFormat::Spx,
         _ if !table::names_cycles(first) && fastran::is_of(second) => SpectrumFormat::Fastran,
-        _ if table::names_cycles(first) || super::rows::cells(second).count() > 1 => SpectrumFormat::Cycles,
+        _ if table::names_cycles(first) || table::is_several(second) => SpectrumFormat::Cycles,
+        _ if table::is_numbers(first) && table::is_several(first) => SpectrumFormat::Cycles,
         _ => SpectrumFormat::TurningPoints,
     }
 }

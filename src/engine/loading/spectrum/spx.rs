@@ -3,7 +3,7 @@
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-use super::read::{Content, RawCycle};
+use super::content::{Content, RawCycle};
 use super::rows::{fault, number};
 use crate::error::Result;
 

@@ -1,6 +1,6 @@
 //! `.sub` of AFGROW: sub-spectra one after the other, each a line with its number of rows, then rows `max min cycles`.
 
-use super::read::Content;
+use super::content::Content;
 use super::rows::{Row, cells, fault};
 use super::table::{cycle, is_numbers};
 use crate::error::Result;

@@ -1,6 +1,6 @@
 //! Columns of numbers: cycles `max,min,cycles`, or one column of turning points.
 
-use super::read::{Content, RawCycle};
+use super::content::{Content, RawCycle};
 use super::rows::{Row, cells, fault, number};
 use crate::error::Result;
 
@@ -12,6 +12,11 @@ const COLUMNS: [&str; 3] = ["max", "min", "cycles"];
 /// Whether a line holds numbers only.
 pub(super) fn is_numbers(line: &str) -> bool {
     cells(line).all(|cell| cell.parse::<f64>().is_ok())
+}
+
+/// Whether a line has several cells.
+pub(super) fn is_several(line: &str) -> bool {
+    cells(line).nth(1).is_some()
 }
 
 /// Whether a title names the columns of cycles.
