@@ -25,6 +25,7 @@ mod readme;
 mod report;
 mod service;
 mod sif;
+mod spectrum;
 mod stability;
 mod sweep;
 mod time_limit;

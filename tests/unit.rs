@@ -50,6 +50,7 @@ mod residual_strength;
 mod scene;
 mod scene_results;
 mod specimen;
+mod spectrum;
 mod speed_chart;
 mod sweep;
 #[cfg(feature = "tables")]

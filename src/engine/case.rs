@@ -27,6 +27,7 @@ use crate::element_free::resolution::ElementFreeSettings;
 use crate::error::Result;
 use crate::fatigue::growth_law::FactorLaw;
 use crate::fatigue::paris::ParisLaw;
+use crate::fatigue::retardation::Retardation;
 use crate::fatigue::{Ageing, FatigueLaw, FatigueSettings};
 use crate::input::{Output, Provenance};
 use crate::loading::Loading;
@@ -242,6 +243,8 @@ pub struct Case {
     pub chosen: Option<String>,
     /// Fatigue settings.
     pub fatigue: FatigueSettings,
+    /// How the cycles of a spectrum act on those after them; `None` where they do not.
+    pub retardation: Option<Retardation>,
     /// Constants of the fatigue law.
     pub law: LawSource,
     /// Stop conditions.

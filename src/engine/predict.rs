@@ -16,6 +16,7 @@ pub mod part_through;
 pub mod plastic_zone;
 pub mod record;
 pub mod residual_strength;
+mod retarded;
 mod snapshot;
 pub mod tip_factors;
 

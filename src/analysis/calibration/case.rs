@@ -115,6 +115,7 @@ impl CalibrationCase {
             return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
         }
         check_walker(&case)?;
+        refuse_spectrum(&case)?;
         check_growth_rate(&case)?;
         check_through(&case.specimen)?;
         let formula = handbook(&case.specimen);
@@ -164,6 +165,16 @@ impl CalibrationCase {
         let loading = &self.case.loading;
         self.formula.map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
     }
+}
+
+/// Readings under a spectrum have no one ΔK.
+fn refuse_spectrum(case: &Case) -> crate::Result<()> {
+    if case.loading.spectrum.is_none() {
+        return Ok(());
+    }
+    let problem = "does not go with a calibration, which takes ΔK and rate of cycles of one size";
+    let remedy = "fit a law to curves of constant amplitude, and give the spectrum in the case that uses it";
+    Err(input("loading.kind", "\"spectrum\"", problem, remedy))
 }
 
 /// Curves of one stress ratio say nothing about its influence, and a record means ε = s_max (1-R): another Walker exponent

@@ -6,8 +6,8 @@ use crate::calibration::laws::case::LawCase;
 use crate::case::{Case, Engine, LawSource, Model};
 use crate::material::Material;
 use crate::measured::MeasuredCurve;
-use crate::report::fit_use;
 use crate::report::model_words::{self, Choice, mm, short};
+use crate::report::{fit_use, spectrum};
 use crate::specimen::handbook::handbook;
 use crate::specimen::part_through::{RANGE, SOURCE};
 use crate::specimen::{Specimen, Support};
@@ -136,6 +136,7 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let mut lines = plate_lines(specimen, &case.material, ("crack", specimen.cracks.len(), crack_words(specimen)));
     let cycles = format!("{}; {held}", model_words::loading(case));
     lines.push(line("loading", cycles));
+    lines.extend(case.loading.spectrum.iter().map(|spectrum| line("spectrum", spectrum::more_words(case, spectrum))));
     let by_points = matches!(case.model, Model::Points(_));
     lines.extend(case.chosen.as_ref().map(|why| line("model", format!("{}, chosen: {why}", case.model.method()))));
     lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));

@@ -14,12 +14,14 @@ use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::growth_law::description::Constant;
 use crate::fatigue::growth_law::table::TableEnds;
+use crate::fatigue::retardation::RetardationKind;
 use crate::fatigue::{Ageing, Driver};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind};
 use crate::fracture::scene::{Calibration, DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
 use crate::input::{Folder, Quantity};
 use crate::kinds::KindLine;
+use crate::loading::spectrum::SpectrumFormat;
 use crate::loading::{Grip, LoadingKind, Transverse};
 use crate::material::growth_data::{self, GrowthRecord};
 use crate::material::{Plane, library};
@@ -40,6 +42,8 @@ pub fn lines() -> Vec<(String, String, String)> {
         Ends::lines(),
         Plane::lines(),
         LoadingKind::lines(),
+        SpectrumFormat::lines(),
+        RetardationKind::lines(),
         LoadKind::lines(),
         Grip::lines(),
         Edge::lines(),

@@ -352,6 +352,11 @@ impl Frame {
         }
     }
 
+    /// Puts what was drawn beside other charts into a picture, at a pixel.
+    pub fn beside(self, picture: &mut Sketch, place: Point) {
+        picture.within(place, [self.size.width, self.size.height], self.sketch);
+    }
+
     /// The whole picture, with a sentence for those who do not see it.
     pub fn finish(self, sentence: &str) -> String {
         self.sketch.picture([self.size.width, self.size.height], sentence)

@@ -344,14 +344,15 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
 /// Stress ratio of the law against that of the cycles.
 fn stress_ratio(case: &Case) -> Option<Check> {
     const NAME: &str = "stress_ratio";
-    let ratio = case.loading.ratio;
+    let [least, most] = case.loading.ratios();
     let [low, high] = match (&case.law, &case.law_record) {
         (LawSource::Fitted(record), _) => [record.stress_ratio; 2],
         (_, Some(record)) => [record.stress_ratio_min, record.stress_ratio_max],
         _ => return None,
     };
     // Of what is refused no life comes about, so any other ratio is bridged by γ.
-    let is_within = (low - 0.02..=high + 0.02).contains(&ratio);
+    let is_within = [least, most].iter().all(|ratio| (low - 0.02..=high + 0.02).contains(ratio));
+    let ratio = if least == most { least.to_string() } else { format!("{least:.3} to {most:.3}") };
     let words = if is_within {
         format!("stress ratio: {ratio} is that of the law")
     } else {

@@ -30,6 +30,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
     json!({
         "name": case.name,
         "life_cycles": prediction.life(),
+        "passes": super::spectrum::passes(case, prediction),
         "life_is_lower_bound": checks::is_bound_below(case, prediction),
         "stop_reason": prediction.stop.name(),
         "stop_meaning": prediction.stop.meaning(),
@@ -54,6 +55,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "solver_iterations": figures.iterations,
         "wall_s": figures.wall_s,
         "memory_mb": figures.memory_mb,
+        "spectrum": super::spectrum::json(case),
         "model": model_words::object(&model_words::of_case(case, Some(figures))),
         "law": law(case, prediction),
         "verdict": checks::verdict(&checks),

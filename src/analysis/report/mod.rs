@@ -21,6 +21,7 @@ pub mod provenance;
 pub mod resample;
 pub mod quality;
 pub mod run;
+pub mod spectrum;
 pub mod speed;
 pub mod specimen_picture;
 pub mod stability;

@@ -226,7 +226,8 @@ pub fn loading(case: &Case) -> String {
         LoadMeasure::Stress => ("stress", MPA, "MPa"),
         LoadMeasure::Force => ("force", KN, "kN"),
     };
-    let range = |unit: f64, most: f64| format!("{} to {}", short(loading.ratio * most / unit), short(most / unit));
+    let least = loading.spectrum.as_ref().map_or(loading.ratio, |spectrum| spectrum.smallest());
+    let range = |unit: f64, most: f64| format!("{} to {}", short(least * most / unit), short(most / unit));
     let loads = range(unit, loading.maximum);
     let cycles = match (loading.displacement(), specimen.crack_pressure) {
         (Some(most), _) => {
@@ -244,7 +245,13 @@ pub fn loading(case: &Case) -> String {
         if loading.parallel_ratio == 0.0 { String::new() } else { format!(", {} of it on the sides", loading.parallel_ratio) };
     let bent = specimen.part_through.map_or(0.0, |flaw| flaw.bending_ratio);
     let bending = if bent == 0.0 { String::new() } else { format!(", bending of {} of it at the face", short(bent)) };
-    format!("{cycles}{sides}{bending}, R = {}", loading.ratio)
+    match &loading.spectrum {
+        Some(spectrum) => {
+            let [low, high] = spectrum.ratios.map(short);
+            format!("spectrum, {cycles}{sides}{bending}, R = {low} to {high}, {} at the largest", short(loading.ratio))
+        }
+        None => format!("{cycles}{sides}{bending}, R = {}", loading.ratio),
+    }
 }
 
 /// What cycles of a displacement move, in words.

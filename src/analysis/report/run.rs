@@ -15,11 +15,12 @@ use super::output::{Room, write_file};
 use super::pictures::curves::{a_n_svg, k_svg};
 use super::pictures::plate::{self, Plate, growth_svg, plate_svg};
 use super::pictures::section::section_svg;
+use super::pictures::spectrum::spectrum_svg;
 use super::pictures::stress::stress_svg;
 use super::pictures::tables::RunTables;
 use super::quality::Quality;
 use super::specimen_picture::{nodes_svg, tip_svg};
-use super::{checks, factors, fit_use, json, provenance, vtk};
+use super::{checks, factors, fit_use, json, provenance, spectrum, vtk};
 use crate::case::budget::Budget;
 use crate::case::{Case, Model, RECORD, first_load};
 use crate::error::{Error, Result, input};
@@ -131,8 +132,9 @@ fn extrapolates(case: &Case, what: &str, more: &str) -> Error {
 }
 
 /// Keys of `result.json` that a listing of runs shows.
-pub const FIGURES: [&str; 25] = [
+pub const FIGURES: [&str; 26] = [
     "life_cycles",
+    "passes",
     "error_estimate_percent",
     "path_error_estimate_mm",
     "no_error_estimate",
@@ -216,6 +218,9 @@ fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_
         put("k.svg", &k)?;
     }
     draw_rates(folder, case, &tables)?;
+    if let Some(spectrum) = &case.loading.spectrum {
+        put("spectrum.svg", &spectrum_svg(spectrum, LARGE))?;
+    }
     let paths: Vec<Vec<Point>> = csv::paths(prediction, &case.specimen.cracks)
         .into_iter()
         .map(|path| path.into_iter().map(|(_, position)| position).collect())
@@ -279,6 +284,7 @@ pub fn words(case: &Case, prediction: &Prediction, lives: &Lives, quality: &Qual
         format!("  verdict        {}", checks::verdict(&checks)),
     ];
     lines.extend(through_words(case, prediction).map(|words| format!("  break-through  {words}")));
+    lines.extend(spectrum::words(case, prediction).map(|passes| format!("  spectrum       {passes}")));
     lines.extend(lives.words());
     lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
     lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));

@@ -61,7 +61,7 @@ pub(super) fn from_value(
     let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
     let hands_over = by_bonds.then(|| settings.hands_over(specimen));
     settings.step_error_percent = read_step_error(&input, driver == Driver::TipField || hands_over == Some(true))?;
-    let given = Given { section: value, material, ratio: loading.ratio, folder };
+    let given = Given { section: value, material, ratios: loading.ratios(), folder };
     let law = law_source::read(settings.threshold, hands_over, &given)?;
     Ok(Fatigue { settings, law, allow_extrapolation, lot: input.lot.unwrap_or(Lot::Same) })
 }
@@ -162,6 +162,8 @@ pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Sp
     }
     let (crack_depth, at_break_through) = stop_in_depth(&slice, specimen)?;
     let cycles_max = number("a number of cycles", 1.0, 1e15).read("stop.cycles_max", slice.cycles_max.unwrap_or(CYCLES_MAX))?;
+    let of_passes = loading.spectrum.as_ref().and_then(|spectrum| Some(spectrum.repeats? * spectrum.per_pass));
+    let cycles_max = of_passes.map_or(cycles_max, |cycles| cycles_max.min(cycles));
     let required = required_load(&slice, specimen, material, loading)?;
     let [by_toughness, by_net_section] = [slice.toughness, slice.net_section].map(|asked| asked.unwrap_or(true));
     let crack_length = crack_length.unwrap_or(f64::INFINITY);

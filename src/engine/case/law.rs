@@ -96,14 +96,17 @@ fn disagree(key: &str, chosen: &str, recorded: &str) -> Error {
 }
 
 fn check_stress_ratio(case: &Case, record: &FittedRecord) -> Result<()> {
-    let same = (case.loading.ratio - record.stress_ratio).abs() < 1e-9;
-    if same || case.choices.walker_gamma.is_some() {
-        return Ok(());
-    }
+    let other = case.loading.ratios().into_iter().find(|ratio| (ratio - record.stress_ratio).abs() >= 1e-9);
+    let Some(other) = other.filter(|_| case.choices.walker_gamma.is_none()) else { return Ok(()) };
     let problem = format!("is another stress ratio than the calibrated one, {}", record.stress_ratio);
     let remedy =
         "give fatigue.walker_gamma (strain range = s_max (1-R)^gamma; 1 = no mean-stress effect), or a record of this ratio";
-    Err(input("loading.stress_ratio", case.loading.ratio, problem, remedy))
+    Err(input(ratio_key(case), other, problem, remedy))
+}
+
+/// The key that gives the stress ratios of a case.
+fn ratio_key(case: &Case) -> &'static str {
+    if case.loading.spectrum.is_some() { "loading.spectrum_file" } else { "loading.stress_ratio" }
 }
 
 /// A and p as recorded.

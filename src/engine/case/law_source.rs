@@ -38,9 +38,9 @@ pub(super) fn read(threshold: f64, hands_over: Option<bool>, given: &Given<'_>) 
             return Err(input(GrowthLawKind::KEY, format!("\"{kind}\""), problem, remedy));
         }
         kind.0.refuse_foreign(&is_given)?;
-        if let Some((what, least)) = kind.0.compression.filter(|(_, least)| given.ratio < *least) {
+        if let Some((what, least)) = kind.0.compression.filter(|(_, least)| given.ratios[1] < *least) {
             let problem = format!("lies below {least}, to which the {what} of growth_law \"{kind}\" is known");
-            return Err(input("loading.stress_ratio", given.ratio, problem, "use another growth_law"));
+            return Err(input("loading.stress_ratio", given.ratios[0], problem, "use another growth_law"));
         }
         return read(given, kind.0).map(|law| Some(LawSource::Factor(FactorLaw { threshold, ..law })));
     }

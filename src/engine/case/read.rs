@@ -12,6 +12,7 @@ use crate::error::{Result, input};
 use crate::fatigue::growth_law::description::law_keys;
 use crate::fatigue::growth_law::{FactorLaw, GrowthLawKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
+use crate::fatigue::retardation::{Retardation, retardation_keys};
 use crate::input::{
     Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Output, Provenance, Sections, value_at,
 };
@@ -109,7 +110,8 @@ impl Case {
         let mut choices = Choices::default();
         let mut specimen = specimen::from_value(sections.required("specimen")?, &mut warnings)?;
         let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
-        let loading = loading::from_values(sections.required("loading")?, sections.given("supports"), &mut specimen)?;
+        let (of_loading, beside) = (sections.required("loading")?, retardation_keys());
+        let loading = loading::from_values(of_loading, sections.given("supports"), (folder, &beside), &mut specimen)?;
         let asked = choose::Sections {
             model: sections.optional("model"),
             fatigue: sections.optional("fatigue"),
@@ -128,6 +130,12 @@ impl Case {
             &mut choices,
         )?;
         let stop = fatigue::stop_from_value(sections.optional("stop"), (&specimen, &material, &loading))?;
+        let threshold = Some(fatigue.settings.threshold).filter(|threshold| *threshold > 0.0);
+        let own = || match &fatigue.law {
+            Some(LawSource::Factor(law)) => law.own_threshold(0.0),
+            _ => None,
+        };
+        let retardation = Retardation::read(of_loading, &loading, &material, threshold.or_else(own))?;
         let mut case = Case {
             name: name.to_owned(),
             specimen,
@@ -136,6 +144,7 @@ impl Case {
             model,
             chosen,
             fatigue: fatigue.settings,
+            retardation,
             law: LawSource::Missing(PathBuf::new()),
             stop,
             output: Output::from_value(sections.optional("output"))?,
@@ -164,6 +173,7 @@ impl Case {
         }
         model::check_law(&case)?;
         check_load(&case)?;
+        check_spectrum(&case)?;
         case.warnings.extend(boundaries::first_load_warning(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
@@ -241,10 +251,23 @@ fn check_load(case: &Case) -> Result<()> {
     Ok(())
 }
 
+/// Spectra are counted by da/dN of K alone, and retarded by what their law needs.
+fn check_spectrum(case: &Case) -> Result<()> {
+    if case.loading.spectrum.is_some() && case.spends_bond_life() {
+        let problem = "is counted by da/dN of K, and bonds that lose life by their own strain have none";
+        let remedy = "use fatigue.driver = \"tip_field\", with sharp cracks, or model.method = \"handbook\"";
+        return Err(input("loading.kind", "\"spectrum\"", problem, remedy));
+    }
+    Ok(())
+}
+
 /// What the user should know about law and horizon of this case.
 fn law_lines(case: &Case) -> Result<Vec<String>> {
-    let of_record = case.law_record.as_ref().map(|record| law_source::ratio_line(record, case.loading.ratio)).transpose()?;
-    let mut lines: Vec<String> = of_record.flatten().into_iter().collect();
+    let mut lines: Vec<String> = Vec::new();
+    for ratio in case.loading.ratios() {
+        let of_record = case.law_record.as_ref().map(|record| law_source::ratio_line(record, ratio)).transpose()?;
+        lines.extend(of_record.flatten().filter(|line| !lines.contains(line)));
+    }
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(case)),
         LawSource::Paris(law) => lines.extend(doubt(&steady(*law), case.loading.ratio)),
@@ -279,11 +302,12 @@ fn steady(paris: ParisLaw) -> Walker {
 fn compression_line(case: &Case) -> Option<String> {
     let counts = matches!(&case.law, LawSource::Factor(law) if law.kind.0.compression.is_some());
     let law = GrowthLawKind::all().find(|kind| kind.0.compression.is_some())?;
-    let ratio = case.loading.ratio;
+    let [ratio, _] = case.loading.ratios();
     (ratio < 0.0 && !counts).then(|| {
         format!(
-            "stress ratio {ratio}: the compression in a cycle counts as nothing, as if the ratio were 0; growth_law = \"{law}\" takes \
-             it into account"
+            "stress ratio {}: the compression in a cycle counts as nothing, as if the ratio were 0; growth_law = \"{law}\" takes \
+             it into account",
+            (1e4 * ratio).round() / 1e4
         )
     })
 }

@@ -91,6 +91,16 @@ impl FactorLaw {
         self.kind.0.place(Role::Toughness).map(|place| self.constants[place])
     }
 
+    /// ΔK at which its own rate is 0 at a stress ratio, Pa√m, where it has such a constant.
+    pub fn own_threshold(&self, ratio: f64) -> Option<f64> {
+        self.kind.0.place(Role::Threshold).map(|_| (self.kind.0.threshold)(&self.constants, ratio))
+    }
+
+    /// Least stress ratio whose compression it knows; `None` where compression counts as nothing.
+    pub fn least_ratio(&self) -> Option<f64> {
+        self.kind.0.compression.map(|(_, least)| least)
+    }
+
     /// In words, with its constants.
     pub fn in_words(&self) -> String {
         let k_c = self.toughness().map(|k_c| format!(", K_c = {:.4} MPa√m", k_c / MPA_SQRT_M)).unwrap_or_default();

@@ -7,6 +7,8 @@ pub mod growth_rate;
 pub mod paris;
 pub mod pieces;
 pub mod rate_constant;
+pub mod retardation;
+pub mod spectrum_law;
 
 use crate::error::{Error, input};
 use crate::specimen::Specimen;

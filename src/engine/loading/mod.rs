@@ -1,22 +1,27 @@
-//! Load history. Constant amplitude so far, of a load or of a displacement.
+//! Load history: constant amplitude, of a load or of a displacement, or a spectrum of loads.
 
 mod boundary;
 mod forces;
 mod grips;
 mod read;
+pub mod spectrum;
 
 pub use boundary::{Imbalance, imbalance};
 pub use read::from_values;
+
+use std::sync::Arc;
 
 use serde::Deserialize;
 use toml::Value;
 
 use crate::specimen::Edge;
+use spectrum::{Spectrum, SpectrumFormat};
 
 crate::kinds! {
     /// Load histories.
     pub enum LoadingKind for "loading.kind" {
         ConstantAmplitude = "constant_amplitude": "sinusoidal or triangular cycles of one range and one stress ratio",
+        Spectrum = "spectrum": "cycles of unlike size from a file, in their order, again and again",
         Displacement = "displacement": "cycles of one displacement of the loaded places: the load falls as the cracks make the plate compliant",
     }
 }
@@ -54,6 +59,13 @@ struct Input {
     transverse: Option<Transverse>,
     crack_pressure_mpa: Option<f64>,
     stress_ratio: Option<f64>,
+    spectrum_scale_mpa: Option<f64>,
+    spectrum_scale_n: Option<f64>,
+    spectrum_file: Option<String>,
+    spectrum_format: Option<SpectrumFormat>,
+    omission_percent: Option<f64>,
+    truncation_percent: Option<f64>,
+    repeats: Option<f64>,
     stress_parallel_ratio: Option<f64>,
     bending_ratio: Option<f64>,
     edges: Option<Vec<Edge>>,
@@ -85,16 +97,18 @@ pub enum LoadControl {
     },
 }
 
-/// Constant amplitude cycles between `ratio x maximum` and `maximum`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Constant amplitude cycles between `ratio x maximum` and `maximum`; of a spectrum, its largest cycle.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Loading {
-    /// Largest nominal load of a cycle: gross stress in Pa, or force in N (see `Specimen::load_measure`). Cycles of a displacement are
+    /// Largest nominal load of a cycle, of a spectrum that of all cycles: gross stress in Pa, or force in N (see `Specimen::load_measure`). Cycles of a displacement are
     /// solved under [`UNIT_STRESS`] or [`UNIT_FORCE`] and scaled ([`Loading::share`]).
     pub maximum: f64,
     /// What every cycle repeats.
     pub control: LoadControl,
-    /// Stress ratio R = minimum / maximum, below 1.
+    /// Stress ratio R = minimum / maximum, below 1; of a spectrum that of its largest cycle.
     pub ratio: f64,
+    /// The cycles of a spectrum, as shares of `maximum`.
+    pub spectrum: Option<Arc<Spectrum>>,
     /// Stress along the crack over stress across it, applied to the side edges. `Specimen::loads` holds these loads
     /// already; the number stands here for the reports.
     pub parallel_ratio: f64,
@@ -113,6 +127,11 @@ impl Loading {
             LoadControl::Load => 1.0,
             LoadControl::Displacement { maximum, section } => maximum * self.maximum * section / work,
         }
+    }
+
+    /// Smallest and largest stress ratio of the cycles that open the crack.
+    pub fn ratios(&self) -> [f64; 2] {
+        self.spectrum.as_ref().map_or([self.ratio; 2], |spectrum| spectrum.ratios)
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.

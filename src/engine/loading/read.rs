@@ -1,17 +1,20 @@
 //! `[loading]` of an input file: how large the cycles are.
 
+use std::sync::Arc;
+
 use serde::Deserialize;
 use toml::Value;
 
+use super::spectrum::{self, Spectrum};
 use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
 use super::{boundary, grips};
 use crate::error::{self, Result, input, input_missing};
-use crate::input::{FORCE, FORCE_KN, Quantity, STRESS, number, refuse_given, shorten, slice, table_of};
+use crate::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS, number, refuse_given, shorten, slice, slice_beside, table_of};
 use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
 use crate::units::MM;
 
 /// Keys that ask for a load history.
-const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "spectrum_file", "history", "rainflow", "overloads"];
+const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "history", "rainflow", "overloads"];
 
 /// Keys that do not say whether they mean maximum or range.
 const BARE: &[&str] = &[
@@ -31,6 +34,7 @@ const BARE: &[&str] = &[
 const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";
 
 const DISPLACEMENT: Quantity = Quantity { what: "a displacement", unit: "mm", low: 1e-9, high: 1e4, si: MM };
+const SCALES: &str = "spectrum_scale_mpa, spectrum_scale_n";
 const DISPLACEMENTS: &str = "displacement_max_mm, displacement_range_mm";
 
 /// The kind alone.
@@ -40,17 +44,34 @@ struct KindInput {
     _kind: LoadingKind,
 }
 
-/// Reads `[loading]` and `[supports]`, puts loads and supports of a `plate` on `specimen`, and gives the cycles.
-pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Specimen) -> Result<Loading> {
+/// Reads `[loading]` and `[supports]`, puts loads and supports of a `plate` on `specimen`, and gives the cycles. A spectrum lies in `folder`;
+/// keys `beside` those of the loads are read by others.
+pub fn from_values(
+    loading: &Value,
+    supports: Option<&Value>,
+    (folder, beside): (&Folder, &[&str]),
+    specimen: &mut Specimen,
+) -> Result<Loading> {
     if let Some(kind) = table_of(loading, "loading")?.get("kind") {
         // First, so that a load of a fracture scene is told where it belongs.
         let only = toml::Table::from_iter([("kind".to_owned(), kind.clone())]);
         slice::<KindInput>(&Value::Table(only), "loading")?;
     }
     refuse_by_name(loading)?;
-    let input: Input = slice(loading, "loading")?;
+    let input: Input = slice_beside(loading, "loading", beside)?;
     grips::refuse(&input)?;
-    let ratio = read_ratio(input.stress_ratio)?;
+    let spectrum = if input.kind == Some(LoadingKind::Spectrum) {
+        // What is missing in the case is told before what is wrong in the file.
+        Magnitude::read(&input)?;
+        Some(Spectrum::read(&input, folder)?)
+    } else {
+        spectrum::refuse(&input)?;
+        None
+    };
+    let ratio = match &spectrum {
+        Some(spectrum) => ratio_of(spectrum, input.stress_ratio)?,
+        None => read_ratio(input.stress_ratio)?,
+    };
     if input.is_of_cracks_alone() {
         return pressure_alone(&input, supports, specimen, ratio);
     }
@@ -60,7 +81,11 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
     let area = boundary::apply(&input, supports, specimen, parallel_ratio)?;
     read_bending(&input, specimen)?;
     // A range is maximum - minimum, hence maximum (1 - R), also where R is negative.
-    let largest = if magnitude.is_range { magnitude.value / (1.0 - ratio) } else { magnitude.value };
+    let largest = match &spectrum {
+        Some(spectrum) => magnitude.value * spectrum.largest[1],
+        None if magnitude.is_range => magnitude.value / (1.0 - ratio),
+        None => magnitude.value,
+    };
     let (maximum, control) = match (specimen.load_measure, magnitude.of) {
         (LoadMeasure::Stress, Of::Stress) | (LoadMeasure::Force, Of::Force) => (largest, LoadControl::Load),
         (LoadMeasure::Stress, Of::Force) => (largest / area, LoadControl::Load),
@@ -92,7 +117,7 @@ pub fn from_values(loading: &Value, supports: Option<&Value>, specimen: &mut Spe
     if let Some(pressure) = read_crack_pressure(&input, specimen)? {
         specimen.crack_pressure = pressure / maximum;
     }
-    Ok(Loading { maximum, control, ratio, parallel_ratio })
+    Ok(Loading { maximum, control, ratio, spectrum: spectrum.map(Arc::new), parallel_ratio })
 }
 
 /// Pressure on the cracks and no other load: the nominal load is the pressure.
@@ -105,7 +130,7 @@ fn pressure_alone(input: &Input, supports: Option<&Value>, specimen: &mut Specim
     specimen.loads.clear();
     specimen.load_measure = LoadMeasure::Stress;
     specimen.crack_pressure = 1.0;
-    Ok(Loading { maximum, control: LoadControl::Load, ratio, parallel_ratio: 0.0 })
+    Ok(Loading { maximum, control: LoadControl::Load, ratio, spectrum: None, parallel_ratio: 0.0 })
 }
 
 /// Largest pressure on the faces of the cracks, Pa, with a plate that has cracks to press on.
@@ -153,8 +178,9 @@ fn refuse_by_name(loading: &Value) -> Result<()> {
     for (key, value) in table {
         let path = format!("loading.{key}");
         if SEQUENCES.contains(&key.as_str()) {
-            let problem = "is a load sequence, which is not supported yet (and would never be averaged)";
-            let remedy = "give constant amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
+            let problem = "is no key of a load sequence";
+            let remedy = "write it into a file: kind = \"spectrum\", spectrum_file = \"...\" and spectrum_scale_mpa, or give constant \
+                          amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
             return Err(input(&path, shorten(value), problem, remedy));
         }
         if BARE.contains(&key.as_str()) {
@@ -163,6 +189,15 @@ fn refuse_by_name(loading: &Value) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// R of the largest cycle of a spectrum, beside which none is given.
+fn ratio_of(spectrum: &Spectrum, given: Option<f64>) -> Result<f64> {
+    let of_largest = spectrum.ratio_of_largest();
+    given.map_or(Ok(of_largest), |given| {
+        let problem = "stands beside a spectrum, whose cycles have their own";
+        Err(input("loading.stress_ratio", given, problem, "leave it out"))
+    })
 }
 
 fn read_ratio(ratio: Option<f64>) -> Result<f64> {
@@ -177,7 +212,7 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
 impl Input {
     /// Whether the pressure on the cracks is the only load.
     fn is_of_cracks_alone(&self) -> bool {
-        let is_of_load = self.kind != Some(LoadingKind::Displacement);
+        let is_of_load = self.kind.is_none_or(|kind| kind == LoadingKind::ConstantAmplitude);
         is_of_load && self.crack_pressure_mpa.is_some() && self.magnitudes().all(|(_, given, ..)| given.is_none())
     }
 
@@ -190,6 +225,8 @@ impl Input {
             ("force_range_n", self.force_range_n, FORCE, Of::Force),
             ("force_max_kn", self.force_max_kn, FORCE_KN, Of::Force),
             ("force_range_kn", self.force_range_kn, FORCE_KN, Of::Force),
+            ("spectrum_scale_mpa", self.spectrum_scale_mpa, STRESS, Of::Stress),
+            ("spectrum_scale_n", self.spectrum_scale_n, FORCE, Of::Force),
             ("displacement_max_mm", self.displacement_max_mm, DISPLACEMENT, Of::Displacement),
             ("displacement_range_mm", self.displacement_range_mm, DISPLACEMENT, Of::Displacement),
         ]
@@ -222,13 +259,14 @@ impl Magnitude {
         let (wanted, example) = match kind {
             LoadingKind::ConstantAmplitude => (MAGNITUDES, "loading.stress_max_mpa"),
             LoadingKind::Displacement => (DISPLACEMENTS, "loading.displacement_max_mm"),
+            LoadingKind::Spectrum => (SCALES, "loading.spectrum_scale_mpa"),
         };
         let given: Vec<_> =
             slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of))).collect();
         match given[..] {
             [(key, given, quantity, of)] => {
                 let path = format!("loading.{key}");
-                if (of == Of::Displacement) != (kind == LoadingKind::Displacement) {
+                if !wanted.split(", ").any(|known| known == key) {
                     let remedy = format!("give exactly one of {wanted}");
                     return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
                 }

@@ -141,8 +141,8 @@ pub fn dense(sparse: &[(u32, f64)], usual: f64, points: usize) -> Vec<f64> {
 
 /// Hash of all that decides how the run of a case goes.
 pub(super) fn hash(case: &Case) -> [u8; 32] {
-    let Case { specimen, material, loading, model, fatigue, law, stop, .. } = case;
+    let Case { specimen, material, loading, model, fatigue, retardation, law, stop, .. } = case;
     // Debug output of floats says them to the last bit.
-    let all = format!("{:?}", (specimen, material, loading, model, fatigue, law, stop));
+    let all = format!("{:?}", (specimen, material, loading, model, fatigue, retardation, law, stop));
     Sha256::digest(all).into()
 }

@@ -7,12 +7,31 @@ use crate::fatigue::FatigueLaw;
 use crate::fatigue::growth_law::{GrowthLaw, Walker};
 use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::rate_constant::rate_constant;
+use crate::fatigue::spectrum_law::SpectrumLaw;
 use crate::growth::CrackGrowth;
 use crate::units::MM;
 
-/// The law over K of a case, for driver `tip_field` and method `handbook`.
+/// The law over K of a case, for driver `tip_field` and method `handbook`: of a spectrum the mean of its cycles.
 /// Errors: a case without law; as [`rate_constant`] where it is one of bonds.
 pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
+    Ok(match &case.loading.spectrum {
+        Some(spectrum) => Box::new(SpectrumLaw::new(law_of_cycle(case)?, spectrum, least_ratio(case))),
+        None => law_of_cycle(case)?,
+    })
+}
+
+/// Least stress ratio that the law of a case knows; where compression counts as nothing there is none.
+pub fn least_ratio(case: &Case) -> f64 {
+    let least = match &case.law {
+        LawSource::Factor(law) => law.least_ratio(),
+        _ => None,
+    };
+    least.unwrap_or(f64::NEG_INFINITY)
+}
+
+/// The law over K of a case for one cycle.
+/// Errors: as [`growth_law`].
+pub fn law_of_cycle(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     Ok(match &case.law {
         LawSource::Factor(law) => Box::new(law.clone()),
         _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold }),

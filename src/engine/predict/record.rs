@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::checkpoint::{self, Checkpoint};
+use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
@@ -133,13 +134,23 @@ impl<'a> Record<'a> {
         snapshots.finish(growth);
         // The curve is handed over once; what growth knows of it is asked before.
         let of_growth = growth.warnings();
-        let curve = growth.curve();
+        let mut curve = growth.curve();
+        let recounted = retarded::recount(case, &curve, stop)?;
+        let (stop, of_order) = match recounted {
+            Some(Recounted { curve: new, stop, warning }) => {
+                snapshots.recount(&curve, &new);
+                curve = new;
+                (stop, warning)
+            }
+            None => (stop, None),
+        };
         snapshots.keep_within(&curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
         let cross_check = growth.cross_check(last);
         let mut warnings = warnings(case, growth, of_growth, &curve);
         warnings.extend(cross_check.and_then(|check| check.warning()));
+        warnings.extend(of_order);
         warnings.extend(failure);
         Ok(Prediction {
             stop,

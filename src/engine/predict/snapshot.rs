@@ -55,6 +55,27 @@ impl Snapshots {
         self.taken.last()
     }
 
+    /// Takes the cycles of another count of the same rows, and leaves out what lies beyond its end.
+    pub fn recount(&mut self, before: &[CurvePoint], now: &[CurvePoint]) {
+        let (Some(end), Some(cycles)) = (now.last().map(|row| row.crack_length), now.last().map(|row| row.cycles)) else {
+            return;
+        };
+        let first = self.taken.iter().position(|snapshot| snapshot.crack_length >= end);
+        self.taken.truncate(first.map_or(self.taken.len(), |first| first + 1));
+        for snapshot in &mut self.taken {
+            let row = before.partition_point(|row| row.cycles < snapshot.cycles);
+            let share = match row.checked_sub(1).zip(before.get(row)) {
+                Some((place, after)) if after.cycles > before[place].cycles => {
+                    (snapshot.cycles - before[place].cycles) / (after.cycles - before[place].cycles)
+                }
+                _ => 1.0,
+            };
+            let at = |row: usize| now.get(row).map_or(cycles, |row| row.cycles);
+            let from = at(row.saturating_sub(1));
+            snapshot.cycles = from + share * (at(row) - from);
+        }
+    }
+
     /// Keeps to the ends of the curve.
     pub fn keep_within(&mut self, curve: &[CurvePoint]) {
         let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return };

@@ -127,6 +127,9 @@ pub fn lot_of(case: &Case) -> Result<std::result::Result<Population, NoBand>> {
     let Some(lot) = Population::of_record(record)? else {
         return Ok(Err("the fitted record has no [population]: calibrate again".to_owned()));
     };
+    if case.loading.spectrum.is_some() {
+        return Ok(Err("the loads are a spectrum, and the specimens had cycles of one size".to_owned()));
+    }
     if (case.loading.ratio - record.stress_ratio).abs() > 1e-9 {
         let (given, recorded) = (case.loading.ratio, record.stress_ratio);
         return Ok(Err(format!("the stress ratio {given} is not that of the calibration, {recorded}")));

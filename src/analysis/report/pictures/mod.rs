@@ -6,5 +6,6 @@ pub mod curves;
 pub mod fit;
 pub mod plate;
 pub mod section;
+pub mod spectrum;
 pub mod stress;
 pub mod tables;

@@ -175,8 +175,8 @@ pub struct Given<'a> {
     pub section: &'a Value,
     /// Material of the plate.
     pub material: &'a Material,
-    /// Stress ratio of the case.
-    pub ratio: f64,
+    /// Smallest and largest stress ratio of the cycles of the case.
+    pub ratios: [f64; 2],
     /// Folder of the files it names.
     pub folder: &'a Folder,
 }

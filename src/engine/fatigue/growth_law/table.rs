@@ -163,14 +163,14 @@ fn read(given: &Given<'_>) -> Result<Table> {
         let remedy = "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
         return Err(input("fatigue.walker_gamma", gamma, problem, remedy));
     }
-    if !table.knows(given.ratio) {
+    if let Some(ratio) = given.ratios.into_iter().find(|ratio| !table.knows(*ratio)) {
         let (name, add) = (&file.file, "add rates at this ratio to the table");
         let by_gamma = format!("give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or {add}");
         let (problem, remedy) = match table.curves.len() {
             1 => (format!("is another stress ratio than that of {name}, {first}"), &*by_gamma),
             _ => (format!("lies beyond the ratios of {name}, {first} to {last}"), add),
         };
-        return Err(input("loading.stress_ratio", given.ratio, problem, remedy));
+        return Err(input("loading.stress_ratio", ratio, problem, remedy));
     }
     Ok(table)
 }

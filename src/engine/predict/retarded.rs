@@ -1,0 +1,107 @@
+//! Cycles of a run under a spectrum whose order counts: its rows again, tip by tip, cycle by cycle.
+//!
+//! The run itself grows its cracks by the mean rate of a pass, which gives their ways and K along them. Between two rows the tip that grows most
+//! is then marched through the spectrum with the zones of its overloads ([`crate::fatigue::retardation::March`]); the other tips keep the share of
+//! its growth that they have by the mean rates.
+
+use super::laws::{growth_law, law_of_cycle, least_ratio};
+use super::{CurvePoint, StopReason};
+use crate::case::Case;
+use crate::error::Result;
+use crate::fatigue::growth_law::GrowthLaw;
+use crate::fatigue::retardation::{Laws, March, Marched, Zone};
+use crate::growth::cracks::steering::equivalent_factor;
+
+/// Difference between K of tips that grow, from which the pace of the slower ones is worth a word.
+const UNLIKE: f64 = 0.01;
+
+/// A curve whose cycles were counted anew.
+pub(super) struct Recounted {
+    pub curve: Vec<CurvePoint>,
+    pub stop: StopReason,
+    pub warning: Option<String>,
+}
+
+/// The rows of a run with the cycles of the retarded tip, ended where no cycles or no growth are left; `None` where nothing is retarded.
+/// Errors: a case without law.
+pub(super) fn recount(case: &Case, curve: &[CurvePoint], stop: StopReason) -> Result<Option<Recounted>> {
+    let (Some(retardation), Some(spectrum)) = (&case.retardation, &case.loading.spectrum) else { return Ok(None) };
+    let (law, mean): (Box<dyn GrowthLaw>, _) = (law_of_cycle(case)?, growth_law(case)?);
+    let laws = Laws { law: &*law, mean: &*mean, retardation: Some(retardation), least: least_ratio(case) };
+    let mut march = March::new(laws, spectrum);
+    let mut zones: Vec<Option<Zone>> = vec![None; curve.first().map_or(0, |row| row.tips.len())];
+    let mut rows: Vec<CurvePoint> = curve.first().cloned().into_iter().collect();
+    let mut lead = 0;
+    for pair in curve.windows(2) {
+        let [from, to] = [&pair[0], &pair[1]];
+        let grown = |tip: usize| to.tips[tip].growth - from.tips[tip].growth;
+        let fastest = (0..zones.len()).max_by(|a, b| grown(*a).total_cmp(&grown(*b)).then(b.cmp(a))).unwrap_or(0);
+        if fastest != lead && grown(fastest) > grown(lead) * (1.0 + UNLIKE) {
+            zones[lead] = march.zone;
+            march.take_over(from.tips[fastest].growth, zones[fastest]);
+            lead = fastest;
+        }
+        let way = [from.tips[lead].growth, to.tips[lead].growth];
+        march.a = march.a.max(way[0]);
+        let [first, last] = factors(case, [from, to], lead);
+        // A power of the way between rows, as K itself nearly is.
+        let gain = (last / first).ln();
+        let k = |a: f64| first * (gain * ((a - way[0]) / (way[1] - way[0])).clamp(0.0, 1.0)).exp();
+        let before = march.cycles;
+        if !(first > 0.0 && last > 0.0) {
+            // Nothing is known of K there: the cycles are those of the run.
+            (march.a, march.cycles) = (way[1], (march.cycles + to.cycles - from.cycles).min(case.stop.cycles_max));
+        }
+        let end = match march.advance(&k, way[1], case.stop.cycles_max) {
+            Marched::Reached => None,
+            Marched::RunOut => Some(StopReason::RunOut),
+            Marched::Arrested => Some(StopReason::NothingAges),
+        };
+        let share = if way[1] > way[0] { ((march.a - way[0]) / (way[1] - way[0])).min(1.0) } else { 1.0 };
+        let mut row = if share < 1.0 { to.clone().between(from, share) } else { to.clone() };
+        row.cycles = march.cycles;
+        let cycles = march.cycles - before;
+        if cycles > 0.0 && march.a > way[0] && row.growth_rate.is_finite() {
+            row.growth_rate = (march.a - way[0]) / cycles;
+        }
+        rows.push(row);
+        if let Some(end) = end {
+            return Ok(Some(recounted(rows, end)));
+        }
+    }
+    Ok(Some(recounted(rows, stop)))
+}
+
+/// K of the largest load at a tip at both ends of an interval, Pa√m; what is not read is that of the other end, or of the row.
+fn factors(case: &Case, rows: [&CurvePoint; 2], tip: usize) -> [f64; 2] {
+    let read = rows.map(|row| row.tips[tip].factors.map(equivalent_factor).filter(|k| *k > 0.0));
+    let of_row = rows.map(|row| Some(row.delta_k / case.loading.range_share()).filter(|k| k.is_finite() && *k > 0.0));
+    let [first, last] = [0, 1].map(|end| read[end].or(of_row[end]));
+    let otherwise = first.or(last).unwrap_or(0.0);
+    [first.unwrap_or(otherwise), last.unwrap_or(otherwise)]
+}
+
+fn recounted(mut curve: Vec<CurvePoint>, stop: StopReason) -> Recounted {
+    if let [first, second, ..] = &mut curve[..] {
+        first.growth_rate = second.growth_rate;
+    }
+    let warning = unlike(&curve).then(|| {
+        "retardation: cycles are those of the tip that grows most; the others keep the share of its growth that they have by the mean rates of a \
+         pass, and are not retarded by their own K"
+            .to_owned()
+    });
+    Recounted { curve, stop, warning }
+}
+
+/// Whether tips of unlike K grow in the same rows.
+fn unlike(curve: &[CurvePoint]) -> bool {
+    let grown = |pair: &[CurvePoint]| -> Vec<f64> {
+        let growths = pair[0].tips.iter().zip(&pair[1].tips).map(|(from, to)| to.growth - from.growth);
+        growths.filter(|growth| *growth > 0.0).collect()
+    };
+    let differ = |growths: &[f64]| {
+        let [low, high] = growths.iter().fold([f64::INFINITY, 0.0], |[low, high], x| [low.min(*x), x.max(high)]);
+        high > low * (1.0 + UNLIKE)
+    };
+    curve.windows(2).any(|pair| differ(&grown(pair)))
+}
