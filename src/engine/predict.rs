@@ -16,6 +16,7 @@ pub mod record;
 pub mod residual_strength;
 mod snapshot;
 pub mod tip_factors;
+mod way;
 
 pub use outcome::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord};
 pub use record::{Observer, Silent};

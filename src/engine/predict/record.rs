@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use super::checkpoint::{self, Checkpoint};
 use super::snapshot::Snapshots;
-use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
+use super::way::Way;
+use super::{CurvePoint, Prediction, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::error::{Error, Result};
 use crate::growth::{CrackGrowth, GrowthStatus, plate};
@@ -103,6 +104,7 @@ impl<'a> Record<'a> {
         };
         let mut guard = Guard::default();
         let mut failure = None;
+        let mut way = Way::default();
         let stop = loop {
             laws::check_within(case, growth)?;
             if let Some((snapshot, grid)) = snapshots.follow(growth) {
@@ -110,7 +112,7 @@ impl<'a> Record<'a> {
             }
             if growth.should_rebuild_solver() {
                 let elapsed_s = earlier_s + started.elapsed().as_secs_f64();
-                let progress = Progress::of(case, &growth.now());
+                let progress = way.progress(case, growth);
                 observer.may_keep(&|| Checkpoint::new(hash, growth.state(), &snapshots, &progress, elapsed_s));
                 if growth.rebuild_solver().is_err() {
                     break StopReason::NoConvergence;
@@ -121,7 +123,7 @@ impl<'a> Record<'a> {
             let now = growth.now();
             let reason = reason.or(guard.check(before, &now)?);
             observer.grown(now.tips);
-            let goes_on = observer.block_done(&Progress::of(case, &now));
+            let goes_on = observer.block_done(&way.progress(case, growth));
             if let Some(reason) = reason {
                 break reason;
             }

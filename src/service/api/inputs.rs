@@ -16,7 +16,8 @@ use crate::check;
 use crate::error::{Error, input};
 use crate::job::JobKind;
 use crate::measured::{
-    Column, ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, MeasuredCurve, Named, Shape, Sheet, Survey, survey,
+    Column, ColumnNames, CycleUnit, Decimal, Import, Layout, LengthUnit, LoadUnit, MeasuredCurve, Named, Shape, Sheet, Survey,
+    survey,
 };
 use crate::problem::{Answer, Place, Problem};
 use crate::units::MM;
@@ -37,6 +38,8 @@ pub struct FoundFile {
     header: Vec<String>,
     /// Cells of the first rows.
     first_rows: Vec<Vec<String>>,
+    /// What these cells are taken for: cycles, and crack lengths in mm; null for all that is neither, or no number.
+    taken: Vec<Vec<Option<f64>>>,
     /// What its columns are; null where that cannot be told.
     columns: Option<Columns>,
     /// Curves of the good rows.
@@ -150,6 +153,17 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
 fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
     let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(&file), import);
     let unit = |column: &Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
+    let lengths = |layout: &Layout| -> Vec<usize> {
+        layout.series.iter().flat_map(|series| &series.lengths).map(|column| column.index).collect()
+    };
+    let taken = layout.iter().flat_map(|layout| {
+        let lengths = lengths(layout);
+        first_rows.iter().map(move |cells| {
+            let shown = |(index, value): (usize, Option<f64>)| value.map(|v| if lengths.contains(&index) { v / MM } else { v });
+            layout.taken(cells).into_iter().enumerate().map(shown).collect()
+        })
+    });
+    let taken = taken.collect();
     let columns = layout.map(|layout| Columns {
         layout: match layout.shape {
             Shape::Long => "long",
@@ -172,6 +186,7 @@ fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
         file,
         header,
         first_rows,
+        taken,
         columns,
         curves: measured.curves.into_iter().map(curve).collect(),
         warnings: measured.warnings,

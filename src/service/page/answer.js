@@ -90,9 +90,12 @@ const line = (check) => element("li", { "data-check": check.name, "data-verdict"
   mark(OF_VERDICT[check.verdict] ?? "note")[0],
   element("span", null, mark(OF_VERDICT[check.verdict] ?? "note")[1], sentence(check.words), check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)));
 
+/** Mark of a verdict. */
+export const kindOfVerdict = (verdict) => (verdict.startsWith("stands:") ? "ok" : verdict.startsWith("stands") ? "note" : "bad");
+
 function valid({ verdict, checks = [] }) {
   if (!verdict) return element("p", { class: "quiet" }, "An earlier version of the program wrote this result.");
-  const kind = verdict.startsWith("stands:") ? "ok" : verdict.startsWith("stands") ? "note" : "bad";
+  const kind = kindOfVerdict(verdict);
   const [shown, rest] = [checks.slice(0, CHECKS_SHOWN), checks.slice(CHECKS_SHOWN)];
   return [element("h2", null, "Is it valid?"), element("p", { class: `verdict is-${kind}`, "data-value": "verdict" }, sentence(verdict)),
     element("ul", { class: "checks" }, shown.map(line)),

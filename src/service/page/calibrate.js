@@ -1,9 +1,11 @@
 // Measure and calibrate: measured files, the test they come from, and the start of a fit.
 
+import { getBlob } from "./api.js";
 import { createEditor } from "./editor.js";
 import { byId, show } from "./dom.js";
 import { EXAMPLE_NAME, EXAMPLE_TEST, exampleCsv } from "./example.js";
 import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
+import { jobToStartFrom } from "./job.js";
 import { createMeasured } from "./measured.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
 import { startRun } from "./submit.js";
@@ -49,6 +51,18 @@ export function createCalibrateView() {
       model: compact({ spacing_mm: numberIn(spacing) }),
       fit: compact({ parameters: fitted, p: fitted.length === 1 ? numberIn(exponent) : undefined }),
     };
+  }
+
+  /** The form as a calibration was submitted; false where it says what no field shows, which is then lost but for its text. */
+  function fillAll({ measured: m = {}, fit = {}, ...test }) {
+    fillIn(from, m.from_crack_length_mm);
+    fillIn(to, m.to_crack_length_mm);
+    [from, to, specimen.fields.crack_length_mm].forEach((field) => {
+      field.touched = true;
+    });
+    fillIn(parameters, (fit.parameters ?? ["a", "p"]).join(","));
+    fillIn(exponent, fit.p);
+    return fill(test) && !m.rates;
   }
 
   function fill(test) {
@@ -101,9 +115,33 @@ export function createCalibrateView() {
     });
   });
 
+  /** Starts from a calibration: its files, its test, what was left out. */
+  async function openFrom(id) {
+    const job = await jobToStartFrom(id);
+    const files = await Promise.all(job.inputs.map(async ({ name: own, href }) => {
+      const file = await getBlob(href);
+      return { name: own, file, text: /\.(parquet|xlsx|xlsm)$/i.test(own) ? null : await file.text() };
+    }));
+    const isShown = fillAll(job.case);
+    await measured.load(files, job.case.measured);
+    fillIn(name, job.name);
+    if (!isShown) editor.start(job.input);
+  }
+
   editor.check.now();
-  return { setMaterials: (list) => {
-    material.setMaterials(list);
-    editor.check.soon();
-  } };
+  return {
+    setMaterials(list) {
+      material.setMaterials(list);
+      editor.check.soon();
+    },
+    /** `from`: a calibration to start from, as collection/id. */
+    async open(query) {
+      if (!query.get("from")) return;
+      try {
+        await openFrom(query.get("from"));
+      } catch (error) {
+        editor.check.refuse(error);
+      }
+    },
+  };
 }

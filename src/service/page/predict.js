@@ -5,9 +5,11 @@ import { byId, element, show } from "./dom.js";
 import { createEditor } from "./editor.js";
 import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
 import { percent, scientific, sentence, significant, words } from "./format.js";
+import { jobToStartFrom } from "./job.js";
 import { createPlate } from "./plate_form.js";
 import { problemBox } from "./notices.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
+import { createSides } from "./sides_form.js";
 import { startRun } from "./submit.js";
 
 const START = {
@@ -40,7 +42,8 @@ export function createPredictView() {
   });
   const specimen = createSpecimen(form, { plate });
   const material = createMaterial(form);
-  const loading = createLoading(form);
+  const sides = createSides(form, () => editor.check.soon());
+  const loading = createLoading(form, { places: sides, plate });
   const law = form.choice("calibration", { label: "Growth law", options: [{ value: "law:paris", title: "C and m (Paris)" }] });
   law.node.classList.add("wide");
   const lawNote = element("div", { class: "law-note" });
@@ -112,6 +115,7 @@ export function createPredictView() {
       specimen: specimen.collect(),
       material: material.collect(),
       loading: loading.collect(),
+      supports: specimen.fields.kind.input.value === "plate" ? sides.supports() : undefined,
       model: compact({ method: method.input.value, tolerance_percent: tolerance.node.hidden ? undefined : numberIn(tolerance),
         spacing_mm: spacing.node.hidden ? undefined : numberIn(spacing) }),
       ...(isFitted() ? {} : { fatigue: fatigueOf() }),
@@ -127,14 +131,14 @@ export function createPredictView() {
 
   /** Only what the form can show: anything else stays text. */
   function fill(input) {
-    const { specimen: s, material: m, loading: l, model = {}, fatigue = {}, stop = {}, ...others } = input;
+    const { specimen: s, material: m, loading: l, supports, model = {}, fatigue = {}, stop = {}, ...others } = input;
     const filled = (table) => Object.keys(table ?? {}).length > 0;
     const beyond = (table, known) => Object.keys(table).some((key) => !known.includes(key));
     const own = isFitted() || !filled(fatigue) ? null : lawOf(fatigue);
     const tooMuch = Object.values(others).some(filled) || beyond(model, ["spacing_mm", "method", "tolerance_percent"]) || beyond(stop, ["crack_length_mm", "cycles_max"]) ||
       (own && beyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...own.constants.map(({ key }) => key)])) ||
       (!own && beyond(fatigue, ["fitted"]));
-    if (tooMuch || !specimen.fill(s) || !material.fill(m) || !loading.fill(l)) return false;
+    if (tooMuch || !specimen.fill(s, l) || !material.fill(m) || !loading.fill(l, supports)) return false;
     fillIn(method, model.method === "auto" ? "" : model.method);
     fillIn(tolerance, model.tolerance_percent);
     fillIn(spacing, model.spacing_mm);
@@ -175,7 +179,11 @@ export function createPredictView() {
   /** Finished calibrations as laws to choose from; the newest is the choice until the user makes one. */
   async function loadLaws(wanted) {
     try {
-      if (laws.length === 0) laws = (await getJson("/v1/kinds")).laws.filter((one) => one.constants.length > 0);
+      if (laws.length === 0) {
+        const known = await getJson("/v1/kinds");
+        laws = known.laws.filter((one) => one.constants.length > 0);
+        sides.setKinds(known.kinds);
+      }
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;
       // One that is asked for by its address may be older than these.
       const known = calibrations.some((one) => one.id === wanted);
@@ -207,12 +215,21 @@ export function createPredictView() {
 
   let opened = false;
   return {
+    /** The case as it stands here, {input, calibration?}, or a sentence that says what is missing. */
+    body: () => editor.body(),
+    /** Waits until the case was checked once. */
+    async ready() {
+      if (laws.length === 0) await loadLaws();
+      if (!editor.check.last) await editor.check.now();
+    },
+    /** The same as the service understood it, null where it did not. */
+    checked: () => editor.check.last?.case ?? null,
     setMaterials(list) {
       material.setMaterials(list);
       if (!opened) editor.startFrom(START);
       opened = true;
     },
-    /** `law`: a calibration to use; `from`: a prediction to start from. */
+    /** `law`: a calibration to use; `from`: a run to start from, as collection/id. */
     async open(query) {
       const from = query.get("from");
       opening = Boolean(from);
@@ -220,7 +237,7 @@ export function createPredictView() {
       await loadLaws(query.get("law") ?? undefined);
       if (!from) return;
       try {
-        const job = await getJson(`/v1/predictions/${encodeURIComponent(from)}`);
+        const job = await jobToStartFrom(from);
         if (job.calibration) await loadLaws(job.calibration);
         else fillIn(law, BY_HAND);
         opened = true;

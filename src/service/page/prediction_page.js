@@ -22,8 +22,7 @@ const FIELDS = { "von_mises.png": "Von Mises stress at maximum load, at the end 
 
 export async function openPrediction(root, id, signal) {
   const job = await getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal);
-  const again = element("a", { class: "button", href: `#/predict?from=${encodeURIComponent(id)}`, "data-action": "again" }, "Change and run again");
-  const head = createJobHead(job, { actions: [again] });
+  const head = createJobHead(job);
   const outcome = element("div", { class: "job-body" });
   const below = element("div", { class: "job-body" });
   const [platePlace, curvePlace, factorPlace] = [0, 1, 2].map(() => element("div"));

@@ -35,7 +35,13 @@ function line(name, value) {
 
 /** An object of sections as TOML text. */
 export function writeToml(input) {
-  const sections = entries(input).filter(([, section]) => entries(section).length > 0);
-  return sections.map(([name, section]) => [`[${key(name)}]`, ...entries(section).map(([item, value]) => line(item, value))].join("\n"))
-    .join("\n\n").concat("\n");
+  const isTable = (value) => typeof value === "object" && !Array.isArray(value);
+  const isList = (value) => Array.isArray(value) && value.length > 0 && value.every((item) => isTable(item));
+  const given = entries(input);
+  const table = (head, section) => [head, ...entries(section).map(([item, value]) => line(item, value))].join("\n");
+  // What stands in no section comes first, lists of sections last.
+  const own = given.filter(([, value]) => !isTable(value) && !isList(value)).map(([name, value]) => line(name, value)).join("\n");
+  const sections = given.filter(([, value]) => isTable(value) && entries(value).length > 0).map(([name, section]) => table(`[${key(name)}]`, section));
+  const lists = given.filter(([, value]) => isList(value)).flatMap(([name, list]) => list.map((section) => table(`[[${key(name)}]]`, section)));
+  return [own, ...sections, ...lists].filter(Boolean).join("\n\n").concat("\n");
 }
