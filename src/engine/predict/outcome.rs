@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use crate::body::Body;
-use crate::case::Case;
 use crate::case::budget::machine;
 use crate::growth::CrackGrowth;
 pub use crate::growth::cross_check::CrossCheck;

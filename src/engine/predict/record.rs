@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::checkpoint::{self, Checkpoint};
 use super::snapshot::Snapshots;
 use super::way::Way;
-use super::{CurvePoint, Prediction, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
+use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::error::{Error, Result};
 use crate::growth::{CrackGrowth, GrowthStatus, plate};

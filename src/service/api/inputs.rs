@@ -1,5 +1,6 @@
 //! Looking at input before anything is run: measured curves, and what a file would run.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use axum::extract::{Request, State};
@@ -16,11 +17,12 @@ use crate::check;
 use crate::error::{Error, input};
 use crate::job::JobKind;
 use crate::measured::{
-    Column, ColumnNames, CycleUnit, Decimal, Import, Layout, LengthUnit, LoadUnit, MeasuredCurve, Named, Shape, Sheet, Survey,
-    survey,
+    Column, ColumnNames, CycleUnit, Decimal, Import, Layout, LengthUnit, LoadUnit, Loads, MeasuredCurve, Named, SAME_LOAD, Shape,
+    Sheet, Survey, survey,
 };
 use crate::problem::{Answer, Place, Problem};
-use crate::units::MM;
+use crate::specimen::LoadMeasure;
+use crate::units::{KN, MM, MPA};
 use crate::watch;
 
 /// What was found in files of readings.
@@ -44,6 +46,8 @@ pub struct FoundFile {
     columns: Option<Columns>,
     /// Curves of the good rows.
     curves: Vec<FoundCurve>,
+    /// Keys of `[loading]` that its columns say, where all readings have one load.
+    loading: BTreeMap<&'static str, f64>,
     warnings: Vec<String>,
     /// Bad rows, or what is wrong with the file as a whole.
     problems: Vec<Place>,
@@ -150,6 +154,28 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
     })
 }
 
+/// The load of all readings in keys of `[loading]`; nothing where there is none, or several.
+fn load_of(curves: &[MeasuredCurve]) -> BTreeMap<&'static str, f64> {
+    let loads: Vec<&Loads> = curves.iter().filter_map(|curve| curve.loads.as_ref()).collect();
+    let Some(first) = loads.first().filter(|_| loads.len() == curves.len()) else { return BTreeMap::new() };
+    let (key, unit) = match (first.measure, first.is_range) {
+        (LoadMeasure::Force, false) => ("force_max_kn", KN),
+        (LoadMeasure::Force, true) => ("force_range_kn", KN),
+        (LoadMeasure::Stress, false) => ("stress_max_mpa", MPA),
+        (LoadMeasure::Stress, true) => ("stress_range_mpa", MPA),
+    };
+    let is_alike = |loads: &&Loads| (loads.measure, loads.is_range) == (first.measure, first.is_range);
+    let of = |values: fn(&Loads) -> &Vec<f64>, slack: f64| {
+        let mut all = loads.iter().flat_map(|loads| values(loads)).copied();
+        let value = all.next()?;
+        // NaN, which stands where the file says nothing, is like nothing.
+        all.all(|other| (other - value).abs() <= slack * value.abs()).then_some(value).filter(|value| value.is_finite())
+    };
+    let load = of(|loads| &loads.maximum, SAME_LOAD).filter(|_| loads.iter().all(is_alike));
+    let ratio = of(|loads| &loads.ratio, SAME_LOAD).map(|ratio| ("stress_ratio", round_off(ratio)));
+    load.map(|load| (key, round_off(load / unit))).into_iter().chain(ratio).collect()
+}
+
 fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
     let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(&file), import);
     let unit = |column: &Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
@@ -188,6 +214,7 @@ fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
         first_rows,
         taken,
         columns,
+        loading: load_of(&measured.curves),
         curves: measured.curves.into_iter().map(curve).collect(),
         warnings: measured.warnings,
         problems: problems.into_iter().map(Place::from).collect(),

@@ -26,6 +26,13 @@ export function mark(kind) {
 /** Quantiles of the life: 5, 50 and 95 % of specimens; null without a band. */
 export const quantilesOf = ({ band }) => (band ? [band.cycles_p05, band.cycles_p50, band.cycles_p95] : null);
 
+/** Median and band on an axis from `low` to `high`, cycles. */
+export function bar([from, middle, to], [low, high]) {
+  const at = (value) => 4 + (192 * (value - low)) / (high - low);
+  return shape("svg", { class: "bar", viewBox: "0 0 200 16", role: "img", "aria-label": `Band ${bandOf([from, middle, to])}, median ${deserved(middle, [from, middle, to])}` },
+    shape("line", { x1: 4, x2: 196, y1: 8, y2: 8 }), shape("rect", { x: at(from), width: at(to) - at(from), y: 4, height: 8 }), shape("circle", { cx: at(middle), cy: 8, r: 5 }));
+}
+
 /** The tip that ends the life, where the plate has lengths of its own; else null. */
 export function leadOf(s) {
   const tip = (s.tips ?? []).findIndex((one) => one.leads && one.crack !== null && one.crack !== undefined);
@@ -50,7 +57,7 @@ function large(s) {
   const end = TO_THE_END[s.stop_reason];
   const title = BROKEN_OFF.includes(s.stop_reason) ? `Computed up to ${fixed(to, 1)} mm only` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
   return [element("h2", null, title), value(`${s.life_is_lower_bound ? "≥ " : ""}${number}`, "cycles"),
-    element("p", { class: "beside" }, bandWords(s)),
+    element("p", { class: "beside" }, bandWords(s)), band && bar(band, [0, 1.05 * band[2]]),
     element("p", { class: "quiet" }, errorWords(s) && `Numerical error: ${errorWords(s)}`)];
 }
 

@@ -83,6 +83,7 @@ export function createCalibrateView() {
     if (range && !from.touched) fillIn(from, range[0]);
     if (range && !to.touched) fillIn(to, range[1]);
     if (range && !specimen.fields.crack_length_mm.touched) fillIn(specimen.fields.crack_length_mm, from.input.value);
+    loading.propose(measured.loading());
     editor.check.soon();
   });
 

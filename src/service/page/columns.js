@@ -64,7 +64,7 @@ export function createColumns(onChange) {
       if (file.header.length === 0 || ["wide", "paired"].includes(file.columns?.layout)) return null;
       const selects = [];
       const columns = file.header.map((_, index) => ({ title: choice(file, index, selects) }));
-      return element("details", { open: file.columns === null },
+      return element("details", { open: file.columns === null || Object.keys(chosen).length > 0 },
         element("summary", null, "Columns"),
         table(`Columns and first rows of ${file.file}`, columns, file.first_rows.map((cells, row) => cells.map((cell, index) => withTaken(file, cell, row, index))),
           { hidden: true, rowHeader: false, name: "columns" }));

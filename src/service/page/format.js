@@ -123,9 +123,12 @@ export function bytes(count) {
   return count < 1e6 ? `${fixed(count / 1e3, 1)} kB` : `${fixed(count / 1e6, 1)} MB`;
 }
 
+/** Kinds that are called otherwise than their key. */
+const CALLED = { element_free_galerkin: "nodes", peridynamics: "points and bonds", ring: "ring around the tip" };
+
 /** A key or kind in words: crack_length_reached becomes "crack length reached". */
 export function words(name) {
-  return String(name ?? "").replaceAll("_", " ");
+  return CALLED[name] ?? String(name ?? "").replaceAll("_", " ");
 }
 
 /** First letter large, for labels and starts of sentences. */

@@ -19,7 +19,7 @@ export const isFinal = (job) => FINAL.includes(job.state);
 /** State of a run; one whose life does not count is refused, whatever its worker made of it. */
 export function stateBadge({ state, summary }) {
   const shown = state === "succeeded" && summary?.refused ? "refused" : state;
-  return element("span", { class: `badge ${shown}`, "data-state": shown }, sentence(shown));
+  return element("span", { class: `badge ${shown}`, "data-state": shown }, shown === "succeeded" ? "Done" : sentence(shown));
 }
 
 /** Where the form is that a run can be started anew from. */
@@ -207,6 +207,11 @@ export function createJobHead(first, { actions = [] } = {}) {
   };
 }
 
+/** One sentence on what was computed: plate, material, load. */
+export function describe({ plate }) {
+  return plate ? [sentence(plate.specimen), plate.material, plate.load].filter(Boolean).join("; ") : "";
+}
+
 /** Why a run failed, with the lines of its input where the problem names one. */
 export function failureOf(job) {
   if (job.state === "cancelled") return element("p", { class: "notice" }, "This run was cancelled before its end.");
@@ -219,7 +224,7 @@ export function failureOf(job) {
 /** The report of a run, to be printed and signed; nothing of runs of before. */
 export function reportButton(job, name = nameOf(job)) {
   const report = job.files?.find((file) => file.name === "report.html");
-  return report && button("Report", () => download(report.href, `${name}.html`), { "data-action": "report" });
+  return report && button("Report", () => download(report.href, `${name}.html`), { class: "button primary", "data-action": "report" });
 }
 
 /** Everything to take away; `special`: {name: node} where a file has choices of its own. */

@@ -232,6 +232,11 @@ export function createMeasured(onChange) {
       return [tidy(Math.max(...starts)), tidy(Math.min(...ends))];
     },
     specimens: () => curves().length,
+    /** Keys of [loading] that the files say, all the same. */
+    loading() {
+      const said = [...new Set(answer.map((file) => JSON.stringify(file.loading ?? {})))];
+      return said.length === 1 ? JSON.parse(said[0]) : {};
+    },
     loadExample(name, text) {
       return this.load([{ name, text, file: new Blob([text], { type: "text/csv" }), example: true }]);
     },

@@ -186,6 +186,16 @@ export function createLoading(form, { places, plate } = {}) {
 
   return {
     element: group("Loading, constant amplitude", grid(quantity.node, magnitude.node, ratio.node), places?.element),
+    /** What the readings say of the load, where nobody has said anything yet. */
+    propose({ stress_ratio: given, ...load }) {
+      const [[key, value] = []] = Object.entries(load);
+      if (key && !magnitude.touched && !quantity.touched) {
+        fillIn(quantity, key);
+        arrange();
+        fillIn(magnitude, value);
+      }
+      if (given !== undefined && !ratio.touched) fillIn(ratio, given);
+    },
     /** A compact specimen is pulled by pins: it takes no stress. */
     suit(specimenKind) {
       const [was, is] = [suits, specimenKind].map((kind) => kind === "compact_tension");

@@ -45,14 +45,14 @@ export function createSweep({ host, fields, panel, start, status, base, checked,
 
   function addRow(given = {}) {
     const index = vary.length;
-    const known = numbersOf(checked() ?? {}, "");
+    const known = numbersOf(checked() ?? base().input ?? {}, "");
     const key = form.choice(`vary[${index}].key`, { label: "Varied", options: [...known.map(([path, value]) => ({ value: path, title: `${path}, now ${plain(value)}` })),
       ...(given.key && !known.some(([path]) => path === given.key) ? [{ value: given.key, title: given.key }] : [])] });
     const shape = form.choice(`vary[${index}].distribution`, { label: "Distribution", options: options("vary.distribution") });
     const scale = form.choice(`vary[${index}].scale`, { label: "Spaced", options: options("vary.scale") });
     const all = [...new Set([...OF_GRID, ...Object.values(OF_DISTRIBUTION).flat()])];
     const numbers = Object.fromEntries(all.map((one) => [one, form.number(`vary[${index}].${one}`, { label: sentence(words(one)), signed: true, hint: HINTS[one] })]));
-    const remove = button("Remove", () => rebuild(vary.map(collectRow).filter((_, other) => other !== index)), { class: "button small", "aria-label": `Remove varied key ${index + 1}` });
+    const remove = button("Remove", () => rebuild(vary.map(collectRow).filter((_, other) => other !== index)), { class: "button small end", "aria-label": `Remove varied key ${index + 1}` });
     const row = { key, shape, scale, numbers, node: element("div", { class: "fields", "data-vary": index }, key.node, scale.node, shape.node, Object.values(numbers).map((field) => field.node), remove) };
     fillIn(key, given.key ?? known.find(([path]) => path.startsWith("loading."))?.[0] ?? known[0]?.[0]);
     fillIn(shape, given.distribution ?? "normal");
