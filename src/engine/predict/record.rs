@@ -37,6 +37,8 @@ pub trait Observer: Sync {
     ///
     /// These places depend on the case alone, not on time and not on what the observer does.
     fn may_keep(&self, _checkpoint: &dyn Fn() -> Checkpoint) {}
+    /// Called where a run that is not taken up stands before its first increment, with where the tips are.
+    fn begun(&self, _start: &Progress, _tips: &[TipRecord]) {}
     /// Called after every cycle block since N = 0, before [`Observer::block_done`], with where the tips are now.
     fn grown(&self, _tips: &[TipRecord]) {}
     /// Called with every picture that is taken while the run goes on. Its cycles count from the start of the run, which is before
@@ -98,6 +100,7 @@ impl<'a> Record<'a> {
     ) -> Result<Prediction> {
         let Record { started, case, hash, checkpoint, observer } = self;
         let case = &case;
+        let is_new = checkpoint.is_none();
         let (mut snapshots, earlier_s) = match checkpoint {
             Some(checkpoint) => checkpoint.restore(growth)?,
             None => growth.open().map(|()| (Snapshots::default(), 0.0))?,
@@ -105,6 +108,9 @@ impl<'a> Record<'a> {
         let mut guard = Guard::default();
         let mut failure = None;
         let mut way = Way::default();
+        if is_new {
+            observer.begun(&way.progress(case, growth), growth.now().tips);
+        }
         let stop = loop {
             laws::check_within(case, growth)?;
             if let Some((snapshot, grid)) = snapshots.follow(growth) {

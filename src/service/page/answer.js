@@ -39,6 +39,9 @@ export function leadOf(s) {
   return tip < 0 ? null : tip;
 }
 
+/** Why a life does not count; the name of the run stands above already. */
+export const whyRefused = ({ refused }) => sentence(refused.replace(/^[^:]*: (?=the )/, ""));
+
 /** Lengths at the start and at the end, mm: of the crack that ends the life, or of the specimen. */
 export function lengthsOf(s) {
   const of = leadOf(s) === null ? s : s.tips[leadOf(s)];
@@ -49,7 +52,7 @@ function large(s) {
   const value = (text, unit) => element("p", { class: "life", "data-value": "life_cycles" }, text, unit && element("small", null, unit));
   const said = (title, text, more) => [element("h2", null, title), element("p", { class: "life words", "data-value": "life_cycles" }, text), element("p", { class: "beside" }, more)];
   const [from, to] = lengthsOf(s);
-  if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, s.refused));
+  if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, whyRefused(s)));
   if (s.life_cycles === null) return said("Life", "No growth", "Every tip stays below the threshold of the law under this load: there is no number of cycles to give.");
   const band = quantilesOf(s);
   const number = band ? deserved(band[1], band) : cycles(Math.round(s.life_cycles));

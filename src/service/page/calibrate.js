@@ -11,8 +11,8 @@ import { createLoading, createMaterial, createSpecimen } from "./specimen_form.j
 import { startRun } from "./submit.js";
 
 const PARAMETERS = [
-  { value: "a,p", title: "A and p (rate and exponent)" },
-  { value: "a", title: "A alone, p given" },
+  { value: "a,p", title: "A and p" },
+  { value: "a", title: "A, p given" },
 ];
 
 /** Builds the view; gives {setMaterials}. */

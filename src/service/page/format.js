@@ -134,6 +134,8 @@ export function words(name) {
 /** First letter large, for labels and starts of sentences. */
 export function sentence(text) {
   const line = String(text ?? "");
+  // A file or a key keeps its name.
+  if (/^\S*[._]\S/.test(line)) return line;
   return line.charAt(0).toUpperCase() + line.slice(1);
 }
 

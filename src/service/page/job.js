@@ -41,8 +41,13 @@ export const changeJob = (job, change) => patchJson(pathOf(job), change);
 export function editInPlace(place, { label, value, save }) {
   const before = [...place.childNodes];
   const input = element("input", { type: "text", "aria-label": label, value, class: "edit-in-place" });
-  const leave = () => show(place, before);
+  let isLeft = false; // taking the line away takes the focus from it
+  const leave = () => {
+    isLeft = true;
+    show(place, before);
+  };
   const keep = () => {
+    if (isLeft) return;
     const next = input.value.trim();
     leave();
     if (next !== value && (next || label === "Note")) save(next);
@@ -51,7 +56,7 @@ export function editInPlace(place, { label, value, save }) {
     if (event.key === "Enter") keep();
     else if (event.key === "Escape") leave();
   });
-  input.addEventListener("blur", () => input.isConnected && keep());
+  input.addEventListener("blur", keep);
   show(place, input);
   input.focus();
   input.select();
@@ -169,7 +174,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     const prediction = job.kind === "prediction";
     bar.value = p.share ?? 0;
     show(figures, terms([
-      ["Share", percent(p.share, 0)],
+      ["Way to its end", percent(p.share, 0)],
       // A fit makes several runs: where one of them stands says nothing.
       prediction && ["Cycles", cycles(Math.round(p.cycles))],
       prediction && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],

@@ -74,6 +74,22 @@ struct Pending {
     keep_cost: Duration,
 }
 
+impl Pending {
+    /// A row of the growing curve, where it has gone far enough to be seen.
+    fn add(&mut self, progress: &Progress) {
+        if self.tips.is_empty() || progress.share < self.last_entry + 1.0 / ENTRIES {
+            return;
+        }
+        self.last_entry = progress.share;
+        self.entries.cycles.push(progress.cycles);
+        self.entries.crack_length_mm.push(progress.crack_length / MM);
+        let tips = std::mem::take(&mut self.tips);
+        self.entries.tips.push(tips.iter().map(|tip| tip.map(|metres| metres / MM)).collect());
+        self.paths.resize(tips.len(), Vec::new());
+        self.paths.iter_mut().zip(tips).for_each(|(path, tip)| path.push(tip));
+    }
+}
+
 /// Time between two pictures, at least.
 const DRAW_EVERY: Duration = Duration::from_secs(1);
 /// Time between two pictures or checkpoints over the time that one takes, at least: so they cost 5 % at most each.
@@ -157,21 +173,20 @@ impl Observer for Teller<'_> {
         Some(self.work.clone())
     }
 
+    fn begun(&self, start: &Progress, tips: &[TipRecord]) {
+        self.grown(tips);
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        told.first = Some((start.share, Instant::now()));
+        told.add(start);
+    }
+
     fn block_done(&self, progress: &Progress) -> bool {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
         told.first.get_or_insert((progress.share, now));
         told.last = Some(now);
         told.progress = Some(*progress);
-        if !told.tips.is_empty() && progress.share >= told.last_entry + 1.0 / ENTRIES {
-            told.last_entry = progress.share;
-            told.entries.cycles.push(progress.cycles);
-            told.entries.crack_length_mm.push(progress.crack_length / MM);
-            let tips = std::mem::take(&mut told.tips);
-            told.entries.tips.push(tips.iter().map(|tip| tip.map(|metres| metres / MM)).collect());
-            told.paths.resize(tips.len(), Vec::new());
-            told.paths.iter_mut().zip(tips).for_each(|(path, tip)| path.push(tip));
-        }
+        told.add(progress);
         true
     }
 
