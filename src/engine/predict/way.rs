@@ -27,7 +27,8 @@ impl Way {
         let start = case.specimen.crack_length;
         let by_length =
             if case.stop.crack_length.is_finite() { (now.crack_length - start) / (case.stop.crack_length - start) } else { 0.0 };
-        let ahead = [Some(to_rims(&case.specimen, &now)), to_toughness(case, &now), self.to_limit_load(case, &now, grown)];
+        let ahead =
+            [Some(until_rims(&case.specimen, &now)), until_toughness(case, &now), self.until_limit_load(case, &now, grown)];
         let left = ahead.into_iter().flatten().filter(|left| !left.is_nan()).fold(f64::INFINITY, f64::min).max(0.0);
         let by_growth = if grown > 0.0 { grown / (grown + left) } else { 0.0 };
         let share = by_length.max(by_growth).max(now.cycles / case.stop.cycles_max).clamp(0.0, 1.0);
@@ -36,7 +37,7 @@ impl Way {
     }
 
     /// Growth left until the weakest section yields, m.
-    fn to_limit_load(&mut self, case: &Case, now: &GrowthStatus<'_>, grown: f64) -> Option<f64> {
+    fn until_limit_load(&mut self, case: &Case, now: &GrowthStatus<'_>, grown: f64) -> Option<f64> {
         if !case.stop.by_net_section || case.loading.control != LoadControl::Load {
             return None;
         }
@@ -49,14 +50,14 @@ impl Way {
 }
 
 /// Growth left until K_max is the toughness, m.
-fn to_toughness(case: &Case, now: &GrowthStatus<'_>) -> Option<f64> {
+fn until_toughness(case: &Case, now: &GrowthStatus<'_>) -> Option<f64> {
     let k_max = case.stop.required.unwrap_or(1.0) * now.delta_k / case.loading.range_share();
     let ratio = case.toughness_at_end()? / k_max;
     Some(now.crack_length * (ratio * ratio - 1.0))
 }
 
 /// Growth of all tips until each has met a rim straight on, m.
-fn to_rims(specimen: &Specimen, now: &GrowthStatus<'_>) -> f64 {
+fn until_rims(specimen: &Specimen, now: &GrowthStatus<'_>) -> f64 {
     let of_tip = |(tip, seed): (&TipRecord, &TipSeed)| match tip.state {
         TipState::Active => to_rim(specimen, tip.position, straight_on(seed, tip.position)),
         _ => 0.0,

@@ -18,7 +18,7 @@ use crate::error::{Error, input};
 use crate::job::JobKind;
 use crate::measured::{
     Column, ColumnNames, CycleUnit, Decimal, Import, Layout, LengthUnit, LoadUnit, Loads, MeasuredCurve, Named, SAME_LOAD, Shape,
-    Sheet, Survey, survey,
+    Sheet, Survey, round_off, survey,
 };
 use crate::problem::{Answer, Place, Problem};
 use crate::specimen::LoadMeasure;
