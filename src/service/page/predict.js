@@ -50,6 +50,9 @@ export function createPredictView() {
   // Constants of every law, as the service lists them; A and p with the horizon that A holds for.
   const constants = element("div", { class: "fields" });
   const threshold = form.number("fatigue.delta_k_threshold_mpa_sqrt_m", { label: "Threshold ΔK", unit: "MPa√m", optional: true, hint: "without it nothing stands still" });
+  const gamma = form.number("fatigue.walker_gamma", { label: "Walker’s γ", optional: true, hint: "for a law of another stress ratio" });
+  const beyond = form.choice("fatigue.allow_extrapolation", { label: "ΔK the law was not measured at", options: [{ value: "", title: "up to 25 % of the life" }, { value: "true", title: "allowed" }] });
+  const besides = grid(gamma.node, beyond.node); // what holds for every law
   let laws = [];
   let fieldsOfLaw = {};
   const length = { unit: "mm", optional: true };
@@ -74,6 +77,8 @@ export function createPredictView() {
     const own = laws.find((one) => `law:${one.name}` === law.input.value);
     if (constants.dataset.law !== (own?.name ?? "")) drawConstants(own);
     constants.hidden = fields.hidden;
+    besides.hidden = fields.hidden;
+    gamma.node.hidden = "walker_gamma" in fieldsOfLaw;
     spacing.node.hidden = !["", "peridynamics"].includes(method.input.value);
     tolerance.node.hidden = !["", "element_free_galerkin"].includes(method.input.value);
     const chosen = calibrations.find((one) => one.id === law.input.value);
@@ -102,12 +107,14 @@ export function createPredictView() {
 
   const isFitted = () => !law.input.value.startsWith("law:");
 
+  const besidesOf = () => ({ walker_gamma: gamma.node.hidden ? undefined : numberIn(gamma), allow_extrapolation: beyond.input.value === "true" || undefined });
+
   function fatigueOf() {
     const name = law.input.value.replace("law:", "");
     const given = Object.fromEntries(Object.entries(fieldsOfLaw).map(([key, field]) => [key, numberIn(field)]));
     // Bonds and powers of ΔK are told by their constants.
     const named = ["paris", "bond_law"].includes(name) ? {} : { growth_law: name };
-    return compact({ ...named, ...given, delta_k_threshold_mpa_sqrt_m: threshold.node.isConnected ? numberIn(threshold) : undefined });
+    return compact({ ...besidesOf(), ...named, ...given, delta_k_threshold_mpa_sqrt_m: threshold.node.isConnected ? numberIn(threshold) : undefined });
   }
 
   function collect() {
@@ -118,7 +125,7 @@ export function createPredictView() {
       supports: specimen.fields.kind.input.value === "plate" ? sides.supports() : undefined,
       model: compact({ method: method.input.value, tolerance_percent: tolerance.node.hidden ? undefined : numberIn(tolerance),
         spacing_mm: spacing.node.hidden ? undefined : numberIn(spacing) }),
-      ...(isFitted() ? {} : { fatigue: fatigueOf() }),
+      fatigue: isFitted() ? compact(besidesOf()) : fatigueOf(),
       stop: compact({ crack_length_mm: numberIn(stopLength), cycles_max: numberIn(stopCycles) }),
     };
   }
@@ -133,11 +140,12 @@ export function createPredictView() {
   function fill(input) {
     const { specimen: s, material: m, loading: l, supports, model = {}, fatigue = {}, stop = {}, ...others } = input;
     const filled = (table) => Object.keys(table ?? {}).length > 0;
-    const beyond = (table, known) => Object.keys(table).some((key) => !known.includes(key));
+    const isBeyond = (table, known) => Object.keys(table).some((key) => !known.includes(key));
+    const besideLaw = ["walker_gamma", "allow_extrapolation"];
     const own = isFitted() || !filled(fatigue) ? null : lawOf(fatigue);
-    const tooMuch = Object.values(others).some(filled) || beyond(model, ["spacing_mm", "method", "tolerance_percent"]) || beyond(stop, ["crack_length_mm", "cycles_max"]) ||
-      (own && beyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...own.constants.map(({ key }) => key)])) ||
-      (!own && beyond(fatigue, ["fitted"]));
+    const tooMuch = Object.values(others).some(filled) || isBeyond(model, ["spacing_mm", "method", "tolerance_percent"]) || isBeyond(stop, ["crack_length_mm", "cycles_max"]) ||
+      (own && isBeyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...besideLaw, ...own.constants.map(({ key }) => key)])) ||
+      (!own && isBeyond(fatigue, ["fitted", ...besideLaw]));
     if (tooMuch || !specimen.fill(s, l) || !material.fill(m) || !loading.fill(l, supports)) return false;
     fillIn(method, model.method === "auto" ? "" : model.method);
     fillIn(tolerance, model.tolerance_percent);
@@ -147,6 +155,8 @@ export function createPredictView() {
     if (own) fillIn(law, `law:${own.name}`);
     arrange();
     if (own) Object.entries(fieldsOfLaw).forEach(([key, field]) => fillIn(field, fatigue[key]));
+    fillIn(gamma, fatigue.walker_gamma);
+    fillIn(beyond, fatigue.allow_extrapolation ? "true" : "");
     if (own) fillIn(threshold, fatigue.delta_k_threshold_mpa_sqrt_m);
     return true;
   }
@@ -154,7 +164,7 @@ export function createPredictView() {
   show(fields, specimen.element, material.element, loading.element,
     group("End", grid(stopLength.node, stopCycles.node, name.node)),
     group("How it is computed", grid(method.node, tolerance.node, spacing.node)));
-  show(byId("law-fields"), group("Growth law", grid(law.node), constants, lawNote));
+  show(byId("law-fields"), group("Growth law", grid(law.node), constants, besides, lawNote));
 
   // While another run's input is on its way, what stands in the form is not what the user means to start.
   let opening = false;

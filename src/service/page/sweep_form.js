@@ -26,6 +26,7 @@ export function createSweep({ host, fields, panel, start, status, base, checked,
   });
   const design = form.choice("design.kind", { label: "Design", options: options("design.kind"), hint: " " });
   const scatter = form.choice("design.scatter", { label: "Scatter of the law", options: options("design.scatter"), hint: " " });
+  scatter.input.value = "constants"; // any fit has its errors, few have specimens enough
   const samples = form.number("design.samples", { label: "Cases", value: "100" });
   const seed = form.number("design.seed", { label: "Seed", value: "1", hint: "the same seed draws the same cases" });
   const name = form.text("name", { label: "Name of the sweep", optional: true });
@@ -125,7 +126,7 @@ export function createSweep({ host, fields, panel, start, status, base, checked,
     if (fitted?.some(([, text]) => text === undefined)) return "The law is being fetched.";
     const input = fitted && typeof given.input === "string" ? checked() : given.input;
     if (!input) return "The case on Predict is not right yet.";
-    const text = typeof input === "string" ? input : writeToml({ ...input, ...(fitted ? { fatigue: { fitted: "fitted.toml" } } : {}) });
+    const text = typeof input === "string" ? input : writeToml({ ...input, ...(fitted ? { fatigue: { ...input.fatigue, fitted: "fitted.toml" } } : {}) });
     const sent = [[CASE, text], ...(fitted ?? [])].filter(([, content]) => content !== null);
     return { files: sent.map(([file, content]) => ({ name: file, text: content, file: new Blob([content]) })) };
   }

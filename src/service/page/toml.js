@@ -1,5 +1,8 @@
 // Writes the input of a form as the TOML file the command line reads, so that a run made here can be repeated there.
 
+/** Keys that count: whole numbers. */
+const COUNTS = ["count", "samples", "seed", "hole"];
+
 function text(value) {
   // JSON escapes are TOML escapes, as long as the delete character is spelt out too.
   return JSON.stringify(value).replaceAll("\u007f", "\\u007F");
@@ -14,12 +17,12 @@ function number(value) {
   return /[.e]/.test(digits) ? digits : `${digits}.0`;
 }
 
-function inline(value) {
-  if (typeof value === "number") return number(value);
+function inline(value, name) {
+  if (typeof value === "number") return COUNTS.includes(name) ? String(value) : number(value);
   if (typeof value === "string") return text(value);
   if (typeof value === "boolean") return String(value);
-  if (Array.isArray(value)) return `[${value.map(inline).join(", ")}]`;
-  return `{ ${entries(value).map(([name, item]) => `${key(name)} = ${inline(item)}`).join(", ")} }`;
+  if (Array.isArray(value)) return `[${value.map((item) => inline(item)).join(", ")}]`;
+  return `{ ${entries(value).map(([name, item]) => `${key(name)} = ${inline(item, name)}`).join(", ")} }`;
 }
 
 function entries(table) {
@@ -29,7 +32,7 @@ function entries(table) {
 /** One line, or one item a line where the value is a list of tables. */
 function line(name, value) {
   const tables = Array.isArray(value) && value.length > 0 && value.every((item) => typeof item === "object" && !Array.isArray(item));
-  if (!tables) return `${key(name)} = ${inline(value)}`;
+  if (!tables) return `${key(name)} = ${inline(value, name)}`;
   return [`${key(name)} = [`, ...value.map((item) => `    ${inline(item)},`), "]"].join("\n");
 }
 

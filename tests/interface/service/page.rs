@@ -151,6 +151,13 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let exponent = format!("{:.4}", summary["paris_m"].as_f64().unwrap());
     assert!(page.text("[data-table=constants]").contains(&exponent), "{exponent} in {}", page.text("[data-table=constants]"));
 
+    // Renamed where it stands.
+    page.click("#job [data-action=rename]");
+    page.fill("#job .edit-in-place", "Example law");
+    page.press(&['\u{e007}']);
+    page.until("document.querySelector('#job h1').textContent === 'Example law'");
+    assert_eq!(service.get(&format!("/v1/calibrations/{fit}")).json()["name"], "Example law");
+
     // A plate with this law, drawn with a second crack that goes again; on points, which take long enough to look on.
     page.click("[data-action=use-law]");
     page.fill("#view-predict [data-key='model.spacing_mm']", "0.8");
@@ -257,6 +264,13 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.open(&format!("{}/#/runs", service.url));
     page.see("tr[data-job][data-job-state=succeeded]");
     walk.look("08_runs");
+    // Put away, one is found again only by asking.
+    page.click(&format!("tr[data-job='{fit}'] [data-action=more]"));
+    page.see(".menu:popover-open");
+    page.click(&format!("tr[data-job='{fit}'] [data-action=archive]"));
+    page.until(&format!("!document.querySelector(\"tr[data-job='{fit}']\")"));
+    page.click("#runs-archived");
+    page.see(&format!("tr[data-job='{fit}'].archived"));
     for place in [1, 2] {
         page.click(&format!("tr[data-job]:nth-of-type({place}) .tick input"));
     }
@@ -264,6 +278,16 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("[data-chart=compare] path[data-series]");
     page.see("[data-table=compare]");
     walk.look("09_compare");
+
+    // A sweep over the plate of the form.
+    page.open(&format!("{}/#/new?way=sweep", service.url));
+    page.see("#sweep-start:not([disabled])");
+    page.fill("[data-key='vary[0].count']", "2");
+    page.see("#sweep-start:not([disabled])");
+    walk.look("10_sweep");
+    walk.start("#sweep-start");
+    page.see("#job[data-job-state=succeeded]");
+    page.see("[data-value=life_cycles]");
 
     // Cancel and delete.
     page.open(&format!("{}/#/predict?from={first}", service.url));
