@@ -18,6 +18,7 @@ use crate::support::server::{Server, in_folder};
 
 const DELETE: char = '\u{e017}';
 const RIGHT: char = '\u{e014}';
+const ENTER: char = '\u{e007}';
 const END: char = '\u{e010}';
 
 const BROKEN: &str = "specimen,cycles,crack_length_mm\nA1,0,9\nA1,12000,9.6\nA1,21000,10.2\nA1,many,10.9\nA1,39000,11.7\n\
@@ -153,8 +154,8 @@ fn the_page_leads_from_readings_to_remaining_life() {
 
     // Renamed where it stands.
     page.click("#job [data-action=rename]");
-    page.fill("#job .edit-in-place", "Example law");
-    page.press(&['\u{e007}']);
+    page.see("#job .edit-in-place:focus");
+    page.press(&"Example law".chars().chain([ENTER]).collect::<Vec<char>>());
     page.until("document.querySelector('#job h1').textContent === 'Example law'");
     assert_eq!(service.get(&format!("/v1/calibrations/{fit}")).json()["name"], "Example law");
 
