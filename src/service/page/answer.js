@@ -29,7 +29,7 @@ export const quantilesOf = ({ band }) => (band ? [band.cycles_p05, band.cycles_p
 /** Median and band on an axis from `low` to `high`, cycles. */
 export function bar([from, middle, to], [low, high]) {
   const at = (value) => 4 + (192 * (value - low)) / (high - low);
-  return shape("svg", { class: "bar", viewBox: "0 0 200 16", role: "img", "aria-label": `Band ${bandOf([from, middle, to])}, median ${deserved(middle, [from, middle, to])}` },
+  return shape("svg", { class: "range", viewBox: "0 0 200 16", role: "img", "aria-label": `Band ${bandOf([from, middle, to])}, median ${deserved(middle, [from, middle, to])}` },
     shape("line", { x1: 4, x2: 196, y1: 8, y2: 8 }), shape("rect", { x: at(from), width: at(to) - at(from), y: 4, height: 8 }), shape("circle", { cx: at(middle), cy: 8, r: 5 }));
 }
 

@@ -109,10 +109,11 @@ export function duration(seconds) {
   return hours > 0 ? `${hours} h ${minutes} min` : `${minutes} min ${total % 60} s`;
 }
 
-/** A moment, local time. */
-export function moment(text) {
+/** A moment, local time; in a list that of today is its hour. */
+export function moment(text, inList = false) {
   const date = new Date(text ?? "");
   if (Number.isNaN(date.getTime())) return NONE;
+  if (inList && date.toDateString() === new Date().toDateString()) return date.toLocaleTimeString(undefined, { hour: "2-digit", minute: "2-digit" });
   return date.toLocaleString(undefined, { year: "numeric", month: "short", day: "2-digit", hour: "2-digit", minute: "2-digit" });
 }
 

@@ -100,7 +100,7 @@ export function createRunsView() {
       predictions && element("td", { class: "tick" }, job.kind === "prediction" && tick(job)),
       element("th", { scope: "row" }, name, element("span", { class: "row-unit" }, NOUNS[job.kind] ?? words(job.kind), job.archived && ", put away"), note),
       element("td", null, answer), element("td", null, why), element("td", null, valid),
-      element("td", { class: "by" }, job.owner && `${job.owner}, `, moment(job.created), Number.isFinite(took(job)) && element("span", { class: "row-unit" }, `took ${duration(took(job))}`)),
+      element("td", { class: "by" }, job.owner && `${job.owner}, `, moment(job.created, true), Number.isFinite(took(job)) && element("span", { class: "row-unit" }, `took ${duration(took(job))}`)),
       element("td", { class: "act" }, menuOf(job, name, note)));
   }
 

@@ -142,7 +142,7 @@ export function createSweep({ host, fields, panel, start, status, base, checked,
   const nameOf = (specimen) => (specimen ? sentence(words(specimen.kind)) : "the plate of Predict");
   start.addEventListener("click", async () => {
     if (!(await editor.check.now())) return;
-    const keys = vary.map((row) => row.key.input.value.split(".").pop().replaceAll("_", " ")).join(", ");
+    const keys = vary.map((row) => words(row.key.input.value.split(".").pop().replace(/_(mm|mpa|gpa|kn|n)$/, ""))).join(", ");
     startRun("/v1/sweeps", { ...editor.body(), name: name.input.value.trim() || `${nameOf(checked()?.specimen)}: ${keys || "scatter of the law"}` }, { button: start, status, refuse: editor.check.refuse });
   });
 
