@@ -55,7 +55,9 @@ function large(s) {
   if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, whyRefused(s)));
   if (s.life_cycles === null) return said("Life", "No growth", "Every tip stays below the threshold of the law under this load: there is no number of cycles to give.");
   const band = quantilesOf(s);
-  const number = band ? deserved(band[1], band) : cycles(Math.round(s.life_cycles));
+  // Without a band as many digits as the numerical error leaves.
+  const error = (s.error_estimate_percent ?? 0) / 100;
+  const number = band ? deserved(band[1], band) : error > 0 ? deserved(s.life_cycles, [1 - error, 1, 1 + error].map((share) => share * s.life_cycles)) : cycles(Math.round(s.life_cycles));
   const start = `from a crack of ${fixed(from, 2)} mm`;
   const end = TO_THE_END[s.stop_reason];
   const title = BROKEN_OFF.includes(s.stop_reason) ? `Computed up to ${fixed(to, 1)} mm only` : end ? `Cycles ${start} ${end}` : `Life ${start}`;

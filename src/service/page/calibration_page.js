@@ -89,7 +89,7 @@ function scatterBand(quantiles) {
 
 /** Readings that do not count, crossed out. */
 function leftOut(readings) {
-  const out = (readings?.cycles ?? []).map((_, row) => row).filter((row) => typeof readings.left_out?.[row] === "string");
+  const out = (readings?.cycles ?? []).map((_, row) => row).filter((row) => readings.left_out?.[row]);
   return out.length > 0 ? [{ id: "left-out", name: "left out", kind: "crosses", x: out.map((row) => readings.cycles[row]), y: out.map((row) => readings.crack_length_mm[row]) }] : [];
 }
 
