@@ -179,7 +179,8 @@ export function createJobHead(first, { actions = [] } = {}) {
       prediction && ["Cycles", cycles(Math.round(p.cycles))],
       prediction && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],
       ["Elapsed", duration(p.elapsed_s)],
-      ["Time left", Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],
+      // By the growth so far: what comes behind it, bounds of the error and files, is not in it.
+      ["Time left", p.share > 0.995 ? "error and files" : Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],
     ].filter(Boolean), "progress"));
   }
 
