@@ -19,6 +19,7 @@ pub mod residual_strength;
 mod retarded;
 mod snapshot;
 pub mod tip_factors;
+mod way;
 
 pub use outcome::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord};
 pub use record::{Observer, Silent};

@@ -90,8 +90,12 @@ pub struct Job {
     pub id: String,
     /// What it does.
     pub kind: JobKind,
-    /// As the one who submitted it called it.
+    /// As the one who submitted it called it, or renamed it.
     pub name: String,
+    /// What somebody has noted of it; empty where nobody has.
+    pub note: String,
+    /// Whether it was put away: lists leave it out unless asked.
+    pub archived: bool,
     /// Where it stands.
     pub state: State,
     /// Name of the token it was submitted with.

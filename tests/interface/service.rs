@@ -9,6 +9,7 @@ mod fuzzed;
 pub mod jobs;
 mod limits;
 mod long_use;
+mod named;
 mod page;
 mod queue;
 mod reader;

@@ -6,7 +6,7 @@ use perilife::growth::record::{StopReason, TipRecord};
 use perilife::predict::record::{BLOCKS_WITHOUT_GROWTH, Guard};
 
 fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
-    GrowthStatus { cycles, crack_length, delta_k: 1.0, tips }
+    GrowthStatus { cycles, crack_length, delta_k: 1.0, limit_load: None, tips }
 }
 
 fn tip(growth: f64) -> TipRecord {

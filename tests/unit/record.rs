@@ -37,8 +37,8 @@ impl CrackGrowth for Steady {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.0.last().unwrap();
-        GrowthStatus { cycles, crack_length, delta_k, tips }
+        let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.0.last().unwrap();
+        GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
     }
 
     fn curve(&mut self) -> Vec<CurvePoint> {

@@ -155,7 +155,13 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     }
     lines.push(line("handbook K", formula));
     let bears = case.stop.required.map(|factor| format!("not bearing {factor:.4} times the largest load, or "));
-    lines.push(line("stop", format!("{end}{}{} cycles", bears.unwrap_or_default(), case.stop.cycles_max)));
+    // So many that nobody asked for them.
+    let last = if case.stop.cycles_max < 1e9 {
+        format!("{} cycles", case.stop.cycles_max)
+    } else {
+        "the end of plate or growth".to_owned()
+    };
+    lines.push(line("stop", format!("{end}{}{last}", bears.unwrap_or_default())));
     lines
 }
 

@@ -238,7 +238,7 @@ impl CrackGrowth for BondStrain<'_> {
         let row = track.last();
         let cycles = track.cycles();
         let (crack_length, tips) = (row.crack_length, row.tips());
-        GrowthStatus { cycles, crack_length, delta_k: f64::NAN, tips }
+        GrowthStatus { cycles, crack_length, delta_k: f64::NAN, limit_load: None, tips }
     }
 
     fn body(&self) -> Option<Arc<Body>> {

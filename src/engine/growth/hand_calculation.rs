@@ -138,8 +138,8 @@ impl CrackGrowth for HandCalculation<'_> {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.last();
-        GrowthStatus { cycles, crack_length, delta_k, tips }
+        let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.last();
+        GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {

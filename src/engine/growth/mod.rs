@@ -111,6 +111,8 @@ pub struct GrowthStatus<'a> {
     pub crack_length: f64,
     /// Range of the stress intensity factor, Pa√m; NaN where it is known at the end only.
     pub delta_k: f64,
+    /// Nominal load at which the weakest section is fully plastic, Pa or N; `None` where it is not known on the way.
+    pub limit_load: Option<f64>,
     /// Tips, in the order of `Specimen::tips`.
     pub tips: &'a [TipRecord],
 }

@@ -61,10 +61,18 @@ impl Folder {
         }
     }
 
-    /// Content of a file.
-    /// Errors: [`Error::File`] if it cannot be read from disk; [`Error::Input`] if it is not at hand.
+    /// Content of a file. Without a folder on disk a path is known by its last part as well: who sends files seldom sends their folders.
+    /// Errors: [`Error::File`] if it cannot be read from disk; [`Error::Input`] if it is not at hand, or two paths have one last part.
     pub fn read(&self, name: &str) -> Result<Vec<u8>> {
-        if let Some(content) = self.at_hand.get(name) {
+        let last = |path: &str| path.rsplit('/').next().unwrap_or_default().to_owned();
+        if let Some(content) = self.at_hand.get(name).or_else(|| self.at_hand.get(&last(name)).filter(|_| self.disk.is_none())) {
+            let opened = self.opened.so_far();
+            let has = |name: &str| self.at_hand.contains_key(name);
+            let is_other = |file: &&OpenedFile| file.path.is_none() && file.name != name && last(&file.name) == last(name);
+            if let Some(other) = opened.files.iter().filter(is_other).find(|other| !has(name) || !has(&other.name)) {
+                let problem = format!("has the last part of \"{}\", and one such file was sent", other.name);
+                return Err(input("file", format!("\"{name}\""), problem, "send each under its own name"));
+            }
             let file = OpenedFile { name: name.to_owned(), path: None, id: None, content: content.clone().into() };
             self.opened.add(file);
             return Ok(content.clone());

@@ -4,6 +4,7 @@ use super::decimal::decide;
 use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, CycleUnit, Decimal, Import, LoadUnit, Unit};
 use super::names::{Column, Named, Role, length_unit_at_end};
+use super::numerals::number;
 use super::table::{Fault, Table};
 use crate::error::{Error, Result};
 
@@ -178,6 +179,17 @@ impl Layout {
             }
         }
         keys
+    }
+
+    /// What the cells of a row are taken for: cycles, and crack lengths in metres; `None` for all that is neither, or no number.
+    pub fn taken(&self, cells: &[String]) -> Vec<Option<f64>> {
+        let mut taken = vec![None; cells.len()];
+        for column in self.series.iter().flat_map(|series| series.lengths.iter().chain([&series.cycles])) {
+            let Some(cell) = cells.get(column.index) else { continue };
+            let value = number(cell, self.decimal).map(|value| if column.is_log { 10f64.powf(value) } else { value });
+            taken[column.index] = value.map(|value| value * column.factor);
+        }
+        taken
     }
 }
 

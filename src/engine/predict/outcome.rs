@@ -3,11 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::body::Body;
-use crate::case::Case;
 use crate::case::budget::machine;
+use crate::growth::CrackGrowth;
 pub use crate::growth::cross_check::CrossCheck;
 pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
-use crate::growth::{CrackGrowth, GrowthStatus};
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
 use crate::specimen::{Specimen, SpecimenKind};
@@ -144,17 +143,6 @@ pub struct Progress {
     pub cycles: f64,
     /// Crack length, m.
     pub crack_length: f64,
-    /// Share of the way from the initial to the final crack length (or of `cycles_max`), 0 to 1.
+    /// Share of the way to the nearest end that is in sight, 0 to 1.
     pub share: f64,
-}
-
-impl Progress {
-    /// That of a run of a case which has come so far.
-    pub(super) fn of(case: &Case, now: &GrowthStatus<'_>) -> Self {
-        let start = case.specimen.crack_length;
-        // Without a length to stop at, growth across the plate is the way.
-        let end = if case.stop.crack_length.is_finite() { case.stop.crack_length } else { start + case.specimen.gross_width };
-        let (by_length, by_cycles) = ((now.crack_length - start) / (end - start), now.cycles / case.stop.cycles_max);
-        Progress { cycles: now.cycles, crack_length: now.crack_length, share: by_length.max(by_cycles).clamp(0.0, 1.0) }
-    }
 }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::checkpoint::{self, Checkpoint};
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
+use super::way::Way;
 use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::error::{Error, Result};
@@ -37,6 +38,8 @@ pub trait Observer: Sync {
     ///
     /// These places depend on the case alone, not on time and not on what the observer does.
     fn may_keep(&self, _checkpoint: &dyn Fn() -> Checkpoint) {}
+    /// Called where a run that is not taken up stands before its first increment, with where the tips are.
+    fn begun(&self, _start: &Progress, _tips: &[TipRecord]) {}
     /// Called after every cycle block since N = 0, before [`Observer::block_done`], with where the tips are now.
     fn grown(&self, _tips: &[TipRecord]) {}
     /// Called with every picture that is taken while the run goes on. Its cycles count from the start of the run, which is before
@@ -98,12 +101,17 @@ impl<'a> Record<'a> {
     ) -> Result<Prediction> {
         let Record { started, case, hash, checkpoint, observer } = self;
         let case = &case;
+        let is_new = checkpoint.is_none();
         let (mut snapshots, earlier_s) = match checkpoint {
             Some(checkpoint) => checkpoint.restore(growth)?,
             None => growth.open().map(|()| (Snapshots::default(), 0.0))?,
         };
         let mut guard = Guard::default();
         let mut failure = None;
+        let mut way = Way::default();
+        if is_new {
+            observer.begun(&way.progress(case, growth), growth.now().tips);
+        }
         let stop = loop {
             laws::check_within(case, growth)?;
             if let Some((snapshot, grid)) = snapshots.follow(growth) {
@@ -111,7 +119,7 @@ impl<'a> Record<'a> {
             }
             if growth.should_rebuild_solver() {
                 let elapsed_s = earlier_s + started.elapsed().as_secs_f64();
-                let progress = Progress::of(case, &growth.now());
+                let progress = way.progress(case, growth);
                 observer.may_keep(&|| Checkpoint::new(hash, growth.state(), &snapshots, &progress, elapsed_s));
                 if growth.rebuild_solver().is_err() {
                     break StopReason::NoConvergence;
@@ -122,7 +130,7 @@ impl<'a> Record<'a> {
             let now = growth.now();
             let reason = reason.or(guard.check(before, &now)?);
             observer.grown(now.tips);
-            let goes_on = observer.block_done(&Progress::of(case, &now));
+            let goes_on = observer.block_done(&way.progress(case, growth));
             if let Some(reason) = reason {
                 break reason;
             }

@@ -15,9 +15,10 @@ use utoipa::{IntoParams, ToSchema};
 use super::App;
 use super::caller::Caller;
 use super::documents::{self, JobRequest, submission};
+use crate::error::input;
 use crate::job::{Job, JobKind, State, is_id};
 use crate::problem::{Answer, Problem};
-use crate::store::{FileEntry, NewJob, Origin, Role, Room, Submitted};
+use crate::store::{Change, FileEntry, NewJob, Origin, Role, Room, Submitted, Wanted};
 
 /// Most jobs of one part of a list.
 const LIST_MAX: u32 = 200;
@@ -25,6 +26,8 @@ const LIST_MAX: u32 = 200;
 const LIST: u32 = 20;
 /// Longest idempotency key, bytes.
 const KEY_MAX: usize = 200;
+/// Longest note of a job, bytes.
+const NOTE_MAX: usize = 2000;
 /// Seconds after which there may be room in the queue.
 const QUEUE_MOVES_S: u32 = 10;
 
@@ -73,6 +76,10 @@ pub struct Part {
     after: Option<String>,
     /// Only jobs in this state.
     state: Option<State>,
+    /// Only jobs with this text in name, note or owner.
+    text: Option<String>,
+    /// Also jobs that were put away.
+    archived: Option<bool>,
 }
 
 /// The kind of a collection's name in a URL.
@@ -197,7 +204,7 @@ fn key_of(headers: &HeaderMap) -> Answer<Option<String>> {
     key.map(|key| Some(key.to_owned())).ok_or_else(refused)
 }
 
-/// Lists jobs, newest first.
+/// Lists jobs of a kind, newest first.
 #[utoipa::path(get, path = "/v1/{collection}", tag = "jobs",
     params(("collection" = String, Path, description = "`calibrations`, `predictions`, `scenes`, `sweeps` or `sif`"), Part),
     responses((status = 200, body = Page), (status = 400, body = Problem), (status = 404, body = Problem)))]
@@ -206,7 +213,17 @@ pub async fn list(
     Path(collection): Path<String>,
     part: Result<Query<Part>, QueryRejection>,
 ) -> Answer<Json<Page>> {
-    let kind = kind_of(&collection)?;
+    listed(&app, Some(kind_of(&collection)?), part).await
+}
+
+/// Lists jobs of every kind, newest first.
+#[utoipa::path(get, path = "/v1/jobs", tag = "jobs", params(Part),
+    responses((status = 200, body = Page), (status = 400, body = Problem)))]
+pub async fn list_all(Shared(app): Shared<App>, part: Result<Query<Part>, QueryRejection>) -> Answer<Json<Page>> {
+    listed(&app, None, part).await
+}
+
+async fn listed(app: &App, kind: Option<JobKind>, part: Result<Query<Part>, QueryRejection>) -> Answer<Json<Page>> {
     let Query(part) = part.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
     let limit = part.limit.unwrap_or(LIST);
     if !(1..=LIST_MAX).contains(&limit) {
@@ -215,10 +232,59 @@ pub async fn list(
     if let Some(after) = part.after.as_deref().filter(|after| !is_id(after)) {
         return Err(Problem::bad_request(format!("after = {after:?} is not what `next` of an earlier part gave")));
     }
-    let listing = app.store.list(kind, part.state, part.after.as_deref(), limit).await?;
+    let text = part.text.as_deref().unwrap_or_default();
+    if text.len() > NOTE_MAX || text.contains('\0') {
+        return Err(Problem::bad_request(format!("text is not up to {NOTE_MAX} bytes without a null")));
+    }
+    let (archived, after) = (part.archived.unwrap_or(false), part.after.as_deref());
+    let listing = app.store.list(Wanted { kind, state: part.state, text, archived, after, limit }).await?;
     let items =
         listing.jobs.into_iter().map(|job| JobView { job, files: Vec::new(), inputs: None, input: None, case: None }).collect();
     Ok(Json(Page { items, next: listing.next }))
+}
+
+/// What is to be said of a job from now on; at least one of them.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ChangeRequest {
+    /// Its name, 1 to 200 bytes.
+    name: Option<String>,
+    /// A note, up to 2000 bytes; empty for none.
+    note: Option<String>,
+    /// Whether it is put away: lists leave it out unless asked.
+    archived: Option<bool>,
+}
+
+/// Renames a job, notes something of it, or puts it away; its input, its result and its report stay as they are.
+#[utoipa::path(patch, path = "/v1/{collection}/{id}", tag = "jobs",
+    params(("collection" = String, Path), ("id" = String, Path)), request_body = ChangeRequest,
+    responses((status = 200, body = JobView), (status = 403, body = Problem), (status = 404, body = Problem),
+        (status = 415, body = Problem), (status = 422, body = Problem)))]
+pub async fn change(
+    Shared(app): Shared<App>,
+    Path((collection, id)): Path<(String, String)>,
+    Extension(caller): Extension<Caller>,
+    request: Request,
+) -> Answer<Json<JobView>> {
+    let job = job_of(&app, &collection, &id).await?;
+    caller.must_own(&job.owner)?;
+    let asked: ChangeRequest = documents::object(&app, &caller, request, "known are name, note, archived").await?;
+    let ChangeRequest { name, note, archived } = asked;
+    if name.is_none() && note.is_none() && archived.is_none() {
+        return Err(Problem::bad_request("nothing to change: give name, note or archived"));
+    }
+    name.as_deref().map_or(Ok(()), |name| documents::check_name("name", name))?;
+    if let Some(note) =
+        note.as_deref().filter(|note| note.len() > NOTE_MAX || note.contains(|c: char| c.is_control() && c != '\n'))
+    {
+        let remedy = format!("give up to {NOTE_MAX} bytes of plain text");
+        return Err(input("note", format!("{} bytes", note.len()), "is no note", remedy).into());
+    }
+    if !app.store.change(&id, &Change { name, note, archived }).await? {
+        return Err(Problem::not_found(job.kind.name()));
+    }
+    let job = job_of(&app, &collection, &id).await?;
+    Ok(Json(view(&app, job, false).await?))
 }
 
 /// How long a look at a job may wait.

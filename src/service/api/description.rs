@@ -20,7 +20,7 @@ const WITH_FILE: [(&str, &str); 3] = [
 const WITH_NAME: [&str; 2] = ["400", "404"];
 
 /// What can be done with a job that was accepted.
-const NEXT: [&str; 3] = ["show", "cancel", "delete"];
+const NEXT: [&str; 4] = ["show", "change", "cancel", "delete"];
 
 const PROBLEM: &str = "application/problem+json";
 const FORM: &str = "multipart/form-data";

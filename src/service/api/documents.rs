@@ -170,6 +170,16 @@ pub async fn read(app: &App, caller: &Caller, request: Request) -> Answer<Body> 
     Ok(Body { asked, fingerprint, room })
 }
 
+/// A small body, an object in JSON; `known` says which keys it may have.
+pub async fn object<T: DeserializeOwned>(app: &App, caller: &Caller, request: Request, known: &str) -> Answer<T> {
+    let _room = app.bodies.wait(caller).await?;
+    if kind_of(&request)? != Kind::Json {
+        let detail = "send an object in JSON with content-type: application/json";
+        return Err(Problem::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "Unsupported media type", detail));
+    }
+    json(&bytes(request).await?, "the body", known)
+}
+
 /// JSON of bounded size in memory.
 fn json<T: DeserializeOwned>(bytes: &[u8], what: &str, known: &str) -> Answer<T> {
     if parts(bytes) > PARTS_MAX {
@@ -240,7 +250,8 @@ async fn parts_of_form(app: &App, request: Request) -> Answer<Fields> {
     Ok((fields, files))
 }
 
-fn check_name(key: &str, name: &str) -> Answer<()> {
+/// Refuses what is no name of a case or file.
+pub fn check_name(key: &str, name: &str) -> Answer<()> {
     let is_fine = !name.is_empty() && name.len() <= NAME_MAX && !name.chars().any(char::is_control);
     if is_fine {
         return Ok(());

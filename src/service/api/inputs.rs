@@ -1,5 +1,6 @@
 //! Looking at input before anything is run: measured curves, and what a file would run.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use axum::extract::{Request, State};
@@ -16,10 +17,12 @@ use crate::check;
 use crate::error::{Error, input};
 use crate::job::JobKind;
 use crate::measured::{
-    Column, ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, MeasuredCurve, Named, Shape, Sheet, Survey, survey,
+    Column, ColumnNames, CycleUnit, Decimal, Import, Layout, LengthUnit, LoadUnit, Loads, MeasuredCurve, Named, SAME_LOAD, Shape,
+    Sheet, Survey, round_off, survey,
 };
 use crate::problem::{Answer, Place, Problem};
-use crate::units::MM;
+use crate::specimen::LoadMeasure;
+use crate::units::{KN, MM, MPA};
 use crate::watch;
 
 /// What was found in files of readings.
@@ -37,10 +40,14 @@ pub struct FoundFile {
     header: Vec<String>,
     /// Cells of the first rows.
     first_rows: Vec<Vec<String>>,
+    /// What these cells are taken for: cycles, and crack lengths in mm; null for all that is neither, or no number.
+    taken: Vec<Vec<Option<f64>>>,
     /// What its columns are; null where that cannot be told.
     columns: Option<Columns>,
     /// Curves of the good rows.
     curves: Vec<FoundCurve>,
+    /// Keys of `[loading]` that its columns say, where all readings have one load.
+    loading: BTreeMap<&'static str, f64>,
     warnings: Vec<String>,
     /// Bad rows, or what is wrong with the file as a whole.
     problems: Vec<Place>,
@@ -147,9 +154,42 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
     })
 }
 
+/// The load of all readings in keys of `[loading]`; nothing where there is none, or several.
+fn load_of(curves: &[MeasuredCurve]) -> BTreeMap<&'static str, f64> {
+    let loads: Vec<&Loads> = curves.iter().filter_map(|curve| curve.loads.as_ref()).collect();
+    let Some(first) = loads.first().filter(|_| loads.len() == curves.len()) else { return BTreeMap::new() };
+    let (key, unit) = match (first.measure, first.is_range) {
+        (LoadMeasure::Force, false) => ("force_max_kn", KN),
+        (LoadMeasure::Force, true) => ("force_range_kn", KN),
+        (LoadMeasure::Stress, false) => ("stress_max_mpa", MPA),
+        (LoadMeasure::Stress, true) => ("stress_range_mpa", MPA),
+    };
+    let is_alike = |loads: &&Loads| (loads.measure, loads.is_range) == (first.measure, first.is_range);
+    let of = |values: fn(&Loads) -> &Vec<f64>, slack: f64| {
+        let mut all = loads.iter().flat_map(|loads| values(loads)).copied();
+        let value = all.next()?;
+        // NaN, which stands where the file says nothing, is like nothing.
+        all.all(|other| (other - value).abs() <= slack * value.abs()).then_some(value).filter(|value| value.is_finite())
+    };
+    let load = of(|loads| &loads.maximum, SAME_LOAD).filter(|_| loads.iter().all(is_alike));
+    let ratio = of(|loads| &loads.ratio, SAME_LOAD).map(|ratio| ("stress_ratio", round_off(ratio)));
+    load.map(|load| (key, round_off(load / unit))).into_iter().chain(ratio).collect()
+}
+
 fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
     let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(&file), import);
     let unit = |column: &Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
+    let lengths = |layout: &Layout| -> Vec<usize> {
+        layout.series.iter().flat_map(|series| &series.lengths).map(|column| column.index).collect()
+    };
+    let taken = layout.iter().flat_map(|layout| {
+        let lengths = lengths(layout);
+        first_rows.iter().map(move |cells| {
+            let shown = |(index, value): (usize, Option<f64>)| value.map(|v| if lengths.contains(&index) { v / MM } else { v });
+            layout.taken(cells).into_iter().enumerate().map(shown).collect()
+        })
+    });
+    let taken = taken.collect();
     let columns = layout.map(|layout| Columns {
         layout: match layout.shape {
             Shape::Long => "long",
@@ -172,7 +212,9 @@ fn found(file: String, content: &[u8], import: &Import) -> FoundFile {
         file,
         header,
         first_rows,
+        taken,
         columns,
+        loading: load_of(&measured.curves),
         curves: measured.curves.into_iter().map(curve).collect(),
         warnings: measured.warnings,
         problems: problems.into_iter().map(Place::from).collect(),

@@ -69,8 +69,11 @@ pub async fn measure(request: Request, next: Next) -> Response {
     let begun = Instant::now();
     let response = next.run(request).await;
     let status = response.status().as_u16().to_string();
-    let method =
-        if ["GET", "HEAD", "POST", "DELETE"].contains(&method.as_str()) { method.to_string() } else { "other".to_owned() };
+    let method = if ["GET", "HEAD", "POST", "PATCH", "DELETE"].contains(&method.as_str()) {
+        method.to_string()
+    } else {
+        "other".to_owned()
+    };
     metrics::counter!("perilife_http_requests_total", "route" => route.clone(), "method" => method, "status" => status)
         .increment(1);
     metrics::histogram!("perilife_http_request_seconds", "route" => route).record(begun.elapsed().as_secs_f64());

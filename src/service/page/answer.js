@@ -26,11 +26,21 @@ export function mark(kind) {
 /** Quantiles of the life: 5, 50 and 95 % of specimens; null without a band. */
 export const quantilesOf = ({ band }) => (band ? [band.cycles_p05, band.cycles_p50, band.cycles_p95] : null);
 
+/** Median and band on an axis from `low` to `high`, cycles. */
+export function bar([from, middle, to], [low, high]) {
+  const at = (value) => 4 + (192 * (value - low)) / (high - low);
+  return shape("svg", { class: "range", viewBox: "0 0 200 16", role: "img", "aria-label": `Band ${bandOf([from, middle, to])}, median ${deserved(middle, [from, middle, to])}` },
+    shape("line", { x1: 4, x2: 196, y1: 8, y2: 8 }), shape("rect", { x: at(from), width: at(to) - at(from), y: 4, height: 8 }), shape("circle", { cx: at(middle), cy: 8, r: 5 }));
+}
+
 /** The tip that ends the life, where the plate has lengths of its own; else null. */
 export function leadOf(s) {
   const tip = (s.tips ?? []).findIndex((one) => one.leads && one.crack !== null && one.crack !== undefined);
   return tip < 0 ? null : tip;
 }
+
+/** Why a life does not count; the name of the run stands above already. */
+export const whyRefused = ({ refused }) => sentence(refused.replace(/^[^:]*: (?=the )/, ""));
 
 /** Lengths at the start and at the end, mm: of the crack that ends the life, or of the specimen. */
 export function lengthsOf(s) {
@@ -42,15 +52,17 @@ function large(s) {
   const value = (text, unit) => element("p", { class: "life", "data-value": "life_cycles" }, text, unit && element("small", null, unit));
   const said = (title, text, more) => [element("h2", null, title), element("p", { class: "life words", "data-value": "life_cycles" }, text), element("p", { class: "beside" }, more)];
   const [from, to] = lengthsOf(s);
-  if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, s.refused));
+  if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, whyRefused(s)));
   if (s.life_cycles === null) return said("Life", "No growth", "Every tip stays below the threshold of the law under this load: there is no number of cycles to give.");
   const band = quantilesOf(s);
-  const number = band ? deserved(band[1], band) : cycles(Math.round(s.life_cycles));
+  // Without a band as many digits as the numerical error leaves.
+  const error = (s.error_estimate_percent ?? 0) / 100;
+  const number = band ? deserved(band[1], band) : error > 0 ? deserved(s.life_cycles, [1 - error, 1, 1 + error].map((share) => share * s.life_cycles)) : cycles(Math.round(s.life_cycles));
   const start = `from a crack of ${fixed(from, 2)} mm`;
   const end = TO_THE_END[s.stop_reason];
   const title = BROKEN_OFF.includes(s.stop_reason) ? `Computed up to ${fixed(to, 1)} mm only` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
   return [element("h2", null, title), value(`${s.life_is_lower_bound ? "≥ " : ""}${number}`, "cycles"),
-    element("p", { class: "beside" }, bandWords(s)),
+    element("p", { class: "beside" }, bandWords(s)), band && bar(band, [0, 1.05 * band[2]]),
     element("p", { class: "quiet" }, errorWords(s) && `Numerical error: ${errorWords(s)}`)];
 }
 
@@ -90,9 +102,12 @@ const line = (check) => element("li", { "data-check": check.name, "data-verdict"
   mark(OF_VERDICT[check.verdict] ?? "note")[0],
   element("span", null, mark(OF_VERDICT[check.verdict] ?? "note")[1], sentence(check.words), check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)));
 
+/** Mark of a verdict. */
+export const kindOfVerdict = (verdict) => (verdict.startsWith("stands:") ? "ok" : verdict.startsWith("stands") ? "note" : "bad");
+
 function valid({ verdict, checks = [] }) {
   if (!verdict) return element("p", { class: "quiet" }, "An earlier version of the program wrote this result.");
-  const kind = verdict.startsWith("stands:") ? "ok" : verdict.startsWith("stands") ? "note" : "bad";
+  const kind = kindOfVerdict(verdict);
   const [shown, rest] = [checks.slice(0, CHECKS_SHOWN), checks.slice(CHECKS_SHOWN)];
   return [element("h2", null, "Is it valid?"), element("p", { class: `verdict is-${kind}`, "data-value": "verdict" }, sentence(verdict)),
     element("ul", { class: "checks" }, shown.map(line)),

@@ -124,6 +124,11 @@ export async function postJson(path, body, { key, signal } = {}) {
   return response.status === 204 ? null : response.json();
 }
 
+/** Changes part of what is there. */
+export async function patchJson(path, body) {
+  return (await request(path, { method: "PATCH", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) })).json();
+}
+
 export async function postForm(path, form, { key, signal } = {}) {
   const headers = key ? { "Idempotency-Key": key } : {};
   return (await request(path, { method: "POST", headers, body: form, signal })).json();

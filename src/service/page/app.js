@@ -8,19 +8,21 @@ import { byId, element, show, showPage } from "./dom.js";
 import { count } from "./format.js";
 import { problemBox } from "./notices.js";
 import { openOther } from "./other_page.js";
+import { createNewRunView } from "./new_run.js";
 import { createPredictView } from "./predict.js";
 import { openPrediction } from "./prediction_page.js";
 import { createRunsView } from "./runs.js";
 import { forgetToken, readToken } from "./token.js";
 
-const views = { measure: createCalibrateView(), predict: createPredictView(), runs: createRunsView() };
+const predict = createPredictView();
+const views = { measure: createCalibrateView(), predict, runs: createRunsView(), new: createNewRunView({ predict }) };
 const OTHERS = { scenes: "Fracture scene", sweeps: "Sweep", sif: "Stress intensity factors" };
 const PAGES = {
   calibrations: openCalibration, predictions: openPrediction,
   ...Object.fromEntries(Object.keys(OTHERS).map((name) => [name, openOther(name)])),
 };
 const TITLES = {
-  measure: "Measure and calibrate", predict: "Predict", runs: "Runs",
+  measure: "Calibrate", predict: "Predict", runs: "Runs", new: "New run",
   calibrations: "Calibration", predictions: "Prediction", compare: "Comparison", ...OTHERS,
 };
 const NAVIGATION = { measure: "measure", predict: "predict" }; // all others belong to the runs
@@ -42,7 +44,7 @@ async function route() {
   const { name, rest, query } = address();
   const place = name in views ? name : "run";
   views.runs.close();
-  byId("start-problem").hidden = place !== "measure" && place !== "predict"; // the others need no materials
+  byId("start-problem").hidden = place === "runs" || place === "run"; // the others need no materials
   for (const section of document.querySelectorAll("section.view")) section.hidden = section.id !== `view-${place}`;
   for (const link of document.querySelectorAll("nav a")) {
     if (link.dataset.view === (NAVIGATION[name] ?? "runs")) link.setAttribute("aria-current", "page");
@@ -52,7 +54,7 @@ async function route() {
   if (place === "run") await openRun(byId("view-run"), name, rest, signal);
   else {
     announce(place);
-    if (place === "predict") await materialsKnown;
+    if (place !== "runs") await materialsKnown;
     if (!signal.aborted) views[name].open?.(query);
   }
 }

@@ -1,16 +1,18 @@
 // Measure and calibrate: measured files, the test they come from, and the start of a fit.
 
+import { getBlob } from "./api.js";
 import { createEditor } from "./editor.js";
 import { byId, show } from "./dom.js";
 import { EXAMPLE_NAME, EXAMPLE_TEST, exampleCsv } from "./example.js";
 import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
+import { jobToStartFrom } from "./job.js";
 import { createMeasured } from "./measured.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
 import { startRun } from "./submit.js";
 
 const PARAMETERS = [
-  { value: "a,p", title: "A and p (rate and exponent)" },
-  { value: "a", title: "A alone, p given" },
+  { value: "a,p", title: "A and p" },
+  { value: "a", title: "A, p given" },
 ];
 
 /** Builds the view; gives {setMaterials}. */
@@ -51,6 +53,18 @@ export function createCalibrateView() {
     };
   }
 
+  /** The form as a calibration was submitted; false where it says what no field shows, which is then lost but for its text. */
+  function fillAll({ measured: m = {}, fit = {}, ...test }) {
+    fillIn(from, m.from_crack_length_mm);
+    fillIn(to, m.to_crack_length_mm);
+    [from, to, specimen.fields.crack_length_mm].forEach((field) => {
+      field.touched = true;
+    });
+    fillIn(parameters, (fit.parameters ?? ["a", "p"]).join(","));
+    fillIn(exponent, fit.p);
+    return fill(test) && !m.rates;
+  }
+
   function fill(test) {
     const known = specimen.fill(test.specimen) && material.fill(test.material) && loading.fill(test.loading);
     fillIn(spacing, test.model?.spacing_mm);
@@ -69,6 +83,7 @@ export function createCalibrateView() {
     if (range && !from.touched) fillIn(from, range[0]);
     if (range && !to.touched) fillIn(to, range[1]);
     if (range && !specimen.fields.crack_length_mm.touched) fillIn(specimen.fields.crack_length_mm, from.input.value);
+    loading.propose(measured.loading());
     editor.check.soon();
   });
 
@@ -101,9 +116,33 @@ export function createCalibrateView() {
     });
   });
 
+  /** Starts from a calibration: its files, its test, what was left out. */
+  async function openFrom(id) {
+    const job = await jobToStartFrom(id);
+    const files = await Promise.all(job.inputs.map(async ({ name: own, href }) => {
+      const file = await getBlob(href);
+      return { name: own, file, text: /\.(parquet|xlsx|xlsm)$/i.test(own) ? null : await file.text() };
+    }));
+    const isShown = fillAll(job.case);
+    await measured.load(files, job.case.measured);
+    fillIn(name, job.name);
+    if (!isShown) editor.start(job.input);
+  }
+
   editor.check.now();
-  return { setMaterials: (list) => {
-    material.setMaterials(list);
-    editor.check.soon();
-  } };
+  return {
+    setMaterials(list) {
+      material.setMaterials(list);
+      editor.check.soon();
+    },
+    /** `from`: a calibration to start from, as collection/id. */
+    async open(query) {
+      if (!query.get("from")) return;
+      try {
+        await openFrom(query.get("from"));
+      } catch (error) {
+        editor.check.refuse(error);
+      }
+    },
+  };
 }

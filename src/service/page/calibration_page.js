@@ -5,7 +5,7 @@ import { getBlob, getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, section, show, showPage, table, terms } from "./dom.js";
 import { cycles, deviation, fixed, percent, plain, scientific, significant, words } from "./format.js";
-import { createJobHead, downloadList, inputText, pathOf, reportButton, showAtEnd } from "./job.js";
+import { createJobHead, describe, downloadList, inputText, pathOf, reportButton, showAtEnd } from "./job.js";
 import { warningList } from "./check.js";
 import { lawSections } from "./law_page.js";
 import { loadInto } from "./notices.js";
@@ -47,11 +47,14 @@ export async function openCalibration(root, id, signal) {
     show(body, lawCard(whole.summary),
       element("div", { class: "pictures" }, element("div", { class: "card figure" }, curves), has("rates.csv") && element("div", { class: "card figure" }, rates)),
       element("div", { class: "two" }, element("section", { class: "card", "aria-label": "Constants" }, element("h2", null, "Constants"), constants(whole.summary)),
-        element("div", { class: "stack" }, specimens(whole.summary), warnings.length > 0 && warningList(warnings, "All that was noticed"))),
+        element("div", { class: "stack" }, readingsLeftOut(whole.summary), specimens(whole.summary), warnings.length > 0 && warningList(warnings, "All that was noticed"))),
       downloadList(whole), inputText(whole));
+    if (has("fit.json")) {
+      getText(`${pathOf(whole)}/files/fit.json`, signal).then((text) => head.describe(describe(JSON.parse(text))), () => {});
+    }
     loadInto(curves, async () => {
       const [fit, band, quantiles] = await Promise.all(["fit_curves.csv", "fit_band.csv", "quantiles.csv"].map(read));
-      charts.push(drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band)]));
+      charts.push(drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band), ...leftOut(await read("readings.csv"))]));
     });
     if (has("rates.csv")) loadInto(rates, async () => charts.push(drawRates(rates, await read("rates.csv"), whole.summary)));
   }
@@ -82,6 +85,18 @@ function scatterBand(quantiles) {
   const share = (name) => Number(name.slice("cycles_p".length));
   return [{ id: "scatter", name: `${share(low)} to ${share(high)} % of the specimens`, kind: "band", tone: 7,
     x: quantiles[low], y: quantiles.crack_length_mm, x2: quantiles[high], y2: quantiles.crack_length_mm }];
+}
+
+/** Readings that do not count, crossed out. */
+function leftOut(readings) {
+  const out = (readings?.cycles ?? []).map((_, row) => row).filter((row) => readings.left_out?.[row]);
+  return out.length > 0 ? [{ id: "left-out", name: "left out", kind: "crosses", x: out.map((row) => readings.cycles[row]), y: out.map((row) => readings.crack_length_mm[row]) }] : [];
+}
+
+/** What was left out, each with its reason. */
+function readingsLeftOut({ left_out: windows = [] }) {
+  return windows.length > 0 && section("left-out", "Readings left out", element("ul", null, windows.map((one) =>
+    element("li", null, `${one.specimen ?? "All"}, ${cycles(one.from_cycles)} to ${cycles(one.to_cycles)} cycles: ${one.reason}`))));
 }
 
 function drawFit(place, fit, curves) {

@@ -44,7 +44,7 @@ function domainOf(values, axis) {
 
 /**
  * Builds a chart in `container`. An axis is {label, unit, scale: "linear" | "log", from, to, format}; a series is {id, name, kind, x, y, tone}:
- * "line" (smooth: "x" | "y"), "thin", "points", "band" (second edge x2, y2), "rule" (upright at x[0]), "limit" (at x[0] or y[0], named),
+ * "line" (smooth: "x" | "y"), "thin", "points", "crosses", "band" (second edge x2, y2), "rule" (upright at x[0]), "limit" (at x[0] or y[0], named),
  * "outside" (hatched, above y[0], or below y2[0] down to nought) or "end" (a cross at its last point). `tools`: buttons of its head.
  * Gives {set(series), extend(id, x, y), move(at, dots), pick(take), destroy()}.
  */
@@ -142,7 +142,7 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
       const last = one.x.map((value, index) => [value, one.y[index]]).filter(finite).at(-1);
       return last && shape("text", { class: "halo strong", x: x(last[0]) + 8, y: y(last[1]) + 4 }, lowered(one.name));
     }));
-    const shown = series.filter((one) => one.name && ["line", "points", "thin"].includes(one.kind));
+    const shown = series.filter((one) => one.name && ["line", "points", "thin", "crosses"].includes(one.kind));
     legend.hidden = atEnds().length > 0 || shown.length < 2;
     show(legend, shown.map((one) => element("span", { class: "nowrap" },
       shape("svg", { width: 26, height: 10, "aria-hidden": "true" }, swatch(one)), ` ${one.name}  `)));
@@ -150,7 +150,7 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
     if (shared) move(...shared);
   }
 
-  const swatch = (one) => (one.kind === "points" ? shape("circle", { class: `series points ${tone(one)}`, cx: 13, cy: 5, r: 3.5 })
+  const swatch = (one) => (one.kind === "crosses" ? shape("path", { class: "series crosses", d: "M8 0l10 10m0 -10l-10 10" }) : one.kind === "points" ? shape("circle", { class: `series points ${tone(one)}`, cx: 13, cy: 5, r: 3.5 })
     : shape("path", { class: `series ${one.kind} ${tone(one)}`, d: "M1 5h24", "stroke-dasharray": dashes(one) }));
   const dashes = (one) => (one.dashed && one.tone > 0 ? ["6 3", "2 3", "9 3 2 3", "12 5", "4 2", "1 4", "9 3 2 3 2 3"][(one.tone - 1) % 7] : null);
 
@@ -172,6 +172,7 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
           return `M${cx - radius} ${cy}a${radius} ${radius} 0 1 0 ${2 * radius} 0a${radius} ${radius} 0 1 0 ${-2 * radius} 0z`;
         }).join("") });
       }
+      case "crosses": return shape("path", { ...attributes, d: points.filter(finite).map(([px, py]) => `M${x(px) - 5} ${y(py) - 5}l10 10m0 -10l-10 10`).join("") });
       case "band": {
         const area = d3.area().defined(finite).x0((at) => x(at[0])).x1((at) => x(at[2] ?? at[0])).y0((at) => y(at[1])).y1((at) => y(at[3] ?? at[1]));
         return shape("path", { ...attributes, d: area(points) });

@@ -2,11 +2,19 @@
 // `measured.columns` in a calibration file.
 
 import { element, table, uniqueId } from "./dom.js";
+import { cycles, fixed, parseNumber } from "./format.js";
 
 const KEYS = [
   ["", "not read"], ["cycles", "cycles"], ["length", "crack length"], ["specimen", "specimen"],
   ["force_max", "largest load"], ["force_min", "smallest load"], ["force_range", "range of load"], ["stress_ratio", "stress ratio"],
 ];
+
+/** A cell as it stands there, and what it is taken for where that is something else. */
+function withTaken({ columns, taken }, cell, row, index) {
+  const value = taken?.[row]?.[index];
+  if (!Number.isFinite(value) || parseNumber(cell) === value) return cell;
+  return [cell, " ", element("span", { class: "quiet nowrap" }, columns.keys[index] === "length" ? `${fixed(value, 2)} mm` : cycles(Math.round(value)))];
+}
 
 /** `onChange` is told when another choice was made. Gives {names(), clear(), show(file)}. */
 export function createColumns(onChange) {
@@ -46,15 +54,20 @@ export function createColumns(onChange) {
     clear() {
       chosen = {};
     },
+    /** Takes over what a calibration file says. */
+    choose(names = {}) {
+      chosen = Object.fromEntries(Object.entries(names).map(([key, list]) => [key, [list].flat()]));
+    },
     /** The first rows of a file as the service cut them. */
     show(file) {
       // A wide table has a specimen in every column.
       if (file.header.length === 0 || ["wide", "paired"].includes(file.columns?.layout)) return null;
       const selects = [];
       const columns = file.header.map((_, index) => ({ title: choice(file, index, selects) }));
-      return element("details", { open: file.columns === null },
+      return element("details", { open: file.columns === null || Object.keys(chosen).length > 0 },
         element("summary", null, "Columns"),
-        table(`Columns and first rows of ${file.file}`, columns, file.first_rows, { hidden: true, rowHeader: false, name: "columns" }));
+        table(`Columns and first rows of ${file.file}`, columns, file.first_rows.map((cells, row) => cells.map((cell, index) => withTaken(file, cell, row, index))),
+          { hidden: true, rowHeader: false, name: "columns" }));
     },
   };
 }

@@ -109,10 +109,11 @@ export function duration(seconds) {
   return hours > 0 ? `${hours} h ${minutes} min` : `${minutes} min ${total % 60} s`;
 }
 
-/** A moment, local time. */
-export function moment(text) {
+/** A moment, local time; in a list that of today is its hour. */
+export function moment(text, inList = false) {
   const date = new Date(text ?? "");
   if (Number.isNaN(date.getTime())) return NONE;
+  if (inList && date.toDateString() === new Date().toDateString()) return date.toLocaleTimeString(undefined, { hour: "2-digit", minute: "2-digit" });
   return date.toLocaleString(undefined, { year: "numeric", month: "short", day: "2-digit", hour: "2-digit", minute: "2-digit" });
 }
 
@@ -123,14 +124,19 @@ export function bytes(count) {
   return count < 1e6 ? `${fixed(count / 1e3, 1)} kB` : `${fixed(count / 1e6, 1)} MB`;
 }
 
+/** Kinds that are called otherwise than their key. */
+const CALLED = { element_free_galerkin: "nodes", peridynamics: "points and bonds", ring: "ring around the tip" };
+
 /** A key or kind in words: crack_length_reached becomes "crack length reached". */
 export function words(name) {
-  return String(name ?? "").replaceAll("_", " ");
+  return CALLED[name] ?? String(name ?? "").replaceAll("_", " ");
 }
 
 /** First letter large, for labels and starts of sentences. */
 export function sentence(text) {
   const line = String(text ?? "");
+  // A file or a key keeps its name.
+  if (/^\S*[._]\S/.test(line)) return line;
   return line.charAt(0).toUpperCase() + line.slice(1);
 }
 

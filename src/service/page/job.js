@@ -1,6 +1,6 @@
 // What every run has: state, progress, problem, files, cancel and delete.
 
-import { Problem, download, postJson, remove } from "./api.js";
+import { Problem, download, getJson, patchJson, postJson, remove } from "./api.js";
 import { button, byId, element, show, terms } from "./dom.js";
 import { follow } from "./events.js";
 import { excerpt } from "./excerpt.js";
@@ -19,7 +19,47 @@ export const isFinal = (job) => FINAL.includes(job.state);
 /** State of a run; one whose life does not count is refused, whatever its worker made of it. */
 export function stateBadge({ state, summary }) {
   const shown = state === "succeeded" && summary?.refused ? "refused" : state;
-  return element("span", { class: `badge ${shown}`, "data-state": shown }, sentence(shown));
+  return element("span", { class: `badge ${shown}`, "data-state": shown }, shown === "succeeded" ? "Done" : sentence(shown));
+}
+
+/** Where the form is that a run can be started anew from. */
+export function openForm(job) {
+  const view = { calibration: "measure", prediction: "predict", sif: "predict" }[job.kind] ?? "new";
+  return `#/${view}?from=${collectionOf(job)}/${encodeURIComponent(job.id)}`;
+}
+
+/** The run that a form starts from, as `openForm` names it; an id alone is that of a prediction. */
+export function jobToStartFrom(from) {
+  const parts = from.includes("/") ? from.split("/") : ["predictions", from];
+  return getJson(`/v1/${parts.map(encodeURIComponent).join("/")}`);
+}
+
+/** Renames a run, notes something of it, or puts it away. */
+export const changeJob = (job, change) => patchJson(pathOf(job), change);
+
+/** A line to write in, in the place of a name or a note: Enter keeps it, Escape leaves what was there. */
+export function editInPlace(place, { label, value, save }) {
+  const before = [...place.childNodes];
+  const input = element("input", { type: "text", "aria-label": label, value, class: "edit-in-place" });
+  let isLeft = false; // taking the line away takes the focus from it
+  const leave = () => {
+    isLeft = true;
+    show(place, before);
+  };
+  const keep = () => {
+    if (isLeft) return;
+    const next = input.value.trim();
+    leave();
+    if (next !== value && (next || label === "Note")) save(next);
+  };
+  input.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") keep();
+    else if (event.key === "Escape") leave();
+  });
+  input.addEventListener("blur", keep);
+  show(place, input);
+  input.focus();
+  input.select();
 }
 
 /** Asks before a run is deleted; true when it is gone. */
@@ -92,10 +132,18 @@ export function createJobHead(first, { actions = [] } = {}) {
   const discard = button("Delete", guarded(async () => {
     if (await confirmDelete(job)) location.hash = `#/runs?kind=${collectionOf(job)}`;
   }), { "data-action": "delete" });
+  const title = element("span", null, nameOf(job));
+  const note = element("p", { class: "note" }, job.note);
+  const edit = (key, place, label) => () => editInPlace(place, { label, value: job[key] ?? "", save: (value) => guarded(async () => {
+    job = { ...job, ...(await changeJob(job, { [key]: value })) };
+    show(place, value);
+  })() });
   const node = element("header", { class: "job-head", id: "job", "data-job-kind": job.kind },
-    element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, nameOf(job)), badge,
-      element("div", { class: "tool-row end" }, actions, cancel, discard)),
-    what, facts, progress, aloud, trouble);
+    element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, title), badge,
+      button("Rename", edit("name", title, "Name"), { class: "button bare", "data-action": "rename" }),
+      button("Note", edit("note", note, "Note"), { class: "button bare", "data-action": "note" }),
+      element("div", { class: "tool-row end" }, actions, element("a", { class: "button", href: openForm(job), "data-action": "again" }, "Duplicate"), cancel, discard)),
+    what, note, facts, progress, aloud, trouble);
 
   function update(next) {
     job = { ...job, ...next };
@@ -109,7 +157,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     discard.hidden = !ended;
     const took = job.started && job.finished ? `, took ${duration((new Date(job.finished) - new Date(job.started)) / 1000)}` : "";
     const again = job.attempts > 1 ? `, attempt ${job.attempts}` : "";
-    facts.textContent = `${kindOf(job)} of ${moment(job.created)}${took}${again}`;
+    facts.textContent = `${kindOf(job)} of ${moment(job.created)}${job.owner ? `, by ${job.owner}` : ""}${took}${again}`;
     progress.hidden = ended;
     if (!ended) showProgress();
     speak();
@@ -126,12 +174,13 @@ export function createJobHead(first, { actions = [] } = {}) {
     const prediction = job.kind === "prediction";
     bar.value = p.share ?? 0;
     show(figures, terms([
-      ["Share", percent(p.share, 0)],
+      ["Way to its end", percent(p.share, 0)],
       // A fit makes several runs: where one of them stands says nothing.
       prediction && ["Cycles", cycles(Math.round(p.cycles))],
       prediction && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],
       ["Elapsed", duration(p.elapsed_s)],
-      ["Time left", Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],
+      // By the growth so far: what comes behind it, bounds of the error and files, is not in it.
+      ["Time left", p.share > 0.995 ? "error and files" : Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],
     ].filter(Boolean), "progress"));
   }
 
@@ -164,6 +213,11 @@ export function createJobHead(first, { actions = [] } = {}) {
   };
 }
 
+/** One sentence on what was computed: plate, material, load. */
+export function describe({ plate }) {
+  return plate ? [sentence(plate.specimen), plate.material, plate.load].filter(Boolean).join("; ") : "";
+}
+
 /** Why a run failed, with the lines of its input where the problem names one. */
 export function failureOf(job) {
   if (job.state === "cancelled") return element("p", { class: "notice" }, "This run was cancelled before its end.");
@@ -176,7 +230,7 @@ export function failureOf(job) {
 /** The report of a run, to be printed and signed; nothing of runs of before. */
 export function reportButton(job, name = nameOf(job)) {
   const report = job.files?.find((file) => file.name === "report.html");
-  return report && button("Report", () => download(report.href, `${name}.html`), { "data-action": "report" });
+  return report && button("Report", () => download(report.href, `${name}.html`), { class: "button primary", "data-action": "report" });
 }
 
 /** Everything to take away; `special`: {name: node} where a file has choices of its own. */

@@ -6,6 +6,8 @@ import { createColumns } from "./columns.js";
 import { button, byId, element, show, table } from "./dom.js";
 import { excerpt } from "./excerpt.js";
 import { count, cycles, fixed, plain } from "./format.js";
+import { editInPlace } from "./job.js";
+import { createLeftOut } from "./left_out.js";
 import { problemBox } from "./notices.js";
 
 const LENGTHS = { mm: "millimetres", inch: "inches", m: "metres" };
@@ -23,6 +25,9 @@ export function createMeasured(onChange) {
     decimal: byId("decimal"), sheet: byId("sheet") };
   const columns = createColumns(() => read());
   const [result, chartPlace] = [byId("measured-result"), byId("measured-chart")];
+  const out = createLeftOut(() => {
+    draw();
+  });
   let files = []; // {name, file, text}
   let answer = []; // the files as the service read them
   let running = null;
@@ -81,7 +86,7 @@ export function createMeasured(onChange) {
     root.dataset.measured = files.length === 0 ? "empty" : problems().length > 0 ? "problem" : "ok";
     byId("units").hidden = files.length === 0;
     byId("example-note").hidden = !files.some((file) => file.example);
-    show(result, answer.map(describe), problems().length > 0 && problemTable(), files.map(wrongLines), warnings());
+    show(result, answer.map(describe), out.list(), problems().length > 0 && problemTable(), files.map(wrongLines), warnings());
     drawChart();
     onChange();
   }
@@ -103,10 +108,13 @@ export function createMeasured(onChange) {
       element("div", null, element("h3", null, file),
         element("p", null, found.length > 0 ? `${summary}: ${ranges(found)}.` : "No curve could be read."),
         words && element("p", { class: "quiet" }, `Recognised: ${words}.`),
-        columns.show(answered)),
+        columns.show(answered), found.length > 0 && out.readings(answered)),
       button("Remove", () => {
         files = files.filter((one) => one.name !== file);
-        if (files.length === 0) columns.clear();
+        if (files.length === 0) {
+          columns.clear();
+          out.clear();
+        }
         read();
       }, { class: "button small", "aria-label": `Remove ${file}` }));
   }
@@ -127,14 +135,28 @@ export function createMeasured(onChange) {
     const list = problems();
     const rows = list.map((one) => [
       one.line ? button(`${one.file}:${one.line}`, () => jump(one), { class: "link" }) : one.file,
-      one.key ?? "", one.value ?? "", one.problem ?? "", remedyOf(one),
+      one.key ?? "", one.value ?? "", one.problem ?? "", remedyOf(one), isOfColumns(one) ? "" : takeOut(one),
     ]);
-    const columns = ["File and line", "Column", "Value", "Problem", "Remedy"].map((title) => ({ title }));
+    const columns = ["File and line", "Column", "Value", "Problem", "Remedy", "Do"].map((title) => ({ title }));
     return element("div", { class: "notice bad", role: "alert", "data-problems": list.length },
       element("h3", null, list.length >= 100 ? "The first 100 problems" : count(list.length, "problem")),
       element("p", null, list.some(isOfColumns) && "Say above the columns what they are, and under “What the files leave open” which units hold; or correct the file. ",
-        !list.some(isOfColumns) && "Correct the file and drop it again under the same name.", curves().length > 0 && " The chart shows the readings that are right."),
+        !list.some(isOfColumns) && "Take a line out with its reason, or correct the file and drop it again under the same name.", curves().length > 0 && " The chart shows the readings that are right."),
       table("Problems of the measured files", columns, rows, { hidden: true, name: "problems" }));
+  }
+
+  /** A line that is wrong stays in the file that goes along, as a comment with the reason. */
+  function takeOut({ file: name, line }) {
+    const own = files.find((one) => one.name === name);
+    if (!line || own?.text === null) return "";
+    const place = element("span", null, button("Leave out", () => editInPlace(place, { label: `Why line ${line} does not count`, value: "", save: (reason) => {
+      const lines = own.text.split(/(?<=\n)/);
+      lines[line - 1] = `# left out (${reason}): ${lines[line - 1]}`;
+      const text = lines.join("");
+      files = files.map((one) => (one === own ? { ...own, text, file: new Blob([text]) } : one));
+      read();
+    } }), { class: "button small", "data-action": "take-out", "aria-label": `Leave out line ${line}` }));
+    return place;
   }
 
   function wrongLines({ name, text }) {
@@ -152,7 +174,9 @@ export function createMeasured(onChange) {
   function warnings() {
     // Most of them begin with the file themselves.
     const named = (file, line) => (line.startsWith(`${file}:`) ? line : `${file}: ${line}`);
-    const list = answer.flatMap((file) => file.warnings.map((line) => named(file.file, line)));
+    // Whoever has said what the columns are knows which are not read.
+    const isNews = (line) => !(columns.names() && line.includes("not read, since the name"));
+    const list = answer.flatMap((file) => file.warnings.filter(isNews).map((line) => named(file.file, line)));
     return list.length > 0 && element("div", { class: "notice warn" }, element("ul", null, list.map((line) => element("li", null, line))));
   }
 
@@ -165,9 +189,11 @@ export function createMeasured(onChange) {
       x: { label: "Cycles N", format: cycles, from: 0 },
       y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
     });
-    chart.set(answer.flatMap((file) => file.curves.map((curve) => ({ file: file.file, curve }))).map(({ file, curve }, index) => ({
-      id: `${file}/${curve.specimen}`, name: curve.specimen, kind: "points", x: curve.cycles, y: curve.crack_length_mm, tone: index,
-    })));
+    const all = answer.flatMap((file) => file.curves.map((curve) => ({ file: file.file, curve })));
+    const isMany = all.length > 6; // dozens are told apart by nobody
+    chart.set([...all.map(({ file, curve }, index) => ({
+      id: `${file}/${curve.specimen}`, name: isMany ? undefined : curve.specimen, kind: isMany ? "thin" : "points", x: curve.cycles, y: curve.crack_length_mm, tone: isMany ? 2 : 2 + index,
+    })), ...out.marks(all.map(({ curve }) => curve))]);
   }
 
   input.addEventListener("change", () => {
@@ -196,7 +222,7 @@ export function createMeasured(onChange) {
     files: () => (curves().length === 0 ? null : files),
     names: () => files.map((file) => file.name),
     /** What is said of them, as keys of [measured]. */
-    said: () => ({ ...Object.fromEntries(Object.entries(said).map(([key, input]) => [key, input.value || undefined])), columns: columns.names() }),
+    said: () => ({ ...Object.fromEntries(Object.entries(said).map(([key, input]) => [key, input.value || undefined])), columns: columns.names(), leave_out: out.windows() }),
     /** Crack lengths that every curve covers. */
     window() {
       const given = curves().map((curve) => curve.crack_length_mm).filter((lengths) => lengths.length > 0);
@@ -208,10 +234,20 @@ export function createMeasured(onChange) {
       return [tidy(Math.max(...starts)), tidy(Math.min(...ends))];
     },
     specimens: () => curves().length,
+    /** Keys of [loading] that the files say, all the same. */
+    loading() {
+      const said = [...new Set(answer.map((file) => JSON.stringify(file.loading ?? {})))];
+      return said.length === 1 ? JSON.parse(said[0]) : {};
+    },
     loadExample(name, text) {
-      files = [{ name, text, file: new Blob([text], { type: "text/csv" }), example: true }];
-      for (const input of Object.values(said)) input.value = "";
-      columns.clear();
+      return this.load([{ name, text, file: new Blob([text], { type: "text/csv" }), example: true }]);
+    },
+    /** Takes files over, with what [measured] of a calibration says of them. */
+    load(next, { columns: names, leave_out: windows = [], ...others } = {}) {
+      files = next;
+      for (const [key, input] of Object.entries(said)) input.value = others[key] ?? "";
+      columns.choose(names);
+      out.take(windows);
       return read();
     },
   };

@@ -67,7 +67,7 @@ function livesOf({ life_cycles: lives, cases, succeeded, failed, missing, unlimi
       element("p", { class: "life", "data-value": "life_cycles" }, figure(lives.p50), element("small", null, "cycles")),
       element("p", { class: "beside" }, "9 of 10 cases: ", element("strong", null, `${figure(lives.p05)} to ${figure(lives.p95)}`))),
     element("div", null, element("h2", null, "What was varied"), terms([
-      ["Design", words(design?.kind ?? design)], ["Least and most", `${figure(lives.least)} and ${figure(lives.most)}`],
+      ["Design", `${words(design?.design?.kind)}${(design?.vary ?? []).length > 0 ? `: ${design.vary.map((one) => words(one.key.split(".").pop())).join(", ")}` : ""}`], ["Least and most", `${figure(lives.least)} and ${figure(lives.most)}`],
       unlimited > 0 && ["Unlimited", count(unlimited, "case")], runOuts > 0 && ["Run out", count(runOuts, "case")]].filter(Boolean), "sweep")),
     element("div", null, element("h2", null, "Is it whole?"),
       element("p", { class: `verdict ${open === 0 ? "is-ok" : "is-note"}` }, open === 0 ? `All ${count(succeeded, "case")} succeeded` : `${failed} failed, ${missing} missing of ${cases}`)));

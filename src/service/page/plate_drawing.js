@@ -126,15 +126,7 @@ export function createStage(container, { label, role = "img", drawMore }) {
       }),
       notches.filter(whole).map((notch) => line(notch, { class: "plate-notch", "stroke-width": notch.width_mm * view.scale })),
       cracks.filter(whole).map((crack) => line(crack, { class: "plate-crack" })),
-      close ? null : arrows(boxOf(outline)), rule());
-  }
-
-  /** The load pulls at both ends. */
-  function arrows(box) {
-    return [0.1, 0.3, 0.5, 0.7, 0.9].flatMap((share) => [[box.top, -1], [box.bottom, 1]].map(([edge, way]) => {
-      const [x, y] = at([box.left + share * (box.right - box.left), edge]);
-      return shape("path", { class: "plate-load", d: `M${x} ${y + 5 * way}v${13 * way}m-3 ${-4 * way}l3 ${4 * way}l3 ${-4 * way}` });
-    }));
+      rule());
   }
 
   /** A length to measure by, as long as about a quarter of the picture. */

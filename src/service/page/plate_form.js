@@ -7,28 +7,33 @@ import { createSketch } from "./sketch.js";
 
 const LISTS = {
   holes: {
-    title: "Holes", one: "Hole", add: "Add a hole",
+    title: "Holes", one: "Hole", add: "Add a hole", at: "specimen.holes", unit: "mm",
     columns: [["x_mm", "x"], ["y_mm", "y"], ["diameter_mm", "Diameter"]],
   },
   cracks: {
-    title: "Cracks", one: "Crack", add: "Add a crack",
+    title: "Cracks", one: "Crack", add: "Add a crack", at: "specimen.cracks", unit: "mm",
     columns: [["from_mm[0]", "x₁"], ["from_mm[1]", "y₁"], ["to_mm[0]", "x₂"], ["to_mm[1]", "y₂"]],
+  },
+  pins: {
+    title: "Pins that pull in holes, loaded by a force", one: "Pin", add: "Add a pin", at: "loading.pins", unit: "",
+    columns: [["hole", "Hole No."], ["direction[0]", "Way x"], ["direction[1]", "Way y"]],
   },
 };
 const SPOKEN = { "x₁": "start x", "y₁": "start y", "x₂": "end x", "y₂": "end y" };
 
 /** `size()` gives width_mm and length_mm of the plate; `onChange` is told when something else than typing changed a number. */
 export function createPlate(form, { size, onChange }) {
-  const rows = { holes: [], cracks: [] };
-  const bodies = { holes: element("tbody"), cracks: element("tbody") };
-  const messages = { holes: element("p", { class: "field-problem", hidden: true }), cracks: element("p", { class: "field-problem", hidden: true }) };
+  const each = (make) => Object.fromEntries(Object.keys(LISTS).map((what) => [what, make(what)]));
+  const rows = each(() => []);
+  const bodies = each(() => element("tbody"));
+  const messages = each(() => element("p", { class: "field-problem", hidden: true }));
   const canvas = element("div", { class: "sketch" });
 
   function addRow(what, values) {
     const number = rows[what].length;
     const cells = LISTS[what].columns.map(([key, title], index) => {
-      const name = `${LISTS[what].one} ${number + 1}, ${SPOKEN[title] ?? title}, mm`;
-      return form.cell(`specimen.${what}[${number}].${key}`, name, values[index] === undefined ? "" : String(values[index]), messages[what]);
+      const name = [`${LISTS[what].one} ${number + 1}`, SPOKEN[title] ?? title, LISTS[what].unit].filter(Boolean).join(", ");
+      return form.cell(`${LISTS[what].at}[${number}].${key}`, name, values[index] === undefined ? "" : String(values[index]), messages[what]);
     });
     rows[what].push(cells);
   }
@@ -93,8 +98,8 @@ export function createPlate(form, { size, onChange }) {
   }
 
   function listOf(what) {
-    const { title, add, columns } = LISTS[what];
-    const head = columns.map(([, name]) => element("th", { scope: "col" }, name, element("span", { class: "unit" }, " mm")));
+    const { title, add, columns, unit } = LISTS[what];
+    const head = columns.map(([, name]) => element("th", { scope: "col" }, name, element("span", { class: "unit" }, ` ${unit}`)));
     const last = element("th", { scope: "col" }, element("span", { class: "visually-hidden" }, "Remove"));
     return element("div", { class: "row-table", "data-rows": what },
       element("div", { class: "table-scroll" },
@@ -113,10 +118,9 @@ export function createPlate(form, { size, onChange }) {
   const node = element("div", { class: "plate-form" }, canvas,
     element("p", { class: "hint" }, "The origin is the middle of the plate; x runs across, y along the load. ",
       "A crack may start at an edge or in a hole: what lies outside the material is cut off."),
-    listOf("cracks"), listOf("holes"));
+    listOf("cracks"), listOf("holes"), listOf("pins"));
   node.addEventListener("input", () => sketch.draw());
-  render("holes");
-  render("cracks");
+  Object.keys(LISTS).forEach(render);
 
   return {
     element: node,
@@ -127,7 +131,13 @@ export function createPlate(form, { size, onChange }) {
       const known = (one) => JSON.parse(JSON.stringify(one, (_, value) => (value === undefined ? undefined : value)));
       return { holes: holes.length > 0 ? holes.map(known) : undefined, cracks: cracks.map(known) };
     },
-    fill({ holes = [], cracks = [] }) {
+    /** Pins for `loading`; the file counts holes from 0, the table from 1. */
+    pins() {
+      const pins = values("pins").map(([hole, x, y]) => ({ hole: hole - 1, direction: [x, y] }));
+      return pins.length > 0 ? pins : undefined;
+    },
+    fill({ holes = [], cracks = [] }, { pins = [] } = {}) {
+      rebuild("pins", pins.map(({ hole, direction: [x, y] }) => [hole + 1, x, y]));
       rebuild("holes", holes.map((hole) => [hole.x_mm, hole.y_mm, hole.diameter_mm]));
       rebuild("cracks", straightCracks(cracks).map((crack) => [...crack.from_mm, ...crack.to_mm]));
       sketch.draw();

@@ -198,6 +198,7 @@ function createView(label, isWhole, heightMax) {
 
   /** Where a tip stands at shares of the life; of the first one in words, where there is room for them. */
   function marksOf(path, cycles, isNamed) {
+    if (!(data.life > 0)) return [];
     const ends = { "-1": -Infinity, 1: -Infinity }; // of the words above and below
     return MARKS.map((share, index) => {
       const [x, y] = pixel(at(path, share * data.life).slice(1));

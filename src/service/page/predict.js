@@ -5,9 +5,11 @@ import { byId, element, show } from "./dom.js";
 import { createEditor } from "./editor.js";
 import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
 import { percent, scientific, sentence, significant, words } from "./format.js";
+import { jobToStartFrom } from "./job.js";
 import { createPlate } from "./plate_form.js";
 import { problemBox } from "./notices.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
+import { createSides } from "./sides_form.js";
 import { startRun } from "./submit.js";
 
 const START = {
@@ -40,13 +42,17 @@ export function createPredictView() {
   });
   const specimen = createSpecimen(form, { plate });
   const material = createMaterial(form);
-  const loading = createLoading(form);
+  const sides = createSides(form, () => editor.check.soon());
+  const loading = createLoading(form, { places: sides, plate });
   const law = form.choice("calibration", { label: "Growth law", options: [{ value: "law:paris", title: "C and m (Paris)" }] });
   law.node.classList.add("wide");
   const lawNote = element("div", { class: "law-note" });
   // Constants of every law, as the service lists them; A and p with the horizon that A holds for.
   const constants = element("div", { class: "fields" });
   const threshold = form.number("fatigue.delta_k_threshold_mpa_sqrt_m", { label: "Threshold ΔK", unit: "MPa√m", optional: true, hint: "without it nothing stands still" });
+  const gamma = form.number("fatigue.walker_gamma", { label: "Walker’s γ", optional: true, hint: "for a law of another stress ratio" });
+  const beyond = form.choice("fatigue.allow_extrapolation", { label: "ΔK the law was not measured at", options: [{ value: "", title: "up to 25 % of the life" }, { value: "true", title: "allowed" }] });
+  const besides = grid(gamma.node, beyond.node); // what holds for every law
   let laws = [];
   let fieldsOfLaw = {};
   const length = { unit: "mm", optional: true };
@@ -71,6 +77,8 @@ export function createPredictView() {
     const own = laws.find((one) => `law:${one.name}` === law.input.value);
     if (constants.dataset.law !== (own?.name ?? "")) drawConstants(own);
     constants.hidden = fields.hidden;
+    besides.hidden = fields.hidden;
+    gamma.node.hidden = "walker_gamma" in fieldsOfLaw;
     spacing.node.hidden = !["", "peridynamics"].includes(method.input.value);
     tolerance.node.hidden = !["", "element_free_galerkin"].includes(method.input.value);
     const chosen = calibrations.find((one) => one.id === law.input.value);
@@ -99,12 +107,14 @@ export function createPredictView() {
 
   const isFitted = () => !law.input.value.startsWith("law:");
 
+  const besidesOf = () => ({ walker_gamma: gamma.node.hidden ? undefined : numberIn(gamma), allow_extrapolation: beyond.input.value === "true" || undefined });
+
   function fatigueOf() {
     const name = law.input.value.replace("law:", "");
     const given = Object.fromEntries(Object.entries(fieldsOfLaw).map(([key, field]) => [key, numberIn(field)]));
     // Bonds and powers of ΔK are told by their constants.
     const named = ["paris", "bond_law"].includes(name) ? {} : { growth_law: name };
-    return compact({ ...named, ...given, delta_k_threshold_mpa_sqrt_m: threshold.node.isConnected ? numberIn(threshold) : undefined });
+    return compact({ ...besidesOf(), ...named, ...given, delta_k_threshold_mpa_sqrt_m: threshold.node.isConnected ? numberIn(threshold) : undefined });
   }
 
   function collect() {
@@ -112,9 +122,10 @@ export function createPredictView() {
       specimen: specimen.collect(),
       material: material.collect(),
       loading: loading.collect(),
+      supports: specimen.fields.kind.input.value === "plate" ? sides.supports() : undefined,
       model: compact({ method: method.input.value, tolerance_percent: tolerance.node.hidden ? undefined : numberIn(tolerance),
         spacing_mm: spacing.node.hidden ? undefined : numberIn(spacing) }),
-      ...(isFitted() ? {} : { fatigue: fatigueOf() }),
+      fatigue: isFitted() ? compact(besidesOf()) : fatigueOf(),
       stop: compact({ crack_length_mm: numberIn(stopLength), cycles_max: numberIn(stopCycles) }),
     };
   }
@@ -127,14 +138,15 @@ export function createPredictView() {
 
   /** Only what the form can show: anything else stays text. */
   function fill(input) {
-    const { specimen: s, material: m, loading: l, model = {}, fatigue = {}, stop = {}, ...others } = input;
+    const { specimen: s, material: m, loading: l, supports, model = {}, fatigue = {}, stop = {}, ...others } = input;
     const filled = (table) => Object.keys(table ?? {}).length > 0;
-    const beyond = (table, known) => Object.keys(table).some((key) => !known.includes(key));
+    const isBeyond = (table, known) => Object.keys(table).some((key) => !known.includes(key));
+    const besideLaw = ["walker_gamma", "allow_extrapolation"];
     const own = isFitted() || !filled(fatigue) ? null : lawOf(fatigue);
-    const tooMuch = Object.values(others).some(filled) || beyond(model, ["spacing_mm", "method", "tolerance_percent"]) || beyond(stop, ["crack_length_mm", "cycles_max"]) ||
-      (own && beyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...own.constants.map(({ key }) => key)])) ||
-      (!own && beyond(fatigue, ["fitted"]));
-    if (tooMuch || !specimen.fill(s) || !material.fill(m) || !loading.fill(l)) return false;
+    const tooMuch = Object.values(others).some(filled) || isBeyond(model, ["spacing_mm", "method", "tolerance_percent"]) || isBeyond(stop, ["crack_length_mm", "cycles_max"]) ||
+      (own && isBeyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...besideLaw, ...own.constants.map(({ key }) => key)])) ||
+      (!own && isBeyond(fatigue, ["fitted", ...besideLaw]));
+    if (tooMuch || !specimen.fill(s, l) || !material.fill(m) || !loading.fill(l, supports)) return false;
     fillIn(method, model.method === "auto" ? "" : model.method);
     fillIn(tolerance, model.tolerance_percent);
     fillIn(spacing, model.spacing_mm);
@@ -143,6 +155,8 @@ export function createPredictView() {
     if (own) fillIn(law, `law:${own.name}`);
     arrange();
     if (own) Object.entries(fieldsOfLaw).forEach(([key, field]) => fillIn(field, fatigue[key]));
+    fillIn(gamma, fatigue.walker_gamma);
+    fillIn(beyond, fatigue.allow_extrapolation ? "true" : "");
     if (own) fillIn(threshold, fatigue.delta_k_threshold_mpa_sqrt_m);
     return true;
   }
@@ -150,7 +164,7 @@ export function createPredictView() {
   show(fields, specimen.element, material.element, loading.element,
     group("End", grid(stopLength.node, stopCycles.node, name.node)),
     group("How it is computed", grid(method.node, tolerance.node, spacing.node)));
-  show(byId("law-fields"), group("Growth law", grid(law.node), constants, lawNote));
+  show(byId("law-fields"), group("Growth law", grid(law.node), constants, besides, lawNote));
 
   // While another run's input is on its way, what stands in the form is not what the user means to start.
   let opening = false;
@@ -175,7 +189,11 @@ export function createPredictView() {
   /** Finished calibrations as laws to choose from; the newest is the choice until the user makes one. */
   async function loadLaws(wanted) {
     try {
-      if (laws.length === 0) laws = (await getJson("/v1/kinds")).laws.filter((one) => one.constants.length > 0);
+      if (laws.length === 0) {
+        const known = await getJson("/v1/kinds");
+        laws = known.laws.filter((one) => one.constants.length > 0);
+        sides.setKinds(known.kinds);
+      }
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;
       // One that is asked for by its address may be older than these.
       const known = calibrations.some((one) => one.id === wanted);
@@ -207,12 +225,21 @@ export function createPredictView() {
 
   let opened = false;
   return {
+    /** The case as it stands here, {input, calibration?}, or a sentence that says what is missing. */
+    body: () => editor.body(),
+    /** Waits until the case was checked once. */
+    async ready() {
+      if (laws.length === 0) await loadLaws();
+      if (!editor.check.last) await editor.check.now();
+    },
+    /** The same as the service understood it, null where it did not. */
+    checked: () => editor.check.last?.case ?? null,
     setMaterials(list) {
       material.setMaterials(list);
       if (!opened) editor.startFrom(START);
       opened = true;
     },
-    /** `law`: a calibration to use; `from`: a prediction to start from. */
+    /** `law`: a calibration to use; `from`: a run to start from, as collection/id. */
     async open(query) {
       const from = query.get("from");
       opening = Boolean(from);
@@ -220,7 +247,7 @@ export function createPredictView() {
       await loadLaws(query.get("law") ?? undefined);
       if (!from) return;
       try {
-        const job = await getJson(`/v1/predictions/${encodeURIComponent(from)}`);
+        const job = await jobToStartFrom(from);
         if (job.calibration) await loadLaws(job.calibration);
         else fillIn(law, BY_HAND);
         opened = true;

@@ -7,7 +7,7 @@ import { warningList } from "./check.js";
 import { button, element, readCsv, show, showPage, terms } from "./dom.js";
 import { follow } from "./events.js";
 import { count, cycles, deserved, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
-import { createJobHead, downloadList, failureOf, inputText, isFinal, pathOf, reportButton } from "./job.js";
+import { createJobHead, describe, downloadList, failureOf, inputText, isFinal, pathOf, reportButton } from "./job.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
 import { createPlatePath } from "./plate_path.js";
@@ -22,20 +22,20 @@ const FIELDS = { "stress.svg": "Stress at maximum load, late in the life; cracks
 
 export async function openPrediction(root, id, signal) {
   const job = await getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal);
-  const again = element("a", { class: "button", href: `#/predict?from=${encodeURIComponent(id)}`, "data-action": "again" }, "Change and run again");
-  const head = createJobHead(job, { actions: [again] });
+  const head = createJobHead(job);
   const outcome = element("div", { class: "job-body" });
   const below = element("div", { class: "job-body" });
   const [platePlace, curvePlace, factorPlace] = [0, 1, 2].map(() => element("div"));
   const { node: field, image } = createPicture("Stress or damage over the plate, with the crack path");
   const fieldNote = element("figcaption");
   const fieldFigure = element("figure", { class: "card figure", "data-part": "damage", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Field")), field, fieldNote);
+  const curveFigure = element("div", { class: "card figure" }, curvePlace);
   const factors = element("div", { class: "card figure", hidden: true }, factorPlace);
   const plateFigure = element("figure", { class: "card figure", "data-part": "path" },
     element("div", { class: "chart-head" }, element("h2", null, "Crack path")), platePlace,
     element("figcaption", null, "Colour: share of life, as on the slider; marks at 25, 50, 75 and 90 %. Dotted: still to come."));
   const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, fieldFigure),
-    element("div", { class: "stack" }, element("div", { class: "card figure" }, curvePlace), factors));
+    element("div", { class: "stack" }, curveFigure, factors));
   showPage(root, head.node, outcome, element("div", { class: "job-body" }, pictures), below);
 
   const chart = createChart(curvePlace, {
@@ -102,8 +102,9 @@ export async function openPrediction(root, id, signal) {
       if (done.state === "succeeded") await showResult(done);
       else show(outcome, failureOf(done));
       await showCurves(done);
-      // A run that failed or was cancelled before its first block has nothing to show.
+      // A run that failed or was cancelled before its first block has nothing to show; of one that never began to grow the plate alone.
       pictures.hidden = curve.x.length === 0;
+      curveFigure.hidden = !(curve.x.at(-1) > 0);
     } catch (error) {
       if (error.name !== "AbortError") below.prepend(problemBox(error, () => finish(done)));
     }
@@ -216,11 +217,6 @@ function limitsOf(result, columns, lengths) {
 }
 
 const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: `${fixed(lengths.at(-1), 1)} mm`, x: [steps.at(-1)], y: [lengths.at(-1)] });
-
-/** One sentence on what was computed: plate, material, load. */
-function describe({ plate }) {
-  return plate ? [sentence(plate.specimen), plate.material, plate.load].filter(Boolean).join("; ") : "";
-}
 
 function howComputed(job, r) {
   const law = r.law ?? {};

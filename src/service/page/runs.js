@@ -1,39 +1,39 @@
-// List of all runs with their answers: open, cancel, delete, and tick predictions to compare them.
+// List of all runs with their answers: opened, renamed, noted, duplicated, put away, cancelled, deleted; lives are ticked to compare them.
 
+import { kindOfVerdict, mark, quantilesOf } from "./answer.js";
 import { getJson } from "./api.js";
-import { button, byId, element, show } from "./dom.js";
-import { count, cycles, duration, fixed, lifeOf, moment, percent, scientific, words } from "./format.js";
-import { cancelJob, confirmDelete, hrefOf, isFinal, kindOf, nameOf, stateBadge } from "./job.js";
+import { button, byId, debounce, element, show } from "./dom.js";
+import { bandOf, count, cycles, deserved, duration, fixed, lifeOf, moment, percent, scientific, sentence, significant, words } from "./format.js";
+import { cancelJob, changeJob, confirmDelete, editInPlace, hrefOf, isFinal, nameOf, openForm, stateBadge } from "./job.js";
 import { problemBox } from "./notices.js";
 
-const PAGE = 20;
-const COLLECTIONS = ["predictions", "calibrations", "scenes", "sweeps", "sif"];
+const PAGE = 50;
+/** Most that a list brings at once: so many are sorted by something else than their time. */
+const SORTED_MAX = 200;
 const REFRESH_MS = 3000;
+const SEARCH_MS = 250;
 export const COMPARE_MAX = 8;
+const NOUNS = { prediction: "life", calibration: "law", sweep: "sweep", sif: "K", scene: "scene" };
+const took = (job) => (job.started && job.finished ? (new Date(job.finished) - new Date(job.started)) / 1000 : NaN);
+const behind = (value, least = Infinity) => (Number.isFinite(value) ? value : least);
+const ORDERS = {
+  name: (one, other) => nameOf(one).localeCompare(nameOf(other), undefined, { numeric: true }),
+  life: (one, other) => behind(one.summary?.life_cycles) - behind(other.summary?.life_cycles),
+  took: (one, other) => behind(took(other), -1) - behind(took(one), -1),
+  owner: (one, other) => one.owner.localeCompare(other.owner),
+};
 
 /** Builds the view; gives {open(query), close()}. */
-const BEGINNINGS = { calibrations: ["#/measure", "Calibrate from measured curves"], predictions: ["#/predict", "Predict a plate"] };
-
 export function createRunsView() {
-  const [kind, state, search, place, pager, compareBar] = ["runs-kind", "runs-state", "runs-search", "runs-list", "runs-pager", "compare-bar"].map(byId);
+  const [state, search, order, archived, place, pager, compareBar] =
+    ["runs-state", "runs-search", "runs-order", "runs-archived", "runs-list", "runs-pager", "compare-bar"].map(byId);
   const ticked = new Map(); // id to name, over all pages of the list
+  let kind = "";
   let pages = [""]; // `after` of every page up to the one shown
-  let next = null;
-  let items = []; // of the page shown
+  let list = { items: [], next: null };
   let timer = 0;
   let running = null;
   let shown = "";
-
-  /** A page of one kind; of all kinds the newest, since their pages do not go together. */
-  async function fetchPage(signal) {
-    const query = new URLSearchParams({ limit: PAGE });
-    if (pages.at(-1)) query.set("after", pages.at(-1));
-    if (state.value) query.set("state", state.value);
-    if (kind.value) return getJson(`/v1/${kind.value}?${query}`, signal);
-    const lists = await Promise.all(COLLECTIONS.map((one) => getJson(`/v1/${one}?${query}`, signal)));
-    const items = lists.flatMap((list) => list.items).sort((one, other) => other.created.localeCompare(one.created));
-    return { items: items.slice(0, 2 * PAGE), next: null };
-  }
 
   async function load({ quietly = false } = {}) {
     clearTimeout(timer);
@@ -44,11 +44,13 @@ export function createRunsView() {
       shown = "";
       show(place, element("p", { class: "quiet", role: "status" }, "Loading …"));
     }
+    const query = new URLSearchParams({ limit: order.value ? SORTED_MAX : PAGE });
+    const asked = { after: pages.at(-1), state: state.value, text: search.value.trim(), archived: archived.checked && "true" };
+    for (const [key, value] of Object.entries(asked)) if (value) query.set(key, value);
     try {
-      const list = await fetchPage(own.signal);
+      list = await getJson(`/v1/${kind || "jobs"}?${query}`, own.signal);
       if (own.signal.aborted) return;
-      next = list.next;
-      items = list.items;
+      if (ORDERS[order.value]) list.items.sort(ORDERS[order.value]);
       render();
       if (list.items.some((job) => !isFinal(job))) timer = setTimeout(() => load({ quietly: true }), REFRESH_MS);
     } catch (error) {
@@ -59,108 +61,99 @@ export function createRunsView() {
   }
 
   function render() {
-    const wanted = search.value.trim().toLowerCase();
-    const found = items.filter((job) => nameOf(job).toLowerCase().includes(wanted));
-    const text = JSON.stringify([kind.value, found]);
-    if (text === shown) return; // nothing new: no flicker, and the focus stays
+    const text = JSON.stringify([kind, list.items]);
+    // Nothing new: no flicker, and the focus stays; nor under the hand of who is writing a name.
+    if (text === shown || place.querySelector(".edit-in-place, :popover-open")) return;
     shown = text;
     const focused = document.activeElement?.dataset?.focus;
-    show(place, found.length > 0 ? tableOf(found) : items.length === 0 ? empty() : element("p", { class: "empty" }, "None of these has that in its name."));
+    show(place, list.items.length > 0 ? tableOf(list.items) : empty());
     if (focused) place.querySelector(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
     byId("runs-newer").disabled = pages.length === 1;
-    byId("runs-older").disabled = !next;
-    pager.hidden = pages.length === 1 && !next;
+    byId("runs-older").disabled = !list.next;
+    pager.hidden = pages.length === 1 && !list.next;
+    byId("runs-sorted").hidden = !order.value || !list.next;
     drawCompare();
   }
 
   function empty() {
-    const what = kind.value ? kind.selectedOptions[0].text.toLowerCase() : "runs";
-    if (state.value || pages.length > 1) return element("p", { class: "empty" }, `No ${state.value} ${what} here.`);
-    const [href, title] = BEGINNINGS[kind.value || "predictions"] ?? ["/docs", "Programs submit them: the interface"];
-    return element("div", { class: "empty" }, element("p", null, `No ${what} yet.`),
-      element("p", null, element("a", { href, class: "button" }, title)));
+    const isNarrowed = state.value || search.value.trim() || pages.length > 1;
+    return element("div", { class: "empty" }, element("p", null, isNarrowed ? "None of the runs is like that." : "No runs yet."),
+      !isNarrowed && element("p", null, element("a", { href: "#/new", class: "button" }, "New run")));
   }
 
   function tableOf(items) {
     const predictions = items.some((job) => job.kind === "prediction");
-    const heads = [predictions && ["Compare", ""], ["Name", ""], ["State", ""], ["Answer", ""], ["Submitted", ""], ["Took", "number"], ["Actions", ""]].filter(Boolean);
-    const what = kind.value ? kind.value : "runs";
-    return element("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-label": `List of ${what}` },
-      element("table", { class: "runs" },
-        element("caption", { class: "visually-hidden" }, `List of ${what}, newest first`),
-        element("thead", null, element("tr", null, heads.map(([title, type]) => element("th", { scope: "col", class: type || null }, title)))),
-        element("tbody", null, items.map((job) => row(job, predictions)))));
-  }
-
-  /** What came of a run, in a line or two; nothing while it is not done. */
-  function answerOf({ kind: of, summary: s }) {
-    if (!s) return "";
-    if (of === "prediction") {
-      const why = s.refused ? "refused" : s.stop_meaning ?? words(s.stop_reason);
-      return [element("strong", null, s.life_cycles === null || s.refused ? lifeOf(s) : `${lifeOf(s)} cycles`), element("span", { class: "row-unit" }, why)];
-    }
-    if (of === "calibration" && s.paris_m) {
-      return [element("strong", null, `m ${fixed(s.paris_m, 3)}`),
-        element("span", { class: "row-unit" }, `${scientific(s.rate_at_pivot_mm_per_cycle, 4)} mm/cycle at the pivot, rms of lives ${percent(s.rms_life_error, 2)}`)];
-    }
-    const factors = (s.tips ?? []).flatMap((tip) => Object.values(tip.methods ?? {}).map((read) => read.k_i_mpa_sqrt_m)).filter(Number.isFinite);
-    if (of === "sif" && factors.length > 0) return element("strong", null, `K up to ${fixed(Math.max(...factors), 2)} MPa√m`);
-    if (of === "sweep" && s.life_cycles?.p50) return element("strong", null, `median ${cycles(Math.round(s.life_cycles.p50))} cycles`);
-    return words(s.stop_reason ?? "");
+    const owners = items.some((job) => job.owner);
+    const heads = [predictions && "Compare", "Name", "Answer", "Ends because", "Valid?", owners ? "By, at" : "At", "More"].filter(Boolean);
+    const isSpoken = (title) => ["Compare", "More"].includes(title);
+    return element("table", { class: "runs" },
+      element("caption", { class: "visually-hidden" }, "Runs"),
+      element("thead", null, element("tr", null, heads.map((title) => element("th", { scope: "col" }, element("span", { class: isSpoken(title) ? "visually-hidden" : null }, title))))),
+      element("tbody", null, items.map((job) => row(job, predictions))));
   }
 
   function row(job, predictions) {
-    const took = job.started && job.finished ? (new Date(job.finished) - new Date(job.started)) / 1000 : NaN;
-    return element("tr", { "data-job": job.id, "data-job-state": job.state },
+    const name = element("div", null, element("a", { href: hrefOf(job), "data-focus": `open-${job.id}` }, nameOf(job)));
+    const note = element("div", { class: "row-unit" }, job.note);
+    const [answer, why, valid] = answerOf(job);
+    return element("tr", { "data-job": job.id, "data-job-state": job.state, class: job.archived ? "archived" : null },
       predictions && element("td", { class: "tick" }, job.kind === "prediction" && tick(job)),
-      element("th", { scope: "row" }, element("a", { href: hrefOf(job), "data-focus": `open-${job.id}` }, nameOf(job)),
-        !kind.value && element("span", { class: "row-unit" }, kindOf(job))),
-      element("td", null, stateBadge(job), job.state === "running" && job.progress ? ` ${percent(job.progress.share, 0)}` : null),
-      element("td", null, answerOf(job)),
-      element("td", { class: "nowrap" }, moment(job.created)), element("td", { class: "number" }, Number.isFinite(took) ? duration(took) : ""),
-      element("td", null, isFinal(job) ? action(job, "Delete", remove) : action(job, "Cancel", cancel)));
+      element("th", { scope: "row" }, name, element("span", { class: "row-unit" }, NOUNS[job.kind] ?? words(job.kind), job.archived && ", put away"), note),
+      element("td", null, answer), element("td", null, why), element("td", null, valid),
+      element("td", { class: "by" }, job.owner && `${job.owner}, `, moment(job.created, true), Number.isFinite(took(job)) && element("span", { class: "row-unit" }, `took ${duration(took(job))}`)),
+      element("td", { class: "act" }, menuOf(job, name, note)));
   }
 
-  function mayTick(jobState, isTicked) {
-    return jobState === "succeeded" && (isTicked || ticked.size < COMPARE_MAX);
+  function menuOf(job, name, note) {
+    const edit = (key, where, label) => editInPlace(where, { label, value: job[key] ?? "", save: (value) => guarded(() => changeJob(job, { [key]: value })) });
+    const item = (title, action, work) => button(title, () => {
+      menu.hidePopover();
+      work();
+    }, { class: "button bare", "data-action": action });
+    const menu = element("div", { class: "menu", popover: "auto", role: "group", "aria-label": `More for ${nameOf(job)}` },
+      item("Rename", "rename", () => edit("name", name, "Name")),
+      item(job.note ? "Change the note" : "Add a note", "note", () => edit("note", note, "Note")),
+      element("a", { class: "button bare", href: openForm(job), "data-action": "duplicate" }, "Duplicate"),
+      item(job.archived ? "Take back" : "Put away", "archive", () => guarded(() => changeJob(job, { archived: !job.archived }))),
+      isFinal(job) ? item("Delete", "delete", () => guarded(async () => (await confirmDelete(job)) && ticked.delete(job.id)))
+        : item("Cancel", "cancel", () => guarded(() => cancelJob(job))));
+    const more = button("⋯", () => {
+      menu.showPopover();
+      const box = more.getBoundingClientRect();
+      menu.style.left = `${Math.max(8, box.right - menu.offsetWidth)}px`;
+      menu.style.top = `${Math.min(box.bottom + 4, innerHeight - menu.offsetHeight - 8)}px`;
+      menu.querySelector("button").focus();
+    }, { class: "button bare", "aria-label": `More for ${nameOf(job)}`, "aria-haspopup": "true", "data-focus": `more-${job.id}`, "data-action": "more" });
+    return [more, menu];
   }
 
   function tick(job) {
     const box = element("input", { type: "checkbox", "data-focus": `tick-${job.id}` });
+    const may = (jobState, isTicked) => jobState === "succeeded" && (isTicked || ticked.size < COMPARE_MAX);
     box.checked = ticked.has(job.id);
-    box.disabled = !mayTick(job.state, box.checked);
+    box.disabled = !may(job.state, box.checked);
     box.addEventListener("change", () => {
       if (box.checked) ticked.set(job.id, nameOf(job));
       else ticked.delete(job.id);
       shown = "";
       drawCompare();
       place.querySelectorAll(".tick input").forEach((other) => {
-        other.disabled = !mayTick(other.closest("tr").dataset.jobState, other.checked);
+        other.disabled = !may(other.closest("tr").dataset.jobState, other.checked);
       });
     });
     return element("label", { class: "tick-reach" }, box, element("span", { class: "visually-hidden" }, `Compare ${nameOf(job)}`));
-  }
-
-  function action(job, title, work) {
-    return button(title, () => work(job), {
-      class: "button small", "aria-label": `${title} ${nameOf(job)}`, "data-focus": `act-${job.id}`, "data-action": title.toLowerCase(),
-    });
   }
 
   async function guarded(work) {
     show(byId("runs-problem"));
     try {
       await work();
-      await load({ quietly: true });
     } catch (error) {
       show(byId("runs-problem"), problemBox(error));
     }
+    shown = "";
+    await load({ quietly: true });
   }
-
-  const cancel = (job) => guarded(() => cancelJob(job));
-  const remove = (job) => guarded(async () => {
-    if (await confirmDelete(job)) ticked.delete(job.id);
-  });
 
   function drawCompare() {
     // There before anything is ticked, so that the list does not move under the hand.
@@ -168,8 +161,8 @@ export function createRunsView() {
     byId("compare-clear").hidden = ticked.size === 0;
     const told = [...ticked.values()];
     byId("compare-count").textContent = ticked.size < 2
-      ? `${told.length > 0 ? `${told[0]} is ticked: tick another one` : "Tick two or more predictions"} to compare them.`
-      : `${count(ticked.size, "prediction")} ticked${ticked.size === COMPARE_MAX ? ", the most that can be compared" : ""}.`;
+      ? `${told.length > 0 ? `${told[0]} is ticked: tick another one` : "Tick two or more lives"} to compare them.`
+      : `${count(ticked.size, "life", "lives")} ticked${ticked.size === COMPARE_MAX ? ", the most that can be compared" : ""}.`;
     const go = byId("compare");
     go.hidden = ticked.size < 2;
     go.href = `#/compare/${[...ticked.keys()].map(encodeURIComponent).join(",")}`;
@@ -180,18 +173,15 @@ export function createRunsView() {
     load();
   }
 
-  kind.addEventListener("change", () => {
-    location.replace(kind.value ? `#/runs?kind=${kind.value}` : "#/runs");
-  });
-  state.addEventListener("change", restart);
-  search.addEventListener("input", render);
+  [state, order, archived].forEach((input) => input.addEventListener("change", restart));
+  search.addEventListener("input", debounce(restart, SEARCH_MS));
   byId("compare-clear").addEventListener("click", () => {
     ticked.clear();
     shown = "";
     load({ quietly: true });
   });
   byId("runs-older").addEventListener("click", () => {
-    pages.push(next);
+    pages.push(list.next);
     load();
   });
   byId("runs-newer").addEventListener("click", () => {
@@ -201,8 +191,10 @@ export function createRunsView() {
 
   return {
     open(query) {
-      const wanted = query.get("kind");
-      kind.value = [...kind.options].some((one) => one.value === wanted) ? wanted : "";
+      const links = [...byId("runs-kinds").children];
+      const wanted = links.find((link) => link.dataset.kind === (query.get("kind") ?? "")) ?? links[0];
+      kind = wanted.dataset.kind;
+      links.forEach((link) => (link === wanted ? link.setAttribute("aria-current", "true") : link.removeAttribute("aria-current")));
       restart();
     },
     close() {
@@ -210,4 +202,38 @@ export function createRunsView() {
       running?.abort();
     },
   };
+}
+
+/** What came of a run: its answer, why it ends, whether that counts; where it stands while it is not done. */
+function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
+  const two = (first, second) => [element("strong", null, first), second && element("span", { class: "row-unit" }, second)];
+  const sign = (name, text) => [mark(name), " ", text];
+  if (!s) {
+    const left = Number.isFinite(progress?.seconds_left) ? `about ${duration(progress.seconds_left)} left` : "";
+    const shown = stateBadge({ ...job, state });
+    return state === "running" ? [[shown, progress && ` ${percent(progress.share, 0)}`, element("span", { class: "row-unit" }, left)]] : [shown, problem?.title];
+  }
+  if (kind === "prediction") {
+    const band = quantilesOf(s);
+    const life = s.refused ? "not computed" : s.life_cycles === null ? "no growth"
+      : `${band ? deserved(band[1], band) : lifeOf(s)} cycles`;
+    return [two(life, s.refused || s.life_cycles === null ? "" : band ? bandOf(band) : "no band"),
+      s.refused ? sentence(words(s.stop_reason)) : sentence(s.stop_meaning ?? words(s.stop_reason)), s.verdict && sign(kindOfVerdict(s.verdict), s.verdict.split(":")[0])];
+  }
+  if (kind === "calibration" && s.paris_m) {
+    const range = `ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)}`;
+    return [two(`m ${fixed(s.paris_m, 2)}`, `${scientific(s.rate_at_pivot_mm_per_cycle, 3)} mm/cycle at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)}`), "", sign("ok", range)];
+  }
+  const factors = (s.tips ?? []).flatMap((tip) => Object.values(tip.methods ?? {})).filter((read) => Number.isFinite(read.k_i_mpa_sqrt_m));
+  if (kind === "sif" && factors.length > 0) {
+    const most = factors.reduce((one, other) => (other.k_i_mpa_sqrt_m > one.k_i_mpa_sqrt_m ? other : one));
+    return [two(`${significant(most.k_i_mpa_sqrt_m, 4)} MPa√m`, `K II ${significant(most.k_ii_mpa_sqrt_m, 3)}`), ""];
+  }
+  if (kind === "sweep" && s.life_cycles?.p50) {
+    const figure = (value) => cycles(Math.round(value));
+    const open = (s.failed ?? 0) + (s.missing ?? 0);
+    return [two(`${figure(s.life_cycles.p50)} cycles`, `${figure(s.life_cycles.p05)} to ${figure(s.life_cycles.p95)}, ${count(s.cases, "case")}`), "",
+      sign(open === 0 ? "ok" : "note", open === 0 ? "whole" : `${open} without a life`)];
+  }
+  return [stateBadge({ ...job, state, summary: s }), words(s.stop_reason ?? s.law ?? "")];
 }

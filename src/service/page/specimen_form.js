@@ -25,6 +25,9 @@ const MAGNITUDES = [
   ["force_max_kn", "Maximum force Pmax", "kN", ""],
   ["force_range_n", "Force range ΔP", "N", "maximum − minimum"],
   ["force_max_n", "Maximum force Pmax", "N", ""],
+  ["displacement_max_mm", "Maximum displacement δmax", "mm", "of the loaded places against each other"],
+  ["displacement_range_mm", "Displacement range Δδ", "mm", "of the loaded places against each other"],
+  ["crack_pressure_mpa", "Pressure in the cracks p", "MPa", "on their faces, alone"],
 ];
 
 /** True when every key of `object` is one of `known`. */
@@ -76,14 +79,14 @@ export function createSpecimen(form, { plate } = {}) {
       });
     },
     /** Takes a specimen over; false when it says something the form cannot show. */
-    fill(specimen) {
+    fill(specimen, loading) {
       const known = ["kind", "ends", ...Object.keys(fields), ...(specimen.kind === "plate" ? ["holes", "cracks"] : [])];
       if (!kinds.includes(specimen.kind) || !onlyKnown(specimen, known)) return false;
       fillIn(kind, specimen.kind);
       fillIn(ends, specimen.ends);
       for (const [key, field] of Object.entries(fields)) fillIn(field, specimen[key]);
       arrange();
-      if (specimen.kind === "plate") plate.fill(specimen);
+      if (specimen.kind === "plate") plate.fill(specimen, loading);
       return true;
     },
   };
@@ -159,8 +162,8 @@ export function createMaterial(form, { toughness = true } = {}) {
   };
 }
 
-/** Loading: one magnitude, named as what it is, and the ratio. */
-export function createLoading(form) {
+/** Loading: one magnitude, named as what it is, and the ratio; `places` ({element, edges(), fill()}) and `plate` ({pins()}) say where it acts on a drawn plate. */
+export function createLoading(form, { places, plate } = {}) {
   const withoutSymbol = (label) => label.replace(/ \S+$/, "");
   const options = MAGNITUDES.map(([key, label, unit]) => ({ value: key, title: `${withoutSymbol(label)}, ${unit}` }));
   const quantity = form.choice("loading.kind", { label: "Load given as", options });
@@ -178,23 +181,41 @@ export function createLoading(form) {
   }
   quantity.input.addEventListener("input", arrange);
   arrange();
+  let suits = ""; // the specimen that it is for
+  const isDrawn = () => places && suits === "plate";
 
   return {
-    element: group("Loading, constant amplitude", grid(quantity.node, magnitude.node, ratio.node)),
-    /** A compact specimen is pulled by pins: it takes forces. */
+    element: group("Loading, constant amplitude", grid(quantity.node, magnitude.node, ratio.node), places?.element),
+    /** What the readings say of the load, where nobody has said anything yet. */
+    propose({ stress_ratio: given, ...load }) {
+      const [[key, value] = []] = Object.entries(load);
+      if (key && !magnitude.touched && !quantity.touched) {
+        fillIn(quantity, key);
+        arrange();
+        fillIn(magnitude, value);
+      }
+      if (given !== undefined && !ratio.touched) fillIn(ratio, given);
+    },
+    /** A compact specimen is pulled by pins: it takes no stress. */
     suit(specimenKind) {
-      const force = specimenKind === "compact_tension";
-      if (force === quantity.input.value.startsWith("force")) return;
-      quantity.input.value = force ? "force_range_kn" : "stress_range_mpa";
+      const [was, is] = [suits, specimenKind].map((kind) => kind === "compact_tension");
+      suits = specimenKind;
+      if (places) places.element.hidden = !isDrawn();
+      const wrong = is ? quantity.input.value.startsWith("stress") : was && quantity.input.value.startsWith("force");
+      if (!wrong) return;
+      quantity.input.value = is ? "force_range_kn" : "stress_range_mpa";
       fillIn(magnitude, "");
       arrange();
     },
     collect() {
-      return compact({ kind: "constant_amplitude", [quantity.input.value]: numberIn(magnitude), stress_ratio: numberIn(ratio) });
+      const kind = quantity.input.value.startsWith("displacement") ? "displacement" : "constant_amplitude";
+      return compact({ kind, [quantity.input.value]: numberIn(magnitude), stress_ratio: numberIn(ratio), ...(isDrawn() ? { edges: places.edges(), pins: plate.pins() } : {}) });
     },
-    fill(loading) {
+    fill(loading, supports) {
       const keys = MAGNITUDES.map(([key]) => key).filter((key) => key in loading);
-      if (keys.length !== 1 || !onlyKnown(loading, ["kind", "stress_ratio", ...keys])) return false;
+      const isPinned = (loading.pins ?? []).every((pin) => onlyKnown(pin, ["hole", "direction"]));
+      if (keys.length !== 1 || !isPinned || !onlyKnown(loading, ["kind", "stress_ratio", ...keys, ...(places ? ["edges", "pins"] : [])])) return false;
+      if (places ? !places.fill(loading, supports) : supports) return false;
       fillIn(quantity, keys[0]);
       arrange();
       fillIn(magnitude, loading[keys[0]]);

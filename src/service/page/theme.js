@@ -15,6 +15,11 @@
     document.documentElement.dataset.theme = dark ? "dark" : "light";
   };
   system.addEventListener("change", apply);
+  // Paper is white.
+  addEventListener("beforeprint", () => {
+    document.documentElement.dataset.theme = "light";
+  });
+  addEventListener("afterprint", apply);
   apply();
   document.addEventListener("DOMContentLoaded", () => {
     document.getElementById("theme").addEventListener("click", () => {

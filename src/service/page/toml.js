@@ -1,5 +1,8 @@
 // Writes the input of a form as the TOML file the command line reads, so that a run made here can be repeated there.
 
+/** Keys that count: whole numbers. */
+const COUNTS = ["count", "samples", "seed", "hole"];
+
 function text(value) {
   // JSON escapes are TOML escapes, as long as the delete character is spelt out too.
   return JSON.stringify(value).replaceAll("\u007f", "\\u007F");
@@ -14,12 +17,12 @@ function number(value) {
   return /[.e]/.test(digits) ? digits : `${digits}.0`;
 }
 
-function inline(value) {
-  if (typeof value === "number") return number(value);
+function inline(value, name) {
+  if (typeof value === "number") return COUNTS.includes(name) ? String(value) : number(value);
   if (typeof value === "string") return text(value);
   if (typeof value === "boolean") return String(value);
-  if (Array.isArray(value)) return `[${value.map(inline).join(", ")}]`;
-  return `{ ${entries(value).map(([name, item]) => `${key(name)} = ${inline(item)}`).join(", ")} }`;
+  if (Array.isArray(value)) return `[${value.map((item) => inline(item)).join(", ")}]`;
+  return `{ ${entries(value).map(([name, item]) => `${key(name)} = ${inline(item, name)}`).join(", ")} }`;
 }
 
 function entries(table) {
@@ -29,13 +32,19 @@ function entries(table) {
 /** One line, or one item a line where the value is a list of tables. */
 function line(name, value) {
   const tables = Array.isArray(value) && value.length > 0 && value.every((item) => typeof item === "object" && !Array.isArray(item));
-  if (!tables) return `${key(name)} = ${inline(value)}`;
+  if (!tables) return `${key(name)} = ${inline(value, name)}`;
   return [`${key(name)} = [`, ...value.map((item) => `    ${inline(item)},`), "]"].join("\n");
 }
 
 /** An object of sections as TOML text. */
 export function writeToml(input) {
-  const sections = entries(input).filter(([, section]) => entries(section).length > 0);
-  return sections.map(([name, section]) => [`[${key(name)}]`, ...entries(section).map(([item, value]) => line(item, value))].join("\n"))
-    .join("\n\n").concat("\n");
+  const isTable = (value) => typeof value === "object" && !Array.isArray(value);
+  const isList = (value) => Array.isArray(value) && value.length > 0 && value.every((item) => isTable(item));
+  const given = entries(input);
+  const table = (head, section) => [head, ...entries(section).map(([item, value]) => line(item, value))].join("\n");
+  // What stands in no section comes first, lists of sections last.
+  const own = given.filter(([, value]) => !isTable(value) && !isList(value)).map(([name, value]) => line(name, value)).join("\n");
+  const sections = given.filter(([, value]) => isTable(value) && entries(value).length > 0).map(([name, section]) => table(`[${key(name)}]`, section));
+  const lists = given.filter(([, value]) => isList(value)).flatMap(([name, list]) => list.map((section) => table(`[[${key(name)}]]`, section)));
+  return [own, ...sections, ...lists].filter(Boolean).join("\n\n").concat("\n");
 }

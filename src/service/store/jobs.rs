@@ -56,8 +56,36 @@ pub struct Listing {
     pub next: Option<String>,
 }
 
+/// Which jobs are listed.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Wanted<'a> {
+    /// Of this kind; of all where none is named.
+    pub kind: Option<JobKind>,
+    /// In this state.
+    pub state: Option<State>,
+    /// With this text in name, note or owner; capitals of ASCII count as small letters.
+    pub text: &'a str,
+    /// Also those that were put away.
+    pub archived: bool,
+    /// From behind this job on.
+    pub after: Option<&'a str>,
+    /// So many.
+    pub limit: u32,
+}
+
+/// What is to be said of a job from now on; nothing changes where nothing is given.
+#[derive(Debug, Clone, Default)]
+pub struct Change {
+    /// Its name.
+    pub name: Option<String>,
+    /// What is noted of it.
+    pub note: Option<String>,
+    /// Whether it is put away.
+    pub archived: Option<bool>,
+}
+
 /// Columns of a [`Job`].
-const COLUMNS: &str = "id, kind, name, owner, state, calibration, created_ms, started_ms, finished_ms, cancel_asked, \
+const COLUMNS: &str = "id, kind, name, note, archived, owner, state, calibration, created_ms, started_ms, finished_ms, cancel_asked, \
                        revision, fence, progress, problem, summary";
 
 /// Jobs removed at a time because their time is over: a mistake in a clock shows before all is gone.
@@ -173,17 +201,29 @@ impl Store {
         Ok(Some(submission))
     }
 
-    /// Jobs of a kind, newest first, from behind the job `after` on.
-    pub async fn list(&self, kind: JobKind, state: Option<State>, after: Option<&str>, limit: u32) -> Result<Listing> {
+    /// Jobs, newest first.
+    pub async fn list(&self, wanted: Wanted<'_>) -> Result<Listing> {
+        let Wanted { kind, state, text, archived, after, limit } = wanted;
+        // Jobs of kinds that are not run any more are not shown.
+        let wanted_kinds = kind.map_or_else(|| JobKind::ALL.to_vec(), |kind| vec![kind]);
+        let kinds: Vec<String> = wanted_kinds.iter().map(|kind| format!("'{kind}'")).collect();
+        let kinds = kinds.join(", ");
         let statement = format!(
-            "SELECT {COLUMNS} FROM jobs WHERE kind = $1 AND id < $3 AND ($4 = '' OR state = $4) ORDER BY id DESC LIMIT $2"
+            "SELECT {COLUMNS} FROM jobs WHERE kind IN ({kinds}) AND id < $1 AND ($3 = '' OR state = $3) AND archived <= $4
+                AND ($5 = '%%' OR LOWER(name) LIKE $5 ESCAPE '!' OR LOWER(note) LIKE $5 ESCAPE '!' OR LOWER(owner) LIKE $5 ESCAPE '!')
+             ORDER BY id DESC LIMIT $2"
         );
+        let mut part = text.to_ascii_lowercase();
+        for sign in ["!", "%", "_"] {
+            part = part.replace(sign, &format!("!{sign}"));
+        }
         // One more than asked for tells whether there are more.
         let rows = sqlx::query(self.sql(&statement))
-            .bind(kind.name())
-            .bind(i64::from(limit) + 1)
             .bind(after.unwrap_or(BEHIND_ALL))
+            .bind(i64::from(limit) + 1)
             .bind(state.map_or("", State::name))
+            .bind(i64::from(archived))
+            .bind(format!("%{part}%"))
             .fetch_all(&self.pool)
             .await?;
         let mut jobs: Vec<Job> = rows.iter().map(job_of).collect::<Result<_>>()?;
@@ -204,6 +244,22 @@ impl Store {
              WHERE id = $1 AND state IN ('queued', 'running')",
         ))
         .bind(id)
+        .execute(&self.pool)
+        .await?;
+        Ok(changed.rows_affected() > 0)
+    }
+
+    /// Says something else of a job from now on; whoever holds it goes on. Whether there was one.
+    pub async fn change(&self, id: &str, change: &Change) -> Result<bool> {
+        let changed = sqlx::query(
+            "UPDATE jobs SET name = COALESCE($2, name), note = COALESCE($3, note), archived = COALESCE($4, archived),
+                revision = revision + 1
+             WHERE id = $1",
+        )
+        .bind(id)
+        .bind(&change.name)
+        .bind(&change.note)
+        .bind(change.archived.map(i64::from))
         .execute(&self.pool)
         .await?;
         Ok(changed.rows_affected() > 0)
@@ -278,6 +334,8 @@ fn job_of(row: &AnyRow) -> Result<Job> {
         id: name("id")?,
         kind: name("kind")?.parse().map_err(|()| unknown("kind"))?,
         name: name("name")?,
+        note: name("note")?,
+        archived: row.try_get::<i64, _>("archived")? != 0,
         state: name("state")?.parse().map_err(|()| unknown("state"))?,
         owner: name("owner")?,
         created: time(row.try_get("created_ms")?),

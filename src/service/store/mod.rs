@@ -18,7 +18,7 @@ use sqlx::any::AnyPoolOptions;
 use sqlx::{AnyConnection, AnyPool, Connection};
 
 pub use files::{FileEntry, Origin, PART, media_type};
-pub use jobs::{Listing, NewJob, Room, Submitted};
+pub use jobs::{Change, Listing, NewJob, Room, Submitted, Wanted};
 pub use queue::{Claim, Growth, Heartbeat, Outcome, ResultFile, Told};
 pub use tokens::{Role, Token, hash, hex};
 

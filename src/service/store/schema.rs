@@ -3,32 +3,42 @@
 use super::{Dialect, Result, Store};
 
 /// Version of the tables; one higher with every change of them.
-const VERSION: i64 = 3;
+const VERSION: i64 = 4;
 
 /// Version of [`TABLES`], to which [`UPGRADES`] lead on.
 const FIRST: i64 = 2;
 
 /// What leads from the version before to the one named: additions only, so that what is stored stays as it is.
-const UPGRADES: &[(i64, &[&str])] = &[(
-    3,
-    &[
-        // `failures` counts ends that are not the job's fault and never falls; the job waits until `not_before_ms`. `lease_ms` is
-        // what was granted last: a lease that ends later than that from now was granted before the clock was set back. `spent_ms` is
-        // computing time by the clocks of the workers, `finished_count_ms` the counted clock at the end.
-        "ALTER TABLE jobs ADD COLUMN failures BIGINT NOT NULL DEFAULT 0",
-        "ALTER TABLE jobs ADD COLUMN not_before_ms BIGINT",
-        "ALTER TABLE jobs ADD COLUMN lease_ms BIGINT NOT NULL DEFAULT 0",
-        "ALTER TABLE jobs ADD COLUMN spent_ms BIGINT NOT NULL DEFAULT 0",
-        "ALTER TABLE jobs ADD COLUMN finished_count_ms BIGINT",
-        "UPDATE jobs SET finished_count_ms = 0 WHERE finished_ms IS NOT NULL",
-        "CREATE INDEX jobs_finished_count ON jobs (finished_count_ms)",
-        "DROP INDEX jobs_finished",
-        "ALTER TABLE submissions ADD COLUMN options TEXT NOT NULL DEFAULT '[]'",
-        // Time during which a service ran, by steps that no jump of a clock makes long.
-        "CREATE TABLE clock (seen_ms BIGINT NOT NULL, counted_ms BIGINT NOT NULL)",
-        "INSERT INTO clock (seen_ms, counted_ms) VALUES ({now}, 0)",
-    ],
-)];
+const UPGRADES: &[(i64, &[&str])] = &[
+    (
+        3,
+        &[
+            // `failures` counts ends that are not the job's fault and never falls; the job waits until `not_before_ms`. `lease_ms` is
+            // what was granted last: a lease that ends later than that from now was granted before the clock was set back. `spent_ms` is
+            // computing time by the clocks of the workers, `finished_count_ms` the counted clock at the end.
+            "ALTER TABLE jobs ADD COLUMN failures BIGINT NOT NULL DEFAULT 0",
+            "ALTER TABLE jobs ADD COLUMN not_before_ms BIGINT",
+            "ALTER TABLE jobs ADD COLUMN lease_ms BIGINT NOT NULL DEFAULT 0",
+            "ALTER TABLE jobs ADD COLUMN spent_ms BIGINT NOT NULL DEFAULT 0",
+            "ALTER TABLE jobs ADD COLUMN finished_count_ms BIGINT",
+            "UPDATE jobs SET finished_count_ms = 0 WHERE finished_ms IS NOT NULL",
+            "CREATE INDEX jobs_finished_count ON jobs (finished_count_ms)",
+            "DROP INDEX jobs_finished",
+            "ALTER TABLE submissions ADD COLUMN options TEXT NOT NULL DEFAULT '[]'",
+            // Time during which a service ran, by steps that no jump of a clock makes long.
+            "CREATE TABLE clock (seen_ms BIGINT NOT NULL, counted_ms BIGINT NOT NULL)",
+            "INSERT INTO clock (seen_ms, counted_ms) VALUES ({now}, 0)",
+        ],
+    ),
+    (
+        4,
+        &[
+            // What people say of a run once it is there.
+            "ALTER TABLE jobs ADD COLUMN note TEXT NOT NULL DEFAULT ''",
+            "ALTER TABLE jobs ADD COLUMN archived BIGINT NOT NULL DEFAULT 0",
+        ],
+    ),
+];
 
 const TABLES: &[&str] = &[
     // `id` is a UUID of version 7: sorted by it jobs are sorted by time. `fence` counts the claims: whoever writes must name the
@@ -111,7 +121,7 @@ impl Store {
         sqlx::query("DELETE FROM perilife_schema").execute(&mut *transaction).await?;
         sqlx::query("INSERT INTO perilife_schema (version) VALUES ($1)").bind(VERSION).execute(&mut *transaction).await?;
         transaction.commit().await?;
-        if found.is_some() && self.dialect == Dialect::Sqlite {
+        if found == Some(FIRST) && self.dialect == Dialect::Sqlite {
             // A file that was made without giving space back learns it only by being written anew.
             let mut connection = self.pool.acquire().await?;
             sqlx::raw_sql("PRAGMA auto_vacuum = INCREMENTAL; VACUUM").execute(&mut *connection).await?;

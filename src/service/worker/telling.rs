@@ -60,8 +60,10 @@ pub struct Teller<'a> {
 /// What the run has told.
 struct Pending {
     progress: Option<Progress>,
-    /// Share at which this worker took it up.
-    first_share: f64,
+    /// Share at which this worker took it up, and when that was: what came before is no growth.
+    first: Option<(f64, Instant)>,
+    /// When the last row came.
+    last: Option<Instant>,
     tips: Vec<Point>,
     /// Ways of the tips as far as entries show them.
     paths: Vec<Vec<Point>>,
@@ -70,6 +72,22 @@ struct Pending {
     look: Option<LivePicture>,
     kept: Instant,
     keep_cost: Duration,
+}
+
+impl Pending {
+    /// A row of the growing curve, where it has gone far enough to be seen.
+    fn add(&mut self, progress: &Progress) {
+        if self.tips.is_empty() || progress.share < self.last_entry + 1.0 / ENTRIES {
+            return;
+        }
+        self.last_entry = progress.share;
+        self.entries.cycles.push(progress.cycles);
+        self.entries.crack_length_mm.push(progress.crack_length / MM);
+        let tips = std::mem::take(&mut self.tips);
+        self.entries.tips.push(tips.iter().map(|tip| tip.map(|metres| metres / MM)).collect());
+        self.paths.resize(tips.len(), Vec::new());
+        self.paths.iter_mut().zip(tips).for_each(|(path, tip)| path.push(tip));
+    }
 }
 
 /// Time between two pictures, at least.
@@ -84,7 +102,8 @@ impl<'a> Teller<'a> {
         let path = |tip: usize| growth.tips.iter().filter_map(|entry| Some(entry.get(tip)?.map(|mm| mm * MM))).collect();
         let told = Pending {
             progress: None,
-            first_share: f64::NAN,
+            first: None,
+            last: None,
             tips: Vec::new(),
             paths: (0..tips).map(path).collect(),
             entries: Growth { from: growth.cycles.len(), ..Growth::default() },
@@ -122,11 +141,15 @@ impl<'a> Teller<'a> {
     fn news(&self, with_look: bool) -> (Option<JobProgress>, Option<Growth>, Option<LivePicture>) {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
         let elapsed_s = self.started.elapsed().as_secs_f64();
-        let first_share = told.first_share;
+        let first = told.first;
         let progress = told.progress.map(|Progress { cycles, crack_length, share }| {
             let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
-            let done = share - first_share;
-            let seconds_left = (done > 0.0).then(|| elapsed_s * (1.0 - share) / done);
+            let seconds_left = first.filter(|(from, _)| share > *from).map(|(from, at)| {
+                // By the growth up to the last row; what has gone since then is not left any more.
+                let since = told.last.unwrap_or(at);
+                let left = (since - at).as_secs_f64() * (1.0 - share) / (share - from);
+                (left - since.elapsed().as_secs_f64()).max(0.0)
+            });
             JobProgress { cycles, crack_length_mm: crack_length / MM, share, elapsed_s, seconds_left, stage: None }
         });
         let before = |(stage, share): (Stage, f64)| JobProgress {
@@ -150,21 +173,20 @@ impl Observer for Teller<'_> {
         Some(self.work.clone())
     }
 
+    fn begun(&self, start: &Progress, tips: &[TipRecord]) {
+        self.grown(tips);
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        told.first = Some((start.share, Instant::now()));
+        told.add(start);
+    }
+
     fn block_done(&self, progress: &Progress) -> bool {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        if told.first_share.is_nan() {
-            told.first_share = progress.share;
-        }
+        let now = Instant::now();
+        told.first.get_or_insert((progress.share, now));
+        told.last = Some(now);
         told.progress = Some(*progress);
-        if !told.tips.is_empty() && progress.share >= told.last_entry + 1.0 / ENTRIES {
-            told.last_entry = progress.share;
-            told.entries.cycles.push(progress.cycles);
-            told.entries.crack_length_mm.push(progress.crack_length / MM);
-            let tips = std::mem::take(&mut told.tips);
-            told.entries.tips.push(tips.iter().map(|tip| tip.map(|metres| metres / MM)).collect());
-            told.paths.resize(tips.len(), Vec::new());
-            told.paths.iter_mut().zip(tips).for_each(|(path, tip)| path.push(tip));
-        }
+        told.add(progress);
         true
     }
 

@@ -18,6 +18,7 @@ use crate::support::server::{Server, in_folder};
 
 const DELETE: char = '\u{e017}';
 const RIGHT: char = '\u{e014}';
+const ENTER: char = '\u{e007}';
 const END: char = '\u{e010}';
 
 const BROKEN: &str = "specimen,cycles,crack_length_mm\nA1,0,9\nA1,12000,9.6\nA1,21000,10.2\nA1,many,10.9\nA1,39000,11.7\n\
@@ -151,6 +152,13 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let exponent = format!("{:.4}", summary["paris_m"].as_f64().unwrap());
     assert!(page.text("[data-table=constants]").contains(&exponent), "{exponent} in {}", page.text("[data-table=constants]"));
 
+    // Renamed where it stands.
+    page.click("#job [data-action=rename]");
+    page.see("#job .edit-in-place:focus");
+    page.press(&"Example law".chars().chain([ENTER]).collect::<Vec<char>>());
+    page.until("document.querySelector('#job h1').textContent === 'Example law'");
+    assert_eq!(service.get(&format!("/v1/calibrations/{fit}")).json()["name"], "Example law");
+
     // A plate with this law, drawn with a second crack that goes again; on points, which take long enough to look on.
     page.click("[data-action=use-law]");
     page.fill("#view-predict [data-key='model.spacing_mm']", "0.8");
@@ -257,6 +265,13 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.open(&format!("{}/#/runs", service.url));
     page.see("tr[data-job][data-job-state=succeeded]");
     walk.look("08_runs");
+    // Put away, one is found again only by asking.
+    page.click(&format!("tr[data-job='{fit}'] [data-action=more]"));
+    page.see(".menu:popover-open");
+    page.click(&format!("tr[data-job='{fit}'] [data-action=archive]"));
+    page.until(&format!("!document.querySelector(\"tr[data-job='{fit}']\")"));
+    page.click("#runs-archived");
+    page.see(&format!("tr[data-job='{fit}'].archived"));
     for place in [1, 2] {
         page.click(&format!("tr[data-job]:nth-of-type({place}) .tick input"));
     }
@@ -264,6 +279,16 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.see("[data-chart=compare] path[data-series]");
     page.see("[data-table=compare]");
     walk.look("09_compare");
+
+    // A sweep over the plate of the form.
+    page.open(&format!("{}/#/new?way=sweep", service.url));
+    page.see("#sweep-start:not([disabled])");
+    page.fill("[data-key='vary[0].count']", "2");
+    page.see("#sweep-start:not([disabled])");
+    walk.look("10_sweep");
+    walk.start("#sweep-start");
+    page.see("#job[data-job-state=succeeded]");
+    page.see("[data-value=life_cycles]");
 
     // Cancel and delete.
     page.open(&format!("{}/#/predict?from={first}", service.url));

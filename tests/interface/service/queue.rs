@@ -144,26 +144,29 @@ fn large_files_go_in_parts() {
     });
 }
 
+/// What who has tables of an earlier version is told.
+const LED_ON: &str = "start `perilife serve` of this program once";
+
 /// Tables of another version are not touched, and who comes upon them is told what to do.
 #[test]
 fn a_store_of_another_version_is_refused() {
     with_each_store("other", |place| {
         let dir = tempdir().unwrap();
         Server::start(place, &["--jobs", "0"]).stop();
-        for (version, remedy) in
-            [(1, "or a new database"), (2, "start `perilife serve` of this program once"), (4, "or a new database")]
-        {
+        for (version, remedy) in [(1, "or a new database"), (2, LED_ON), (3, LED_ON), (5, "or a new database")] {
             on_store(place, &format!("UPDATE perilife_schema SET version = {version}"));
             let refused = perilife(dir.path(), &[&["token"], place, &["list"]].concat());
             assert_refused(&refused, 4, &[&format!("are of version {version}"), remedy]);
         }
-        on_store(place, "UPDATE perilife_schema SET version = 3");
+        on_store(place, "UPDATE perilife_schema SET version = 4");
         assert!(perilife(dir.path(), &[&["token"], place, &["list"]].concat()).status.success());
     });
 }
 
-/// What version 3 of the tables has beyond version 2.
-const BEYOND_2: [&str; 8] = [
+/// What the tables have beyond version 2.
+const BEYOND_2: [&str; 10] = [
+    "ALTER TABLE jobs DROP COLUMN note",
+    "ALTER TABLE jobs DROP COLUMN archived",
     "DROP INDEX jobs_finished_count",
     "ALTER TABLE jobs DROP COLUMN failures",
     "ALTER TABLE jobs DROP COLUMN not_before_ms",
@@ -221,13 +224,13 @@ fn a_job_of_a_former_kind_is_refused() {
 fn a_worker_older_than_the_tables_takes_no_jobs() {
     with_each_store("older", |place| {
         let service = Server::start(place, &["--jobs", "1"]);
-        on_store(place, "UPDATE perilife_schema SET version = 4");
+        on_store(place, "UPDATE perilife_schema SET version = 5");
         let job = service.submit("predictions", &of("quick", QUICK));
         std::thread::sleep(std::time::Duration::from_secs(2));
         assert_eq!(service.get(&job).json()["state"], "queued");
         service.get("/readyz").expect(503);
         service.get("/healthz").expect(200);
-        on_store(place, "UPDATE perilife_schema SET version = 3");
+        on_store(place, "UPDATE perilife_schema SET version = 4");
         service.succeeded(&job);
         service.get("/readyz").expect(200);
     });

@@ -50,7 +50,15 @@ fn roles_are_kept() {
     for (method, path) in [("POST", format!("{}/cancel", jobs[1])), ("DELETE", jobs[0].clone())] {
         service.send(method, &path, &[], b"").expect(403);
     }
+    let name = json!({ "name": "mine" }).to_string();
+    let rename = |service: &Server, status: u16| {
+        service.send("PATCH", &jobs[1], &[("content-type", "application/json")], name.as_bytes()).expect(status);
+    };
+    rename(&service, 403);
+    service = service.with_token(&runner);
+    rename(&service, 200);
     service = service.with_token(&admin);
+    rename(&service, 200);
     service.send("DELETE", &jobs[0], &[], b"").expect(204);
     service.post(&format!("{}/cancel", jobs[1]), &json!({})).expect(202);
     // Two with the same key are two jobs if they are of two people.

@@ -87,8 +87,8 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        let CurvePoint { cycles, crack_length, delta_k, ref tips, .. } = *self.last();
-        GrowthStatus { cycles, crack_length, delta_k, tips }
+        let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.last();
+        GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
     }
 
     fn body(&self) -> Option<Arc<Body>> {

@@ -1,0 +1,159 @@
+// A sweep over the plate of the form Predict: which keys vary, how, and how many cases there are. The kinds of designs and distributions
+// are those that the service lists.
+
+import { getText } from "./api.js";
+import { button, element, show } from "./dom.js";
+import { createEditor } from "./editor.js";
+import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
+import { plain, sentence, words } from "./format.js";
+import { startRun } from "./submit.js";
+import { writeToml } from "./toml.js";
+
+const CASE = "case.toml";
+/** Numbers that say how a key varies: of a grid, and of every distribution. */
+const OF_GRID = ["from", "to", "count"];
+const OF_DISTRIBUTION = { uniform: ["from", "to"], log_uniform: ["from", "to"], normal: ["mean", "standard_deviation"], log_normal: ["median", "factor"] };
+const HINTS = { factor: "68 % lie between median / factor and median × factor" };
+const VARIES_MAX = 4;
+
+/** `base()` gives the case as {input, calibration?} or a sentence, `checked()` as it was understood; `kinds` of the service. Gives {fromBase()}. */
+export function createSweep({ host, fields, panel, start, status, base, checked, kinds }) {
+  const options = (key) => kinds.filter((one) => one.key === key).map(({ name }) => ({ value: name, title: sentence(words(name)) }));
+  const meaning = (key, name) => kinds.find((one) => one.key === key && one.name === name)?.meaning ?? "";
+  const form = createForm(() => {
+    arrange();
+    editor.check.soon();
+  });
+  const design = form.choice("design.kind", { label: "Design", options: options("design.kind"), hint: " " });
+  const scatter = form.choice("design.scatter", { label: "Scatter of the law", options: options("design.scatter"), hint: " " });
+  scatter.input.value = "constants"; // any fit has its errors, few have specimens enough
+  const samples = form.number("design.samples", { label: "Cases", value: "100" });
+  const seed = form.number("design.seed", { label: "Seed", value: "1", hint: "the same seed draws the same cases" });
+  const name = form.text("name", { label: "Name of the sweep", optional: true });
+  const rows = element("div", { class: "stack tight" });
+  const about = element("p", { class: "quiet" });
+  let vary = []; // {key, shape, numbers}
+  const files = new Map(); // of calibrations, by their address
+
+  const isGrid = () => design.input.value === "grid";
+
+  /** Numbers of the case by their keys, with what they are now. */
+  function numbersOf(value, path) {
+    if (typeof value === "number") return [[path, value]];
+    if (typeof value !== "object" || value === null || Array.isArray(value)) return [];
+    return Object.entries(value).flatMap(([key, inner]) => numbersOf(inner, path ? `${path}.${key}` : key));
+  }
+
+  function addRow(given = {}) {
+    const index = vary.length;
+    const known = numbersOf(checked() ?? base().input ?? {}, "");
+    const key = form.choice(`vary[${index}].key`, { label: "Varied", options: [...known.map(([path, value]) => ({ value: path, title: `${path}, now ${plain(value)}` })),
+      ...(given.key && !known.some(([path]) => path === given.key) ? [{ value: given.key, title: given.key }] : [])] });
+    const shape = form.choice(`vary[${index}].distribution`, { label: "Distribution", options: options("vary.distribution") });
+    const scale = form.choice(`vary[${index}].scale`, { label: "Spaced", options: options("vary.scale") });
+    const all = [...new Set([...OF_GRID, ...Object.values(OF_DISTRIBUTION).flat()])];
+    const numbers = Object.fromEntries(all.map((one) => [one, form.number(`vary[${index}].${one}`, { label: sentence(words(one)), signed: true, hint: HINTS[one] })]));
+    const remove = button("Remove", () => rebuild(vary.map(collectRow).filter((_, other) => other !== index)), { class: "button small end", "aria-label": `Remove varied key ${index + 1}` });
+    const row = { key, shape, scale, numbers, node: element("div", { class: "fields", "data-vary": index }, key.node, scale.node, shape.node, Object.values(numbers).map((field) => field.node), remove) };
+    fillIn(key, given.key ?? known.find(([path]) => path.startsWith("loading."))?.[0] ?? known[0]?.[0]);
+    fillIn(shape, given.distribution ?? "normal");
+    fillIn(scale, given.scale ?? "linear");
+    // Around what the case has now, so that something sensible stands there.
+    const now = known.find(([path]) => path === key.input.value)?.[1];
+    const around = Number.isFinite(now) ? { from: 0.9 * now, to: 1.1 * now, mean: now, standard_deviation: Math.abs(0.05 * now), median: now } : {};
+    for (const [one, field] of Object.entries(numbers)) {
+      const value = given.key ? given[one] : { count: 5, factor: 1.1, ...around }[one];
+      fillIn(field, Number.isFinite(value) ? Number(value.toPrecision(6)) : value);
+    }
+    vary.push(row);
+  }
+
+  const used = (row) => (isGrid() ? OF_GRID : OF_DISTRIBUTION[row.shape.input.value] ?? []);
+
+  function collectRow(row) {
+    const numbers = Object.fromEntries(used(row).map((one) => [one, numberIn(row.numbers[one])]));
+    return compact({ key: row.key.input.value, ...(isGrid() ? { scale: row.scale.input.value === "linear" ? undefined : row.scale.input.value } : { distribution: row.shape.input.value }), ...numbers });
+  }
+
+  function rebuild(list) {
+    form.drop(vary.flatMap((row) => [row.key, row.shape, row.scale, ...Object.values(row.numbers)]));
+    vary = [];
+    list.forEach((given) => addRow(given));
+    show(rows, vary.map((row) => row.node));
+    arrange();
+    editor.check.soon();
+  }
+
+  function arrange() {
+    const isScatter = design.input.value === "fitted_scatter";
+    scatter.node.hidden = !isScatter;
+    samples.node.hidden = isGrid();
+    seed.node.hidden = isGrid();
+    design.note.textContent = meaning("design.kind", design.input.value);
+    scatter.note.textContent = meaning("design.scatter", scatter.input.value);
+    for (const row of vary) {
+      row.shape.node.hidden = isGrid();
+      row.scale.node.hidden = !isGrid();
+      for (const [one, field] of Object.entries(row.numbers)) field.node.hidden = !used(row).includes(one);
+    }
+  }
+
+  function collect() {
+    const isScatter = design.input.value === "fitted_scatter";
+    return { case: CASE,
+      design: compact({ kind: design.input.value, scatter: isScatter ? scatter.input.value : undefined, samples: isGrid() ? undefined : numberIn(samples), seed: isGrid() ? undefined : numberIn(seed) }),
+      vary: vary.length > 0 ? vary.map(collectRow) : undefined };
+  }
+
+  /** A file of a calibration; undefined until it is there, null where it has none. */
+  function fileOf(id, file) {
+    const address = `/v1/calibrations/${encodeURIComponent(id)}/files/${file}`;
+    if (!files.has(address)) {
+      files.set(address, undefined);
+      getText(address).catch(() => null).then((text) => {
+        files.set(address, text);
+        editor.check.soon();
+      });
+    }
+    return files.get(address);
+  }
+
+  /** The case and the law it names, as files beside the sweep. */
+  function context() {
+    const given = base();
+    if (typeof given === "string") return given;
+    const fitted = given.calibration && ["fitted.toml", "fit.json"].map((file) => [file, fileOf(given.calibration, file)]);
+    if (fitted?.some(([, text]) => text === undefined)) return "The law is being fetched.";
+    const input = fitted && typeof given.input === "string" ? checked() : given.input;
+    if (!input) return "The case on Predict is not right yet.";
+    const text = typeof input === "string" ? input : writeToml({ ...input, ...(fitted ? { fatigue: { ...input.fatigue, fitted: "fitted.toml" } } : {}) });
+    const sent = [[CASE, text], ...(fitted ?? [])].filter(([, content]) => content !== null);
+    return { files: sent.map(([file, content]) => ({ name: file, text: content, file: new Blob([content]) })) };
+  }
+
+  const add = button("Vary a key", () => rebuild([...vary.map(collectRow), {}].slice(0, VARIES_MAX)), { class: "button small", "data-action": "vary" });
+  show(fields, about, group("Design", grid(design.node, scatter.node, samples.node, seed.node, name.node)), group("What varies", rows, element("p", { class: "tool-row" }, add)));
+  const editor = createEditor({
+    host, fields, panel, form, collect, fill: () => false, context,
+    onResult: (ok) => {
+      start.disabled = !ok;
+    },
+  });
+  const nameOf = (specimen) => (specimen ? sentence(words(specimen.kind)) : "the plate of Predict");
+  start.addEventListener("click", async () => {
+    if (!(await editor.check.now())) return;
+    const keys = vary.map((row) => words(row.key.input.value.split(".").pop().replace(/_(mm|mpa|gpa|kn|n)$/, ""))).join(", ");
+    startRun("/v1/sweeps", { ...editor.body(), name: name.input.value.trim() || `${nameOf(checked()?.specimen)}: ${keys || "scatter of the law"}` }, { button: start, status, refuse: editor.check.refuse });
+  });
+
+  return {
+    /** Begins with the case of the form Predict as it is now. */
+    fromBase() {
+      const understood = checked();
+      const { kind, width_mm: width, length_mm: length } = understood?.specimen ?? {};
+      show(about, "The case is that of ", element("a", { href: "#/predict" }, "Predict"),
+        kind ? `: ${words(kind)}, ${[width, length].filter(Boolean).map((value) => plain(value)).join(" × ")} mm.` : ", which is not complete yet.");
+      rebuild(vary.length > 0 ? vary.map(collectRow) : [{}]);
+    },
+  };
+}
