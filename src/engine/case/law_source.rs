@@ -201,7 +201,7 @@ pub fn library_law(name: &str, thickness: f64, ratio: f64, folder: &Folder) -> R
     // Strengths and elastic constants do not act on rates; a law that needs K_c has to have it.
     let material = Material::elastic(f64::NAN, f64::NAN, Plane::Stress);
     let (section, threshold) = (Value::Table(keys), 0.0);
-    match read(threshold, None, &Given { section: &section, material: &material, ratio, folder })? {
+    match read(threshold, None, &Given { section: &section, material: &material, ratios: [ratio; 2], folder })? {
         Some(LawSource::Factor(law)) => Ok(Box::new(law)),
         Some(LawSource::Paris(paris)) => Ok(Box::new(Walker { paris, gamma: 1.0, threshold })),
         _ => Err(no_law()),
