@@ -161,34 +161,35 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("report", 10024),
-    ("fracture", 6916),
-    ("calibration", 6123),
-    ("service", 5636),
+    ("report", 10466),
+    ("fracture", 6934),
+    ("calibration", 6148),
+    ("service", 5853),
+    ("growth", 5605),
     ("solver", 5287),
-    ("growth", 5133),
     ("verify", 4917),
-    ("element_free", 4015),
-    ("measured", 3734),
-    ("commands", 2786),
-    ("case", 2560),
+    ("element_free", 4167),
+    ("measured", 3876),
+    ("specimen", 3183),
+    ("commands", 2957),
+    ("case", 2720),
     ("body", 2534),
-    ("specimen", 2483),
-    ("predict", 1796),
+    ("fatigue", 2347),
+    ("predict", 2207),
     ("levels", 1728),
-    ("fatigue", 1681),
+    ("loading", 1605),
     ("sweep", 1074),
-    ("runner", 920),
-    ("loading", 831),
-    ("input", 734),
+    ("runner", 937),
+    ("input", 744),
     ("stress_intensity", 681),
-    ("check", 588),
+    ("check", 603),
     ("bond_law", 394),
     ("tables", 342),
+    ("material", 323),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 74598;
+const LINES_OF_ALL: usize = 79095;
 
 #[test]
 fn rooms_do_not_grow() {

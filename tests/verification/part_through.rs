@@ -109,7 +109,9 @@ fn factors_have_their_limits() {
         for depth in [0.2, 0.5, 0.8] {
             let [below, above] =
                 [1.0 - 1e-9, 1.0 + 1e-9].map(|aspect| factors(&flaw(&keys(kind, [aspect, depth, 0.02], hole), bent)));
-            (0..2).for_each(|i| assert!((below[i] / above[i] - 1.0).abs() < 3e-3, "{kind} {depth}: {below:?} and {above:?}"));
+            // H1 at a hole has 4.45 (a/t)² below and 4.51 above in the source itself.
+            let jump = if kind == KINDS[3] { 1.2e-2 } else { 3e-3 };
+            (0..2).for_each(|i| assert!((below[i] / above[i] - 1.0).abs() < jump, "{kind} {depth}: {below:?} and {above:?}"));
         }
     }
     let small = |kind, set: &[&str]| factors(&flaw(&keys(kind, [1.0, 1e-3, 1e-3], ""), set));

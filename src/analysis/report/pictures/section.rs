@@ -87,8 +87,9 @@ fn body(sketch: &mut Sketch, flaw: &PartThrough, [low, high]: Point) {
 fn draw(sketch: &mut Sketch, flaw: &PartThrough, axes: [f64; 2], share: f64) {
     for front in flaw.seen_in_section(axes) {
         let places: Vec<Point> = front.iter().map(|place| sketch.place(*place)).collect();
-        if share == 0.0 {
-            sketch.area(&places, INK, 0.35);
+        if let (true, [first, .., last]) = (share == 0.0, &places[..]) {
+            // A quarter of an ellipse is closed by its corner; of others that is one of the ends.
+            sketch.area(&[&places[..], &[[last[0], first[1]]]].concat(), INK, 0.35);
         }
         sketch.path(&places, &colour(share), 2.2, "");
     }
