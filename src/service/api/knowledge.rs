@@ -12,6 +12,7 @@ use utoipa::ToSchema;
 use super::App;
 use super::caller::Caller;
 use crate::input::Folder;
+use crate::material::growth_data;
 use crate::material::library::{self, Property};
 use crate::problem::{Answer, Problem};
 use crate::report::catalogue;
@@ -77,9 +78,11 @@ pub async fn materials() -> Answer<Json<Value>> {
             "fracture_energy_j_m2": known(&file.fracture_energy_j_m2),
             "density_kg_m3": known(&file.density_kg_m3),
             "tensile_strength_mpa": known(&file.tensile_strength_mpa),
+            "has_growth_data": growth_data::record(&name).is_some(),
         }))
     };
-    Ok(Json(json!({ "materials": library::names().into_iter().map(material).collect::<Answer<Vec<_>>>()? })))
+    let names = library::names().into_iter().chain(growth_data::records().into_iter().map(|record| record.name));
+    Ok(Json(json!({ "materials": names.map(material).collect::<Answer<Vec<_>>>()? })))
 }
 
 #[derive(Embed)]

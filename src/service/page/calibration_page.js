@@ -132,6 +132,7 @@ function drawRates(place, rates, s) {
   const ends = [s.delta_k_min_mpa_sqrt_m, s.delta_k_max_mpa_sqrt_m];
   chart.set([
     { id: "rates", name: "readings", kind: "points", tone: 2, x: pairs.map((pair) => pair[0]), y: pairs.map((pair) => pair[1]) },
+    { id: "pivot", name: "pivot", kind: "points", tone: 0, x: [s.pivot_delta_k_mpa_sqrt_m], y: [s.rate_at_pivot_mm_per_cycle] },
     { id: "law", name: "fitted law", kind: "line", tone: 0, x: ends, y: ends.map((k) => s.rate_at_pivot_mm_per_cycle * (k / s.pivot_delta_k_mpa_sqrt_m) ** s.paris_m) },
   ]);
   return chart;

@@ -24,7 +24,8 @@ const START = {
 };
 
 const BY_HAND = "law:paris";
-const NAMES = { nasgro: "NASGRO", bond_law: "A and p of fatigue bonds" };
+const NAMES = { nasgro: "NASGRO", bond_law: "A and p of fatigue bonds", library: "Growth data of the material" };
+const LIBRARY = { name: "library", meaning: "Of a material that has growth data: a batch may differ by a factor of 2 in rate.", constants: [] };
 const SYMBOLS = {
   paris_c_mm_per_cycle: "C", paris_m: "m", walker_gamma: "γ", forman_c_mm_per_cycle: "C", forman_m: "m", k_c_mpa_sqrt_m: "Kc",
   nasgro_c_mm_per_cycle: "C", nasgro_n: "n", nasgro_p: "p", nasgro_q: "q", nasgro_alpha: "α", nasgro_smax_over_flow: "Smax/σ0",
@@ -191,7 +192,7 @@ export function createPredictView() {
     try {
       if (laws.length === 0) {
         const known = await getJson("/v1/kinds");
-        laws = known.laws.filter((one) => one.constants.length > 0);
+        laws = [...known.laws.filter((one) => one.constants.length > 0), LIBRARY];
         sides.setKinds(known.kinds);
       }
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;

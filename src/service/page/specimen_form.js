@@ -5,6 +5,8 @@ import { compact, fillIn, grid, group, numberIn } from "./form.js";
 import { plain, sentence, words } from "./format.js";
 
 const STANDARD = ["middle_tension", "compact_tension", "single_edge_tension", "double_edge_tension"];
+/** Cracks that are not through, and what they have beside depth and half length. */
+const PART_THROUGH = { surface_crack: [], corner_crack: [], embedded_crack: [], corner_crack_at_hole: ["hole_diameter_mm", "cracks"] };
 const LENGTH_HINTS = {
   middle_tension: "half of the length from tip to tip",
   compact_tension: "from the load line",
@@ -37,7 +39,7 @@ function onlyKnown(object, known) {
 
 /** Specimen: the standard kinds, and `plate` ({element, collect, fill}) where one is given. */
 export function createSpecimen(form, { plate } = {}) {
-  const kinds = [...STANDARD, ...(plate ? ["plate"] : [])];
+  const kinds = [...STANDARD, ...(plate ? ["plate", ...Object.keys(PART_THROUGH)] : [])];
   const title = (kind) => (kind === "plate" ? "Plate drawn here" : sentence(words(kind)));
   const kind = form.choice("specimen.kind", { label: "Kind", options: kinds.map((value) => ({ value, title: title(value) })) });
   const number = (key, label, hint) => form.number(`specimen.${key}`, { label, unit: "mm", hint });
@@ -46,7 +48,12 @@ export function createSpecimen(form, { plate } = {}) {
   const thickness = number("thickness_mm", "Thickness B");
   const crack = number("crack_length_mm", "Initial crack length a");
   const ends = form.choice("specimen.ends", { label: "Ends", options: ENDS, needed: true });
-  const fields = { width_mm: width, length_mm: length, thickness_mm: thickness, crack_length_mm: crack };
+  const depth = number("crack_depth_mm", "Crack depth a", "into the thickness");
+  const half = number("crack_half_length_mm", "Crack length c", "along the face; half of it where it has two ends there");
+  const hole = number("hole_diameter_mm", "Hole diameter");
+  const count = form.number("specimen.cracks", { label: "Cracks at the hole", hint: "1, or 2: one on each side" });
+  const fields = { width_mm: width, length_mm: length, thickness_mm: thickness, crack_length_mm: crack,
+    crack_depth_mm: depth, crack_half_length_mm: half, hole_diameter_mm: hole, cracks: count };
 
   function arrange() {
     const chosen = kind.input.value;
@@ -55,7 +62,10 @@ export function createSpecimen(form, { plate } = {}) {
       field.note.hidden = !words;
     };
     length.node.hidden = chosen === "compact_tension";
-    crack.node.hidden = chosen === "plate";
+    const flaw = PART_THROUGH[chosen];
+    crack.node.hidden = chosen === "plate" || Boolean(flaw);
+    for (const field of [depth, half]) field.node.hidden = !flaw;
+    for (const key of ["hole_diameter_mm", "cracks"]) fields[key].node.hidden = !flaw?.includes(key);
     ends.node.hidden = chosen !== "single_edge_tension";
     hint(crack, LENGTH_HINTS[chosen]);
     hint(width, WIDTH_HINTS[chosen]);
@@ -66,7 +76,7 @@ export function createSpecimen(form, { plate } = {}) {
   arrange();
 
   return {
-    element: group("Specimen", grid(kind.node, width.node, length.node, thickness.node, crack.node, ends.node), plate?.element),
+    element: group("Specimen", grid(kind.node, ...Object.values(fields).map((field) => field.node), ends.node), plate?.element),
     fields: { kind, ...fields, ends },
     collect() {
       const chosen = kind.input.value;
@@ -80,13 +90,15 @@ export function createSpecimen(form, { plate } = {}) {
     },
     /** Takes a specimen over; false when it says something the form cannot show. */
     fill(specimen, loading) {
-      const known = ["kind", "ends", ...Object.keys(fields), ...(specimen.kind === "plate" ? ["holes", "cracks"] : [])];
+      const isPlate = specimen.kind === "plate";
+      const own = Object.keys(fields).filter((key) => key !== "cracks" || specimen.kind in PART_THROUGH);
+      const known = ["kind", "ends", ...own, ...(isPlate ? ["holes", "cracks"] : [])];
       if (!kinds.includes(specimen.kind) || !onlyKnown(specimen, known)) return false;
       fillIn(kind, specimen.kind);
       fillIn(ends, specimen.ends);
-      for (const [key, field] of Object.entries(fields)) fillIn(field, specimen[key]);
+      for (const key of own) fillIn(fields[key], specimen[key]);
       arrange();
-      if (specimen.kind === "plate") plate.fill(specimen, loading);
+      if (isPlate) plate.fill(specimen, loading);
       return true;
     },
   };
