@@ -1,7 +1,6 @@
 //! Growth data of the library against values computed from the published constants by themselves.
 
 use perilife::case::{Case, library_law};
-use perilife::fatigue::growth_law::GrowthLaw;
 use perilife::fatigue::growth_law::nasgro::keys_of;
 use perilife::input::Folder;
 use perilife::material::growth_data::{record, records};

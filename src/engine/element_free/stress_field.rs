@@ -13,7 +13,7 @@ use crate::specimen::{Point, Specimen};
 /// Pieces at the least over the larger side of the plate, and over the cracks and their surroundings.
 const ACROSS: f64 = 56.0;
 /// See [`ACROSS`].
-const ACROSS_CRACKS: f64 = 30.0;
+const ACROSS_CRACKS: f64 = 24.0;
 /// Way from a corner to the middle of its piece at which the corner is read, over the whole way.
 const INWARDS: f64 = 1e-3;
 /// Distance from a rim or crack, over the spacing, within which a side of a piece lies on it.
@@ -40,7 +40,7 @@ pub fn stress_pieces(specimen: &Specimen, plate: &Discretisation, u: &[f64], pla
     let cracked = (high[0] - low[0]).max(high[1] - low[1]);
     let size = Discretisation::size(specimen);
     let finest =
-        if of_cracks.is_empty() { size / ACROSS } else { (size / ACROSS).min(cracked / ACROSS_CRACKS).max(0.2 * size / ACROSS) };
+        if of_cracks.is_empty() { size / ACROSS } else { (size / ACROSS).min(cracked / ACROSS_CRACKS).max(0.4 * size / ACROSS) };
     let leaves: Vec<usize> = grid.leaves().collect();
     let of_leaf = |local: &mut Local, &leaf: &usize| {
         let (near, spacing) = (dividers.of_cell(leaf), grid.spacing(leaf));

@@ -120,12 +120,27 @@ impl Sketch {
         self.push(format_args!(r#"<polygon points="{points}" fill="{fill}" fill-opacity="{opacity}"/>"#));
     }
 
-    /// Filled polygons of pixels that share sides: a thin edge of their colour hides these.
+    /// Filled polygons of pixels that share sides: a thin edge of their colour hides these. Written in tenths of a pixel, from corner to corner.
     pub fn areas(&mut self, polygons: &[Vec<Point>], fill: &str) {
-        let way: String = polygons.iter().map(|polygon| format!("M{}Z", corners(polygon))).collect();
+        let mut way = String::new();
+        for polygon in polygons {
+            let mut last = [0i64; 2];
+            for (k, corner) in polygon.iter().enumerate() {
+                let at = corner.map(|x| (10.0 * x).round() as i64);
+                let [x, y] = [at[0] - last[0], at[1] - last[1]];
+                // Writing to a String cannot fail.
+                let _ = match k {
+                    0 => write!(way, "M{} {}l", at[0], at[1]),
+                    _ if x == 0 && y == 0 => Ok(()),
+                    _ => write!(way, "{}{x}{}{y}", if x < 0 || k == 1 { "" } else { " " }, if y < 0 { "" } else { " " }),
+                };
+                last = at;
+            }
+            way.push('z');
+        }
         if !way.is_empty() {
             self.push(format_args!(
-                r#"<path d="{way}" fill="{fill}" stroke="{fill}" stroke-width="0.7" stroke-linejoin="round"/>"#
+                r#"<path transform="scale(.1)" d="{way}" fill="{fill}" stroke="{fill}" stroke-width="7" stroke-linejoin="round"/>"#
             ));
         }
     }
