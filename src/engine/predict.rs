@@ -14,6 +14,7 @@ pub mod moment;
 mod outcome;
 pub mod plastic_zone;
 pub mod record;
+pub mod recorded;
 pub mod residual_strength;
 mod snapshot;
 pub mod tip_factors;
