@@ -28,6 +28,7 @@ mod product;
 mod quasi_static;
 mod rate_constant;
 mod readme_accuracy;
+mod recorded;
 mod rigid_turn;
 mod round_trip;
 mod scene_checkpoint;

@@ -152,9 +152,13 @@ impl Sensitivities {
 
     /// A line of a summary.
     pub fn words(&self) -> String {
+        let told = |change: f64| match change.is_finite() {
+            true => format!("{:+.1} %", 100.0 * change),
+            false => "not known: a life is unlimited".to_owned(),
+        };
         let of_pair = |pair: &&[Sensitivity]| {
             let changes: Vec<String> =
-                pair.iter().map(|entry| format!("{} {:+.1} %", entry.change, 100.0 * entry.change_of_life)).collect();
+                pair.iter().map(|entry| format!("{} {}", entry.change, told(entry.change_of_life))).collect();
             format!("{} {}", pair[0].input, changes.join(", "))
         };
         format!("  sensitivities  {}", self.widest().iter().map(of_pair).collect::<Vec<_>>().join("; "))

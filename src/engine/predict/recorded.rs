@@ -154,7 +154,7 @@ impl Recorded {
     /// Life of a plate by a law.
     pub fn life(&self, law: &dyn GrowthLaw, change: Change) -> RecordedLife {
         let rate = law_at(law, self.ratio);
-        self.life_by(change, |k, way| rate(k, way), |_, _| ())
+        self.life_by(change, rate, |_, _| ())
     }
 
     /// Life of a plate by a rate, m/cycle, of K_max under its own load, Pa√m, and the way of the tip, m; `seen` is told cycles and crack
