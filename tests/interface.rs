@@ -14,6 +14,7 @@ mod doors;
 mod element_free;
 mod ends;
 mod export;
+mod fleet;
 mod fracture;
 mod hand_calculation;
 mod laws;

@@ -17,6 +17,7 @@ mod confidence;
 mod cross_check;
 mod exponent;
 mod fit_use;
+mod fleet;
 mod floats;
 mod growth_law;
 mod growth_rate;

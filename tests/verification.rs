@@ -29,6 +29,7 @@ mod product;
 mod quasi_static;
 mod rate_constant;
 mod readme_accuracy;
+mod recorded;
 mod retardation;
 mod rigid_turn;
 mod round_trip;

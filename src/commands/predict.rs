@@ -48,6 +48,18 @@ pub struct Args {
     /// Tip of a plate whose crack has that length; the one that ends the life where it is left out
     #[arg(long, value_name = "NUMBER", requires = "inspect_from", help_heading = "Output")]
     pub tip: Option<usize>,
+    /// Crack lengths in mm that an inspection finds with 50 and with 90 %: also say with what probability all of them miss the crack
+    #[arg(long, value_name = "A50,A90", requires = "inspect_from", help_heading = "Output")]
+    pub pod: Option<String>,
+    /// Also write lives of so many plates that differ in law, initial length and load (fleet.csv and .svg), as the key fleet.plates does
+    #[arg(long, value_name = "PLATES", help_heading = "Output")]
+    pub fleet: Option<u64>,
+    /// Seed of the plates, as the key fleet.seed is
+    #[arg(long, value_name = "NUMBER", help_heading = "Output")]
+    pub seed: Option<u64>,
+    /// Also write the life at somewhat other load, initial length and law (sensitivities.csv and .svg)
+    #[arg(long, help_heading = "Output")]
+    pub sensitivities: bool,
     /// Also print the life by the other engine, coarse: two methods that share nothing
     #[arg(long, help_heading = "Output")]
     pub cross_check: bool,
@@ -64,14 +76,18 @@ pub struct Args {
 
 /// Runs `perilife predict`.
 pub fn run(args: &Args) -> Result<()> {
-    let document =
-        Document::read(&args.case, &super::with_output(&args.set, [("paraview", args.paraview), ("animation", args.animate)]))?;
+    let mut set = super::with_output(&args.set, [("paraview", args.paraview), ("animation", args.animate)]);
+    let fleet = [("plates", args.fleet), ("seed", args.seed)];
+    set.extend(fleet.iter().filter_map(|(key, value)| Some(format!("fleet.{key}={}", (*value)?))));
+    let document = Document::read(&args.case, &set)?;
     let mut task = Task::read(Kind::Prediction, &document, &[])?;
     if let Some(file) = &args.measured {
         task.read_plate(&document, file).map_err(|error| document.locate(error))?;
     }
     if let Task::Prediction { wanted, .. } = &mut task {
         wanted.strength = args.residual_strength;
+        wanted.detection = args.pod.as_deref().map(str::parse).transpose()?;
+        wanted.sensitivities = args.sensitivities;
         (wanted.no_estimate, wanted.cross_check) = (args.no_estimate, args.cross_check);
         let names = ["--inspect-from", "--factor", "--tip"];
         wanted.inspection =

@@ -5,6 +5,7 @@ pub mod budget;
 mod choose;
 mod fatigue;
 mod fatigue_keys;
+mod fleet;
 mod law;
 mod law_source;
 pub mod model;
@@ -14,6 +15,7 @@ pub mod record;
 
 pub use boundaries::first_load;
 pub use fatigue_keys::{Lot, remove_law};
+pub use fleet::{Fleet, InitialLength};
 pub use law_source::{LIBRARY, fitted_record, library_law};
 pub use model::coarse_points;
 pub use model_keys::{finer_nodes, usual_nodes};
@@ -249,6 +251,8 @@ pub struct Case {
     pub law: LawSource,
     /// Stop conditions.
     pub stop: Stop,
+    /// Plates beside the one that is run.
+    pub fleet: Option<Fleet>,
     /// What is written beside tables and pictures.
     pub output: Output,
     /// What the program chose for the case and what the user should know.

@@ -15,6 +15,7 @@ mod outcome;
 pub mod part_through;
 pub mod plastic_zone;
 pub mod record;
+pub mod recorded;
 pub mod residual_strength;
 mod retarded;
 mod snapshot;

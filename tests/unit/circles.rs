@@ -161,25 +161,25 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("report", 10466),
+    ("report", 10978),
     ("fracture", 6934),
-    ("calibration", 6148),
-    ("service", 5853),
-    ("growth", 5605),
+    ("calibration", 6155),
+    ("service", 5856),
+    ("growth", 5618),
     ("solver", 5287),
     ("verify", 4917),
     ("element_free", 4167),
     ("measured", 3876),
     ("specimen", 3183),
-    ("commands", 2957),
-    ("case", 2720),
+    ("commands", 2973),
+    ("case", 2837),
+    ("predict", 2538),
     ("body", 2534),
     ("fatigue", 2347),
-    ("predict", 2207),
     ("levels", 1728),
     ("loading", 1605),
-    ("sweep", 1074),
-    ("runner", 937),
+    ("sweep", 1336),
+    ("runner", 954),
     ("input", 744),
     ("stress_intensity", 681),
     ("check", 603),
@@ -189,7 +189,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 79095;
+const LINES_OF_ALL: usize = 80373;
 
 #[test]
 fn rooms_do_not_grow() {

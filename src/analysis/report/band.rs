@@ -317,6 +317,11 @@ impl Lives {
         Ok(())
     }
 
+    /// What is left from the length that was asked for.
+    pub fn inspection(&self) -> Option<&Inspection> {
+        self.inspection.as_ref()
+    }
+
     /// Band of the life.
     pub fn life(&self) -> Option<Quantiles> {
         self.band.as_ref().ok().and_then(|(_, band)| band.reached.last().copied())

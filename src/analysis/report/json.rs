@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::case::{Case, LawSource};
-use crate::growth::end_of_life::critical_length;
+use crate::growth::end_of_life::{critical_length, critical_lengths};
 use crate::growth::record::TipRecord;
 use crate::predict::laws::paris_law;
 use crate::predict::part_through::PartThroughLife;
@@ -66,13 +66,21 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
     })
 }
 
-/// The crack length at which the plate no longer bears its load, and by what; `null` where the run did not come to it and no formula
+/// The crack length at which the plate no longer bears its load, by what, and by toughness and net section alone as far as formulas say
+/// them; `null` where the run did not come to it and no formula
 /// says it.
 fn critical(case: &Case, prediction: &Prediction) -> Value {
     let by_run = prediction.stop.is_strength().then(|| (prediction.crack_length_final(), prediction.stop));
     let by_formula = || critical_length(case).map(|end| (end.crack_length, end.reason));
+    let [toughness, net_section] = critical_lengths(case).map(|end| end.map(|end| clean(end.crack_length / MM)));
     by_run.or_else(by_formula).map_or(Value::Null, |(length, reason)| {
-        json!({ "crack_length_mm": clean(length / MM), "criterion": reason.name(), "meaning": reason.meaning() })
+        json!({
+            "crack_length_mm": clean(length / MM),
+            "criterion": reason.name(),
+            "meaning": reason.meaning(),
+            "by_toughness_mm": toughness,
+            "by_net_section_mm": net_section,
+        })
     })
 }
 

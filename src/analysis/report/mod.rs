@@ -2,6 +2,7 @@
 //!
 //! A run writes into an [`output::OutputFolder`], which appears under its name only once it is whole.
 
+pub mod answers;
 pub mod band;
 pub mod catalogue;
 pub mod chart;
@@ -10,8 +11,10 @@ pub mod csv;
 pub mod damage;
 pub mod factors;
 pub mod fit;
+pub mod fleet;
 pub mod fit_use;
 pub mod fracture;
+pub mod inspections;
 pub mod json;
 pub mod model_words;
 pub mod output;
@@ -21,6 +24,7 @@ pub mod provenance;
 pub mod resample;
 pub mod quality;
 pub mod run;
+pub mod sensitivities;
 pub mod spectrum;
 pub mod speed;
 pub mod specimen_picture;

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use toml::Table;
 
+use super::answers::Answers;
 use super::band::Lives;
 use super::chart::{self, LARGE, Mark, Series};
 use super::csv;
@@ -132,7 +133,7 @@ fn extrapolates(case: &Case, what: &str, more: &str) -> Error {
 }
 
 /// Keys of `result.json` that a listing of runs shows.
-pub const FIGURES: [&str; 26] = [
+pub const FIGURES: [&str; 29] = [
     "life_cycles",
     "passes",
     "error_estimate_percent",
@@ -142,6 +143,9 @@ pub const FIGURES: [&str; 26] = [
     "band",
     "no_band",
     "inspection",
+    "inspections",
+    "fleet",
+    "sensitivities",
     "life_is_lower_bound",
     "stop_reason",
     "stop_meaning",
@@ -162,10 +166,16 @@ pub const FIGURES: [&str; 26] = [
 ];
 
 /// Writes all files of a run into `folder`; returns the content of `result.json`.
-pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives, quality: &Quality) -> Result<Value> {
+pub fn write(
+    folder: &Path,
+    case: &Case,
+    prediction: &Prediction,
+    (lives, quality, answers): (&Lives, &Quality, &Answers),
+) -> Result<Value> {
     let mut result = json::result(case, prediction);
     lives.add_to(&mut result);
     quality.add_to(&mut result);
+    answers.add_to(&mut result);
     let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement()));
     let path = csv::crack_path(prediction, &case.specimen.cracks);
     if let Some(object) = result.as_object_mut() {
@@ -186,6 +196,7 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction, lives: &Lives,
     }
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     provenance::write(folder, "predict", input_of(case), &case.provenance)?;
+    answers.write(folder, case)?;
     draw(folder, case, prediction, &result, [&a_n, &path])?;
     vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)?;
     Ok(result)
@@ -417,6 +428,7 @@ pub fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<
         series("by toughness", Mark::Dashes, &|s| s.by_toughness),
         series("by net-section yield", Mark::Dashes, &|s| s.by_net_section),
         series("maximum load of the cycle", Mark::Dots, &|_| Some(case.loading.maximum)),
+        series("load to bear", Mark::Dashes, &|_| case.stop.required.map(|factor| factor * case.loading.maximum)),
     ];
     let known: Vec<Series> = all.into_iter().filter(|series| !series.points.is_empty()).collect();
     chart::over_crack_length(&folder.join("residual_strength.svg"), &format!("{}: residual strength", case.name), axis, &known)

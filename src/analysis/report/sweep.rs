@@ -192,20 +192,24 @@ pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value 
 }
 
 /// Lives of the cases that have one.
-struct Lives {
+pub(super) struct Lives {
     /// Upwards, each with whether it is a lower bound; unlimited ones at the end, infinite.
-    sorted: Vec<(f64, bool)>,
+    pub sorted: Vec<(f64, bool)>,
     /// How many are unlimited.
-    unlimited: usize,
+    pub unlimited: usize,
     /// How many are lower bounds.
-    bounds: usize,
+    pub bounds: usize,
 }
 
 impl Lives {
     fn of(outcomes: &[Option<Outcome>]) -> Self {
         let there = || outcomes.iter().flatten().filter(|outcome| outcome.problem.is_none());
-        let mut sorted: Vec<(f64, bool)> =
-            there().map(|outcome| (outcome.life_cycles.unwrap_or(f64::INFINITY), outcome.is_cut_off())).collect();
+        Lives::ranked(there().map(|outcome| (outcome.life_cycles.unwrap_or(f64::INFINITY), outcome.is_cut_off())))
+    }
+
+    /// Of lives, infinite where they are unlimited, and whether each is a lower bound.
+    pub fn ranked(lives: impl Iterator<Item = (f64, bool)>) -> Self {
+        let mut sorted: Vec<(f64, bool)> = lives.collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let unlimited = sorted.iter().filter(|(life, _)| life.is_infinite()).count();
         let bounds = sorted.iter().filter(|(_, is_bound)| *is_bound).count();
@@ -228,7 +232,7 @@ impl Lives {
     }
 
     /// Quantiles by [`quantile`], null where the cases do not say them, and in words.
-    fn figures(&self) -> Value {
+    pub fn figures(&self) -> Value {
         let [p05, p50, p95] = [0.05, 0.5, 0.95].map(|q| self.quantile(q));
         let ends = || self.sorted.iter().filter(|(life, _)| life.is_finite()).map(|(life, _)| *life);
         json!({

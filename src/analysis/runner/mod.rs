@@ -24,10 +24,12 @@ use crate::predict::checkpoint::Checkpoint;
 use crate::predict::residual_strength::{check_strength, residual_strength};
 use crate::predict::{Observer, Prediction, Silent, predict, resume};
 use crate::report;
+use crate::report::answers::{Answers, Asked};
 use crate::report::band::Lives;
 use crate::report::output::Share;
 use crate::report::quality::Quality;
 use crate::report::sweep::Plan;
+use crate::sweep::fleet;
 use crate::units::MM;
 use sweep_folder::SweepFolder;
 
@@ -101,7 +103,8 @@ pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, wat
     match task {
         Task::Prediction { case, wanted } => {
             // A record that is damaged, and a factor that is none, should not cost a run either.
-            let _ = lot_of(case)?;
+            let lot = lot_of(case)?;
+            case.fleet.as_ref().map_or(Ok(()), |fleet| fleet::check(fleet, lot.as_ref().err()))?;
             wanted.inspection.map_or(Ok(()), |from| from.check())?;
             if wanted.strength {
                 // A plate without known strength should not cost a run; K of its curve comes later.
@@ -158,12 +161,20 @@ pub fn of_prediction(
     let quality = Quality::of(case, prediction, [!wanted.no_estimate, wanted.cross_check]);
     let asked = wanted.readings.as_ref().map_or(Ok(()), |curve| lives.narrow(curve));
     let asked = asked.and_then(|()| wanted.inspection.map_or(Ok(()), |from| lives.inspect(from)));
+    let answered = asked.and_then(|()| {
+        Answers::of(case, prediction, &lives, Asked { detection: wanted.detection, sensitivities: wanted.sensitivities })
+    });
+    let (answers, asked) = match answered {
+        Ok(answers) => (answers, Ok(())),
+        Err(error) => (Answers::default(), Err(error)),
+    };
     let result = match folder {
-        Some(folder) => run::write(folder, case, prediction, &lives, &quality)?,
+        Some(folder) => run::write(folder, case, prediction, (&lives, &quality, &answers))?,
         None => {
             let mut result = run::result(case, prediction);
             lives.add_to(&mut result);
             quality.add_to(&mut result);
+            answers.add_to(&mut result);
             result
         }
     };
@@ -178,7 +189,8 @@ pub fn of_prediction(
     let figures = run::FIGURES.iter().filter_map(|key| Some(((*key).to_owned(), result.get(*key)?.clone())));
     let mut figures: Map<String, Value> = figures.collect();
     figures.insert("warnings".to_owned(), json!(warnings));
-    let lines = run::words(case, prediction, &lives, &quality);
+    let mut lines = run::words(case, prediction, &lives, &quality);
+    lines.extend(answers.words());
     let refusal = refusal.or(strengths.err()).or(asked.err());
     Ok(Summary { result, figures: figures.into(), lines, refusal, ..Summary::default() })
 }

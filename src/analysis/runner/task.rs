@@ -21,6 +21,7 @@ use crate::report::band::{InspectFrom, no_band_to_narrow};
 use crate::report::output::{Room, RunKind};
 use crate::report::{fracture, run, stresses};
 use crate::sweep::design::{CASES_MAX, is_sweep};
+use crate::sweep::detection::Detection;
 use crate::sweep::{DrawnCase, Sweep};
 
 /// What is done with a document.
@@ -105,6 +106,10 @@ pub struct Wanted {
     pub readings: Option<MeasuredCurve>,
     /// What is left from a crack length on, and how often to look.
     pub inspection: Option<InspectFrom>,
+    /// How inspections find cracks, from which the probability follows that they miss this one.
+    pub detection: Option<Detection>,
+    /// Life at somewhat other input.
+    pub sensitivities: bool,
     /// No bounds of the error of the life.
     pub no_estimate: bool,
     /// The life by the other engine, too.

@@ -5,8 +5,10 @@
 //! are hypercubes ([`distribution`]); laws that scatter as specimens do come from [`scatter`].
 
 pub mod design;
+pub mod detection;
 pub mod distribution;
 pub mod draw;
+pub mod fleet;
 pub mod scatter;
 mod vary;
 

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
+use super::fleet::Fleet;
 use super::model_keys::on_nodes;
 use super::{Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, remove_law};
 use crate::bond_law::SurfaceCorrection;
@@ -23,7 +24,7 @@ use crate::{loading, material, specimen};
 /// What a record is called that came with no file.
 pub const RECORD: &str = "fitted.toml";
 /// Sections of a case file.
-pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "fatigue", "stop", "output"];
+pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "model", "fatigue", "stop", "fleet", "output"];
 
 /// Sections of other files.
 const STRANGERS: &[ForeignSections] = &[
@@ -147,6 +148,7 @@ impl Case {
             retardation,
             law: LawSource::Missing(PathBuf::new()),
             stop,
+            fleet: sections.given("fleet").map(Fleet::from_value).transpose()?,
             output: Output::from_value(sections.optional("output"))?,
             warnings,
             echo,

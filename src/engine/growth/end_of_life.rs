@@ -41,8 +41,14 @@ pub fn first_end(case: &Case) -> Option<End> {
 /// The crack length at which a standard specimen no longer bears the load that it has to, by K = toughness or yield of the whole section,
 /// whichever is first; `None` where neither is known before a run.
 pub fn critical_length(case: &Case) -> Option<End> {
+    critical_lengths(case).into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
+}
+
+/// The crack lengths at which a standard specimen no longer bears the load that it has to, by K = toughness and by yield of the whole
+/// section; `None` where that is not known before a run, or does not end the life.
+pub fn critical_lengths(case: &Case) -> [Option<End>; 2] {
     if case.loading.displacement().is_some() {
-        return None;
+        return [None; 2];
     }
     let (specimen, load) = (&case.specimen, case.loading.maximum * case.stop.required.unwrap_or(1.0));
     let (start, limit) = (specimen.crack_length, specimen.length_limit().0);
@@ -56,7 +62,7 @@ pub fn critical_length(case: &Case) -> Option<End> {
         let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
         end(first_reach(stress, strength, start, limit), StopReason::NetSectionYield)
     });
-    [toughness, net_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
+    [toughness, net_section]
 }
 
 /// Smallest `a` in `from..=to` at which `value`, which rises with `a`, has reached `wanted`. NaN counts as reached: formulas end
@@ -91,6 +97,13 @@ fn excess(case: &Case, row: &CurvePoint) -> [(Option<f64>, StopReason); 2] {
             StopReason::NetSectionYield,
         ),
     ]
+}
+
+/// Load that the plate has to bear at a row over what toughness and net section bear there, as far as each ends the life; 0 where that is
+/// not known. K and load are in proportion, and so are these to the load.
+pub fn demands(case: &Case, row: &CurvePoint) -> [f64; 2] {
+    let [(toughness, _), (net_section, _)] = excess(case, row);
+    [toughness.map_or(0.0, |excess| 1.0 + excess), net_section.map_or(0.0, |excess| 1.0 / (1.0 - excess))]
 }
 
 /// Why a run ends where the plate no longer bears its load, by what breaks under it: that of the cycles, or one that it has to bear.

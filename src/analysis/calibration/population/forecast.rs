@@ -191,23 +191,35 @@ impl Forecast {
         Life { median: mean * (-0.5 * variance).exp(), deviation: variance.sqrt(), freedom: self.freedom }
     }
 
+    /// Median cycles of every cell.
+    pub fn cells(&self) -> &[f64] {
+        &self.cycles
+    }
+
     /// Lives drawn at random, the same for the same seed.
-    /// Errors: a covariance that is not positive definite.
+    /// Errors: as [`Forecast::draw`].
     pub fn draws(&self, count: usize, seed: u64) -> Result<Vec<f64>> {
+        self.draw(count, seed, |factors| self.cycles.iter().zip(factors).map(|(cycles, factor)| cycles * factor).sum())
+    }
+
+    /// Specimens drawn at random, the same for the same seed: `each` has the cycles of the cells over their medians.
+    /// Errors: a covariance that is not positive definite.
+    pub fn draw<T>(&self, count: usize, seed: u64, mut each: impl FnMut(&[f64]) -> T) -> Result<Vec<T>> {
         let n = self.cycles.len();
         let mut factor = self.covariance.clone();
         let not_definite = || Error::Mechanics("the covariance of the cells is not positive definite".to_owned());
         cholesky(&mut factor, n).ok_or_else(not_definite)?;
         let mut normal = Normal::new(seed);
-        let mut z = vec![0.0; n];
-        let draw = |_| {
+        let (mut z, mut factors) = (vec![0.0; n], vec![0.0; n]);
+        let specimen = |_| {
             z.iter_mut().for_each(|z| *z = normal.next());
             let chi_square: f64 = (0..self.freedom.round() as usize).map(|_| normal.next().powi(2)).sum();
             let scale = (self.freedom.round() / chi_square).sqrt();
             let log = |j: usize| factor[j * n..=j * n + j].iter().zip(&z).map(|(l, z)| l * z).sum::<f64>();
-            (0..n).map(|j| self.cycles[j] * (scale * log(j)).exp()).sum()
+            factors.iter_mut().enumerate().for_each(|(j, of_cell)| *of_cell = (scale * log(j)).exp());
+            each(&factors)
         };
-        Ok((0..count).map(draw).collect())
+        Ok((0..count).map(specimen).collect())
     }
 
     /// Lower bound of lives with a confidence of 95 %, by the noncentral t distribution. Handbooks ask for about 100 values of ten lots for A

@@ -19,6 +19,7 @@ use crate::measured::{MeasuredCurve, Source, round_off};
 use crate::monotone::Monotone;
 use crate::predict::Prediction;
 use crate::predict::factor_curve::TipFactors;
+use crate::predict::recorded::way;
 use crate::specimen::LengthConvention;
 use crate::units::{MM, MPA_SQRT_M};
 
@@ -156,10 +157,7 @@ impl Plate {
         if life <= 0.0 {
             return Err("no crack grew".to_owned());
         }
-        let way = match case.specimen.convention {
-            LengthConvention::MeanOfTips => rows.iter().map(|row| row.crack_length).collect(),
-            LengthConvention::SumOfTips => way_of_fastest(case.specimen.crack_length, prediction),
-        };
+        let way = way(case, prediction);
         let known: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].delta_k.is_finite() && rows[i].delta_k > 0.0).collect();
         let [low, high] = [lot.law.range[0] / BEYOND_MAX, lot.law.range[1] * BEYOND_MAX];
         let is_inside = |i: &usize| (low..=high).contains(&rows[*i].delta_k);
@@ -352,6 +350,14 @@ impl Plate {
         own.intervals.last().map_or(f64::NAN, |interval| self.length_over_way().at(interval.to))
     }
 
+    /// The whole life in cells: where they end along the way of the fastest tip, m, and what the lot says of their cycles.
+    /// Errors: as [`Plate::band`].
+    pub fn whole(&self) -> Result<(Vec<f64>, Forecast)> {
+        let [from, to] = self.known.map(|row| self.way[row]);
+        let cells = self.zones.cells(from, to, CELLS_OF_PIECE, &|way| self.factors.at(way))?;
+        Ok((cells.iter().map(|cell| cell.to).collect(), self.forecast(from, to, None)?))
+    }
+
     /// Life over a piece of the way of the fastest tip, m.
     fn forecast(&self, from: f64, to: f64, own: Option<&Specimen>) -> Result<Forecast> {
         let delta_k = |way: f64| self.factors.at(way);
@@ -375,17 +381,6 @@ impl Plate {
     fn length_over_way(&self) -> Monotone {
         Monotone::new(self.pairs().map(|[length, way]| [way, length]))
     }
-}
-
-/// Way of the fastest tip at every row, m: what is fastest may change.
-fn way_of_fastest(start: f64, prediction: &Prediction) -> Vec<f64> {
-    let mut way = start;
-    let steps = prediction.curve.windows(2).map(|pair| {
-        let of_tips = pair[0].tips.iter().zip(&pair[1].tips).map(|(from, to)| to.growth - from.growth);
-        way += of_tips.fold(0.0, f64::max);
-        way
-    });
-    std::iter::once(start).chain(steps).collect()
 }
 
 /// Quantiles of a piece of so many cycles of the run as those of a somewhat larger one.

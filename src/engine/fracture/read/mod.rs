@@ -70,7 +70,7 @@ pub const SCENE_SECTIONS: &[&str] = &["damage", "micro_cracks"];
 /// Sections of other files.
 const STRANGERS: &[ForeignSections] = &[
     (
-        &["fatigue", "stop"],
+        &["fatigue", "stop", "fleet"],
         "belongs to a fatigue case, not to a fracture scene, which has no cycles",
         "remove the section, or run `perilife predict`",
     ),

@@ -1,0 +1,82 @@
+//! Fleets, detection and sensitivities as a user asks for them.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::tempdir;
+
+use crate::interface::cli::{assert_refused, perilife, texts};
+
+const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300.0\nthickness_mm = 2.54\ncrack_length_mm = 4.0\n\
+    [material]\nname = \"al2024-t3\"\ntoughness_mpa_sqrt_m = 60.0\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n\
+    [model]\nmethod = \"handbook\"\n[fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n";
+const FLEET: &str = "[fleet]\ninitial_length_mm = { median = 9.0, standard_deviation_ln = 0.25 }\nload_scatter = 0.02\n";
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("case.toml"), format!("{PANEL}{FLEET}")).unwrap();
+    let arguments = "predict case.toml --out run --fleet 500 --seed 7 --inspect-from 10 --pod 12,25 --sensitivities --residual-strength \
+                     --set stop.required_strength_mpa=100";
+    let output = perilife(dir.path(), &arguments.split_whitespace().collect::<Vec<_>>());
+    let (stdout, stderr) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{stderr}");
+    for words in ["fleet          of 500 plates", "miss the crack with a probability of", "sensitivities  load -5 % +1"] {
+        assert!(stdout.contains(words), "{words} in {stdout}");
+    }
+    let run = dir.path().join("run");
+    let (result, table) = (json(&run.join("result.json")), fs::read_to_string(run.join("fleet.csv")).unwrap());
+    assert_eq!((table.lines().count(), &result["fleet"]["plates"]), (501, &500.into()));
+    let quantile = |name: &str| result["fleet"]["life_cycles"][name].as_f64().unwrap();
+    assert!(quantile("p05") < quantile("p50") && quantile("p50") < quantile("p95"), "{}", result["fleet"]);
+    assert!(result["fleet"]["ended_by"]["required_strength"].as_u64().unwrap() > 400, "{}", result["fleet"]);
+    let rows = result["inspections"]["rows"].as_array().unwrap();
+    assert_eq!((rows.len(), &rows[2]["missed"]), (3, &result["inspections"]["missed"]), "three looks before the end");
+    assert!((rows[0]["crack_length_mm"].as_f64().unwrap() - 10.0).abs() < 0.02, "{rows:?}");
+    assert_eq!(result["sensitivities"].as_array().unwrap().len(), 4);
+    let critical = &result["critical"];
+    assert_eq!(critical["crack_length_mm"], critical["by_toughness_mm"], "{critical}");
+    assert!(critical["by_net_section_mm"].as_f64().unwrap() > critical["by_toughness_mm"].as_f64().unwrap(), "{critical}");
+    for (file, words) in [
+        ("fleet.svg", "lives of a fleet"),
+        ("sensitivities.svg", "change of the life"),
+        ("residual_strength.svg", "load to bear"),
+        ("sensitivities.csv", "initial crack length,-10 %,"),
+    ] {
+        assert!(fs::read_to_string(run.join(file)).unwrap().contains(words), "{words} in {file}");
+    }
+    // The same seed gives the same plates.
+    perilife(
+        dir.path(),
+        &["predict", "case.toml", "--out", "again", "--fleet", "500", "--seed", "7", "--set", "stop.required_strength_mpa=100"],
+    );
+    let again = fs::read_to_string(dir.path().join("again/fleet.csv")).unwrap();
+    let lives = |table: &str| table.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned()).collect::<Vec<_>>();
+    assert_eq!(lives(&again), lives(&table));
+}
+
+#[test]
+fn a_fleet_without_scatter_and_wrong_keys_are_refused() {
+    let dir = tempdir().unwrap();
+    fs::write(dir.path().join("case.toml"), PANEL).unwrap();
+    let cases: [(&[&str], &[&str]); 8] = [
+        (&["--fleet", "100"], &["fleet", "nothing that scatters", "initial_length_mm"]),
+        (&["--fleet", "0"], &["fleet.plates = 0", "100000"]),
+        (&["--set", "fleet.load_scatter=-0.1"], &["fleet.load_scatter", "beyond reason"]),
+        (&["--set", "fleet.load_scatter=nan"], &["fleet.load_scatter"]),
+        (&["--set", "fleet.initial_length_mm={ median = 3.0 }"], &["fleet.initial_length_mm", "standard_deviation_ln"]),
+        (&["--set", "fleet.plate=3"], &["fleet.plate", "known here"]),
+        (&["--pod", "2,5"], &["--inspect-from"]),
+        (&["--inspect-from", "10", "--pod", "5,2"], &["--pod", "longer one"]),
+    ];
+    for (arguments, words) in cases {
+        let output = perilife(dir.path(), &[&["predict", "case.toml", "--out", "run"][..], arguments].concat());
+        assert_refused(&output, 2, words);
+        assert!(!dir.path().join("run").exists(), "{arguments:?}");
+    }
+}
