@@ -1,7 +1,6 @@
 //! Growth data of the library: `data/materials/growth.csv`, constants of the NASGRO equation by alloy, form, orientation and environment, and the
 //! `[growth]` of a user's own material file, which has the keys of a law in `[fatigue]`.
 
-use super::library::{MaterialFile, Property};
 use serde::Deserialize;
 
 /// A record of the file, in its units.
@@ -18,10 +17,10 @@ pub struct GrowthRecord {
     pub orientation: String,
     /// Environment of the tests.
     pub environment: String,
-    youngs_modulus_gpa: f64,
-    poisson_ratio: f64,
-    tensile_ksi: f64,
-    yield_ksi: f64,
+    pub(crate) youngs_modulus_gpa: f64,
+    pub(crate) poisson_ratio: f64,
+    pub(crate) tensile_ksi: f64,
+    pub(crate) yield_ksi: f64,
     k_1c_ksi_sqrt_in: f64,
     a_k: f64,
     b_k: f64,
@@ -37,7 +36,7 @@ pub struct GrowthRecord {
 }
 
 /// MPa in a ksi.
-const MPA_PER_KSI: f64 = 6.894_757_293;
+pub(crate) const MPA_PER_KSI: f64 = 6.894_757_293;
 /// mm in an inch.
 pub(crate) const MM_PER_INCH: f64 = 25.4;
 /// MPa√m in a ksi√in.
@@ -71,22 +70,5 @@ impl GrowthRecord {
         let t0 = 2.5 * (self.k_1c_ksi_sqrt_in / self.yield_ksi).powi(2) * MM_PER_INCH;
         let k_1c = self.k_1c_ksi_sqrt_in * MPA_SQRT_M_PER_KSI_SQRT_IN;
         k_1c * (1.0 + self.b_k * (-(self.a_k * thickness_mm / t0).powi(2)).exp())
-    }
-
-    /// What it says of the material beside its growth.
-    pub fn file(&self) -> MaterialFile {
-        let property = |value: f64| Property { value, source: SOURCE.to_owned(), note: None };
-        let family = |value: f64| Property { source: "MIL-HDBK-5J, typical of the alloy's family".to_owned(), ..property(value) };
-        MaterialFile {
-            title: self.title(),
-            youngs_modulus_gpa: family(self.youngs_modulus_gpa),
-            poisson_ratio: family(self.poisson_ratio),
-            yield_strength_mpa: Some(property(self.yield_ksi * MPA_PER_KSI)),
-            tensile_strength_mpa: Some(property(self.tensile_ksi * MPA_PER_KSI)),
-            toughness_mpa_sqrt_m: None,
-            fracture_energy_j_m2: None,
-            density_kg_m3: None,
-            growth: None,
-        }
     }
 }

@@ -13,7 +13,7 @@ use include_dir::{Dir, include_dir};
 use serde::Deserialize;
 use toml::Value;
 
-use super::growth_data;
+use super::growth_data::{self, GrowthRecord, MPA_PER_KSI};
 use crate::error::{Error, InputError, Result, input};
 use crate::input::{Document, Folder, slice};
 
@@ -76,7 +76,7 @@ pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
     let text = FILES.get_file(format!("{name}.toml")).and_then(|file| file.contents_utf8());
     let Some(text) = text else {
         if let Some(record) = growth_data::record(name) {
-            return Ok(record.file());
+            return Ok(of_record(&record));
         }
         let files = names().join(", ");
         let remedy = format!("use one of {files}, a record of `perilife list materials`, or the path of an own .toml file");
@@ -84,6 +84,23 @@ pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
     };
     let document = Document::parse(text, name, Folder::none(), &[])?;
     read(&document)
+}
+
+/// What a record of growth data says of its material beside the growth.
+fn of_record(record: &GrowthRecord) -> MaterialFile {
+    let property = |value: f64| Property { value, source: growth_data::SOURCE.to_owned(), note: None };
+    let family = |value: f64| Property { source: "MIL-HDBK-5J, typical of the alloy's family".to_owned(), ..property(value) };
+    MaterialFile {
+        title: record.title(),
+        youngs_modulus_gpa: family(record.youngs_modulus_gpa),
+        poisson_ratio: family(record.poisson_ratio),
+        yield_strength_mpa: Some(property(record.yield_ksi * MPA_PER_KSI)),
+        tensile_strength_mpa: Some(property(record.tensile_ksi * MPA_PER_KSI)),
+        toughness_mpa_sqrt_m: None,
+        fracture_energy_j_m2: None,
+        density_kg_m3: None,
+        growth: None,
+    }
 }
 
 /// Reads a material file; keys in messages are those of that file.
