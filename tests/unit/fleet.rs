@@ -64,7 +64,7 @@ fn loads_and_initial_lengths_scatter_lives_as_k_says() {
         assert!(plates[0].initial_length > 0.0 && plates.iter().all(|plate| !plate.life.is_clipped || plate.life.is_bound));
     }
     let mut still = case;
-    still.fatigue.threshold = 8.2 * MPA_SQRT_M;
+    still.fatigue.threshold = 8.0 * MPA_SQRT_M;
     let (some, _) = fleet(&still, &Fleet { load_scatter: 0.1, ..ALIKE }, None);
     let unlimited = some.plates.iter().filter(|plate| plate.life.stop == StopReason::NothingAges).count();
     assert!((100..3900).contains(&unlimited) && some.plates.iter().all(|plate| plate.missed.is_none()), "{unlimited}");

@@ -10,6 +10,8 @@ use crate::error::{Error, Result, input};
 use crate::sweep::distribution::normal_quantile;
 use crate::units::MM;
 
+/// Share of cycles that is nothing.
+const ROUND_OFF: f64 = 1e-9;
 /// Inspections of a plate that are counted at most: what is not found by then never is.
 const INSPECTIONS_MAX: usize = 10_000;
 
@@ -80,7 +82,8 @@ impl Inspected {
         let [first, every] = self.schedule.cycles;
         while self.count < INSPECTIONS_MAX {
             let at = first + every * self.count as f64;
-            if at >= cycles[1] {
+            // At their end but for round-off is at their end.
+            if at >= cycles[1] * (1.0 - ROUND_OFF) {
                 return;
             }
             let share = ((at - cycles[0]) / (cycles[1] - cycles[0])).max(0.0);
