@@ -107,7 +107,11 @@ fn quick() -> Vec<Scene> {
         ),
         ("tips, two cracks, state-based", TWO, vec![SHORTER, "model.spacing_mm=2", "model.bond_law=state_based"]),
         ("tips, hole, window", HOLE, vec![SHORTER, "model.spacing_mm=2", "model.solver=window"]),
-        ("nodes, slant", SLANT, vec!["model.method=element_free_galerkin", "model.spacing_mm=5", "stop.crack_length_mm=40"]),
+        (
+            "nodes, slant",
+            SLANT,
+            vec!["model.method=element_free_galerkin", "model.spacing_mm=5", "stop.crack_length_mm=40", "output.paraview=true"],
+        ),
     ]
 }
 
@@ -130,7 +134,13 @@ fn all() -> Vec<Scene> {
         (
             "nodes, slant",
             SLANT,
-            vec!["model.method=element_free_galerkin", TIPS, "model.spacing_mm=5", "stop.crack_length_mm=40"],
+            vec![
+                "model.method=element_free_galerkin",
+                TIPS,
+                "model.spacing_mm=5",
+                "stop.crack_length_mm=40",
+                "output.paraview=true",
+            ],
         ),
     ]
 }
