@@ -12,6 +12,10 @@ use crate::error::Result;
 
 /// A rate with its ΔK at every stress ratio, in the units of the file.
 type WideRow = (f64, Vec<f64>);
+/// Stress ratios, and rows with a ΔK at each.
+type Wide = (Vec<f64>, Vec<WideRow>);
+/// A number by the place of its column.
+type Placed = (usize, f64);
 
 /// The rows of a file of such a kind as a table with its units in the header; `None` of other files.
 /// Errors: a file that is not as these programs write it.
@@ -38,7 +42,7 @@ pub fn as_table(bytes: &[u8], file: &Path) -> Option<Result<String>> {
 }
 
 /// easigrow: remarks behind `#`, a row of stress ratios, then a row a rate: da/dN in m and ΔK in MPa√m at every ratio.
-fn dadn(bytes: &[u8], file: &Path) -> Result<(Vec<f64>, Vec<WideRow>)> {
+fn dadn(bytes: &[u8], file: &Path) -> Result<Wide> {
     let text = String::from_utf8_lossy(bytes);
     let mut rows = Vec::new();
     let mut ratios = None;
@@ -73,11 +77,11 @@ fn dadn(bytes: &[u8], file: &Path) -> Result<(Vec<f64>, Vec<WideRow>)> {
 
 /// AFGROW: `PropertyData` with the property `tlookup`, whose `DataTable` names its columns by `Field` (`dadn` or `r_0.1`) and has its cells as
 /// `FieldData`, both by `pos`; `units` of the root are `SI` or English.
-fn lkpx(bytes: &[u8], file: &Path) -> Result<((Vec<f64>, Vec<WideRow>), &'static str)> {
+fn lkpx(bytes: &[u8], file: &Path) -> Result<(Wide, &'static str)> {
     const REMEDY: &str = "export the table of rates from the program again, or give it as CSV";
     let text = String::from_utf8_lossy(bytes);
     let mut reader = Reader::from_str(&text);
-    let (mut ratios, mut rows): (Vec<(usize, f64)>, Vec<Vec<(usize, f64)>>) = (Vec::new(), Vec::new());
+    let (mut ratios, mut rows): (Vec<Placed>, Vec<Vec<Placed>>) = (Vec::new(), Vec::new());
     let (mut is_in_table, mut is_si, mut cell) = (false, false, None);
     let attribute = |element: &BytesStart<'_>, name: &str| {
         let found = element.attributes().flatten().find(|one| one.key.as_ref().eq_ignore_ascii_case(name));
@@ -113,7 +117,7 @@ fn lkpx(bytes: &[u8], file: &Path) -> Result<((Vec<f64>, Vec<WideRow>), &'static
             _ => {}
         }
     }
-    let of = |row: &[(usize, f64)], at: usize| row.iter().find(|(place, _)| *place == at).map(|(_, number)| *number);
+    let of = |row: &[Placed], at: usize| row.iter().find(|(place, _)| *place == at).map(|(_, number)| *number);
     // The first column is the rate, whatever it is called.
     let wide: Vec<WideRow> = rows
         .iter()
