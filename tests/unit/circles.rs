@@ -169,7 +169,7 @@ const LINES: &[(&str, usize)] = &[
     ("solver", 5287),
     ("verify", 4917),
     ("element_free", 4167),
-    ("measured", 3876),
+    ("measured", 3880),
     ("specimen", 3183),
     ("commands", 2973),
     ("case", 2837),
@@ -189,7 +189,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 80377;
+const LINES_OF_ALL: usize = 80381;
 
 #[test]
 fn rooms_do_not_grow() {
