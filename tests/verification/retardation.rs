@@ -47,11 +47,14 @@ fn grown(blocks: &Blocks, (start, beta, m_t): (f64, f64, f64), retardation: Opti
     march
 }
 
+/// Case, history, constants, model and length at the end.
+type Row<'a> = (&'a str, &'a Blocks, (f64, f64, f64), Option<Retardation>, f64);
+
 #[test]
 fn overloads_slow_a_crack_down_as_each_model_says() {
     let willenborg = |k_th: f64, shutoff: f64| model("willenborg", &[shutoff, k_th * (KSI * INCH.sqrt()) / MPA_SQRT_M]);
     let (plate, edge) = ((0.25, 1.0, 24.0), (0.3, 1.22, 32.0));
-    let rows: [(&str, &Blocks, (f64, f64, f64), Option<Retardation>, f64); 8] = [
+    let rows: [Row<'_>; 8] = [
         ("none", &FIRST, plate, None, 0.76635),
         ("wheeler", &FIRST, plate, Some(model("wheeler", &[1.5])), 0.47448),
         ("willenborg", &FIRST, plate, Some(willenborg(3.0, 2.0)), 0.39097),
