@@ -1,6 +1,6 @@
 //! A crack that does not go through, by hand calculation until it does, and then on as a through crack by the K of its tips on nodes.
 //!
-//! Both semi-axes grow apart by the law over K ([`fronts`]; K: [`crate::specimen::part_through`]). Rule of break-through: the crack is through where its
+//! Both semi-axes grow apart by the law over K (`fronts`; K: [`crate::specimen::part_through`]). Rule of break-through: the crack is through where its
 //! deepest point reaches the far face, a/t = 1 (both faces of an embedded crack), up to which the equations of Newman and Raju (1984) are made
 //! ("a/t < 1", their accuracy is stated to 0.8). From there on it is a straight through crack of length c, the one on the face at which it began: the
 //! other face catches up within few cycles, so that the life that is left is rather too short.

@@ -14,7 +14,7 @@ crate::kinds! {
     pub enum SpectrumFormat for "loading.spectrum_format" {
         Cycles = "cycles": "CSV with the columns max, min, cycles, in order, each maximum before its minimum",
         TurningPoints = "turning_points": "one column of loads, counted by rainflow (ASTM E1049), each cycle at the place of its maximum",
-        Spx = "spx": "AFGROW .spx: XML with <B Mx Mn C/> in every <SubSpectrum>",
+        Spx = "spx": "AFGROW .spx: XML with elements B (Mx, Mn, C) in every SubSpectrum",
         Sub = "sub": "AFGROW .sub: a title with the number of rows, then rows max min cycles",
         Fastran = "fastran": "FASTRAN: a title, points Smax Smin INVERT ICLIP, then turning points as whole numbers",
     }

@@ -5,7 +5,7 @@
 //! loads"). Fitted to finite elements, they are within 5 % of them where a/t ≤ 0.8, 0.2 ≤ a/c ≤ 2 and the crack takes less than half of the
 //! width, but for a thin layer at a free surface; corrections for width are estimates. K is read at the ends of both axes, φ = 90° and 0.
 //!
-//! A file of the folder holds all that is said of one kind. A new one is such a file, its `mod` and place in [`KINDS`], and its name in
+//! A file of the folder holds all that is said of one kind. A new one is such a file, its `mod` and place in `KINDS`, and its name in
 //! [`SpecimenKind`].
 
 mod corner_crack;
