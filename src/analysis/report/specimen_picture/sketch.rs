@@ -124,17 +124,17 @@ impl Sketch {
     pub fn areas(&mut self, polygons: &[Vec<Point>], fill: &str) {
         let mut way = String::new();
         for polygon in polygons {
-            let mut last = [0i64; 2];
-            for (k, corner) in polygon.iter().enumerate() {
-                let at = corner.map(|x| (10.0 * x).round() as i64);
-                let [x, y] = [at[0] - last[0], at[1] - last[1]];
-                // Writing to a String cannot fail.
-                let _ = match k {
-                    0 => write!(way, "M{} {}l", at[0], at[1]),
-                    _ if x == 0 && y == 0 => Ok(()),
-                    _ => write!(way, "{}{x}{}{y}", if x < 0 || k == 1 { "" } else { " " }, if y < 0 { "" } else { " " }),
-                };
-                last = at;
+            let mut corners: Vec<[i64; 2]> = polygon.iter().map(|corner| corner.map(|x| (10.0 * x).round() as i64)).collect();
+            corners.dedup();
+            // What is smaller than a tenth of a pixel is no polygon.
+            if corners.len() < 3 {
+                continue;
+            }
+            // Writing to a String cannot fail.
+            let _ = write!(way, "M{} {}l", corners[0][0], corners[0][1]);
+            for (k, pair) in corners.windows(2).enumerate() {
+                let [x, y] = [0, 1].map(|axis| pair[1][axis] - pair[0][axis]);
+                let _ = write!(way, "{}{x}{}{y}", if x < 0 || k == 0 { "" } else { " " }, if y < 0 { "" } else { " " });
             }
             way.push('z');
         }
