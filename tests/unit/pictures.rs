@@ -316,7 +316,7 @@ fn the_curve_has_its_band_and_says_why_it_ends() {
 fn areas_of_any_size_are_a_path_that_can_be_read() {
     let square = |x: f64, side: f64| vec![[x, 0.0], [x + side, 0.0], [x + side, -side], [x, -side]];
     let mut sketch = Sketch::new(1.0, [0.0; 2]);
-    sketch.areas(&[square(3.0, 2.0), square(5.0, 0.01), vec![[1.0, 1.0]; 3], square(-7.5, 1.25)], "#123456");
+    sketch.areas(&[square(3.0, 2.0), square(5.0, 0.01), vec![[1.0, 1.0]; 3], square(-7.5, 1.3)], "#123456");
     let svg = sketch.picture([10.0, 10.0], "areas");
     let way = svg.split(" d=\"").nth(1).unwrap().split('"').next().unwrap();
     assert_eq!(way, "M30 0l20 0 0-20-20 0zM-75 0l13 0 0-13-13 0z", "in tenths of a pixel, from corner to corner");
