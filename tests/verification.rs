@@ -38,6 +38,7 @@ mod scene_default_law;
 mod scene_strength;
 mod solvers;
 mod stability;
+mod stress_field;
 mod stress_intensity;
 mod symmetry;
 mod tension_plate;
