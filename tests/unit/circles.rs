@@ -161,7 +161,7 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("report", 10978),
+    ("report", 10974),
     ("fracture", 6934),
     ("calibration", 6155),
     ("service", 5856),
@@ -189,7 +189,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 80381;
+const LINES_OF_ALL: usize = 80377;
 
 #[test]
 fn rooms_do_not_grow() {

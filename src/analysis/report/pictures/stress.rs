@@ -29,8 +29,6 @@ const ABOVE_ZERO: [&str; 8] = ["#e4e7ea", "#f6cdb0", "#ef9f78", "#dd6a4f", "#c03
 const ENDS: [f64; 2] = [0.01, 0.97];
 /// Displacement over the size of what is seen to which it is enlarged, about.
 const SHOWN: f64 = 0.04;
-/// Part of a band up to which stress counts as none.
-const QUIET_SHARE: f64 = 0.25;
 /// Size of cracks over that of the plate below which their surroundings alone are seen, and how many times as large these are.
 const SMALL: f64 = 0.2;
 const AROUND: f64 = 2.5;
@@ -258,9 +256,7 @@ fn draw(sketch: &mut Sketch, field: &StressField, moved: &[Vec<Point>], bands: &
                 polygons.push(polygon.into_iter().map(|(place, _)| place).collect());
             }
         }
-        // Where stress is next to nothing the line of zero is noise.
-        let step = bands.levels.windows(2).next().map_or(0.0, |pair| pair[1] - pair[0]);
-        if bands.of == Of::AlongY && largest.max(-least) > QUIET_SHARE * step {
+        if bands.of == Of::AlongY {
             zero.extend(crossing(&corners, 0.0));
         }
         if let Some(strength) = strength {
