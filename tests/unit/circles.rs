@@ -172,7 +172,7 @@ const LINES: &[(&str, usize)] = &[
     ("measured", 3880),
     ("specimen", 3183),
     ("commands", 2973),
-    ("case", 2837),
+    ("case", 2841),
     ("predict", 2538),
     ("body", 2534),
     ("fatigue", 2347),
@@ -189,7 +189,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 80377;
+const LINES_OF_ALL: usize = 80381;
 
 #[test]
 fn rooms_do_not_grow() {
