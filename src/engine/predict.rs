@@ -73,8 +73,8 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
             record.follow(&mut HandCalculation::start(case, laws::growth_law(case)?)?, |hand| hand.next_interval())
         }
         Engine::PartThrough => {
-            let (later, laws) = (OnceCell::new(), [laws::growth_law(case)?, laws::growth_law(case)?]);
-            record.follow(&mut PartThroughGrowth::start(case, &later, laws)?, |run| run.advance(increment))
+            let (later, both) = (OnceCell::new(), [laws::growth_law(case)?, laws::growth_law(case)?]);
+            record.follow(&mut PartThroughGrowth::start(case, &later, both, laws::order(case)?)?, |run| run.advance(increment))
         }
         Engine::Points => record.follow(&mut TipField::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),
         Engine::Nodes => record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),

@@ -71,7 +71,7 @@ fn bad_input_is_refused_by_name() {
         fs::write(dir.path().join("panel.toml"), panel).unwrap();
         assert_refused(&perilife(dir.path(), &["check", "panel.toml", "--set", key]), 2, words);
     }
-    // Overloads leave a zone at each end of a front, which one tip cannot count.
+    // Overloads leave a zone at each end of a front.
     let example = include_str!("../../data/cases/corner_crack_at_hole.toml");
     let unlike = |line: &&str| !line.starts_with("stress_") && !line.starts_with("kind = \"constant_amplitude\"");
     let rest = example.lines().filter(unlike).collect::<Vec<_>>().join("\n");
@@ -81,7 +81,7 @@ fn bad_input_is_refused_by_name() {
     let check = perilife(dir.path(), &["check", "flights.toml"]);
     assert_eq!(check.status.code(), Some(0), "{:?}", texts(&check));
     let retarded = ["check", "flights.toml", "--set", "loading.retardation=\"wheeler\"", "--set", "loading.wheeler_exponent=1.5"];
-    assert_refused(&perilife(dir.path(), &retarded), 2, &["loading.retardation", "overload zone", "mean rates"]);
+    assert_eq!(perilife(dir.path(), &retarded).status.code(), Some(0));
     write(dir.path(), ["", ""]);
     for more in [&["--method", "ring"][..], &["--method", "element_free_galerkin"], &["--out", "sif"]] {
         assert_refused(&perilife(dir.path(), &[&["sif", "hole.toml"], more].concat()), 2, &["does not go through"]);

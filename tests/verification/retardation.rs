@@ -6,14 +6,15 @@
 use std::f64::consts::PI;
 
 use perilife::case::Case;
-use perilife::fatigue::growth_law::Walker;
+use perilife::fatigue::growth_law::{GrowthLaw, Walker};
 use perilife::fatigue::paris::ParisLaw;
-use perilife::fatigue::retardation::{Laws, March, Marched, Retardation, RetardationKind};
+use perilife::fatigue::retardation::{Laws, March, Marched, Retardation, RetardationKind, Underway};
 use perilife::fatigue::spectrum_law::SpectrumLaw;
 use perilife::input::Folder;
 use perilife::loading::spectrum::{Cycle, Spectrum};
 use perilife::material::Plane;
 use perilife::predict::{Silent, StopReason, predict};
+use perilife::specimen::FrontTip;
 use perilife::units::{INCH, KSI, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 
 /// Blocks of a sequence, ksi and cycles.
@@ -41,7 +42,7 @@ fn grown(blocks: &Blocks, (start, beta, m_t): (f64, f64, f64), retardation: Opti
     let (law, spectrum) = (Box::leak(Box::new(law(m_t))), Box::leak(Box::new(spectrum(blocks))));
     let mean = Box::leak(Box::new(SpectrumLaw::new(Box::new(*law), spectrum, f64::NEG_INFINITY)));
     let retardation = retardation.cloned().map(|model| &*Box::leak(Box::new(model)));
-    let mut march = March::new(Laws { law, mean, retardation, least: f64::NEG_INFINITY }, spectrum);
+    let mut march = March::new(Laws { law, mean, retardation, least: f64::NEG_INFINITY }, spectrum, Underway::start(spectrum));
     let k = |a: f64| beta * spectrum.largest[1] * KSI * (PI * (start * INCH + a)).sqrt();
     assert_ne!(march.advance(&k, 10.0 * INCH, cycles), Marched::Reached);
     march
@@ -67,10 +68,10 @@ fn overloads_slow_a_crack_down_as_each_model_says() {
     for (name, blocks, of, model, wanted) in rows {
         let cycles: f64 = blocks.iter().map(|block| block[2]).sum();
         let march = grown(blocks, of, model.as_ref(), cycles);
-        let length = of.0 + march.a / INCH;
+        let length = of.0 + march.at.a / INCH;
         println!("{name}: {length:.6} in, wanted {wanted}");
         assert!((length / wanted - 1.0).abs() < 1e-3, "{name}: {length} against {wanted}");
-        assert_eq!(march.cycles, cycles);
+        assert_eq!(march.at.cycles, cycles);
     }
     let before = grown(&FIRST, plate, None, 5000.0);
     assert!((0.25 + before.a / INCH - 0.390121).abs() < 1e-4 * 0.39);
@@ -82,7 +83,7 @@ fn retardation_ends_where_the_zone_of_the_overload_is_passed() {
     let rows = [(model("wheeler", &[1.5]), 9352.0), (model("closure", &[0.3]), 6671.0)];
     for (model, wanted) in rows {
         let is_in = |cycles: f64| {
-            let zone = grown(&FIRST, (0.25, 1.0, 24.0), Some(&model), cycles).zone.unwrap();
+            let zone = grown(&FIRST, (0.25, 1.0, 24.0), Some(&model), cycles).at.zone.unwrap();
             (zone.k_max / (40.0 * KSI * (PI * 0.390121 * INCH).sqrt()) - 1.0).abs() < 1e-3
         };
         assert!(is_in(wanted * 0.999) && !is_in(wanted * 1.001), "{wanted}");
@@ -134,11 +135,11 @@ fn passes_that_are_alike_may_be_jumped_over() {
     {
         let per_pass: f64 = blocks.iter().map(|block| block[2]).sum();
         let cycles = 200.0 * per_pass;
-        let jumped = grown(&blocks, of, Some(&model), cycles).a / MM;
+        let jumped = grown(&blocks, of, Some(&model), cycles).at.a / MM;
         let every = by_hand(&blocks, of, &model, 200);
         println!("{}: {jumped:.5} mm, every cycle {every:.5} mm", model.kind);
         assert!((jumped / every - 1.0).abs() < 2e-3, "{}: {jumped} against {every}", model.kind);
-        let plain = grown(&blocks, of, None, cycles).a / MM;
+        let plain = grown(&blocks, of, None, cycles).at.a / MM;
         assert!(jumped < 0.98 * plain, "{}: {jumped} against {plain} alone", model.kind);
     }
 }
@@ -152,10 +153,14 @@ fn by_hand(blocks: &Blocks, of: (f64, f64, f64), model: &Retardation, passes: us
         .collect();
     let (law, spectrum) = (law(of.2), Spectrum::of(singles, [0.0, 1.0]).unwrap());
     let mean = SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY);
-    let mut march = March::new(Laws { law: &law, mean: &mean, retardation: Some(model), least: f64::NEG_INFINITY }, &spectrum);
+    let mut march = March::new(
+        Laws { law: &law, mean: &mean, retardation: Some(model), least: f64::NEG_INFINITY },
+        &spectrum,
+        Underway::start(&spectrum),
+    );
     let k = |a: f64| of.1 * spectrum.largest[1] * KSI * (PI * (of.0 * INCH + a)).sqrt();
     march.advance(&k, 10.0 * INCH, spectrum.per_pass);
-    march.a / MM
+    march.at.a / MM
 }
 
 /// A crack that a whole pass does not grow has no end of its life.
@@ -166,10 +171,67 @@ fn a_crack_that_stands_still_is_arrested() {
     let spectrum = Spectrum::of(vec![Cycle { max: 1.0, min: 0.0, count: 5.0 }], [0.0, 1.0]).unwrap();
     let law = Walker { threshold: 5e6, ..law(24.0) };
     let mean = SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY);
-    let mut march = March::new(Laws { law: &law, mean: &mean, retardation: Some(&model), least: -2.0 }, &spectrum);
+    let mut march = March::new(
+        Laws { law: &law, mean: &mean, retardation: Some(&model), least: -2.0 },
+        &spectrum,
+        Underway::start(&spectrum),
+    );
     assert_eq!(march.advance(&|_| 4e6, 1.0, 1e12), Marched::Arrested);
     // Small cycles behind the overload of every pass stand still; the overload itself grows.
     let (slow, plain) =
         (grown(&blocks, (0.25, 1.0, 24.0), Some(&model), 10_110.0), grown(&blocks, (0.25, 1.0, 24.0), None, 10_110.0));
-    assert!(slow.a < 0.9 * plain.a && slow.a > 0.0, "{} against {}", slow.a, plain.a);
+    let (slow, plain) = (slow.at.a, plain.at.a);
+    assert!(slow < 0.9 * plain && slow > 0.0, "{slow} against {plain}");
+}
+
+/// Both ends of the front of a surface crack, each with its zone, against every cycle taken by itself: Wheeler's model, an overload in every 121
+/// cycles. Zones are of plane strain at the deepest point and of plane stress at the face.
+#[test]
+fn both_ends_of_a_front_are_retarded_by_their_own_overloads() {
+    let blocks = [[1.0, 0.1, 1.0], [0.6, 0.06, 120.0]];
+    let (exponent, strength, stress, passes) = (1.5, 350.0 * MPA, 180.0, 1200);
+    let case = |keys: &str| {
+        let text = format!(
+            "[specimen]\nkind = \"surface_crack\"\nwidth_mm = 100\nthickness_mm = 8\ncrack_depth_mm = 1\ncrack_half_length_mm = 2\n\
+             [material]\nyoungs_modulus_gpa = 72\npoisson_ratio = 0.33\nyield_strength_mpa = {}\n\
+             [loading]\nkind = \"spectrum\"\nspectrum_file = \"blocks.csv\"\nspectrum_scale_mpa = {stress}\nrepeats = {passes}\n{keys}\n\
+             [fatigue]\ngrowth_law = \"walker\"\nparis_c_mm_per_cycle = {:e}\nparis_m = 3.5\nwalker_gamma = 0.6\n",
+            strength / MPA,
+            law(24.0).paris.c / MM_PER_CYCLE
+        );
+        let blocks = blocks.map(|[max, min, count]| format!("{max},{min},{count}\n")).concat();
+        let folder = Folder::at_hand([("blocks.csv".to_owned(), format!("max,min,cycles\n{blocks}").into_bytes())]);
+        Case::from_toml(&text, "blocks", folder, &[]).unwrap()
+    };
+    let axes = |keys: &str| {
+        let run = predict(&case(keys), &Silent).unwrap();
+        let last = run.curve.last().unwrap();
+        assert_eq!((run.stop, last.cycles), (StopReason::RunOut, 121.0 * passes as f64));
+        [last.depth.unwrap().depth, last.crack_length]
+    };
+    let retarded = axes(&format!("retardation = \"wheeler\"\nwheeler_exponent = {exponent}"));
+    let flaw = case("").specimen.part_through.unwrap();
+    let law = law(24.0);
+    let mut front = flaw.start();
+    // End of the zone of the last overload of both ends, m from the middle of the crack.
+    let mut ends = [0.0; 2];
+    for [max, _, _] in (0..passes).flat_map(|_| [[blocks[0]; 1].to_vec(), vec![blocks[1]; 120]].concat()) {
+        let k = FrontTip::ALL.map(|tip| flaw.k_i(front, max * stress * MPA, tip));
+        for end in 0..2 {
+            let size = (k[end] / strength).powi(2) / (2.0 * PI * [3.0, 1.0][end]);
+            let left = ends[end] - front[end];
+            let rate = law.rate(k[end], 0.1);
+            front[end] += if size < left { (size / left).powf(exponent) * rate } else { rate };
+            if size >= left {
+                ends[end] = front[end] + size;
+            }
+        }
+    }
+    let alone = axes("retardation = \"none\"");
+    println!("{retarded:?}, every cycle {front:?}, without retardation {alone:?}");
+    for end in 0..2 {
+        let grown = |axes: [f64; 2]| axes[end] - flaw.start()[end];
+        assert!((grown(retarded) / grown(front) - 1.0).abs() < 2e-3, "{retarded:?} against {front:?}");
+        assert!(grown(retarded) < 0.9 * grown(alone), "{retarded:?} against {alone:?} alone");
+    }
 }

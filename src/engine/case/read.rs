@@ -9,7 +9,7 @@ use super::model_keys::on_nodes;
 use super::{Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, remove_law};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::record::FittedRecord;
-use crate::error::{Result, input, input_missing};
+use crate::error::{Result, input};
 use crate::fatigue::growth_law::description::law_keys;
 use crate::fatigue::growth_law::{FactorLaw, GrowthLawKind, Walker, doubt};
 use crate::fatigue::paris::ParisLaw;
@@ -253,16 +253,12 @@ fn check_load(case: &Case) -> Result<()> {
     Ok(())
 }
 
-/// Spectra are counted by da/dN of K alone, and retarded by what their law needs.
+/// Spectra are counted by da/dN of K alone.
 fn check_spectrum(case: &Case) -> Result<()> {
     if case.loading.spectrum.is_some() && case.spends_bond_life() {
         let problem = "is counted by da/dN of K, and bonds that lose life by their own strain have none";
         let remedy = "use fatigue.driver = \"tip_field\", with sharp cracks, or model.method = \"handbook\"";
         return Err(input("loading.kind", "\"spectrum\"", problem, remedy));
-    }
-    if case.retardation.is_some() && !case.specimen.is_through() {
-        let problem = "is counted by one tip, and the front of a crack that does not go through has an overload zone in depth and one at the face";
-        return Err(input_missing("loading.retardation", problem, "leave it out: both ends then grow by their mean rates"));
     }
     Ok(())
 }

@@ -25,6 +25,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::Body;
 use crate::error::Result;
 use crate::fatigue::growth_law::GrowthLaw;
+use crate::fatigue::retardation::Underway;
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
 use cross_check::CrossCheck;
@@ -89,6 +90,11 @@ pub trait CrackGrowth {
     /// What the run took.
     fn statistics(&self) -> SolverStatistics {
         SolverStatistics::default()
+    }
+
+    /// Where the loads and the zone of the last overload stand after rows whose cycles are counted in the order of their spectrum.
+    fn overload(&self) -> Option<Underway> {
+        None
     }
 
     /// K of a run of so many `cycles` against an independent one, where it grew far enough for that.

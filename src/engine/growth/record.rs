@@ -95,6 +95,11 @@ pub struct CurvePoint {
 }
 
 impl CurvePoint {
+    /// Whether it is of the front of a crack that does not go through.
+    pub fn is_of_front(&self) -> bool {
+        self.depth.is_some_and(|depth| depth.k_i.is_some())
+    }
+
     /// The row of tips that are driven by their K; `lead` is K_eq, Pa√m, and da/dN, m/cycle, of the fastest, and `cracks` what the tips end.
     ///
     /// What the tips carry of K was read in the last equilibrium. Without one for this row (`work` is NaN), and of a tip that has ended

@@ -9,6 +9,7 @@ use crate::fatigue::paris::ParisLaw;
 use crate::fatigue::rate_constant::rate_constant;
 use crate::fatigue::spectrum_law::SpectrumLaw;
 use crate::growth::CrackGrowth;
+use crate::growth::part_through::Order;
 use crate::units::MM;
 
 /// The law over K of a case, for driver `tip_field` and method `handbook`: of a spectrum the mean of its cycles.
@@ -36,6 +37,13 @@ pub fn law_of_cycle(case: &Case) -> Result<Box<dyn GrowthLaw>> {
         LawSource::Factor(law) => Box::new(law.clone()),
         _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold }),
     })
+}
+
+/// What the order of the cycles of a case needs, where that counts.
+/// Errors: as [`growth_law`].
+pub fn order(case: &Case) -> Result<Option<Order>> {
+    let model = case.retardation.clone();
+    model.map(|model| Ok(Order { law: law_of_cycle(case)?, least: least_ratio(case), model })).transpose()
 }
 
 /// Refuses growth from a K that lies beyond what the law says, where the law wants that.

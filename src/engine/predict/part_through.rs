@@ -31,8 +31,7 @@ impl PartThroughLife {
         let flaw = case.specimen.part_through?;
         let law = growth_law(case).ok()?;
         let axes = |row: &CurvePoint| row.depth.map(|depth| [depth.depth, row.crack_length]);
-        let is_before = |row: &CurvePoint| row.depth.is_some_and(|depth| depth.k_i.is_some());
-        let end = curve.iter().position(|row| !is_before(row)).unwrap_or(curve.len().saturating_sub(1));
+        let end = curve.iter().position(|row| !row.is_of_front()).unwrap_or(curve.len().saturating_sub(1));
         let (last, life) = (curve.get(end)?, curve.last()?.cycles);
         let mut found = PartThroughLife {
             cycles: last.cycles,

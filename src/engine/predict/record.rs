@@ -143,7 +143,7 @@ impl<'a> Record<'a> {
         // The curve is handed over once; what growth knows of it is asked before.
         let of_growth = growth.warnings();
         let mut curve = growth.curve();
-        let recounted = retarded::recount(case, &curve, stop)?;
+        let recounted = retarded::recount(case, &curve, stop, growth.overload())?;
         let (stop, of_order) = match recounted {
             Some(Recounted { curve: new, stop, warning }) => {
                 snapshots.recount(&curve, &new);

@@ -9,7 +9,7 @@ use super::{CurvePoint, StopReason};
 use crate::case::Case;
 use crate::error::Result;
 use crate::fatigue::growth_law::GrowthLaw;
-use crate::fatigue::retardation::{Laws, March, Marched, Zone};
+use crate::fatigue::retardation::{Laws, March, Marched, Underway, Zone, between};
 use crate::growth::cracks::steering::equivalent_factor;
 
 /// Difference between K of tips that grow, from which the pace of the slower ones is worth a word.
@@ -22,54 +22,60 @@ pub(super) struct Recounted {
     pub warning: Option<String>,
 }
 
-/// The rows of a run with the cycles of the retarded tip, ended where no cycles or no growth are left; `None` where nothing is retarded.
+/// The rows of a run with the cycles of the retarded tip, ended where no cycles or no growth are left; `None` where nothing is retarded. Rows of a
+/// front that does not go through have their cycles already; `counted` is where its end at the face stands after them.
 /// Errors: a case without law.
-pub(super) fn recount(case: &Case, curve: &[CurvePoint], stop: StopReason) -> Result<Option<Recounted>> {
+pub(super) fn recount(
+    case: &Case,
+    curve: &[CurvePoint],
+    stop: StopReason,
+    counted: Option<Underway>,
+) -> Result<Option<Recounted>> {
     let (Some(retardation), Some(spectrum)) = (&case.retardation, &case.loading.spectrum) else { return Ok(None) };
+    let of_front = curve.iter().take_while(|row| row.is_of_front()).count();
+    let Some(first) = curve.get(of_front) else { return Ok(None) };
     let (law, mean): (Box<dyn GrowthLaw>, _) = (law_of_cycle(case)?, growth_law(case)?);
     let laws = Laws { law: &*law, mean: &*mean, retardation: Some(retardation), least: least_ratio(case) };
-    let mut march = March::new(laws, spectrum);
-    let mut zones: Vec<Option<Zone>> = vec![None; curve.first().map_or(0, |row| row.tips.len())];
-    let mut rows: Vec<CurvePoint> = curve.first().cloned().into_iter().collect();
+    let mut march = March::new(laws, spectrum, counted.unwrap_or_else(|| Underway::start(spectrum)));
+    let mut zones: Vec<Option<Zone>> = vec![march.at.zone; first.tips.len()];
+    let mut rows: Vec<CurvePoint> = curve[..=of_front].to_vec();
     let mut lead = 0;
-    for pair in curve.windows(2) {
+    for pair in curve[of_front..].windows(2) {
         let [from, to] = [&pair[0], &pair[1]];
         let grown = |tip: usize| to.tips[tip].growth - from.tips[tip].growth;
         let fastest = (0..zones.len()).max_by(|a, b| grown(*a).total_cmp(&grown(*b)).then(b.cmp(a))).unwrap_or(0);
         if fastest != lead && grown(fastest) > grown(lead) * (1.0 + UNLIKE) {
-            zones[lead] = march.zone;
-            march.take_over(from.tips[fastest].growth, zones[fastest]);
+            zones[lead] = march.at.zone;
+            march.at.take_over(from.tips[fastest].growth, zones[fastest]);
             lead = fastest;
         }
         let way = [from.tips[lead].growth, to.tips[lead].growth];
-        march.a = march.a.max(way[0]);
+        march.at.a = march.at.a.max(way[0]);
         let [first, last] = factors(case, [from, to], lead);
-        // A power of the way between rows, as K itself nearly is.
-        let gain = (last / first).ln();
-        let k = |a: f64| first * (gain * ((a - way[0]) / (way[1] - way[0])).clamp(0.0, 1.0)).exp();
-        let before = march.cycles;
+        let k = between([first, last], way);
+        let before = march.at.cycles;
         if !(first > 0.0 && last > 0.0) {
             // Nothing is known of K there: the cycles are those of the run.
-            (march.a, march.cycles) = (way[1], (march.cycles + to.cycles - from.cycles).min(case.stop.cycles_max));
+            (march.at.a, march.at.cycles) = (way[1], (march.at.cycles + to.cycles - from.cycles).min(case.stop.cycles_max));
         }
         let end = match march.advance(&k, way[1], case.stop.cycles_max) {
             Marched::Reached => None,
             Marched::RunOut => Some(StopReason::RunOut),
             Marched::Arrested => Some(StopReason::NothingAges),
         };
-        let share = if way[1] > way[0] { ((march.a - way[0]) / (way[1] - way[0])).min(1.0) } else { 1.0 };
+        let share = if way[1] > way[0] { ((march.at.a - way[0]) / (way[1] - way[0])).min(1.0) } else { 1.0 };
         let mut row = if share < 1.0 { to.clone().between(from, share) } else { to.clone() };
-        row.cycles = march.cycles;
-        let cycles = march.cycles - before;
-        if cycles > 0.0 && march.a > way[0] && row.growth_rate.is_finite() {
-            row.growth_rate = (march.a - way[0]) / cycles;
+        row.cycles = march.at.cycles;
+        let cycles = march.at.cycles - before;
+        if cycles > 0.0 && march.at.a > way[0] && row.growth_rate.is_finite() {
+            row.growth_rate = (march.at.a - way[0]) / cycles;
         }
         rows.push(row);
         if let Some(end) = end {
-            return Ok(Some(recounted(rows, end)));
+            return Ok(Some(recounted(rows, end, of_front)));
         }
     }
-    Ok(Some(recounted(rows, stop)))
+    Ok(Some(recounted(rows, stop, of_front)))
 }
 
 /// K of the largest load at a tip at both ends of an interval, Pa√m; what is not read is that of the other end, or of the row.
@@ -81,11 +87,11 @@ fn factors(case: &Case, rows: [&CurvePoint; 2], tip: usize) -> [f64; 2] {
     [first.unwrap_or(otherwise), last.unwrap_or(otherwise)]
 }
 
-fn recounted(mut curve: Vec<CurvePoint>, stop: StopReason) -> Recounted {
-    if let [first, second, ..] = &mut curve[..] {
+fn recounted(mut curve: Vec<CurvePoint>, stop: StopReason, of_front: usize) -> Recounted {
+    if let [first, second, ..] = &mut curve[of_front..] {
         first.growth_rate = second.growth_rate;
     }
-    let warning = unlike(&curve).then(|| {
+    let warning = unlike(&curve[of_front..]).then(|| {
         "retardation: cycles are those of the tip that grows most; the others keep the share of its growth that they have by the mean rates of a \
          pass, and are not retarded by their own K"
             .to_owned()

@@ -12,7 +12,7 @@ mod wheeler;
 mod willenborg;
 
 pub use description::{Description, Now, Zone};
-pub use march::{Laws, March, Marched};
+pub use march::{Laws, March, Marched, Underway, between};
 
 use std::f64::consts::PI;
 

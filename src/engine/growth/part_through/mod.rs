@@ -1,11 +1,15 @@
 //! A crack that does not go through, by hand calculation until it does, and then on as a through crack by the K of its tips on nodes.
 //!
-//! Both semi-axes grow apart by the law over K (`fronts`; K: [`crate::specimen::part_through`]). Rule of break-through: the crack is through where its
+//! Both semi-axes grow apart by the law over K (`fronts`; K: [`crate::specimen::part_through`]), under a spectrum whose order counts each with the zones of
+//! its own overloads (`overloads`). Rule of break-through: the crack is through where its
 //! deepest point reaches the far face, a/t = 1 (both faces of an embedded crack), up to which the equations of Newman and Raju (1984) are made
 //! ("a/t < 1", their accuracy is stated to 0.8). From there on it is a straight through crack of length c, the one on the face at which it began: the
 //! other face catches up within few cycles, so that the life that is left is rather too short.
 
 mod fronts;
+mod overloads;
+
+pub use overloads::Order;
 
 use std::cell::OnceCell;
 
@@ -19,9 +23,11 @@ use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
+use crate::fatigue::retardation::Underway;
 use crate::specimen::geometry::along;
 use crate::units::MM;
 use fronts::{Fronts, Grown, STEP_MOST};
+use overloads::Overloads;
 
 /// [`CrackGrowth`] of a crack that does not go through, and of what it becomes.
 pub struct PartThroughGrowth<'a> {
@@ -32,6 +38,8 @@ pub struct PartThroughGrowth<'a> {
     law_of_tips: Option<Box<dyn GrowthLaw>>,
     /// Step to try next.
     step: f64,
+    /// What is known of the order of its loads, where that counts.
+    overloads: Option<Overloads<'a>>,
     curve: Vec<CurvePoint>,
     through: Option<Later<ElementFree<'a>>>,
 }
@@ -44,14 +52,22 @@ enum Ending {
 }
 
 impl<'a> PartThroughGrowth<'a> {
-    /// Growth of the crack of a case; `later` gets the case once it is through. The law is given twice, for both parts of the run.
+    /// Growth of the crack of a case; `later` gets the case once it is through. The law is given twice, for both parts of the run, and what the
+    /// order of its loads needs.
     /// Errors: a specimen whose crack goes through.
-    pub fn start(case: &'a Case, later: &'a OnceCell<Case>, [law, law_of_tips]: [Box<dyn GrowthLaw>; 2]) -> Result<Self> {
+    pub fn start(
+        case: &'a Case,
+        later: &'a OnceCell<Case>,
+        [law, law_of_tips]: [Box<dyn GrowthLaw>; 2],
+        order: Option<Order>,
+    ) -> Result<Self> {
         let flaw = case.specimen.part_through.ok_or_else(|| {
             input_missing("specimen.kind", "is one of a through crack", "give one whose crack does not go through")
         })?;
         let (fronts, law_of_tips) = (Fronts { case, flaw, law }, Some(law_of_tips));
-        Ok(PartThroughGrowth { fronts, later, law_of_tips, step: STEP_MOST, curve: Vec::new(), through: None })
+        let spectrum = case.loading.spectrum.as_deref();
+        let overloads = spectrum.zip(order).map(|(spectrum, order)| Overloads::start(&fronts, spectrum, order));
+        Ok(PartThroughGrowth { fronts, later, law_of_tips, step: STEP_MOST, overloads, curve: Vec::new(), through: None })
     }
 
     fn last(&self) -> &CurvePoint {
@@ -80,14 +96,45 @@ impl<'a> PartThroughGrowth<'a> {
         if let Some(ending) = self.ending(from) {
             return Ok(Some(ending));
         }
-        let Some((mut to, taken)) = self.fronts.next(from, &mut self.step) else { return self.standstill(from).map(Some) };
+        let Some((mut to, mut taken)) = self.place_after(from) else { return self.standstill(from).map(Some) };
         let mut ending = self.ending(to);
         if ending.is_some() {
-            (to, ending) = self.first_ending(from, taken);
+            (to, ending, taken) = self.first_ending(from, taken);
         }
-        let row = self.row(to);
+        let row = match &mut self.overloads {
+            Some(overloads) => {
+                overloads.take(&self.fronts, from, taken);
+                self.counted(from, to)
+            }
+            None => self.row(to),
+        };
         self.curve.push(row);
         Ok(ending)
+    }
+
+    /// The next place, and the step to it.
+    fn place_after(&mut self, from: Grown) -> Option<(Grown, f64)> {
+        match &mut self.overloads {
+            Some(overloads) => overloads.next(&self.fronts, from),
+            None => self.fronts.next(from, &mut self.step),
+        }
+    }
+
+    /// The place after a step.
+    fn after(&self, from: Grown, step: f64) -> Grown {
+        match &self.overloads {
+            Some(overloads) => overloads.after(&self.fronts, from, step),
+            None => self.fronts.after(from, step).0,
+        }
+    }
+
+    /// The row of a place whose rates are those of the cycles from the last one.
+    fn counted(&self, from: Grown, to: Grown) -> CurvePoint {
+        let mut row = self.row(to);
+        let rates = [0, 1].map(|end| (to.axes[end] - from.axes[end]) / (to.cycles - from.cycles));
+        row.growth_rate = rates[0].max(rates[1]);
+        row.depth = row.depth.map(|depth| DepthRecord { growth_rate: Some(rates[0]), ..depth });
+        row
     }
 
     /// Why there is no next place.
@@ -103,16 +150,16 @@ impl<'a> PartThroughGrowth<'a> {
     }
 
     /// Where within a step its ending is reached: halved until no double is left between.
-    fn first_ending(&self, from: Grown, step: f64) -> (Grown, Option<Ending>) {
+    fn first_ending(&self, from: Grown, step: f64) -> (Grown, Option<Ending>, f64) {
         let (mut below, mut above) = (0.0, step);
         loop {
             let middle = 0.5 * (below + above);
             if middle <= below || middle >= above {
-                let at = self.fronts.after(from, above).0;
+                let at = self.after(from, above);
                 let ending = self.ending(at);
-                return (self.settled(at, ending), ending);
+                return (self.settled(at, ending), ending, above);
             }
-            if self.ending(self.fronts.after(from, middle).0).is_some() { above = middle } else { below = middle }
+            if self.ending(self.after(from, middle)).is_some() { above = middle } else { below = middle }
         }
     }
 
@@ -208,6 +255,21 @@ impl<'a> PartThroughGrowth<'a> {
         Ok(Later::new(ElementFree::start(later, law)?, before, took))
     }
 
+    /// Takes the rows of the front of an earlier run; where the order of loads counts, step by step, since every zone depends on all steps before.
+    fn replay(&mut self, rows: Vec<CurvePoint>) -> Result<bool> {
+        let Some(last) = rows.last().map(|row| (row.cycles, row.crack_length)) else { return Ok(false) };
+        if self.overloads.is_some() {
+            self.open()?;
+            for _ in 1..rows.len() {
+                self.next_step()?;
+            }
+            let now = self.last();
+            return Ok((now.cycles, now.crack_length) == last);
+        }
+        self.curve = rows;
+        Ok(true)
+    }
+
     /// Depth of rows of the through crack.
     fn as_through(&self, row: CurvePoint) -> CurvePoint {
         let depth = DepthRecord { depth: self.fronts.flaw.through_depth(), k_i: None, growth_rate: None };
@@ -248,12 +310,15 @@ impl CrackGrowth for PartThroughGrowth<'_> {
         let HandedOver { before, took, tips } = match state {
             State::HandedOver(handed_over) => handed_over,
             State::Rows(curve) => {
-                let fits = !curve.is_empty();
-                self.curve = curve;
-                return Ok(fits);
+                return self.replay(curve);
             }
             _ => return Ok(false),
         };
+        let of_front = before.iter().take_while(|row| row.is_of_front()).cloned().collect();
+        if !self.replay(of_front)? {
+            return Ok(false);
+        }
+        self.curve.clear();
         let Some(mut through) = self.through_after(before, took)? else { return Ok(false) };
         let fits = through.restore(*tips)?;
         if fits {
@@ -276,6 +341,10 @@ impl CrackGrowth for PartThroughGrowth<'_> {
 
     fn statistics(&self) -> SolverStatistics {
         self.through.as_ref().map(Later::statistics).unwrap_or_default()
+    }
+
+    fn overload(&self) -> Option<Underway> {
+        self.overloads.as_ref().map(Overloads::at_face)
     }
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {

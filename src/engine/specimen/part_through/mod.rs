@@ -156,6 +156,11 @@ impl PartThrough {
         self.description.letters.of_thickness * self.thickness
     }
 
+    /// Whether the ends of a and c lie inside the material, where strain across the plane of the crack is held, or at a face of it.
+    pub fn ends_inside(&self) -> [bool; 2] {
+        [0.5, 1.0].map(|share| self.description.share_of_ellipse >= share)
+    }
+
     /// The length c for which the section has room, m.
     pub fn room(&self) -> f64 {
         self.description.letters.of_width * self.width - self.radius
