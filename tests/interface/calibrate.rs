@@ -149,3 +149,17 @@ fn rates_of_the_committed_table() {
     let m = object["specimens"][0]["paris_m"].as_f64().unwrap();
     assert!((2.6..3.2).contains(&m), "{m}");
 }
+
+/// The example with three stress ratios in one table, whose readings were made of a law: it is found within three of its errors.
+#[test]
+fn the_law_behind_three_stress_ratios_is_found() {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/compact-three-ratios/case.toml");
+    let dir = tempdir().unwrap();
+    let output = perilife(dir.path(), &["calibrate", case.to_str().unwrap(), "--out", "fit"]);
+    assert_eq!(output.status.code(), Some(0), "{:?}", texts(&output));
+    let fit: toml::Table = toml::from_str(&fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap()).unwrap();
+    for (key, wanted) in [("paris_c_mm_per_cycle", 6.0e-8), ("paris_m", 3.1), ("walker_gamma", 0.65)] {
+        let of = |section: &str| fit[section][key].as_float().unwrap();
+        assert!((of("fatigue") - wanted).abs() < 3.0 * of("errors"), "{key}: {} ± {}", of("fatigue"), of("errors"));
+    }
+}

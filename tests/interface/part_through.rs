@@ -17,7 +17,7 @@ fn write(folder: &Path, change: [&str; 2]) {
 
 #[test]
 fn bad_input_is_refused_by_name() {
-    let rows: [([&str; 2], &[&str]); 16] = [
+    let rows: [([&str; 2], &[&str]); 18] = [
         (
             ["crack_depth_mm = 1.27", "crack_depth_mm = 5.5"],
             &["hole.toml:1", "specimen.crack_depth_mm = 5.5", "a/t = 1.100", "through crack"],
@@ -52,6 +52,14 @@ fn bad_input_is_refused_by_name() {
         ),
         (["[fatigue]", "[stop]\ncrack_depth_mm = 6\n[fatigue]"], &["stop.crack_depth_mm = 6", "beyond 5 mm"]),
         (["stress_ratio = 0.1", "stress_ratio = 0.1\nbending_ratio = -1"], &["loading.bending_ratio", "beyond reason"]),
+        (
+            ["cracks = 1 ", "holes = [{ x_mm = 8, y_mm = 1, diameter_mm = 6 }]\ncracks = 1 "],
+            &["specimen.holes[0]", "lies on the crack"],
+        ),
+        (
+            ["cracks = 1 ", "holes = [{ x_mm = 38, y_mm = 0, diameter_mm = 6 }]\ncracks = 1 "],
+            &["specimen.holes[0]", "beyond the outline"],
+        ),
     ];
     let dir = tempdir().unwrap();
     for (change, words) in rows {
@@ -71,6 +79,10 @@ fn bad_input_is_refused_by_name() {
         fs::write(dir.path().join("panel.toml"), panel).unwrap();
         assert_refused(&perilife(dir.path(), &["check", "panel.toml", "--set", key]), 2, words);
     }
+    // Bending beside further holes is not known.
+    write(dir.path(), ["cracks = 1 ", "holes = [{ x_mm = 25, y_mm = 0, diameter_mm = 6 }]\ncracks = 1 "]);
+    let bent = ["check", "hole.toml", "--set", "loading.bending_ratio=1"];
+    assert_refused(&perilife(dir.path(), &bent), 2, &["loading.bending_ratio", "specimen.holes"]);
     // Overloads leave a zone at each end of a front.
     let example = include_str!("../../data/cases/corner_crack_at_hole.toml");
     let unlike = |line: &&str| !line.starts_with("stress_") && !line.starts_with("kind = \"constant_amplitude\"");

@@ -4,6 +4,7 @@ use std::f64::consts::{FRAC_2_PI, PI};
 
 use perilife::case::Case;
 use perilife::predict::part_through::PartThroughLife;
+use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife::predict::{CurvePoint, Prediction, Silent, StopReason, predict};
 use perilife::quadrature::integrate;
 use perilife::specimen::{FrontTip, PartThrough, SpecimenKind};
@@ -293,4 +294,31 @@ fn a_checkpoint_behind_break_through_goes_on() {
     let again = resume(&case, Checkpoint::from_bytes(&kept[0]).unwrap(), &Silent).unwrap();
     assert_eq!((again.stop, again.life_cycles(), again.curve.len()), (whole.stop, whole.life_cycles(), whole.curve.len()));
     assert_eq!(format!("{:?}", again.curve), format!("{:?}", whole.curve));
+}
+
+const AT_HOLE: &str = "kind = \"corner_crack_at_hole\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 5\nhole_diameter_mm = 8\ncracks = 1\n\
+                       crack_depth_mm = 1.5\ncrack_half_length_mm = 1.5\n";
+
+/// K beside other holes is that of the crack alone times what they do to a through crack: the ratio of two plates of kind `plate`; far away they
+/// do nothing.
+#[test]
+fn further_holes_raise_k_as_they_raise_that_of_a_through_crack() {
+    let start = |holes: &str| {
+        let case = hand_case(&format!("{AT_HOLE}{holes}"), &["model.method=auto"]);
+        stress_intensity(&case, StressIntensityMethod::ALL).unwrap()[0].handbook_k_i.unwrap()
+    };
+    let through = |holes: &str| {
+        let plate = format!(
+            "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 5\ncracks = [{{ from_mm = [4, 0], to_mm = [5.5, 0] }}]\n\
+             holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = 8 }}{holes}]\n"
+        );
+        let case = hand_case(&plate, &["model.method=element_free_galerkin"]);
+        stress_intensity(&case, &[StressIntensityMethod::ElementFreeGalerkin]).unwrap()[0].methods[0].intensity.k_i.unwrap()
+    };
+    let near = "{ x_mm = 20, y_mm = 0, diameter_mm = 8 }";
+    let [found, wanted] = [start(&format!("holes = [{near}]\n")) / start(""), through(&format!(", {near}")) / through("")];
+    println!("K beside a hole over K alone: {found:.5}, of through cracks {wanted:.5}");
+    assert!((found / wanted - 1.0).abs() < 2e-3 && wanted > 1.01, "{found} against {wanted}");
+    let far = start("holes = [{ x_mm = 40, y_mm = 80, diameter_mm = 8 }]\n") / start("");
+    assert!((far - 1.0).abs() < 0.01, "{far}");
 }

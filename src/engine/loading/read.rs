@@ -153,8 +153,12 @@ fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
     const KEY: &str = "loading.bending_ratio";
     let Some(given) = input.bending_ratio else { return Ok(()) };
     let ratio = number("a ratio of stresses", 0.0, 1000.0).read(KEY, given)?;
-    let kind = specimen.kind;
+    let (kind, all_holes) = (specimen.kind, specimen.holes.len());
     match specimen.part_through.as_mut() {
+        Some(flaw) if ratio > 0.0 && all_holes > flaw.own_holes() => {
+            let problem = "stands beside specimen.holes, whose effect on a crack under bending is not known";
+            return Err(error::input(KEY, given, problem, "leave out the holes or the bending"));
+        }
         Some(flaw) if flaw.knows_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
         Some(_) => {
             let problem = format!("does not go with {kind}, whose K is known under tension alone");

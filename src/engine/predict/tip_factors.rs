@@ -18,6 +18,7 @@ use crate::fatigue::crack_tip::TipState;
 use crate::growth::cracks::{InitialTips, initial_tips};
 use crate::growth::cross_check::largest_difference;
 use crate::growth::nodes::NodePlate;
+use crate::growth::part_through::Neighbours;
 use crate::growth::points::PointPlate;
 use crate::growth::record::TipRecord;
 use crate::specimen::handbook::handbook;
@@ -166,6 +167,7 @@ fn of_front(case: &Case, flaw: &PartThrough, methods: &[StressIntensityMethod]) 
         return Err(input(StressIntensityMethod::KEY, method, problem, "leave it out"));
     }
     let specimen = &case.specimen;
+    let compounded = Neighbours::of(case, flaw)?.map_or(1.0, |neighbours| neighbours.factor(flaw.half_length));
     let on_face =
         specimen.tips.last().copied().unwrap_or(TipSeed { position: [0.0; 2], direction: [1.0, 0.0], from_slot: false });
     let deepest = [0, 1].map(|i| on_face.position[i] - flaw.half_length * on_face.direction[i]);
@@ -175,7 +177,7 @@ fn of_front(case: &Case, flaw: &PartThrough, methods: &[StressIntensityMethod]) 
         FrontTip::Surface => on_face,
     };
     let result = |end: FrontTip| {
-        let k_i = flaw.k_i(flaw.start(), case.loading.maximum, end);
+        let k_i = compounded * flaw.k_i(flaw.start(), case.loading.maximum, end);
         TipResult { tip: at(end), methods: Vec::new(), handbook_k_i: Some(k_i), end: Some(end) }
     };
     Ok(FrontTip::ALL.map(result).to_vec())

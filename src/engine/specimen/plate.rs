@@ -74,10 +74,7 @@ pub(super) fn from_value(value: &Value, notes: &mut Vec<String>) -> Result<Speci
     let input: Input = slice(value, "specimen")?;
     let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
     let outline = outline(&input)?;
-    let holes = items("specimen.holes", &input.holes, |item: HoleInput, path| {
-        let centre = point(path, [item.x_mm, item.y_mm])?;
-        Ok(Hole { centre, radius: LENGTH.read(&format!("{path}.diameter_mm"), item.diameter_mm)? / 2.0 })
-    })?;
+    let holes = read_holes(&input.holes)?;
     let slots = items("specimen.notches", &input.notches, |item: NotchInput, path| {
         let (from, to) = ends(path, item.from_mm, item.to_mm)?;
         Ok(Slot { from, to, width: LENGTH.read(&format!("{path}.width_mm"), item.width_mm)? })
@@ -98,6 +95,14 @@ pub(super) fn from_value(value: &Value, notes: &mut Vec<String>) -> Result<Speci
     place_cracks(&mut specimen, cracks, slot_tips, notes)?;
     [specimen.crack_plane_x, specimen.crack_plane_y] = [0, 1].map(|axis| common_line(&specimen.cracks, axis));
     Ok(specimen)
+}
+
+/// `holes = [{ x_mm, y_mm, diameter_mm }]`.
+pub(super) fn read_holes(list: &[Value]) -> Result<Vec<Hole>> {
+    items("specimen.holes", list, |item: HoleInput, path| {
+        let centre = point(path, [item.x_mm, item.y_mm])?;
+        Ok(Hole { centre, radius: LENGTH.read(&format!("{path}.diameter_mm"), item.diameter_mm)? / 2.0 })
+    })
 }
 
 /// x (axis 0) or y of the cracks if all lie on one line along the other axis: it must fall between two columns or rows of points.

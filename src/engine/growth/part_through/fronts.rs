@@ -3,6 +3,7 @@
 //! `da/dN = r(K(φ = 90°))`, `dc/dN = r(K(φ = 0))`, over a variable s in which both are smooth: `ds = d ln a + d ln c`. Steps by the third-order
 //! formula of Bogacki and Shampine (1989, Appl. Math. Lett. 2:321), as long as its second-order companion allows.
 
+use super::neighbours::Neighbours;
 use crate::case::Case;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::specimen::{FrontTip, PartThrough};
@@ -30,13 +31,16 @@ type Slope = [f64; 3];
 pub(super) struct Fronts<'a> {
     pub case: &'a Case,
     pub flaw: PartThrough,
+    /// What further holes do to K.
+    pub neighbours: Option<Neighbours>,
     pub law: Box<dyn GrowthLaw>,
 }
 
 impl Fronts<'_> {
     /// K_I at maximum load, Pa√m, at the ends of a and c.
     pub fn factors(&self, axes: [f64; 2]) -> [f64; 2] {
-        FrontTip::ALL.map(|tip| self.flaw.k_i(axes, self.case.loading.maximum, tip))
+        let compounded = self.neighbours.as_ref().map_or(1.0, |neighbours| neighbours.factor(axes[1]));
+        FrontTip::ALL.map(|tip| compounded * self.flaw.k_i(axes, self.case.loading.maximum, tip))
     }
 
     /// da/dN and dc/dN, m/cycle.

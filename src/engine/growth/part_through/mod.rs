@@ -7,8 +7,10 @@
 //! other face catches up within few cycles, so that the life that is left is rather too short.
 
 mod fronts;
+mod neighbours;
 mod overloads;
 
+pub use neighbours::Neighbours;
 pub use overloads::Order;
 
 use std::cell::OnceCell;
@@ -64,7 +66,8 @@ impl<'a> PartThroughGrowth<'a> {
         let flaw = case.specimen.part_through.ok_or_else(|| {
             input_missing("specimen.kind", "is one of a through crack", "give one whose crack does not go through")
         })?;
-        let (fronts, law_of_tips) = (Fronts { case, flaw, law }, Some(law_of_tips));
+        let neighbours = Neighbours::of(case, &flaw)?;
+        let (fronts, law_of_tips) = (Fronts { case, flaw, neighbours, law }, Some(law_of_tips));
         let spectrum = case.loading.spectrum.as_deref();
         let overloads = spectrum.zip(order).map(|(spectrum, order)| Overloads::start(&fronts, spectrum, order));
         Ok(PartThroughGrowth { fronts, later, law_of_tips, step: STEP_MOST, overloads, curve: Vec::new(), through: None })
@@ -190,6 +193,7 @@ impl<'a> PartThroughGrowth<'a> {
                 breaks(StopReason::NetSectionYield)
             }
             [a, _] if a >= flaw.through_depth() => Some(self.through_or_end()),
+            [_, c] if c >= flaw.to_hole => Some(Ending::Stop(StopReason::EnteredHole)),
             // K of most formulas is infinite where the crack takes the whole width.
             [_, c] if c >= flaw.room() || factor.is_infinite() => Some(Ending::Stop(StopReason::Severed)),
             _ if cycles >= case.stop.cycles_max => Some(Ending::Stop(StopReason::RunOut)),

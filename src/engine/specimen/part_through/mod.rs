@@ -117,6 +117,10 @@ pub struct PartThrough {
     pub radius: f64,
     /// Cracks in the section: at a hole 1 or 2, else 1.
     pub cracks: usize,
+    /// Way along the face to the rim of the next further hole on the line of the crack, m, as a length c; infinite without one.
+    pub to_hole: f64,
+    /// What further holes take of the length of the section, m.
+    pub other_holes: f64,
     /// S_b/S_t: stress of the bending at the face of the crack over the tension.
     pub bending_ratio: f64,
 }
@@ -156,6 +160,11 @@ impl PartThrough {
         self.description.letters.of_thickness * self.thickness
     }
 
+    /// How many holes of its plate are its own; they stand last.
+    pub fn own_holes(&self) -> usize {
+        usize::from(self.description.has_hole)
+    }
+
     /// Whether the ends of a and c lie inside the material, where strain across the plane of the crack is held, or at a face of it.
     pub fn ends_inside(&self) -> [bool; 2] {
         [0.5, 1.0].map(|share| self.description.share_of_ellipse >= share)
@@ -192,7 +201,7 @@ impl PartThrough {
     pub fn limit_stress(&self, [a, c]: [f64; 2], yield_strength: f64) -> f64 {
         let gross = self.width * self.thickness;
         let cracked = self.cracks as f64 * self.description.share_of_ellipse * PI * a * c;
-        yield_strength * ((gross - 2.0 * self.radius * self.thickness - cracked) / gross).max(0.0)
+        yield_strength * ((gross - (2.0 * self.radius + self.other_holes) * self.thickness - cracked) / gross).max(0.0)
     }
 }
 

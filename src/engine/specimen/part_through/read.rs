@@ -6,6 +6,8 @@ use toml::Value;
 use super::{Description, PartThrough};
 use crate::error::{Result, input, input_missing};
 use crate::input::{LENGTH, slice};
+use crate::specimen::placement::check_holes;
+use crate::specimen::plate::read_holes;
 use crate::specimen::{Hole, Specimen, SpecimenKind};
 use crate::units::MM;
 
@@ -25,6 +27,8 @@ struct Input {
     crack_half_length_mm: f64,
     hole_diameter_mm: Option<f64>,
     cracks: Option<usize>,
+    #[serde(default)]
+    holes: Vec<Value>,
 }
 
 /// The plate with its crack. That the length is the program's own goes into `notes`.
@@ -40,11 +44,26 @@ pub(in crate::specimen) fn from_value(
     let depth = LENGTH.read("specimen.crack_depth_mm", input.crack_depth_mm)?;
     let half_length = LENGTH.read("specimen.crack_half_length_mm", input.crack_half_length_mm)?;
     let (radius, cracks) = hole(description, &input, width)?;
-    let flaw = PartThrough { description, depth, half_length, thickness, width, radius, cracks, bending_ratio: 0.0 };
+    let mut flaw = PartThrough {
+        description,
+        depth,
+        half_length,
+        thickness,
+        width,
+        radius,
+        cracks,
+        to_hole: f64::INFINITY,
+        other_holes: 0.0,
+        bending_ratio: 0.0,
+    };
     check_sizes(&flaw, &input)?;
     let plate = Specimen::strip(description.kind, width, length.unwrap_or(LENGTH_OVER_WIDTH * width), thickness);
-    let holes = if radius > 0.0 { vec![Hole { centre: [0.0, 0.0], radius }] } else { Vec::new() };
-    let mut specimen = Specimen { holes, part_through: Some(flaw), ..plate };
+    let mut holes = read_holes(&input.holes)?;
+    holes.extend((radius > 0.0).then_some(Hole { centre: [0.0, 0.0], radius }));
+    let mut specimen = Specimen { holes, ..plate };
+    check_holes(&specimen)?;
+    place_beside(&mut flaw, &specimen.holes)?;
+    specimen.part_through = Some(flaw);
     (specimen.cracks, specimen.tips) = flaw.seen_from_front(half_length);
     specimen.crack_length = half_length;
     if length.is_none() {
@@ -53,6 +72,27 @@ pub(in crate::specimen) fn from_value(
         ));
     }
     Ok(specimen)
+}
+
+/// What further holes take of the section of the crack, and how near its ends they are.
+/// Errors: a hole that the crack reaches.
+fn place_beside(flaw: &mut PartThrough, holes: &[Hole]) -> Result<()> {
+    let further = &holes[..holes.len() - flaw.own_holes()];
+    let lines: Vec<_> = flaw.seen_from_front(flaw.half_length).1;
+    for (i, Hole { centre, radius }) in further.iter().enumerate() {
+        let half_chord = (radius * radius - centre[1] * centre[1]).max(0.0).sqrt();
+        flaw.other_holes += 2.0 * half_chord;
+        for tip in lines.iter().filter(|_| half_chord > 0.0) {
+            let way = (centre[0] - tip.position[0]) * tip.direction[0] - half_chord;
+            if way > 0.0 {
+                flaw.to_hole = flaw.to_hole.min(flaw.half_length + way);
+            } else if way + 2.0 * half_chord > -flaw.half_length {
+                let (key, problem) = (format!("specimen.holes[{i}]"), "lies on the crack");
+                return Err(input_missing(&key, problem, "move it away, or give a shorter crack"));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Radius of the hole, m, and number of cracks.
