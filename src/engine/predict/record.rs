@@ -144,6 +144,7 @@ impl<'a> Record<'a> {
         let of_growth = growth.warnings();
         let mut curve = growth.curve();
         let recounted = retarded::recount(case, &curve, stop)?;
+        let unretarded_cycles = recounted.as_ref().and(curve.last()).map(|row| row.cycles);
         let (stop, of_order) = match recounted {
             Some(Recounted { curve: new, stop, warning }) => {
                 snapshots.recount(&curve, &new);
@@ -167,6 +168,7 @@ impl<'a> Record<'a> {
             grid: growth.grid().unwrap_or_else(PointGrid::none),
             curve,
             cross_check,
+            unretarded_cycles,
             warnings,
         })
     }
