@@ -11,7 +11,7 @@ use crate::predict::Prediction;
 const LEVELS: [f64; 4] = [0.9, 0.75, 0.5, 0.25];
 
 /// Bars of the histogram of ranges.
-const BARS: usize = 20;
+pub const BARS: usize = 20;
 /// Levels of the maxima that are written, at the most.
 const MAXIMA_MOST: usize = 200;
 

@@ -13,7 +13,7 @@ import { createSpectrumPicture } from "./spectrum_picture.js";
 const WAIT_MS = 350;
 const SKETCH_HEIGHT = 200;
 /** What is read first of what was understood; all else stands below. */
-const FIRST = ["specimen", "crack", "material", "loading", "model", "points", "stop", "computing"];
+const FIRST = ["specimen", "crack", "material", "loading", "spectrum", "model", "points", "stop", "computing"];
 
 /**
  * `collect()` gives {input, files, calibration} or a sentence that says what is still missing. The result stands in `panel`.

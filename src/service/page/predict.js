@@ -237,7 +237,7 @@ export function createPredictView() {
 
   let opened = false;
   return {
-    /** The case as it stands here, {input, calibration?}, or a sentence that says what is missing. */
+    /** The case as it stands here, {input, calibration?, files?}, or a sentence that says what is missing. */
     body: () => editor.body(),
     /** Waits until the case was checked once. */
     async ready() {
