@@ -26,7 +26,12 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
     let output = perilife(dir.path(), &arguments.split_whitespace().collect::<Vec<_>>());
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
-    for words in ["fleet          of 500 plates", "miss the crack with a probability of", "sensitivities  load -5 % +1"] {
+    for words in [
+        "fleet          of 500 plates",
+        "fleet          from 10.000 mm to the end 5 % take",
+        "miss the crack with a probability of",
+        "sensitivities  load -5 % +1",
+    ] {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }
     let run = dir.path().join("run");
@@ -35,6 +40,14 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
     let quantile = |name: &str| result["fleet"]["life_cycles"][name].as_f64().unwrap();
     assert!(quantile("p05") < quantile("p50") && quantile("p50") < quantile("p95"), "{}", result["fleet"]);
     assert!(result["fleet"]["ended_by"]["required_strength"].as_u64().unwrap() > 400, "{}", result["fleet"]);
+    let looks = &result["fleet"]["inspections"];
+    let left = |name: &str| looks["detectable_to_critical_cycles"][name].as_f64().unwrap();
+    assert!(left("p05") < left("p50") && left("p50") < left("p95") && left("p95") < quantile("p95"), "{looks}");
+    assert!((looks["interval_cycles"].as_f64().unwrap() / (left("p05") / 3.0) - 1.0).abs() < 1e-12, "{looks}");
+    assert_eq!(
+        looks["missed_after"].as_array().unwrap().last().unwrap().as_f64().map(|missed| (1e9 * missed).round()),
+        result["fleet"]["missed"].as_f64().map(|missed| (1e9 * missed).round())
+    );
     let rows = result["inspections"]["rows"].as_array().unwrap();
     assert_eq!((rows.len(), &rows[2]["missed"]), (3, &result["inspections"]["missed"]), "three looks before the end");
     assert!((rows[0]["crack_length_mm"].as_f64().unwrap() - 10.0).abs() < 0.02, "{rows:?}");
@@ -56,7 +69,7 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
         &["predict", "case.toml", "--out", "again", "--fleet", "500", "--seed", "7", "--set", "stop.required_strength_mpa=100"],
     );
     let again = fs::read_to_string(dir.path().join("again/fleet.csv")).unwrap();
-    let lives = |table: &str| table.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned()).collect::<Vec<_>>();
+    let lives = |table: &str| table.lines().map(|line| line.rsplitn(3, ',').nth(2).unwrap().to_owned()).collect::<Vec<_>>();
     assert_eq!(lives(&again), lives(&table));
 }
 

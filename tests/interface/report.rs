@@ -240,3 +240,92 @@ fn a_fracture_scene_has_no_life_to_report() {
         &["scene", "fracture scene", "perilife predict"],
     );
 }
+
+/// A spectrum, a crack that is not through, and what was asked beside the life stand on sheets of their own, with the pictures of the folder.
+#[test]
+fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
+    let dir = tempdir().unwrap();
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases");
+    let run = |case: &str, more: &str| {
+        let file = cases.join(case);
+        let arguments =
+            [&["predict", file.to_str().unwrap(), "--out", "run"][..], &more.split_whitespace().collect::<Vec<_>>()].concat();
+        let output = perilife(dir.path(), &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        let page = report(dir.path(), "run", &[]);
+        assert_alone(&page);
+        (page, serde_json::from_str::<Value>(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap())
+    };
+    let assert_says = |page: &str, all: &[&str]| all.iter().for_each(|words| assert!(page.contains(words), "{words}"));
+    let grouped = |cycles: f64| {
+        let text = format!("{cycles:.0}");
+        let (head, tail) = text.split_at(text.len() - 3);
+        format!("{head}\u{202f}{tail} cycles")
+    };
+
+    let (page, result) = run("spectrum_panel.toml", "--set loading.omission_percent=20 --set loading.truncation_percent=95");
+    let (life, mean) = (&result["life_cycles"], &result["spectrum"]["life_cycles_without_retardation"]);
+    let (life, mean) = (life.as_f64().unwrap(), mean.as_f64().unwrap());
+    assert!(life > 1.05 * mean, "an overload slows the crack down: {life} {mean}");
+    // Without the model the run itself gives that life.
+    let (_, plain) = run(
+        "spectrum_panel.toml",
+        "--set loading.omission_percent=20 --set loading.truncation_percent=95 --set loading.retardation=\"none\"",
+    );
+    assert!((plain["life_cycles"].as_f64().unwrap() / mean - 1.0).abs() < 1e-9);
+    assert_says(
+        &page,
+        &[
+            "Exceedances and ranges of the",
+            "spectrum_ten_flights.csv",
+            "below 20 % of the largest range",
+            "peaks above 95 % of the largest of the file",
+            "wheeler",
+            "wheeler_exponent",
+            &grouped(life),
+            &grouped(mean),
+            "104.5 MPa, gross",
+        ],
+    );
+
+    let (page, result) = run("corner_crack_at_hole.toml", "--set stop.at_break_through=true");
+    let found = &result["part_through"];
+    assert_says(
+        &page,
+        &[
+            "Section through the crack: depth",
+            "Length c on the face and depth a of the crack in mm over cycles",
+            "NASA TM-85793",
+            "a/t = 1.000",
+            "a/t = 1, up to which",
+            &grouped(found["cycles_at_break_through"].as_f64().unwrap()),
+            &grouped(found["life_cycles_if_k_is_larger"].as_f64().unwrap()),
+            &grouped(found["life_cycles_if_k_is_smaller"].as_f64().unwrap()),
+        ],
+    );
+
+    let (page, result) = run("fleet_of_panels.toml", "--inspect-from 10 --pod 12,25 --sensitivities");
+    let looks = &result["fleet"]["inspections"];
+    assert_says(
+        &page,
+        &[
+            "lives of a fleet",
+            "change of the life",
+            "1000, seed 1",
+            "each plate by its own law, load and critical length, from 10 mm",
+            &grouped(looks["detectable_to_critical_cycles"]["p05"].as_f64().unwrap()),
+            &grouped(looks["interval_cycles"].as_f64().unwrap()),
+            "initial crack length",
+            "a crack of 12 mm with 50 %, of 25 mm with 90 %",
+        ],
+    );
+    // A picture that does more than draw is not taken over.
+    let picture = dir.path().join("run/fleet.svg");
+    let text = fs::read_to_string(&picture).unwrap();
+    for bad in ["<script>alert(1)</script></svg>", "<rect onload=\"alert(1)\"/></svg>", "<image href=\"x.png\"/></svg>"] {
+        fs::write(&picture, text.replace("</svg>", bad)).unwrap();
+        let page = report(dir.path(), "run", &[]);
+        assert_alone(&page);
+        assert!(!page.contains("onload") && !page.contains("lives of a fleet"), "{bad}");
+    }
+}

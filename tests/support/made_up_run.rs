@@ -41,6 +41,7 @@ pub fn prediction(angle: f64) -> Prediction {
         grid,
         figures,
         cross_check: None,
+        unretarded_cycles: None,
         warnings: vec!["made up".to_owned()],
     }
 }

@@ -6,7 +6,7 @@ use perilife::report::band::Lives;
 use perilife::report::sensitivities::Sensitivities;
 use perilife::sweep::detection::{Detection, Schedule};
 use perilife::sweep::distribution::quantile;
-use perilife::sweep::fleet::{FleetLives, lives};
+use perilife::sweep::fleet::{FleetLives, FleetPlate, Looks, lives};
 use perilife::units::{MM, MPA_SQRT_M};
 
 use super::plate_band::panel;
@@ -14,11 +14,11 @@ use crate::support::hand_cases::{PANEL, hand_case};
 
 const ALIKE: Fleet = Fleet { plates: 4000, seed: 3, initial_length: None, load_scatter: 0.0 };
 
-fn fleet(case: &Case, fleet: &Fleet, inspections: Option<Schedule>) -> (FleetLives, Lives) {
+fn fleet(case: &Case, fleet: &Fleet, looks: Option<Looks>) -> (FleetLives, Lives) {
     let run = predict(case, &Silent).unwrap();
     let band = Lives::of(case, &run).unwrap();
     let plate = band.band.as_ref().map(|(plate, _)| plate);
-    (lives(case, &run, fleet, plate, inspections).unwrap(), band)
+    (lives(case, &run, fleet, plate, looks).unwrap(), band)
 }
 
 fn quantiles(fleet: &FleetLives) -> [f64; 3] {
@@ -85,14 +85,61 @@ fn inspections_that_all_miss_multiply() {
     assert_eq!((inspected.count, inspected.missed), (2, 0.25));
     inspected.grow([20.0, 30.0], [5.0 * MM, 8.0 * MM], |at, length, _, _| assert_eq!((at, length), (20.0, 5.0 * MM)));
     assert!((inspected.missed - 0.025).abs() < 1e-12, "{inspected:?}");
-    // Of a fleet: what grows faster is looked at less often before its end.
-    let schedule = Schedule { detection: "20,40".parse().unwrap(), cycles: [0.0, 2e4] };
-    let (drawn, _) = fleet(&panel(5, &[]), &Fleet { plates: 200, ..ALIKE }, Some(schedule));
-    let missed = |plate: &perilife::sweep::fleet::FleetPlate| plate.missed.unwrap();
-    assert!(drawn.plates.iter().all(|plate| (0.0..1.0).contains(&missed(plate))));
-    let ends = [f64::total_cmp as fn(&f64, &f64) -> std::cmp::Ordering, |a, b| b.total_cmp(a)]
-        .map(|order| drawn.plates.iter().min_by(|a, b| order(&a.rate_factor, &b.rate_factor)).unwrap());
-    assert!(missed(ends[0]) < missed(ends[1]), "{ends:?}");
+}
+
+/// Cycles from detectable to critical of every plate: under a Paris law load^-m times those of the run where both ends are lengths; with a toughness the
+/// critical length is that at which K of the panel under its own load is the toughness (Feddersen's secant).
+#[test]
+fn every_plate_of_a_fleet_has_its_own_interval() {
+    let looks = Looks { detectable: 12.0 * MM, factor: 3.0, detection: Some("12,25".parse().unwrap()) };
+    let case = hand_case(PANEL, &["stop.crack_length_mm=45"]);
+    let by_load = Fleet { load_scatter: 0.03, plates: 2000, ..ALIKE };
+    let (drawn, _) = fleet(&case, &by_load, Some(looks));
+    let run = predict(&case, &Silent).unwrap();
+    let whole = run.life_cycles() - run.cycles_at(looks.detectable).unwrap();
+    let left = |plate: &FleetPlate| plate.window.unwrap()[1];
+    for plate in &drawn.plates {
+        assert!((left(plate) / (whole * plate.load.powf(-2.874)) - 1.0).abs() < 1e-3, "{plate:?}");
+        assert!((plate.critical_length.unwrap() / (45.0 * MM) - 1.0).abs() < 1e-9);
+    }
+    // The interval is that of the 5 % of plates with the highest loads, and the first look is at the detectable length.
+    let looked = drawn.looked.as_ref().unwrap();
+    let highest = whole * (1.0 + 0.03 * 1.645_f64).powf(-2.874) / 3.0;
+    assert!((looked.every / highest - 1.0).abs() < 5e-3, "{} {highest}", looked.every);
+    assert!((looked.missed_after[0] - 0.5).abs() < 1e-3 && looked.missed_after.windows(2).all(|pair| pair[1] <= pair[0]));
+    assert!((looked.missed_after.last().unwrap() - looked.missed).abs() < 1e-9 && looked.missed_after.len() == 5, "{looked:?}");
+    let missed = drawn.plates.iter().filter_map(|plate| plate.missed).sum::<f64>() / 2000.0;
+    assert!((missed - looked.missed).abs() < 1e-12);
+    // With a toughness the plate under the higher load breaks at the shorter length.
+    let tough = hand_case(PANEL, &["material.toughness_mpa_sqrt_m=40", "stop.crack_length_mm=70"]);
+    let formula = perilife::specimen::handbook::handbook(&tough.specimen).unwrap();
+    let (drawn, _) = fleet(&tough, &by_load, Some(looks));
+    for plate in drawn.plates.iter().filter(|plate| plate.life.stop == StopReason::Toughness) {
+        let k = formula.k_i(plate.critical_length.unwrap(), plate.load * tough.loading.maximum);
+        assert!((k / (40.0 * MPA_SQRT_M) - 1.0).abs() < 5e-3, "{k} {plate:?}");
+    }
+    assert!(drawn.plates.iter().filter(|plate| plate.life.stop == StopReason::Toughness).count() > 1900);
+    // Where cracks break before they can be found there is no interval.
+    let (blind, _) = fleet(&tough, &by_load, Some(Looks { detectable: 60.0 * MM, ..looks }));
+    assert!(blind.looked.is_none() && blind.plates.iter().all(|plate| left(plate) == 0.0 && plate.missed.is_none()));
+    // Of laws that differ, what grows faster has the shorter interval and is found less often.
+    let (drawn, _) = fleet(&panel(5, &[]), &Fleet { plates: 200, ..ALIKE }, Some(Looks { detectable: 20.0 * MM, ..looks }));
+    let fastest = drawn.plates.iter().max_by(|a, b| a.rate_factor.total_cmp(&b.rate_factor)).unwrap();
+    let slowest = drawn.plates.iter().min_by(|a, b| a.rate_factor.total_cmp(&b.rate_factor)).unwrap();
+    assert!(left(fastest) < left(slowest) && fastest.missed >= slowest.missed, "{fastest:?} {slowest:?}");
+}
+
+/// A thousand lives a second with intervals and inspections, on one core.
+#[test]
+fn a_thousand_plates_take_less_than_a_second() {
+    let looks = Looks { detectable: 12.0 * MM, factor: 3.0, detection: Some("12,25".parse().unwrap()) };
+    let (case, many) = (hand_case(PANEL, &["stop.crack_length_mm=45"]), Fleet { load_scatter: 0.03, plates: 4000, ..ALIKE });
+    let run = predict(&case, &Silent).unwrap();
+    let (begun, why) = (std::time::Instant::now(), "one law".to_owned());
+    lives(&case, &run, &many, Err(&why), Some(looks)).unwrap();
+    let rate = 4000.0 / begun.elapsed().as_secs_f64();
+    println!("{rate:.0} lives a second");
+    assert!(rate > 1000.0, "{rate}");
 }
 
 #[test]

@@ -243,7 +243,7 @@ fn straight_growth() -> (Plate, RunTables) {
     let factors = steps().map(|step| if step == 4.0 { [f64::NAN; 2] } else { [12.0 + step, -0.5] }).collect();
     let path = [[0.0, -50.0, 0.0]].into_iter().chain(steps().map(|step| [1e3 * step, -40.0 + 5.0 * step, 0.0])).collect();
     let tips = vec![TipRows { growth_mm: steps().map(|step| 5.0 * step).collect(), factors }];
-    (plate, RunTables { rows: steps().map(row).collect(), tips, band: None, paths: vec![path] })
+    (plate, RunTables { rows: steps().map(row).collect(), tips, band: None, depths_mm: None, paths: vec![path] })
 }
 
 fn numbers_of(svg: &str, element: &str, key: &str) -> Vec<f64> {

@@ -25,6 +25,7 @@ use crate::report::model_words::{self, mm, short};
 use crate::report::pictures::plate::Plate;
 use crate::report::run::refuse_beforehand;
 use crate::report::specimen_picture::{scene_svg, specimen_svg};
+use crate::report::spectrum::curves;
 use crate::runner::{Kind, Task};
 use crate::sweep::design::{self, CASES_MAX};
 use crate::sweep::{DrawnCase, Sweep};
@@ -45,6 +46,8 @@ pub struct Checked {
     pub drawing: String,
     /// The same for others to draw; none of scenes.
     pub plate: Option<Plate>,
+    /// Exceedances and ranges of a pass of a spectrum, for others to draw; none of other loads.
+    pub spectrum: Option<Value>,
     /// The input as it was given.
     pub echo: Value,
     /// Files that were read for it.
@@ -67,7 +70,7 @@ impl Checked {
         }
         json!({
             "ok": true, "kind": self.kind, "name": self.name, "understood": understood, "warnings": self.warnings,
-            "plate": self.plate, "case": self.echo,
+            "plate": self.plate, "spectrum": self.spectrum, "case": self.echo,
         })
     }
 }
@@ -131,7 +134,8 @@ fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: 
     lines.push(line("computing", budget.words()));
     let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
     let plate = Some(Plate::of(case));
-    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, plate, echo: case.echo.clone(), provenance })
+    let spectrum = case.loading.spectrum.as_deref().map(curves);
+    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, plate, spectrum, echo: case.echo.clone(), provenance })
 }
 
 /// A fit of laws has a plate only where its rates come from readings.
@@ -144,7 +148,7 @@ fn checked_laws(document: &Document, case: &LawCase) -> Checked {
     }
     let provenance = document.folder.opened().so_far();
     let (name, warnings, echo) = (case.name.clone(), case.warnings.clone(), case.echo.clone());
-    Checked { kind: "calibration", name, lines, warnings, drawing, plate, echo, provenance }
+    Checked { kind: "calibration", name, lines, warnings, drawing, plate, spectrum: None, echo, provenance }
 }
 
 fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
@@ -152,7 +156,7 @@ fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
     let (name, echo, provenance) = (scene.name.clone(), scene.echo.clone(), scene.provenance.clone());
     let warnings = [&scene.warnings[..], &of_points].concat();
     let drawing = scene_drawing(scene);
-    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, plate: None, echo, provenance })
+    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, plate: None, spectrum: None, echo, provenance })
 }
 
 /// Lines about loads and supports that fit below the drawing of a scene.

@@ -36,8 +36,8 @@ impl Answers {
     pub fn of(case: &Case, prediction: &Prediction, lives: &Lives, asked: Asked) -> Result<Self> {
         let inspections = lives.inspection().zip(asked.detection);
         let inspections = inspections.map(|(inspection, detection)| Inspections::of(case, prediction, inspection, detection));
-        let schedule = inspections.as_ref().map(|inspections| inspections.schedule);
-        let fleet = case.fleet.as_ref().map(|fleet| FleetReport::of(case, prediction, fleet, lives, schedule)).transpose()?;
+        let fleet =
+            case.fleet.as_ref().map(|fleet| FleetReport::of(case, prediction, fleet, lives, asked.detection)).transpose()?;
         let sensitivities = asked.sensitivities.then(|| Sensitivities::of(case, prediction)).transpose()?;
         Ok(Answers { inspections, fleet, sensitivities })
     }

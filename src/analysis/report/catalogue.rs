@@ -14,7 +14,7 @@ use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLawKind;
 use crate::fatigue::growth_law::description::Constant;
 use crate::fatigue::growth_law::table::TableEnds;
-use crate::fatigue::retardation::RetardationKind;
+use crate::fatigue::retardation::{Constant as Retarding, RetardationKind};
 use crate::fatigue::{Ageing, Driver};
 use crate::fracture::SceneEnd;
 use crate::fracture::read::{Kinematics, LoadKind};
@@ -125,18 +125,26 @@ pub fn lines() -> Vec<(String, String, String)> {
     all
 }
 
-/// The same as one object, with the constants of every growth law: keys of `[fatigue]`, units, and whether a case has to give them.
+/// The same as one object, with the constants of every growth law and model of retardation: keys of `[fatigue]` and `[loading]`, units, and whether a
+/// case has to give them.
 pub fn json() -> Value {
     let kinds = lines().into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
-    let constant = |constant: &Constant| {
-        let Quantity { what, unit, .. } = constant.quantity;
-        json!({ "key": constant.key, "unit": unit, "what": what, "needed": constant.default.is_none() })
-    };
+    let constant = |key: &str, quantity: &Quantity, needed: bool| json!({ "key": key, "unit": quantity.unit, "what": quantity.what, "needed": needed });
     let law = |law: GrowthLawKind| {
-        let constants: Vec<Value> = law.0.constants.iter().map(constant).collect();
-        json!({ "name": law.name(), "meaning": law.meaning(), "constants": constants })
+        let of_law = |own: &Constant| constant(own.key, &own.quantity, own.default.is_none());
+        json!({ "name": law.name(), "meaning": law.meaning(), "constants": law.0.constants.iter().map(of_law).collect::<Vec<_>>() })
     };
-    json!({ "kinds": kinds.collect::<Vec<_>>(), "laws": GrowthLawKind::all().map(law).collect::<Vec<_>>() })
+    let retardation = |model: RetardationKind| {
+        // A threshold of the law, which it may have, stands for a constant.
+        let of_model = |own: &Retarding| constant(own.key, &own.quantity, (own.default)(Plane::Stress, Some(1.0)).is_none());
+        let constants: Vec<Value> = model.0.constants.iter().map(of_model).collect();
+        json!({ "name": model.name(), "meaning": model.meaning(), "constants": constants })
+    };
+    json!({
+        "kinds": kinds.collect::<Vec<_>>(),
+        "laws": GrowthLawKind::all().map(law).collect::<Vec<_>>(),
+        "retardations": RetardationKind::all().map(retardation).collect::<Vec<_>>(),
+    })
 }
 
 /// The lines of a second choice for a key that do not stand in the first one already.

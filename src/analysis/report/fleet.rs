@@ -7,17 +7,18 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::axis::Axis;
-use super::band::Lives as Band;
+use super::band::{Inspection, Lives as Band};
 use super::chart::{COMPUTED, Frame, LARGE, Mark, SECOND};
 use super::csv;
+use super::model_words::clean;
 use super::output::write_file;
 use super::sweep::Lives;
 use crate::case::{Case, Fleet};
 use crate::error::Result;
-use crate::predict::Prediction;
+use crate::predict::{CurvePoint, Prediction};
 use crate::specimen::Point;
-use crate::sweep::detection::Schedule;
-use crate::sweep::fleet::{self, FleetLives, FleetPlate};
+use crate::sweep::detection::Detection;
+use crate::sweep::fleet::{self, FleetLives, FleetPlate, Looked, Looks};
 use crate::units::MM;
 
 /// The table.
@@ -30,17 +31,24 @@ pub const FLEET_CHART_FILE: &str = "fleet.svg";
 pub struct FleetReport {
     fleet: Fleet,
     lives: FleetLives,
+    /// How it is looked at.
+    looks: Option<Looks>,
     /// Life of the run, cycles.
     run: Option<f64>,
 }
 
 impl FleetReport {
-    /// Of a run; `band` says how the law of its lot scatters.
+    /// Of a run; `band` says how the law of its lot scatters, and from which length on plates are looked at.
     /// Errors: as [`fleet::lives`].
-    pub fn of(case: &Case, prediction: &Prediction, fleet: &Fleet, band: &Band, inspections: Option<Schedule>) -> Result<Self> {
+    pub fn of(case: &Case, prediction: &Prediction, fleet: &Fleet, band: &Band, detection: Option<Detection>) -> Result<Self> {
         let plate = band.band.as_ref().map(|(plate, _)| plate);
-        let lives = fleet::lives(case, prediction, fleet, plate, inspections)?;
-        Ok(FleetReport { fleet: *fleet, lives, run: prediction.life() })
+        let looks = band.inspection().map(|inspection| Looks {
+            detectable: detectable(case, prediction, inspection),
+            factor: inspection.factor,
+            detection,
+        });
+        let lives = fleet::lives(case, prediction, fleet, plate, looks)?;
+        Ok(FleetReport { fleet: *fleet, lives, looks, run: prediction.life() })
     }
 
     fn ranked(&self) -> Lives {
@@ -51,10 +59,36 @@ impl FleetReport {
         self.lives.plates.iter().filter(|plate| plate.life.is_clipped).count()
     }
 
+    /// Cycles from detectable to the end of every plate, ranked as their lives.
+    fn windows(&self) -> Lives {
+        Lives::ranked(self.lives.plates.iter().filter_map(|plate| Some((plate.window?[1], plate.life.is_bound))))
+    }
+
+    /// Plates that break before their crack is as long as can be found.
+    fn never_found(&self) -> usize {
+        self.lives.plates.iter().filter(|plate| plate.window.is_some_and(|[_, left]| left == 0.0)).count()
+    }
+
     /// Probability that inspections miss the crack of a plate to its end, mean over the plates that have one.
     fn missed(&self) -> Option<f64> {
-        let missed: Vec<f64> = self.lives.plates.iter().filter_map(|plate| plate.missed).collect();
-        (!missed.is_empty()).then(|| missed.iter().sum::<f64>() / missed.len() as f64)
+        self.lives.looked.as_ref().map(|looked| looked.missed)
+    }
+
+    /// What inspections make of the fleet.
+    fn looked_json(&self) -> Value {
+        let Some(looks) = self.looks else { return Value::Null };
+        let Looked { every, missed_after, .. } = match &self.lives.looked {
+            Some(looked) => looked.clone(),
+            None => Looked { every: f64::NAN, missed_after: Vec::new(), missed: f64::NAN },
+        };
+        json!({
+            "detectable_mm": clean(looks.detectable / MM),
+            "factor": looks.factor,
+            "detectable_to_critical_cycles": self.windows().figures(),
+            "break_before_detectable": self.never_found(),
+            "interval_cycles": every.is_finite().then_some(every),
+            "missed_after": missed_after,
+        })
     }
 
     /// The object of `result.json`: quantiles as those of a sweep, unlimited and cut-off lives ranked behind the others.
@@ -72,6 +106,7 @@ impl FleetReport {
             "ended_by": ends,
             "laws_drawn": self.lives.one_law.is_none(),
             "one_law_because": self.lives.one_law,
+            "inspections": self.looked_json(),
             "missed": self.missed(),
         })
     }
@@ -79,15 +114,18 @@ impl FleetReport {
     /// `fleet.csv`: a row for each plate in the order in which they are drawn; no life where it is unlimited.
     pub fn table(&self) -> String {
         let mut text =
-            "plate,initial_length_mm,load_factor,rate_factor,life_cycles,ended_by,life_is_lower_bound,missed\n".to_owned();
+            "plate,initial_length_mm,load_factor,rate_factor,life_cycles,ended_by,life_is_lower_bound,critical_length_mm,\
+                        detectable_to_critical_cycles,missed\n"
+                .to_owned();
         for (i, plate) in self.lives.plates.iter().enumerate() {
-            let FleetPlate { initial_length, load, rate_factor, life, missed } = plate;
-            let cycles = Some(life.cycles).filter(|cycles| cycles.is_finite()).map_or_else(String::new, csv::exact);
-            let missed = missed.map_or_else(String::new, csv::exact);
+            let FleetPlate { initial_length, load, rate_factor, life, critical_length, window, missed } = plate;
+            let field = |value: Option<f64>| value.filter(|value| value.is_finite()).map_or_else(String::new, csv::exact);
+            let (cycles, missed, window) = (field(Some(life.cycles)), field(*missed), field(window.map(|[_, left]| left)));
+            let critical = field(critical_length.map(|length| length / MM));
             // Writing to a String cannot fail.
             let _ = writeln!(
                 text,
-                "{},{},{},{},{cycles},{},{},{missed}",
+                "{},{},{},{},{cycles},{},{},{critical},{window},{missed}",
                 i + 1,
                 csv::exact(initial_length / MM),
                 csv::exact(*load),
@@ -145,11 +183,39 @@ impl FleetReport {
                 self.clipped()
             ));
         }
-        lines.extend(
-            self.missed().map(|missed| {
-                format!("  fleet          inspections miss the crack of a plate with a probability of {missed:.2e}")
-            }),
-        );
+        lines.extend(self.looks.map(|looks| self.looked_words(looks)));
         lines
     }
+
+    /// How long cracks can be found, and how likely they are not.
+    fn looked_words(&self, looks: Looks) -> String {
+        let figures = self.windows().figures();
+        let word = |quantile: &str| figures["words"][quantile].as_str().unwrap_or("unknown").to_owned();
+        let [low, middle, high] = ["p05", "p50", "p95"].map(word);
+        let length = looks.detectable / MM;
+        let missed = match &self.lives.looked {
+            Some(Looked { every, missed, .. }) => {
+                format!("; every {every:.0} cycles, inspections miss the crack of a plate with a probability of {missed:.2e}")
+            }
+            None if self.never_found() > 0 => format!("; {} plates break before", self.never_found()),
+            None => String::new(),
+        };
+        format!("  fleet          from {length:.3} mm to the end 5 % take {low}, half {middle}, 95 % {high} cycles{missed}")
+    }
+}
+
+/// Length of the crack that ends the life when the one that is inspected has its length, m: the way is that of the run.
+fn detectable(case: &Case, prediction: &Prediction, inspection: &Inspection) -> f64 {
+    let own = inspection.crack_length_mm * MM;
+    let Some((leads, _)) =
+        prediction.leading_tip(&case.specimen).filter(|(leads, _)| inspection.tip.is_some_and(|tip| tip != *leads))
+    else {
+        return own;
+    };
+    let rows = &prediction.curve;
+    let after = rows.partition_point(|row| row.cycles < inspection.cycles_at).clamp(1, rows.len() - 1);
+    let [from, to] = [&rows[after - 1], &rows[after]];
+    let share = (inspection.cycles_at - from.cycles) / (to.cycles - from.cycles).max(f64::MIN_POSITIVE);
+    let length = |row: &CurvePoint| row.crack_length_of(&case.specimen, leads).unwrap_or(own);
+    length(from) + share.clamp(0.0, 1.0) * (length(to) - length(from))
 }

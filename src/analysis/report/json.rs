@@ -9,7 +9,7 @@ use crate::predict::laws::paris_law;
 use crate::predict::part_through::PartThroughLife;
 use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
-use crate::specimen::part_through::{Limit, STATED_ERROR};
+use crate::specimen::part_through::{BREAK_THROUGH, Limit, STATED_ERROR};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 use super::checks;
@@ -55,7 +55,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "solver_iterations": figures.iterations,
         "wall_s": figures.wall_s,
         "memory_mb": figures.memory_mb,
-        "spectrum": super::spectrum::json(case),
+        "spectrum": super::spectrum::json(case, prediction),
         "model": model_words::object(&model_words::of_case(case, Some(figures))),
         "law": law(case, prediction),
         "verdict": checks::verdict(&checks),
@@ -98,6 +98,8 @@ fn part_through(case: &Case, prediction: &Prediction) -> Value {
         "crack_depth_initial_mm": clean(flaw.depth / MM),
         "crack_depth_final_mm": depth,
         "aspect_ratio_final": clean(axes[0] / axes[1]),
+        "depth_over_thickness": clean(axes[0] / flaw.through_depth()),
+        "rule": BREAK_THROUGH,
         "k_error_percent": 100.0 * STATED_ERROR,
         "life_cycles_if_k_is_larger": life * life_factors[0],
         "life_cycles_if_k_is_smaller": Some(life * life_factors[1]).filter(|cycles| cycles.is_finite()),

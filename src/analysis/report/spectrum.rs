@@ -10,6 +10,22 @@ use crate::predict::Prediction;
 /// Shares of the largest load whose exceedances are told.
 const LEVELS: [f64; 4] = [0.9, 0.75, 0.5, 0.25];
 
+/// Bars of the histogram of ranges.
+pub const BARS: usize = 20;
+/// Levels of the maxima that are written, at the most.
+const MAXIMA_MOST: usize = 200;
+
+/// How often a pass has a maximum as large or larger, by falling maximum over the largest load, and how many of its cycles have a range in each of
+/// equal parts of the largest range, all over the largest load.
+pub fn curves(spectrum: &Spectrum) -> Value {
+    let levels = spectrum.exceedances();
+    let each = levels.len().div_ceil(MAXIMA_MOST);
+    let kept = levels.iter().enumerate().filter(|(place, _)| place % each == 0 || place + 1 == levels.len());
+    let maxima: Vec<[f64; 2]> = kept.map(|(_, (level, count))| [clean(*level), clean(*count)]).collect();
+    let (cycles, largest) = spectrum.ranges(BARS);
+    json!({ "maxima": maxima, "largest_range": clean(largest), "cycles_by_range": cycles })
+}
+
 /// How many maxima of a pass are larger than each of the levels.
 fn exceedances(spectrum: &Spectrum) -> [f64; 4] {
     LEVELS.map(|level| spectrum.cycles.iter().filter(|cycle| cycle.max > level).map(|cycle| cycle.count).sum())
@@ -50,7 +66,7 @@ pub fn passes(case: &Case, prediction: &Prediction) -> Value {
 }
 
 /// The object `spectrum` of a result; `null` where the loads are none.
-pub fn json(case: &Case) -> Value {
+pub fn json(case: &Case, prediction: &Prediction) -> Value {
     let Some(spectrum) = &case.loading.spectrum else { return Value::Null };
     json!({
         "file": spectrum.file,
@@ -65,6 +81,9 @@ pub fn json(case: &Case) -> Value {
         "stress_ratio_max": clean(spectrum.ratios[1]),
         "repeats": spectrum.repeats,
         "exceedances": LEVELS.iter().zip(exceedances(spectrum)).map(|(level, count)| json!([level, clean(count)])).collect::<Vec<_>>(),
+        "curves": curves(spectrum),
+        "truncated_at": (spectrum.largest[1] < spectrum.largest[0]).then(|| clean(spectrum.largest[1] / spectrum.largest[0])),
+        "life_cycles_without_retardation": prediction.unretarded_cycles,
         "retardation": case.retardation.as_ref().map_or_else(|| json!({ "model": "none" }), |model| model.json()),
     })
 }

@@ -3,21 +3,29 @@
 //! Initial lengths and loads are two columns of a [`hypercube`]. Laws are drawn as the band of the life has them, cell by cell of the path
 //! ([`Forecast::draw`](crate::calibration::population::forecast::Forecast::draw)): rate of the lot, scatter between specimens, noise along
 //! the crack, uncertainty of the lot itself. So a fleet of one initial length under one load has the quantiles of the band.
+//!
+//! Every plate has its own cycles from the detectable length to the length at which it breaks, by its own law and under its own load. The fleet
+//! is looked at by one interval, the 5 % quantile of these over the factor, each plate from its own detectable length on.
 
-use super::detection::Schedule;
-use super::distribution::{hypercube, normal_quantile};
+use super::detection::{Detection, Schedule};
+use super::distribution::{hypercube, normal_quantile, quantile};
 use crate::calibration::population::forecast::Forecast;
 use crate::calibration::population::law::MeanLaw;
 use crate::calibration::population::plate::{NoBand, Plate};
 use crate::calibration::population::student::normal_cdf;
 use crate::case::{Case, Fleet, InitialLength};
 use crate::error::{Result, input_missing};
-use crate::predict::Prediction;
+use crate::fatigue::growth_law::GrowthLaw;
 use crate::predict::laws::growth_law;
 use crate::predict::recorded::{Change, Recorded, RecordedLife};
+use crate::predict::{Prediction, StopReason};
 
 /// Standard deviations by which a load differs at most.
 const LOAD_DEVIATIONS: f64 = 3.0;
+/// Share of plates whose cycles from detectable to critical are shorter than those that the interval is taken from.
+const SHORTEST: f64 = 0.05;
+/// Inspections up to which it is told with what probability a crack has been missed.
+const TOLD: usize = 30;
 
 /// A plate of a fleet.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,8 +38,35 @@ pub struct FleetPlate {
     pub rate_factor: f64,
     /// Its life.
     pub life: RecordedLife,
+    /// Crack length at which it breaks or its record ends, m; `None` of an unlimited life, and of one cut off by `stop.cycles_max`.
+    pub critical_length: Option<f64>,
+    /// Cycles at which its crack is as long as can be found, and from there to the end: infinite where it has none, or is cut off before; none at
+    /// all of a plate that breaks before. `None`: not asked.
+    pub window: Option<[f64; 2]>,
     /// Probability that inspections miss its crack to the end; `None` without inspections, or of an unlimited life.
     pub missed: Option<f64>,
+}
+
+/// How the plates of a fleet are looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Looks {
+    /// Length from which on cracks can be found, m, as [`FleetPlate::initial_length`].
+    pub detectable: f64,
+    /// What the cycles from there to the end are divided by.
+    pub factor: f64,
+    /// How cracks are found; `None`: not asked.
+    pub detection: Option<Detection>,
+}
+
+/// What inspections find of a fleet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Looked {
+    /// Cycles from one inspection to the next.
+    pub every: f64,
+    /// Probability that a crack is missed by the first inspection of its plate, by the first two, and so on; mean over the plates that end.
+    pub missed_after: Vec<f64>,
+    /// The same by all inspections to the end.
+    pub missed: f64,
 }
 
 /// Lives of a fleet.
@@ -39,6 +74,8 @@ pub struct FleetPlate {
 pub struct FleetLives {
     /// Every plate, in the order in which they are drawn.
     pub plates: Vec<FleetPlate>,
+    /// What inspections find; `None` where nobody asked, and where 5 % of plates break before their crack can be found.
+    pub looked: Option<Looked>,
     /// Why all plates have the law of the case; `None` where laws are drawn.
     pub one_law: Option<NoBand>,
 }
@@ -63,44 +100,142 @@ pub fn lives(
     prediction: &Prediction,
     fleet: &Fleet,
     plate: std::result::Result<&Plate, &NoBand>,
-    inspections: Option<Schedule>,
+    looks: Option<Looks>,
 ) -> Result<FleetLives> {
     check(fleet, plate.err())?;
-    let recorded = Recorded::of(case, prediction)?;
-    let mut drawn = hypercube(fleet.plates, 2, fleet.seed).into_iter();
-    let mut next = || {
-        let row = drawn.next().unwrap_or_default();
-        let [of_length, of_load] = [0, 1].map(|column| row.get(column).copied().unwrap_or(0.5));
-        let own = recorded.unchanged();
-        let crack_length = fleet.initial_length.map_or(own.crack_length, |lengths| length(lengths, of_length));
-        Change { load: load(fleet.load_scatter, of_load), crack_length, ..own }
-    };
-    let live = |change: Change, rate_factor: f64, rate: &dyn Fn(f64, f64) -> f64| {
-        let mut inspected = inspections.map(Schedule::begin);
-        let life = recorded.life_by(change, rate, |cycles, lengths| {
-            if let Some(inspected) = &mut inspected {
-                inspected.grow(cycles, lengths, |_, _, _, _| ());
-            }
-        });
-        let missed = inspected.filter(|_| life.cycles.is_finite()).map(|inspected| inspected.missed);
-        FleetPlate { initial_length: change.crack_length, load: change.load, rate_factor, life, missed }
-    };
-    let plate = match plate {
-        Ok(plate) => plate,
-        Err(why) => {
-            let (law, ratio) = (growth_law(case)?, case.loading.ratio);
-            let plates = (0..fleet.plates).map(|_| live(next(), 1.0, &|k, _| law.rate(k, ratio))).collect();
-            return Ok(FleetLives { plates, one_law: Some(why.clone()) });
+    let drawing = Drawing::new(case, Recorded::of(case, prediction)?, fleet, plate)?;
+    let mut plates = drawing.each(|change, rate_factor, rate| {
+        let mut seen = Seen::default();
+        let life = drawing.recorded.life_by(change, rate, |cycles, lengths| seen.grow(cycles, lengths, looks));
+        FleetPlate {
+            initial_length: change.crack_length,
+            load: change.load,
+            rate_factor,
+            life,
+            critical_length: seen.last.filter(|_| life.cycles.is_finite() && life.stop != StopReason::RunOut),
+            window: looks.map(|_| seen.window(life)),
+            missed: None,
         }
-    };
-    let (ends, forecast) = plate.whole()?;
-    let lot = LotRates::new(case, &recorded, plate.lot.law, ends, &forecast);
-    let plates = forecast.draw(fleet.plates, fleet.seed, |factors| {
-        let all: f64 = forecast.cells().iter().sum();
-        let own: f64 = forecast.cells().iter().zip(factors).map(|(cycles, factor)| cycles * factor).sum();
-        live(next(), all / own, &|k, way| lot.rate(k, way, factors))
     })?;
-    Ok(FleetLives { plates, one_law: None })
+    let looked = looks.map_or(Ok(None), |looks| drawing.look(&mut plates, looks))?;
+    Ok(FleetLives { plates, looked, one_law: plate.err().cloned() })
+}
+
+/// What was seen of a crack that grew.
+#[derive(Default)]
+struct Seen {
+    /// Cycles at which it became detectable.
+    detectable_at: Option<f64>,
+    /// Its last length, m.
+    last: Option<f64>,
+}
+
+impl Seen {
+    fn grow(&mut self, cycles: [f64; 2], lengths: [f64; 2], looks: Option<Looks>) {
+        self.last = Some(lengths[1]);
+        let reaches = looks.filter(|looks| self.detectable_at.is_none() && lengths[1] >= looks.detectable);
+        self.detectable_at = self.detectable_at.or(reaches.map(|looks| {
+            let grown = lengths[1] - lengths[0];
+            let share = if grown > 0.0 { ((looks.detectable - lengths[0]) / grown).max(0.0) } else { 0.0 };
+            cycles[0] + share * (cycles[1] - cycles[0])
+        }));
+    }
+
+    fn window(&self, life: RecordedLife) -> [f64; 2] {
+        match self.detectable_at {
+            Some(at) => [at, life.cycles - at],
+            None if life.stop == StopReason::RunOut => [f64::INFINITY; 2],
+            None => [life.cycles, if life.cycles.is_finite() { 0.0 } else { f64::INFINITY }],
+        }
+    }
+}
+
+/// The plates of a fleet as they are drawn, as often as they are asked for.
+struct Drawing<'f> {
+    fleet: &'f Fleet,
+    recorded: Recorded,
+    laws: Laws,
+}
+
+/// Laws of the plates.
+enum Laws {
+    /// That of the case, at its stress ratio.
+    One(Box<dyn GrowthLaw>, f64),
+    /// Drawn.
+    Lot(Box<LotRates>, Box<Forecast>),
+}
+
+impl<'f> Drawing<'f> {
+    fn new(case: &Case, recorded: Recorded, fleet: &'f Fleet, plate: std::result::Result<&Plate, &NoBand>) -> Result<Self> {
+        let laws = match plate {
+            Err(_) => Laws::One(growth_law(case)?, case.loading.ratio),
+            Ok(plate) => {
+                let (ends, forecast) = plate.whole()?;
+                let lot = LotRates::new(case, &recorded, plate.lot.law, ends, &forecast);
+                Laws::Lot(Box::new(lot), Box::new(forecast))
+            }
+        };
+        Ok(Drawing { fleet, recorded, laws })
+    }
+
+    /// Asks of every plate, by what it differs in, its growth rate over that of the median law, and its rates as [`Recorded::life_by`] takes them.
+    fn each<T>(&self, mut ask: impl FnMut(Change, f64, &dyn Fn(f64, f64) -> f64) -> T) -> Result<Vec<T>> {
+        let Fleet { plates, seed, initial_length, load_scatter } = *self.fleet;
+        let mut drawn = hypercube(plates, 2, seed).into_iter();
+        let mut next = || {
+            let row = drawn.next().unwrap_or_default();
+            let [of_length, of_load] = [0, 1].map(|column| row.get(column).copied().unwrap_or(0.5));
+            let own = self.recorded.unchanged();
+            let crack_length = initial_length.map_or(own.crack_length, |lengths| length(lengths, of_length));
+            Change { load: load(load_scatter, of_load), crack_length, ..own }
+        };
+        match &self.laws {
+            Laws::One(law, ratio) => Ok((0..plates).map(|_| ask(next(), 1.0, &|k, _| law.rate(k, *ratio))).collect()),
+            Laws::Lot(lot, forecast) => forecast.draw(plates, seed, |factors| {
+                let all: f64 = forecast.cells().iter().sum();
+                let own: f64 = forecast.cells().iter().zip(factors).map(|(cycles, factor)| cycles * factor).sum();
+                ask(next(), all / own, &|k, way| lot.rate(k, way, factors))
+            }),
+        }
+    }
+
+    /// Looks at every plate from its own detectable length on by the interval of the fleet. It is known once all plates are, so that they grow again.
+    fn look(&self, plates: &mut [FleetPlate], looks: Looks) -> Result<Option<Looked>> {
+        let mut windows: Vec<f64> = plates.iter().filter_map(|plate| plate.window).map(|[_, left]| left).collect();
+        windows.sort_by(f64::total_cmp);
+        let every = quantile(&windows, SHORTEST) / looks.factor;
+        let Some(detection) = looks.detection.filter(|_| every > 0.0 && every.is_finite()) else { return Ok(None) };
+        // Shares of cracks that the first inspection finds, the second, and so on.
+        let mut found_by: Vec<f64> = Vec::new();
+        let mut own = plates.iter_mut();
+        self.each(|change, _, rate| {
+            let Some(plate) = own.next().filter(|plate| plate.life.cycles.is_finite()) else { return };
+            let first = plate.window.map_or(f64::INFINITY, |[at, _]| at);
+            let (mut inspected, mut place, mut before) = (Schedule { detection, cycles: [first, every] }.begin(), 0, 1.0);
+            self.recorded.life_by(change, rate, |cycles, lengths| {
+                inspected.grow(cycles, lengths, |_, _, _, missed| {
+                    if place == found_by.len() && place < TOLD {
+                        found_by.push(0.0);
+                    }
+                    found_by.get_mut(place).into_iter().for_each(|found| *found += before - missed);
+                    (place, before) = (place + 1, missed);
+                });
+            });
+            plate.missed = Some(inspected.missed);
+        })?;
+        let missed: Vec<f64> = plates.iter().filter_map(|plate| plate.missed).collect();
+        let count = missed.len() as f64;
+        let mut left = 1.0;
+        let missed_after = found_by.into_iter().map(|found| {
+            left -= found / count;
+            left
+        });
+        Ok((!missed.is_empty()).then(|| Looked {
+            every,
+            missed_after: missed_after.collect(),
+            missed: missed.iter().sum::<f64>() / count,
+        }))
+    }
 }
 
 /// Rates of the specimens of a lot along a path in cells.

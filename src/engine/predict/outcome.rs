@@ -92,6 +92,8 @@ pub struct Prediction {
     pub figures: RunFigures,
     /// K against an independent one, where there is one.
     pub cross_check: Option<CrossCheck>,
+    /// Cycles of the same curve by the mean rate of a pass, where retardation has counted them anew.
+    pub unretarded_cycles: Option<f64>,
     /// What the user should know: warnings in plain words.
     pub warnings: Vec<String>,
 }

@@ -143,7 +143,10 @@ impl<'a> Record<'a> {
         // The curve is handed over once; what growth knows of it is asked before.
         let of_growth = growth.warnings();
         let mut curve = growth.curve();
-        let recounted = retarded::recount(case, &curve, stop, growth.overload())?;
+        let counted = growth.overload();
+        let recounted = retarded::recount(case, &curve, stop, counted)?;
+        // Rows of a front are retarded as they grow, and what they would take without is not known.
+        let unretarded_cycles = recounted.as_ref().filter(|_| counted.is_none()).and(curve.last()).map(|row| row.cycles);
         let (stop, of_order) = match recounted {
             Some(Recounted { curve: new, stop, warning }) => {
                 snapshots.recount(&curve, &new);
@@ -167,6 +170,7 @@ impl<'a> Record<'a> {
             grid: growth.grid().unwrap_or_else(PointGrid::none),
             curve,
             cross_check,
+            unretarded_cycles,
             warnings,
         })
     }

@@ -8,11 +8,12 @@ import { sentence, words } from "./format.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
 import { createPlatePath } from "./plate_path.js";
+import { createSpectrumPicture } from "./spectrum_picture.js";
 
 const WAIT_MS = 350;
 const SKETCH_HEIGHT = 200;
 /** What is read first of what was understood; all else stands below. */
-const FIRST = ["specimen", "crack", "material", "loading", "model", "points", "stop", "computing"];
+const FIRST = ["specimen", "crack", "material", "loading", "spectrum", "model", "points", "stop", "computing"];
 
 /**
  * `collect()` gives {input, files, calibration} or a sentence that says what is still missing. The result stands in `panel`.
@@ -24,8 +25,10 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
   const { node: figure, image } = createPicture("Drawing of the scene as understood: outline, cracks, loads and supports");
   const place = element("div");
   const plate = createPlatePath(place, "The specimen as understood: outline, cracks, loads and supports", SKETCH_HEIGHT);
+  const ofSpectrum = element("div", { class: "stack tight", hidden: true });
+  const spectrum = createSpectrumPicture(ofSpectrum);
   const details = element("div");
-  show(panel, state, place, figure, details);
+  show(panel, state, place, figure, ofSpectrum, details);
 
   let last = null; // what the service answered to the present input, null where it refused
   let running = null;
@@ -75,6 +78,7 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
       if (result.plate) plate.set(result.plate, [], 1);
       image.hidden = Boolean(result.plate) || !result.drawing;
       if (!image.hidden) await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
+      spectrum.set(result.spectrum ?? null);
       show(details, result.warnings.length > 0 && warningList(result.warnings), understood(result.understood));
       finish(result, "Checked: no errors.", "ok");
       return true;

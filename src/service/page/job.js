@@ -1,6 +1,6 @@
 // What every run has: state, progress, problem, files, cancel and delete.
 
-import { Problem, download, getJson, patchJson, postJson, remove } from "./api.js";
+import { Problem, download, getBlob, getJson, patchJson, postJson, remove } from "./api.js";
 import { button, byId, element, show, terms } from "./dom.js";
 import { follow } from "./events.js";
 import { excerpt } from "./excerpt.js";
@@ -33,6 +33,9 @@ export function jobToStartFrom(from) {
   const parts = from.includes("/") ? from.split("/") : ["predictions", from];
   return getJson(`/v1/${parts.map(encodeURIComponent).join("/")}`);
 }
+
+/** The files that a run was given, as they go along with its input again. */
+export const filesOf = (job) => Promise.all((job.inputs ?? []).map(async ({ name, href }) => ({ name, text: null, file: await getBlob(href) })));
 
 /** Renames a run, notes something of it, or puts it away. */
 export const changeJob = (job, change) => patchJson(pathOf(job), change);

@@ -1,11 +1,11 @@
 // New run: where each kind is begun; a sweep by a form, and any input file by its text.
 
-import { getBlob, getJson } from "./api.js";
+import { getJson } from "./api.js";
 import { createCheck } from "./check.js";
 import { button, byId, element, show } from "./dom.js";
 import { createForm } from "./form.js";
 import { bytes } from "./format.js";
-import { jobToStartFrom } from "./job.js";
+import { filesOf, jobToStartFrom } from "./job.js";
 import { problemBox } from "./notices.js";
 import { startRun } from "./submit.js";
 import { createSweep } from "./sweep_form.js";
@@ -85,7 +85,7 @@ export function createNewRunView({ predict }) {
     area.value = job.input;
     name = job.name;
     byId("file-name").value = job.name;
-    take(await Promise.all((job.inputs ?? []).map(async (one) => ({ name: one.name, text: null, file: await getBlob(one.href) }))));
+    take(await filesOf(job));
   }
 
   area.addEventListener("input", check.soon);

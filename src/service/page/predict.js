@@ -5,11 +5,12 @@ import { byId, element, show } from "./dom.js";
 import { createEditor } from "./editor.js";
 import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
 import { percent, scientific, sentence, significant, words } from "./format.js";
-import { jobToStartFrom } from "./job.js";
+import { filesOf, jobToStartFrom } from "./job.js";
 import { createPlate } from "./plate_form.js";
 import { problemBox } from "./notices.js";
-import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
+import { createLoading, createMaterial, createSpecimen, isThrough } from "./specimen_form.js";
 import { createSides } from "./sides_form.js";
+import { createSpectrum } from "./spectrum_form.js";
 import { startRun } from "./submit.js";
 
 const START = {
@@ -44,7 +45,8 @@ export function createPredictView() {
   const specimen = createSpecimen(form, { plate });
   const material = createMaterial(form);
   const sides = createSides(form, () => editor.check.soon());
-  const loading = createLoading(form, { places: sides, plate });
+  const spectrum = createSpectrum(form, () => editor.check.soon());
+  const loading = createLoading(form, { places: sides, plate, spectrum });
   const law = form.choice("calibration", { label: "Growth law", options: [{ value: "law:paris", title: "C and m (Paris)" }] });
   law.node.classList.add("wide");
   const lawNote = element("div", { class: "law-note" });
@@ -64,6 +66,8 @@ export function createPredictView() {
   });
   const tolerance = form.number("model.tolerance_percent", { label: "Error of life wanted", unit: "%", optional: true, hint: "2 where nothing is given" });
   const stopLength = form.number("stop.crack_length_mm", { ...length, label: "Stop at crack length" });
+  const stopDepth = form.number("stop.crack_depth_mm", { ...length, label: "Stop at crack depth" });
+  const breakThrough = form.choice("stop.at_break_through", { label: "Where the crack is through", options: [{ value: "", title: "go on as a through crack" }, { value: "true", title: "stop" }] });
   const stopCycles = form.number("stop.cycles_max", { label: "Stop after", unit: "cycles", optional: true });
   const name = form.text("name", { label: "Name of the prediction", optional: true });
   const fields = byId("plate-fields");
@@ -75,6 +79,8 @@ export function createPredictView() {
     const kind = specimen.fields.kind.input.value;
     loading.suit(kind);
     if (kind === "plate") plate.draw();
+    for (const field of [stopDepth, breakThrough]) field.node.hidden = isThrough(kind);
+    material.needStrength(spectrum.isRetarded());
     const own = laws.find((one) => `law:${one.name}` === law.input.value);
     if (constants.dataset.law !== (own?.name ?? "")) drawConstants(own);
     constants.hidden = fields.hidden;
@@ -127,7 +133,8 @@ export function createPredictView() {
       model: compact({ method: method.input.value, tolerance_percent: tolerance.node.hidden ? undefined : numberIn(tolerance),
         spacing_mm: spacing.node.hidden ? undefined : numberIn(spacing) }),
       fatigue: isFitted() ? compact(besidesOf()) : fatigueOf(),
-      stop: compact({ crack_length_mm: numberIn(stopLength), cycles_max: numberIn(stopCycles) }),
+      stop: compact({ crack_length_mm: numberIn(stopLength), cycles_max: numberIn(stopCycles), ...(isThrough(specimen.fields.kind.input.value) ? {}
+        : { crack_depth_mm: numberIn(stopDepth), at_break_through: breakThrough.input.value === "true" || undefined }) }),
     };
   }
 
@@ -144,7 +151,7 @@ export function createPredictView() {
     const isBeyond = (table, known) => Object.keys(table).some((key) => !known.includes(key));
     const besideLaw = ["walker_gamma", "allow_extrapolation"];
     const own = isFitted() || !filled(fatigue) ? null : lawOf(fatigue);
-    const tooMuch = Object.values(others).some(filled) || isBeyond(model, ["spacing_mm", "method", "tolerance_percent"]) || isBeyond(stop, ["crack_length_mm", "cycles_max"]) ||
+    const tooMuch = Object.values(others).some(filled) || isBeyond(model, ["spacing_mm", "method", "tolerance_percent"]) || isBeyond(stop, ["crack_length_mm", "cycles_max", "crack_depth_mm", "at_break_through"]) ||
       (own && isBeyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...besideLaw, ...own.constants.map(({ key }) => key)])) ||
       (!own && isBeyond(fatigue, ["fitted", ...besideLaw]));
     if (tooMuch || !specimen.fill(s, l) || !material.fill(m) || !loading.fill(l, supports)) return false;
@@ -153,6 +160,8 @@ export function createPredictView() {
     fillIn(spacing, model.spacing_mm);
     fillIn(stopLength, stop.crack_length_mm);
     fillIn(stopCycles, stop.cycles_max);
+    fillIn(stopDepth, stop.crack_depth_mm);
+    fillIn(breakThrough, stop.at_break_through ? "true" : "");
     if (own) fillIn(law, `law:${own.name}`);
     arrange();
     if (own) Object.entries(fieldsOfLaw).forEach(([key, field]) => fillIn(field, fatigue[key]));
@@ -163,7 +172,7 @@ export function createPredictView() {
   }
 
   show(fields, specimen.element, material.element, loading.element,
-    group("End", grid(stopLength.node, stopCycles.node, name.node)),
+    group("End", grid(stopLength.node, stopDepth.node, breakThrough.node, stopCycles.node, name.node)),
     group("How it is computed", grid(method.node, tolerance.node, spacing.node)));
   show(byId("law-fields"), group("Growth law", grid(law.node), constants, besides, lawNote));
 
@@ -172,7 +181,8 @@ export function createPredictView() {
   const editor = createEditor({
     host: byId("plate-editor"), fields, panel: byId("plate-check"), form, collect, fill,
     // Before its laws are known the form is not whole.
-    context: () => (laws.length === 0 ? "The growth laws are being read." : isFitted() ? { calibration: law.input.value } : {}),
+    context: () => (laws.length === 0 ? "The growth laws are being read." : (!fields.hidden && spectrum.missing())
+      || { ...(isFitted() ? { calibration: law.input.value } : {}), files: fields.hidden || spectrum.isUsed() ? spectrum.files() : undefined }),
     onResult: (ok) => {
       start.disabled = !ok || opening;
       factors.disabled = start.disabled;
@@ -194,6 +204,7 @@ export function createPredictView() {
         const known = await getJson("/v1/kinds");
         laws = [...known.laws.filter((one) => one.constants.length > 0), LIBRARY];
         sides.setKinds(known.kinds);
+        spectrum.setKinds(known);
       }
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;
       // One that is asked for by its address may be older than these.
@@ -226,7 +237,7 @@ export function createPredictView() {
 
   let opened = false;
   return {
-    /** The case as it stands here, {input, calibration?}, or a sentence that says what is missing. */
+    /** The case as it stands here, {input, calibration?, files?}, or a sentence that says what is missing. */
     body: () => editor.body(),
     /** Waits until the case was checked once. */
     async ready() {
@@ -252,6 +263,7 @@ export function createPredictView() {
         if (job.calibration) await loadLaws(job.calibration);
         else fillIn(law, BY_HAND);
         opened = true;
+        await spectrum.load(await filesOf(job), job.input);
         await editor.start(job.input);
       } catch (error) {
         editor.check.refuse(error);

@@ -1,23 +1,27 @@
 // Page of one prediction: the answer first, then one place along the life for plate, curve and K. While it runs, curve and path grow.
 
 import { answerCard, errorWords, leadOf, quantilesOf } from "./answer.js";
-import { getBlob, getJson, getText, postJson } from "./api.js";
+import { getBlob, getJson, getText, postInput } from "./api.js";
 import { createChart } from "./chart.js";
 import { warningList } from "./check.js";
 import { button, element, readCsv, show, showPage, terms } from "./dom.js";
 import { follow } from "./events.js";
 import { count, cycles, deserved, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
-import { createJobHead, describe, downloadList, failureOf, inputText, isFinal, pathOf, reportButton } from "./job.js";
+import { createJobHead, describe, downloadList, failureOf, filesOf, inputText, isFinal, pathOf, reportButton } from "./job.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
 import { createPlatePath } from "./plate_path.js";
+import { partThroughTerms, spectrumCard, spectrumTerms } from "./prediction_more.js";
 import { createRemaining } from "./remaining.js";
+import { curveChoices } from "./resample.js";
 
 const STEPS = 1000;
 const PLAY_MS = 5000;
 /** Share of the life that is shown first: most of the path has its colours there. */
 const START = 0.9;
 /** Pictures of the end of a run, by the model that has them. */
+/** The section of a crack that is not through, with its fronts. */
+const SECTION = "section.svg";
 const FIELDS = { "stress.svg": "Stress at maximum load, late in the life; cracks drawn open.", "damage.svg": "Share of bonds cut or broken, at the end of the run." };
 
 export async function openPrediction(root, id, signal) {
@@ -29,19 +33,23 @@ export async function openPrediction(root, id, signal) {
   const { node: field, image } = createPicture("Stress or damage over the plate, with the crack path");
   const fieldNote = element("figcaption");
   const fieldFigure = element("figure", { class: "card figure", "data-part": "damage", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Field")), field, fieldNote);
+  const { node: section, image: sectionImage } = createPicture("Section through the crack with its front at quarters of the cycles");
+  const sectionFigure = element("figure", { class: "card figure", "data-part": "section", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Section through the crack")), section,
+    element("figcaption", null, "Front at quarters of the cycles until the crack is through, or to the end; grey: at the start."));
   const curveFigure = element("div", { class: "card figure" }, curvePlace);
   const factors = element("div", { class: "card figure", hidden: true }, factorPlace);
   const plateFigure = element("figure", { class: "card figure", "data-part": "path" },
     element("div", { class: "chart-head" }, element("h2", null, "Crack path")), platePlace,
     element("figcaption", null, "Colour: share of life, as on the slider; marks at 25, 50, 75 and 90 %. Dotted: still to come."));
-  const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, fieldFigure),
+  const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, sectionFigure, fieldFigure),
     element("div", { class: "stack" }, curveFigure, factors));
   showPage(root, head.node, outcome, element("div", { class: "job-body" }, pictures), below);
 
+  const lengthAxis = { label: "Crack length a", unit: "mm", format: (value) => fixed(value, 2) };
   const chart = createChart(curvePlace, {
     name: "life", title: "Crack length over cycles", label: "Predicted crack length against cycles",
     x: { label: "Cycles N", format: (value) => cycles(Math.round(value)), from: 0 },
-    y: { label: "Crack length a", unit: "mm", format: (value) => fixed(value, 2) },
+    y: lengthAxis,
   });
   const plate = createPlatePath(platePlace, "The plate with its cracks and the way every crack tip has gone");
   signal.addEventListener("abort", () => {
@@ -56,8 +64,9 @@ export async function openPrediction(root, id, signal) {
   async function drawPlate() {
     if (!drawn) {
       try {
-        const body = { input: job.input, ...(job.calibration ? { calibration: job.calibration } : {}) };
-        drawn = (await postJson("/v1/check", body, { signal })).plate;
+        const files = await filesOf(job);
+        const body = { input: job.input, ...(job.calibration ? { calibration: job.calibration } : {}), files: files.length > 0 ? files : undefined };
+        drawn = (await postInput("/v1/check", body, { signal })).plate;
       } catch (error) {
         if (error.name === "AbortError") return;
       }
@@ -117,11 +126,15 @@ export async function openPrediction(root, id, signal) {
   async function showResult(done) {
     result = has(done, "result.json") ? JSON.parse(await getText(pathTo(done, "result.json"), signal)) : done.summary;
     drawn = result.plate ?? drawn;
-    show(outcome, answerCard({ ...done.summary, ...result }));
+    show(outcome, answerCard({ ...done.summary, ...result }, [...partThroughTerms(result), ...spectrumTerms(result)]));
     head.offer(reportButton(done));
     head.describe(describe(result));
     below.prepend(element("div", { class: "two" }, howComputed(done, result),
       result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "All that was noticed"))));
+    const spectrum = spectrumCard(result);
+    if (!spectrum) return;
+    below.prepend(spectrum.node);
+    signal.addEventListener("abort", spectrum.destroy);
   }
 
   async function showCurves(done) {
@@ -139,7 +152,18 @@ export async function openPrediction(root, id, signal) {
       await showBlob(image, await getBlob(pathTo(done, picture), signal));
       fieldNote.textContent = FIELDS[picture];
     }
-    chart.set([...bandOf(columns, lengths), curve, ...limitsOf(result, columns, lengths), endOf(columns.cycles, lengths)]);
+    if (has(done, SECTION)) {
+      sectionFigure.hidden = false;
+      await showBlob(sectionImage, await getBlob(pathTo(done, SECTION), signal));
+    }
+    // Of a crack that is not through both lengths: its depth ends where it is.
+    const depths = columns.crack_depth_mm;
+    if (depths) {
+      lengthAxis.label = "Length c, depth a";
+      curve.name = "c";
+    }
+    const deep = depths && { id: "depth", name: "a", kind: "line", smooth: "y", tone: 1, dashed: true, x: columns.cycles, y: depths };
+    chart.set([...bandOf(columns, lengths), curve, ...(deep ? [deep] : []), ...limitsOf(result, columns, lengths), endOf(columns.cycles, lengths)]);
     const factorChart = drawFactors(columns, lengths, lead ?? 0);
     if (done.state === "succeeded" && !result.refused && columns.cycles.at(-1) > 0) {
       const place = createPlace({ columns, lengths, lead: lead ?? 0, band: quantilesOf(result), chart, factorChart, plate });
@@ -168,6 +192,7 @@ export async function openPrediction(root, id, signal) {
       least && { id: "below", kind: "outside", name: "below the measured ΔK", y2: [least / share] },
       most && { id: "above", kind: "outside", name: "above the measured ΔK", y: [most / share] },
       { id: "k1", name: "K_I", kind: "line", smooth: "x", tone: 0, x: lengths, y: k },
+      columns.depth_k_i_mpa_sqrt_m && { id: "depth", name: "K_a", kind: "line", smooth: "x", tone: 2, dashed: true, x: lengths, y: columns.depth_k_i_mpa_sqrt_m },
       kk && { id: "k2", name: "K_II", kind: "line", smooth: "x", tone: 1, dashed: true, x: lengths, y: kk },
     ].filter(Boolean));
     return made;
@@ -313,21 +338,4 @@ function createPlace({ columns, lengths, lead, band, chart, factorChart, plate }
       listener = take;
     },
   };
-}
-
-/** The curve as it was computed, or at equally spaced cycles. */
-function curveChoices(file, fetchFile) {
-  const amount = element("input", { type: "text", inputmode: "numeric", id: "resample-amount", value: "200" });
-  const kind = element("select", { id: "resample-kind" },
-    element("option", { value: "points" }, "points in all"), element("option", { value: "every_cycles" }, "cycles apart"));
-  const message = element("span", { class: "field-problem", role: "alert" });
-  return element("span", { class: "resample" },
-    element("label", { for: "resample-amount" }, "or equally spaced, "), amount,
-    element("label", { for: "resample-kind", class: "visually-hidden" }, "What the number means"), kind,
-    button("Download", () => {
-      const number = Number(amount.value.replaceAll(/\s/g, ""));
-      const good = number > 0 && (kind.value === "every_cycles" || (Number.isInteger(number) && number >= 2));
-      message.textContent = good ? "" : "Give a number above 0; points: a whole number from 2.";
-      if (good) fetchFile(`${file.href}?${kind.value}=${number}`, "a_n.csv");
-    }, { class: "button small", "data-action": "resample" }), message);
 }

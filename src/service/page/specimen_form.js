@@ -3,10 +3,15 @@
 import { element, show } from "./dom.js";
 import { compact, fillIn, grid, group, numberIn } from "./form.js";
 import { plain, sentence, words } from "./format.js";
+import { isOfSpectrum } from "./spectrum_form.js";
 
 const STANDARD = ["middle_tension", "compact_tension", "single_edge_tension", "double_edge_tension"];
 /** Cracks that are not through, and what they have beside depth and half length. */
 const PART_THROUGH = { surface_crack: [], corner_crack: [], embedded_crack: [], corner_crack_at_hole: ["hole_diameter_mm", "cracks"] };
+/** Those of which K under bending is not known. */
+const TENSION_ALONE = ["embedded_crack"];
+/** Whether a crack of that kind of specimen goes through the plate. */
+export const isThrough = (kind) => !(kind in PART_THROUGH);
 const LENGTH_HINTS = {
   middle_tension: "half of the length from tip to tip",
   compact_tension: "from the load line",
@@ -32,6 +37,12 @@ const MAGNITUDES = [
   ["crack_pressure_mpa", "Pressure in the cracks p", "MPa", "on their faces, alone"],
 ];
 
+/** A load that is told by the scale of a spectrum. */
+const OF_SPECTRUM = [
+  ["spectrum_scale_mpa", "Spectrum: scale σ", "MPa", "gross stress that a value of 1 in the file stands for"],
+  ["spectrum_scale_n", "Spectrum: scale P", "N", "force that a value of 1 in the file stands for"],
+];
+
 /** True when every key of `object` is one of `known`. */
 function onlyKnown(object, known) {
   return Object.keys(object).every((key) => known.includes(key));
@@ -51,7 +62,7 @@ export function createSpecimen(form, { plate } = {}) {
   const depth = number("crack_depth_mm", "Crack depth a", "into the thickness");
   const half = number("crack_half_length_mm", "Crack length c", "along the face; half of it where it has two ends there");
   const hole = number("hole_diameter_mm", "Hole diameter");
-  const count = form.number("specimen.cracks", { label: "Cracks at the hole", hint: "1, or 2: one on each side" });
+  const count = form.choice("specimen.cracks", { label: "Cracks at the hole", options: [{ value: "1", title: "One" }, { value: "2", title: "Two, one on each side" }] });
   const fields = { width_mm: width, length_mm: length, thickness_mm: thickness, crack_length_mm: crack,
     crack_depth_mm: depth, crack_half_length_mm: half, hole_diameter_mm: hole, cracks: count };
 
@@ -69,7 +80,8 @@ export function createSpecimen(form, { plate } = {}) {
     ends.node.hidden = chosen !== "single_edge_tension";
     hint(crack, LENGTH_HINTS[chosen]);
     hint(width, WIDTH_HINTS[chosen]);
-    hint(length, chosen === "plate" ? "along the load" : "between the loaded ends");
+    hint(length, flaw ? "along the load; left out: three widths" : chosen === "plate" ? "along the load" : "between the loaded ends");
+    length.needed = !flaw;
     if (plate) plate.element.hidden = chosen !== "plate";
   }
   kind.input.addEventListener("input", arrange);
@@ -96,7 +108,7 @@ export function createSpecimen(form, { plate } = {}) {
       if (!kinds.includes(specimen.kind) || !onlyKnown(specimen, known)) return false;
       fillIn(kind, specimen.kind);
       fillIn(ends, specimen.ends);
-      for (const key of own) fillIn(fields[key], specimen[key]);
+      for (const key of own) fillIn(fields[key], specimen[key] ?? (key === "cracks" ? 1 : undefined));
       arrange();
       if (isPlate) plate.fill(specimen, loading);
       return true;
@@ -147,6 +159,12 @@ export function createMaterial(form, { toughness = true } = {}) {
   arrange();
 
   return {
+    /** Whether a model asks for the yield strength. */
+    needStrength(is) {
+      const field = fields.yield_strength_mpa;
+      field.needed = is;
+      field.node.querySelector(".optional").hidden = is;
+    },
     element: group("Material", grid(name.node, plane.node, ...Object.values(fields).map((field) => field.node)), listed),
     /** Materials of the library; the first becomes the choice. */
     setMaterials(list) {
@@ -174,30 +192,36 @@ export function createMaterial(form, { toughness = true } = {}) {
   };
 }
 
-/** Loading: one magnitude, named as what it is, and the ratio; `places` ({element, edges(), fill()}) and `plate` ({pins()}) say where it acts on a drawn plate. */
-export function createLoading(form, { places, plate } = {}) {
+/** Loading: one magnitude, named as what it is, and the ratio; `places` ({element, edges(), fill()}) and `plate` ({pins()}) say where it acts on a drawn plate, `spectrum` how it varies. */
+export function createLoading(form, { places, plate, spectrum } = {}) {
   const withoutSymbol = (label) => label.replace(/ \S+$/, "");
-  const options = MAGNITUDES.map(([key, label, unit]) => ({ value: key, title: `${withoutSymbol(label)}, ${unit}` }));
+  const magnitudes = [...MAGNITUDES, ...(spectrum ? OF_SPECTRUM : [])];
+  const options = magnitudes.map(([key, label, unit]) => ({ value: key, title: `${withoutSymbol(label)}, ${unit}` }));
   const quantity = form.choice("loading.kind", { label: "Load given as", options });
-  const magnitude = form.number(MAGNITUDES.map(([key]) => `loading.${key}`), { label: "Load", unit: "MPa", hint: "gross section" });
+  const magnitude = form.number(magnitudes.map(([key]) => `loading.${key}`), { label: "Load", unit: "MPa", hint: "gross section" });
   const ratio = form.number("loading.stress_ratio", { label: "Stress ratio R", signed: true, hint: "minimum / maximum" });
+  const bending = form.number("loading.bending_ratio", { label: "Bending Sb / St", optional: true, hint: "stress of the bending at the face of the crack over the tension; the run then ends where the crack is through" });
+  let suits = ""; // the specimen that it is for
+  const isSpectrum = () => isOfSpectrum(quantity.input.value);
 
   function arrange() {
-    const [key, label, unit, hint] = MAGNITUDES.find(([candidate]) => candidate === quantity.input.value);
+    const [key, label, unit, hint] = magnitudes.find(([candidate]) => candidate === quantity.input.value);
     magnitude.name.textContent = label;
     magnitude.node.querySelector("label .visually-hidden").textContent = `, ${unit}`;
     magnitude.unitNode.textContent = unit;
     magnitude.note.textContent = hint;
     magnitude.note.hidden = hint === "";
     magnitude.input.dataset.key = `loading.${key}`;
+    ratio.node.hidden = isSpectrum();
+    bending.node.hidden = isThrough(suits) || TENSION_ALONE.includes(suits);
+    spectrum?.arrange({ used: isSpectrum(), isThrough: isThrough(suits) });
   }
   quantity.input.addEventListener("input", arrange);
   arrange();
-  let suits = ""; // the specimen that it is for
   const isDrawn = () => places && suits === "plate";
 
   return {
-    element: group("Loading, constant amplitude", grid(quantity.node, magnitude.node, ratio.node), places?.element),
+    element: group(spectrum ? "Loading" : "Loading, constant amplitude", grid(quantity.node, magnitude.node, ratio.node, bending.node), spectrum?.element, places?.element),
     /** What the readings say of the load, where nobody has said anything yet. */
     propose({ stress_ratio: given, ...load }) {
       const [[key, value] = []] = Object.entries(load);
@@ -213,6 +237,7 @@ export function createLoading(form, { places, plate } = {}) {
       const [was, is] = [suits, specimenKind].map((kind) => kind === "compact_tension");
       suits = specimenKind;
       if (places) places.element.hidden = !isDrawn();
+      arrange();
       const wrong = is ? quantity.input.value.startsWith("stress") : was && quantity.input.value.startsWith("force");
       if (!wrong) return;
       quantity.input.value = is ? "force_range_kn" : "stress_range_mpa";
@@ -220,18 +245,23 @@ export function createLoading(form, { places, plate } = {}) {
       arrange();
     },
     collect() {
-      const kind = quantity.input.value.startsWith("displacement") ? "displacement" : "constant_amplitude";
-      return compact({ kind, [quantity.input.value]: numberIn(magnitude), stress_ratio: numberIn(ratio), ...(isDrawn() ? { edges: places.edges(), pins: plate.pins() } : {}) });
+      const kind = isSpectrum() ? "spectrum" : quantity.input.value.startsWith("displacement") ? "displacement" : "constant_amplitude";
+      const shown = (field) => (field.node.hidden ? undefined : numberIn(field));
+      return compact({ kind, [quantity.input.value]: numberIn(magnitude), stress_ratio: shown(ratio), bending_ratio: shown(bending), ...(isSpectrum() ? spectrum.collect() : {}), ...(isDrawn() ? { edges: places.edges(), pins: plate.pins() } : {}) });
     },
     fill(loading, supports) {
-      const keys = MAGNITUDES.map(([key]) => key).filter((key) => key in loading);
+      const keys = magnitudes.map(([key]) => key).filter((key) => key in loading);
       const isPinned = (loading.pins ?? []).every((pin) => onlyKnown(pin, ["hole", "direction"]));
-      if (keys.length !== 1 || !isPinned || !onlyKnown(loading, ["kind", "stress_ratio", ...keys, ...(places ? ["edges", "pins"] : [])])) return false;
+      const known = ["kind", "stress_ratio", "bending_ratio", ...keys, ...(places ? ["edges", "pins"] : [])];
+      const others = Object.fromEntries(Object.entries(loading).filter(([key]) => !known.includes(key)));
+      if (keys.length !== 1 || !isPinned) return false;
+      if (isOfSpectrum(keys[0]) ? !spectrum.fill(others) : !onlyKnown(others, [])) return false;
       if (places ? !places.fill(loading, supports) : supports) return false;
       fillIn(quantity, keys[0]);
       arrange();
       fillIn(magnitude, loading[keys[0]]);
       fillIn(ratio, loading.stress_ratio);
+      fillIn(bending, loading.bending_ratio);
       return true;
     },
   };

@@ -16,7 +16,7 @@ const OF_DISTRIBUTION = { uniform: ["from", "to"], log_uniform: ["from", "to"], 
 const HINTS = { factor: "68 % lie between median / factor and median × factor" };
 const VARIES_MAX = 4;
 
-/** `base()` gives the case as {input, calibration?} or a sentence, `checked()` as it was understood; `kinds` of the service. Gives {fromBase()}. */
+/** `base()` gives the case as {input, calibration?, files?} or a sentence, `checked()` as it was understood; `kinds` of the service. Gives {fromBase()}. */
 export function createSweep({ host, fields, panel, start, status, base, checked, kinds }) {
   const options = (key) => kinds.filter((one) => one.key === key).map(({ name }) => ({ value: name, title: sentence(words(name)) }));
   const meaning = (key, name) => kinds.find((one) => one.key === key && one.name === name)?.meaning ?? "";
@@ -128,7 +128,7 @@ export function createSweep({ host, fields, panel, start, status, base, checked,
     if (!input) return "The case on Predict is not right yet.";
     const text = typeof input === "string" ? input : writeToml({ ...input, ...(fitted ? { fatigue: { ...input.fatigue, fitted: "fitted.toml" } } : {}) });
     const sent = [[CASE, text], ...(fitted ?? [])].filter(([, content]) => content !== null);
-    return { files: sent.map(([file, content]) => ({ name: file, text: content, file: new Blob([content]) })) };
+    return { files: [...sent.map(([file, content]) => ({ name: file, text: content, file: new Blob([content]) })), ...(given.files ?? [])] };
   }
 
   const add = button("Vary a key", () => rebuild([...vary.map(collectRow), {}].slice(0, VARIES_MAX)), { class: "button small", "data-action": "vary" });

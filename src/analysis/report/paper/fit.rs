@@ -131,7 +131,7 @@ fn details(fit: &Value) -> String {
     );
     let plate: Option<Plate> = fit.get("plate").and_then(|plate| serde_json::from_value(plate.clone()).ok());
     let drawing = plate.map_or_else(String::new, |plate| {
-        let bare = RunTables { rows: Vec::new(), tips: Vec::new(), band: None, paths: Vec::new() };
+        let bare = RunTables { rows: Vec::new(), tips: Vec::new(), band: None, depths_mm: None, paths: Vec::new() };
         figure(
             &plate_svg(&plate, &bare, SPECIMEN),
             "Figure 3. The specimen to scale with its first crack, as it was computed.",

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use super::Drawings;
 use crate::error::{Error, InputError, Result, input};
 use crate::input::Opened;
 use crate::report::csv::{A_N_FILE, check_listed, listed};
@@ -23,6 +24,8 @@ pub enum Source {
         result: Value,
         /// Its tables.
         tables: RunTables,
+        /// Its pictures that the tables do not say.
+        drawings: Drawings,
     },
     /// Of `perilife calibrate`, to readings.
     Lives {
@@ -94,7 +97,7 @@ impl Files<'_> {
         let path = self.table(CRACK_PATH_FILE, &result, RESULT_FILE)?;
         let [curve_name, path_name] = [A_N_FILE, CRACK_PATH_FILE].map(|name| self.folder.join(name).display().to_string());
         let tables = RunTables::read([&curve, &curve_name], [&path, &path_name])?;
-        Ok(Source::Run { result, tables })
+        Ok(Source::Run { result, tables, drawings: Drawings::read(self.folder, self.opened)? })
     }
 
     fn fit(&self) -> Result<Source> {

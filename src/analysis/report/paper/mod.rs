@@ -3,11 +3,16 @@
 //! It is made of what stands in the folder: `result.json` with `a_n.csv` and `crack_path.csv`, or `fit.json` with its tables. The pictures
 //! are those of the folder, drawn anew for the size of the page.
 
+mod answers;
+mod drawings;
 mod fit;
 mod folder;
 mod numbers;
+mod part_through;
 mod prediction;
+mod spectrum;
 
+pub use drawings::Drawings;
 pub use folder::{Source, read};
 
 use super::chart::Size;
@@ -35,7 +40,7 @@ pub struct Signed {
 /// The report of a run or a fit.
 pub fn html(source: &Source, signed: &Signed) -> String {
     let (title, body, version) = match source {
-        Source::Run { result, tables } => prediction::body(result, tables, signed),
+        Source::Run { result, tables, drawings } => prediction::body(result, tables, drawings, signed),
         Source::Lives { fit, tables } => fit::of_lives(fit, tables, signed),
         Source::Laws { fit, rates } => fit::of_laws(fit, rates, signed),
     };
@@ -108,6 +113,27 @@ fn figure(svg: &str, caption: &str, class: &str) -> String {
     // Within HTML a drawing needs no name of its language.
     let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
     format!("<figure class=\"{class}\">{svg}<figcaption>{caption}</figcaption></figure>\n")
+}
+
+/// Pictures on the sheets behind the first, numbered on.
+struct Sheets<'d> {
+    drawings: &'d Drawings,
+    /// Number of the last figure.
+    last: usize,
+}
+
+impl Sheets<'_> {
+    /// A drawing of the folder as wide as the sheet; nothing where the run has none.
+    fn picture(&mut self, name: &str, caption: &str) -> String {
+        let drawings = self.drawings;
+        drawings.get(name).map_or_else(String::new, |svg| self.figure(svg, caption))
+    }
+
+    /// A drawing with its number.
+    fn figure(&mut self, svg: &str, caption: &str) -> String {
+        self.last += 1;
+        figure(svg, &format!("Figure {}. {caption}.", self.last), "wide")
+    }
 }
 
 /// A sign with its word for those who do not see it.

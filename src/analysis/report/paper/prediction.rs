@@ -3,7 +3,10 @@
 use serde_json::Value;
 
 use super::numbers::{by_band, fixed, power, short, sized, whole};
-use super::{Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
+use super::{
+    Drawings, Sheets, Signed, answers, figure, hashes, letter, mark, part_through, prose, quoted, recorded, signatures, spectrum,
+    terms,
+};
 use crate::report::chart::Size;
 use crate::report::pictures::curves::{a_n_svg, end_words, k_svg};
 use crate::report::pictures::plate::{Plate, plate_svg};
@@ -22,8 +25,11 @@ const CHART: Size = Size { width: 315.0, height: 130.0, text: 10.0 };
 /// Reasons to end at which a run was cut off by its model, not by the plate or by what was asked for.
 const CUT_OFF: [&str; 4] = ["ligament_unresolved", "left_refinement", "no_growth", "no_convergence"];
 
+/// Figures of the first sheet.
+const FIGURES: usize = 3;
+
 /// Title, page and version of the program that ran.
-pub fn body(result: &Value, tables: &RunTables, signed: &Signed) -> (String, String, String) {
+pub fn body(result: &Value, tables: &RunTables, drawings: &Drawings, signed: &Signed) -> (String, String, String) {
     let name = result["name"].as_str().unwrap_or("run");
     let version = result["version"].as_str().unwrap_or("").to_owned();
     let plate: Option<Plate> = result.get("plate").and_then(|plate| serde_json::from_value(plate.clone()).ok());
@@ -47,6 +53,10 @@ pub fn body(result: &Value, tables: &RunTables, signed: &Signed) -> (String, Str
         quoted(&version)
     );
     page += &hashes(&result["inputs"], HASHES_MOST);
+    let mut sheets = Sheets { drawings, last: FIGURES };
+    page += &spectrum::section(result, &mut sheets);
+    page += &part_through::section(result, tables, &mut sheets);
+    page += &answers::sections(result, &mut sheets);
     (format!("Crack growth life, {name}"), page, version)
 }
 

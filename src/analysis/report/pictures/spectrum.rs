@@ -4,10 +4,9 @@ use crate::loading::spectrum::Spectrum;
 use crate::report::axis::Axis;
 use crate::report::chart::{COMPUTED, Frame, Size};
 use crate::report::specimen_picture::sketch::Sketch;
+use crate::report::spectrum::BARS;
 use crate::specimen::Point;
 
-/// Bars of the histogram.
-const BARS: usize = 20;
 /// Opacity of a bar.
 const BAR: f64 = 0.7;
 /// Points of the curve at the most.

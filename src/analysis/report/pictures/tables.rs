@@ -23,6 +23,8 @@ pub struct RunTables {
     pub tips: Vec<TipRows>,
     /// Cycles at which 5 and 95 % of specimens have reached the length of a row; `None` without a band.
     pub band: Option<Vec<[f64; 2]>>,
+    /// Depth of a crack that did not go through at the start, mm, NaN once it is through; `None` of others.
+    pub depths_mm: Option<Vec<f64>>,
     /// Of every tip: cycles, x and y, mm; the far end of its initial crack first.
     pub paths: Vec<Vec<[f64; 3]>>,
 }
@@ -47,7 +49,8 @@ impl RunTables {
         } else {
             None
         };
-        Ok(RunTables { rows, tips, band, paths: paths(&Cells::of(path, path_name))? })
+        let depths_mm = cells.has("crack_depth_mm").then(|| cells.column("crack_depth_mm")).transpose()?;
+        Ok(RunTables { rows, tips, band, depths_mm, paths: paths(&Cells::of(path, path_name))? })
     }
 
     /// Cycles at the end of the curve.

@@ -11,7 +11,7 @@ mod newman;
 mod wheeler;
 mod willenborg;
 
-pub use description::{Description, Now, Zone};
+pub use description::{Constant, Description, Now, Zone};
 pub use march::{Laws, March, Marched, Underway, between};
 
 use std::f64::consts::PI;
