@@ -160,9 +160,9 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
     let choice = |key, value: Option<&str>, why: Option<&str>| Choice { key, value: value.into(), why: why.map(str::to_owned) };
     vec![
         Choice { why: Some(why_method(case)), ..choice("method", Some(case.model.method().name()), None) },
-        choice("formula", formula.map(|formula| formula.name), Some("that of the kind of specimen")),
-        choice("source", formula.map(|formula| formula.source), None),
-        choice("range", formula.map(|formula| formula.range), None),
+        choice("formula", formula.as_ref().map(|formula| formula.name), Some("that of the kind of specimen")),
+        choice("source", formula.as_ref().map(|formula| formula.source), None),
+        choice("range", formula.as_ref().map(|formula| formula.range), None),
     ]
 }
 
