@@ -2,7 +2,7 @@
 //!
 //! Between two points the parabola through them and the one before, and that through them and the one behind, the nearer point's taken the
 //! more (Overhauser 1968): value and slope are continuous, and the integral errs by the fourth power of the distance of the points. Between
-//! the first two and the last two points of the table one parabola alone.
+//! the first two and the last two points of the table the cubic through the four at that end, which errs no more.
 
 /// Points of a table, at least two, x rising.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -23,19 +23,20 @@ impl Parabolas {
         &self.x
     }
 
-    /// y at an x; beyond the table that of its last parabola.
+    /// y at an x; beyond the table that of the cubic at its end.
     pub fn at(&self, x: f64) -> f64 {
         let last = self.x.len() - 1;
         let before = self.x.partition_point(|&of| of < x).clamp(1, last) - 1;
-        let share = (x - self.x[before]) / (self.x[before + 1] - self.x[before]);
-        let left = self.through(before.saturating_sub(1)..=(before + 1), x);
-        let right = self.through(before..=(before + 2).min(last), x);
-        match before {
-            // The chord is no second parabola.
-            0 if last > 1 => right,
-            _ if before + 1 == last => left,
-            _ => left + share * (right - left),
+        if before == 0 {
+            return self.through(0..=last.min(3), x);
         }
+        if before + 1 == last {
+            return self.through(last.saturating_sub(3)..=last, x);
+        }
+        let share = (x - self.x[before]) / (self.x[before + 1] - self.x[before]);
+        let left = self.through(before - 1..=(before + 1), x);
+        let right = self.through(before..=(before + 2), x);
+        left + share * (right - left)
     }
 
     /// The polynomial through some points.
