@@ -1,10 +1,12 @@
 //! Is the mathematics solved right?
 
+mod beta_table;
 mod checkpoint;
 mod contact;
 mod correspondence;
 mod crack_length;
 mod disc;
+mod drawings;
 mod drawn_plates;
 mod dual_horizon;
 mod dynamics;

@@ -1,13 +1,20 @@
-//! `perilife sif`: stress intensity factors of every crack tip; on nodes also the stress of the plate, with or without cracks.
+//! `perilife sif`: stress intensity factors of every crack tip, at the start or over crack length; on nodes also the stress of the plate,
+//! with or without cracks.
 
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+
 use super::console::Console;
-use crate::error::{Result, input};
-use crate::input::Document;
+use crate::error::{Result, input, input_missing};
+use crate::input::{Document, STREAM};
+use crate::predict::factor_sweep::factor_sweep;
 use crate::predict::tip_factors::StressIntensityMethod;
-use crate::report::output::OutputFolder;
+use crate::report::factor_sweep as tables;
+use crate::report::output::{OutputFile, OutputFolder, Sort};
 use crate::runner::{self, Kind, Task};
+use crate::specimen::beta::HEADER;
+use crate::units::MM;
 
 /// Arguments of `perilife sif`.
 #[derive(Debug, clap::Args)]
@@ -22,9 +29,15 @@ pub struct Args {
     /// Methods: ring, element_free_galerkin, energy_release; all where none is given
     #[arg(long, value_name = "METHOD", num_args = 1.., help_heading = "Method")]
     pub method: Vec<String>,
-    /// Folder for stress and displacement of the plate on nodes (with --method element_free_galerkin); replaced if an earlier run made it
-    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    /// Folder for stress and displacement of the plate on nodes (with --method element_free_galerkin), or table of --sweep; replaced if an earlier run made it
+    #[arg(long, value_name = "DIR|FILE.csv", help_heading = "Output")]
     pub out: Option<PathBuf>,
+    /// K, T, β and compliance over crack length in the specimen's convention, mm, along the crack's own path; writes the table --out FILE.csv
+    #[arg(long, value_name = "FIRST:LAST:STEP", conflicts_with_all = ["method", "paraview"], help_heading = "Method")]
+    pub sweep: Option<String>,
+    /// Also write β over crack length of the tip that grows farthest, for AFGROW and specimen.beta_file (with --sweep)
+    #[arg(long, value_name = "FILE.csv", requires = "sweep", help_heading = "Output")]
+    pub beta: Option<PathBuf>,
     /// Also write displacement and stress for ParaView (paraview/run.pvd), as the key output.paraview does
     #[arg(long, requires = "out", help_heading = "Output")]
     pub paraview: bool,
@@ -39,6 +52,9 @@ pub struct Args {
 /// Runs `perilife sif`.
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
+    if let Some(asked) = &args.sweep {
+        return sweep(args, asked);
+    }
     let document = Document::read(&args.case, &super::with_output(&args.set, [("paraview", args.paraview)]))?;
     let task = Task::read(Kind::Sif, &document, &args.method)?;
     super::within_machine(&task, &document)?;
@@ -61,4 +77,30 @@ pub fn run(args: &Args) -> Result<()> {
         }
     };
     console.object(&summary.result)
+}
+
+/// Runs `perilife sif --sweep`.
+fn sweep(args: &Args, asked: &str) -> Result<()> {
+    let console = &args.console;
+    let lengths = runner::factor_sweep::lengths(asked)?;
+    let document = Document::read(&args.case, &args.set)?;
+    let case = runner::factor_sweep::case(&document, &lengths)?;
+    let out = args.out.as_deref().ok_or_else(|| input_missing("--out", "is missing", "name the table: --out FILE.csv"))?;
+    let claim = |option, path: &Path, header: &'static str| {
+        OutputFile::claim(path, Sort { option, sign: header.as_bytes() }, &document.folder.opened().so_far())
+    };
+    // Claimed first: a file that cannot be written should not cost a run.
+    let file = claim("--out", out, tables::COLUMNS)?;
+    let beta = args.beta.as_deref().map(|path| Ok((path, claim("--beta", path, HEADER)?))).transpose()?;
+    case.warnings.iter().for_each(|warning| console.warn(warning));
+    let found = factor_sweep(&case, &lengths, console).map_err(|error| document.locate(error))?;
+    found.warnings.iter().for_each(|warning| console.warn(warning));
+    file.write(tables::table(&found).as_bytes())?;
+    let beta_name = beta.as_ref().map(|(path, _)| path.to_path_buf());
+    beta.map_or(Ok(()), |(_, file)| file.write(tables::beta_table(&found).as_bytes()))?;
+    let [from, to] = [lengths[0], lengths[lengths.len() - 1]].map(|length| length / MM);
+    if out != Path::new(STREAM) {
+        console.say(&format!("{}: {} rows from {from} to {to} mm", out.display(), found.rows.len()));
+    }
+    console.object(&json!({ "file": out, "beta_file": beta_name, "rows": found.rows.len(), "lead_tip": found.lead }))
 }

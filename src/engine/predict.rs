@@ -9,6 +9,7 @@
 pub mod checkpoint;
 pub mod error_estimate;
 pub mod factor_curve;
+pub mod factor_sweep;
 pub mod laws;
 pub mod moment;
 mod outcome;

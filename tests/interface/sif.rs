@@ -144,3 +144,46 @@ fn bad_input_is_refused() {
         assert_refused(&perilife(dir.path(), arguments), code, words);
     }
 }
+
+/// K over crack length as a table, and β of it as one that the case takes.
+#[test]
+fn a_sweep_writes_the_tables_and_reads_them_back() {
+    let dir = tempdir().unwrap();
+    let by_hand = SMALL_CASE.replace("spacing_mm = 2.0", "method = \"handbook\"");
+    let by_hand = by_hand.replace("a = 1e5\np = 3.0\nhorizon_mm = 6.03", "paris_c_mm_per_cycle = 1e-8\nparis_m = 3.0");
+    fs::write(dir.path().join("small.toml"), by_hand).unwrap();
+    let sweep = ["sif", "small.toml", "--sweep", "10:20.5:1", "--out", "k.csv", "--beta", "beta.csv", "--json"];
+    for _ in 0..2 {
+        let object = json(dir.path(), &sweep);
+        assert_eq!((&object["rows"], &object["lead_tip"]), (&24.into(), &0.into()), "both tips at 12 lengths: {object}");
+    }
+    let [table, beta] = ["k.csv", "beta.csv"].map(|name| fs::read_to_string(dir.path().join(name)).unwrap());
+    assert!(
+        table.starts_with("crack_length_mm,tip,x_mm,y_mm,k_i_mpa_sqrt_m,k_ii_mpa_sqrt_m,t_stress_mpa,beta,cmod_mm"),
+        "{table}"
+    );
+    let rows: Vec<&str> = beta.lines().collect();
+    assert!(rows.len() == 13 && rows[0] == "crack_length_mm,beta" && rows[12].starts_with("20.5"), "{beta}");
+    let life = |more: &[&str]| {
+        let arguments = [&["predict", "small.toml", "--out", "run", "--json"], more].concat();
+        json(dir.path(), &arguments)["life_cycles"].as_f64().unwrap()
+    };
+    let ratio = life(&["--set", "specimen.beta_file=beta.csv"]) / life(&[]);
+    assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
+    let refused = [
+        (&["--sweep", "20:10:1", "--out", "x.csv"][..], &["--sweep = 20:10:1", "does not rise"][..]),
+        (&["--sweep", "10:20", "--out", "x.csv"], &["--sweep = 10:20", "first:last:step"]),
+        (&["--sweep", "10:20:0", "--out", "x.csv"], &["--sweep = 0", "above zero"]),
+        (&["--sweep", "10:20:1e-3", "--out", "x.csv"], &["more than 10000 lengths"]),
+        (&["--sweep", "10:30:1", "--out", "x.csv"], &["--sweep = 30", "beyond the half width 30 mm"]),
+        (&["--sweep", "10:20:5"], &["--out is missing"]),
+        (&["--sweep", "10:20:5", "--out", "small.toml"], &["--out = small.toml", "reads"]),
+    ];
+    for (arguments, words) in refused {
+        let output = perilife(dir.path(), &[&["sif", "small.toml"], arguments].concat());
+        let (_, stderr) = texts(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {stderr}");
+        assert!(words.iter().all(|word| stderr.contains(word)), "{arguments:?}: {stderr}");
+        assert!(!dir.path().join("x.csv").exists());
+    }
+}

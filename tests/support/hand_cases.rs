@@ -4,6 +4,7 @@ use std::path::Path;
 
 use perilife::Result;
 use perilife::case::Case;
+use perilife::input::Folder;
 use perilife::predict::{Prediction, Silent, predict};
 
 /// Everything but `[specimen]` and `[loading]`.
@@ -23,10 +24,15 @@ pub const ALL: [&str; 4] = [
 
 /// The case of a `[specimen]` section under a range of 48.28 MPa or 8 kN at R = 0.2.
 pub fn try_hand_case(specimen: &str, set: &[&str]) -> Result<Case> {
+    try_hand_case_in(specimen, set, Path::new("."))
+}
+
+/// [`try_hand_case`] whose files lie in `folder`.
+pub fn try_hand_case_in(specimen: &str, set: &[&str], folder: impl Into<Folder>) -> Result<Case> {
     let load = if specimen.contains("compact_tension") { "force_range_n = 8000" } else { "stress_range_mpa = 48.28" };
     let text = format!("[specimen]\n{specimen}[loading]\n{load}\nstress_ratio = 0.2\n{REST}");
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
-    Case::from_toml(&text, "hand", Path::new("."), &overrides)
+    Case::from_toml(&text, "hand", folder, &overrides)
 }
 
 /// [`try_hand_case`] where the input is right.

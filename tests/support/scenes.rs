@@ -23,7 +23,7 @@ pub const fn law(kind: BondLawKind, rotation: Rotation) -> BondLaw {
 
 /// The plate of `[specimen]` keys.
 fn specimen_of(keys: &str) -> Specimen {
-    specimen::from_value(&toml::Value::Table(keys.parse().unwrap()), &mut Vec::new()).unwrap()
+    specimen::from_value(&toml::Value::Table(keys.parse().unwrap()), &perilife::input::Folder::none(), &mut Vec::new()).unwrap()
 }
 
 /// A square of 50 mm with a central crack of 10 mm, of the steel of Huang, Li, Jin, He and Wang, example 3, its ends driven apart with a velocity, m/s,

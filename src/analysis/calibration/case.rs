@@ -128,11 +128,12 @@ impl CalibrationCase {
         check_start(&case.specimen, &curves)?;
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
         if let Some(formula) =
-            formula.filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
+            formula.as_ref().filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
         {
             warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
         }
-        let delta_k_ratio = formula.map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
+        let delta_k_ratio =
+            formula.as_ref().map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
         let exponent = exponent(&fit, folder, case.model.method(), delta_k_ratio)?;
         warnings.extend(exponent.warning.clone());
         let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
@@ -163,7 +164,7 @@ impl CalibrationCase {
     /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.
     pub fn delta_k(&self, crack_length: f64) -> Option<f64> {
         let loading = &self.case.loading;
-        self.formula.map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
+        self.formula.as_ref().map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
     }
 }
 

@@ -29,6 +29,8 @@ use crate::measured::{CycleUnit, Decimal, IntensityUnit, LengthUnit, LoadUnit, R
 use crate::predict::StopReason;
 use crate::predict::tip_factors::StressIntensityMethod;
 use crate::solver::{SolverKind, SolverUsed, Symmetry};
+use crate::specimen::beta;
+use crate::specimen::drawing::{DrawingUnit, SymmetryPlane};
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
 use crate::verify::TOPICS;
@@ -39,6 +41,8 @@ use crate::verify::stability::SWEEPS;
 pub fn lines() -> Vec<(String, String, String)> {
     let of_the_test = [
         SpecimenKind::lines(),
+        DrawingUnit::lines(),
+        SymmetryPlane::lines(),
         Ends::lines(),
         Plane::lines(),
         LoadingKind::lines(),
@@ -112,6 +116,16 @@ pub fn lines() -> Vec<(String, String, String)> {
         GrowthLawKind::KEY.to_owned(),
         LIBRARY.to_owned(),
         "the growth data of the material that material.name names".to_owned(),
+    ));
+    all.push((
+        "specimen.outline_file".to_owned(),
+        "part.dxf".to_owned(),
+        "a plate from a drawing, DXF or SVG: layers outline, holes (full circles), cracks".to_owned(),
+    ));
+    all.push((
+        beta::KEY.to_owned(),
+        "beta.csv".to_owned(),
+        "K = β σ √(πa) by a table crack_length_mm,beta, for hand calculation; `perilife sif --sweep` writes one".to_owned(),
     ));
     all.push(("output.animation".to_owned(), "true".to_owned(), "also growth.svg: the cracks as they grow".to_owned()));
     all.push(("output.paraview".to_owned(), "true".to_owned(), "also the fields of some moments, for ParaView".to_owned()));

@@ -9,6 +9,7 @@ pub mod chart;
 pub mod checks;
 pub mod csv;
 pub mod damage;
+pub mod factor_sweep;
 pub mod factors;
 pub mod fit;
 pub mod fleet;

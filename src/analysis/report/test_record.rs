@@ -37,9 +37,9 @@ pub fn test(calibration: &CalibrationCase) -> Value {
         "readings": lengths().count(),
         "first_reading_mm": clean(lengths().fold(f64::INFINITY, f64::min) / MM),
         "last_reading_mm": clean(lengths().fold(0.0, f64::max) / MM),
-        "formula": formula.map(|formula| formula.name),
-        "formula_source": formula.map(|formula| formula.source),
-        "formula_range": formula.map(|formula| formula.range),
+        "formula": formula.as_ref().map(|formula| formula.name),
+        "formula_source": formula.as_ref().map(|formula| formula.source),
+        "formula_range": formula.as_ref().map(|formula| formula.range),
     })
 }
 

@@ -1,6 +1,7 @@
 //! From a document to results: one reader and one runner of whatever an input file asks for, used by the commands, by sweeps and by
 //! the workers of a service.
 
+pub mod factor_sweep;
 mod factors;
 pub mod sweep;
 pub mod sweep_folder;

@@ -7,6 +7,7 @@ use super::model_keys::{KEYS_OF_BONDS, telling_key};
 use crate::input::value_at;
 use crate::loading::Loading;
 use crate::specimen::Specimen;
+use crate::specimen::beta::KEY;
 use crate::specimen::handbook::handbook;
 use crate::specimen::part_through::SOURCE;
 
@@ -24,6 +25,9 @@ pub(super) struct Sections<'a> {
 pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loading, percent: f64) -> (Method, String) {
     if let Some(flaw) = &specimen.part_through {
         return (Method::Handbook, format!("the crack does not go through: K of {SOURCE} ({})", flaw.kind()));
+    }
+    if specimen.beta.is_some() {
+        return (Method::Handbook, format!("K(a) is given ({KEY})"));
     }
     match telling_key(asked.model) {
         Some((key, Method::Peridynamics)) => return (Method::Peridynamics, format!("model.{key} asks for points and bonds")),

@@ -3,11 +3,12 @@
 use super::model_keys::{ModelKeys, read, refuse_strangers, tolerance, too_fine};
 use super::{Case, Choices, HORIZON_RATIO, Method, Model, PointSettings, RESIDUAL, choose};
 use crate::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
-use crate::error::{Result, input};
+use crate::error::{Result, input, input_missing};
 use crate::input::slice;
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::{SolverKind, Symmetry};
+use crate::specimen::beta::KEY;
 use crate::specimen::handbook::handbook;
 use crate::specimen::{Specimen, SpecimenKind};
 use crate::units::MM;
@@ -34,6 +35,7 @@ pub(super) fn from_value(
         method => (method, None),
     };
     check_part_through(specimen, method)?;
+    check_beta(specimen, method)?;
     refuse_strangers(sections.model, method, why.as_deref())?;
     Ok((of_method(method, &input, (specimen, material), choices, warnings)?, why))
 }
@@ -141,6 +143,15 @@ fn check_part_through(specimen: &Specimen, method: Method) -> Result<()> {
     Err(input("model.method", format!("\"{method}\""), problem, remedy))
 }
 
+/// A table of β drives hand calculation alone.
+fn check_beta(specimen: &Specimen, method: Method) -> Result<()> {
+    if specimen.beta.is_none() || method == Method::Handbook {
+        return Ok(());
+    }
+    let problem = format!("gives K(a), and model.method = \"{method}\" finds K itself");
+    Err(input_missing(KEY, problem, format!("use model.method = \"{}\", or leave one of both out", Method::Handbook)))
+}
+
 /// Hand calculation needs a formula for K(a).
 fn check_formula(specimen: &Specimen) -> Result<()> {
     if handbook(specimen).is_some() || !specimen.is_through() {
@@ -148,7 +159,7 @@ fn check_formula(specimen: &Specimen) -> Result<()> {
     }
     let problem = format!("has no K(a) for this specimen ({})", specimen.kind);
     let remedy = "use model.method = \"peridynamics\"; or middle_tension, single_edge_tension (ends free to rotate), \
-                  double_edge_tension at least 1.5 widths long, or compact_tension";
+                  double_edge_tension at least 1.5 widths long, or compact_tension; or give specimen.beta_file";
     Err(input("model.method", "\"handbook\"", problem, remedy))
 }
 

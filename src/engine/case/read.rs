@@ -109,10 +109,13 @@ impl Case {
         let echo = sections.echo()?;
         let mut warnings = Vec::new();
         let mut choices = Choices::default();
-        let mut specimen = specimen::from_value(sections.required("specimen")?, &mut warnings)?;
+        let mut specimen = specimen::from_value(sections.required("specimen")?, folder, &mut warnings)?;
         let material = material::from_value(sections.required("material")?, folder, &mut warnings)?;
         let (of_loading, beside) = (sections.required("loading")?, retardation_keys());
         let loading = loading::from_values(of_loading, sections.given("supports"), (folder, &beside), &mut specimen)?;
+        if let Some(file) = value_at(sections.required("specimen")?, "beta_file").and_then(Value::as_str) {
+            specimen.read_beta(file, folder)?;
+        }
         let asked = choose::Sections {
             model: sections.optional("model"),
             fatigue: sections.optional("fatigue"),

@@ -1,8 +1,9 @@
-//! Life by hand calculation: handbook K(a) of a standard specimen, growth law, quadrature.
+//! Life by hand calculation: handbook K(a) of a standard specimen, or that of a table of β, growth law, quadrature.
 //!
 //! `N(a) = ∫ da / (da/dN)` from the initial crack length, by the law over K of the case; no growth at or below the threshold. Costs less than a millisecond.
+//! The crack length of a `plate` is that of all cracks, whose n tips grow alike: `da = n × growth of a tip`.
 
-use super::end_of_life::{End, first_end};
+use super::end_of_life::{End, first_end, row_after};
 use super::record::{CurvePoint, StopReason, TipRecord};
 use super::{CrackGrowth, GrowthStatus, State};
 use crate::case::Case;
@@ -12,6 +13,7 @@ use crate::fatigue::growth_law::GrowthLaw;
 use crate::quadrature::integrate;
 use crate::specimen::geometry::along;
 use crate::specimen::handbook::{HandbookFormula, handbook};
+use crate::specimen::{CrackLine, LengthConvention};
 use crate::units::MM;
 
 /// Intervals of the a-N curve, their lengths in constant ratio: what is taken linear between two rows is then off by less than
@@ -27,6 +29,8 @@ pub struct HandCalculation<'a> {
     law: Box<dyn GrowthLaw>,
     /// Where growth ends at the latest: the given ends, or the plate in two.
     end: End,
+    /// Tips whose growth adds up to that of the crack length.
+    sharing: f64,
     curve: Vec<CurvePoint>,
 }
 
@@ -37,7 +41,10 @@ impl<'a> HandCalculation<'a> {
         let formula = handbook(&case.specimen)
             .ok_or_else(|| input_missing("model.method", "\"handbook\" has no K(a) for this specimen", "use \"peridynamics\""))?;
         let severed = End { crack_length: case.specimen.length_limit().0, reason: StopReason::Severed };
-        Ok(HandCalculation { case, formula, law, end: first_end(case).unwrap_or(severed), curve: Vec::new() })
+        let end = first_end(case).unwrap_or(severed);
+        case.specimen.beta.as_ref().map_or(Ok(()), |table| table.check_end(end.crack_length))?;
+        let sharing = if case.specimen.convention == LengthConvention::SumOfTips { case.specimen.tips.len() as f64 } else { 1.0 };
+        Ok(HandCalculation { case, formula, law, end, sharing, curve: Vec::new() })
     }
 
     fn last(&self) -> &CurvePoint {
@@ -52,7 +59,7 @@ impl<'a> HandCalculation<'a> {
 
     /// Cycles between two crack lengths.
     fn cycles(&self, from: f64, to: f64) -> f64 {
-        integrate(|a| 1.0 / self.rate(a), from, to, TOLERANCE).value
+        integrate(|a| 1.0 / (self.sharing * self.rate(a)), from, to, TOLERANCE).value
     }
 
     /// Crack length `cycles` after `from`, which lies below `to`: halved until no double is left between.
@@ -67,11 +74,17 @@ impl<'a> HandCalculation<'a> {
         }
     }
 
+    /// The cracks of a plate, by which its sections are known; those of a standard kind are not asked for.
+    fn lines(&self, crack_length: f64) -> Vec<CrackLine> {
+        let specimen = &self.case.specimen;
+        if specimen.ligament(crack_length).is_some() { Vec::new() } else { specimen.grown_alike(crack_length).crack_lines() }
+    }
+
     /// Row of the curve; K and rate are unknown (NaN) where the plate ends.
     fn point(&self, cycles: f64, crack_length: f64) -> CurvePoint {
         let (specimen, loading) = (&self.case.specimen, &self.case.loading);
         let delta_k = self.formula.delta_k(crack_length, loading.maximum, loading.range_share());
-        let growth = crack_length - specimen.crack_length;
+        let growth = (crack_length - specimen.crack_length) / self.sharing;
         let ahead =
             |seed: &crate::specimen::TipSeed| along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth);
         CurvePoint {
@@ -81,7 +94,7 @@ impl<'a> HandCalculation<'a> {
             delta_k,
             growth_rate: self.rate(crack_length),
             work: f64::NAN,
-            limit_load: self.case.limit_load(crack_length, &[]),
+            limit_load: self.case.limit_load(crack_length, &self.lines(crack_length)),
             broken_bonds: 0,
             tips: specimen
                 .tips
@@ -106,11 +119,11 @@ impl<'a> HandCalculation<'a> {
         if done > INTERVALS || end <= start {
             return Ok(Some(reason));
         }
-        // K of every formula rises with crack length: a crack above the threshold at its start stays above it.
-        if self.curve[0].growth_rate == 0.0 {
+        let to = if done == INTERVALS { end } else { start * (end / start).powf(done as f64 / INTERVALS as f64) };
+        // K of a formula rises with crack length, that of a table may fall.
+        if last.growth_rate == 0.0 || self.rate(to) == 0.0 {
             return Ok(Some(StopReason::NothingAges));
         }
-        let to = if done == INTERVALS { end } else { start * (end / start).powf(done as f64 / INTERVALS as f64) };
         let (from, before, cycles_max) = (last.crack_length, last.cycles, self.case.stop.cycles_max);
         let more = self.cycles(from, to);
         if more.is_nan() {
@@ -126,8 +139,12 @@ impl<'a> HandCalculation<'a> {
             self.curve.push(self.point(cycles_max, reached));
             return Ok(Some(StopReason::RunOut));
         }
-        self.curve.push(self.point(before + more, to));
-        Ok((done == INTERVALS).then_some(reason))
+        let (next, reason) = (self.point(before + more, to), (done == INTERVALS).then_some(reason));
+        // The sections of a plate are not known as a formula before the run.
+        let is_open = self.case.specimen.ligament(to).is_none();
+        let (next, reason) = if is_open { row_after(self.case, last, next, reason) } else { (next, reason) };
+        self.curve.push(next);
+        Ok(reason)
     }
 }
 
@@ -170,7 +187,7 @@ impl CrackGrowth for HandCalculation<'_> {
             .filter(|pair| !pair.iter().all(|point| self.formula.holds_at(point.crack_length)))
             .map(|pair| pair[1].cycles - pair[0].cycles)
             .sum();
-        let HandbookFormula { name, range, .. } = self.formula;
+        let HandbookFormula { name, range, .. } = &self.formula;
         let words = || format!("{:.2} % of the life lies outside the range of {name} ({range})", 100.0 * outside / life);
         // A share that shows in no life is not worth a word.
         (outside > 1e-3 * life).then(words).into_iter().collect()

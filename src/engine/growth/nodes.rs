@@ -11,14 +11,14 @@ use super::{Fields, SolverStatistics, State};
 use crate::case::Case;
 use crate::element_free::crack::Tip;
 use crate::element_free::factors;
-use crate::element_free::field::Discretisation;
+use crate::element_free::field::{Discretisation, Local};
 use crate::element_free::resolution::{ElementFreeSettings, Resolution, room};
 use crate::element_free::solve::{Solution, raster, raster_fields, solve};
 use crate::error::Result;
 use crate::growth::cross_check::largest_difference;
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
-use crate::specimen::{CrackLine, Specimen};
+use crate::specimen::{CrackLine, Point, Specimen};
 use crate::williams::Elasticity;
 
 /// Factor by which nodes get finer where K asks for it.
@@ -75,6 +75,13 @@ impl NodePlate {
         };
         let tips = cracks.active().map(of_tip).collect();
         (lines, tips)
+    }
+
+    /// Displacement at a place under the maximum load, m, of the last equilibrium; `None` before one, and where nodes do not reach.
+    pub fn displacement(&self, case: &Case, at: Point) -> Option<Point> {
+        let (plate, solution) = self.solved.as_ref()?;
+        let (displacement, _) = plate.displacement(&solution.u, at, &mut Local::default())?;
+        Some(displacement.map(|u| case.loading.share(self.state.work) * u))
     }
 
     fn factors(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<[f64; 2]>> {

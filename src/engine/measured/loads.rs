@@ -70,7 +70,7 @@ impl Measured {
         for curve in &mut self.curves {
             let k_max = |reading: usize| {
                 let factor = curve.load_factor.get(reading).copied().unwrap_or(1.0);
-                formula.map_or(f64::NAN, |formula| formula.k_i(curve.crack_length[reading], loading.maximum) * factor)
+                formula.as_ref().map_or(f64::NAN, |formula| formula.k_i(curve.crack_length[reading], loading.maximum) * factor)
             };
             let is_last = |reading: usize| reading > 0 && reading + 1 == curve.cycles.len();
             let why = |reading: usize| match material.toughness {
@@ -187,10 +187,10 @@ fn compare(curve: &MeasuredCurve, specimen: &Specimen, loading: &Loading) -> Res
             Role::Min => loading.ratio * loading.maximum / per_load,
             _ => {
                 let factor = curve.load_factor.get(reading).copied().unwrap_or(1.0);
-                let delta_k = |formula: HandbookFormula| {
+                let delta_k = |formula: &HandbookFormula| {
                     formula.delta_k(curve.crack_length[reading], loading.maximum, loading.range_share()) * factor
                 };
-                formula.map_or(f64::NAN, delta_k)
+                formula.as_ref().map_or(f64::NAN, delta_k)
             }
         };
         // A smallest load of nothing is compared with the largest.

@@ -95,6 +95,9 @@ impl Rates<'_> {
 /// The error of the formula, by the exponent of the law.
 fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Result<ErrorEstimate, String> {
     let Some(formula) = handbook(&case.specimen) else { return Err("no handbook formula".to_owned()) };
+    if case.specimen.beta.is_some() {
+        return Err(format!("a {} states no error of K", formula.name));
+    }
     if !formula.holds_at(prediction.crack_length_final()) {
         return Err(format!("the crack grew beyond the range of the formula ({})", formula.range));
     }

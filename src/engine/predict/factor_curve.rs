@@ -4,13 +4,14 @@
 //! The path of a crack does not depend on C, and that of a single tip not on m either, so one run serves every pair of C and m. Of several
 //! tips the faster ones grow the farther ahead of the others the larger m is.
 
-use super::{CurvePoint, Observer, RunFigures, StopReason, predict};
+use super::{CurvePoint, Observer, Prediction, RunFigures, StopReason, predict};
 use crate::case::{Case, LawSource};
 use crate::error::{Error, Result};
 use crate::fatigue::Driver;
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::paris::ParisLaw;
 use crate::growth::cracks::steering::equivalent_factor;
+use crate::parabolas::Parabolas;
 use crate::specimen::LengthConvention;
 use crate::units::MM;
 
@@ -33,10 +34,8 @@ pub struct FactorCurve {
 /// K of a tip while it grows, between the rows of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TipFactors {
-    /// Rising, m.
-    lengths: Vec<f64>,
-    /// ln of K_eq, K in Pa√m.
-    logarithms: Vec<f64>,
+    /// ln of K_eq, K in Pa√m, over crack length, m.
+    logarithms: Parabolas,
 }
 
 impl FactorCurve {
@@ -48,23 +47,7 @@ impl FactorCurve {
 
     /// The same, several tips growing by this exponent.
     pub fn at_exponent(case: &Case, m: f64, observer: &dyn Observer) -> Result<Self> {
-        let mut case = case.clone();
-        // A crack that goes straight takes the same steps with all laws.
-        let m = if case.specimen.convention == LengthConvention::SumOfTips { m } else { 1.0 };
-        case.law = LawSource::Paris(ParisLaw { c: 1.0, m });
-        case.fatigue.driver = Driver::TipField;
-        (case.fatigue.threshold, case.fatigue.walker_gamma) = (0.0, 1.0);
-        case.stop.cycles_max = f64::INFINITY;
-        let done = predict(&case, observer)?;
-        if done.stop != StopReason::CrackLengthReached {
-            return Err(Error::Mechanics(format!(
-                "{}: the crack ended as {} at a length of {:.3} mm, before {:.3} mm, to which its K is needed",
-                case.name,
-                done.stop,
-                done.crack_length_final() / MM,
-                case.stop.crack_length / MM
-            )));
-        }
+        let done = unit_growth(case, m, observer)?;
         let tips = match case.specimen.convention {
             LengthConvention::MeanOfTips => {
                 let share = case.loading.range_share();
@@ -82,7 +65,7 @@ impl FactorCurve {
 
     /// K_eq at maximum load, Pa√m, at a crack length, m, of every tip that grows there.
     pub fn of_tips(&self, length: f64) -> Vec<f64> {
-        let last = self.tips.iter().filter_map(|tip| tip.lengths.last()).copied().fold(0.0, f64::max);
+        let last = self.tips.iter().filter_map(|tip| tip.lengths().last()).copied().fold(0.0, f64::max);
         // Beyond the last row by a rounding, K goes on.
         let grows = |tip: &&TipFactors| tip.grows_at(length.min(last));
         self.tips.iter().filter(grows).map(|tip| tip.at(length)).collect()
@@ -90,12 +73,35 @@ impl FactorCurve {
 
     /// Whether tips of unlike K share the growth, so that the path depends on the exponent.
     pub fn depends_on_exponent(&self) -> bool {
-        let rows = self.tips.iter().flat_map(|tip| &tip.lengths);
+        let rows = self.tips.iter().flat_map(|tip| tip.lengths());
         rows.map(|&length| self.of_tips(length)).any(|tips| {
             let (low, high) = tips.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(*k), high.max(*k)));
             tips.len() > 1 && (high / low).ln() > ALIKE
         })
     }
+}
+
+/// The run of a case up to `stop.crack_length` in which every tip grows by K^m, whatever its driver, law, threshold and limit of cycles.
+/// Errors: as [`predict`]; a run that ends before that length.
+pub(super) fn unit_growth(case: &Case, m: f64, observer: &dyn Observer) -> Result<Prediction> {
+    let mut case = case.clone();
+    // A crack that goes straight takes the same steps with all laws.
+    let m = if case.specimen.convention == LengthConvention::SumOfTips { m } else { 1.0 };
+    case.law = LawSource::Paris(ParisLaw { c: 1.0, m });
+    case.fatigue.driver = Driver::TipField;
+    (case.fatigue.threshold, case.fatigue.walker_gamma) = (0.0, 1.0);
+    case.stop.cycles_max = f64::INFINITY;
+    let done = predict(&case, observer)?;
+    if done.stop != StopReason::CrackLengthReached {
+        return Err(Error::Mechanics(format!(
+            "{}: the crack ended as {} at a length of {:.3} mm, before {:.3} mm, to which its K is needed",
+            case.name,
+            done.stop,
+            done.crack_length_final() / MM,
+            case.stop.crack_length / MM
+        )));
+    }
+    Ok(done)
 }
 
 /// K of every tip over the rows in which it grows.
@@ -109,38 +115,27 @@ fn of_every_tip(curve: &[CurvePoint]) -> Vec<TipFactors> {
         };
         TipFactors::new(curve.iter().filter_map(factor))
     };
-    (0..count).map(of_tip).filter(|tip| tip.lengths.len() > 1).collect()
+    (0..count).map(of_tip).filter(|tip| tip.lengths().len() > 1).collect()
 }
 
 impl TipFactors {
     /// Of its rows, at least two: lengths that rise, m, and K, Pa√m.
     pub fn new(rows: impl Iterator<Item = (f64, f64)>) -> Self {
-        let (lengths, logarithms) = rows.map(|(length, k)| (length, k.ln())).unzip();
-        TipFactors { lengths, logarithms }
+        TipFactors { logarithms: Parabolas::new(rows.map(|(length, k)| (length, k.ln()))) }
+    }
+
+    fn lengths(&self) -> &[f64] {
+        self.logarithms.x()
     }
 
     fn grows_at(&self, length: f64) -> bool {
-        let [first, last] = [self.lengths[0], self.lengths[self.lengths.len() - 1]];
+        let lengths = self.lengths();
+        let [first, last] = [lengths[0], lengths[lengths.len() - 1]];
         (first * (1.0 - 1e-9)..=last * (1.0 + 1e-9)).contains(&length)
     }
 
-    /// K at a length, its logarithm on the parabolas through the two rows around it and the one before or behind, the nearer row's taken the more, so
-    /// that value and slope are continuous.
+    /// K at a length: its logarithm is smooth between rows ([`Parabolas`]).
     pub fn at(&self, length: f64) -> f64 {
-        let last = self.lengths.len() - 1; // a run has its start and its end
-        let before = self.lengths.partition_point(|&a| a < length).clamp(1, last) - 1;
-        let share = (length - self.lengths[before]) / (self.lengths[before + 1] - self.lengths[before]);
-        let left = self.through(before.saturating_sub(1)..=(before + 1), length);
-        let right = self.through(before..=(before + 2).min(last), length);
-        (left + share * (right - left)).exp()
-    }
-
-    /// The polynomial through some rows.
-    fn through(&self, rows: std::ops::RangeInclusive<usize>, length: f64) -> f64 {
-        let weight = |i: usize| {
-            let others = rows.clone().filter(|&j| j != i);
-            others.map(|j| (length - self.lengths[j]) / (self.lengths[i] - self.lengths[j])).product::<f64>()
-        };
-        rows.clone().map(|i| weight(i) * self.logarithms[i]).sum()
+        self.logarithms.at(length).exp()
     }
 }

@@ -52,9 +52,12 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
     };
     let all: Vec<Strength> = match handbook(&case.specimen) {
         Some(formula) => {
-            let (from, to) = (case.specimen.crack_length, case.specimen.length_limit().0);
+            let known = case.specimen.beta.as_ref().map_or(f64::INFINITY, |table| table.bounds()[1]);
+            let (from, to) = (case.specimen.crack_length, case.specimen.length_limit().0.min(known));
             let lengths = (0..STEPS).map(|i| from + (to - from) * i as f64 / STEPS as f64);
-            lengths.map(|a| strength(a, Some(formula.k_i(a, load)), case.limit_load(a, &[]))).collect()
+            lengths
+                .map(|a| strength(a, Some(formula.k_i(a, load)), case.limit_load(a, &case.specimen.grown_alike(a).crack_lines())))
+                .collect()
         }
         None => {
             let known = |point: &CurvePoint| Some(point.delta_k / case.loading.range_share()).filter(|k| *k > 0.0);

@@ -1,11 +1,12 @@
 //! Stress intensity factors K(a) of the standard specimens from handbooks, with name, source and range.
 //!
 //! `K = F σ √(π a)` with gross stress σ, or `K = P / (B √W) f(a/W)` for pins. Sources: Tada, Paris and Irwin, The Stress
-//! Analysis of Cracks Handbook, 3rd ed. 2000; Feddersen 1966 (ASTM STP 410); ASTM E647.
+//! Analysis of Cracks Handbook, 3rd ed. 2000; Feddersen 1966 (ASTM STP 410); ASTM E647. A table of β that the case names
+//! ([`super::beta`]) goes before them.
 
 use std::f64::consts::PI;
 
-use super::{Specimen, SpecimenKind};
+use super::{BetaTable, Specimen, SpecimenKind};
 
 /// Plates shorter than this many widths are stiffer or softer than the long strip of the formulas by more than their
 /// error (a square plate with a/W = 0.5: 3.00 against 2.83 for a single edge crack).
@@ -18,7 +19,7 @@ const RANGE_SLACK: f64 = 1e-9;
 type Curve = fn(f64) -> f64;
 
 /// A formula for K of one specimen.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct HandbookFormula {
     /// Name of the formula.
     pub name: &'static str,
@@ -35,17 +36,22 @@ pub struct HandbookFormula {
     is_of_pins: bool,
     width: f64,
     thickness: f64,
+    /// The table that stands in the place of the formula.
+    table: Option<BetaTable>,
 }
 
 impl PartialEq for HandbookFormula {
     fn eq(&self, other: &Self) -> bool {
-        (self.name, self.width, self.thickness) == (other.name, other.width, other.thickness)
+        (self.name, self.width, self.thickness, &self.table) == (other.name, other.width, other.thickness, &other.table)
     }
 }
 
 /// The formula used for this specimen, `None` where no handbook covers it: `plate`, clamped ends, and plates shorter than
-/// 1.5 widths.
+/// 1.5 widths; a table of β that the case gives covers any.
 pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
+    if let Some(table) = &specimen.beta {
+        return Some(of_table(specimen, table));
+    }
     let long = specimen.length() >= SHORTEST_LENGTH_OVER_WIDTH * specimen.width;
     let (name, source, range, bounds, of, error): (_, _, _, _, Curve, Curve) = match specimen.kind {
         SpecimenKind::MiddleTension if long => (
@@ -88,7 +94,25 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     let is_of_pins = specimen.kind == SpecimenKind::CompactTension;
     let (width, thickness) = (specimen.width, specimen.thickness);
     let cracks = specimen.kind.sharing()?.0;
-    Some(HandbookFormula { name, source, range, bounds, of, error, cracks, is_of_pins, width, thickness })
+    Some(HandbookFormula { name, source, range, bounds, of, error, cracks, is_of_pins, width, thickness, table: None })
+}
+
+/// K by a table of β, whose error nobody states.
+fn of_table(specimen: &Specimen, table: &BetaTable) -> HandbookFormula {
+    let Specimen { width, thickness, .. } = *specimen;
+    HandbookFormula {
+        name: "table of β",
+        source: "specimen.beta_file of the case",
+        range: "from its first to its last row",
+        bounds: table.bounds().map(|length| length / width),
+        of: |_| f64::NAN,
+        error: |_| f64::NAN,
+        cracks: 1.0,
+        is_of_pins: false,
+        width,
+        thickness,
+        table: Some(table.clone()),
+    }
 }
 
 fn half(x: f64) -> f64 {
@@ -102,7 +126,7 @@ fn tangent(x: f64) -> f64 {
 
 /// The other formula for a central crack, 0.1 % for any 2a/W (Tada): for judging the first one.
 pub fn handbook_tada(specimen: &Specimen) -> Option<HandbookFormula> {
-    let first = handbook(specimen)?;
+    let first = handbook(&Specimen { beta: None, ..specimen.clone() })?;
     (specimen.kind == SpecimenKind::MiddleTension).then_some(HandbookFormula {
         name: "Tada central crack",
         source: "Tada, Paris and Irwin 2000, part II",
@@ -118,6 +142,9 @@ impl HandbookFormula {
     /// K_I at crack length `crack_length` (m, the specimen's convention) under `load_max`: gross stress in Pa, or pin force
     /// in N for C(T). Pa√m; NaN for a length at or beyond the plate's end.
     pub fn k_i(&self, crack_length: f64, load_max: f64) -> f64 {
+        if let Some(table) = &self.table {
+            return table.k_i(crack_length, load_max);
+        }
         let x = self.relative_length(crack_length);
         if !(0.0..1.0).contains(&x) {
             return f64::NAN;
@@ -128,7 +155,7 @@ impl HandbookFormula {
         self.factor(crack_length) * load_max * (PI * crack_length).sqrt()
     }
 
-    /// Relative error of K at a crack length, m, as the source of the formula states it.
+    /// Relative error of K at a crack length, m, as the source of the formula states it; NaN of a table of β.
     pub fn error_at(&self, crack_length: f64) -> f64 {
         (self.error)(self.relative_length(crack_length))
     }
@@ -138,9 +165,10 @@ impl HandbookFormula {
         self.k_i(crack_length, load_max) * range_share
     }
 
-    /// F (tension) or f (C(T)) of the formula, dimensionless.
+    /// F (tension) or f (C(T)) of the formula, β of a table, dimensionless.
     pub fn factor(&self, crack_length: f64) -> f64 {
-        (self.of)(self.relative_length(crack_length))
+        let of_formula = || (self.of)(self.relative_length(crack_length));
+        self.table.as_ref().map_or_else(of_formula, |table| table.at(crack_length))
     }
 
     /// Whether the formula holds at this crack length.

@@ -3,7 +3,9 @@
 //! Lengths in metres, the load direction of the standard specimens is y. A [`Specimen`] is fixed once built:
 //! nothing in a run changes it. Cracks go through the thickness but for those of [`part_through`].
 
+pub mod beta;
 mod crack_line;
+pub mod drawing;
 pub mod geometry;
 pub mod handbook;
 pub mod limit_load;
@@ -14,6 +16,7 @@ mod plate;
 mod read;
 mod standard;
 
+pub use beta::BetaTable;
 pub use crack_line::{CrackLine, LineEnd};
 pub use geometry::{Component, Edge};
 pub use part_through::{FrontTip, PartThrough};
@@ -222,6 +225,8 @@ pub struct Specimen {
     pub supports: Vec<Support>,
     /// What of its crack does not go through the thickness; `cracks` and `tips` are then those that are seen from the front.
     pub part_through: Option<PartThrough>,
+    /// β(a) of a table of the case, in place of a handbook's K.
+    pub beta: Option<BetaTable>,
 }
 
 impl Specimen {
@@ -250,6 +255,7 @@ impl Specimen {
             crack_pressure: 0.0,
             supports: Vec::new(),
             part_through: None,
+            beta: None,
         }
     }
 

@@ -3,7 +3,8 @@
 //! ```toml
 //! [specimen]
 //! kind = "plate"
-//! width_mm = 100.0              # with length_mm: a rectangle centred on 0; or outline_mm = [[x, y], ...]; or diameter_mm: a disc about 0
+//! width_mm = 100.0              # with length_mm: a rectangle centred on 0; or outline_mm = [[x, y], ...]; or diameter_mm: a disc about 0;
+//!                               # or outline_file = "part.dxf" (.svg), with its holes and cracks before those of the keys
 //! length_mm = 300.0
 //! thickness_mm = 2.0
 //! holes = [{ x_mm = 20.0, y_mm = 0.0, diameter_mm = 8.0 }]
@@ -18,14 +19,18 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use toml::Value;
 
+use super::drawing::{self, DrawingUnit, Shape, SymmetryPlane};
 use super::geometry::{bounding_box, distance, polygon_area, segments_touch, self_intersection, turn};
 use super::placement::{check_holes, place_cracks, place_slots};
 use super::{Crack, Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
 use crate::error::{Result, input, input_missing};
-use crate::input::{LENGTH, point, slice};
+use crate::input::{Folder, LENGTH, point, refuse_given, slice};
+use crate::units::place_mm;
 
 /// More than this is a slip, and the checks compare every item with every other.
 const ITEMS_MAX: usize = 500;
+/// Corners of a drawing, whose arcs have many.
+const CORNERS_MAX: usize = 4000;
 
 /// Keys of `[specimen]`.
 #[derive(Deserialize)]
@@ -34,10 +39,15 @@ struct Input {
     #[serde(rename = "kind")]
     _kind: SpecimenKind,
     outline_mm: Option<Vec<Value>>,
+    outline_file: Option<String>,
+    outline_unit: Option<DrawingUnit>,
+    outline_symmetry: Option<SymmetryPlane>,
     width_mm: Option<f64>,
     length_mm: Option<f64>,
     diameter_mm: Option<f64>,
     thickness_mm: f64,
+    #[serde(rename = "beta_file")]
+    _beta_file: Option<String>,
     #[serde(default)]
     holes: Vec<Value>,
     #[serde(default)]
@@ -70,16 +80,21 @@ struct NotchInput {
     width_mm: f64,
 }
 
-pub(super) fn from_value(value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
+pub(super) fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Result<Specimen> {
     let input: Input = slice(value, "specimen")?;
     let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let outline = outline(&input)?;
-    let holes = read_holes(&input.holes)?;
+    let drawn = drawn(&input, folder)?;
+    let outline = match &drawn {
+        Some(shape) => simple(shape.outline.clone(), drawing::KEY)?,
+        None => outline(&input)?,
+    };
+    let (mut holes, mut cracks) = drawn.map(|shape| (shape.holes, shape.cracks)).unwrap_or_default();
+    holes.extend(read_holes(&input.holes)?);
     let slots = items("specimen.notches", &input.notches, |item: NotchInput, path| {
         let (from, to) = ends(path, item.from_mm, item.to_mm)?;
         Ok(Slot { from, to, width: LENGTH.read(&format!("{path}.width_mm"), item.width_mm)? })
     })?;
-    let cracks = items("specimen.cracks", &input.cracks, |item: CrackInput, path| crack_path(path, item))?;
+    cracks.extend(items("specimen.cracks", &input.cracks, |item: CrackInput, path| crack_path(path, item))?);
     let [low, high] = bounding_box(&outline);
     let (width, length) = (high[0] - low[0], high[1] - low[1]);
     let mut specimen = Specimen {
@@ -111,6 +126,28 @@ fn common_line(cracks: &[Crack], axis: usize) -> Option<f64> {
     cracks.iter().all(|crack| crack.from[axis] == first && crack.to[axis] == first).then_some(first)
 }
 
+/// What the drawing of a plate says, where it has one.
+fn drawn(input: &Input, folder: &Folder) -> Result<Option<Shape>> {
+    let Some(file) = &input.outline_file else {
+        let keys = [("outline_unit", input.outline_unit.is_some()), ("outline_symmetry", input.outline_symmetry.is_some())];
+        refuse_given(
+            "specimen",
+            &keys,
+            "belongs to a drawing, and outline_file is missing",
+            "give outline_file, or leave it out",
+        )?;
+        return Ok(None);
+    };
+    let keys = [
+        ("outline_mm", input.outline_mm.is_some()),
+        ("width_mm", input.width_mm.is_some()),
+        ("length_mm", input.length_mm.is_some()),
+        ("diameter_mm", input.diameter_mm.is_some()),
+    ];
+    refuse_given("specimen", &keys, "stands beside outline_file", "leave one of both out")?;
+    drawing::read(file, folder, input.outline_unit, input.outline_symmetry).map(Some)
+}
+
 /// Outline, counter-clockwise and simple.
 fn outline(input: &Input) -> Result<Vec<Point>> {
     if let Some(diameter) = input.diameter_mm {
@@ -123,8 +160,9 @@ fn outline(input: &Input) -> Result<Vec<Point>> {
     }
     let Some(corners) = &input.outline_mm else {
         let need = |key: &str, value: Option<f64>| {
-            let value = value
-                .ok_or_else(|| input_missing(key, "is missing", "give width_mm and length_mm, or outline_mm, or diameter_mm"))?;
+            let value = value.ok_or_else(|| {
+                input_missing(key, "is missing", "give width_mm and length_mm, or outline_mm, or diameter_mm, or outline_file")
+            })?;
             LENGTH.read(key, value)
         };
         let (x, y) = (need("specimen.width_mm", input.width_mm)? / 2.0, need("specimen.length_mm", input.length_mm)? / 2.0);
@@ -169,22 +207,34 @@ fn polygon(corners: &[Value]) -> Result<Vec<Point>> {
     if outline.len() > 1 && outline.first() == outline.last() {
         outline.pop();
     }
-    if outline.len() < 3 || outline.len() > ITEMS_MAX {
+    if outline.len() > ITEMS_MAX {
         let remedy = format!("give 3 to {ITEMS_MAX} corners in order");
         return Err(input(KEY, format!("{} points", corners.len()), "is no outline", remedy));
     }
+    simple(outline, KEY)
+}
+
+/// The outline of a key counter-clockwise, if it is one.
+/// Errors: corners that enclose no area, or whose sides meet.
+fn simple(mut outline: Vec<Point>, key: &str) -> Result<Vec<Point>> {
+    let count = format!("{} points", outline.len());
+    if outline.len() < 3 || outline.len() > CORNERS_MAX {
+        return Err(input(key, count, "is no outline", format!("give 3 to {CORNERS_MAX} corners in order")));
+    }
     if let Some(i) = (0..outline.len()).find(|&i| distance(outline[i], outline[(i + 1) % outline.len()]) < 1e-9) {
-        return Err(input(KEY, format!("corner {i}"), "stands twice in a row", "leave one of them out"));
+        return Err(input(key, format!("corner {i}"), "stands twice in a row", "leave one of them out"));
     }
     if let Some((i, j)) = self_intersection(&outline) {
-        let problem = format!("crosses or touches itself: the edge after corner {i} meets the edge after corner {j}");
-        return Err(input(KEY, format!("{} points", outline.len()), problem, "give the corners in order around the plate"));
+        let [from, to] = [i, j].map(|corner| place_mm(outline[corner]));
+        let problem =
+            format!("crosses or touches itself: the edge after corner {i}, {from}, meets the edge after corner {j}, {to}");
+        return Err(input(key, count, problem, "give the corners in order around the plate"));
     }
     let area = polygon_area(&outline);
     let [low, high] = bounding_box(&outline);
     if area.abs() < 1e-6 * (high[0] - low[0]).max(high[1] - low[1]).powi(2) {
         let remedy = "give the corners in order around the plate";
-        return Err(input(KEY, format!("{} points", outline.len()), "encloses no area", remedy));
+        return Err(input(key, count, "encloses no area", remedy));
     }
     if area < 0.0 {
         outline.reverse();

@@ -4,7 +4,7 @@ use toml::Value;
 
 use super::{Specimen, SpecimenKind, part_through, plate, standard};
 use crate::error::{Result, input, input_missing};
-use crate::input::{shorten, table_of};
+use crate::input::{Folder, shorten, table_of};
 
 /// Other names of flaws that do not go through the thickness, never treated as through cracks.
 pub const PART_THROUGH: &[&str] = &[
@@ -50,8 +50,8 @@ impl Specimen {
 }
 
 /// Reads `[specimen]`, which may be a plate without cracks or notches. The standard kinds come with their loads; a `plate` is loaded by
-/// `[loading]`. What was done to ends of cracks goes into `notes`.
-pub fn from_value(value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
+/// `[loading]`. A drawing that it names lies in `folder`. What was done to ends of cracks goes into `notes`.
+pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Result<Specimen> {
     let table = table_of(value, "specimen")?;
     let kind = match table.get("kind") {
         None => {
@@ -76,7 +76,7 @@ pub fn from_value(value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
     match kind {
         SpecimenKind::SingleEdgeTension => standard::single_edge_from_value(value),
         SpecimenKind::CompactTension => standard::compact_from_value(value),
-        SpecimenKind::Plate => plate::from_value(value, notes),
+        SpecimenKind::Plate => plate::from_value(value, folder, notes),
         _ => standard::from_value(kind, value),
     }
 }

@@ -49,6 +49,8 @@ struct Input {
     length_mm: f64,
     thickness_mm: f64,
     crack_length_mm: f64,
+    #[serde(rename = "beta_file")]
+    _beta_file: Option<String>,
 }
 
 /// Keys of `[specimen]` for a single edge crack.
@@ -61,6 +63,8 @@ struct SingleEdgeInput {
     length_mm: f64,
     thickness_mm: f64,
     crack_length_mm: f64,
+    #[serde(rename = "beta_file")]
+    _beta_file: Option<String>,
     ends: Option<Ends>,
 }
 
@@ -121,6 +125,8 @@ struct CompactInput {
     width_mm: f64,
     thickness_mm: f64,
     crack_length_mm: f64,
+    #[serde(rename = "beta_file")]
+    _beta_file: Option<String>,
 }
 
 /// C(T).

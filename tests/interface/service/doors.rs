@@ -57,6 +57,23 @@ fn a_body_is_taken_by_its_media_type() {
     }
 }
 
+/// Drawings and tables of β come as other files of a case do.
+#[test]
+fn a_drawing_is_sent_along() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let [case, drawing] =
+        ["bracket.toml", "bracket.dxf"].map(|name| std::fs::read_to_string(format!("data/cases/{name}")).unwrap());
+    let sent = |files: serde_json::Value| service.post("/v1/check", &json!({ "input": case, "files": files }));
+    let plate = sent(json!({ "bracket.dxf": drawing })).expect(200);
+    assert!(plate.text().contains("\"holes\""), "{}", plate.text());
+    let missing = sent(json!({})).expect(400);
+    assert!(missing.text().contains("bracket.dxf") && missing.text().contains("was not sent along"), "{}", missing.text());
+    let broken = sent(json!({ "bracket.dxf": drawing.replace("\nholes\n", "\nbores\n") })).expect(400);
+    assert!(broken.text().contains("specimen.outline_file") && broken.text().contains("bores"), "{}", broken.text());
+}
+
 /// A download that broke off goes on where it was, of files of one part and of many.
 #[test]
 fn files_have_tags_and_ranges() {

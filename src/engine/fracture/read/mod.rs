@@ -55,9 +55,10 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use super::scene::{Scene, SceneLaw};
-use crate::error::{Result, input};
-use crate::input::{Document, Folder, ForeignSections, Output, Provenance, Sections};
+use crate::error::{Result, input, input_missing};
+use crate::input::{Document, Folder, ForeignSections, Output, Provenance, Sections, value_at};
 use crate::levels::refinement;
+use crate::specimen::beta::KEY as BETA_FILE;
 use crate::{material, specimen};
 
 /// Sections of a scene file.
@@ -114,7 +115,10 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
     let sections = Sections::of(table, SECTIONS, STRANGERS)?;
     let echo = sections.echo()?;
     let mut warnings = Vec::new();
-    let mut specimen = specimen::from_value(sections.required("specimen")?, &mut warnings)?;
+    let mut specimen = specimen::from_value(sections.required("specimen")?, folder, &mut warnings)?;
+    if value_at(sections.required("specimen")?, "beta_file").is_some() {
+        return Err(input_missing(BETA_FILE, "gives K, and a scene without cycles asks for none", "leave it out"));
+    }
     if !specimen.is_through() {
         let problem = "is a crack that does not go through, which no scene in the plane of the plate knows";
         return Err(input("specimen.kind", format!("\"{}\"", specimen.kind), problem, "give a through crack"));

@@ -1,0 +1,167 @@
+//! Lines of a drawing: straight pieces and arcs, chained end to end, and the polylines that they become.
+
+use std::f64::consts::TAU;
+
+use crate::specimen::Point;
+use crate::specimen::geometry::{along, distance};
+
+/// Turn of an arc from one corner of its polyline to the next at the most, rad: 2.5°. Corners lie on the arc, and chords within
+/// r (1 - cos 1.25°) = 2.4e-4 radii of it.
+pub const TURN: f64 = TAU / 144.0;
+
+/// A circular arc.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arc {
+    /// m.
+    pub centre: Point,
+    /// Angle that it turns by, rad, positive counter-clockwise.
+    pub sweep: f64,
+}
+
+/// A piece of a curve, from the end of the one before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Its end, m.
+    pub to: Point,
+    /// The arc that it is; else it is straight.
+    pub arc: Option<Arc>,
+}
+
+impl Piece {
+    /// A straight one.
+    pub fn straight(to: Point) -> Self {
+        Piece { to, arc: None }
+    }
+}
+
+/// Pieces end to end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Its start, m.
+    pub from: Point,
+    /// In order; at least one.
+    pub pieces: Vec<Piece>,
+}
+
+impl Curve {
+    /// A whole circle.
+    pub fn circle(centre: Point, radius: f64) -> Self {
+        let from = [centre[0] + radius, centre[1]];
+        Curve { from, pieces: vec![Piece { to: from, arc: Some(Arc { centre, sweep: TAU }) }] }
+    }
+
+    /// Its end.
+    pub fn end(&self) -> Point {
+        self.pieces.last().map_or(self.from, |piece| piece.to)
+    }
+
+    /// Whether its end is its start, within `tolerance`, m.
+    pub fn is_closed(&self, tolerance: f64) -> bool {
+        let is_more = self.pieces.len() > 1 || self.pieces.iter().any(|piece| piece.arc.is_some_and(|arc| arc.sweep.abs() > 1.0));
+        is_more && distance(self.from, self.end()) <= tolerance
+    }
+
+    /// Centre and radius, m, of a closed curve that is a full circle of arcs.
+    pub fn as_circle(&self, tolerance: f64) -> Option<(Point, f64)> {
+        let centre = self.pieces.first()?.arc?.centre;
+        let radius = distance(centre, self.from);
+        let is_part = |piece: &Piece| {
+            let arc = piece.arc?;
+            let fits = distance(arc.centre, centre) <= tolerance && (distance(piece.to, centre) - radius).abs() <= tolerance;
+            fits.then_some(arc.sweep)
+        };
+        let sweep: f64 = self.pieces.iter().map(is_part).collect::<Option<Vec<f64>>>()?.iter().sum();
+        (self.is_closed(tolerance) && (sweep.abs() - TAU).abs() < 1e-3).then_some((centre, radius))
+    }
+
+    /// Its corners, arcs as polylines, both ends included; without those that lie straight between their neighbours.
+    pub fn points(&self) -> Vec<Point> {
+        let mut points = vec![self.from];
+        for piece in &self.pieces {
+            let before = points[points.len() - 1];
+            if let Some(Arc { centre, sweep }) = piece.arc {
+                let [x, y] = [before[0] - centre[0], before[1] - centre[1]];
+                let corners = (sweep.abs() / TURN - 1e-9).ceil().max(1.0) as usize;
+                points.extend((1..corners).map(|corner| {
+                    let (sin, cos) = (sweep * corner as f64 / corners as f64).sin_cos();
+                    [centre[0] + cos * x - sin * y, centre[1] + sin * x + cos * y]
+                }));
+            }
+            points.push(piece.to);
+        }
+        points
+    }
+
+    /// The same curve from its end to its start.
+    pub fn reversed(&self) -> Self {
+        let starts = std::iter::once(self.from).chain(self.pieces.iter().map(|piece| piece.to));
+        let back = |(to, piece): (Point, &Piece)| Piece { to, arc: piece.arc.map(|arc| Arc { sweep: -arc.sweep, ..arc }) };
+        let mut pieces: Vec<Piece> = starts.zip(&self.pieces).map(back).collect();
+        pieces.reverse();
+        Curve { from: self.end(), pieces }
+    }
+
+    /// With every place changed; `turns` tells whether arcs then turn the other way.
+    pub fn mapped(&self, map: impl Fn(Point) -> Point, turns: bool) -> Self {
+        let arc = |arc: Arc| Arc { centre: map(arc.centre), sweep: if turns { -arc.sweep } else { arc.sweep } };
+        let pieces = self.pieces.iter().map(|piece| Piece { to: map(piece.to), arc: piece.arc.map(arc) }).collect();
+        Curve { from: map(self.from), pieces }
+    }
+
+    /// The curves that are left of it without some straight pieces.
+    pub fn without(&self, is_left_out: impl Fn(Point, Point) -> bool) -> Vec<Curve> {
+        let mut left: Vec<Curve> = Vec::new();
+        let (mut from, mut is_open) = (self.from, false);
+        for piece in &self.pieces {
+            if piece.arc.is_none() && is_left_out(from, piece.to) {
+                is_open = false;
+            } else if let Some(curve) = left.last_mut().filter(|_| is_open) {
+                curve.pieces.push(*piece);
+            } else {
+                left.push(Curve { from, pieces: vec![*piece] });
+                is_open = true;
+            }
+            from = piece.to;
+        }
+        left
+    }
+}
+
+/// The arc from one place to another that turns by `4 atan(bulge)`, as DXF has it; straight without a bulge.
+pub fn bulged(from: Point, to: Point, bulge: f64) -> Piece {
+    if bulge == 0.0 {
+        return Piece::straight(to);
+    }
+    let sweep = 4.0 * bulge.atan();
+    let ahead = 0.5 / (0.5 * sweep).tan();
+    let middle = along(from, to, 0.5);
+    let centre = [middle[0] - ahead * (to[1] - from[1]), middle[1] + ahead * (to[0] - from[0])];
+    Piece { to, arc: Some(Arc { centre, sweep }) }
+}
+
+/// Chains curves whose ends lie within `tolerance` of each other, m.
+/// Errors: the place where more than two of them meet.
+pub fn chained(mut curves: Vec<Curve>, tolerance: f64) -> Result<Vec<Curve>, Point> {
+    let is_near = |a: Point, b: Point| distance(a, b) <= tolerance;
+    let mut chains = Vec::new();
+    while !curves.is_empty() {
+        let mut chain = curves.remove(0);
+        for _ in 0..2 {
+            while !chain.is_closed(tolerance) {
+                let end = chain.end();
+                let meets =
+                    |curve: &Curve| !curve.is_closed(tolerance) && (is_near(curve.from, end) || is_near(curve.end(), end));
+                let mut next = (0..curves.len()).filter(|&curve| meets(&curves[curve]));
+                let Some(first) = next.next() else { break };
+                if next.next().is_some() {
+                    return Err(end);
+                }
+                let next = curves.remove(first);
+                chain.pieces.extend(if is_near(next.from, end) { next.pieces } else { next.reversed().pieces });
+            }
+            chain = chain.reversed();
+        }
+        chains.push(chain);
+    }
+    Ok(chains)
+}

@@ -1,0 +1,160 @@
+//! β(a) out of a sweep and back in by `specimen.beta_file`; compliance of a compact specimen.
+
+use perilife::case::Case;
+use perilife::input::Folder;
+use perilife::predict::factor_curve::FactorCurve;
+use perilife::predict::factor_sweep::{FactorSweep, factor_sweep};
+use perilife::predict::{Silent, predict};
+use perilife::quadrature::integrate;
+use perilife::report::factor_sweep::{COLUMNS, beta_table, table};
+use perilife::units::MM;
+
+use crate::support::hand_cases::{ALL, PANEL, hand_case, try_hand_case_in};
+use crate::support::plates::try_case;
+
+/// Lengths from one to another, mm, in so many steps.
+fn lengths([from, to]: [f64; 2], steps: usize) -> Vec<f64> {
+    (0..=steps).map(|i| (from + (to - from) * i as f64 / steps as f64) * MM).collect()
+}
+
+fn life(specimen: &str, set: &[&str], beta: &str) -> f64 {
+    let folder = Folder::at_hand([("beta.csv".to_owned(), beta.as_bytes().to_vec())]);
+    let case = try_hand_case_in(&format!("{specimen}beta_file = \"beta.csv\"\n"), set, folder).unwrap();
+    predict(&case, &Silent).unwrap().life_cycles()
+}
+
+fn sweep(case: &Case, range: [f64; 2], steps: usize) -> FactorSweep {
+    factor_sweep(case, &lengths(range, steps), &Silent).unwrap()
+}
+
+/// K of a formula, 1 mm apart, read back: the life of the formula, of pulled specimens and of one on pins.
+#[test]
+fn a_handbook_read_back_gives_its_own_life() {
+    for (specimen, range) in ALL.into_iter().zip([[9.0, 49.0], [8.0, 28.0], [8.0, 28.0], [12.5, 32.5]]) {
+        let stop = format!("stop.crack_length_mm={}", range[1]);
+        let case = hand_case(specimen, &[&stop]);
+        let own = predict(&case, &Silent).unwrap().life_cycles();
+        let steps = (range[1] - range[0]) as usize;
+        let text = beta_table(&sweep(&case, range, steps));
+        assert_eq!(text.lines().count(), steps + 2, "{text}");
+        let ratio = life(specimen, &[&stop], &text) / own;
+        println!("{specimen}: {:e}", ratio - 1.0);
+        assert!((ratio - 1.0).abs() < 1e-6, "{specimen}: {ratio}");
+    }
+}
+
+/// K of a run on nodes read back: the life of the law over the K(a) of that run, whose crack has two tips.
+#[test]
+fn a_run_on_nodes_read_back_gives_the_life_of_its_own_factors() {
+    let plate = "kind = \"plate\"\nwidth_mm = 100.0\nlength_mm = 200.0\nthickness_mm = 2.0\n\
+                 cracks = [{ from_mm = [-8, 0], to_mm = [8, 0] }]\n";
+    let set = ["model.method=element_free_galerkin", "stop.crack_length_mm=40"];
+    let by_nodes = try_hand_case_in(plate, &set, Folder::none()).unwrap();
+    let curve = FactorCurve::of(&by_nodes, &Silent).unwrap();
+    let (c, m) = (8.95422e-8 * MM, 2.874);
+    // Both tips lengthen the crack.
+    let rate = |length: f64| 2.0 * c * (by_nodes.loading.range_share() * curve.at(length) / 1e6).powf(m);
+    let own =
+        lengths([16.0, 40.0], 240).windows(2).map(|pair| integrate(|a| 1.0 / rate(a), pair[0], pair[1], 1e-9).value).sum::<f64>();
+    let found = sweep(&by_nodes, [16.0, 40.0], 48);
+    let first = &found.rows[0];
+    assert!((first.beta_length / MM - 8.0).abs() < 1e-9 && (first.crack_length / MM - 16.0).abs() < 1e-9, "{first:?}");
+    let ratio = life(plate, &set[1..], &beta_table(&found)) / own;
+    println!("nodes: {:e}", ratio - 1.0);
+    assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
+}
+
+/// Compliance of a compact specimen over a/W by the polynomials of ASTM E647-15 (A1, table A1.1, E v B/P at the front face and on the load
+/// line; back-face strain X: Riddell and Piascik 1999), which give a/W within 0.1 % of W; opening of the panel by Tada.
+#[test]
+fn compliance_is_that_of_the_standard() {
+    let specimen = ALL[3];
+    let case = hand_case(specimen, &[]);
+    let (width, thickness, load) = (50.0 * MM, 12.5 * MM, case.loading.maximum);
+    let modulus = case.material.plane_modulus();
+    let found = sweep(&case, [15.0, 30.0], 3);
+    let inverse = |u: f64, c: [f64; 6]| c.iter().rev().fold(0.0, |sum, c| sum * u + c);
+    for row in &found.rows {
+        let u = |compliance: f64| 1.0 / (compliance.sqrt() + 1.0);
+        let of = |opening: f64| u(modulus * opening * thickness / load);
+        let at_front = inverse(of(row.mouth_opening.unwrap()), [1.0010, -4.6695, 18.460, -236.82, 1214.9, -2143.6]);
+        let on_line = inverse(of(row.load_line.unwrap()), [1.0002, -4.0632, 11.242, -106.04, 464.33, -650.68]);
+        let strain = -row.back_face_strain.unwrap();
+        let at_back = inverse(u(strain * modulus * thickness * width / load), [1.0033, -2.35, 1.3694, -15.294, 63.182, -74.42]);
+        let asked = row.crack_length / width;
+        println!("a/W {asked:.3}: front {at_front:.4}, load line {on_line:.4}, back face {at_back:.4}");
+        for (what, told) in [("front", at_front), ("load line", on_line), ("back face", at_back)] {
+            assert!((told - asked).abs() < 0.005, "{what}: a/W {told} for {asked}");
+        }
+    }
+    // v = 4σa/E' V(2a/W), V = -0.071 - 0.535 x + 0.169 x² + 0.020 x³ - 1.071/x ln(1 - x), ±0.6 %.
+    let panel = hand_case(PANEL, &[]);
+    let row = &sweep(&panel, [20.0, 30.0], 2).rows[2];
+    let x = 2.0 * row.crack_length / (152.4 * MM);
+    let v = -0.071 - 0.535 * x + 0.169 * x * x + 0.020 * x.powi(3) - 1.071 / x * (1.0 - x).ln();
+    let opening = 4.0 * panel.loading.maximum * row.crack_length / panel.material.plane_modulus() * v;
+    let ratio = row.mouth_opening.unwrap() / opening;
+    println!("panel: {ratio:.4}");
+    assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+}
+
+#[test]
+fn the_table_has_the_columns_of_the_contract() {
+    let case = hand_case(PANEL, &[]);
+    let text = table(&sweep(&case, [9.0, 11.0], 1));
+    let contract = "crack_length_mm,tip,x_mm,y_mm,k_i_mpa_sqrt_m,k_ii_mpa_sqrt_m,t_stress_mpa,beta,cmod_mm";
+    assert!(text.starts_with(contract) && text.lines().next() == Some(COLUMNS) && text.lines().count() == 5, "{text}");
+    let row: Vec<f64> = text.lines().nth(4).unwrap().split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+    // σ √(πa) of 60.35 MPa and 11 mm times √(sec(π 11/152.4)).
+    assert!((row[4] - 11.368).abs() < 0.002 && row[2] == 11.0 && (row[7] - 1.0132).abs() < 1e-3 && row[8] > 0.0, "{row:?}");
+}
+
+/// Every table that is none, with what its message names.
+#[test]
+fn tables_that_are_none_are_refused_by_line_and_value() {
+    let bad = [
+        ("crack_length_mm,beta\n9,1\n8,1\n50,1.2\n", "beta.csv:3: crack_length_mm = 8: does not rise above the 9 mm of line 2"),
+        ("crack_length_mm,beta\n9,1\n9,1\n50,1.2\n", "beta.csv:3: crack_length_mm = 9: does not rise"),
+        ("crack_length_mm,beta\n9,1\n", "one row"),
+        ("crack_length_mm,beta\n", "no row"),
+        ("crack_length_mm,beta\n9,1\n20,0\n50,1.2\n", "beta.csv:3: beta = 0: is not a number above zero"),
+        ("crack_length_mm,beta\n9,1\n20,-1\n50,1.2\n", "beta.csv:3: beta = -1"),
+        ("crack_length_mm,beta\n9,1\n20,one\n50,1.2\n", "beta.csv:3: beta = one: is not a number"),
+        ("crack_length_mm,beta\n9,1\n20,1,3\n50,1.2\n", "beta.csv:3: row = 20,1,3"),
+        ("a,b\n9,1\n20,1\n", "crack_length_mm = a: is not a number"),
+        ("crack_length_mm,beta\n10,1\n50,1.2\n", "beta.csv:2: crack_length_mm = 10: is where the table begins"),
+        ("crack_length_mm,beta\n5,1\n8,1.2\n", "beta.csv:3: crack_length_mm = 8: is where the table ends"),
+        (
+            "crack_length_mm,beta\n5,1\n40,1.2\n",
+            "beta.csv:3: crack_length_mm = 40: is where the table ends, and growth goes on to 49.8 mm",
+        ),
+    ];
+    for (text, words) in bad {
+        let folder = Folder::at_hand([("beta.csv".to_owned(), text.as_bytes().to_vec())]);
+        let set = ["stop.crack_length_mm=49.8"];
+        let specimen = format!("{PANEL}beta_file = \"beta.csv\"\n");
+        let run = try_hand_case_in(&specimen, &set, folder).and_then(|case| predict(&case, &Silent));
+        let message = run.unwrap_err().to_string();
+        assert!(message.contains(words), "{text}: {message}");
+    }
+    // A way to K beside it, cracks of unlike length, slots and lengths that are not reached.
+    let good = || Folder::at_hand([("beta.csv".to_owned(), b"crack_length_mm,beta\n1,1\n90,1.2\n".to_vec())]);
+    let plate = "kind = \"plate\"\nwidth_mm = 100.0\nlength_mm = 200.0\nthickness_mm = 2.0\nbeta_file = \"beta.csv\"\n";
+    let unlike = "cracks = [{ from_mm = [-50, 0], to_mm = [-40, 0] }, { from_mm = [50, 0], to_mm = [44, 0] }]\n";
+    let slot = "notches = [{ from_mm = [-50, 0], to_mm = [-40, 0], width_mm = 2 }]\n";
+    let refused = [
+        (format!("{PANEL}beta_file = \"beta.csv\"\n"), "model.method=element_free_galerkin", "finds K itself"),
+        (format!("{plate}{unlike}"), "model.method=handbook", "unlike lengths, a = 6 and 10 mm"),
+        (format!("{plate}{slot}"), "model.method=handbook", "needs sharp cracks"),
+    ];
+    for (specimen, set, words) in refused {
+        let message = try_hand_case_in(&specimen, &[set], good()).unwrap_err().to_string();
+        assert!(message.contains("specimen.beta_file") && message.contains(words), "{message}");
+    }
+    let slant = try_case(
+        "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncracks = [{ from_mm = [-50, 0], to_mm = [-40, 0] }]\n",
+        &[],
+    );
+    let message = factor_sweep(&slant.unwrap(), &lengths([5.0, 20.0], 3), &Silent).unwrap_err().to_string();
+    assert!(message.contains("--sweep = 5") && message.contains("initial crack length 10 mm"), "{message}");
+}

@@ -1,0 +1,294 @@
+//! Plates from drawings: DXF and SVG say what the keys of a case say; what is no plate is refused by layer and place.
+
+use std::fmt::Write as _;
+
+use perilife::Result;
+use perilife::case::Case;
+use perilife::input::Folder;
+use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
+use perilife::specimen::Specimen;
+use perilife::stress_concentration::stressed;
+use perilife::units::MM;
+
+const REST: &str = "thickness_mm = 2.0\n[material]\nyoungs_modulus_gpa = 72\npoisson_ratio = 0.3\n[loading]\nstress_max_mpa = 70\n\
+                    stress_ratio = 0.1\n[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3.0\n";
+
+/// The case of keys of `[specimen]` with files at hand.
+fn try_case(keys: &str, files: &[(&str, &str)]) -> Result<Case> {
+    let files = files.iter().map(|(name, text)| ((*name).to_owned(), text.as_bytes().to_vec()));
+    Case::from_toml(&format!("[specimen]\nkind = \"plate\"\n{keys}\n{REST}"), "drawn", Folder::at_hand(files), &[])
+}
+
+fn plate(keys: &str, files: &[(&str, &str)]) -> Specimen {
+    try_case(keys, files).unwrap_or_else(|error| panic!("{keys} {files:?}: {error}")).specimen
+}
+
+/// An ASCII DXF of entities `kind layer code value code value ...`, with `$INSUNITS`.
+fn dxf(unit: u8, entities: &[&str]) -> String {
+    let mut text = format!("0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n{unit}\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n");
+    for entity in entities {
+        let mut words = entity.split_whitespace();
+        let _ = writeln!(text, "0\n{}\n8\n{}", words.next().unwrap(), words.next().unwrap());
+        words.for_each(|word| drop(writeln!(text, "{word}")));
+    }
+    text + "0\nENDSEC\n0\nEOF\n"
+}
+
+fn line(layer: &str, [a, b]: [[f64; 2]; 2]) -> String {
+    format!("LINE {layer} 10 {} 20 {} 11 {} 21 {}", a[0], a[1], b[0], b[1])
+}
+
+/// The sides of a polygon as lines, each other one drawn backwards.
+fn sides(corners: &[[f64; 2]]) -> Vec<String> {
+    let side = |i: usize| [corners[i], corners[(i + 1) % corners.len()]];
+    (0..corners.len()).map(|i| line("outline", if i % 2 == 0 { side(i) } else { [side(i)[1], side(i)[0]] })).collect()
+}
+
+const RECTANGLE: &str = "LWPOLYLINE outline 90 4 70 1 10 -50 20 -100 10 50 20 -100 10 50 20 100 10 -50 20 100";
+const HOLE: &str = "CIRCLE holes 10 0 20 0 40 10";
+const CRACK: &str = "LINE cracks 10 5 20 0 11 22 21 0";
+const KEYS: &str = "width_mm = 100\nlength_mm = 200\nholes = [{ x_mm = 0, y_mm = 0, diameter_mm = 20 }]\n\
+                    cracks = [{ from_mm = [5, 0], to_mm = [22, 0] }]";
+const DXF: &str = "outline_file = \"part.dxf\"";
+const SVG: &str = "outline_file = \"part.svg\"";
+
+fn svg(size: &str, content: &str) -> String {
+    format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size}>{content}</svg>")
+}
+
+/// One plate by its keys and by drawings of every kind of line: the same shape, and the same K.
+#[test]
+fn a_drawing_is_the_plate_of_the_keys() {
+    let by_keys = plate(KEYS, &[]);
+    let inch = |text: &str| -> String {
+        let scaled = text.split(' ').enumerate().map(|(i, word)| match word.parse::<f64>() {
+            // Values stand behind their codes; 70 and 90 are no lengths.
+            Ok(value) if i >= 2 && i % 2 == 1 && !["70", "90"].contains(&text.split(' ').nth(i - 1).unwrap()) => {
+                (value / 25.4).to_string()
+            }
+            _ => word.to_owned(),
+        });
+        scaled.collect::<Vec<_>>().join(" ")
+    };
+    let corners = [[-50.0, -100.0], [50.0, -100.0], [50.0, 100.0], [-50.0, 100.0]];
+    let of_lines = [
+        sides(&corners),
+        vec!["ARC holes 10 0 20 0 40 10 50 0 51 180".into(), "ARC holes 10 0 20 0 40 10 50 180 51 360".into()],
+        vec![line("cracks", [[14.0, 0.0], [5.0, 0.0]]), line("cracks", [[14.0, 0.0], [22.0, 0.0]])],
+    ]
+    .concat();
+    let of_lines: Vec<&str> = of_lines.iter().map(String::as_str).collect();
+    let polyline = [
+        "POLYLINE outline 70 1",
+        "VERTEX outline 10 -50 20 -100",
+        "VERTEX outline 10 50 20 -100",
+        "VERTEX outline 10 50 20 100",
+        "VERTEX outline 10 -50 20 100",
+        "SEQEND outline",
+        "LWPOLYLINE holes 70 1 10 -10 20 0 42 1 10 10 20 0 42 1",
+        CRACK,
+    ];
+    let half = [
+        "LWPOLYLINE outline 70 0 10 -50 20 0 10 -50 20 -100 10 50 20 -100 10 50 20 0",
+        "ARC holes 10 0 20 0 40 10 50 180 51 360",
+        CRACK,
+    ];
+    let closed_half = ["LWPOLYLINE outline 70 1 10 -50 20 0 10 -50 20 -100 10 50 20 -100 10 50 20 0", HOLE, CRACK];
+    let drawings = [
+        (DXF.to_owned(), dxf(4, &[RECTANGLE, HOLE, CRACK])),
+        (DXF.to_owned(), dxf(1, &[&inch(RECTANGLE), &inch(HOLE), &inch(CRACK)])),
+        (format!("{DXF}\noutline_unit = \"mm\""), dxf(0, &of_lines)),
+        (DXF.to_owned(), dxf(4, &polyline)),
+        (format!("{DXF}\noutline_symmetry = \"y=0\""), dxf(4, &half)),
+        (format!("{DXF}\noutline_symmetry = \"y=0\""), dxf(4, &closed_half)),
+        (
+            SVG.to_owned(),
+            svg(
+                "width=\"100mm\" height=\"200mm\" viewBox=\"-50 -100 100 200\"",
+                "<title>part</title><g id=\"outline\"><rect x=\"-50\" y=\"-100\" width=\"100\" height=\"200\"/></g><circle id=\"holes\" r=\"10\"/><line id=\"cracks\" x1=\"5\" x2=\"22\"/>",
+            ),
+        ),
+        (
+            SVG.to_owned(),
+            svg(
+                "width=\"10cm\" viewBox=\"0 0 1000 2000\"",
+                "<g id=\"layer1\" transform=\"translate(500 1000) scale(10)\"><path id=\"outline\" d=\"M-50-100h100v200H-50z\"/><g id=\"holes\"><path id=\"p1\" d=\"M-10,0a10 10 0 1 1 20 0A10 10 0 1 1 -10 0Z\"/></g><polyline id=\"cracks\" points=\"5,0 14,0 22,0\"/></g>",
+            ),
+        ),
+        (
+            format!("{SVG}\noutline_unit = \"mm\""),
+            svg(
+                "viewBox=\"-50 -100 100 200\"",
+                "<polygon id=\"outline\" points=\"-50,-100 50,-100 50,100 -50,100\"/><circle id=\"holes\" r=\"10\"/><line id=\"cracks\" x1=\"5\" x2=\"22\"/>",
+            ),
+        ),
+    ];
+    let lowest = |specimen: &Specimen| specimen.outline.iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
+    for (keys, text) in &drawings {
+        let name = if keys.starts_with(DXF) { "part.dxf" } else { "part.svg" };
+        let drawn = plate(keys, &[(name, text)]);
+        // An SVG begins at the lower left corner of its viewBox.
+        let [dx, dy] = if name == "part.svg" { [50.0 * MM, lowest(&drawn) + 100.0 * MM] } else { [0.0; 2] };
+        let near = |a: [f64; 2], b: [f64; 2]| (a[0] - dx - b[0]).abs() < 1e-12 && (a[1] - dy - b[1]).abs() < 1e-12;
+        assert_eq!((drawn.outline.len(), drawn.holes.len(), drawn.cracks.len()), (4, 1, 1), "{keys}: {drawn:?}");
+        assert!(
+            by_keys.outline.iter().all(|at| drawn.outline.iter().any(|drawn| near(*drawn, *at))),
+            "{keys}: {:?}",
+            drawn.outline
+        );
+        assert!(
+            near(drawn.holes[0].centre, [0.0; 2]) && (drawn.holes[0].radius - 10.0 * MM).abs() < 1e-12,
+            "{keys}: {:?}",
+            drawn.holes
+        );
+        assert!(near(drawn.tips[0].position, by_keys.tips[0].position) && drawn.tips.len() == 1, "{keys}: {:?}", drawn.tips);
+    }
+    let k = |case: &Case| {
+        stress_intensity(case, &[StressIntensityMethod::ElementFreeGalerkin]).unwrap()[0].methods[0].intensity.k_i.unwrap()
+    };
+    let [drawn, keys] = [(DXF, vec![("part.dxf", drawings[0].1.as_str())]), (KEYS, vec![])]
+        .map(|(keys, files)| k(&try_case(keys, &files).unwrap()));
+    println!("K {drawn} {keys}");
+    assert!((drawn / keys - 1.0).abs() < 1e-9, "{drawn} {keys}");
+}
+
+/// Shoulder fillet of a flat bar, D/d = 2, r/d = 0.25: K_tn = 1.68 by the fit of Pilkey (1997, chart 3.1, table 6-1, ±3 %).
+#[test]
+fn a_drawn_fillet_concentrates_stress_as_in_the_charts() {
+    let (d, t, r, l) = (40.0, 20.0, 10.0, 80.0);
+    let quarter = [
+        line("outline", [[0.0, 2.0 * l], [0.5 * d, 2.0 * l]]),
+        line("outline", [[0.5 * d, 2.0 * l], [0.5 * d, l + r]]),
+        format!("ARC outline 10 {} 20 {} 40 {r} 50 180 51 270", 0.5 * d + r, l + r),
+        line("outline", [[0.5 * d + r, l], [0.5 * d + t, l]]),
+        line("outline", [[0.5 * d + t, l], [0.5 * d + t, 0.0]]),
+        line("outline", [[0.5 * d + t, 0.0], [0.0, 0.0]]),
+    ];
+    let text = dxf(4, &quarter.iter().map(String::as_str).collect::<Vec<_>>());
+    let keys = format!("{DXF}\noutline_symmetry = \"x=0\"");
+    let text_of_case = format!("[specimen]\nkind = \"plate\"\n{keys}\n{REST}")
+        .replace("stress_ratio", "edges = [\"top\"]\nstress_ratio")
+        + "[supports]\nbottom = { fix = [\"y\"] }\n";
+    let folder = Folder::at_hand([("part.dxf".to_owned(), text.into_bytes())]);
+    let document = perilife::input::Document::parse(&text_of_case, "fillet", folder, &[]).unwrap();
+    let case = Case::plate_on_nodes(&document).unwrap();
+    let found = stressed(&case).unwrap();
+    let peak = found.rims.iter().map(|rim| rim.largest).max_by(|a, b| a.stress.total_cmp(&b.stress)).unwrap();
+    let factor = peak.stress / case.loading.maximum;
+    // C1 + C2 (2t/D) + C3 (2t/D)² + C4 (2t/D)³ for 2.0 ≤ t/r ≤ 20.
+    let h = t / r;
+    let x = 2.0 * t / (d + 2.0 * t);
+    let c = [
+        1.042 + 0.982 * f64::sqrt(h) - 0.036 * h,
+        -0.074 - 0.156 * f64::sqrt(h) - 0.010 * h,
+        -3.418 + 1.220 * f64::sqrt(h) - 0.005 * h,
+        3.450 - 2.046 * f64::sqrt(h) + 0.051 * h,
+    ];
+    let chart = c.iter().rev().fold(0.0, |sum, c| sum * x + c);
+    println!("fillet: {factor:.3} at {:?}, chart {chart:.3}, change {:?}", peak.at, found.change);
+    assert!((factor / chart - 1.0).abs() < 0.03, "{factor} for {chart}");
+}
+
+/// Every refusal with its layer and place.
+#[test]
+fn what_is_no_plate_is_refused_by_layer_and_place() {
+    let spline = "SPLINE outline 10 3 20 4";
+    let open = "LWPOLYLINE outline 70 0 10 -50 20 -100 10 50 20 -100 10 50 20 100 10 -50 20 100";
+    let bow = "LWPOLYLINE outline 70 1 10 -50 20 -100 10 50 20 100 10 50 20 -100 10 -50 20 100";
+    let of_dxf: [(u8, &[&str], &[&str]); 20] = [
+        (4, &[open, HOLE], &["layer outline", "open", "(-50", "(-50.0000, 100.0000) mm"]),
+        (4, &[bow], &["crosses or touches itself", "(-50.0000, -100.0000) mm"]),
+        (4, &[RECTANGLE, spline], &["layer outline", "SPLINE at (3, 4)", "no circular arc"]),
+        (4, &[RECTANGLE, "ELLIPSE holes 10 3 20 4"], &["layer holes", "ELLIPSE at (3, 4)"]),
+        (4, &[RECTANGLE, "INSERT outline 10 3 20 4"], &["INSERT at (3, 4)", "explode"]),
+        (4, &[RECTANGLE, "TEXT outline 10 3 20 4"], &["TEXT at (3, 4)"]),
+        (4, &[RECTANGLE, "LINE frame 10 3 20 4 11 5 21 6"], &["layer \"frame\"", "LINE at (3, 4)", "outline, holes, cracks"]),
+        (
+            4,
+            &[RECTANGLE, "LWPOLYLINE holes 70 1 10 0 20 0 10 5 20 0 10 5 20 5"],
+            &["layer holes", "(0.0000, 0.0000) mm", "no full circle"],
+        ),
+        (4, &[RECTANGLE, "ARC holes 10 0 20 0 40 10 50 0 51 90"], &["layer holes", "(10.0000, 0.0000) mm", "no full circle"]),
+        (4, &[RECTANGLE, "CIRCLE cracks 10 0 20 0 40 10"], &["layer cracks", "closed"]),
+        (4, &[RECTANGLE, "LWPOLYLINE outline 70 1 10 0 20 0 10 5 20 0 10 5 20 5"], &["layer outline", "second closed line"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 45 20 0 40 10"], &["holes[0]", "beyond the outline"]),
+        (
+            4,
+            &[
+                RECTANGLE,
+                "LINE cracks 10 0 20 0 11 9 21 0",
+                "LINE cracks 10 0 20 0 11 -9 21 0",
+                "LINE cracks 10 0 20 0 11 0 21 9",
+            ],
+            &["layer cracks", "(0.0000, 0.0000) mm", "more than two"],
+        ),
+        (4, &[HOLE], &["nothing on the layer outline"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 x 20 0 40 10"], &["layer holes", "\"x\" is no number"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 0 20 0"], &["layer holes", "lacks group code 40"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 40 1 230 -1"], &["CIRCLE at (3, 4)", "from behind"]),
+        (4, &["POLYLINE outline 70 5", "VERTEX outline 10 3 20 4", "SEQEND outline"], &["POLYLINE on line", "fitted by curves"]),
+        (0, &[RECTANGLE], &["specimen.outline_unit", "is missing"]),
+        (3, &[RECTANGLE], &["unit 3"]),
+    ];
+    for (unit, entities, words) in of_dxf {
+        refused(DXF, ("part.dxf", &dxf(unit, entities)), words);
+    }
+    let size = "width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\"";
+    let rect = "<rect id=\"outline\" width=\"100\" height=\"200\"/>";
+    let of_svg: [(&str, &str, &[&str]); 11] = [
+        (size, "<path id=\"outline\" d=\"M0 0H100V200\"/>", &["layer outline", "open", "(0.0000, 200.0000) mm"]),
+        (
+            size,
+            "<path id=\"outline\" d=\"M0 0H100V200C1 2 3 4 5 6Z\"/>",
+            &["layer outline", "path outline", "no circular arc at (100, 200)"],
+        ),
+        (size, "<path id=\"outline\" d=\"M0 0H100A9 8 0 0 0 100 200Z\"/>", &["arc of an ellipse at (100, 0)"]),
+        (size, "<path id=\"outline\" d=\"M0 0H100Vx\"/>", &["no path that can be read"]),
+        (size, "<rect id=\"outline\" width=\"100\" height=\"200\" rx=\"3\"/>", &["rect outline", "round corners"]),
+        (size, "<g id=\"outline\" transform=\"scale(1 2)\"><rect width=\"100\" height=\"100\"/></g>", &["stretched"]),
+        (size, "<rect id=\"rim\" width=\"100\" height=\"200\"/>", &["layer \"rim\"", "rect at (0, 200)"]),
+        (
+            size,
+            "<rect width=\"100\" height=\"200\"/><ellipse id=\"holes\" rx=\"2\" ry=\"3\"/>",
+            &["layer holes", "ellipse holes"],
+        ),
+        ("width=\"100mm\" height=\"100mm\" viewBox=\"0 0 100 200\"", rect, &["stretched"]),
+        ("viewBox=\"0 0 100 200\"", rect, &["specimen.outline_unit", "is missing"]),
+        (size, "<rect id=\"outline\" width=\"100%\" height=\"200\"/>", &["layer outline", "no plain number"]),
+    ];
+    for (size, content, words) in of_svg {
+        refused(SVG, ("part.svg", &svg(size, content)), words);
+    }
+    let good = dxf(4, &[RECTANGLE, HOLE, CRACK]);
+    let of_keys: [(&str, &str, &str, &[&str]); 9] = [
+        (DXF, "part.dxf", "0\nSECTION\n", &["ends before its end mark"]),
+        (DXF, "part.dxf", "PK\u{3}\u{4}\nfoo\n", &["is no DXF", "line 1"]),
+        (SVG, "part.svg", "<html><body/></html>", &["begins with <html>"]),
+        (SVG, "part.svg", "<svg><g>", &["is no whole SVG"]),
+        ("outline_file = \"part.step\"", "part.step", "x", &["no drawing that is read here"]),
+        ("outline_file = \"part.dxf\"\nwidth_mm = 9", "part.dxf", &good, &["specimen.width_mm", "beside outline_file"]),
+        (
+            "outline_file = \"part.dxf\"\noutline_unit = \"inch\"",
+            "part.dxf",
+            &good,
+            &["specimen.outline_unit", "not the unit of part.dxf"],
+        ),
+        ("outline_file = \"part.dxf\"\noutline_symmetry = \"x=0\"", "part.dxf", &good, &["lies beyond x = 0"]),
+        (
+            "width_mm = 9\nlength_mm = 9\noutline_unit = \"mm\"",
+            "part.dxf",
+            &good,
+            &["specimen.outline_unit", "outline_file is missing"],
+        ),
+    ];
+    for (keys, name, text, words) in of_keys {
+        refused(keys, (name, text), words);
+    }
+    refused(DXF, ("other.dxf", &good), &["part.dxf", "was not sent along"]);
+}
+
+fn refused(keys: &str, file: (&str, &str), words: &[&str]) {
+    let Err(error) = try_case(keys, &[file]) else { panic!("{keys} {}: taken, not refused: {words:?}", file.1) };
+    let message = error.to_string();
+    assert!(words.iter().all(|word| message.contains(word)), "{words:?}: {message}");
+}
