@@ -9,6 +9,7 @@ pub mod chart;
 pub mod checks;
 pub mod csv;
 pub mod damage;
+pub mod digits;
 pub mod factors;
 pub mod fit;
 pub mod fleet;
@@ -34,6 +35,7 @@ pub mod stresses;
 pub mod sweep;
 pub mod test_record;
 pub mod time;
+pub mod units;
 pub mod verification;
 pub mod vtk;
 
