@@ -14,6 +14,7 @@ fn main() -> ExitCode {
     }
     let line = CommandLine::parse();
     line.start_log();
+    line.show_units();
     line.watch_signals();
     match line.command.run() {
         Ok(()) => ExitCode::SUCCESS,

@@ -32,4 +32,5 @@ mod sweep;
 mod time_limit;
 mod tip_field;
 mod traceable;
+mod units;
 mod verify;

@@ -56,5 +56,6 @@ mod speed_chart;
 mod sweep;
 #[cfg(feature = "tables")]
 mod tables;
+mod units;
 mod verification_table;
 mod watch;

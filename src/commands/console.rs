@@ -1,4 +1,4 @@
-//! What a command prints: results on stdout, warnings, progress and errors on stderr.
+//! What a command prints: results on stdout, warnings, progress and errors on stderr, all in the units that are shown.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -15,8 +15,10 @@ use crate::error::{Error, InputError, Result};
 use crate::fracture::{SceneObserver, SceneProgress};
 use crate::predict::{Observer, Progress};
 use crate::report::output::OutputFolder;
+use crate::report::units::shown_result;
 use crate::runner::{Summary, Watcher};
 use crate::units::MM;
+use crate::units::shown::told;
 use crate::watch::Watch;
 
 /// Options of every command that prints results.
@@ -36,30 +38,30 @@ impl Console {
     pub fn say(&self, line: &str) {
         if !self.quiet && !self.json {
             // Nobody is left to read when stdout is closed (`| head`); the result files are what counts.
-            let _ = writeln!(io::stdout(), "{line}");
+            let _ = writeln!(io::stdout(), "{}", told(line));
         }
     }
 
     /// A line on stderr that is no warning.
     pub fn note(&self, text: &str) {
         if !self.quiet {
-            let _ = writeln!(io::stderr(), "{text}");
+            let _ = writeln!(io::stderr(), "{}", told(text));
         }
     }
 
     /// A warning on stderr.
     pub fn warn(&self, text: &str) {
-        let _ = writeln!(io::stderr(), "warning: {text}");
+        let _ = writeln!(io::stderr(), "warning: {}", told(text));
     }
 
-    /// A result that was asked for on stdout and stands in no file, unless `--json` replaces it.
+    /// A result that was asked for on stdout and stands in no file, in the units that are shown, unless `--json` replaces it.
     pub fn result(&self, text: &str) -> Result<()> {
         if self.json { Ok(()) } else { to_stdout(text) }
     }
 
     /// The JSON object on stdout, if it was asked for.
     pub fn object(&self, object: &Value) -> Result<()> {
-        if self.json { to_stdout(&format!("{object:#}\n")) } else { Ok(()) }
+        if self.json { to_stdout(&format!("{:#}\n", shown_result(object))) } else { Ok(()) }
     }
 
     /// Tables and words of a run.
@@ -151,7 +153,7 @@ const STEPS: u64 = 1000;
 
 /// The message for stderr.
 pub fn error_words(error: &Error) -> String {
-    let plain = format!("error: {error}");
+    let plain = told(&format!("error: {error}"));
     if !std::io::stderr().is_terminal() {
         return plain;
     }
@@ -169,11 +171,11 @@ pub fn with_source_line(input: &InputError) -> Option<String> {
     let start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
     let length = text.lines().nth(line - 1)?.len();
     // Where the trouble stands is part of the message already; the shown line takes their place.
-    let message = InputError { file: None, line: None, remedy: String::new(), ..input.clone() }.to_string();
+    let message = told(&InputError { file: None, line: None, remedy: String::new(), ..input.clone() }.to_string());
     let label = LabeledSpan::new(Some("here".to_owned()), start, length);
     let mut shown = MietteDiagnostic::new(message).with_label(label);
     if !input.remedy.is_empty() {
-        shown = shown.with_help(&input.remedy);
+        shown = shown.with_help(told(&input.remedy));
     }
     let report = Report::from(shown).with_source_code(NamedSource::new(file.display().to_string(), text));
     let mut words = String::new();
@@ -252,7 +254,10 @@ fn look(bar: &ProgressBar, shared: &Shared, limit: Option<Duration>) {
 
 impl Observer for RunProgress {
     fn block_done(&self, progress: &Progress) -> bool {
-        self.advance(progress.share, Some(format!("N = {:.4e}, a = {:.2} mm", progress.cycles, progress.crack_length / MM)))
+        self.advance(
+            progress.share,
+            Some(told(&format!("N = {:.4e}, a = {:.2} mm", progress.cycles, progress.crack_length / MM))),
+        )
     }
 
     fn watch(&self) -> Option<Arc<Watch>> {

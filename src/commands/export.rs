@@ -10,6 +10,7 @@ use crate::input::Opened;
 use crate::report::csv::{self, A_N_FILE, Row, parse_a_n};
 use crate::report::output::{OutputFile, Sort};
 use crate::report::resample::{ROWS_MAX, Sampling};
+use crate::report::units::shown_table;
 
 /// First line of an export, which a run's own table has not.
 const HEADER: &str = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n";
@@ -45,7 +46,7 @@ pub fn run(args: &Args) -> Result<()> {
     let sort = Sort { option: "--out", sign: HEADER.as_bytes() };
     let file = OutputFile::claim(&args.out, sort, &opened.so_far())?;
     let is_file = file.is_file();
-    file.write(text.as_bytes())?;
+    file.write(shown_table(&text).as_bytes())?;
     if is_file {
         args.console.say(&format!("{}: {} rows from {first} to {last} cycles", args.out.display(), rows.len()));
     }

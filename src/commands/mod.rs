@@ -40,6 +40,8 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::input::Document;
 use crate::runner::Task;
+use crate::units::shown::show;
+use crate::units::us::System;
 
 /// Specimen, material, load and model of a case or calibration file, of whose fatigue law nothing is asked: a fitted record that does not
 /// exist yet is no obstacle.
@@ -132,7 +134,7 @@ commands! {
     version,
     subcommand_required = true,
     arg_required_else_help = true,
-    after_help = "Units: mm, MPa, GPa, N, MPa√m, mm/cycle; every key and column carries its own.\n\
+    after_help = "Units: mm, MPa, GPa, N, MPa√m, mm/cycle, or with --units us inch, ksi, Msi, lbf, ksi√in, in/cycle; every key and column carries its own.\n\
                   Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble, 128 + number of the signal that ended it.\n\
                   A run that ends for a mechanical reason after its crack has grown is done: stop_reason says why it stopped.\n\
                   An output folder appears when it is whole. A run replaces the files of an earlier one of its kind (.perilife lists them), and no others.\n\
@@ -142,6 +144,18 @@ pub struct CommandLine {
     /// Say on stderr what the program does; twice for details (the variable RUST_LOG overrides)
     #[arg(long, short, action = clap::ArgAction::Count, global = true, help_heading = "What is printed")]
     pub verbose: u8,
+    /// Units of what is written and printed: si (mm, MPa, MPa√m) or us (inch, ksi, ksi√in). Input files take keys of both. Metric stay what is read
+    /// again as input (fitted.toml, case.toml, checkpoints), files for ParaView and Parquet, and options of the command line
+    #[arg(
+        long,
+        value_name = "UNITS",
+        env = "PERILIFE_UNITS",
+        hide_env_values = true,
+        default_value_t = System::Si,
+        global = true,
+        help_heading = "What is printed"
+    )]
+    pub units: System,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -154,6 +168,17 @@ impl CommandLine {
         return matches!(self.command, Command::Serve(_) | Command::Worker(_));
         #[cfg(not(feature = "service"))]
         return false;
+    }
+
+    /// Has all commands but services and their jobs write and print in the units that were asked for: the page of a service converts.
+    pub fn show_units(&self) {
+        #[cfg(feature = "service")]
+        let is_job = matches!(self.command, Command::Job(_));
+        #[cfg(not(feature = "service"))]
+        let is_job = false;
+        if !self.is_service() && !is_job {
+            show(self.units);
+        }
     }
 
     /// Has signals that end the process leave nothing half-made behind.

@@ -17,6 +17,7 @@ use crate::measured::{
     ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,
 };
 use crate::report::output::{OutputFile, Sort};
+use crate::report::units::shown_table;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
@@ -120,7 +121,7 @@ pub fn run(args: &Args) -> Result<()> {
         rates_of_materials::draw(path, &materials, ratio, points.map(in_units).collect())?;
     }
     if !materials.is_empty() {
-        args.console.say(&rates_of_materials::table(&materials, ratio));
+        args.console.say(&shown_table(&rates_of_materials::table(&materials, ratio)));
     }
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
     for warning in measured.warnings.iter().chain(&of_specimens) {
@@ -132,9 +133,9 @@ pub fn run(args: &Args) -> Result<()> {
             let mut read = opened.so_far();
             read.files.extend(case.iter().flat_map(|case| case.provenance.files.clone()));
             let sort = Sort { option: "--out", sign: HEADER.as_bytes() };
-            OutputFile::claim(path, sort, &read)?.write(table.as_bytes())?;
+            OutputFile::claim(path, sort, &read)?.write(shown_table(&table).as_bytes())?;
         }
-        None => args.console.result(&table)?,
+        None => args.console.result(&shown_table(&table))?,
     }
     if args.out.as_deref().is_some_and(|path| path != Path::new(STREAM)) {
         specimens.iter().for_each(|specimen| args.console.say(&specimen.summary()));

@@ -6,6 +6,7 @@ use crate::case::library_law;
 use crate::error::Result;
 use crate::input::Folder;
 use crate::report::chart::{Mark, Series, growth_rate};
+use crate::units::shown::per;
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// ΔK between which a law is drawn, MPa√m, and the points over them.
@@ -36,7 +37,7 @@ impl MaterialRates {
             let at = |k: usize| RANGE[0] * (RANGE[1] / RANGE[0]).powf(k as f64 / POINTS as f64);
             let known = |(_, rate): &(f64, f64)| (RATES[0]..=RATES[1]).contains(rate);
             let points = (0..=POINTS).map(|k| (at(k), rate(at(k)))).filter(known).collect();
-            all.push(MaterialRates { name, points, listed: LISTED.map(rate) });
+            all.push(MaterialRates { name, points, listed: LISTED.map(|k| rate(k / per("MPa√m"))) });
         }
         Ok(all)
     }
@@ -52,7 +53,7 @@ fn files(name: &str) -> Vec<String> {
     files
 }
 
-/// A line a material: rates at some ΔK.
+/// A line a material: rates at some ΔK, these in the unit that is shown.
 pub fn table(materials: &[MaterialRates], ratio: f64) -> String {
     let head: String = LISTED.iter().map(|k| format!(",da_dn_at_{k}_mm_per_cycle")).collect();
     let row = |one: &MaterialRates| {

@@ -1,6 +1,10 @@
 //! Units of input and output against the SI units used inside. The only place that converts:
 //! multiply by a constant to come in, divide by it to go out.
 
+pub mod shown;
+pub mod us;
+pub mod words;
+
 /// Metres in a millimetre.
 pub const MM: f64 = 1e-3;
 /// Metres in an inch.
@@ -19,6 +23,8 @@ pub const KGF: f64 = 9.806_65;
 pub const KSI: f64 = 1e3 * LBF / (INCH * INCH);
 /// Pa√m in a MPa√m.
 pub const MPA_SQRT_M: f64 = 1e6;
+/// √m in √inch.
+pub const SQRT_INCH: f64 = 0.159_373_774_505_092_3;
 /// m/cycle in a mm/cycle.
 pub const MM_PER_CYCLE: f64 = 1e-3;
 

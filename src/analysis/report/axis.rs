@@ -1,5 +1,8 @@
 //! An axis of a chart: range, ticks and how numbers are written along it. Linear or logarithmic.
 
+use crate::units::shown::per;
+use crate::units::us::clean;
+
 /// Linear or logarithmic axis. Ticks of a logarithmic one are not of whole decades only, which would leave ΔK from 8 to 40 MPa√m with one
 /// number.
 #[derive(Debug, Clone)]
@@ -9,6 +12,11 @@ pub struct Axis {
     logarithmic: bool,
     labelled: Vec<f64>,
     faint: Vec<f64>,
+    /// What a linear one was asked to hold, and in how many steps.
+    asked: [f64; 2],
+    parts: f64,
+    /// What numbers along it are multiplied by.
+    written: f64,
 }
 
 impl Axis {
@@ -27,11 +35,12 @@ impl Axis {
         if high - low <= 1e-9 * high.abs().max(1e-300) {
             (low, high) = (low - 0.05 * low.abs().max(1.0), high + 0.05 * high.abs().max(1.0));
         }
+        let asked = [low, high];
         let step = nice_step((high - low) / parts);
         (low, high) = ((low / step + 1e-9).floor() * step, (high / step - 1e-9).ceil() * step);
         let count = ((high - low) / step).round() as usize;
         let labelled: Vec<f64> = (0..=count).map(|i| low + i as f64 * step).collect();
-        Axis { low, high, logarithmic: false, labelled, faint: Vec::new() }
+        Axis { low, high, logarithmic: false, labelled, faint: Vec::new(), asked, parts, written: 1.0 }
     }
 
     /// Logarithmic axis that holds all positive `values`.
@@ -62,7 +71,32 @@ impl Axis {
             all.filter(|v| (low..=high).contains(v)).collect::<Vec<f64>>()
         };
         let faint = ticks(if decades > 2.0 { &[1.0] } else { multiples });
-        Axis { low, high, logarithmic: true, labelled: ticks(multiples), faint }
+        let (asked, labelled) = ([low, high], ticks(multiples));
+        Axis { low, high, logarithmic: true, labelled, faint, asked, parts: 1.0, written: 1.0 }
+    }
+
+    /// The axis of quantities of this name, with round numbers in the units that are shown; values stay metric.
+    pub fn named(self, name: &str) -> Axis {
+        let word = name.rsplit_once(", ").map_or("", |(_, unit)| unit);
+        let factor = per(word);
+        if factor == 1.0 {
+            return self;
+        }
+        let [low, high] = self.asked.map(|end| end * factor);
+        let own = if self.logarithmic {
+            Self::logarithmic_between(low, high)
+        } else {
+            Self::linear_in([low, high].into_iter(), self.parts)
+        };
+        let back = |values: Vec<f64>| values.into_iter().map(|value| value / factor).collect();
+        Axis {
+            low: own.low / factor,
+            high: own.high / factor,
+            labelled: back(own.labelled),
+            faint: back(own.faint),
+            written: factor,
+            ..own
+        }
     }
 
     /// Where a logarithmic axis has lines across: whole decades, or every labelled tick of one that is shorter than two.
@@ -92,13 +126,14 @@ impl Axis {
 
 impl Axis {
     fn format(&self, value: f64) -> String {
+        let value = clean(value * self.written);
         if self.logarithmic {
             return tick_text(value, 0.0, 0);
         }
         // All labels of a linear axis carry as many decimals as the one that needs most: 10.00, 10.01.
         let decimals_of = |v: &f64| trimmed(&format!("{v:.6}")).split_once('.').map_or(0, |(_, decimals)| decimals.len());
-        let decimals = self.labelled.iter().map(decimals_of).max().unwrap_or(0);
-        tick_text(value, self.high.abs().max(self.low.abs()), decimals)
+        let decimals = self.labelled.iter().map(|tick| decimals_of(&(tick * self.written))).max().unwrap_or(0);
+        tick_text(value, self.written * self.high.abs().max(self.low.abs()), decimals)
     }
 }
 

@@ -33,6 +33,8 @@ use crate::specimen::beta;
 use crate::specimen::drawing::{DrawingUnit, SymmetryPlane};
 use crate::specimen::{Component, Edge, Ends, SpecimenKind};
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
+use crate::units::shown::told;
+use crate::units::us::System;
 use crate::verify::TOPICS;
 use crate::verify::chart::{Family, SCENES, Status};
 use crate::verify::stability::SWEEPS;
@@ -83,6 +85,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         Parameter::lines(),
         Criterion::lines(),
         FitLaw::lines(),
+        System::lines(),
         LengthUnit::lines(),
         CycleUnit::lines(),
         LoadUnit::lines(),
@@ -104,7 +107,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.extend(library::names().into_iter().map(|name| {
         let meaning = library::find(&name, &Folder::none()).map_or_else(
             |error| error.to_string(),
-            |file| format!("{}; E {} GPa, nu {}", file.title, file.youngs_modulus_gpa.value, file.poisson_ratio.value),
+            |file| told(&format!("{}; E {} GPa, nu {}", file.title, file.youngs_modulus_gpa.value, file.poisson_ratio.value)),
         );
         ("material.name".to_owned(), name, meaning)
     }));

@@ -145,7 +145,8 @@ impl Frame {
     /// An empty chart. `title` may be empty; `legend` are marks with their colours and names, in rows below the title.
     pub fn new(size: Size, title: &str, axes: [Axis; 2], names: [&str; 2], legend: &[(Mark, &str, &str)]) -> Self {
         let text = size.text;
-        let [x, y] = axes;
+        let [of_x, of_y] = axes;
+        let [x, y] = [of_x.named(names[0]), of_y.named(names[1])];
         let widest = y.ticks().iter().map(|(_, words)| width_of(words, text)).fold(0.0, f64::max);
         let mut sketch = Sketch::new(1.0, [0.0; 2]);
         let mut top = 0.5 * text;

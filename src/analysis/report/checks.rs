@@ -309,7 +309,7 @@ fn first_extrapolation(case: &Case) -> Option<Check> {
         return Some(if case.allow_extrapolation { check } else { Check { verdict: Verdict::Fails, ..check } });
     }
     (first < low * (1.0 - 1e-6)).then(|| {
-        let words = format!("law: ΔK {first:.2} at the start is below the lowest fitted, {low:.2} (safe)");
+        let words = format!("law: ΔK {first:.2} at the start is below the lowest fitted, {low:.2} MPa√m (safe)");
         Check { side: Some(Side::Safe), ..Check::new("extrapolation_below", Verdict::Doubtful, words) }
     })
 }

@@ -7,12 +7,15 @@ use std::path::Path;
 
 use serde_json::Value;
 
+pub use super::digits::{exact, number};
 use super::json::RESULT_FILE;
+use super::units::of_table;
 use crate::error::{Error, InputError, Result};
 use crate::growth::record::DepthRecord;
 use crate::input::{Opened, sha256};
 use crate::predict::{CurvePoint, Prediction};
 use crate::specimen::{Crack, Point};
+use crate::units::us::System;
 use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 
 /// Name of the table of a run's a-N curve.
@@ -155,8 +158,9 @@ pub fn read_a_n(path: &Path) -> Result<Vec<Row>> {
     parse_a_n(&std::fs::read_to_string(path).map_err(|e| Error::file(path, "cannot read", e))?, path)
 }
 
-/// The same for text; `path` is only named in messages.
+/// The same for text, in the units of its columns whichever they are; `path` is only named in messages.
 pub fn parse_a_n(text: &str, path: &Path) -> Result<Vec<Row>> {
+    let text = of_table(text, System::Si);
     let mut lines = text.lines();
     if !lines.next().is_some_and(|head| head.split(',').map(str::trim).take(4).eq(A_N_COLUMNS)) {
         return Err(bad_table(path, 1, None, None, "is not the header of an a-N table of this program"));
@@ -199,41 +203,6 @@ pub(super) fn bad_table(path: &Path, line: usize, column: Option<&str>, value: O
         problem: problem.to_owned(),
         remedy: "run `perilife predict` again to write the table anew".to_owned(),
     }))
-}
-
-/// A number so that it reads back bit for bit, with at least ten significant digits; empty for NaN.
-pub fn exact(value: f64) -> String {
-    if value.is_nan() {
-        return String::new();
-    }
-    let digits_wanted = 10;
-    if value == 0.0 || !value.is_finite() || (1e-4..1e15).contains(&value.abs()) {
-        pad(format!("{value}"), digits_wanted)
-    } else {
-        let text = format!("{value:e}");
-        let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-        format!("{}e{exponent}", pad(mantissa.to_owned(), digits_wanted))
-    }
-}
-
-/// A measured or computed quantity with 10 to 15 significant digits: unit conversion may disturb the last of the 17 that
-/// a double carries, and 15 hide that (9 mm stays 9.000000000).
-pub fn number(value: f64) -> String {
-    // A 15-digit decimal always parses; the fallback only spares a panic path.
-    exact(format!("{value:.14e}").parse().unwrap_or(value))
-}
-
-/// Appends zeros behind the decimal point until there are `wanted` significant digits.
-fn pad(mut text: String, wanted: usize) -> String {
-    let significant = text.trim_start_matches(['-', '0', '.']).bytes().filter(u8::is_ascii_digit).count();
-    if significant == 0 || significant >= wanted || !text.bytes().all(|b| b.is_ascii_digit() || b == b'.' || b == b'-') {
-        return text;
-    }
-    if !text.contains('.') {
-        text.push('.');
-    }
-    text.push_str(&"0".repeat(wanted - significant));
-    text
 }
 
 /// What a result says of one of its tables; `None` of an earlier version.

@@ -11,6 +11,7 @@ use super::pictures::fit::{
     BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, law_svg, rates_fitted,
 };
 use super::pictures::plate::Plate;
+use super::units::show_folder;
 use super::{provenance, test_record};
 use crate::calibration::calibrate::Fitted;
 use crate::calibration::case::CalibrationCase;
@@ -67,7 +68,8 @@ pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
             put(DA_DN_FILE, &law_svg(&rates_fitted(&rates)?, LARGE))?;
         }
     }
-    put(FIT_FILE, &format!("{json:#}\n"))
+    put(FIT_FILE, &format!("{json:#}\n"))?;
+    show_folder(folder, &mut json)
 }
 
 /// Standard errors from the middle of a 95 % band to its ends.

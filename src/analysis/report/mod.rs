@@ -9,6 +9,7 @@ pub mod chart;
 pub mod checks;
 pub mod csv;
 pub mod damage;
+pub mod digits;
 pub mod factor_sweep;
 pub mod factors;
 pub mod fit;
@@ -35,6 +36,7 @@ pub mod stresses;
 pub mod sweep;
 pub mod test_record;
 pub mod time;
+pub mod units;
 pub mod verification;
 pub mod vtk;
 

@@ -11,6 +11,7 @@ use crate::solver::SolverUsed;
 use crate::specimen::handbook::handbook;
 use crate::specimen::part_through::{RANGE, SOURCE};
 use crate::specimen::{LoadMeasure, Specimen, Support};
+pub(super) use crate::units::us::clean;
 use crate::units::{KN, MM, MPA};
 
 /// Keys that say how bonds resist.
@@ -213,11 +214,6 @@ fn solved_part(figures: &RunFigures) -> &'static str {
         (false, true) => "; one half was solved, the other is its mirror image",
         (false, false) => "; a quarter was solved, the others are its mirror images",
     }
-}
-
-/// Hides the last digits of a double, which a unit conversion may have disturbed.
-pub(super) fn clean(value: f64) -> f64 {
-    format!("{value:.14e}").parse().unwrap_or(value)
 }
 
 /// The cycles of load in words.

@@ -16,6 +16,7 @@ use crate::error::Result;
 use crate::predict::Snapshot;
 use crate::predict::moment::StressField;
 use crate::stress_concentration::{SETTLED, Stressed};
+use crate::units::shown::{column, per, told};
 use crate::units::{MM, MPA};
 
 /// A rim in words: `holes[0]`, `notches[0]`, `outline`, as its key in `[specimen]`.
@@ -52,18 +53,22 @@ pub fn object(stressed: &Stressed) -> Value {
     })
 }
 
-/// One line a rim.
+/// One line a rim, in the units that are shown.
 pub fn table(stressed: &Stressed) -> String {
+    let [x, y] = ["x_mm", "y_mm"].map(column);
+    let [largest, least] = ["largest MPa", "least MPa"].map(told);
     let mut text = format!(
-        "{:<12} {:>12} {:>10} {:>10} {:>10} {:>12} {:>10} {:>10} {:>10}\n",
-        "rim", "largest MPa", "over gross", "x_mm", "y_mm", "least MPa", "over gross", "x_mm", "y_mm"
+        "{:<12} {largest:>12} {over:>10} {x:>10} {y:>10} {least:>12} {over:>10} {x:>10} {y:>10}\n",
+        "rim",
+        over = "over gross"
     );
+    let [mpa, mm] = [MPA / per("MPa"), MM / per("mm")];
     let over = |stress: f64| stressed.concentration(stress).map_or_else(|| "-".to_owned(), |share| format!("{share:.4}"));
     for rim in &stressed.rims {
         let mut words = String::new();
         for StressAt { at: [x, y], stress } in [rim.largest, rim.least] {
             // Writing to a String cannot fail.
-            let _ = write!(words, " {:>12.3} {:>10} {:>10.4} {:>10.4}", stress / MPA, over(stress), x / MM, y / MM);
+            let _ = write!(words, " {:>12.3} {:>10} {:>10.4} {:>10.4}", stress / mpa, over(stress), x / mm, y / mm);
         }
         let _ = writeln!(text, "{:<12}{words}", name(rim.rim));
     }

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::chart::{self, Mark, Series};
 use super::csv;
 use super::output::write_file;
+use super::units::{shown_result, shown_table};
 use crate::cells::field;
 use crate::error::{Error, Result, input_missing};
 use crate::predict::StopReason;
@@ -249,10 +250,10 @@ impl Lives {
 /// Writes table, figures and picture into the folder of a sweep; returns the figures.
 pub fn write(folder: &Path, plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Result<Value> {
     let figures = figures(plan, outcomes, wall_s);
-    write_file(&folder.join(TABLE_FILE), table(plan, outcomes).as_bytes())?;
+    write_file(&folder.join(TABLE_FILE), shown_table(&table(plan, outcomes)).as_bytes())?;
     draw(&folder.join(CHART_FILE), plan, outcomes)?;
     // Last, so that whoever waits for it finds the others.
-    write_file(&folder.join(FIGURES_FILE), format!("{figures:#}\n").as_bytes())?;
+    write_file(&folder.join(FIGURES_FILE), format!("{:#}\n", shown_result(&figures)).as_bytes())?;
     Ok(figures)
 }
 

@@ -11,7 +11,9 @@ use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
 use crate::predict::tip_factors::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
 use crate::report::stresses;
+use crate::report::units::show_folder;
 use crate::stress_concentration::stressed;
+use crate::units::shown::{column, per, told};
 use crate::units::{MM, MPA, MPA_SQRT_M};
 
 /// Factors of the tips, and stresses where a folder for them is given or there is no crack.
@@ -42,7 +44,10 @@ pub(super) fn run(
         tables.push_str(&stresses::table(&stressed));
         lines.push(stresses::words(case, &stressed));
         found.insert("stresses".to_owned(), stresses::object(&stressed));
-        folder.map_or(Ok(()), |folder| stresses::write(folder, case, &stressed, &Value::Object(found.clone())))?;
+        if let Some(folder) = folder {
+            stresses::write(folder, case, &stressed, &Value::Object(found.clone()))?;
+            show_folder(folder, &mut Value::Null)?;
+        }
     }
     let mut figures = Value::Object(found.clone());
     figures["name"] = json!(case.name);
@@ -100,15 +105,15 @@ fn object(tip: &TipResult) -> Value {
     object
 }
 
-/// One line a tip and method; K in MPa√m.
+/// One line a tip and method, in the units that are shown.
 fn table(tips: &[TipResult]) -> String {
-    let mut text = format!(
-        "{:>10} {:>10}  {:<14} {:>12} {:>12} {:>9} {:>12} {:>8}\n",
-        "x_mm", "y_mm", "method", "K_I MPa√m", "K_II MPa√m", "T MPa", "handbook K_I", "time s"
-    );
-    let words = |factor: Option<f64>| in_mpa(factor).map_or_else(|| "-".to_owned(), |k| format!("{k:.4}"));
+    let [x, y] = ["x_mm", "y_mm"].map(column);
+    let [k_i, k_ii, t] = ["K_I MPa√m", "K_II MPa√m", "T MPa"].map(told);
+    let mut text =
+        format!("{x:>10} {y:>10}  {:<14} {k_i:>12} {k_ii:>12} {t:>9} {:>12} {:>8}\n", "method", "handbook K_I", "time s");
+    let words = |factor: Option<f64>| in_mpa(factor).map_or_else(|| "-".to_owned(), |k| format!("{:.4}", k * per("MPa√m")));
     for tip in tips {
-        let [x, y] = tip.tip.position.map(|metres| metres / MM);
+        let [x, y] = tip.tip.position.map(|metres| metres / MM * per("mm"));
         if let Some(end) = tip.end {
             // Writing to a String cannot fail.
             let k_i = words(tip.handbook_k_i);
@@ -123,7 +128,7 @@ fn table(tips: &[TipResult]) -> String {
                 result.method,
                 words(result.intensity.k_i),
                 words(result.intensity.k_ii),
-                result.t_stress.map_or_else(|| "-".to_owned(), |t| format!("{:.2}", t / MPA)),
+                result.t_stress.map_or_else(|| "-".to_owned(), |t| format!("{:.2}", t / MPA * per("MPa"))),
                 words(tip.handbook_k_i),
                 result.wall_s
             );

@@ -30,6 +30,7 @@ use crate::report::band::Lives;
 use crate::report::output::Share;
 use crate::report::quality::Quality;
 use crate::report::sweep::Plan;
+use crate::report::units::show_folder;
 use crate::sweep::fleet;
 use crate::units::MM;
 use sweep_folder::SweepFolder;
@@ -169,7 +170,7 @@ pub fn of_prediction(
         Ok(answers) => (answers, Ok(())),
         Err(error) => (Answers::default(), Err(error)),
     };
-    let result = match folder {
+    let mut result = match folder {
         Some(folder) => run::write(folder, case, prediction, (&lives, &quality, &answers))?,
         None => {
             let mut result = run::result(case, prediction);
@@ -182,6 +183,7 @@ pub fn of_prediction(
     if let (Some(folder), Ok(Some(strengths))) = (folder, &strengths) {
         run::write_strength(folder, case, strengths)?;
     }
+    folder.map_or(Ok(()), |folder| show_folder(folder, &mut result))?;
     let refusal = run::refusal(case, prediction);
     let mut warnings: Vec<String> = refusal.iter().map(Error::to_string).collect();
     warnings.extend(result["warnings"].as_array().into_iter().flatten().filter_map(|warning| Some(warning.as_str()?.to_owned())));
@@ -199,8 +201,11 @@ pub fn of_prediction(
 /// Writes the files of a scene that was run.
 pub fn of_scene(scene: &Scene, fracture: &Fracture, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
     fracture.warnings.iter().for_each(|warning| watcher.warn(warning));
-    let result = report::fracture::result(scene, fracture);
-    folder.map_or(Ok(()), |folder| report::fracture::write(folder, scene, fracture, &result))?;
+    let mut result = report::fracture::result(scene, fracture);
+    if let Some(folder) = folder {
+        report::fracture::write(folder, scene, fracture, &result)?;
+        show_folder(folder, &mut result)?;
+    }
     let is_bad = matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable);
     let bad = || Error::Mechanics(format!("{}: {}: {}", scene.name, fracture.end, fracture.end.meaning()));
     let (figures, lines) = (result.clone(), report::fracture::words(scene, fracture));

@@ -7,7 +7,8 @@ use toml::de::{DeTable, DeValue};
 use toml::{Table, Value};
 
 use super::folder::{Folder, OpenedFile, STREAM, text_of};
-use super::slice::{path_steps, shorten};
+use super::slice::{path_steps, shorten, value_at};
+use super::us_keys::{Written, as_written, metric, to_metric, twin};
 use crate::error::{Error, InputError, Result, input, input_missing};
 
 /// A parsed input file that still knows where everything stands in the text.
@@ -17,8 +18,11 @@ pub struct Document {
     pub name: String,
     /// Where the files lie that it names.
     pub folder: Folder,
-    /// Content with overrides applied.
+    /// Content with overrides applied; keys in US units are the metric ones here.
     pub table: Table,
+    /// The same with the keys as they were written.
+    as_given: Table,
+    written: Vec<Written>,
     file: Option<PathBuf>,
     text: String,
     overridden: Vec<String>,
@@ -61,7 +65,8 @@ impl Document {
 
     fn build(text: String, name: String, folder: Folder, file: Option<PathBuf>, overrides: &[String]) -> Result<Self> {
         let table = text.parse::<Table>().map_err(|error| syntax_error(&error, &text, file.as_deref()))?;
-        let mut document = Document { name, folder, table, file, text, overridden: Vec::new() };
+        let (as_given, written) = (table.clone(), Vec::new());
+        let mut document = Document { name, folder, table, as_given, written, file, text, overridden: Vec::new() };
         document.set_all(overrides)?;
         Ok(document)
     }
@@ -79,8 +84,10 @@ impl Document {
             return Error::Input(trouble);
         }
         trouble.file.clone_from(&self.file);
+        let is_overridden = trouble.key.as_ref().is_some_and(|key| self.is_overridden(&metric(key)));
+        trouble = as_written(trouble, &self.written);
         if let Some(key) = &trouble.key {
-            if self.is_overridden(key) {
+            if is_overridden {
                 trouble.remedy.push_str(" (value given by --set)");
             } else if trouble.line.is_none() {
                 trouble.line = line_of_key(&self.text, key);
@@ -90,9 +97,18 @@ impl Document {
     }
 
     /// Applies overrides on top of those that it was read with.
-    /// Errors: one that is no `section.key=value`, or names no place for a value.
+    /// Errors: one that is no `section.key=value`, or names no place for a value; a quantity that the file gives twice.
     pub fn set_all(&mut self, overrides: &[String]) -> Result<()> {
-        overrides.iter().try_for_each(|text| self.set(text))
+        overrides.iter().try_for_each(|text| self.set(text))?;
+        self.read_units().map_err(|error| self.locate(error))
+    }
+
+    /// Makes the table anew from what was written.
+    fn read_units(&mut self) -> Result<()> {
+        let mut table = self.as_given.clone();
+        self.written = to_metric(&mut table)?;
+        self.table = table;
+        Ok(())
     }
 
     /// Applies one override.
@@ -110,27 +126,39 @@ impl Document {
         if value.is_empty() {
             return Err(refuse("has no value"));
         }
-        self.put(key, plain_value(value)).map_err(refuse)?;
-        self.overridden.push(key.to_owned());
+        let other = key.rsplit_once('.').and_then(|(above, last)| Some(format!("{above}.{}", twin(last)?)));
+        let is_set = |other: &String| value_at(&Value::Table(self.as_given.clone()), other).is_some();
+        if let Some(other) = other.filter(|other| self.overridden.contains(&metric(key)) && is_set(other)) {
+            return Err(refuse(&format!("stands beside {other}: one quantity is given twice")));
+        }
+        self.put_as_given(key, plain_value(value)).map_err(refuse)?;
+        self.overridden.push(metric(key));
         self.folder.opened().add_override(text);
         Ok(())
     }
 
-    /// Gives a key (`section.key`, below a list by number) another value.
+    /// Gives a key (`section.key`, below a list by number) another value, in the unit of its name.
     /// Errors: what is wrong with the key, in words that go behind it; nothing but tables above it may have been made then.
-    pub fn put(&mut self, key: &str, value: Value) -> std::result::Result<(), &'static str> {
+    pub fn put(&mut self, key: &str, value: Value) -> std::result::Result<(), String> {
+        self.put_as_given(key, value)?;
+        self.read_units().map_err(|error| error.to_string())
+    }
+
+    fn put_as_given(&mut self, key: &str, value: Value) -> std::result::Result<(), &'static str> {
         const NO_TABLE: &str = "names a key below something that is not a table";
         let steps = path_steps(key);
         if steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()) {
             return Err("does not name section and key");
         }
         let (last, parents) = (&steps[steps.len() - 1], &steps[..steps.len() - 1]);
-        let mut place = self.table.entry(parents[0].clone()).or_insert_with(|| Value::Table(Table::new()));
+        let mut place = self.as_given.entry(parents[0].clone()).or_insert_with(|| Value::Table(Table::new()));
         for step in &parents[1..] {
             place = child(place, step).ok_or(NO_TABLE)?;
         }
         match place {
             Value::Table(table) => {
+                // In other units it is the same quantity.
+                twin(last).map(|twin| table.remove(&twin));
                 table.insert(last.clone(), value);
             }
             Value::Array(_) => *child(place, last).ok_or("names an entry the list does not have")? = value,

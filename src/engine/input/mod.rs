@@ -9,6 +9,7 @@ mod folder;
 mod output;
 mod quantity;
 mod slice;
+mod us_keys;
 
 pub use document::{Document, ForeignSections, Sections};
 pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256};

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::error::{Result, input};
-use crate::units::{INCH, KGF, KN, KSI, LBF, MM, MPA, MPA_SQRT_M};
+use crate::units::{INCH, KGF, KN, KSI, LBF, MM, MPA, MPA_SQRT_M, SQRT_INCH};
 
 crate::kinds! {
     /// Units of crack length in measured files.
@@ -140,8 +140,7 @@ impl Unit {
     }
 }
 
-/// √m in √inch, and Pa√m in N/mm^(3/2), 1e6 √1e-3.
-const SQRT_INCH: f64 = 0.159_373_774_505_092_3;
+/// Pa√m in N/mm^(3/2), 1e6 √1e-3.
 const N_PER_MM_1_5: f64 = 31_622.776_601_683_79;
 
 /// Units with their size in SI, or in cycles, and how tables spell them.

@@ -78,7 +78,7 @@ impl Measured {
                     Some(format!("{:.3} of the {limit_name}", curve.crack_length[reading] / limit))
                 }
                 Some(toughness) if k_max(reading) > TOUGHNESS_FACTOR * toughness => Some(format!(
-                    "K_max {:.1} MPa√m, the toughness being {:.1}",
+                    "K_max {:.1} MPa√m, the toughness being {:.1} MPa√m",
                     k_max(reading) / MPA_SQRT_M,
                     toughness / MPA_SQRT_M
                 )),

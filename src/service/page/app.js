@@ -13,6 +13,9 @@ import { createPredictView } from "./predict.js";
 import { openPrediction } from "./prediction_page.js";
 import { createRunsView } from "./runs.js";
 import { forgetToken, readToken } from "./token.js";
+import { startUnits } from "./units.js";
+
+startUnits(byId("units"));
 
 const predict = createPredictView();
 const views = { measure: createCalibrateView(), predict, runs: createRunsView(), new: createNewRunView({ predict }) };

@@ -3,6 +3,7 @@
 
 import { button, element, shape, show, table, uniqueId } from "./dom.js";
 import { plain, powerOf, significant, whole } from "./format.js";
+import { axisShown } from "./units.js";
 
 const { d3 } = window;
 const TONES = 8;
@@ -48,7 +49,9 @@ function domainOf(values, axis) {
  * "outside" (hatched, above y[0], or below y2[0] down to nought) or "end" (a cross at its last point). `tools`: buttons of its head.
  * Gives {set(series), extend(id, x, y), move(at, dots), pick(take), destroy()}.
  */
-export function createChart(container, { name, label, title, x: xAxis, y: yAxis, ratio = 0.52, tools = [], note }) {
+export function createChart(container, { name, label, title, x: ofX, y: ofY, ratio = 0.52, tools = [], note }) {
+  // Values stay metric; ticks are round, and numbers written, in the units that are shown.
+  const [xAxis, yAxis] = [axisShown(ofX), axisShown(ofY)];
   let series = [];
   let width = 0;
   let place = null; // scales of the last drawing
@@ -88,7 +91,7 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
   observer.observe(plot);
 
   const readable = () => series.filter((one) => ["line", "points"].includes(one.kind) && one.x.length > 0);
-  const format = (axis, value) => `${(axis.format ?? significant)(value)}${axis.unit ? ` ${axis.unit}` : ""}`;
+  const format = (axis, value) => `${(axis.per === 1 && axis.format ? axis.format : significant)(value * axis.per)}${axis.unit ? ` ${axis.unit}` : ""}`;
   const titleOf = (axis) => (axis.unit ? `${axis.label}, ${axis.unit}` : axis.label);
   const atEnds = () => {
     const lines = series.filter((one) => one.kind === "line" && one.name);
@@ -113,10 +116,15 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
       return axis.scale === "log" ? made : made.nice(axis.from === undefined || axis.to === undefined ? 5 : undefined);
     };
     const y = scale(yAxis, all("y", "y2"), [height - 40, 30]);
-    const ticksOf = (axis, made, room) => (axis.scale === "log"
-      ? made.ticks().filter((value) => [1, 2, 5].includes(Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9)))) : made.ticks(Math.max(2, Math.floor(room))));
+    const ticksOf = (axis, own, room) => {
+      const made = own.copy().domain(own.domain().map((end) => end * axis.per));
+      const ticks = axis.scale === "log"
+        ? made.ticks().filter((value) => [1, 2, 5].includes(Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9)))) : made.ticks(Math.max(2, Math.floor(room)));
+      return ticks.map((value) => value / axis.per);
+    };
+    const tick = (value, axis) => tickText(axis.per === 1 ? value : Number((value * axis.per).toPrecision(12)), axis.scale);
     const up = ticksOf(yAxis, y, (height - 70) / 52);
-    const left = 12 + 7 * Math.max(2, ...up.map((value) => tickText(value, yAxis.scale).length));
+    const left = 12 + 7 * Math.max(2, ...up.map((value) => tick(value, yAxis).length));
     const right = width - (atEnds().length > 0 ? 12 + 7 * Math.max(...atEnds().map((one) => one.name.length)) : 14);
     const x = scale(xAxis, all("x", "x2"), [left, right]);
     const across = ticksOf(xAxis, x, (right - left) / 96);
@@ -127,11 +135,11 @@ export function createChart(container, { name, label, title, x: xAxis, y: yAxis,
           shape("line", { x1: 0, x2: 0, y1: 0, y2: 6, class: "hatch" })),
         shape("clipPath", { id: clip }, shape("rect", { x: left, y: place.top - 4, width: right - left + 4, height: place.bottom - place.top + 4 }))),
       up.map((value) => [shape("line", { class: "grid", x1: left, x2: right, y1: y(value), y2: y(value) }),
-        shape("text", { x: left - 8, y: y(value) + 4, "text-anchor": "end" }, tickText(value, yAxis.scale))]),
+        shape("text", { x: left - 8, y: y(value) + 4, "text-anchor": "end" }, tick(value, yAxis))]),
       across.map((value) => [
         yAxis.scale === "log" && shape("line", { class: "grid", x1: x(value), x2: x(value), y1: place.top, y2: place.bottom }),
         shape("line", { class: "axis", x1: x(value), x2: x(value), y1: place.bottom, y2: place.bottom + 4 }),
-        shape("text", { x: x(value), y: place.bottom + 18, "text-anchor": x(value) > right - 16 ? "end" : "middle" }, tickText(value, xAxis.scale))]).flat(),
+        shape("text", { x: x(value), y: place.bottom + 18, "text-anchor": x(value) > right - 16 ? "end" : "middle" }, tick(value, xAxis))]).flat(),
       shape("line", { class: "axis", x1: left, x2: right, y1: place.bottom, y2: place.bottom }),
       shape("text", { class: "axis-title", x: 0, y: 13 }, titleOf(yAxis)),
       shape("text", { class: "axis-title", x: right, y: place.bottom + 36, "text-anchor": "end" }, titleOf(xAxis)));

@@ -1,5 +1,7 @@
 // The few helpers that build elements. Text always goes in as text, so nothing a user or a file says can become markup.
 
+import { apart } from "./units.js";
+
 const SVG = "http://www.w3.org/2000/svg";
 
 function fill(node, attributes, children) {
@@ -72,7 +74,8 @@ export function table(caption, columns, rows, { hidden = false, rowHeader = true
     element("th", { scope: "col", class: numeric ? "number" : null }, title, unit && element("span", { class: "unit" }, ` ${unit}`)));
   const body = rows.map((row) => element("tr", null, row.map((cell, index) => {
     const attributes = { class: columns[index].numeric ? "number" : null };
-    return rowHeader && index === 0 ? element("th", { scope: "row", ...attributes }, cell) : element("td", attributes, cell);
+    const words = apart(cell, columns[index].unit);
+    return rowHeader && index === 0 ? element("th", { scope: "row", ...attributes }, words) : element("td", attributes, words);
   })));
   // A region that scrolls must be reachable by keyboard.
   return element("div", { class: "table-scroll", tabindex: "0", role: "region", "aria-label": caption, "data-table": name },

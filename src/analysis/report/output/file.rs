@@ -10,6 +10,7 @@ use super::pending::{self, Pending};
 use super::place::{resolved, was_read};
 use crate::error::{Error, Result, input};
 use crate::input::{Provenance, STREAM};
+use crate::units::us::{System, renamed};
 
 /// Bytes by which a file shows what wrote it.
 const HEAD: u64 = 1024;
@@ -135,12 +136,22 @@ fn is_own(target: &Path, sort: Sort) -> Result<bool> {
     let read = || -> io::Result<bool> {
         let mut head = Vec::new();
         fs::File::open(target)?.take(HEAD).read_to_end(&mut head)?;
-        Ok(head.is_empty() || head.windows(sort.sign.len()).any(|part| part == sort.sign))
+        let bears = |head: &[u8]| head.windows(sort.sign.len()).any(|part| part == sort.sign);
+        // The header of a table in US units is that of the same table.
+        Ok(head.is_empty() || bears(&head) || bears(metric_header(&head).as_bytes()))
     };
     match read() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
         own => own.map_err(|error| Error::file(target, "cannot read", error)),
     }
+}
+
+/// The first line of a table, its columns in metric units.
+fn metric_header(head: &[u8]) -> String {
+    let text = String::from_utf8_lossy(head);
+    let columns = text.lines().next().unwrap_or_default().split(',');
+    let metric = |column: &str| renamed(column, System::Si).map_or_else(|| column.to_owned(), |new| new.name);
+    columns.map(metric).collect::<Vec<_>>().join(",") + "\n"
 }
 
 /// Writes a single file whole or not at all: under a temporary name beside its place, then renamed; what stood there before stays if

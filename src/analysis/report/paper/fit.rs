@@ -2,12 +2,14 @@
 
 use serde_json::Value;
 
-use super::numbers::{fixed, power, short, sized, whole};
+use super::numbers::{fixed, level, rate, short, sized, whole};
 use super::{CHART, Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
 use crate::report::chart::Size;
 use crate::report::pictures::fit::{FitTables, RateFitted, Reading, law_svg};
 use crate::report::pictures::plate::{Plate, plate_svg};
 use crate::report::pictures::tables::RunTables;
+use crate::report::units::shown_result;
+use crate::units::shown::per;
 
 /// Files whose hashes are printed, at the most.
 const HASHES_MOST: usize = 12;
@@ -66,16 +68,16 @@ fn answer(fit: &Value) -> String {
     let ratio = fit["test"]["stress_ratio"].as_f64().map_or_else(|| recorded(None), short);
     format!(
         "<div class=\"answer fit\"><div><h2>Growth rate at ΔK = {} MPa√m</h2><p class=\"big\">{} <small>mm/cycle</small></p>\
-         <p>± {} % (one standard error)</p></div><div><h2>Exponent m</h2><p class=\"big\">{}</p><p>± {}; C = {} mm/cycle at 1 MPa√m</p></div>\
+         <p>± {} % (one standard error)</p></div><div><h2>Exponent m</h2><p class=\"big\">{}</p><p>± {}; C = {}</p></div>\
          <div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p><p>MPa√m, R = {ratio}</p></div></div>\n",
         fixed(number("pivot_delta_k_mpa_sqrt_m"), 2),
-        power(number("rate_at_pivot_mm_per_cycle"), 4),
+        rate(number("rate_at_pivot_mm_per_cycle"), 4),
         fixed(100.0 * number("rate_at_pivot_relative_error"), 1),
         fixed(number("paris_m"), 3),
         fixed(number("paris_m_error"), 3),
-        power(number("paris_c_mm_per_cycle"), 4),
-        fixed(number("delta_k_min_mpa_sqrt_m"), 2),
-        fixed(number("delta_k_max_mpa_sqrt_m"), 2),
+        level(number("paris_c_mm_per_cycle"), fit["paris_m"].as_f64(), 4),
+        fixed(number("delta_k_min_mpa_sqrt_m") * per("MPa√m"), 2),
+        fixed(number("delta_k_max_mpa_sqrt_m") * per("MPa√m"), 2),
     )
 }
 
@@ -230,8 +232,8 @@ fn specimens(fit: &Value) -> String {
 fn readings(readings: &[Reading]) -> String {
     let row = |(place, reading): (usize, &Reading)| {
         let out = if reading.left_out.is_empty() { "" } else { " class=\"out\"" };
-        let delta_k = reading.delta_k_mpa_sqrt_m.map_or("–".to_owned(), |delta_k| fixed(delta_k, 2));
-        let rate = reading.da_dn_mm_per_cycle.map_or("–".to_owned(), |rate| power(rate, 3));
+        let delta_k = reading.delta_k_mpa_sqrt_m.map_or("–".to_owned(), |delta_k| fixed(delta_k * per("MPa√m"), 2));
+        let growth = reading.da_dn_mm_per_cycle.map_or("–".to_owned(), |growth| rate(growth, 3));
         let by = if reading.method == "secant" { " secant" } else { "" };
         let marks = quoted(&reading.marks.replace('_', " "));
         let left_out =
@@ -239,11 +241,11 @@ fn readings(readings: &[Reading]) -> String {
         let remarks: Vec<String> =
             [marks, by.trim().to_owned(), left_out].into_iter().filter(|words| !words.is_empty()).collect();
         format!(
-            "<tr{out}><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{delta_k}</td><td class=\"n\">{rate}</td><td>{}</td></tr>\n",
+            "<tr{out}><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{delta_k}</td><td class=\"n\">{growth}</td><td>{}</td></tr>\n",
             place + 1,
             quoted(&reading.specimen),
             whole(reading.cycles),
-            fixed(reading.crack_length_mm, 3),
+            fixed(reading.crack_length_mm * per("mm"), 3),
             remarks.join("; ")
         )
     };
@@ -274,8 +276,8 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
         quoted(law),
         whole(number("rates")),
         fixed(number("rms_log_rate"), 3),
-        fixed(number("delta_k_min_mpa_sqrt_m"), 2),
-        fixed(number("delta_k_max_mpa_sqrt_m"), 2),
+        fixed(number("delta_k_min_mpa_sqrt_m") * per("MPa√m"), 2),
+        fixed(number("delta_k_max_mpa_sqrt_m") * per("MPa√m"), 2),
         ratios.join(", ")
     );
     let caption = "Figure 1. Growth rate over ΔK: rates (circles), the law over its range (lines), by stress ratio.";
@@ -285,15 +287,15 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
     page += &signatures(signed, "Tested by");
     page += "<h2>Rates as they were read</h2>\n";
     page += &hashes(&fit["sources"], HASHES_MOST);
-    let row = |(place, rate): (usize, &RateFitted)| {
+    let row = |(place, row): (usize, &RateFitted)| {
         format!(
             "<tr><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
             place + 1,
-            quoted(&rate.series),
-            short(rate.stress_ratio),
-            fixed(rate.delta_k_mpa_sqrt_m, 3),
-            power(rate.da_dn_mm_per_cycle, 3),
-            power(rate.da_dn_fitted_mm_per_cycle, 3)
+            quoted(&row.series),
+            short(row.stress_ratio),
+            fixed(row.delta_k_mpa_sqrt_m * per("MPa√m"), 3),
+            rate(row.da_dn_mm_per_cycle, 3),
+            rate(row.da_dn_fitted_mm_per_cycle, 3)
         )
     };
     page += &format!(
@@ -305,6 +307,7 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
 }
 
 fn constants(fit: &Value) -> String {
+    let fit = &*shown_result(fit);
     let rows = fit["constants"].as_object().into_iter().flatten().map(|(key, value)| {
         let error = fit["standard_errors"][key].as_f64().map_or_else(String::new, |error| format!(" ± {}", sized(error, 2)));
         let value = value.as_f64().map_or_else(|| quoted(&value.to_string()), |value| sized(value, 5));

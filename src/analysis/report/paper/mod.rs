@@ -17,6 +17,7 @@ pub use folder::{Source, read};
 
 use super::chart::Size;
 use super::specimen_picture::sketch::escaped;
+use crate::units::shown::told;
 
 /// What stands near the beginning of a report, and of no other file.
 pub const SIGN: &str = "<meta name=\"generator\" content=\"perilife report\">";
@@ -37,7 +38,7 @@ pub struct Signed {
     pub date: Option<String>,
 }
 
-/// The report of a run or a fit.
+/// The report of a run or a fit, in the units that are shown.
 pub fn html(source: &Source, signed: &Signed) -> String {
     let (title, body, version) = match source {
         Source::Run { result, tables, drawings } => prediction::body(result, tables, drawings, signed),
@@ -48,6 +49,7 @@ pub fn html(source: &Source, signed: &Signed) -> String {
     let plain: String = title.chars().filter(|c| c.is_alphanumeric() || " ,.-_".contains(*c)).take(90).collect();
     let style = STYLE.replace("FOOT", &format!("perilife {version}, {plain}"));
     let title = escaped(&title);
+    let body = told(&body);
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n{SIGN}\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n<style>\n{style}</style>\n</head>\n\

@@ -1,6 +1,8 @@
 //! Numbers as a report writes them: thousands apart, a true minus, powers of ten raised, no more digits than a band deserves.
 
 use crate::report::axis::grouped;
+use crate::units::shown::{name_of, per, shown};
+use crate::units::us::{System, renamed};
 
 /// A narrow space at which no line breaks.
 const THIN: &str = "\u{202f}";
@@ -44,6 +46,18 @@ pub fn power(value: f64, digits: usize) -> String {
     let text = format!("{value:.*e}", digits.saturating_sub(1));
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     format!("{}{THIN}×{THIN}10<sup>{}</sup>", minus(mantissa), minus(exponent))
+}
+
+/// A growth rate, mm/cycle, in the unit that is shown.
+pub fn rate(value: f64, digits: usize) -> String {
+    power(value * per("mm/cycle"), digits)
+}
+
+/// C of a law C ΔK^m, mm/cycle at 1 MPa√m, with both units, in those that are shown; metric where m is not known.
+pub fn level(c: f64, m: Option<f64>, digits: usize) -> String {
+    let us = renamed("paris_c_mm_per_cycle", System::Us).filter(|_| shown() == System::Us);
+    let factor = us.and_then(|us| us.factor(|_| m).ok()).unwrap_or(1.0);
+    format!("{} {} at 1 {}", power(c * factor, digits), name_of("mm/cycle"), name_of("MPa√m"))
 }
 
 fn minus(text: &str) -> String {

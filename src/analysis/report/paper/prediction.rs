@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::numbers::{by_band, fixed, power, short, sized, whole};
+use super::numbers::{self, by_band, fixed, level, power, short, sized, whole};
 use super::{
     Drawings, Sheets, Signed, answers, figure, hashes, letter, mark, part_through, prose, quoted, recorded, signatures, spectrum,
     terms,
@@ -213,10 +213,10 @@ fn law(result: &Value) -> Vec<(&'static str, String)> {
     if let (Some(rate), Some(pivot)) = (number("rate_at_pivot_mm_per_cycle"), number("pivot_delta_k_mpa_sqrt_m")) {
         let error =
             number("rate_at_pivot_relative_error").map_or_else(String::new, |error| format!(" ± {} %", fixed(100.0 * error, 1)));
-        rows.push(("Growth rate", format!("{} mm/cycle{error} at ΔK {} MPa√m", power(rate, 3), fixed(pivot, 1))));
+        rows.push(("Growth rate", format!("{} mm/cycle{error} at ΔK {} MPa√m", numbers::rate(rate, 3), fixed(pivot, 1))));
     }
     if let Some(c) = number("paris_c_used_mm_per_cycle").or(number("paris_c_mm_per_cycle")) {
-        rows.push(("C as used", format!("{} mm/cycle at 1 MPa√m", power(c, 4))));
+        rows.push(("C as used", level(c, number("paris_m").or(number("p")), 4)));
     }
     if let Some(m) = number("paris_m").or(number("p")) {
         let error = number("paris_m_error")

@@ -10,7 +10,9 @@ use super::curves::smooth;
 use crate::error::{Error, InputError, Result};
 use crate::report::axis::Axis;
 use crate::report::chart::{COMPUTED, Frame, INK, OF_RATES, Size};
+use crate::report::units::of_table;
 use crate::specimen::Point;
+use crate::units::us::System;
 
 /// The figures of a fit.
 pub const FIT_FILE: &str = "fit.json";
@@ -233,5 +235,6 @@ fn rows<R: DeserializeOwned>(text: &str, name: &str) -> Result<Vec<R>> {
             ..InputError::default()
         }))
     };
+    let text = of_table(text, System::Si);
     csv::Reader::from_reader(text.as_bytes()).deserialize().map(|row| row.map_err(bad)).collect()
 }

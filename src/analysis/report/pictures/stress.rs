@@ -9,6 +9,7 @@ use crate::report::chart::{INK, Size};
 use crate::report::specimen_picture::sketch::Sketch;
 use crate::specimen::geometry::{along, bounding_box, polygon_area};
 use crate::specimen::{CrackLine, Point};
+use crate::units::shown::per;
 use crate::units::{MM, MPA};
 
 /// Size of the picture, px; it is as high as the plate asks for between two bounds.
@@ -41,12 +42,12 @@ enum Of {
 }
 
 impl Of {
-    /// MPa.
+    /// In the unit that is shown.
     fn value(self, stress: &Stress) -> f64 {
-        match self {
-            Of::VonMises => stress.von_mises() / MPA,
-            Of::AlongY => stress.y / MPA,
-        }
+        in_shown(match self {
+            Of::VonMises => stress.von_mises(),
+            Of::AlongY => stress.y,
+        })
     }
 
     fn title(self) -> &'static str {
@@ -55,6 +56,11 @@ impl Of {
             Of::AlongY => "Stress along y, MPa; thin line: zero",
         }
     }
+}
+
+/// A stress, Pa, in the unit that is shown.
+fn in_shown(stress: f64) -> f64 {
+    per("MPa") * stress / MPA
 }
 
 /// SVG text.
@@ -161,7 +167,7 @@ fn deformed(field: &StressField, factor: f64) -> Vec<Vec<Point>> {
     field.pieces.iter().map(|piece| piece.iter().map(place).collect()).collect()
 }
 
-/// Bands of a stress: what bounds them, MPa, and their colours, one more.
+/// Bands of a stress: what bounds them, in the unit that is shown, and their colours, one more.
 struct Bands {
     of: Of,
     levels: Vec<f64>,
@@ -260,7 +266,7 @@ fn draw(sketch: &mut Sketch, field: &StressField, moved: &[Vec<Point>], bands: &
             zero.extend(crossing(&corners, 0.0));
         }
         if let Some(strength) = strength {
-            yielding.extend(crossing(&corners, strength / MPA));
+            yielding.extend(crossing(&corners, in_shown(strength)));
         }
         let free = (0..piece.len()).filter(|k| piece[*k].is_free);
         rims.extend(free.map(|k| vec![corners[k].0, corners[(k + 1) % corners.len()].0]));

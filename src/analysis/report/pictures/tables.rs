@@ -4,6 +4,8 @@ use std::path::Path;
 
 use crate::error::Result;
 use crate::report::csv::{Row, bad_table, parse_a_n};
+use crate::report::units::of_table;
+use crate::units::us::System;
 
 /// Growth and K of a tip over the rows of a curve.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,6 +35,8 @@ impl RunTables {
     /// Of the texts of both tables, whose names stand in messages.
     /// Errors: a cell that is not as the run wrote it, by file, line, column and value.
     pub fn read([curve, curve_name]: [&str; 2], [path, path_name]: [&str; 2]) -> Result<Self> {
+        let (curve, path) = (of_table(curve, System::Si), of_table(path, System::Si));
+        let (curve, path) = (&*curve, &*path);
         let rows = parse_a_n(curve, Path::new(curve_name))?;
         let cells = Cells::of(curve, curve_name);
         let count = (0..).take_while(|tip| cells.has(&format!("tip{tip}_growth_mm"))).count();

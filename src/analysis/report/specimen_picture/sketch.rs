@@ -1,9 +1,10 @@
-//! Lines, arrows and words in an SVG, placed by the plate's own coordinates.
+//! Lines, arrows and words in an SVG, placed by the plate's own coordinates; words with their quantities in the units that are shown.
 
 use std::fmt::Write;
 
 use super::SIGN;
 use crate::specimen::Point;
+use crate::units::shown::told;
 
 /// Colour of the plate.
 pub const PLATE: &str = "#e4e7eb";
@@ -179,7 +180,7 @@ impl Sketch {
 
     /// Words at a pixel that stay readable over lines; `K_I` is written with a lowered index.
     pub fn name(&mut self, [x, y]: Point, words: &str, anchor: &str, size: f64, fill: &str) {
-        let words = lowered(&escaped(words));
+        let words = lowered(&escaped(&told(words)));
         self.push(format_args!(
             r#"<text x="{x:.1}" y="{y:.1}" text-anchor="{anchor}" font-size="{size}" fill="{fill}" paint-order="stroke" stroke="white" stroke-width="3" stroke-linejoin="round">{words}</text>"#
         ));
@@ -222,7 +223,7 @@ impl Sketch {
 
     /// The whole picture of this size, with a sentence for those who do not see it.
     pub fn picture(self, [width, height]: Point, sentence: &str) -> String {
-        let sentence = escaped(sentence).replace('"', "&quot;");
+        let sentence = escaped(&told(sentence)).replace('"', "&quot;");
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
              role=\"img\" aria-label=\"{sentence}\" font-family=\"IBM Plex Sans, Segoe UI, Helvetica, Arial, sans-serif\">\n  \
@@ -233,7 +234,7 @@ impl Sketch {
 
     /// Words at a pixel; `anchor` is start, middle or end.
     pub fn text(&mut self, [x, y]: Point, words: &str, anchor: &str, size: u32, fill: &str) {
-        let words = escaped(words);
+        let words = escaped(&told(words));
         self.push(format_args!(
             r#"<text x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" font-size="{size}" fill="{fill}">{words}</text>"#
         ));

@@ -10,6 +10,7 @@ use crate::report::pictures::tables::RunTables;
 use crate::report::specimen_picture::sketch::Sketch;
 use crate::specimen::Point;
 use crate::specimen::geometry::{along, distance};
+use crate::units::shown::{name_of, per};
 
 /// Size of the picture in a file of its own.
 pub const SIZE: Size = Size { width: 760.0, height: 520.0, text: 13.0 };
@@ -339,14 +340,15 @@ pub(in crate::report::pictures) fn colour(share: f64) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A length of 1, 2 or 5 times a power of ten, mm.
+/// A length of 1, 2 or 5 times a power of ten, of the unit that is shown; `scale` is in pixels to a mm, `span` in mm.
 pub(in crate::report) fn scale_bar(sketch: &mut Sketch, [x, y]: Point, [scale, span]: [f64; 2], text: f64) {
+    let (scale, span) = (scale / per("mm"), span * per("mm"));
     let most = 0.3 * span;
     let power = 10f64.powf(most.log10().floor());
     let length = [5.0, 2.0, 1.0].into_iter().map(|part| part * power).find(|length| *length <= most).unwrap_or(power);
     let end = x + length * scale;
     sketch.path(&[[x, y - 5.0], [x, y], [end, y], [end, y - 5.0]], EDGE, 1.2, "");
-    sketch.name([end + 6.0, y], &format!("{length} mm"), "start", text, QUIET);
+    sketch.name([end + 6.0, y], &format!("{length} {}", name_of("mm")), "start", text, QUIET);
 }
 
 /// What the colours stand for.

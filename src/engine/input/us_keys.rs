@@ -1,0 +1,120 @@
+//! Keys of an input file in US units, which become the metric ones that readers know, before anything is read.
+
+use toml::{Table, Value};
+
+use crate::error::{InputError, Result, input, input_missing};
+use crate::units::us::{System, clean, renamed};
+use crate::units::words::in_units;
+
+use super::slice::{path_steps, shorten, value_at};
+
+/// Sections whose keys are US by themselves: growth data of the library, as its sources have them.
+const OWN: [&str; 1] = ["growth"];
+
+/// A key that was given in US units.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Written {
+    /// Its place as readers name it, `specimen.width_mm`.
+    metric: String,
+    /// Its place in the file, `specimen.width_in`.
+    us: String,
+    /// What it was given.
+    value: Value,
+}
+
+/// Name of the other twin of a key, if it has a unit of length, stress, force, rate or K.
+pub(super) fn twin(key: &str) -> Option<String> {
+    [System::Si, System::Us].into_iter().find_map(|to| renamed(key, to)).map(|other| other.name)
+}
+
+/// The place of a key as readers name it.
+pub(super) fn metric(path: &str) -> String {
+    match path.rsplit_once('.') {
+        Some((above, key)) => renamed(key, System::Si).map_or_else(|| path.to_owned(), |si| format!("{above}.{}", si.name)),
+        None => path.to_owned(),
+    }
+}
+
+/// Makes every key in US units the metric one, values and points of lists with it; a table under such a key has the number as `value`.
+/// Errors: a quantity that is given twice, naming both keys; C of a law without its exponent, which both belong to the unit of ΔK.
+pub(super) fn to_metric(table: &mut Table) -> Result<Vec<Written>> {
+    let mut written = Vec::new();
+    below(table, "", &mut written)?;
+    Ok(written)
+}
+
+fn below(table: &mut Table, above: &str, written: &mut Vec<Written>) -> Result<()> {
+    let path = |key: &str| if above.is_empty() { key.to_owned() } else { format!("{above}.{key}") };
+    let given = table.clone();
+    for (key, value) in &given {
+        if above.is_empty() && OWN.contains(&key.as_str()) {
+            continue;
+        }
+        let Some(si) = renamed(key, System::Si) else {
+            if let Some(value) = table.get_mut(key) {
+                inside(value, &path(key), written)?;
+            }
+            continue;
+        };
+        if let Some(other) = given.get(&si.name) {
+            let problem = format!("stands beside {} = {}: one quantity is given twice", path(&si.name), shorten(other));
+            return Err(input(&path(key), shorten(value), problem, "give one of the two"));
+        }
+        let sibling = |name: &str| given.get(name).and_then(number);
+        let factor = si.factor(sibling).map_err(|exponent| {
+            let problem = format!("is missing, and the unit of {} depends on it", path(key));
+            input_missing(&path(exponent), problem, format!("give it, or {}", path(&si.name)))
+        })?;
+        written.push(Written { metric: path(&si.name), us: path(key), value: value.clone() });
+        table.remove(key);
+        table.insert(si.name.clone(), scaled(value, factor));
+    }
+    Ok(())
+}
+
+/// Tables in lists.
+fn inside(value: &mut Value, path: &str, written: &mut Vec<Written>) -> Result<()> {
+    match value {
+        Value::Table(table) => below(table, path, written),
+        Value::Array(items) => {
+            items.iter_mut().enumerate().try_for_each(|(i, item)| inside(item, &format!("{path}[{i}]"), written))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
+/// A number, or all of a list, times a factor; what is no number stays, for its reader to refuse.
+fn scaled(value: &Value, factor: f64) -> Value {
+    match (value, number(value)) {
+        (_, Some(number)) => Value::Float(clean(number * factor)),
+        (Value::Array(items), _) => Value::Array(items.iter().map(|item| scaled(item, factor)).collect()),
+        (Value::Table(table), _) => {
+            let of_key = |(key, value): (&String, &Value)| {
+                (key.clone(), if key == "value" { scaled(value, factor) } else { value.clone() })
+            };
+            Value::Table(table.iter().map(of_key).collect())
+        }
+        (other, _) => other.clone(),
+    }
+}
+
+/// An error about a key as the user wrote it: key, value, and quantities in the units of the key.
+pub(super) fn as_written(mut trouble: Box<InputError>, written: &[Written]) -> Box<InputError> {
+    let within = |written: &&Written| {
+        let rest = trouble.key.as_deref()?.strip_prefix(&written.metric)?.to_owned();
+        (rest.is_empty() || rest.starts_with(['.', '['])).then_some(rest)
+    };
+    let Some((own, rest)) = written.iter().find_map(|one| Some((one, within(&one)?))) else { return trouble };
+    let value = if path_steps(&rest).is_empty() { Some(&own.value) } else { value_at(&own.value, &rest) };
+    trouble.key = Some(format!("{}{rest}", own.us));
+    if trouble.value.is_some() {
+        trouble.value = value.map(shorten).or(trouble.value);
+    }
+    trouble.problem = in_units(&trouble.problem, System::Us);
+    trouble.remedy = in_units(&trouble.remedy, System::Us);
+    trouble
+}

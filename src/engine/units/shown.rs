@@ -1,0 +1,39 @@
+//! The units in which this process writes and prints, said once at its start, as its log is. Inside, everything stays as it is.
+
+use std::sync::OnceLock;
+
+use super::us::{System, Unit, renamed};
+use super::words::in_units;
+
+static SHOWN: OnceLock<System> = OnceLock::new();
+
+/// Has all that follows written and printed in these units; only the first call counts.
+pub fn show(system: System) {
+    let _ = SHOWN.set(system);
+}
+
+/// The units that are shown.
+pub fn shown() -> System {
+    SHOWN.get().copied().unwrap_or(System::Si)
+}
+
+/// Words with their quantities in the units that are shown.
+pub fn told(words: &str) -> String {
+    if shown() == System::Si { words.to_owned() } else { in_units(words, shown()) }
+}
+
+/// Units that are shown in one metric unit of this name: what a number is multiplied by that is written without it.
+pub fn per(metric: &str) -> f64 {
+    let unit = Unit::named(metric, System::Si).filter(|_| shown() == System::Us);
+    unit.map_or(1.0, |unit| unit.factor(System::Us))
+}
+
+/// Name of the unit that is shown in place of a metric one.
+pub fn name_of(metric: &'static str) -> &'static str {
+    Unit::named(metric, System::Si).map_or(metric, |unit| unit.word(shown()))
+}
+
+/// A column of a printed table with the unit that is shown.
+pub fn column(metric: &str) -> String {
+    renamed(metric, System::Us).filter(|_| shown() == System::Us).map_or_else(|| metric.to_owned(), |new| new.name)
+}
