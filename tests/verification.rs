@@ -26,6 +26,7 @@ mod mechanics_field;
 mod mirror_images;
 mod near_tip_fields;
 mod part_through;
+mod pins;
 mod pressed_cracks;
 mod product;
 mod quasi_static;

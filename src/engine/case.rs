@@ -10,6 +10,7 @@ mod law;
 mod law_source;
 pub mod model;
 mod model_keys;
+mod pins;
 mod read;
 pub mod record;
 

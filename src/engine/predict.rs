@@ -14,6 +14,7 @@ pub mod laws;
 pub mod moment;
 mod outcome;
 pub mod part_through;
+pub mod pin_arcs;
 pub mod plastic_zone;
 pub mod record;
 pub mod recorded;

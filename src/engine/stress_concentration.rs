@@ -6,13 +6,13 @@
 //! reported and is no bound of the error.
 
 use crate::case::Case;
+use crate::element_free::crack::initial_cracks;
 use crate::element_free::field::Discretisation;
 use crate::element_free::resolution::Resolution;
 use crate::element_free::rim_stress::{RimStress, rim_stresses};
 use crate::element_free::solve::{raster, raster_fields, solve};
 use crate::element_free::stress_field::{Corner, stress_pieces};
 use crate::error::{Error, Result};
-use crate::growth::nodes::initial_cracks;
 use crate::levels::PointGrid;
 use crate::specimen::Point;
 use crate::williams::Elasticity;

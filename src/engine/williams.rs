@@ -24,6 +24,7 @@ pub struct Elasticity {
     pub shear_modulus: f64,
     /// E' of `G = K²/E'`.
     pub plane_modulus: f64,
+    plane: Plane,
 }
 
 impl Elasticity {
@@ -35,7 +36,12 @@ impl Elasticity {
             Plane::Strain => 3.0 - 4.0 * nu,
         };
         let shear_modulus = material.shear_modulus();
-        Elasticity { kappa, shear_modulus, plane_modulus: material.plane_modulus() }
+        Elasticity { kappa, shear_modulus, plane_modulus: material.plane_modulus(), plane: material.plane }
+    }
+
+    /// Those of another material, E in Pa, in the same plane state.
+    pub fn another(&self, youngs_modulus: f64, poisson_ratio: f64) -> Self {
+        Elasticity::of(&Material::elastic(youngs_modulus, poisson_ratio, self.plane))
     }
 
     /// Stress of a displacement gradient `∂u_i/∂x_j`, as [xx, yy, xy], Pa: `σ = 2G (ε + (3-κ)/(2(κ-1)) tr ε)`.

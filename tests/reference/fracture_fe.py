@@ -36,6 +36,7 @@ class Plate:
     pin_loads: list = field(default_factory=list)  # (hole number, direction, force in N, half angle in rad)
     youngs_modulus: float = 70e3
     poisson_ratio: float = 0.3
+    rim_fineness: float = 1.0  # how much smaller elements are on holes
 
 
 @dataclass
@@ -196,7 +197,7 @@ def triangulate(plate, cracks, discs, lines, fineness):
         (x, y), r = disc.centre, disc.radii[-1]
         fields.append(f"{2 * np.pi * r / disc.sectors:.9g}+{growth:.9g}*(sqrt((x-({x:.9g}))^2+(y-({y:.9g}))^2)-{r:.9g})")
     for x, y, radius in plate.holes:
-        fields.append(f"{radius / (4 * fineness):.9g}+{growth:.9g}*Fabs(sqrt((x-({x:.9g}))^2+(y-({y:.9g}))^2)-{radius:.9g})")
+        fields.append(f"{radius / (4 * fineness * plate.rim_fineness):.9g}+{growth:.9g}*Fabs(sqrt((x-({x:.9g}))^2+(y-({y:.9g}))^2)-{radius:.9g})")
         for line in lines:  # a narrow bridge between a hole and a crack
             fine = np.vstack([np.linspace(a, b, 20) for a, b in zip(line[:-1], line[1:])])
             gap = np.hypot(fine[:, 0] - x, fine[:, 1] - y) - radius

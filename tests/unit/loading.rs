@@ -4,7 +4,7 @@ use std::path::Path;
 
 use perilife::case::Case;
 use perilife::loading::Loading;
-use perilife::specimen::{Load, Support};
+use perilife::specimen::{Bearing, Load, Support};
 
 const PANEL: &str = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10";
 const PLATE: &str = "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]\n\
@@ -97,19 +97,39 @@ fn loads_must_balance() {
     }
 }
 
+/// Plates and C(T) have the same default; an arc is given, or a pin from which it follows.
 #[test]
 fn a_pin_touches_over_at_most_half_its_hole() {
     let pins = |half_angle: &str| {
         let pin = |hole, y| format!("{{ hole = {hole}, direction = [0, {y}]{half_angle} }}");
         case(PLATE, &format!("force_max_n = 10\nstress_ratio = 0\npins = [{}, {}]", pin(0, 1), pin(1, -1)))
     };
-    let contact =
-        |case: Case| if let Load::Pin { contact, .. } = case.specimen.loads[0] { contact.to_degrees() } else { f64::NAN };
-    assert!((contact(pins("").unwrap()) - 90.0).abs() < 1e-9, "a pin that fills its hole");
-    assert!((contact(pins(", contact_half_angle_deg = 15").unwrap()) - 15.0).abs() < 1e-9);
-    for wrong in ["0", "120"] {
-        let error = pins(&format!(", contact_half_angle_deg = {wrong}")).unwrap_err().to_string();
-        assert!(error.contains("loading.pins[0].contact_half_angle_deg") && error.contains(wrong), "{error}");
+    let compact = |keys: &str| {
+        let specimen = "kind = \"compact_tension\"\nwidth_mm = 50\nthickness_mm = 5\ncrack_length_mm = 20\n";
+        case(&format!("{specimen}{keys}"), "force_max_n = 10\nstress_ratio = 0")
+    };
+    let bearing = |case: Case| {
+        if let Load::Pin { contact, .. } = &case.specimen.loads[0] { contact.clone() } else { panic!("no pin") }
+    };
+    for unknown in [pins(""), compact("")] {
+        assert_eq!(bearing(unknown.unwrap()), Bearing::Unknown);
+    }
+    for given in [pins(", contact_half_angle_deg = 40"), compact("pin_half_angle_deg = 40")] {
+        assert!((bearing(given.unwrap()).half_angle().unwrap() - 40_f64.to_radians()).abs() < 1e-9);
+    }
+    let hole = 1e3 * compact("").unwrap().specimen.holes[0].radius * 2.0;
+    let wrong = [
+        (pins(", contact_half_angle_deg = 0"), "loading.pins[0].contact_half_angle_deg", "0"),
+        (pins(", contact_half_angle_deg = 120"), "loading.pins[0].contact_half_angle_deg", "120"),
+        (pins(", pin_diameter_mm = 1, contact_half_angle_deg = 20"), "loading.pins[0].contact_half_angle_deg", "pin_diameter_mm"),
+        (pins(", friction = 0.1"), "loading.pins[0].pin_diameter_mm", "clearance"),
+        (pins(", pin_diameter_mm = 1, friction = 1.5"), "loading.pins[0].friction", "1.5"),
+        (compact(&format!("pin_diameter_mm = {}", 1.01 * hole)), "specimen.pin_diameter_mm", "more than the hole"),
+        (compact("pin_diameter_mm = 12\npin_poisson_ratio = 0.6"), "specimen.pin_poisson_ratio", "0.6"),
+    ];
+    for (case, key, word) in wrong {
+        let error = case.unwrap_err().to_string();
+        assert!(error.contains(key) && error.contains(word), "{error}");
     }
 }
 

@@ -45,11 +45,14 @@ fn check(plates: &[Plate]) {
         else {
             return;
         };
+        // The reference has a cosine over 90° where its file leaves the arc out.
+        let arc = (name == "pin_loaded_lug").then(|| "loading.pins[0].contact_half_angle_deg=90".to_owned());
         let set = [
             "fatigue.paris_c_mm_per_cycle=8.95422e-8".to_owned(),
             "fatigue.paris_m=2.874".to_owned(),
             format!("model.spacing_mm={spacing}"),
         ];
+        let set: Vec<String> = set.into_iter().chain(arc).collect();
         let run = grown(&file, &set);
         for compared in compare(&run, tips_of_table(&std::fs::read_to_string(&curve).unwrap()).unwrap(), 1e-3 * x_end) {
             print(name, &run, &compared);

@@ -47,7 +47,8 @@ fn the_arc_of_a_pin_has_the_k_of_finite_elements() {
     let k_i = |tip: &TipResult| tip.methods[0].intensity.k_i.unwrap();
     let specimen = first_tip(compact, &set, &method);
     let handbook = specimen.handbook_k_i.unwrap();
-    let arcs = [(",contact_half_angle_deg=15", 0.9996), (",contact_half_angle_deg=45", 1.0048), ("", 1.0239)];
+    let arcs =
+        [(",contact_half_angle_deg=15", 0.9996), (",contact_half_angle_deg=45", 1.0048), (",contact_half_angle_deg=90", 1.0239)];
     let over_elements = arcs.map(|(half_angle, reference)| {
         let pin = |hole, y| format!("{{hole={hole},direction=[0,{y}]{half_angle}}}");
         let pins = format!("{plate}pins=[{},{}]\n", pin(0, 1), pin(1, -1));

@@ -10,7 +10,7 @@ use crate::predict::RunFigures;
 use crate::solver::SolverUsed;
 use crate::specimen::handbook::handbook;
 use crate::specimen::part_through::{RANGE, SOURCE};
-use crate::specimen::{LoadMeasure, Specimen, Support};
+use crate::specimen::{Load, LoadMeasure, Specimen, Support};
 pub(super) use crate::units::us::clean;
 use crate::units::{KN, MM, MPA};
 
@@ -51,11 +51,27 @@ pub fn words(choices: &[Choice], keys: &[&str]) -> String {
 
 /// The model of a case; sizes, solver and solved part are those of its run where there was one.
 pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
-    match &case.model {
-        Model::Handbook(_) => hand_calculation(case),
+    let mut choices = match &case.model {
+        Model::Handbook(_) => return hand_calculation(case),
         Model::Nodes(nodes) => of_nodes(case, nodes),
         Model::Points(points) => of_points(case, points, figures),
+    };
+    let pins = pins(case);
+    if !pins.is_empty() {
+        let why =
+            "pins at maximum load; on nodes their contact is found anew in every equilibrium, on points at N = 0".to_owned();
+        choices.push(Choice { key: "pins", value: pins.into(), why: Some(why) });
     }
+    choices
+}
+
+/// How every pin bears, in words.
+pub fn pins(case: &Case) -> Vec<String> {
+    let words = |load: &Load| match load {
+        Load::Pin { hole, contact, .. } => Some(format!("hole {hole}: {}", contact.words())),
+        Load::Edge { .. } => None,
+    };
+    case.specimen.loads.iter().filter_map(words).collect()
 }
 
 fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) -> Vec<Choice> {

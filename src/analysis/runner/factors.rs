@@ -9,9 +9,10 @@ use super::{Summary, Watcher};
 use crate::case::Case;
 use crate::error::{Error, Result, input};
 use crate::fatigue::crack_tip::TipState;
+use crate::predict::pin_arcs;
 use crate::predict::tip_factors::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
-use crate::report::stresses;
 use crate::report::units::show_folder;
+use crate::report::{model_words, stresses};
 use crate::stress_concentration::stressed;
 use crate::units::shown::{column, per, told};
 use crate::units::{MM, MPA, MPA_SQRT_M};
@@ -32,8 +33,12 @@ pub(super) fn run(
     let (mut found, mut tables, mut lines) = (Map::new(), String::new(), Vec::new());
     if has_cracks || !on_nodes {
         let tips = stress_intensity(case, methods)?;
-        for warning in notes(case, &tips)? {
+        for warning in notes(case, &tips)?.into_iter().chain(pin_arcs::line(case)) {
             watcher.warn(&warning);
+        }
+        let pins = model_words::pins(case);
+        if !pins.is_empty() {
+            found.insert("pins".to_owned(), json!(pins));
         }
         tables.push_str(&table(&tips));
         found.insert("tips".to_owned(), tips.iter().map(object).collect());

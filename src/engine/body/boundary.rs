@@ -6,7 +6,8 @@ use super::sharing::Sharing;
 use crate::bond_law::stencil::Stencil;
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{bounding_box, distance_to_segment};
-use crate::specimen::{Hole, Load, Point, Specimen, Support};
+use crate::specimen::pin::{Contact, LOOSE_PIN, Pin, RimForce};
+use crate::specimen::{Bearing, Hole, Load, Point, Specimen, Support};
 
 /// Stiffness of rigid grips over that of the plate.
 const GRIP_STIFFNESS: f32 = 1000.0;
@@ -311,19 +312,41 @@ fn outward(specimen: &Specimen, facet: Facet, spacing: f64) -> Facet {
 
 /// The loads of a specimen in short pieces.
 pub fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
-    let mut pieces = Vec::new();
-    for load in &specimen.loads {
-        match *load {
-            Load::Edge { from, to, traction } => pieces.extend(straight(from, to, spacing).map(|facet| {
+    specimen.loads.iter().flat_map(|load| pieces_of(load, specimen, spacing)).collect()
+}
+
+/// A load of a specimen in short pieces.
+pub fn pieces_of(load: &Load, specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
+    match *load {
+        Load::Edge { from, to, traction } => {
+            let piece = |facet: Facet| {
                 let area = facet.length * specimen.thickness;
                 LoadPiece { facet: outward(specimen, facet, spacing), force: [traction[0] * area, traction[1] * area] }
-            })),
-            Load::Pin { hole, direction, force, contact } => {
-                pieces.extend(bearing(&specimen.holes[hole], direction, contact, spacing, force))
-            }
+            };
+            straight(from, to, spacing).map(piece).collect()
         }
+        Load::Pin { hole, direction, force, ref contact } => match (contact, &specimen.holes[hole]) {
+            (Bearing::Elastic(Pin { found: Some(found), .. }), hole) => rim_forces(hole, direction, found, spacing, force),
+            // Of a pin whose contact is not found yet nothing is known but its force.
+            (_, hole) => bearing(hole, direction, contact.half_angle().unwrap_or(LOOSE_PIN), spacing, force),
+        },
     }
-    pieces
+}
+
+/// What a pin does where it touches its hole, in pieces no longer than those of other rims.
+fn rim_forces(hole: &Hole, direction: Point, found: &Contact, spacing: f64, force: f64) -> Vec<LoadPiece> {
+    let middle = direction[1].atan2(direction[0]);
+    let of_piece = |piece: &RimForce| {
+        let count = (hole.radius * piece.width * PER_SPACING / spacing).ceil();
+        let (length, [out, around]) = (hole.radius * piece.width / count, piece.share.map(|share| force * share / count));
+        let (angle, width) = (middle + piece.angle, piece.width);
+        (0..count as usize).map(move |i| {
+            let (y, x) = (angle + width * ((i as f64 + 0.5) / count - 0.5)).sin_cos();
+            let at = [hole.centre[0] + hole.radius * x, hole.centre[1] + hole.radius * y];
+            LoadPiece { facet: Facet { at, normal: [-x, -y], length }, force: [out * x - around * y, out * y + around * x] }
+        })
+    };
+    found.pieces.iter().flat_map(of_piece).collect()
 }
 
 /// Pressure `p cos(π θ / 2θ_c)` over the arc |θ| ≤ θ_c of a hole around `direction`, its resultant `force`. With θ_c = 90° this

@@ -6,10 +6,10 @@ use super::Method;
 use super::model_keys::{KEYS_OF_BONDS, telling_key};
 use crate::input::value_at;
 use crate::loading::Loading;
-use crate::specimen::Specimen;
 use crate::specimen::beta::KEY;
 use crate::specimen::handbook::handbook;
 use crate::specimen::part_through::SOURCE;
+use crate::specimen::{Bearing, Load, Specimen};
 
 /// Error of a life over that of K where the law is not yet known: the exponent of most metals.
 const EXPONENT_USUAL: f64 = 3.0;
@@ -46,6 +46,11 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
     }
     let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
     let is_plain = loading.displacement().is_none() && specimen.crack_pressure == 0.0 && !has_fields;
+    let has_own_pins =
+        specimen.loads.iter().any(|load| matches!(load, Load::Pin { contact, .. } if *contact != Bearing::Unknown));
+    if has_own_pins && handbook(specimen).is_some() {
+        return (Method::ElementFreeGalerkin, "the formula of the specimen is for pins of its standard".to_owned());
+    }
     let formula = handbook(specimen).filter(|formula| is_plain && formula.holds_at(specimen.crack_length));
     match formula {
         Some(formula) if 100.0 * EXPONENT_USUAL * formula.error_at(specimen.crack_length) <= percent => {

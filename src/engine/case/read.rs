@@ -6,7 +6,7 @@ use toml::{Table, Value};
 
 use super::fleet::Fleet;
 use super::model_keys::on_nodes;
-use super::{Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, remove_law};
+use super::{Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, pins, remove_law};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
@@ -162,6 +162,7 @@ impl Case {
             law_record,
             growth_data,
         };
+        pins::settle(&mut case)?;
         if matches!(case.engine(), Engine::Points | Engine::Handbook) && case.choices.surface_correction.is_none() {
             case.model.take_most_accurate_rim();
         }

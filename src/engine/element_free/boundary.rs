@@ -6,7 +6,7 @@
 
 use super::field::{Discretisation, Local, singular};
 use super::rims::Stretch;
-use crate::body::boundary::load_pieces;
+use crate::body::boundary::pieces_of;
 use crate::error::Result;
 use crate::specimen::geometry::{along, bounding_box, direction, distance};
 use crate::specimen::{Point, Specimen, Support};
@@ -79,7 +79,9 @@ impl Boundary {
         let grips = boundary.grips(specimen, plate)?;
         // What sides that are moved bear is found with their displacement.
         let is_moved = specimen.moved_section().is_some();
-        for piece in load_pieces(specimen, far / PIECES_IN_SPACING).into_iter().filter(|_| !is_moved) {
+        // Where elastic pins touch depends on the plate: `pins`.
+        let known = specimen.loads.iter().filter(|load| !is_moved && !load.is_elastic_pin());
+        for piece in known.flat_map(|load| pieces_of(load, specimen, far / PIECES_IN_SPACING)) {
             match grips.iter().find(|grip| is_on(grip, specimen, piece.facet.at)) {
                 // A rigid end takes up all that is on it.
                 Some(grip) => {

@@ -23,6 +23,15 @@ pub struct Tip {
     pub length: f64,
 }
 
+/// The initial cracks of a specimen, and their tips as nodes see them; ends of slots are none.
+pub fn initial_cracks(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
+    let lines = specimen.crack_lines();
+    let ends = (0..specimen.tips.len()).filter_map(|tip| specimen.line_end(tip));
+    let length = |line: &CrackLine| line.length() / specimen.tips_of(line).max(1) as f64;
+    let tips = ends.map(|end| Tip { end, length: length(&lines[end.line]) }).collect();
+    (lines, tips)
+}
+
 /// Axes of a tip: x₁ along the crack, out of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TipAxes {

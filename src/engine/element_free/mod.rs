@@ -18,6 +18,8 @@ mod front;
 pub mod grid;
 mod linear;
 pub mod nodes;
+mod pin_contact;
+mod pins;
 pub mod resolution;
 pub mod rim_stress;
 pub mod rims;

@@ -9,10 +9,12 @@ use super::contact::{Pressed, press};
 use super::dissection::{Factor, Matrices, Member};
 use super::field::{Discretisation, Local};
 use super::front::Front;
+use super::pins::press_pins;
 use crate::error::Result;
 use crate::levels::PointGrid;
 use crate::material::Plane;
 use crate::specimen::geometry::bounding_box;
+use crate::specimen::pin::Contact;
 use crate::specimen::{Point, Specimen};
 use crate::williams::Elasticity;
 
@@ -21,7 +23,7 @@ use crate::williams::Elasticity;
 pub struct Solution {
     /// Unknowns, m.
     pub u: Vec<f64>,
-    /// Work of the loads `Σ f u`, J.
+    /// Work of the loads `Σ f u`, J; of elastic pins what [`super::pins::Pins::work`] says.
     pub work: f64,
     /// Points of integration.
     pub points: usize,
@@ -29,6 +31,8 @@ pub struct Solution {
     pub area: f64,
     /// Flanks of cracks in contact.
     pub pressed: Vec<Pressed>,
+    /// Contact of elastic pins, with the index of the load.
+    pub contacts: Vec<(usize, Contact)>,
 }
 
 impl Solution {
@@ -112,13 +116,18 @@ pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -
     if section.is_none() {
         forces.iter_mut().for_each(|force| *force *= load);
     }
-    let mut y = forces.clone();
+    let others = forces.clone();
+    let pins = press_pins(specimen, plate, &factor, &others, load)?;
+    if let Some(pins) = &pins {
+        forces.iter_mut().zip(&pins.forces).for_each(|(force, of_pins)| *force += of_pins);
+    }
+    let mut y = forces;
     factor.forward(&mut y);
     let mut u = y.clone();
     factor.backward(&mut u);
     let mut pressed = press(specimen, plate, &factor, &y, &mut u)?;
     let work = match section {
-        None => forces.iter().zip(&u).map(|(f, u)| f * u).sum(),
+        None => others.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() + pins.as_ref().map_or(0.0, |pins| pins.work),
         // Moved by 1 m, then scaled to the force of the load: contact of flanks changes with it in proportion.
         Some(section) => {
             let scale = load * section / held.iter().map(|square| square.reaction(&u)).sum::<f64>();
@@ -129,7 +138,8 @@ pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -
     };
     let points = cells.iter().map(|(_, points)| points.len()).sum();
     let area = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
-    Ok(Solution { u, work, points, area, pressed })
+    let contacts = pins.map_or_else(Vec::new, |pins| pins.contacts);
+    Ok(Solution { u, work, points, area, pressed, contacts })
 }
 
 /// Points of the raster in a far spacing: a dozen rasters of a run then have fewer places than its solves have points of integration.

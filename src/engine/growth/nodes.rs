@@ -9,7 +9,7 @@ use super::cracks::tip::{CracksState, Reading};
 use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment};
 use super::{Fields, SolverStatistics, State};
 use crate::case::Case;
-use crate::element_free::crack::Tip;
+use crate::element_free::crack::{Tip, initial_cracks};
 use crate::element_free::factors;
 use crate::element_free::field::{Discretisation, Local};
 use crate::element_free::resolution::{ElementFreeSettings, Resolution, room};
@@ -18,7 +18,7 @@ use crate::error::Result;
 use crate::growth::cross_check::largest_difference;
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
-use crate::specimen::{CrackLine, Point, Specimen};
+use crate::specimen::{CrackLine, Point};
 use crate::williams::Elasticity;
 
 /// Factor by which nodes get finer where K asks for it.
@@ -235,15 +235,6 @@ impl CrackedPlate for NodePlate {
     fn warnings(&self) -> Vec<String> {
         self.state.warnings.clone()
     }
-}
-
-/// The initial cracks of a specimen, and their tips as nodes see them; ends of slots are none.
-pub fn initial_cracks(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
-    let lines = specimen.crack_lines();
-    let ends = (0..specimen.tips.len()).filter_map(|tip| specimen.line_end(tip));
-    let length = |line: &CrackLine| line.length() / specimen.tips_of(line).max(1) as f64;
-    let tips = ends.map(|end| Tip { end, length: length(&lines[end.line]) }).collect();
-    (lines, tips)
 }
 
 /// The nodes of a case with its initial cracks.

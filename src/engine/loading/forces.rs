@@ -6,7 +6,7 @@ use toml::Value;
 use crate::error::{Result, input};
 use crate::input::{number, slice};
 use crate::specimen::geometry::{along, distance, distance_to_segment, unit};
-use crate::specimen::{Load, Point, SNUG_PIN, Specimen};
+use crate::specimen::{Bearing, Load, Point, Specimen};
 use crate::units::MM;
 
 /// Their keys.
@@ -23,8 +23,11 @@ struct PinInput {
     direction: [f64; 2],
     #[serde(default = "one")]
     share: f64,
-    /// Half angle of contact; a pin that fills its hole where it is left out.
     contact_half_angle_deg: Option<f64>,
+    pin_diameter_mm: Option<f64>,
+    friction: Option<f64>,
+    pin_youngs_modulus_gpa: Option<f64>,
+    pin_poisson_ratio: Option<f64>,
 }
 
 /// One entry of `rollers`.
@@ -55,9 +58,14 @@ pub(super) fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
         }
         let force = read_share(&path, pin.share)?;
         let direction = direction_of(&path, pin.direction)?;
-        let contact = number("an angle in degrees, 90 for a pin that fills its hole", 1.0, 90.0)
-            .read_optional(&format!("{path}.contact_half_angle_deg"), pin.contact_half_angle_deg)?
-            .map_or(SNUG_PIN, f64::to_radians);
+        let keys = [
+            ("contact_half_angle_deg", pin.contact_half_angle_deg),
+            ("pin_diameter_mm", pin.pin_diameter_mm),
+            ("friction", pin.friction),
+            ("pin_youngs_modulus_gpa", pin.pin_youngs_modulus_gpa),
+            ("pin_poisson_ratio", pin.pin_poisson_ratio),
+        ];
+        let contact = Bearing::read(&path, &keys, specimen.holes[pin.hole].radius)?;
         specimen.loads.push(Load::Pin { hole: pin.hole, direction, force, contact });
     }
     Ok(())

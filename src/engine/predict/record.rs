@@ -7,7 +7,8 @@ use super::checkpoint::{self, Checkpoint};
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::way::Way;
-use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord, laws, plastic_zone, tip_factors};
+use super::{CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord};
+use super::{laws, pin_arcs, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::error::{Error, Result};
 use crate::growth::{CrackGrowth, GrowthStatus, plate};
@@ -196,6 +197,7 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
     warnings.extend(growth.law().and_then(|law| laws::beyond_warning(case, law, curve)));
     warnings.extend(plastic_zone::warnings(case, curve));
     warnings.extend(unstable_path(curve));
+    warnings.extend(pin_arcs::line(case));
     let is_on_points = case.engine() == Engine::Points;
     warnings.extend(curve.first().filter(|_| is_on_points).and_then(|row| tip_factors::beside_nodes(case, &row.tips)));
     warnings

@@ -11,6 +11,7 @@ pub mod handbook;
 pub mod limit_load;
 pub mod net_section;
 pub mod part_through;
+pub mod pin;
 mod placement;
 mod plate;
 mod read;
@@ -20,6 +21,7 @@ pub use beta::BetaTable;
 pub use crack_line::{CrackLine, LineEnd};
 pub use geometry::{Component, Edge};
 pub use part_through::{FrontTip, PartThrough};
+pub use pin::Bearing;
 pub use read::{PART_THROUGH, from_value};
 
 /// A point of the plate, metres.
@@ -112,8 +114,7 @@ pub enum Load {
         /// Traction on the plate, Pa per Pa.
         traction: Point,
     },
-    /// Bearing pressure `p cos(π θ / 2θ_c)` of a frictionless pin where it touches the hole, |θ| up to θ_c about `direction`.
-    /// `force` is in N per N of the case's force, along the unit vector `direction`.
+    /// A pin, which bears on the rim of its hole. `force` is in N per N of the case's force, along the unit vector `direction`.
     Pin {
         /// Index into `Specimen::holes`.
         hole: usize,
@@ -121,13 +122,17 @@ pub enum Load {
         direction: Point,
         /// Force on the plate, N per N.
         force: f64,
-        /// Half angle of contact θ_c, rad: up to [`SNUG_PIN`].
-        contact: f64,
+        /// Where it touches the hole.
+        contact: Bearing,
     },
 }
 
-/// Half angle of contact of a pin that fills its hole, rad: a pin without friction pushes over half the circle.
-pub const SNUG_PIN: f64 = std::f64::consts::FRAC_PI_2;
+impl Load {
+    /// Whether it is a pin whose contact follows from the load.
+    pub fn is_elastic_pin(&self) -> bool {
+        matches!(self, Load::Pin { contact: Bearing::Elastic(_), .. })
+    }
+}
 
 /// What is held.
 #[derive(Debug, Clone, Copy, PartialEq)]

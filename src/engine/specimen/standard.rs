@@ -19,25 +19,20 @@
 //! height 1.2 W, holes of diameter 0.25 W at (0, ±0.275 W). The machined notch and the pre-crack together are one crack
 //! from the front face x = -0.25 W to x = a.
 //!
-//! The pins have a diameter of 0.24 W and roll on flats: they touch the far side of their holes over a narrow arc and bring
+//! Where nothing is given of the pins ([`super::pin`]), they have a diameter of 0.24 W and roll on flats: they touch the far side of their holes over a narrow arc and bring
 //! no friction. How wide the arc is matters for short cracks, whose tips lie close to the holes (Newman 1974, ASTM STP 560,
 //! p. 105): a pressure over the whole half circle spreads the hole and raises K by 4.3, 2.4, 1.3, 0.2 % at a/W = 0.2, 0.25,
 //! 0.3, 0.4 (own finite elements, quadratic, K by J), while arcs of 5 to 20° agree with each other and with the formula of
 //! E647 within 0.2 %, of 45° within 1 %.
 
-use std::f64::consts::PI;
-
 use serde::Deserialize;
 use toml::Value;
 
 use super::net_section::check_crack;
-use super::{Crack, Ends, Hole, Load, LoadMeasure, Specimen, SpecimenKind, Support, TipSeed};
+use super::pin::PinKeys;
+use super::{Bearing, Crack, Ends, Hole, Load, LoadMeasure, Specimen, SpecimenKind, Support, TipSeed};
 use crate::error::{Result, input_missing};
 use crate::input::{LENGTH, slice};
-
-/// Half angle of contact of the pins, rad: Hertz contact of a steel pin with the clearance of E647 in aluminium gives
-/// `b = √(4 P' R / π E*)` = 1.4 mm at W = 50 mm and P' = 640 N/mm, or 13° of the hole (1/E* = (1-ν²)/E of both, R = 150 mm).
-const CONTACT: f64 = 15.0 * PI / 180.0;
 
 /// Keys of `[specimen]` of M(T) and DE(T).
 #[derive(Deserialize)]
@@ -127,6 +122,11 @@ struct CompactInput {
     crack_length_mm: f64,
     #[serde(rename = "beta_file")]
     _beta_file: Option<String>,
+    pin_half_angle_deg: Option<f64>,
+    pin_diameter_mm: Option<f64>,
+    pin_friction: Option<f64>,
+    pin_youngs_modulus_gpa: Option<f64>,
+    pin_poisson_ratio: Option<f64>,
 }
 
 /// C(T).
@@ -137,7 +137,15 @@ pub(super) fn compact_from_value(value: &Value) -> Result<Specimen> {
     let a = LENGTH.read("specimen.crack_length_mm", input.crack_length_mm)?;
     check_crack(input.crack_length_mm, input.width_mm, "the width W from the load line")?;
     let hole = |sign: f64| Hole { centre: [0.0, sign * 0.275 * w], radius: 0.125 * w };
-    let pin = |hole: usize, sign: f64| Load::Pin { hole, direction: [0.0, sign], force: 1.0, contact: CONTACT };
+    let keys: PinKeys<'_> = [
+        ("pin_half_angle_deg", input.pin_half_angle_deg),
+        ("pin_diameter_mm", input.pin_diameter_mm),
+        ("pin_friction", input.pin_friction),
+        ("pin_youngs_modulus_gpa", input.pin_youngs_modulus_gpa),
+        ("pin_poisson_ratio", input.pin_poisson_ratio),
+    ];
+    let contact = Bearing::read("specimen", &keys, 0.125 * w)?;
+    let pin = |hole: usize, sign: f64| Load::Pin { hole, direction: [0.0, sign], force: 1.0, contact: contact.clone() };
     let (front, half_height) = (-0.25 * w, 0.6 * w);
     Ok(Specimen {
         outline: vec![[front, -half_height], [w, -half_height], [w, half_height], [front, half_height]],

@@ -1,0 +1,256 @@
+//! Pins in the holes of a plate of nodes: what their forces do to all rims, and where they touch.
+//!
+//! Nodes are a third of a radius apart, far too coarse for the narrow contact of a loose pin. So a plate is taken as a plane with one hole,
+//! known in closed form ([`super::pin_contact`]), and what it is beyond that: D, which is smooth on the rim, since loads e^(inθ) are felt at
+//! a distance d as (R/d)^n. With the factor at hand, one column for each load H_k = cos nθ, sin nθ up to n = 4 gives
+//! ```text
+//! r_k = u of the plate under H_k - u of the plane with a hole,   N_k = ∫ H_k² dθ
+//! D = Σ_k r_k ⟨H_k, ·⟩/N_k + Σ_k H_k ⟨r_k - P r_k, ·⟩/N_k,       P the projection on all H
+//! ```
+//! The second sum is the first turned round (Maxwell and Betti): a crack that begins at the hole makes r_k jump. A floating plate reacts to a
+//! single load at its three held unknowns; the reactions vanish with the sum of all loads.
+
+use nalgebra::{Complex, DMatrix};
+use rayon::prelude::*;
+
+use super::boundary::motions;
+use super::dissection::Factor;
+use super::field::Discretisation;
+use super::pin_contact::{Borne, PinRim, bear};
+use crate::error::Result;
+use crate::specimen::pin::{Contact, Pin};
+use crate::specimen::{Bearing, Hole, Load, Point, Specimen};
+use crate::williams::Elasticity;
+
+/// Waves around a rim up to which the plate is not taken as a plane with one hole.
+const HARMONICS: i32 = 4;
+/// Places around a rim where displacement is read and harmonics are loaded.
+const PLACES: usize = 180;
+/// Columns that are solved for together.
+const TOGETHER: usize = 16;
+const TURN: f64 = std::f64::consts::TAU;
+
+/// An elastic pin among the loads of a plate.
+struct Bore<'a> {
+    load: usize,
+    hole: Hole,
+    pin: &'a Pin,
+    /// Direction of its force, rad.
+    middle: f64,
+    /// Force, N.
+    force: f64,
+}
+
+/// A harmonic load on the rim of a pin, 1 Pa: e^(inθ), its real part or its imaginary one, along the radius or the rim.
+struct Mode {
+    bore: usize,
+    waves: i32,
+    is_sine: bool,
+    is_tangential: bool,
+}
+
+impl Mode {
+    /// On the plate along radius and rim, Pa.
+    fn traction(&self, angle: f64) -> [f64; 2] {
+        let (sin, cos) = (f64::from(self.waves) * angle).sin_cos();
+        let size = if self.is_sine { sin } else { cos };
+        if self.is_tangential { [0.0, size] } else { [size, 0.0] }
+    }
+
+    /// N_k.
+    fn norm(&self) -> f64 {
+        if self.waves == 0 { TURN } else { 0.5 * TURN }
+    }
+
+    /// u_r and u_θ, m, of a plane with a hole of this radius: F_n e^(inθ) moves it by R/2G F_n/(n+1) and R/2G κ F₋ₙ/(n-1).
+    fn plane(&self, angle: f64, radius: f64, plate: Elasticity) -> [f64; 2] {
+        let n = f64::from(self.waves);
+        let half = if self.is_sine { Complex::new(0.0, -0.5) } else { Complex::new(0.5, 0.0) };
+        let turned = if self.is_tangential { Complex::i() } else { Complex::new(1.0, 0.0) };
+        let (forth, back) = (half * turned * Complex::cis(n * angle), half.conj() * turned * Complex::cis(-n * angle));
+        let moved = match self.waves {
+            0 => turned,
+            1 => 0.5 * forth,
+            _ => forth / (n + 1.0) + back * (plate.kappa / (n - 1.0)),
+        };
+        let u = moved * (0.5 * radius / plate.shear_modulus);
+        [u.re, u.im]
+    }
+}
+
+/// u_r and u_θ, m, at the places of every pin.
+type OnRims = Vec<Vec<[f64; 2]>>;
+
+fn place_angle(place: usize) -> f64 {
+    TURN * (place as f64 + 0.5) / PLACES as f64
+}
+
+/// Between the places of a rim, in a straight line.
+fn between(values: &[[f64; 2]], angle: f64) -> [f64; 2] {
+    let at = (angle / TURN * PLACES as f64 - 0.5).rem_euclid(PLACES as f64);
+    let (low, share) = (at as usize % PLACES, at.fract());
+    [0, 1].map(|part| (1.0 - share) * values[low][part] + share * values[(low + 1) % PLACES][part])
+}
+
+impl Bore<'_> {
+    fn axes(&self, angle: f64) -> [Point; 2] {
+        let (sin, cos) = (self.middle + angle).sin_cos();
+        [[cos, sin], [-sin, cos]]
+    }
+
+    fn at(&self, angle: f64) -> Point {
+        let [out, _] = self.axes(angle);
+        [0, 1].map(|i| self.hole.centre[i] + self.hole.radius * out[i])
+    }
+}
+
+/// Elastic pins at a nominal load, Pa or N.
+fn bores(specimen: &Specimen, nominal: f64) -> Vec<Bore<'_>> {
+    let mut bores = Vec::new();
+    for (load, of) in specimen.loads.iter().enumerate() {
+        if let Load::Pin { hole, direction, force, contact: Bearing::Elastic(pin) } = of {
+            let (middle, force) = (direction[1].atan2(direction[0]), force * nominal);
+            bores.push(Bore { load, hole: specimen.holes[*hole], pin, middle, force });
+        }
+    }
+    bores
+}
+
+/// What elastic pins do on a plate.
+pub struct Pins {
+    /// Contact of each, with the index of its load.
+    pub contacts: Vec<(usize, Contact)>,
+    /// Forces on the unknowns, N.
+    pub forces: Vec<f64>,
+    /// What they do, see [`Borne::work`], J.
+    pub work: f64,
+}
+
+/// Brings the elastic pins of a plate into contact beside `others`, the forces of its other loads, N, at a nominal load, Pa or N; `None`
+/// without such pins.
+/// Errors: [`Error::Mechanics`] where no contact is found, or a hole has too few nodes around it.
+pub fn press_pins(
+    specimen: &Specimen,
+    plate: &Discretisation,
+    factor: &Factor,
+    others: &[f64],
+    nominal: f64,
+) -> Result<Option<Pins>> {
+    let bores = bores(specimen, nominal);
+    if bores.is_empty() {
+        return Ok(None);
+    }
+    let elasticity = plate.elasticity();
+    let places =
+        |bore: &Bore<'_>| (0..PLACES).map(|place| motions(plate, bore.at(place_angle(place)))).collect::<Result<Vec<_>>>();
+    let rows = bores.iter().map(places).collect::<Result<Vec<_>>>()?;
+    let modes = modes(&bores);
+    let column = |mode: &Mode| {
+        let (bore, mut column) = (&bores[mode.bore], vec![0.0; others.len()]);
+        let area = bore.hole.radius * specimen.thickness * TURN / PLACES as f64;
+        for (place, row) in rows[mode.bore].iter().enumerate() {
+            push(&mut column, row, bore.axes(place_angle(place)), mode.traction(place_angle(place)).map(|size| size * area));
+        }
+        column
+    };
+    let mut columns: Vec<Vec<f64>> = modes.iter().map(column).collect();
+    columns.push(others.to_vec());
+    columns.par_chunks_mut(TOGETHER).for_each(|columns| factor.forward_together(columns));
+    columns.par_iter_mut().for_each(|column| factor.backward(column));
+    let on_rims = |u: &Vec<f64>| -> OnRims {
+        let read = |(bore, rows): (&Bore<'_>, &Vec<Vec<(u32, Point)>>)| {
+            rows.iter().enumerate().map(|(place, row)| moved(u, row, bore.axes(place_angle(place)))).collect()
+        };
+        bores.iter().zip(&rows).map(read).collect()
+    };
+    let mut fields: Vec<OnRims> = columns.par_iter().map(on_rims).collect();
+    let Some(beside) = fields.pop() else { return Ok(None) };
+    for (mode, field) in modes.iter().zip(&mut fields) {
+        for (place, u) in field[mode.bore].iter_mut().enumerate() {
+            let plane = mode.plane(place_angle(place), bores[mode.bore].hole.radius, elasticity);
+            *u = [u[0] - plane[0], u[1] - plane[1]];
+        }
+    }
+    let rims: Vec<PinRim> = bores
+        .iter()
+        .map(|bore| {
+            let constants = elasticity.another(bore.pin.youngs_modulus, bore.pin.poisson_ratio);
+            PinRim::new(bore.pin, constants, elasticity, [bore.hole.radius, specimen.thickness, bore.force])
+        })
+        .collect();
+    let of_others: Vec<f64> =
+        rims.iter().zip(&beside).flat_map(|(rim, field)| rim.angles.iter().flat_map(|&angle| between(field, angle))).collect();
+    let Borne { contacts, work } = bear(&rims, elasticity, &of_others, finite(&rims, &modes, &fields))?;
+    let mut forces = vec![0.0; others.len()];
+    for (bore, contact) in bores.iter().zip(&contacts) {
+        for piece in &contact.pieces {
+            let row = motions(plate, bore.at(piece.angle))?;
+            push(&mut forces, &row, bore.axes(piece.angle), piece.share.map(|share| share * bore.force));
+        }
+    }
+    Ok(Some(Pins { contacts: bores.iter().map(|bore| bore.load).zip(contacts).collect(), forces, work }))
+}
+
+/// Harmonics of every pin.
+fn modes(bores: &[Bore<'_>]) -> Vec<Mode> {
+    let mut modes = Vec::new();
+    for (bore, of) in bores.iter().enumerate() {
+        for is_tangential in [false, true].into_iter().filter(|is_tangential| !is_tangential || of.pin.friction > 0.0) {
+            for waves in 0..=HARMONICS {
+                let kinds = [false, true].into_iter().filter(|is_sine| !is_sine || waves > 0);
+                modes.extend(kinds.map(|is_sine| Mode { bore, waves, is_sine, is_tangential }));
+            }
+        }
+    }
+    modes
+}
+
+/// D for all pieces of all rims, m/Pa.
+fn finite(rims: &[PinRim], modes: &[Mode], fields: &[OnRims]) -> DMatrix<f64> {
+    let pieces: Vec<(usize, f64)> =
+        rims.iter().enumerate().flat_map(|(rim, of)| of.angles.iter().map(move |&angle| (rim, angle))).collect();
+    let rests: Vec<OnRims> = fields.par_iter().map(|field| rest(field, modes)).collect();
+    let table = |of: &dyn Fn(usize, usize, f64) -> [f64; 2]| {
+        DMatrix::from_fn(2 * pieces.len(), modes.len(), |row, k| {
+            let (rim, angle) = pieces[row / 2];
+            of(k, rim, angle)[row % 2]
+        })
+    };
+    let own = table(&|k, rim, angle| if modes[k].bore == rim { modes[k].traction(angle) } else { [0.0; 2] });
+    let field = table(&|k, rim, angle| between(&fields[k][rim], angle));
+    let rest = table(&|k, rim, angle| between(&rests[k][rim], angle));
+    let weighed = |of: &DMatrix<f64>, weight: &dyn Fn(usize, usize) -> f64| {
+        DMatrix::from_fn(of.nrows(), of.ncols(), |row, k| of[(row, k)] * weight(pieces[row / 2].0, k) / modes[k].norm())
+    };
+    let loaded = weighed(&own, &|rim, _| rims[rim].width);
+    // Work is force by way: lengths of rims of unlike radius count.
+    let turned = weighed(&rest, &|rim, k| rims[rim].width * rims[rim].radius / rims[modes[k].bore].radius);
+    field * loaded.transpose() + own * turned.transpose()
+}
+
+/// r - P r.
+fn rest(field: &OnRims, modes: &[Mode]) -> OnRims {
+    let mut rest = field.clone();
+    for mode in modes {
+        let tractions: Vec<[f64; 2]> = (0..PLACES).map(|place| mode.traction(place_angle(place))).collect();
+        let sum: f64 = tractions.iter().zip(&field[mode.bore]).map(|(h, u)| h[0] * u[0] + h[1] * u[1]).sum();
+        let size = sum * TURN / PLACES as f64 / mode.norm();
+        rest[mode.bore].iter_mut().zip(tractions).for_each(|(u, h)| *u = [u[0] - size * h[0], u[1] - size * h[1]]);
+    }
+    rest
+}
+
+/// Adds a force given in two axes.
+fn push(forces: &mut [f64], row: &[(u32, Point)], axes: [Point; 2], size: [f64; 2]) {
+    let force = [0, 1].map(|i| size[0] * axes[0][i] + size[1] * axes[1][i]);
+    row.iter().for_each(|(unknown, [x, y])| forces[*unknown as usize] += force[0] * x + force[1] * y);
+}
+
+/// Displacement in two axes, m.
+fn moved(u: &[f64], row: &[(u32, Point)], axes: [Point; 2]) -> [f64; 2] {
+    let mut sum = [0.0; 2];
+    for (unknown, motion) in row {
+        (0..2).for_each(|i| sum[i] += u[*unknown as usize] * motion[i]);
+    }
+    axes.map(|axis| axis[0] * sum[0] + axis[1] * sum[1])
+}
