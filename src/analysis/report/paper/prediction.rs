@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::numbers::{self, by_band, fixed, level, power, short, sized, whole};
+use super::numbers::{self, by_band, fixed, level, short, sized, whole};
 use super::{
     Drawings, Sheets, Signed, answers, figure, hashes, letter, mark, part_through, prose, quoted, recorded, signatures, spectrum,
     terms,
