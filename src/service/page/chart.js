@@ -146,9 +146,11 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     const order = { outside: 0, band: 1, thin: 2 };
     const drawn = [...series].sort((one, other) => (order[one.kind] ?? 3) - (order[other.kind] ?? 3));
     show(marks, drawn.map(mark));
-    show(above, drawn.map(words), atEnds().map((one) => {
-      const last = one.x.map((value, index) => [value, one.y[index]]).filter(finite).at(-1);
-      return last && shape("text", { class: "halo strong", x: x(last[0]) + 8, y: y(last[1]) + 4 }, lowered(one.name));
+    const named = atEnds().map((one) => [one, one.x.map((value, index) => [value, one.y[index]]).filter(finite).at(-1)]).filter(([, last]) => last);
+    let lowest = -Infinity; // of the names so far: none stands on another
+    show(above, drawn.map(words), named.sort(([, one], [, other]) => y(one[1]) - y(other[1])).map(([one, last]) => {
+      lowest = Math.max(y(last[1]) + 4, lowest + 15);
+      return shape("text", { class: "halo strong", x: x(last[0]) + 8, y: lowest }, lowered(one.name));
     }));
     const shown = series.filter((one) => one.name && ["line", "points", "thin", "crosses"].includes(one.kind));
     legend.hidden = atEnds().length > 0 || shown.length < 2;

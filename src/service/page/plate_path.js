@@ -6,6 +6,8 @@ import { shape as node, show, uniqueId } from "./dom.js";
 const STOPS = 5;
 const MARKS = [0.25, 0.5, 0.75, 0.9];
 const MARGIN = 36; // for load arrows
+const LINE = 15; // of words above the plate
+const LETTER = 6.8; // width of a letter there
 const WORD = 34; // room of a mark's words
 const HEIGHT_MAX = 380;
 const BAR = 24; // for the rule
@@ -86,13 +88,15 @@ function createView(label, isWhole, heightMax) {
   const svg = node("svg", { role: "img", "aria-label": label, "data-plate": isWhole ? "whole" : "framed" }, node("defs", null, clip), base, grown, words);
   let data = null;
   let pixel = null;
+  let lines = []; // words of the load
   if (!isWhole) [base, grown].forEach((group) => group.setAttribute("clip-path", `url(#${clip.id})`));
   const line = (points) => `M${points.map((point) => pixel(point).map((value) => value.toFixed(1)).join(" ")).join("L")}`;
 
   function draw(next, box, frame, width) {
     data = next;
     const { shape } = data;
-    const margin = isWhole ? MARGIN : 1;
+    lines = isWhole ? inLines(shape.load, width) : [];
+    const margin = isWhole ? MARGIN + LINE * (lines.length - 1) : 1;
     const scale = Math.min((width - 2 * margin) / (box[2] - box[0]), heightMax / (box[3] - box[1]));
     const [across, up] = [(box[2] - box[0]) * scale, (box[3] - box[1]) * scale];
     const left = (width - across) / 2;
@@ -146,7 +150,15 @@ function createView(label, isWhole, heightMax) {
       }).flat() : [];
     });
     const [middle, top] = pixel([0.5 * (boxOf(shape.outline_mm)[0] + boxOf(shape.outline_mm)[2]), boxOf(shape.outline_mm)[3]]);
-    return [...drawn, node("text", { class: "strong", x: middle, y: top - 24, "text-anchor": "middle" }, shape.load)];
+    return [...drawn, ...lines.map((text, index) => node("text", { class: "strong", x: middle, y: top - 24 - LINE * (lines.length - 1 - index), "text-anchor": "middle" }, text))];
+  }
+
+  /** Words in two lines, parted at a comma near their middle, where they are too long for one. */
+  function inLines(text, width) {
+    const commas = [...text.matchAll(/, /g)].map(({ index }) => index);
+    if (LETTER * text.length < width || commas.length === 0) return [text];
+    const [at] = commas.sort((one, other) => Math.abs(one - text.length / 2) - Math.abs(other - text.length / 2));
+    return [text.slice(0, at + 1), text.slice(at + 2)];
   }
 
   /** Held stretches are hatched. */

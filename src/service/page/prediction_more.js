@@ -1,18 +1,19 @@
 // What the answer of a prediction says beside its life: passes and retardation of a spectrum, break-through of a crack that was not through.
 
 import { element, terms } from "./dom.js";
-import { cycles, fixed, percent, plain, sentence, significant, whole, words } from "./format.js";
+import { cycles, deserved, fixed, percent, plain, sentence, significant, whole, words } from "./format.js";
 import { createSpectrumPicture } from "./spectrum_picture.js";
 
 /** Where the crack was through, by which rule, and what the error of its K does to the life: terms of the answer card. */
-export function partThroughTerms({ part_through: found }) {
+export function partThroughTerms({ part_through: found, life_cycles: life }) {
   if (!found) return [];
   const through = found.cycles_at_break_through;
-  const longer = found.life_cycles_if_k_is_smaller;
+  const [shorter, longer] = [found.life_cycles_if_k_is_larger, found.life_cycles_if_k_is_smaller];
+  const rounded = (value) => deserved(value, [shorter, life, longer ?? 2 * life]);
   return [
     ["Depth a", `${fixed(found.crack_depth_initial_mm, 2)} to ${fixed(found.crack_depth_final_mm, 2)} mm`],
     ["Break-through", through === null ? "not reached" : `after ${cycles(Math.round(through))} cycles (a/t = 1), c ${fixed(found.crack_length_at_break_through_mm, 2)} mm`],
-    [`K ±${plain(found.k_error_percent)} %`, `life ${whole(found.life_cycles_if_k_is_larger)} to ${longer === null ? "no end" : whole(longer)}`],
+    [`K ±${plain(found.k_error_percent)} %`, `life ${rounded(shorter)} to ${longer === null ? "no end" : rounded(longer)}`],
   ];
 }
 

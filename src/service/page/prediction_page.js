@@ -41,8 +41,8 @@ export async function openPrediction(root, id, signal) {
   const plateFigure = element("figure", { class: "card figure", "data-part": "path" },
     element("div", { class: "chart-head" }, element("h2", null, "Crack path")), platePlace,
     element("figcaption", null, "Colour: share of life, as on the slider; marks at 25, 50, 75 and 90 %. Dotted: still to come."));
-  const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, sectionFigure, fieldFigure),
-    element("div", { class: "stack" }, curveFigure, factors));
+  const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, fieldFigure),
+    element("div", { class: "stack" }, curveFigure, factors, sectionFigure));
   showPage(root, head.node, outcome, element("div", { class: "job-body" }, pictures), below);
 
   const lengthAxis = { label: "Crack length a", unit: "mm", format: (value) => fixed(value, 2) };

@@ -345,7 +345,7 @@ fn spectra_and_part_through_cracks_have_forms() {
     };
     page.look(1280, 900, "light");
     page.open(&format!("{}/#/predict", service.url));
-    page.see("#predict:not([disabled])");
+    page.until("document.querySelector('#plate-check').textContent.includes('Still to fill in')");
 
     // A panel under a spectrum, with a law of one ratio made one of all by Walker.
     choose("specimen.kind", "middle_tension");
@@ -428,6 +428,7 @@ fn spectra_and_part_through_cracks_have_forms() {
     choose("stop.at_break_through", "true");
     page.click("#plate-editor [data-action=toml]");
     page.until("document.querySelector('#plate-editor textarea[id$=toml]').value.includes('cracks = 1\\n')");
+    page.see("#predict:not([disabled])");
     page.click("#plate-editor [data-action=form]");
     page.see("#predict:not([disabled])");
     walk.look("22_part_through");
