@@ -309,7 +309,8 @@ fn other_commands_print_in_the_units_asked_for() {
     // A fit whose figures are written in US units drives a case like any other.
     assert_eq!(fs::read(here.join("si/fitted.toml")).unwrap(), fs::read(here.join("us/fitted.toml")).unwrap());
     let inline = "paris_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874";
-    fs::write(here.join("panel.toml"), fs::read_to_string(&panel).unwrap().replace(inline, "fitted = \"us/fitted.toml\"")).unwrap();
+    fs::write(here.join("panel.toml"), fs::read_to_string(&panel).unwrap().replace(inline, "fitted = \"us/fitted.toml\""))
+        .unwrap();
     let printed = run(here, &["check", "panel.toml"]);
     assert!(printed.contains("no errors"), "{printed}");
 }
