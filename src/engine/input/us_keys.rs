@@ -8,9 +8,6 @@ use crate::units::words::in_units;
 
 use super::slice::{path_steps, shorten, value_at};
 
-/// Sections whose keys are US by themselves: growth data of the library, as its sources have them.
-const OWN: [&str; 1] = ["growth"];
-
 /// A key that was given in US units.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Written {
@@ -47,9 +44,6 @@ fn below(table: &mut Table, above: &str, written: &mut Vec<Written>) -> Result<(
     let path = |key: &str| if above.is_empty() { key.to_owned() } else { format!("{above}.{key}") };
     let given = table.clone();
     for (key, value) in &given {
-        if above.is_empty() && OWN.contains(&key.as_str()) {
-            continue;
-        }
         let Some(si) = renamed(key, System::Si) else {
             if let Some(value) = table.get_mut(key) {
                 inside(value, &path(key), written)?;

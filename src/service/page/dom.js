@@ -1,6 +1,6 @@
 // The few helpers that build elements. Text always goes in as text, so nothing a user or a file says can become markup.
 
-import { apart } from "./units.js";
+import { apart, unitShown } from "./units.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -70,11 +70,14 @@ export function debounce(action, wait) {
 
 /** A table that scrolls inside itself. `columns`: {title, unit?, numeric?}; `rows`: arrays of text or nodes. */
 export function table(caption, columns, rows, { hidden = false, rowHeader = true, name } = {}) {
-  const heads = columns.map(({ title, unit, numeric }) =>
-    element("th", { scope: "col", class: numeric ? "number" : null }, title, unit && element("span", { class: "unit" }, ` ${unit}`)));
+  // A column of numbers changes its unit; one of other elements keeps it.
+  const changes = (index) => rows.every((row) => typeof row[index] === "string");
+  const heads = columns.map(({ title, unit, numeric }, index) =>
+    element("th", { scope: "col", class: numeric ? "number" : null }, title,
+      unit && element("span", { class: "unit", "data-metric": true }, ` ${changes(index) ? unitShown(unit) : unit}`)));
   const body = rows.map((row) => element("tr", null, row.map((cell, index) => {
     const attributes = { class: columns[index].numeric ? "number" : null };
-    const words = apart(cell, columns[index].unit);
+    const words = changes(index) ? apart(cell, columns[index].unit) : cell;
     return rowHeader && index === 0 ? element("th", { scope: "row", ...attributes }, words) : element("td", attributes, words);
   })));
   // A region that scrolls must be reachable by keyboard.

@@ -11,8 +11,8 @@ const UNITS = {
 };
 const DIGITS_LEAST = 4;
 const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-/** What stays as it is: input, lists of files and what the user has named. */
-const KEPT = "input, select, textarea, pre, code, form, .field, .control, .downloads, .title-row h1, .input-text, [data-metric]";
+/** What stays as it is: forms, input as submitted, lists of files and what the user has named. */
+const KEPT = "#view-measure, #view-predict, #view-new, input, select, textarea, pre, code, .field, .downloads, .title-row h1, .input-text, [data-metric]";
 
 const NUMBER = "[-−+]?\\d(?:[\\d\u202f]*)(?:\\.\\d+)?(?:e[-+]?\\d+| × 10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?";
 const NAMES = Object.keys(UNITS).map((name) => name.replace("/", "\\/")).join("|");
@@ -69,10 +69,12 @@ export function apart(text, unit) {
   return isUs && UNITS[unit] && typeof text === "string" ? told(`${text} ${unit}`).replace(` ${UNITS[unit][0]}`, "") : text;
 }
 
+/** The unit that is shown in place of a metric one. */
+export const unitShown = (unit) => (isUs && UNITS[unit]?.[0]) || unit;
+
 /** An axis of a chart with its unit and what its values are multiplied by. */
 export function axisShown(axis) {
-  const [unit, size] = (isUs && UNITS[axis.unit]) || [axis.unit, 1];
-  return { ...axis, unit, per: 1 / size };
+  return { ...axis, unit: unitShown(axis.unit), per: 1 / ((isUs && UNITS[axis.unit]?.[1]) || 1) };
 }
 
 /** Changes the words of a node, unless they are kept; a unit in an element of its own goes with the number before it. */
