@@ -12,6 +12,7 @@ pub mod model;
 mod model_keys;
 mod read;
 pub mod record;
+mod residual;
 
 pub use boundaries::first_load;
 pub use fatigue_keys::{Lot, remove_law};

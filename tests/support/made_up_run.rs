@@ -63,6 +63,7 @@ fn curve() -> Vec<CurvePoint> {
             growth,
             factors: None,
             t_stress: None,
+            of_residual: None,
         };
         curve.push(CurvePoint {
             is_solved: true,
@@ -75,6 +76,7 @@ fn curve() -> Vec<CurvePoint> {
             broken_bonds: 9 * step,
             tips: vec![tip(-1.0), tip(1.0)],
             depth: None,
+            residual: None,
         });
     }
     curve

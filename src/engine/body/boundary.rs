@@ -5,7 +5,7 @@ use super::lattice::Lattice;
 use super::sharing::Sharing;
 use crate::bond_law::stencil::Stencil;
 use crate::error::{Error, Result};
-use crate::specimen::geometry::{bounding_box, distance_to_segment};
+use crate::specimen::geometry::{along, bounding_box, distance, distance_to_segment};
 use crate::specimen::{Hole, Load, Point, Specimen, Support};
 
 /// Stiffness of rigid grips over that of the plate.
@@ -313,14 +313,15 @@ fn outward(specimen: &Specimen, facet: Facet, spacing: f64) -> Facet {
 pub fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
     let mut pieces = Vec::new();
     for load in &specimen.loads {
-        match *load {
-            Load::Edge { from, to, traction } => pieces.extend(straight(from, to, spacing).map(|facet| {
+        if let Some((from, to, [first, last])) = load.on_edge() {
+            pieces.extend(straight(from, to, spacing).map(|facet| {
                 let area = facet.length * specimen.thickness;
-                LoadPiece { facet: outward(specimen, facet, spacing), force: [traction[0] * area, traction[1] * area] }
-            })),
-            Load::Pin { hole, direction, force, contact } => {
-                pieces.extend(bearing(&specimen.holes[hole], direction, contact, spacing, force))
-            }
+                let traction = along(first, last, distance(from, facet.at) / distance(from, to));
+                LoadPiece { facet: outward(specimen, facet, spacing), force: traction.map(|t| t * area) }
+            }));
+        }
+        if let Load::Pin { hole, direction, force, contact } = *load {
+            pieces.extend(bearing(&specimen.holes[hole], direction, contact, spacing, force));
         }
     }
     pieces

@@ -41,7 +41,8 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
         return (Method::Peridynamics, "cracks start from a slot or notch".to_owned());
     }
     let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
-    let is_plain = loading.displacement().is_none() && specimen.crack_pressure == 0.0 && !has_fields;
+    let is_plain =
+        loading.displacement().is_none() && specimen.crack_pressure == 0.0 && loading.residual.is_none() && !has_fields;
     let formula = handbook(specimen).filter(|formula| is_plain && formula.holds_at(specimen.crack_length));
     match formula {
         Some(formula) if 100.0 * EXPONENT_USUAL * formula.error_at(specimen.crack_length) <= percent => {
