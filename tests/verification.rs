@@ -33,6 +33,7 @@ mod quasi_static;
 mod rate_constant;
 mod readme_accuracy;
 mod recorded;
+mod residual_stress;
 mod retardation;
 mod rigid_turn;
 mod round_trip;

@@ -13,6 +13,7 @@ mod model_keys;
 mod pins;
 mod read;
 pub mod record;
+mod residual;
 
 pub use boundaries::first_load;
 pub use fatigue_keys::{Lot, remove_law};

@@ -64,6 +64,7 @@ fn curve() -> Vec<CurvePoint> {
             growth,
             factors: None,
             t_stress: None,
+            of_residual: None,
         };
         curve.push(CurvePoint {
             is_solved: true,
@@ -76,6 +77,7 @@ fn curve() -> Vec<CurvePoint> {
             broken_bonds: 9 * step,
             tips: vec![tip(-1.0), tip(1.0)],
             depth: None,
+            residual: None,
         });
     }
     curve

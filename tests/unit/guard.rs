@@ -16,6 +16,7 @@ fn tip(growth: f64) -> TipRecord {
         growth,
         factors: None,
         t_stress: None,
+        of_residual: None,
     }
 }
 

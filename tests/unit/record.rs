@@ -24,8 +24,16 @@ impl Steady {
             work: f64::NAN,
             limit_load: None,
             broken_bonds: 0,
-            tips: vec![TipRecord { state: TipState::Active, position: [growth, 0.0], growth, factors: None, t_stress: None }],
+            tips: vec![TipRecord {
+                state: TipState::Active,
+                position: [growth, 0.0],
+                growth,
+                factors: None,
+                t_stress: None,
+                of_residual: None,
+            }],
             depth: None,
+            residual: None,
         });
     }
 }
@@ -84,7 +92,14 @@ fn other_errors_are_the_callers() {
 #[test]
 fn a_row_tells_no_k_that_was_not_read_for_it() {
     let case = hand_case(PANEL, &[]);
-    let tip = |state| TipRecord { state, position: [0.0; 2], growth: 1e-3, factors: Some([1e7, 1e6]), t_stress: Some(1e6) };
+    let tip = |state| TipRecord {
+        state,
+        position: [0.0; 2],
+        growth: 1e-3,
+        factors: Some([1e7, 1e6]),
+        t_stress: Some(1e6),
+        of_residual: None,
+    };
     let states = [TipState::Active, TipState::Closed, TipState::EnteredHole, TipState::LeftPlate, TipState::LinkedUp];
     let row = |work| CurvePoint::of_tips(&case, [1e3, work], 5, (states.map(tip).to_vec(), &[]), Some((2e7, 1e-7)));
     let settled = row(1.0);

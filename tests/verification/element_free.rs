@@ -137,7 +137,7 @@ fn the_integral_reads_the_fields_of_williams() {
             add(4, Symmetry::Sliding, 2e7);
             Ok(sum)
         };
-        let read = integral(&axes, elasticity, 0.05, &|_| 0.0, field).unwrap();
+        let read = integral(&axes, elasticity, 0.05, &|_| [0.0; 3], field).unwrap();
         for (found, wanted) in [(read.factors[0], k[0]), (read.factors[1], k[1]), (read.t_stress, t)] {
             assert!((found / wanted - 1.0).abs() < 1e-3, "{plane}: {found} for {wanted}");
         }

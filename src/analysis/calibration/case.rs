@@ -170,6 +170,10 @@ impl CalibrationCase {
 
 /// Readings under a spectrum have no one ΔK.
 fn refuse_spectrum(case: &Case) -> crate::Result<()> {
+    if let Some(residual) = &case.loading.residual {
+        let problem = "does not go with a calibration, which takes ΔK and rate of one stress ratio";
+        return Err(input(residual.key(), residual.words(), problem, "leave it out"));
+    }
     if case.loading.spectrum.is_none() {
         return Ok(());
     }

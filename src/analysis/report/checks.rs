@@ -197,8 +197,7 @@ fn strength(case: &Case, name: &'static str) -> Check {
 
 fn toughness(case: &Case, prediction: &Prediction) -> Check {
     let given = strength(case, "toughness");
-    let share = case.loading.range_share();
-    let most = prediction.curve.iter().map(|row| row.delta_k / share).filter(|k| k.is_finite()).fold(f64::NAN, f64::max);
+    let most = prediction.curve.iter().map(|row| row.k_max(&case.loading)).filter(|k| k.is_finite()).fold(f64::NAN, f64::max);
     match case.toughness_at_end() {
         Some(_) if most.is_nan() => Check::not_checked("toughness", "fracture: not checked, K of the tips is not known", ""),
         Some(toughness) => {

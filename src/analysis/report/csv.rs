@@ -55,7 +55,8 @@ impl Row {
 }
 
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
-/// (load squared times compliance), the force where the cycles are of a `displacement`, m, of a crack that did not go through at the start its depth, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
+/// (load squared times compliance), the force where the cycles are of a `displacement`, m, of a crack that did not go through at the start its depth,
+/// with residual stress K_res of the leading tip and its stress ratio, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
 pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
@@ -65,6 +66,10 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
     let has_depth = prediction.curve.iter().any(|point| point.depth.is_some());
     if has_depth {
         text.push_str(DEPTH_COLUMNS);
+    }
+    let has_residual = prediction.curve.iter().any(|point| point.residual.is_some());
+    if has_residual {
+        text.push_str(",k_residual_mpa_sqrt_m,stress_ratio_effective");
     }
     // Fatigue bonds, driven by their own strain know no K of a tip.
     let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors.is_some());
@@ -86,6 +91,10 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
         }
         if has_depth {
             text.push_str(&depth_fields(point.depth));
+        }
+        if has_residual {
+            let of = point.residual.map_or([f64::NAN; 2], |residual| [residual.factor / MPA_SQRT_M, residual.ratio]);
+            let _ = write!(text, ",{},{}", number(of[0]), number(of[1]));
         }
         for tip in &point.tips {
             for length in [tip.position[0], tip.position[1], tip.growth] {

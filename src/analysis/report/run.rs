@@ -95,7 +95,7 @@ fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
     let [row] = prediction.curve.as_slice() else { return None };
     let required = case.stop.required.unwrap_or(1.0);
     let load = case.loading.share(row.work) * case.loading.maximum * required;
-    let k_max = required * row.delta_k / case.loading.range_share();
+    let k_max = row.k_max_at(required, &case.loading);
     // A limit that is reached but for round-off has no words of its own.
     let words = || first_load(case, load, Some(k_max).filter(|k| *k > 0.0));
     prediction.stop.is_strength().then(|| words().unwrap_or_else(|| format!("{} at the first load", prediction.stop.meaning())))

@@ -11,7 +11,7 @@ use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
 
 use crate::case::Case;
 use crate::specimen::geometry::{along, bounding_box, distance};
-use crate::specimen::{Crack, Load, Point, Specimen, SpecimenKind, Support};
+use crate::specimen::{Crack, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
 use crate::units::MM;
 
 /// What a drawing says of itself, so that it is known again.
@@ -106,27 +106,37 @@ fn draw_cracks(sketch: &mut Sketch, specimen: &Specimen) {
 
 fn draw_loads(sketch: &mut Sketch, specimen: &Specimen) {
     let largest = specimen.loads.iter().fold(1e-12_f64, |largest, load| match load {
-        Load::Edge { traction, .. } => largest.max(traction[0].hypot(traction[1])),
+        Load::Edge { .. } | Load::Bent { .. } => {
+            let ends = load.on_edge().map_or([[0.0; 2]; 2], |(.., ends)| ends);
+            ends.iter().fold(largest, |largest, [x, y]| largest.max(x.hypot(*y)))
+        }
+        // Beside loaded edges forces are per stress: what an arrow shows of them is their direction.
+        Load::Pin { .. } if specimen.load_measure == LoadMeasure::Stress => largest,
         Load::Pin { force, .. } => largest.max(force.abs()),
     });
     let mut named = false;
     for load in &specimen.loads {
         match load {
-            Load::Edge { from, to, traction } => {
-                let share = traction[0].hypot(traction[1]) / largest;
-                if share == 0.0 {
-                    continue;
-                }
+            Load::Edge { .. } | Load::Bent { .. } => {
+                let Some((from, to, [first, last])) = load.on_edge() else { continue };
+                let (from, to) = (&from, &to);
                 let count = (distance(*from, *to) * sketch.scale / 34.0).round().clamp(1.0, 25.0) as usize;
-                let reach = ARROW * share.max(0.4) / traction[0].hypot(traction[1]);
-                let vector = [traction[0] * reach, -traction[1] * reach];
+                let mut vector = [0.0; 2];
                 for i in 0..count {
-                    let foot = sketch.place(along(*from, *to, (i as f64 + 0.5) / count as f64));
+                    let share = (i as f64 + 0.5) / count as f64;
+                    let traction = along(first, last, share);
+                    let size = traction[0].hypot(traction[1]);
+                    if size < 0.02 * largest {
+                        continue;
+                    }
+                    let reach = ARROW * (size / largest).max(0.4) / size;
+                    vector = [traction[0] * reach, -traction[1] * reach];
+                    let foot = sketch.place(along(*from, *to, share));
                     // Tension pulls out of the plate: the arrow starts 8 pixels off the edge so that grips stay visible.
                     let start = [foot[0] + 0.2 * vector[0], foot[1] + 0.2 * vector[1]];
                     sketch.arrow(start, [start[0] + vector[0], start[1] + vector[1]], LOAD, 1.6);
                 }
-                if !named {
+                if !named && vector != [0.0; 2] {
                     let middle = sketch.place(along(*from, *to, 0.5));
                     sketch.text([middle[0] + 1.5 * vector[0], middle[1] + 1.5 * vector[1] + 4.0], "σ", "middle", 16, LOAD);
                     named = true;
@@ -135,7 +145,8 @@ fn draw_loads(sketch: &mut Sketch, specimen: &Specimen) {
             Load::Pin { hole, direction, force, .. } => {
                 let Some(hole) = specimen.holes.get(*hole) else { continue };
                 let centre = sketch.place(hole.centre);
-                let reach = hole.radius * sketch.scale + ARROW * (force / largest).max(0.5);
+                let share = if specimen.load_measure == LoadMeasure::Stress { 1.0 } else { force / largest };
+                let reach = hole.radius * sketch.scale + ARROW * share.max(0.5);
                 let end = [centre[0] + reach * direction[0], centre[1] - reach * direction[1]];
                 sketch.dot(centre, 3.6, LOAD);
                 sketch.arrow(centre, end, LOAD, 2.4);

@@ -5,7 +5,7 @@ use super::lattice::Lattice;
 use super::sharing::Sharing;
 use crate::bond_law::stencil::Stencil;
 use crate::error::{Error, Result};
-use crate::specimen::geometry::{bounding_box, distance_to_segment};
+use crate::specimen::geometry::{along, bounding_box, distance, distance_to_segment};
 use crate::specimen::pin::{Contact, LOOSE_PIN, Pin, RimForce};
 use crate::specimen::{Bearing, Hole, Load, Point, Specimen, Support};
 
@@ -317,19 +317,19 @@ pub fn load_pieces(specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
 
 /// A load of a specimen in short pieces.
 pub fn pieces_of(load: &Load, specimen: &Specimen, spacing: f64) -> Vec<LoadPiece> {
-    match *load {
-        Load::Edge { from, to, traction } => {
-            let piece = |facet: Facet| {
-                let area = facet.length * specimen.thickness;
-                LoadPiece { facet: outward(specimen, facet, spacing), force: [traction[0] * area, traction[1] * area] }
-            };
-            straight(from, to, spacing).map(piece).collect()
-        }
-        Load::Pin { hole, direction, force, ref contact } => match (contact, &specimen.holes[hole]) {
-            (Bearing::Elastic(Pin { found: Some(found), .. }), hole) => rim_forces(hole, direction, found, spacing, force),
-            // Of a pin whose contact is not found yet nothing is known but its force.
-            (_, hole) => bearing(hole, direction, contact.half_angle().unwrap_or(LOOSE_PIN), spacing, force),
-        },
+    if let Some((from, to, [first, last])) = load.on_edge() {
+        let piece = |facet: Facet| {
+            let area = facet.length * specimen.thickness;
+            let traction = along(first, last, distance(from, facet.at) / distance(from, to));
+            LoadPiece { facet: outward(specimen, facet, spacing), force: traction.map(|t| t * area) }
+        };
+        return straight(from, to, spacing).map(piece).collect();
+    }
+    let Load::Pin { hole, direction, force, ref contact } = *load else { return Vec::new() };
+    match (contact, &specimen.holes[hole]) {
+        (Bearing::Elastic(Pin { found: Some(found), .. }), hole) => rim_forces(hole, direction, found, spacing, force),
+        // Of a pin whose contact is not found yet nothing is known but its force.
+        (_, hole) => bearing(hole, direction, contact.half_angle().unwrap_or(LOOSE_PIN), spacing, force),
     }
 }
 

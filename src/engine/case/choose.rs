@@ -45,7 +45,8 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
         return (Method::Peridynamics, "cracks start from a slot or notch".to_owned());
     }
     let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
-    let is_plain = loading.displacement().is_none() && specimen.crack_pressure == 0.0 && !has_fields;
+    let is_plain =
+        loading.displacement().is_none() && specimen.crack_pressure == 0.0 && loading.residual.is_none() && !has_fields;
     let has_own_pins =
         specimen.loads.iter().any(|load| matches!(load, Load::Pin { contact, .. } if *contact != Bearing::Unknown));
     if has_own_pins && handbook(specimen).is_some() {

@@ -6,7 +6,9 @@ use toml::{Table, Value};
 
 use super::fleet::Fleet;
 use super::model_keys::on_nodes;
-use super::{Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, pins, remove_law};
+use super::{
+    Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, pins, remove_law, residual,
+};
 use crate::bond_law::SurfaceCorrection;
 use crate::case::record::FittedRecord;
 use crate::error::{Result, input};
@@ -180,6 +182,7 @@ impl Case {
         model::check_law(&case)?;
         check_load(&case)?;
         check_spectrum(&case)?;
+        residual::check(&case)?;
         case.warnings.extend(boundaries::first_load_warning(&case));
         let lines = law_lines(&case)?;
         case.warnings.extend(lines);
@@ -207,6 +210,7 @@ impl Case {
         }
         law::adopt(&mut self, record)?;
         model::check_law(&self)?;
+        residual::check(&self)?;
         let lines = law_lines(&self)?;
         self.warnings.extend(lines);
         Ok(self)

@@ -8,6 +8,7 @@ use super::field::{Discretisation, Local, singular};
 use super::rims::Stretch;
 use crate::body::boundary::pieces_of;
 use crate::error::Result;
+use crate::loading::residual::{Components, across};
 use crate::specimen::geometry::{along, bounding_box, direction, distance};
 use crate::specimen::{Point, Specimen, Support};
 
@@ -90,10 +91,13 @@ impl Boundary {
                     boundary.forces[grip.first + 1] += piece.force[1];
                     boundary.forces[grip.first + 2] += arm * piece.force[1];
                 }
-                None => boundary.push_force(plate, piece.facet.at, piece.force)?,
+                None => push_force(&mut boundary.forces, plate, piece.facet.at, piece.force)?,
             }
         }
-        boundary.press_cracks(specimen, plate)?;
+        let pressure = specimen.crack_pressure;
+        if pressure != 0.0 {
+            press_cracks(&mut boundary.forces, specimen, plate, &|_| [pressure, pressure, 0.0])?;
+        }
         for support in &specimen.supports {
             match *support {
                 Support::Fixed { from, to, depth, x, y } => {
@@ -119,39 +123,6 @@ impl Boundary {
         };
         boundary.pin(plate, [holds(0), holds(1)], &specimen.supports);
         Ok(boundary)
-    }
-
-    fn push_force(&mut self, plate: &Discretisation, at: Point, force: Point) -> Result<()> {
-        for (unknown, [x, y]) in motions(plate, at)? {
-            self.forces[unknown as usize] += force[0] * x + force[1] * y;
-        }
-        Ok(())
-    }
-
-    /// Pressure on the faces of cracks.
-    fn press_cracks(&mut self, specimen: &Specimen, plate: &Discretisation) -> Result<()> {
-        if specimen.crack_pressure == 0.0 {
-            return Ok(());
-        }
-        for cut in &plate.obstacles.cuts {
-            for piece in cut.points.windows(2) {
-                let count =
-                    (distance(piece[0], piece[1]) * PIECES_IN_SPACING / plate.grid.spacing(plate.grid.leaf(piece[1]))).ceil();
-                let [x, y] = direction(piece[0], piece[1]);
-                for k in 0..count as usize {
-                    let at = along(piece[0], piece[1], (k as f64 + 0.5) / count);
-                    let size = specimen.crack_pressure * distance(piece[0], piece[1]) / count * specimen.thickness;
-                    for [x, y] in [[-y, x], [y, -x]] {
-                        let step = 1e-6 * plate.grid.spacing(plate.grid.leaf(at));
-                        let beside = [at[0] + step * x, at[1] + step * y];
-                        if specimen.contains(beside) {
-                            self.push_force(plate, beside, [size * x, size * y])?;
-                        }
-                    }
-                }
-            }
-        }
-        Ok(())
     }
 
     /// Holds components of the displacement on a stretch of the outline: those along directions, at their ways.
@@ -219,6 +190,43 @@ impl Boundary {
         let size = plate.elasticity().plane_modulus;
         self.held.extend(pinned.into_iter().map(|unknown| Square::of(&[(unknown, [1.0; 2])], AXES[0], size * PIN)));
     }
+}
+
+fn push_force(forces: &mut [f64], plate: &Discretisation, at: Point, force: Point) -> Result<()> {
+    for (unknown, [x, y]) in motions(plate, at)? {
+        forces[unknown as usize] += force[0] * x + force[1] * y;
+    }
+    Ok(())
+}
+
+/// Adds the tractions `-σ m` that the faces of cracks release, m their outward normal and σ a stress, Pa.
+/// Errors: nodes in reach of a face do not span the basis.
+pub fn press_cracks(
+    forces: &mut [f64],
+    specimen: &Specimen,
+    plate: &Discretisation,
+    stress: &dyn Fn(Point) -> Components,
+) -> Result<()> {
+    for cut in &plate.obstacles.cuts {
+        for piece in cut.points.windows(2) {
+            let count = (distance(piece[0], piece[1]) * PIECES_IN_SPACING / plate.grid.spacing(plate.grid.leaf(piece[1]))).ceil();
+            let [x, y] = direction(piece[0], piece[1]);
+            let area = distance(piece[0], piece[1]) / count * specimen.thickness;
+            for k in 0..count as usize {
+                let at = along(piece[0], piece[1], (k as f64 + 0.5) / count);
+                let stress = stress(at);
+                // Into the material.
+                for inward in [[-y, x], [y, -x]] {
+                    let step = 1e-6 * plate.grid.spacing(plate.grid.leaf(at));
+                    let beside = [at[0] + step * inward[0], at[1] + step * inward[1]];
+                    if specimen.contains(beside) {
+                        push_force(forces, plate, beside, across(stress, inward).map(|t| t * area))?;
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Spring of a pinned unknown over E', m; what it is does not matter.

@@ -2,12 +2,13 @@
 //!
 //! As [`crate::stress_intensity::ring`], with gradients straight from the shape functions: eight radii by four times eight angles, counted
 //! from face to face, so that a crack that bends divides no point from its side. Faces that leave the line straight behind the tip, and those
-//! that a pressure acts on, give the second integral.
+//! that tractions act on, give the second integral.
 
 use super::cells::EIGHT;
 use super::crack::TipAxes;
 use super::field::{Discretisation, Local};
 use crate::error::{Error, Result};
+use crate::loading::residual::{Components, across};
 use crate::specimen::Point;
 use crate::specimen::geometry::{along, circle_shares, direction, distance};
 use crate::units::place_mm;
@@ -42,17 +43,23 @@ pub struct TipFactors {
 /// Gradient of a displacement in the axes of the tip.
 type Gradient = [[f64; 2]; 2];
 
-/// Reads a tip of a plate with the unknowns `u` in a ring within `room`, m; `pressure` acts on the faces at a place of
-/// the crack, Pa.
+/// Reads a tip of a plate with the unknowns `u` in a ring within `room`, m; on the faces acts the traction `-σ m` of a `stress` σ at a place
+/// of the crack, Pa: p·I of a pressure p.
 /// Errors: [`Error::Mechanics`] where nodes in reach do not span the basis.
-pub fn read(plate: &Discretisation, u: &[f64], tip: usize, room: f64, pressure: &dyn Fn(Point) -> f64) -> Result<TipFactors> {
+pub fn read(
+    plate: &Discretisation,
+    u: &[f64],
+    tip: usize,
+    room: f64,
+    stress: &dyn Fn(Point) -> Components,
+) -> Result<TipFactors> {
     let axes = &plate.axes[tip];
     let mut local = Local::default();
     let field = |at: Point| {
         plate.displacement(u, at, &mut local).map(|(_, gradient)| axes.gradient_to_axes(gradient)).ok_or_else(|| unknown(at))
     };
     let radius = room.min(RADIUS_SPACINGS * axes.spacing);
-    integral(axes, plate.elasticity(), radius, pressure, field)
+    integral(axes, plate.elasticity(), radius, stress, field)
 }
 
 fn unknown(at: Point) -> Error {
@@ -64,7 +71,7 @@ pub fn integral(
     axes: &TipAxes,
     elasticity: Elasticity,
     radius: f64,
-    pressure: &dyn Fn(Point) -> f64,
+    stress: &dyn Fn(Point) -> Components,
     mut field: impl FnMut(Point) -> Result<Gradient>,
 ) -> Result<TipFactors> {
     let [inner, outer] = RING.map(|share| share * radius);
@@ -87,12 +94,14 @@ pub fn integral(
             }
         }
     }
-    let of_faces = faces(axes, elasticity, [inner, outer], pressure, &mut field)?;
+    let of_faces = faces(axes, elasticity, [inner, outer], stress, &mut field)?;
     sums.iter_mut().zip(of_faces).for_each(|(sum, of_faces)| *sum += of_faces);
     let half = 0.5 * elasticity.plane_modulus;
+    let normal = axes.from_axes([0.0, 1.0]);
+    let [tx, ty] = across(stress(axes.at), normal);
     Ok(TipFactors {
         factors: [half * sums[0], half * sums[1]],
-        t_stress: elasticity.plane_modulus * sums[2] - pressure(axes.at),
+        t_stress: elasticity.plane_modulus * sums[2] - (tx * normal[0] + ty * normal[1]),
         radius,
         of_faces: half * of_faces[0],
     })
@@ -125,7 +134,7 @@ fn faces(
     axes: &TipAxes,
     elasticity: Elasticity,
     [inner, outer]: [f64; 2],
-    pressure: &dyn Fn(Point) -> f64,
+    stress: &dyn Fn(Point) -> Components,
     field: &mut impl FnMut(Point) -> Result<Gradient>,
 ) -> Result<[f64; 3]> {
     let mut sums = [0.0; 3];
@@ -147,8 +156,8 @@ fn faces(
                     if index == 0 { (length * share * share, 2.0 * length * share) } else { (length * share, length) };
                 let ds = weight * stretch / count as f64;
                 let at = along(piece[0], piece[1], way / distance(piece[0], piece[1]));
-                let pressure = pressure(at);
-                if is_straight && pressure == 0.0 {
+                let stress = stress(at);
+                if is_straight && stress == [0.0; 3] {
                     continue;
                 }
                 for normal in [[y, -x], [-y, x]] {
@@ -164,7 +173,7 @@ fn faces(
                     if q == 0.0 {
                         continue;
                     }
-                    let traction = normal.map(|m| -pressure * m);
+                    let traction = axes.to_axes(across(stress, inward));
                     let gradient = if is_straight { None } else { Some(field(beside)?) };
                     for (sum, auxiliary) in sums.iter_mut().zip(auxiliaries(elasticity, r, theta)) {
                         let mut flow = traction[0] * auxiliary[0][0] + traction[1] * auxiliary[1][0];

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::assembly::{Scratch, add_cell};
-use super::boundary::{Boundary, Square, UNKNOWNS_OF_GRIP};
+use super::boundary::{Boundary, Square, UNKNOWNS_OF_GRIP, press_cracks};
 use super::cells::{QuadraturePoint, quadrature};
 use super::contact::{Pressed, press};
 use super::dissection::{Factor, Matrices, Member};
@@ -12,6 +12,7 @@ use super::front::Front;
 use super::pins::press_pins;
 use crate::error::Result;
 use crate::levels::PointGrid;
+use crate::loading::residual::ResidualStress;
 use crate::material::Plane;
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::pin::Contact;
@@ -33,6 +34,8 @@ pub struct Solution {
     pub pressed: Vec<Pressed>,
     /// Contact of elastic pins, with the index of the load.
     pub contacts: Vec<(usize, Contact)>,
+    /// Unknowns under what a residual stress releases on the cracks alone, flanks free, m; nothing where there is none.
+    pub of_residual: Vec<f64>,
 }
 
 impl Solution {
@@ -106,6 +109,17 @@ impl Matrices for Stiffness<'_> {
 /// Solves `K u = f` at the nominal load `load`, Pa or N, by a Cholesky factor.
 /// Errors: [`crate::error::Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis.
 pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -> Result<Solution> {
+    solve_with(specimen, plate, far, load, None)
+}
+
+/// As [`solve`], with what a residual stress releases on the cracks: a second right-hand side of the same factor.
+pub fn solve_with(
+    specimen: &Specimen,
+    plate: &Discretisation,
+    far: f64,
+    load: f64,
+    residual: Option<&ResidualStress>,
+) -> Result<Solution> {
     let cells = quadrature(specimen, plate);
     let Boundary { mut forces, held, of_grips } = Boundary::new(specimen, plate, far)?;
     let grips = (plate.unknowns()..plate.unknowns() + of_grips).step_by(UNKNOWNS_OF_GRIP);
@@ -123,6 +137,15 @@ pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -
     }
     let mut y = forces;
     factor.forward(&mut y);
+    let mut of_residual = Vec::new();
+    if let Some(residual) = residual {
+        of_residual = vec![0.0; forces.len()];
+        press_cracks(&mut of_residual, specimen, plate, &|at| residual.at(at))?;
+        forces.iter_mut().zip(&of_residual).for_each(|(force, released)| *force += released);
+        factor.forward(&mut of_residual);
+        y.iter_mut().zip(&of_residual).for_each(|(y, released)| *y += released);
+        factor.backward(&mut of_residual);
+    }
     let mut u = y.clone();
     factor.backward(&mut u);
     let mut pressed = press(specimen, plate, &factor, &y, &mut u)?;
@@ -139,7 +162,7 @@ pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -
     let points = cells.iter().map(|(_, points)| points.len()).sum();
     let area = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
     let contacts = pins.map_or_else(Vec::new, |pins| pins.contacts);
-    Ok(Solution { u, work, points, area, pressed, contacts })
+    Ok(Solution { u, work, points, area, pressed, contacts, of_residual })
 }
 
 /// Points of the raster in a far spacing: a dozen rasters of a run then have fewer places than its solves have points of integration.

@@ -133,7 +133,7 @@ impl<'a> BondStrain<'a> {
         let record = |tip: &CrackTip| {
             let lead = lead * (tip.growth / self.body.horizon()).min(1.0);
             let position = [0, 1].map(|i| tip.position[i] - lead * tip.direction[i]);
-            TipRecord { state: tip.state, position, growth: tip.growth - lead, factors: None, t_stress: None }
+            TipRecord { state: tip.state, position, growth: tip.growth - lead, factors: None, t_stress: None, of_residual: None }
         };
         self.run.tips.iter().map(record).collect()
     }

@@ -204,9 +204,9 @@ impl<'a, P: CrackedPlate> Cracks<'a, P> {
         tip.steering.direction([tip.growth, step], heading, &self.scales.steering, tip.smooth_in(self.scales.by_root))
     }
 
-    /// da/dN of K_eq at maximum load, m/cycle.
-    fn rate(&self, factor: f64) -> f64 {
-        self.law.rate(factor, self.case.loading.ratio)
+    /// da/dN of K_eq of a tip at maximum load, m/cycle.
+    fn rate(&self, tip: &Tip) -> f64 {
+        self.law.rate(tip.equivalent(), self.case.loading.ratio_at(tip.share_of_residual()))
     }
 }
 

@@ -55,6 +55,8 @@ pub fn critical_lengths(case: &Case) -> [Option<End>; 2] {
     let end = |crack_length: f64, breaks| End { crack_length, reason: strength_reason(case, breaks) };
     let toughness = case
         .toughness_at_end()
+        // With residual stress K is known row by row.
+        .filter(|_| case.loading.residual.is_none())
         .zip(handbook(specimen))
         .map(|(toughness, formula)| end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), StopReason::Toughness));
     let net_section = case.yield_strength_at_end().filter(|_| specimen.ligament(start).is_some()).map(|strength| {
@@ -87,11 +89,11 @@ fn first_reach(value: impl Fn(f64) -> f64, wanted: f64, from: f64, to: f64) -> f
 /// `1 - limit load/load`; negative while it bears it.
 fn excess(case: &Case, row: &CurvePoint) -> [(Option<f64>, StopReason); 2] {
     let required = case.stop.required.unwrap_or(1.0);
-    let k_max = row.delta_k / case.loading.range_share();
+    let k_max = row.k_max_at(required, &case.loading);
     let load = case.loading.maximum * case.loading.share(row.work);
     let known = |excess: f64| Some(excess).filter(|excess| excess.is_finite());
     [
-        (case.toughness_at_end().and_then(|toughness| known(required * k_max / toughness - 1.0)), StopReason::Toughness),
+        (case.toughness_at_end().and_then(|toughness| known(k_max / toughness - 1.0)), StopReason::Toughness),
         (
             row.limit_load.filter(|_| case.stop.by_net_section).and_then(|limit| known(1.0 - limit / (required * load))),
             StopReason::NetSectionYield,

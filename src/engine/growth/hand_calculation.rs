@@ -3,15 +3,17 @@
 //! `N(a) = ∫ da / (da/dN)` from the initial crack length, by the law over K of the case; no growth at or below the threshold. Costs less than a millisecond.
 //! The crack length of a `plate` is that of all cracks, whose n tips grow alike: `da = n × growth of a tip`.
 
-use super::end_of_life::{End, first_end, row_after};
+use super::end_of_life::{self, End, first_end};
 use super::record::{CurvePoint, StopReason, TipRecord};
 use super::{CrackGrowth, GrowthStatus, State};
 use crate::case::Case;
 use crate::error::{Error, Result, input_missing};
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
+use crate::loading::residual::ResidualStress;
 use crate::quadrature::integrate;
 use crate::specimen::geometry::along;
+use crate::specimen::green::centre_crack;
 use crate::specimen::handbook::{HandbookFormula, handbook};
 use crate::specimen::{CrackLine, LengthConvention};
 use crate::units::MM;
@@ -31,7 +33,41 @@ pub struct HandCalculation<'a> {
     end: End,
     /// Tips whose growth adds up to that of the crack length.
     sharing: f64,
+    /// K of residual stress over crack length, where there is one.
+    residual: Option<FactorOfResidual>,
     curve: Vec<CurvePoint>,
+}
+
+/// K_res of a centre crack at equally spaced lengths, by a cubic through four neighbours in between: the cycles are integrated far closer
+/// than a kink in K would bear.
+struct FactorOfResidual {
+    from: f64,
+    step: f64,
+    factors: Vec<f64>,
+}
+
+impl FactorOfResidual {
+    fn new(case: &Case, residual: &ResidualStress, to: f64) -> Self {
+        let (from, width) = (case.specimen.crack_length, case.specimen.width);
+        let step = (to - from) / INTERVALS as f64;
+        let factor = |i: usize| {
+            // Half of both sides: what is not symmetric was refused.
+            let stress = |x: f64| 0.5 * (residual.at([x, 0.0])[1] + residual.at([-x, 0.0])[1]);
+            let length = (from + step * (i as f64 - 1.0)).clamp(0.5 * from, 0.5 * width * (1.0 - 1e-9));
+            centre_crack(length, width, stress)
+        };
+        FactorOfResidual { from: from - step, step, factors: (0..INTERVALS + 4).map(factor).collect() }
+    }
+
+    /// K_res, Pa√m, at a crack length, m (Catmull and Rom 1974).
+    fn at(&self, crack_length: f64) -> f64 {
+        let at = (crack_length - self.from) / self.step;
+        let place = (at.floor().max(1.0) as usize).min(self.factors.len() - 3);
+        let (t, of) = (at - place as f64, |i: usize| self.factors[place + i - 1]);
+        let slopes = [0.5 * (of(2) - of(0)), 0.5 * (of(3) - of(1))];
+        let (rise, u) = (of(2) - of(1), 1.0 - t);
+        of(1) + t * rise + t * u * (u * (slopes[0] - rise) - t * (slopes[1] - rise))
+    }
 }
 
 impl<'a> HandCalculation<'a> {
@@ -44,7 +80,9 @@ impl<'a> HandCalculation<'a> {
         let end = first_end(case).unwrap_or(severed);
         case.specimen.beta.as_ref().map_or(Ok(()), |table| table.check_end(end.crack_length))?;
         let sharing = if case.specimen.convention == LengthConvention::SumOfTips { case.specimen.tips.len() as f64 } else { 1.0 };
-        Ok(HandCalculation { case, formula, law, end, sharing, curve: Vec::new() })
+        let of = |residual: &std::sync::Arc<ResidualStress>| FactorOfResidual::new(case, residual, end.crack_length);
+        let residual = case.loading.residual.as_ref().filter(|_| end.crack_length > case.specimen.crack_length).map(of);
+        Ok(HandCalculation { case, formula, law, end, sharing, residual, curve: Vec::new() })
     }
 
     fn last(&self) -> &CurvePoint {
@@ -52,9 +90,20 @@ impl<'a> HandCalculation<'a> {
         &self.curve[self.curve.len() - 1]
     }
 
+    /// K at maximum load and what residual stress makes of it, Pa√m.
+    fn factors(&self, crack_length: f64) -> (f64, Option<f64>) {
+        let of_load = self.formula.k_i(crack_length, self.case.loading.maximum);
+        let of_residual = self.residual.as_ref().map(|residual| residual.at(crack_length));
+        (of_load + of_residual.unwrap_or(0.0), of_residual)
+    }
+
     /// da/dN, m/cycle.
     fn rate(&self, crack_length: f64) -> f64 {
-        self.law.rate(self.formula.k_i(crack_length, self.case.loading.maximum), self.case.loading.ratio)
+        let (k_max, of_residual) = self.factors(crack_length);
+        if k_max <= 0.0 {
+            return 0.0;
+        }
+        self.law.rate(k_max, self.case.loading.ratio_at(of_residual.map_or(0.0, |of_residual| of_residual / k_max)))
     }
 
     /// Cycles between two crack lengths.
@@ -83,15 +132,15 @@ impl<'a> HandCalculation<'a> {
     /// Row of the curve; K and rate are unknown (NaN) where the plate ends.
     fn point(&self, cycles: f64, crack_length: f64) -> CurvePoint {
         let (specimen, loading) = (&self.case.specimen, &self.case.loading);
-        let delta_k = self.formula.delta_k(crack_length, loading.maximum, loading.range_share());
+        let (k_max, of_residual) = self.factors(crack_length);
         let growth = (crack_length - specimen.crack_length) / self.sharing;
         let ahead =
             |seed: &crate::specimen::TipSeed| along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth);
-        CurvePoint {
+        let row = CurvePoint {
             is_solved: true,
             cycles,
             crack_length,
-            delta_k,
+            delta_k: k_max * loading.range_share(),
             growth_rate: self.rate(crack_length),
             work: f64::NAN,
             limit_load: self.case.limit_load(crack_length, &self.lines(crack_length)),
@@ -103,11 +152,17 @@ impl<'a> HandCalculation<'a> {
                     state: TipState::Active,
                     position: ahead(seed),
                     growth,
-                    factors: Some([delta_k / loading.range_share(), 0.0]),
+                    factors: Some([k_max, 0.0]),
                     t_stress: None,
+                    of_residual,
                 })
                 .collect(),
             depth: None,
+            residual: None,
+        };
+        match of_residual {
+            Some(of_residual) => row.with_residual(k_max, of_residual, loading),
+            None => row,
         }
     }
 
@@ -119,8 +174,12 @@ impl<'a> HandCalculation<'a> {
         if done > INTERVALS || end <= start {
             return Ok(Some(reason));
         }
+        let is_broken = |row: &CurvePoint| end_of_life::reason_to_stop(self.case, None, row, &[TipState::Active], true);
+        if let Some(reason) = self.residual.as_ref().and_then(|_| is_broken(last)) {
+            return Ok(Some(reason));
+        }
         let to = if done == INTERVALS { end } else { start * (end / start).powf(done as f64 / INTERVALS as f64) };
-        // K of a formula rises with crack length, that of a table may fall.
+        // K of a formula rises with crack length, that of a table or of a residual stress may fall.
         if last.growth_rate == 0.0 || self.rate(to) == 0.0 {
             return Ok(Some(StopReason::NothingAges));
         }
@@ -134,15 +193,18 @@ impl<'a> HandCalculation<'a> {
                 to / MM
             )));
         }
+        if more.is_infinite() && cycles_max.is_infinite() {
+            return Ok(Some(StopReason::NothingAges));
+        }
         if before + more > cycles_max {
             let reached = self.length_after(cycles_max - before, from, to);
             self.curve.push(self.point(cycles_max, reached));
             return Ok(Some(StopReason::RunOut));
         }
         let (next, reason) = (self.point(before + more, to), (done == INTERVALS).then_some(reason));
-        // The sections of a plate are not known as a formula before the run.
-        let is_open = self.case.specimen.ligament(to).is_none();
-        let (next, reason) = if is_open { row_after(self.case, last, next, reason) } else { (next, reason) };
+        // The sections of a plate are not known as a formula before the run, nor K of a residual stress.
+        let is_open = self.case.specimen.ligament(to).is_none() || self.residual.is_some();
+        let (next, reason) = if is_open { end_of_life::row_after(self.case, last, next, reason) } else { (next, reason) };
         self.curve.push(next);
         Ok(reason)
     }

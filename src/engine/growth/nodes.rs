@@ -13,10 +13,11 @@ use crate::element_free::crack::{Tip, initial_cracks};
 use crate::element_free::factors;
 use crate::element_free::field::{Discretisation, Local};
 use crate::element_free::resolution::{ElementFreeSettings, Resolution, room};
-use crate::element_free::solve::{Solution, raster, raster_fields, solve};
+use crate::element_free::solve::{Solution, raster, raster_fields, solve_with};
 use crate::error::Result;
 use crate::growth::cross_check::largest_difference;
 use crate::levels::PointGrid;
+use crate::loading::residual::across;
 use crate::solver::SolverUsed;
 use crate::specimen::{CrackLine, Point};
 use crate::williams::Elasticity;
@@ -143,7 +144,8 @@ impl CrackedPlate for NodePlate {
         let (lines, tips) = NodePlate::cracks(case, cracks);
         let resolution = self.resolution();
         let plate = Discretisation::new(specimen, self.elasticity, &lines, &tips, &resolution)?;
-        let solution = solve(specimen, &plate, resolution.far, case.loading.maximum)?;
+        let residual = case.loading.residual.as_deref();
+        let solution = solve_with(specimen, &plate, resolution.far, case.loading.maximum, residual)?;
         self.state.solves += 1;
         self.state.nodes = self.state.nodes.max(plate.nodes.at.len());
         self.state.work = solution.work;
@@ -159,19 +161,31 @@ impl CrackedPlate for NodePlate {
         let reading = |index: usize| {
             let axes = &plate.axes[index];
             let room = room(&case.specimen, &lines, &tips[index]);
-            let pressure = |at| pressure + solution.pressure_at(at);
-            let read = factors::read(plate, &solution.u, index, room, &pressure)?;
+            let released = |at| case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
+            let stress = |at| {
+                let ([xx, yy, xy], pressure) = (released(at), pressure + solution.pressure_at(at));
+                [xx + pressure, yy + pressure, xy]
+            };
+            let read = factors::read(plate, &solution.u, index, room, &stress)?;
+            let of_residual = match &case.loading.residual {
+                Some(_) => factors::read(plate, &solution.of_residual, index, room, &released)?.factors,
+                None => [0.0; 2],
+            };
+            // The stress along the crack that the plate had before it.
+            let along = across(released(axes.at), axes.ahead);
+            let along = along[0] * axes.ahead[0] + along[1] * axes.ahead[1];
             let is_closed = solution.is_closed(axes.at);
             let [k_i, k_ii] = read.factors.map(|factor| share * factor);
             Ok(Reading {
                 factors: [if is_closed { 0.0 } else { k_i }, k_ii],
-                t_stress: share * read.t_stress,
+                t_stress: share * read.t_stress + along,
                 // K_II is that of the axes in which it was read: the crack without corners that nodes do not see.
                 ahead: axes.ahead,
                 spacing: axes.spacing,
                 length_offset: 0.0,
                 is_closed,
                 of_pressure: share * read.of_faces,
+                of_residual,
             })
         };
         let read = (0..tips.len()).into_par_iter().map(reading).collect::<Result<Vec<Reading>>>()?;

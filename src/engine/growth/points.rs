@@ -26,8 +26,9 @@ use crate::fatigue::ZONE_RADIUS_HORIZONS;
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::levels::PointGrid;
-use crate::solver::Equilibrium;
+use crate::loading::residual::Components;
 use crate::solver::field::Layout;
+use crate::solver::{Equilibrium, Symmetry};
 use crate::specimen::geometry::{along, direction, distance, meeting_share};
 use crate::specimen::{CrackLine, LineEnd, Point};
 use crate::state::Bonds;
@@ -67,6 +68,10 @@ pub struct PointPlate {
     contact: Contact,
     /// In the layout of the equilibrium, m.
     displacement: Vec<f64>,
+    /// The same of the load without residual stress; nothing where there is none.
+    of_load: Vec<f64>,
+    /// Work of the loads of the last equilibrium, J.
+    work: f64,
     /// Of every tip.
     memory: Vec<Memory>,
     /// Remaining life λ of bonds that have spent some of it, ascending.
@@ -115,7 +120,7 @@ impl PointPlate {
         self.contact.follow(body, &self.blunted(cracks, lines), case.material.plane_modulus());
         let before = self.displacement.clone();
         for solve in 1..=CONTACT_SOLVES_MOST {
-            self.equilibrium.set_contact(body, &self.contact.springs(crack_pressure(case), body.thickness));
+            self.equilibrium.set_contact(body, &self.contact.springs(&|at| released(case, at), body.thickness));
             match self.equilibrium.solve(body, &self.bonds, &mut self.displacement) {
                 Ok(iterations) => self.iterations += iterations,
                 Err(error) => {
@@ -124,10 +129,18 @@ impl PointPlate {
                 }
             }
             self.solves += 1;
+            self.work = self.equilibrium.work();
             let least = CONTACT_LEAST * self.mean_strain(case) * body.lattice.spacing;
             if solve == CONTACT_SOLVES_MOST || !self.contact.update(&self.layout(), &self.displacement, least) {
                 break;
             }
+        }
+        if case.loading.residual.is_some() {
+            // The load alone, flanks in contact as they are: what it leaves of the displacement is that of the residual stress.
+            self.equilibrium.set_contact(body, &self.contact.springs(&|_| crack_pressure(case), body.thickness));
+            self.of_load.clone_from(&self.displacement);
+            self.iterations += self.equilibrium.solve(body, &self.bonds, &mut self.of_load)?;
+            self.solves += 1;
         }
         Ok(())
     }
@@ -145,7 +158,7 @@ impl PointPlate {
     /// Root mean square of the strain, of which the energy of the plate tells.
     fn mean_strain(&self, case: &Case) -> f64 {
         let volume = case.specimen.area() * case.specimen.thickness;
-        (self.equilibrium.work() / (volume * case.material.youngs_modulus)).max(0.0).sqrt()
+        (self.work / (volume * case.material.youngs_modulus)).max(0.0).sqrt()
     }
 
     fn layout(&self) -> Layout {
@@ -176,6 +189,8 @@ impl CrackedPlate for PointPlate {
             bonds,
             contact: Contact::default(),
             displacement: Vec::new(),
+            of_load: Vec::new(),
+            work: 0.0,
             memory: vec![Memory::default(); cracks.tips.len()],
             remaining_life: Vec::new(),
             solves: 0,
@@ -262,7 +277,7 @@ impl CrackedPlate for PointPlate {
     }
 
     fn work(&self) -> f64 {
-        self.equilibrium.work()
+        self.work
     }
 
     fn is_in_contact(&self) -> bool {
@@ -367,9 +382,17 @@ impl PointPlate {
     }
 }
 
-/// Pressure on the flanks at the maximum load, Pa.
-fn crack_pressure(case: &Case) -> f64 {
-    case.specimen.crack_pressure * case.loading.maximum
+/// Pressure on the flanks at the maximum load as a stress, Pa.
+fn crack_pressure(case: &Case) -> Components {
+    let pressure = case.specimen.crack_pressure * case.loading.maximum;
+    [pressure, pressure, 0.0]
+}
+
+/// What the flanks release at the maximum load, Pa: pressure, and residual stress.
+fn released(case: &Case, at: Point) -> Components {
+    let residual = case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
+    let pressure = crack_pressure(case);
+    [0, 1, 2].map(|i| pressure[i] + residual[i])
 }
 
 /// Unit vector in which a crack points at one of its ends; pieces shorter than [`DIRECTION_SPACINGS`] do not show it.
@@ -429,7 +452,9 @@ fn across(body: &Body, segment: &Segment, at_last: bool) -> Vec<Bond> {
 /// Solver of a run.
 fn solver(case: &Case, body: &Body, bonds: &Bonds) -> Equilibrium {
     let points = case.points();
-    Equilibrium::new(points.solver, points.symmetry, body, bonds, case.loading.maximum).to_tolerance(points.residual)
+    // A residual stress need not be its own mirror image.
+    let symmetry = if case.loading.residual.is_some() { Symmetry::Off } else { points.symmetry };
+    Equilibrium::new(points.solver, symmetry, body, bonds, case.loading.maximum).to_tolerance(points.residual)
 }
 
 /// Largest K_eq of the tips at maximum load, Pa√m, of the plate with its initial cracks cleanly cut; `None` where it cannot be read.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
 use crate::fatigue::crack_tip::TipState;
+use crate::loading::Loading;
 use crate::specimen::{CrackLine, Point, Specimen};
 
 crate::kinds! {
@@ -54,6 +55,29 @@ pub struct TipRecord {
     pub factors: Option<[f64; 2]>,
     /// Stress along the crack T at maximum load, Pa; `None` where `factors` is.
     pub t_stress: Option<f64>,
+    /// What residual stress makes of K_eq, Pa√m; `None` where there is no such stress.
+    pub of_residual: Option<f64>,
+}
+
+/// What residual stress does to the tip that leads.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    /// K_res, Pa√m: what it makes of K_eq.
+    pub factor: f64,
+    /// Stress ratio K_min/K_max with it.
+    pub ratio: f64,
+}
+
+impl Residual {
+    /// The same K_res in another K at maximum load, Pa√m.
+    pub fn beside(self, k_max: f64, loading: &Loading) -> Residual {
+        Residual { ratio: loading.ratio_at(self.factor / k_max), ..self }
+    }
+
+    /// Share of K_max that counts as range, as [`Loading::range_share`].
+    pub fn range_share(self) -> f64 {
+        (1.0 - self.ratio.max(0.0)).max(0.0)
+    }
 }
 
 /// The end in the thickness of the front of a crack that did not go through at the start, at a recorded step.
@@ -92,6 +116,8 @@ pub struct CurvePoint {
     pub tips: Vec<TipRecord>,
     /// What a crack that did not go through at the start does in the thickness; `None` of through cracks.
     pub depth: Option<DepthRecord>,
+    /// What residual stress does to the tip that leads; `None` without.
+    pub residual: Option<Residual>,
 }
 
 impl CurvePoint {
@@ -128,7 +154,25 @@ impl CurvePoint {
             broken_bonds,
             tips,
             depth: None,
+            residual: None,
         }
+    }
+
+    /// The row with a residual stress that makes `of_residual` of the K at maximum load that leads, Pa√m.
+    pub fn with_residual(self, k_max: f64, of_residual: f64, loading: &Loading) -> CurvePoint {
+        let residual = Residual { factor: of_residual, ratio: f64::NAN }.beside(k_max, loading);
+        CurvePoint { delta_k: residual.range_share() * k_max, residual: Some(residual), ..self }
+    }
+
+    /// K at maximum load that leads, Pa√m; NaN where unknown.
+    pub fn k_max(&self, loading: &Loading) -> f64 {
+        self.delta_k / self.residual.map_or(loading.range_share(), Residual::range_share)
+    }
+
+    /// That at another load, over that of the cycles, which residual stress does not follow.
+    pub fn k_max_at(&self, load: f64, loading: &Loading) -> f64 {
+        let of_residual = self.residual.map_or(0.0, |residual| residual.factor);
+        load * (self.k_max(loading) - of_residual) + of_residual
     }
 
     /// Length of the crack that a tip ends, with the growth of all its tips, m; `None` of the end of a slot.
@@ -148,6 +192,7 @@ impl CurvePoint {
             growth: mix(a.growth, b.growth),
             factors: a.factors.zip(b.factors).map(|(a, b)| [0, 1].map(|i| mix(a[i], b[i]))),
             t_stress: a.t_stress.zip(b.t_stress).map(|(a, b)| mix(a, b)),
+            of_residual: a.of_residual.zip(b.of_residual).map(|(a, b)| mix(a, b)),
         };
         CurvePoint {
             is_solved: false,
@@ -160,6 +205,10 @@ impl CurvePoint {
             broken_bonds: self.broken_bonds,
             tips: before.tips.iter().zip(&self.tips).map(tip).collect(),
             depth: self.depth,
+            residual: before
+                .residual
+                .zip(self.residual)
+                .map(|(before, now)| Residual { factor: mix(before.factor, now.factor), ratio: mix(before.ratio, now.ratio) }),
         }
     }
 }

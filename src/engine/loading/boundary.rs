@@ -7,7 +7,7 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::{Input, forces, grips};
+use super::{Input, LoadingKind, forces, grips};
 use crate::error::{Result, input, input_missing};
 use crate::input::{number, refuse_given, shorten, slice, table_of};
 use crate::specimen::geometry::{bounding_box, distance, unit};
@@ -31,7 +31,8 @@ pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Spec
     let kind = specimen.kind;
     let problem = format!("does not go with {kind}, which brings its own loads and grips");
     let remedy = "leave it out, or describe the specimen as kind = \"plate\"";
-    refuse_given("loading", &input.places(), &problem, remedy)?;
+    let bent = [("edge_bending_ratio", input.edge_bending_ratio.is_some())];
+    refuse_given("loading", &[&input.places()[..], &bent].concat(), &problem, remedy)?;
     if supports.is_some() {
         return Err(input_missing("supports", problem, remedy));
     }
@@ -47,11 +48,19 @@ pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Spec
 
 fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     let held = read_supports(supports, specimen)?;
+    let beside_edges = input_.edges.is_some() && input_.pins.is_some();
+    if beside_edges {
+        return load_edges_and_pins(input_, &held, specimen, parallel_ratio);
+    }
     let by_forces = forces::KEYS.into_iter().zip([&input_.pins, &input_.rollers]).find(|(_, given)| given.is_some());
     let area = match by_forces {
         Some((key, _)) if input_.edges.is_some() => {
-            let remedy = "give edges, or pins and rollers";
+            let remedy = "give edges, alone or with pins, or rollers";
             return Err(input_missing(key, "stands beside edges: one nominal load cannot be both", remedy));
+        }
+        Some((key, _)) if input_.edge_bending_ratio.is_some() => {
+            let problem = format!("is of loaded edges, and the load is that of {key}");
+            return Err(input_missing("loading.edge_bending_ratio", problem, "leave it out"));
         }
         Some((key, _)) if input_.direction.is_some() => {
             let problem = format!("stands beside {key}: it is that of the traction on edges");
@@ -63,7 +72,7 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
         }
         Some((key, _)) => {
             specimen.load_measure = LoadMeasure::Force;
-            forces::read_pins(input_.pins.as_deref().unwrap_or_default(), specimen)?;
+            forces::read_pins(input_.pins.as_deref().unwrap_or_default(), false, specimen)?;
             forces::read_rollers(input_.rollers.as_deref().unwrap_or_default(), specimen)?;
             if specimen.loads.is_empty() {
                 let remedy = "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }";
@@ -78,6 +87,47 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
     }
     check_balance(specimen, by_forces.map_or("loading.edges", |(key, _)| key))?;
     Ok(area)
+}
+
+/// Bearing and bypass: the first edge bears the nominal stress, pins their bearing stress, and the edge that faces the first one what is
+/// left, `σ_bypass = σ - Σ P·n / (L h)`.
+fn load_edges_and_pins(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+    let given = [
+        ("rollers", input_.rollers.is_some()),
+        ("direction", input_.direction.is_some()),
+        ("edge_bending_ratio", input_.edge_bending_ratio.is_some()),
+        ("kind", input_.kind == Some(LoadingKind::Displacement)),
+    ];
+    let problem = "does not go with pins beside loaded edges, whose stress is uniform and whose cycles are of a load";
+    refuse_given("loading", &given, problem, "leave it out, or leave out the pins")?;
+    let area = load_edges(input_, held, specimen, parallel_ratio)?;
+    let edges = specimen.loads.len();
+    forces::read_pins(input_.pins.as_deref().unwrap_or_default(), true, specimen)?;
+    let first = input_.edges.as_deref().and_then(<[Edge]>::first).map_or([0.0, 1.0], |edge| edge.normal());
+    let faces =
+        |load: &Load| matches!(load, Load::Edge { traction, .. } if traction[0] * first[0] + traction[1] * first[1] < -0.5);
+    let (loads, pins) = specimen.loads.split_at_mut(edges);
+    let along_first = |force: Point| force[0] * first[0] + force[1] * first[1];
+    let pushed: f64 =
+        pins.iter().map(|pin| pin_force(pin).map_or(0.0, |(_, force)| along_first(force))).sum::<f64>() / specimen.thickness;
+    let facing: f64 = loads.iter().filter(|load| faces(load)).filter_map(Load::on_edge).map(|(a, b, _)| distance(a, b)).sum();
+    for load in loads.iter_mut().filter(|load| faces(load)) {
+        if let Load::Edge { traction, .. } = load {
+            // Σ P along the normal of the first edge is negative where the pin pulls against it.
+            let bypass = (area / specimen.thickness + pushed) / facing;
+            *traction = first.map(|n| -bypass * n);
+        }
+    }
+    check_balance(specimen, "loading.pins")?;
+    Ok(area)
+}
+
+/// Hole and force of a pin, N per unit of nominal load.
+fn pin_force(load: &Load) -> Option<(usize, Point)> {
+    match load {
+        Load::Pin { hole, direction, force, .. } => Some((*hole, direction.map(|d| d * force))),
+        _ => None,
+    }
 }
 
 /// Reads `[supports]` into the specimen; returns the sides held along their normal.
@@ -145,8 +195,13 @@ fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_r
         areas.push(length * specimen.thickness);
     }
     match &input_.direction {
-        None => push_edge_loads(specimen, &loaded, 1.0),
+        None => match read_edge_bending(input_, &loaded)? {
+            Some(stresses) => loaded.iter().for_each(|edge| push_bent_edge(specimen, *edge, stresses)),
+            None => push_edge_loads(specimen, &loaded, 1.0),
+        },
         Some(given) => {
+            let bent = [("edge_bending_ratio", input_.edge_bending_ratio.is_some())];
+            refuse_given("loading", &bent, "does not go with loading.direction: bending acts along the normal", "leave one out")?;
             if parallel_ratio != 0.0 {
                 let problem = "does not go with loading.direction";
                 return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "name all loaded sides in edges"));
@@ -191,6 +246,45 @@ fn directions(given: &Value, loaded: &[Edge]) -> Result<Vec<Point>> {
         return Err(wrong(format!("names {} directions for {} sides", vectors.len(), loaded.len())));
     }
     vectors.into_iter().map(unit).collect::<Option<_>>().ok_or_else(|| wrong("has no direction".into()))
+}
+
+/// Stress over the nominal one at the beginning and the end of the loaded edges: with the bending ratio ρ, `1 - ρ` and `1 + ρ`; where the
+/// edges bear nothing but bending, -1 and 1. `None` where they are not bent.
+fn read_edge_bending(input_: &Input, loaded: &[Edge]) -> Result<Option<[f64; 2]>> {
+    const KEY: &str = "loading.edge_bending_ratio";
+    let Some(given) = &input_.edge_bending_ratio else { return Ok(None) };
+    if loaded.iter().any(|edge| (edge.normal()[0] == 0.0) != (loaded[0].normal()[0] == 0.0)) {
+        let problem = "bends sides that are not parallel: which of them is not said";
+        return Err(input(KEY, shorten(given), problem, "name one side or two opposite ones in loading.edges"));
+    }
+    if input_.kind == Some(LoadingKind::Displacement) {
+        let problem = "is of a stress on edges, and these are moved by a displacement";
+        return Err(input(KEY, shorten(given), problem, "leave it out, or give cycles of a load"));
+    }
+    if given.as_str() == Some("pure") {
+        return Ok(Some([-1.0, 1.0]));
+    }
+    let ratio = given.as_float().or_else(|| given.as_integer().map(|whole| whole as f64)).ok_or_else(|| {
+        let remedy = "give bending stress at the end of the edge over its mean stress, or \"pure\"";
+        input(KEY, shorten(given), "is no ratio of stresses", remedy)
+    })?;
+    let ratio = number("bending stress over mean stress", -1000.0, 1000.0).read(KEY, ratio)?;
+    Ok((ratio != 0.0).then_some([1.0 - ratio, 1.0 + ratio]))
+}
+
+/// Stress along the outward normal of a side, linear over it from its left or lower end to the other.
+fn push_bent_edge(specimen: &mut Specimen, edge: Edge, [first, last]: [f64; 2]) {
+    let (normal, axis) = (edge.normal(), usize::from(edge.normal()[0] != 0.0));
+    let stretches = edge.stretches(specimen);
+    let ends = || stretches.iter().flat_map(|(from, to)| [from[axis], to[axis]]);
+    let (low, high) = (ends().fold(f64::INFINITY, f64::min), ends().fold(f64::NEG_INFINITY, f64::max));
+    let stress = |at: Point| first + (at[axis] - low) / (high - low) * (last - first);
+    let bent = stretches.iter().map(|&(from, to)| Load::Bent {
+        from,
+        to,
+        tractions: [from, to].map(|at| normal.map(|n| stress(at) * n)),
+    });
+    specimen.loads.extend(bent);
 }
 
 /// Traction `share` along the outward normal on all stretches of these sides.
@@ -241,8 +335,7 @@ pub struct Imbalance {
 /// What the loads of a specimen leave over, beyond round-off.
 pub fn imbalance(specimen: &Specimen) -> Imbalance {
     let (mut force, mut moment, mut scale) = ([0.0; 2], 0.0_f64, 0.0_f64);
-    for load in &specimen.loads {
-        let (place, f) = resultant(load, specimen);
+    for (place, f) in specimen.loads.iter().flat_map(|load| resultants(load, specimen)) {
         force = [force[0] + f[0], force[1] + f[1]];
         moment += place[0] * f[1] - place[1] * f[0];
         scale = scale.max(f[0].hypot(f[1]));
@@ -251,15 +344,8 @@ pub fn imbalance(specimen: &Specimen) -> Imbalance {
     Imbalance { force: force.map(|f: f64| f.abs() > 1e-6 * scale), moment: moment.abs() > 1e-6 * scale * reach }
 }
 
-/// Place and force of a load per unit of nominal load (tractions per metre of thickness, which all share).
-fn resultant(load: &Load, specimen: &Specimen) -> (Point, Point) {
-    match load {
-        Load::Edge { from, to, traction } => {
-            let length = distance(*from, *to);
-            ([(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0], [traction[0] * length, traction[1] * length])
-        }
-        Load::Pin { hole, direction, force, .. } => {
-            (specimen.holes[*hole].centre, direction.map(|d| d * force / specimen.thickness))
-        }
-    }
+/// Places and forces of a load per unit of nominal load (per metre of thickness, which all share).
+fn resultants(load: &Load, specimen: &Specimen) -> Vec<(Point, Point)> {
+    let of_pin = pin_force(load).map(|(hole, force)| (specimen.holes[hole].centre, force.map(|f| f / specimen.thickness)));
+    load.forces_between([0.0, 1.0]).into_iter().chain(of_pin).collect()
 }

@@ -21,8 +21,9 @@ const ON_OUTLINE: f64 = 1e-6;
 struct PinInput {
     hole: usize,
     direction: [f64; 2],
-    #[serde(default = "one")]
-    share: f64,
+    share: Option<f64>,
+    /// Beside loaded edges: bearing stress `P/(d h)` over the nominal stress.
+    bearing_ratio: Option<f64>,
     contact_half_angle_deg: Option<f64>,
     pin_diameter_mm: Option<f64>,
     friction: Option<f64>,
@@ -46,8 +47,8 @@ fn one() -> f64 {
     1.0
 }
 
-/// Pins, which press on the rim of a hole.
-pub(super) fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
+/// Pins, which press on the rim of a hole; those `beside_edges` that are loaded say their force by their bearing stress.
+pub(super) fn read_pins(pins: &[Value], beside_edges: bool, specimen: &mut Specimen) -> Result<()> {
     check_count(KEYS[0], pins, "pins { hole = 0, direction = [0, 1] }")?;
     for (i, value) in pins.iter().enumerate() {
         let path = format!("{}[{i}]", KEYS[0]);
@@ -56,7 +57,7 @@ pub(super) fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
             let problem = format!("is not a hole of this plate, which has {}", specimen.holes.len());
             return Err(input(&format!("{path}.hole"), pin.hole, problem, "count specimen.holes from 0"));
         }
-        let force = read_share(&path, pin.share)?;
+        let force = force_of(&path, &pin, beside_edges, specimen)?;
         let direction = direction_of(&path, pin.direction)?;
         let keys = [
             ("contact_half_angle_deg", pin.contact_half_angle_deg),
@@ -69,6 +70,35 @@ pub(super) fn read_pins(pins: &[Value], specimen: &mut Specimen) -> Result<()> {
         specimen.loads.push(Load::Pin { hole: pin.hole, direction, force, contact });
     }
     Ok(())
+}
+
+/// Force of a pin per unit of nominal load: its share of a force, N per N, or beside loaded edges `bearing_ratio d h`, N per Pa.
+fn force_of(path: &str, pin: &PinInput, beside_edges: bool, specimen: &Specimen) -> Result<f64> {
+    let key = format!("{path}.bearing_ratio");
+    match (beside_edges, pin.bearing_ratio, pin.share) {
+        (false, None, share) => read_share(path, share.unwrap_or(1.0)),
+        (false, Some(given), _) => {
+            let problem = "is bearing stress over the stress of a loaded edge, and no edge is loaded";
+            Err(input(&key, given, problem, "name the loaded edges in loading.edges, or give share"))
+        }
+        (true, _, Some(share)) => {
+            let problem = "is a share of a force, and beside loaded edges the nominal load is their stress";
+            Err(input(
+                &format!("{path}.share"),
+                share,
+                problem,
+                "give bearing_ratio = P / (d h) over the stress of the first edge",
+            ))
+        }
+        (true, None, None) => {
+            let remedy = "give P / (d h) of the pin over the stress of the first edge of loading.edges";
+            Err(crate::error::input_missing(&key, "is missing: the pin stands beside loaded edges", remedy))
+        }
+        (true, Some(ratio), None) => {
+            let ratio = number("a ratio of stresses", 1e-6, 1e4).read(&key, ratio)?;
+            Ok(ratio * 2.0 * specimen.holes[pin.hole].radius * specimen.thickness)
+        }
+    }
 }
 
 /// Rollers: uniform pressure `share / (contact width x thickness)` per unit of force on a straight stretch of the outline.

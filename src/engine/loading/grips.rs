@@ -85,6 +85,6 @@ const ALONG: f64 = 1e-9;
 fn stretch(load: &Load) -> Option<(Point, Point, Point)> {
     match *load {
         Load::Edge { from, to, traction } => unit(traction).map(|direction| (from, to, direction)),
-        Load::Pin { .. } => None,
+        Load::Bent { .. } | Load::Pin { .. } => None,
     }
 }

@@ -2,8 +2,10 @@
 
 mod boundary;
 mod forces;
+mod formula;
 mod grips;
 mod read;
+pub mod residual;
 pub mod spectrum;
 
 pub use boundary::{Imbalance, imbalance};
@@ -15,6 +17,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use crate::specimen::Edge;
+use residual::ResidualStress;
 use spectrum::{Spectrum, SpectrumFormat};
 
 crate::kinds! {
@@ -66,8 +69,11 @@ struct Input {
     omission_percent: Option<f64>,
     truncation_percent: Option<f64>,
     repeats: Option<f64>,
+    residual_stress: Option<Value>,
+    residual_stress_file: Option<String>,
     stress_parallel_ratio: Option<f64>,
     bending_ratio: Option<f64>,
+    edge_bending_ratio: Option<Value>,
     edges: Option<Vec<Edge>>,
     direction: Option<Value>,
     pins: Option<Vec<Value>>,
@@ -112,6 +118,8 @@ pub struct Loading {
     /// Stress along the crack over stress across it, applied to the side edges. `Specimen::loads` holds these loads
     /// already; the number stands here for the reports.
     pub parallel_ratio: f64,
+    /// What the plate bears before the crack and without the load.
+    pub residual: Option<Arc<ResidualStress>>,
 }
 
 /// Nominal stress under which cycles of a displacement are solved, Pa.
@@ -132,6 +140,11 @@ impl Loading {
     /// Smallest and largest stress ratio of the cycles that open the crack.
     pub fn ratios(&self) -> [f64; 2] {
         self.spectrum.as_ref().map_or([self.ratio; 2], |spectrum| spectrum.ratios)
+    }
+
+    /// Stress ratio of a tip of whose K at maximum load residual stress makes the share s: `(R (K - sK) + sK)/K = R + s (1 - R)`.
+    pub fn ratio_at(&self, share_of_residual: f64) -> f64 {
+        self.ratio + share_of_residual * (1.0 - self.ratio)
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::Deserialize;
 use toml::Value;
 
+use super::residual::ResidualStress;
 use super::spectrum::{self, Spectrum};
 use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
 use super::{boundary, grips};
@@ -72,8 +73,9 @@ pub fn from_values(
         Some(spectrum) => ratio_of(spectrum, input.stress_ratio)?,
         None => read_ratio(input.stress_ratio)?,
     };
+    let residual = ResidualStress::read(&input, folder)?;
     if input.is_of_cracks_alone() {
-        return pressure_alone(&input, supports, specimen, ratio);
+        return Ok(Loading { residual, ..pressure_alone(&input, supports, specimen, ratio)? });
     }
     let magnitude = Magnitude::read(&input)?;
     let parallel_ratio =
@@ -117,20 +119,24 @@ pub fn from_values(
     if let Some(pressure) = read_crack_pressure(&input, specimen)? {
         specimen.crack_pressure = pressure / maximum;
     }
-    Ok(Loading { maximum, control, ratio, spectrum: spectrum.map(Arc::new), parallel_ratio })
+    Ok(Loading { maximum, control, ratio, spectrum: spectrum.map(Arc::new), parallel_ratio, residual })
 }
 
 /// Pressure on the cracks and no other load: the nominal load is the pressure.
 fn pressure_alone(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, ratio: f64) -> Result<Loading> {
     let problem = "says where a load acts, and none is given beside crack_pressure_mpa";
-    let given = [&input.places()[..], &[("stress_parallel_ratio", input.stress_parallel_ratio.is_some())]].concat();
+    let beside = [
+        ("stress_parallel_ratio", input.stress_parallel_ratio.is_some()),
+        ("edge_bending_ratio", input.edge_bending_ratio.is_some()),
+    ];
+    let given = [&input.places()[..], &beside].concat();
     refuse_given("loading", &given, problem, &format!("leave it out, or give one of {MAGNITUDES}"))?;
     boundary::read_supports(supports, specimen)?;
     let maximum = read_crack_pressure(input, specimen)?.unwrap_or_default();
     specimen.loads.clear();
     specimen.load_measure = LoadMeasure::Stress;
     specimen.crack_pressure = 1.0;
-    Ok(Loading { maximum, control: LoadControl::Load, ratio, spectrum: None, parallel_ratio: 0.0 })
+    Ok(Loading { maximum, control: LoadControl::Load, ratio, spectrum: None, parallel_ratio: 0.0, residual: None })
 }
 
 /// Largest pressure on the faces of the cracks, Pa, with a plate that has cracks to press on.

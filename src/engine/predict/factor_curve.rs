@@ -50,8 +50,7 @@ impl FactorCurve {
         let done = unit_growth(case, m, observer)?;
         let tips = match case.specimen.convention {
             LengthConvention::MeanOfTips => {
-                let share = case.loading.range_share();
-                vec![TipFactors::new(done.curve.iter().map(|row| (row.crack_length, row.delta_k / share)))]
+                vec![TipFactors::new(done.curve.iter().map(|row| (row.crack_length, row.k_max(&case.loading))))]
             }
             LengthConvention::SumOfTips => of_every_tip(&done.curve),
         };

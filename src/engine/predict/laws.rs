@@ -17,8 +17,23 @@ use crate::units::MM;
 pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     Ok(match &case.loading.spectrum {
         Some(spectrum) => Box::new(SpectrumLaw::new(law_of_cycle(case)?, spectrum, least_ratio(case))),
+        None if case.loading.residual.is_some() => Box::new(ShiftedRatios { law: law_of_cycle(case)?, least: least_ratio(case) }),
         None => law_of_cycle(case)?,
     })
+}
+
+/// A law under the stress ratios that residual stress gives its cycles: below the least ratio that it knows it is held there, and where the
+/// load closes the crack, R ≥ 1, nothing grows.
+#[derive(Debug)]
+struct ShiftedRatios {
+    law: Box<dyn GrowthLaw>,
+    least: f64,
+}
+
+impl GrowthLaw for ShiftedRatios {
+    fn rate(&self, k_max: f64, ratio: f64) -> f64 {
+        if ratio >= 1.0 { 0.0 } else { self.law.rate(k_max, ratio.max(self.least)) }
+    }
 }
 
 /// Least stress ratio that the law of a case knows; where compression counts as nothing there is none.
@@ -47,7 +62,11 @@ pub fn order(case: &Case) -> Result<Option<Order>> {
 }
 
 /// Refuses growth from a K that lies beyond what the law says, where the law wants that.
+/// So is growth to where a residual stress is not known.
 pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
+    if let Some(residual) = &case.loading.residual {
+        growth.now().tips.iter().try_for_each(|tip| residual.check(tip.position))?;
+    }
     let Some(law) = growth.law().filter(|law| law.is_refused_beyond()) else { return Ok(()) };
     let now = growth.now();
     let Some(problem) = beyond(case, law, now.delta_k) else { return Ok(()) };

@@ -42,11 +42,10 @@ pub struct PlasticZone {
 /// a plate the nearest free edge is at least `(4/π) (K_max/σ_Y)²` away from every tip.
 pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     let strength = case.material.yield_strength?;
-    let share = case.loading.range_share();
     let known: Vec<(&CurvePoint, Zone)> = curve
         .iter()
         .filter(|point| point.delta_k.is_finite())
-        .map(|point| (point, zone(case, point, point.delta_k / share, strength)))
+        .map(|point| (point, zone(case, point, point.k_max(&case.loading), strength)))
         .collect();
     // Once the zone has outgrown the ligament, K says nothing about either.
     let yielded = known.iter().find(|(_, zone)| zone.size >= zone.ligament);

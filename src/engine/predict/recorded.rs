@@ -11,7 +11,7 @@
 use super::laws::growth_law;
 use super::{CurvePoint, Prediction, StopReason};
 use crate::case::Case;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, input};
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::growth::end_of_life::{demands, strength_reason};
 use crate::specimen::LengthConvention;
@@ -108,6 +108,10 @@ impl Recorded {
     /// Errors: a run in which no crack grew, or of which no K is known; a case without law.
     pub fn of(case: &Case, prediction: &Prediction) -> Result<Self> {
         let none = |why: &str| Error::Mechanics(format!("{}: {why}, so there is no K(a) to compute other lives on", case.name));
+        if let Some(residual) = &case.loading.residual {
+            let problem = "shifts K whatever the load: no other life follows from the K(a) of this run";
+            return Err(input(residual.key(), residual.words(), problem, "leave it out, or run each case by itself"));
+        }
         let places = places(case, prediction).ok_or_else(|| none("no K is known"))?;
         if places.len() < 2 {
             return Err(none("no crack grew"));

@@ -60,7 +60,7 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
                 .collect()
         }
         None => {
-            let known = |point: &CurvePoint| Some(point.delta_k / case.loading.range_share()).filter(|k| *k > 0.0);
+            let known = |point: &CurvePoint| Some(point.k_max(&case.loading)).filter(|k| *k > 0.0);
             curve.iter().map(|point| strength(point.crack_length, known(point), point.limit_load)).collect()
         }
     };
@@ -73,6 +73,10 @@ pub fn check_strength(case: &Case) -> Result<()> {
     if case.loading.displacement().is_some() {
         let problem = "does not go with cycles of a displacement, whose load is not that of a strength";
         return Err(input_missing("--residual-strength", problem, "give a case with cycles of a load"));
+    }
+    if let Some(residual) = &case.loading.residual {
+        let problem = "does not go with residual stress, which K does not lose in proportion to the load";
+        return Err(input_missing("--residual-strength", problem, &format!("leave out {}", residual.key())));
     }
     let limit = case.limit_load(case.specimen.crack_length, &case.specimen.crack_lines());
     if case.material.toughness.or(limit).is_some() {

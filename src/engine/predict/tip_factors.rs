@@ -110,7 +110,7 @@ fn of_tips(method: StressIntensityMethod, started: Instant, tips: &[TipRecord], 
 
 /// K_I from the energy released, of plates whose flanks nothing presses together: the lengths in between are solved without contact.
 fn by_energy(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>> {
-    if case.loading.displacement().is_some() || case.specimen.crack_pressure > 0.0 {
+    if case.loading.displacement().is_some() || case.specimen.crack_pressure > 0.0 || case.loading.residual.is_some() {
         let problem = "energy_release takes constant loads on rims and holes: use ring";
         return Err(Error::Mechanics(format!("{}: {problem}", case.name)));
     }

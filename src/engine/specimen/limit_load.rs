@@ -151,25 +151,23 @@ impl<'a> Plate<'a> {
         let is_right = |place: f64| if from < to { place > from && place < to } else { place > from || place < to };
         let mut sides = [Side::default(), Side::default()];
         for load in &specimen.loads {
-            match load {
-                Load::Edge { from: a, to: b, traction } => {
-                    let mut shares = vec![0.0, 1.0];
-                    let length = distance(*a, *b);
-                    let ends = [first, last].into_iter().filter(|end| distance_to_segment(*end, *a, *b) <= self.same);
-                    shares.extend(ends.map(|end| (distance(*a, end) / length).clamp(0.0, 1.0)));
-                    shares.sort_by(f64::total_cmp);
-                    for pair in shares.windows(2).filter(|pair| pair[1] > pair[0]) {
-                        let middle = super::geometry::along(*a, *b, 0.5 * (pair[0] + pair[1]));
-                        let side = &mut sides[usize::from(!is_right(self.place(middle)?))];
-                        side.add(middle, traction.map(|t| t * (pair[1] - pair[0]) * length));
-                    }
+            if let Some((a, b, _)) = load.on_edge() {
+                let mut shares = vec![0.0, 1.0];
+                let length = distance(a, b);
+                let ends = [first, last].into_iter().filter(|end| distance_to_segment(*end, a, b) <= self.same);
+                shares.extend(ends.map(|end| (distance(a, end) / length).clamp(0.0, 1.0)));
+                shares.sort_by(f64::total_cmp);
+                for pair in shares.windows(2).filter(|pair| pair[1] > pair[0]) {
+                    let middle = super::geometry::along(a, b, 0.5 * (pair[0] + pair[1]));
+                    let side = &mut sides[usize::from(!is_right(self.place(middle)?))];
+                    load.forces_between([pair[0], pair[1]]).into_iter().for_each(|(at, force)| side.add(at, force));
                 }
-                Load::Pin { hole, direction, force, .. } => {
-                    let hole = specimen.holes[*hole];
-                    let bearing = [0, 1].map(|i| hole.centre[i] + (hole.radius + self.same) * direction[i]);
-                    let side = usize::from(!point_in_polygon(bearing, &self.right_of(cut, from, to)));
-                    sides[side].add(hole.centre, direction.map(|d| d * force / specimen.thickness));
-                }
+            }
+            if let Load::Pin { hole, direction, force, .. } = load {
+                let hole = specimen.holes[*hole];
+                let bearing = [0, 1].map(|i| hole.centre[i] + (hole.radius + self.same) * direction[i]);
+                let side = usize::from(!point_in_polygon(bearing, &self.right_of(cut, from, to)));
+                sides[side].add(hole.centre, direction.map(|d| d * force / specimen.thickness));
             }
         }
         for [a, b] in cut.cracked.iter().filter(|_| specimen.crack_pressure != 0.0) {

@@ -7,6 +7,7 @@ pub mod beta;
 mod crack_line;
 pub mod drawing;
 pub mod geometry;
+pub mod green;
 pub mod handbook;
 pub mod limit_load;
 pub mod net_section;
@@ -114,25 +115,60 @@ pub enum Load {
         /// Traction on the plate, Pa per Pa.
         traction: Point,
     },
-    /// A pin, which bears on the rim of its hole. `force` is in N per N of the case's force, along the unit vector `direction`.
+    /// Traction on a straight stretch of the outline that varies linearly from one end to the other: bending in the plane.
+    Bent {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Traction on the plate at both ends, Pa per Pa.
+        tractions: [Point; 2],
+    },
+    /// A pin, which bears on the rim of its hole. `force` is in N per unit of the case's nominal load (N per N, or N per Pa beside loaded edges), along
+    /// the unit vector `direction`.
     Pin {
         /// Index into `Specimen::holes`.
         hole: usize,
         /// Unit vector of the force on the plate.
         direction: Point,
-        /// Force on the plate, N per N.
+        /// Force on the plate, N per N or N per Pa.
         force: f64,
         /// Where it touches the hole.
         contact: Bearing,
     },
 }
 
+/// Abscissas of the Gauss rule of two points on 0 to 1: force and moment of a traction that varies linearly are those of half of it there.
+const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
 impl Load {
     /// Whether it is a pin whose contact follows from the load.
     pub fn is_elastic_pin(&self) -> bool {
         matches!(self, Load::Pin { contact: Bearing::Elastic(_), .. })
     }
+
+    /// The stretch of the outline that it loads, with the tractions at both ends; `None` of a pin.
+    pub fn on_edge(&self) -> Option<(Point, Point, [Point; 2])> {
+        match *self {
+            Load::Edge { from, to, traction } => Some((from, to, [traction; 2])),
+            Load::Bent { from, to, tractions } => Some((from, to, tractions)),
+            Load::Pin { .. } => None,
+        }
+    }
+
+    /// Two places with forces, N per m of thickness, that have force and moment of what acts on an edge from one share of its way to
+    /// another; none of a pin.
+    pub fn forces_between(&self, [start, end]: [f64; 2]) -> Vec<(Point, Point)> {
+        let Some((from, to, tractions)) = self.on_edge() else { return Vec::new() };
+        let half = 0.5 * (end - start) * geometry::distance(from, to);
+        let at = |share: f64| {
+            let share = start + share * (end - start);
+            (geometry::along(from, to, share), geometry::along(tractions[0], tractions[1], share).map(|t| half * t))
+        };
+        GAUSS.map(at).to_vec()
+    }
 }
+
 
 /// What is held.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -61,8 +61,13 @@ impl Specimen {
 
     /// Largest stress that a `plate` carries whatever its cracks: that on its edges, Pa; `None` under forces on points.
     pub fn gross_stress(&self, load: f64) -> Option<f64> {
-        let pulled = self.loads.iter().any(|load| matches!(load, Load::Edge { .. }));
-        (pulled && self.load_measure == LoadMeasure::Stress).then_some(load)
+        let pulled = self.loads.iter().any(|load| load.on_edge().is_some());
+        let bent = self.loads.iter().filter_map(|load| match load {
+            Load::Bent { tractions, .. } => Some(tractions.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max)),
+            _ => None,
+        });
+        let most = bent.reduce(f64::max).unwrap_or(1.0);
+        (pulled && self.load_measure == LoadMeasure::Stress).then_some(most * load)
     }
 
     /// Whether the ligament of a standard kind is large enough for K to describe the crack ([`Specimen::ligament_asked`]).

@@ -98,13 +98,20 @@ pub struct Balanced<'a> {
     pub pressures: &'a [FlankPressure],
 }
 
-/// Pressure on a piece of flank.
+/// Traction on a piece of flank: that of a pressure, or what a residual stress releases there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlankPressure {
-    /// The piece.
+    /// The piece; its normal points out of the material.
     pub facet: Facet,
-    /// Pa.
-    pub pressure: f64,
+    /// Traction on the material, Pa.
+    pub traction: Point,
+}
+
+impl FlankPressure {
+    /// What of it presses on the material, Pa.
+    fn pressure(&self) -> f64 {
+        -(self.traction[0] * self.facet.normal[0] + self.traction[1] * self.facet.normal[1])
+    }
 }
 
 /// K_I and K_II, and the ring they were read on.
@@ -232,7 +239,7 @@ impl RingGeometry {
         let count = pressed().filter(beside).count();
         let is_pressed = nearest < spacing && count > 0;
         let at_tip =
-            if is_pressed { pressed().filter(beside).map(|flank| flank.pressure).sum::<f64>() / count as f64 } else { 0.0 };
+            if is_pressed { pressed().filter(beside).map(FlankPressure::pressure).sum::<f64>() / count as f64 } else { 0.0 };
         let [k_i, k_ii, shifted_i, shifted_ii, half_t] = sums.map(|sum| 0.5 * self.elasticity.plane_modulus * sum);
         let tip_offset = (k_i * shifted_i + k_ii * shifted_ii) / (k_i * k_i + k_ii * k_ii);
         RingFactors {
@@ -329,17 +336,17 @@ impl RingIntegral<'_> {
         self.auxiliary(r, theta).map(|auxiliary| -(t1 * auxiliary[0][0] + t2 * auxiliary[1][0]) * q)
     }
 
-    /// The same of a pressure on a flank, the traction -p m. The auxiliary gradient goes with r^-½ over the piece, which is taken as if
+    /// The same of a traction on a flank, -p m of a pressure p. The auxiliary gradient goes with r^-½ over the piece, which is taken as if
     /// it lay straight behind the tip: `∫ r^-½ dr` in place of its middle.
     fn pressure(&self, flank: &FlankPressure, is_last: bool) -> PerAuxiliary {
-        let FlankPressure { facet, pressure } = *flank;
+        let FlankPressure { facet, traction } = *flank;
         let spacing = self.plate.body.lattice.spacing;
         let inside = [0, 1].map(|i| facet.at[i] - 1e-6 * spacing * facet.normal[i]);
         let (r, theta) = self.own.polar(self.frame.local(inside));
         let (q, _) = self.weight(r);
         let [near, far] = [if is_last { 0.0 } else { (r - 0.5 * facet.length).max(0.0) }, r + 0.5 * facet.length];
         let length = 2.0 * (far.sqrt() - near.sqrt()) * r.sqrt();
-        let [t1, t2] = self.frame.vector(facet.normal).map(|m| -pressure * m * length);
+        let [t1, t2] = self.frame.vector(traction).map(|t| t * length);
         self.auxiliary(r, theta).map(|auxiliary| -(t1 * auxiliary[0][0] + t2 * auxiliary[1][0]) * q)
     }
 

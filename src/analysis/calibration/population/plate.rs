@@ -128,6 +128,9 @@ pub fn lot_of(case: &Case) -> Result<std::result::Result<Population, NoBand>> {
     let Some(lot) = Population::of_record(record)? else {
         return Ok(Err("the fitted record has no [population]: calibrate again".to_owned()));
     };
+    if case.loading.residual.is_some() {
+        return Ok(Err("the plate has residual stress, and the specimens had none".to_owned()));
+    }
     if case.loading.spectrum.is_some() {
         return Ok(Err("the loads are a spectrum, and the specimens had cycles of one size".to_owned()));
     }

@@ -120,6 +120,11 @@ fn loads(specimen: &Specimen) -> Vec<LoadDrawn> {
             Some(LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction: unit(*traction) })
         }
         Load::Edge { .. } => None,
+        Load::Bent { from, to, tractions: [a, b] } => {
+            // Of the end with the larger traction.
+            let largest = if a[0].hypot(a[1]) > b[0].hypot(b[1]) { a } else { b };
+            Some(LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction: unit(*largest) })
+        }
         Load::Pin { hole, direction, .. } => {
             let centre = mm(&specimen.holes.get(*hole)?.centre);
             Some(LoadDrawn { from_mm: centre, to_mm: centre, direction: *direction })

@@ -245,6 +245,7 @@ impl GrowthHistory {
             broken_bonds: row.broken_bonds,
             tips: row.tips.clone(),
             depth: None,
+            residual: None,
         };
         rows.iter().enumerate().map(point).collect()
     }

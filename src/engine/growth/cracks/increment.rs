@@ -1,6 +1,7 @@
 //! One increment of all cracks, call by call ([`crate::predict::increment`]).
 
 use super::meeting::Segment;
+use super::steering::equivalent_factor;
 use super::step::Course;
 use super::tip::{Reading, Tip, pair_twins};
 use super::{CrackedPlate, Cracks, Parted, kink, step};
@@ -164,12 +165,15 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let gaps: Vec<Option<f64>> = (0..readings.len()).map(|tip| self.faced(tip).map(|(_, gap)| gap)).collect();
         for (index, reading) in readings.iter().enumerate() {
             let Some(reading) = reading else { continue };
-            let mut factors = reading.factors;
+            let (mut factors, mut of_residual) = (reading.factors, reading.of_residual);
             if !self.state.tips[index].is_closed {
                 factors = self.plate.factors_at_line(self.case, &self.state, index, reading, gaps[index]);
+                // What brings K to the end of the line brings its parts there.
+                let way = equivalent_factor(factors) / equivalent_factor(reading.factors);
+                of_residual = of_residual.map(|factor| if way.is_finite() { way * factor } else { factor });
             }
-            let (law, ratio) = (&self.law, self.case.loading.ratio);
-            self.state.tips[index].take(factors, |factor| law.rate(factor, ratio));
+            let (law, loading) = (&self.law, &self.case.loading);
+            self.state.tips[index].take(factors, of_residual, |factor, share| law.rate(factor, loading.ratio_at(share)));
         }
     }
 
@@ -180,7 +184,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         // Where a tip is gone, K of the others is that of another crack at the end of the step, not of this one grown longer. Of a tip that
         // turns a corner the rate is that of its new kink, not that with which it has ended its step.
         let is_smooth = lead.is_growing() && !is_over && !has_ended;
-        let (factor, rate) = if is_smooth { (lead.equivalent(), self.rate(lead.equivalent())) } else { (step.factor, step.rate) };
+        let (factor, rate) = if is_smooth { (lead.equivalent(), self.rate(lead)) } else { (step.factor, step.rate) };
         let (cycles, curvature_share) = if step.is_kink {
             (kink::cycles(growth, [step.rate, rate], [step.factor, factor]), 0.0)
         } else if self.scales.by_root && growth > 0.0 && rate.is_finite() {
@@ -269,10 +273,13 @@ impl<P: CrackedPlate> Cracks<'_, P> {
                 tip.position = [0, 1].map(|i| mix(from.position[i], to.position[i]));
             }
             let grown: Vec<f64> = row.tips.iter().map(|tip| tip.growth).collect();
+            let (k_max, loading) = (step.factor * (factor / step.factor).powf(t), &self.case.loading);
+            let residual = row.residual.map(|residual| residual.beside(k_max, loading));
             CurvePoint {
                 cycles: last.cycles + course.cycles(t) * (next.cycles - last.cycles),
                 crack_length: self.case.specimen.crack_length_after(&grown),
-                delta_k: self.case.loading.range_share() * step.factor * (factor / step.factor).powf(t),
+                delta_k: residual.map_or(loading.range_share(), |residual| residual.range_share()) * k_max,
+                residual,
                 growth_rate: step.rate * (course.gain * t).exp(),
                 ..row
             }

@@ -38,17 +38,24 @@ impl<P: CrackedPlate> Cracks<'_, P> {
 
     /// The plate as it stands, as a row; ΔK and da/dN are those of the fastest tip.
     pub(super) fn row(&self, cycles: f64, work: f64, broken_bonds: usize) -> CurvePoint {
+        let has_residual = self.case.loading.residual.is_some();
         let now = |tip: &Tip| TipRecord {
             state: if tip.is_active() && tip.is_closed { TipState::Closed } else { tip.state },
             position: self.state.position(tip),
             growth: tip.growth,
             factors: Some(tip.factors),
             t_stress: Some(tip.t_stress),
+            of_residual: has_residual.then(|| tip.equivalent_of_residual()),
         };
         let tips = self.state.tips.iter().map(now).collect();
         let lead = self.fastest().map(|tip| &self.state.tips[tip]);
+        let of_residual = lead.filter(|_| has_residual && !work.is_nan()).map(Tip::equivalent_of_residual);
         let (tips, lead) = ((tips, &self.state.lines[..]), lead.map(|tip| (tip.equivalent(), tip.rate)));
-        CurvePoint::of_tips(self.case, [cycles, work], broken_bonds, tips, lead)
+        let row = CurvePoint::of_tips(self.case, [cycles, work], broken_bonds, tips, lead);
+        match (of_residual, lead) {
+            (Some(of_residual), Some((k_max, _))) => row.with_residual(k_max, of_residual, &self.case.loading),
+            _ => row,
+        }
     }
 
     /// What the user should know of tips that the load presses shut.

@@ -25,9 +25,13 @@ pub fn kink_angle([k_i, k_ii]: [f64; 2]) -> f64 {
 /// K_eq, Pa√m: the opening factor in the direction of [`kink_angle`]; none where the flanks are in contact.
 pub fn equivalent_factor(factors: [f64; 2]) -> f64 {
     let (k_i, k_ii) = (factors[0].max(0.0), factors[1]);
-    let theta = kink_angle([k_i, k_ii]);
+    factor_across([k_i, k_ii], kink_angle([k_i, k_ii])).max(0.0)
+}
+
+/// Opening factor of K_I and K_II, Pa√m, in a direction θ: `cos(θ/2) [K_I cos²(θ/2) - 3/2 K_II sin θ]`.
+pub fn factor_across([k_i, k_ii]: [f64; 2], theta: f64) -> f64 {
     let half = (0.5 * theta).cos();
-    (half * (k_i * half * half - 1.5 * k_ii * theta.sin())).max(0.0)
+    half * (k_i * half * half - 1.5 * k_ii * theta.sin())
 }
 
 /// What a tip has aimed at.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::kink::Kink;
-use super::steering::{Steering, equivalent_factor};
+use super::steering::{Steering, equivalent_factor, factor_across, kink_angle};
 use crate::fatigue::crack_tip::TipState;
 use crate::growth::cross_check::EnergyBalance;
 use crate::specimen::{CrackLine, LineEnd, Point, Specimen};
@@ -30,6 +30,8 @@ pub struct Reading {
     pub is_closed: bool,
     /// What the pressure between flanks adds to K_I, Pa√m.
     pub of_pressure: f64,
+    /// What residual stress makes of K_I and K_II, Pa√m.
+    pub of_residual: [f64; 2],
 }
 
 impl Reading {
@@ -51,6 +53,8 @@ pub struct Tip {
     pub growth: f64,
     /// K_I and K_II at maximum load at the present length, Pa√m.
     pub factors: [f64; 2],
+    /// What residual stress makes of them, Pa√m.
+    pub of_residual: [f64; 2],
     /// Stress along the crack T at maximum load, Pa.
     pub t_stress: f64,
     /// da/dN at the present length, m/cycle; of a kink that begins that of none of its length.
@@ -87,6 +91,7 @@ impl Tip {
             state: TipState::Active,
             growth: 0.0,
             factors: [0.0; 2],
+            of_residual: [0.0; 2],
             t_stress: 0.0,
             rate: 0.0,
             length: line.length() / specimen.tips_of(line).max(1) as f64,
@@ -115,6 +120,11 @@ impl Tip {
     /// K_eq at maximum load, Pa√m.
     pub fn equivalent(&self) -> f64 {
         equivalent_factor(self.factors)
+    }
+
+    /// What residual stress makes of K_eq, in the direction into which its factors turn it, Pa√m.
+    pub fn equivalent_of_residual(&self) -> f64 {
+        factor_across(self.of_residual, kink_angle(self.factors))
     }
 
     /// Whether its next step begins a kink.
@@ -237,14 +247,22 @@ impl Tip {
         }
     }
 
-    /// Takes the factors at the end of its line, Pa√m. The rate of a tip that has ended or stands is none.
-    pub(super) fn take(&mut self, factors: [f64; 2], rate: impl Fn(f64) -> f64) {
+    /// Takes the factors at the end of its line, with what residual stress makes of them, Pa√m, and the rate of K_eq at a stress ratio that
+    /// the load gives a tip of these. The rate of a tip that has ended or stands is none.
+    pub(super) fn take(&mut self, factors: [f64; 2], of_residual: [f64; 2], rate: impl Fn(f64, f64) -> f64) {
+        self.of_residual = of_residual;
         // Flanks do not overlap: what is read below zero is where places of contact are too few at a tip.
         self.factors = [factors[0].max(0.0), factors[1]];
         if !self.is_closed && self.begins_kink() {
             self.kink = Kink::new(self.factors, self.t_stress, self.growth);
         }
-        self.rate = rate(self.driving_factor());
+        self.rate = rate(self.driving_factor(), self.share_of_residual());
+    }
+
+    /// What residual stress makes of K_eq over that.
+    pub(super) fn share_of_residual(&self) -> f64 {
+        let equivalent = self.equivalent();
+        if equivalent > 0.0 { self.equivalent_of_residual() / equivalent } else { 0.0 }
     }
 
     /// Forgets how K has changed and where it aimed: the crack that it ends is another one.

@@ -225,6 +225,7 @@ impl<'a> PartThroughGrowth<'a> {
             growth,
             factors: Some([factors[1], 0.0]),
             t_stress: None,
+            of_residual: None,
         };
         CurvePoint {
             is_solved: true,
@@ -237,6 +238,7 @@ impl<'a> PartThroughGrowth<'a> {
             broken_bonds: 0,
             tips: case.specimen.tips.iter().map(tip).collect(),
             depth: Some(DepthRecord { depth: axes[0], k_i: Some(factors[0]), growth_rate: Some(rates[0]) }),
+            residual: None,
         }
     }
 

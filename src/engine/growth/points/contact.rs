@@ -17,6 +17,7 @@ use crate::body::Body;
 use crate::body::balanced::flanks;
 use crate::body::facets::Facet;
 use crate::body::pre_crack::as_cut;
+use crate::loading::residual::{Components, across};
 use crate::solver::field::Layout;
 use crate::solver::spring::GapSpring;
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment};
@@ -117,15 +118,22 @@ impl Contact {
         self.pieces.iter().flat_map(|piece| piece.places.iter().flatten())
     }
 
-    /// Springs of the places in contact, and on all places the force of a pressure on the flanks, Pa.
-    pub(super) fn springs(&self, pressure: f64, thickness: f64) -> Vec<GapSpring> {
-        let acting = self.places().filter(|place| place.in_contact || pressure > 0.0);
-        let spring = |place: &Place| GapSpring {
-            weights: place.spring.weights.clone(),
-            stiffness: if place.in_contact { place.spring.stiffness } else { 0.0 },
-            force: pressure * place.length * thickness,
+    /// Springs of the places in contact, and on all places the forces that a stress, Pa, releases on the flanks: p·I of a pressure p.
+    pub(super) fn springs(&self, released: &dyn Fn(Point) -> Components, thickness: f64) -> Vec<GapSpring> {
+        let of_place = |place: &Place| {
+            let force = across(released(place.at), place.normal).map(|t| t * place.length * thickness);
+            let [x, y] = place.normal;
+            let [apart, along] = [force[0] * x + force[1] * y, force[1] * x - force[0] * y];
+            let stiffness = if place.in_contact { place.spring.stiffness } else { 0.0 };
+            let weights = &place.spring.weights;
+            let opening =
+                (stiffness > 0.0 || apart != 0.0).then(|| GapSpring { weights: weights.clone(), stiffness, force: apart });
+            // The displacement along the flanks has the same weights, a quarter turn on.
+            let turned = || weights.iter().map(|&(place, [a, b])| (place, [-b, a])).collect();
+            let sliding = (along != 0.0).then(|| GapSpring { weights: turned(), stiffness: 0.0, force: along });
+            [opening, sliding]
         };
-        acting.map(spring).collect()
+        self.places().flat_map(of_place).flatten().collect()
     }
 
     /// Opens the places whose flanks move apart and closes those that overlap by more than round-off and `least`, m; whether there are
@@ -166,17 +174,26 @@ impl Contact {
         !near.is_empty() && near.iter().take(PLACES_AT_TIP).all(|(_, in_contact)| *in_contact)
     }
 
-    /// Pressures on both flanks of the places in contact, and of all places where there is one of the load, Pa.
-    pub(super) fn pressures(&self, layout: &Layout, displacement: &[f64], thickness: f64, of_load: f64) -> Vec<FlankPressure> {
+    /// Tractions on both flanks of the places in contact, and of all places where a stress is released, Pa.
+    pub(super) fn pressures(
+        &self,
+        layout: &Layout,
+        displacement: &[f64],
+        thickness: f64,
+        released: &dyn Fn(Point) -> Components,
+    ) -> Vec<FlankPressure> {
         let of_place = |place: &Place| {
             let gap = if place.in_contact { place.spring.gap(layout, displacement) } else { 0.0 };
-            let pressure = of_load - place.spring.stiffness * gap / (place.length * thickness);
+            let contact = place.spring.stiffness * gap / (place.length * thickness);
             [1.0, -1.0].map(|sign| {
                 let normal = place.normal.map(|n| sign * n);
-                FlankPressure { facet: Facet { at: place.at, normal, length: place.length }, pressure }
+                let released = across(released(place.at), normal);
+                let traction = [0, 1].map(|i| contact * normal[i] - released[i]);
+                FlankPressure { facet: Facet { at: place.at, normal, length: place.length }, traction }
             })
         };
-        self.places().filter(|place| place.in_contact || of_load > 0.0).flat_map(of_place).collect()
+        let acts = |place: &&Place| place.in_contact || released(place.at) != [0.0; 3];
+        self.places().filter(acts).flat_map(of_place).collect()
     }
 }
 

@@ -4,15 +4,16 @@ use rayon::prelude::*;
 
 use super::readings::Sliding;
 use super::ring::{CORE_HORIZONS, RING_HORIZONS, RING_HORIZONS_MIN, TipRings};
-use super::{PointPlate, crack_pressure, heading};
+use super::{PointPlate, crack_pressure, heading, released};
 use crate::body::severed::represented_excess;
 use crate::case::Case;
 use crate::growth::cracks::CrackedPlate;
 use crate::growth::cracks::ahead;
 use crate::growth::cracks::steering::equivalent_factor;
 use crate::growth::cracks::tip::{CracksState, Reading, Tip, pair_twins};
+use crate::loading::residual::{Components, across};
 use crate::specimen::geometry::distance;
-use crate::specimen::{CrackLine, LineEnd};
+use crate::specimen::{CrackLine, LineEnd, Point};
 use crate::units::MM;
 
 /// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.05 to 0.09 at ν = 0.3, 0.04 at ν = 0.1,
@@ -74,8 +75,13 @@ impl PointPlate {
         let body = &self.body;
         let horizon = body.horizon();
         let active: Vec<LineEnd> = cracks.active().map(|(_, tip)| tip.end).collect();
-        let pressures = self.contact.pressures(&self.layout(), &self.displacement, body.thickness, crack_pressure(case));
-        let share = case.loading.share(self.equilibrium.work());
+        let tractions = |displacement: &[f64], released: &dyn Fn(Point) -> Components| {
+            self.contact.pressures(&self.layout(), displacement, body.thickness, released)
+        };
+        let pressures = tractions(&self.displacement, &|at| released(case, at));
+        let residual = case.loading.residual.as_deref();
+        let of_load = residual.map(|_| tractions(&self.of_load, &|_| crack_pressure(case)));
+        let share = case.loading.share(self.work);
         let rings = TipRings {
             body,
             bonds: &self.bonds,
@@ -87,7 +93,7 @@ impl PointPlate {
             is_new: cracks.tips.iter().all(|tip| tip.growth == 0.0),
             pressures: &pressures,
         };
-        let (contact, memory) = (&self.contact, &self.memory);
+        let (contact, memory, under_load) = (&self.contact, &self.memory, &self.of_load[..]);
         let read = |(index, tip): (usize, &Tip)| {
             let (end, of_tip) = (tip.end, &memory[index]);
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
@@ -118,10 +124,22 @@ impl PointPlate {
                 factors[1] = less(beyond);
                 Sliding { offset, factor, at_line: less(offset) }
             });
-            let [t_stress, of_pressure] = [ring.t_stress, ring.of_pressure].map(|of_load| share * of_load);
+            let [mut t_stress, of_pressure] = [ring.t_stress, ring.of_pressure].map(|of_load| share * of_load);
             let ahead_of_tip = heading(body, lines, end);
+            let mut of_residual = [0.0; 2];
+            if let (Some(residual), Some(pressures)) = (residual, &of_load) {
+                let of_load = TipRings { displacement: under_load, pressures, ..rings };
+                let of_load = of_load.read(end, excess + ahead).factors;
+                of_residual = [0, 1].map(|i| ring.factors[i] - of_load[i]);
+                // The stress along the crack that the plate had before it.
+                let along = across(residual.at(lines[end.line].end(end.at_last)), ahead_of_tip);
+                t_stress += along[0] * ahead_of_tip[0] + along[1] * ahead_of_tip[1];
+            }
             let (length_offset, spacing) = (excess + ahead, body.lattice.spacing);
-            (Reading { factors, t_stress, ahead: ahead_of_tip, spacing, length_offset, is_closed, of_pressure }, sliding)
+            (
+                Reading { factors, t_stress, ahead: ahead_of_tip, spacing, length_offset, is_closed, of_pressure, of_residual },
+                sliding,
+            )
         };
         let of_tip = |(index, tip): (usize, &Tip)| tip.is_active().then(|| read((index, tip)));
         let read: Vec<_> = cracks.tips.par_iter().enumerate().map(of_tip).collect();

@@ -22,6 +22,7 @@ pub(in crate::growth) const CORE_HORIZONS: f64 = 0.6;
 pub(super) const DIRECTION_SPACINGS: f64 = 0.1;
 
 /// A plate in equilibrium with what rings of its tips need.
+#[derive(Clone, Copy)]
 pub(in crate::growth) struct TipRings<'a> {
     pub body: &'a Body,
     pub bonds: &'a Bonds,

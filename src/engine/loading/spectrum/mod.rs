@@ -8,7 +8,7 @@ mod content;
 mod fastran;
 pub mod rainflow;
 mod read;
-mod rows;
+pub(super) mod rows;
 mod spx;
 mod sub;
 mod table;
