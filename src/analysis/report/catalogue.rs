@@ -29,7 +29,7 @@ use crate::measured::{CycleUnit, Decimal, IntensityUnit, LengthUnit, LoadUnit, R
 use crate::predict::StopReason;
 use crate::predict::tip_factors::StressIntensityMethod;
 use crate::solver::{SolverKind, SolverUsed, Symmetry};
-use crate::specimen::{Component, Edge, Ends, SpecimenKind};
+use crate::specimen::{Component, Edge, Ends, Head, SpecimenKind};
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
 use crate::verify::TOPICS;
 use crate::verify::chart::{Family, SCENES, Status};
@@ -40,6 +40,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     let of_the_test = [
         SpecimenKind::lines(),
         Ends::lines(),
+        Head::lines(),
         Plane::lines(),
         LoadingKind::lines(),
         SpectrumFormat::lines(),

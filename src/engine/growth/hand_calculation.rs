@@ -81,7 +81,7 @@ impl<'a> HandCalculation<'a> {
             delta_k,
             growth_rate: self.rate(crack_length),
             work: f64::NAN,
-            limit_load: self.case.limit_load(crack_length, &[]),
+            limit_load: self.case.limit_load_at(crack_length),
             broken_bonds: 0,
             tips: specimen
                 .tips

@@ -108,6 +108,9 @@ impl Recorded {
     /// Errors: a run in which no crack grew, or of which no K is known; a case without law.
     pub fn of(case: &Case, prediction: &Prediction) -> Result<Self> {
         let none = |why: &str| Error::Mechanics(format!("{}: {why}, so there is no K(a) to compute other lives on", case.name));
+        if prediction.phase_one.is_some() {
+            return Err(none("phase I is of no K"));
+        }
         let places = places(case, prediction).ok_or_else(|| none("no K is known"))?;
         if places.len() < 2 {
             return Err(none("no crack grew"));

@@ -54,7 +54,7 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
         Some(formula) => {
             let (from, to) = (case.specimen.crack_length, case.specimen.length_limit().0);
             let lengths = (0..STEPS).map(|i| from + (to - from) * i as f64 / STEPS as f64);
-            lengths.map(|a| strength(a, Some(formula.k_i(a, load)), case.limit_load(a, &[]))).collect()
+            lengths.map(|a| strength(a, Some(formula.k_i(a, load)), case.limit_load_at(a))).collect()
         }
         None => {
             let known = |point: &CurvePoint| Some(point.delta_k / case.loading.range_share()).filter(|k| *k > 0.0);
