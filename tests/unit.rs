@@ -34,6 +34,7 @@ mod malformed;
 mod measured;
 mod micro_cracks;
 mod misfit;
+mod named_plates;
 mod monotone;
 mod obstacles;
 mod output;

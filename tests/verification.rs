@@ -24,6 +24,7 @@ mod limit_load;
 mod loads;
 mod mechanics_field;
 mod mirror_images;
+mod named_plates;
 mod near_tip_fields;
 mod part_through;
 mod pins;

@@ -12,6 +12,7 @@ pub mod factor_curve;
 pub mod factor_sweep;
 pub mod laws;
 pub mod moment;
+pub mod initiation;
 mod outcome;
 pub mod part_through;
 pub mod pin_arcs;
@@ -50,7 +51,7 @@ use record::Record;
 /// Errors: wrong input that shows only now (spacing against plate or memory, no fatigue law), or mechanics that fail before there
 /// is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
-    watched(case, observer, || follow(Record::new(case, observer)))
+    watched(case, observer, || follow(Record::new(case, observer).after_phase_one()?))
 }
 
 /// Goes on with a run of a case from a checkpoint of it; gives what [`predict`] gives, bit for bit, its wall time counted from the
@@ -58,7 +59,7 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 /// Errors: as [`predict`]; [`crate::Error::Input`] if the checkpoint is not one of this case.
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
     checkpoint.check(case)?;
-    watched(case, observer, || follow(Record::new(case, observer).resumed_from(checkpoint)))
+    watched(case, observer, || follow(Record::new(case, observer).after_phase_one()?.resumed_from(checkpoint)))
 }
 
 /// A run under the eyes of its observer from building the plate on.
@@ -70,6 +71,9 @@ fn watched(case: &Case, observer: &dyn Observer, run: impl FnOnce() -> Result<Pr
 /// A run by what its case asks to be driven by.
 fn follow(record: Record<'_>) -> Result<Prediction> {
     let case = &record.case().clone();
+    if let Some(reason) = record.ends_in_phase_one() {
+        return record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |_| Ok(Some(reason)));
+    }
     match case.engine() {
         Engine::Handbook => {
             record.follow(&mut HandCalculation::start(case, laws::growth_law(case)?)?, |hand| hand.next_interval())

@@ -40,6 +40,7 @@ pub fn prediction(angle: f64) -> Prediction {
         snapshots,
         grid,
         figures,
+        phase_one: None,
         cross_check: None,
         unretarded_cycles: None,
         warnings: vec!["made up".to_owned()],

@@ -8,7 +8,7 @@ use crate::material::Material;
 use crate::measured::MeasuredCurve;
 use crate::report::model_words::{self, Choice, mm, short};
 use crate::report::{fit_use, spectrum};
-use crate::specimen::handbook::handbook;
+use crate::specimen::handbook::handbook_beside;
 use crate::specimen::part_through::{RANGE, SOURCE};
 use crate::specimen::{Specimen, Support};
 use crate::sweep::{DesignKind, DrawnCase, Sweep};
@@ -117,14 +117,14 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let held = match specimen.supports.first() {
         None => "nothing held, loads in equilibrium",
         Some(Support::Moved { .. }) => "nothing else held",
-        Some(Support::Fixed { .. }) => "held as [supports] says",
+        Some(Support::Fixed { .. }) => "held as [supports] or its kind says",
         Some(Support::Elsewhere) => "held outside the plate",
         Some(Support::ClampedEnds) => "rigid ends that cannot rotate",
         Some(Support::RigidEnds) => "rigid ends that rotate about pins",
     };
     let of_front = || specimen.part_through.map_or_else(|| "none for this specimen".to_owned(), |_| format!("{SOURCE}; {RANGE}"));
-    let formula =
-        handbook(specimen).map_or_else(of_front, |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range));
+    let formula = handbook_beside(specimen)
+        .map_or_else(of_front, |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range));
     let end = Some(case.stop.crack_length).filter(|length| length.is_finite());
     let mut end = end.map_or_else(String::new, |length| format!("crack length {} mm, or ", mm(length)));
     if case.stop.crack_depth.is_finite() {

@@ -31,7 +31,7 @@ use crate::predict::tip_factors::StressIntensityMethod;
 use crate::solver::{SolverKind, SolverUsed, Symmetry};
 use crate::specimen::beta;
 use crate::specimen::drawing::{DrawingUnit, SymmetryPlane};
-use crate::specimen::{Component, Edge, Ends, SpecimenKind};
+use crate::specimen::{Component, Edge, Ends, Head, SpecimenKind};
 use crate::sweep::{DesignKind, DistributionKind, Scale, Scatter};
 use crate::units::shown::told;
 use crate::units::us::System;
@@ -46,6 +46,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         DrawingUnit::lines(),
         SymmetryPlane::lines(),
         Ends::lines(),
+        Head::lines(),
         Plane::lines(),
         LoadingKind::lines(),
         SpectrumFormat::lines(),

@@ -10,7 +10,7 @@ use crate::fatigue::growth_law::GrowthLaw;
 use crate::growth::cracks::steering::equivalent_factor;
 use crate::predict::laws::growth_law;
 use crate::predict::{CurvePoint, Prediction};
-use crate::specimen::{LoadMeasure, SpecimenKind};
+use crate::specimen::LoadMeasure;
 use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 
 /// Table of K of every tip.
@@ -44,7 +44,7 @@ struct Factors<'a> {
 impl<'a> Factors<'a> {
     fn of(case: &'a Case) -> Self {
         let (specimen, maximum) = (&case.specimen, case.loading.maximum);
-        let is_plate = specimen.kind == SpecimenKind::Plate;
+        let is_plate = specimen.kind.is_plate();
         let of_load = if is_plate {
             specimen.gross_stress(maximum)
         } else {
@@ -76,7 +76,7 @@ impl<'a> Factors<'a> {
 
     /// The a of β, m; NaN for the end face of a slot.
     fn length(&self, point: &CurvePoint, tip: usize) -> f64 {
-        if self.case.specimen.kind != SpecimenKind::Plate {
+        if !self.case.specimen.kind.is_plate() {
             return point.crack_length;
         }
         self.cracks[tip].as_ref().map_or(f64::NAN, |(length, tips)| {

@@ -10,7 +10,7 @@ use crate::predict::part_through::PartThroughLife;
 use crate::predict::plastic_zone::{PlasticZone, Zone};
 use crate::predict::{Prediction, StopReason};
 use crate::specimen::part_through::{BREAK_THROUGH, Limit, STATED_ERROR};
-use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use crate::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 
 use super::checks;
 use super::fit_use::extrapolated;
@@ -40,6 +40,7 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "critical": critical(case, prediction),
         "tips": tips(case, prediction),
         "part_through": part_through(case, prediction),
+        "phase_one": phase_one(prediction),
         "life_share_extrapolated": life_share_extrapolated(case, prediction),
         "plastic_zone": plastic_zone(case, prediction),
         "k_cross_check": prediction.cross_check.map(|check| json!({
@@ -80,6 +81,19 @@ fn critical(case: &Case, prediction: &Prediction) -> Value {
             "meaning": reason.meaning(),
             "by_toughness_mm": toughness,
             "by_net_section_mm": net_section,
+        })
+    })
+}
+
+/// The part of a life before its cracks had formed; `null` where they were there at N = 0.
+fn phase_one(prediction: &Prediction) -> Value {
+    prediction.phase_one.map_or(Value::Null, |phase| {
+        json!({
+            "cycles": phase.cycles,
+            "stress_range_mpa": clean(phase.range / MPA),
+            "stress_concentration": phase.concentration,
+            "at_mm": phase.at.map(|x| clean(x / MM)),
+            "growth_cycles": phase.cycles.map(|cycles| (prediction.life_cycles() - cycles).max(0.0)),
         })
     })
 }

@@ -295,6 +295,7 @@ pub fn words(case: &Case, prediction: &Prediction, lives: &Lives, quality: &Qual
         format!("  verdict        {}", checks::verdict(&checks)),
     ];
     lines.extend(through_words(case, prediction).map(|words| format!("  break-through  {words}")));
+    lines.extend(phase_words(prediction).map(|words| format!("  phase I        {words}")));
     lines.extend(spectrum::words(case, prediction).map(|passes| format!("  spectrum       {passes}")));
     lines.extend(lives.words());
     lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
@@ -302,6 +303,24 @@ pub fn words(case: &Case, prediction: &Prediction, lives: &Lives, quality: &Qual
     lines.extend(quality.words(case));
     lines.push(format!("  computed       {}", computed(case, prediction)));
     lines
+}
+
+/// Both parts of a life that begins before its cracks have formed.
+fn phase_words(prediction: &Prediction) -> Option<String> {
+    let phase = prediction.phase_one?;
+    let [x, y] = phase.at.map(|x| x / MM);
+    let concentration = phase.concentration.map_or_else(String::new, |k| format!(", {k:.2} times the gross stress"));
+    let local = format!("local stress range {:.1} MPa at ({x:.2}, {y:.2}) mm{concentration}", phase.range / MPA);
+    Some(match phase.cycles {
+        Some(cycles) if cycles <= prediction.life_cycles() => {
+            format!(
+                "{cycles:.1} cycles until the cracks have formed ({local}); phase II {:.1}",
+                prediction.life_cycles() - cycles
+            )
+        }
+        Some(cycles) => format!("{cycles:.1} cycles, beyond the end of the run ({local})"),
+        None => format!("without end, no crack forms ({local})"),
+    })
 }
 
 /// Warnings of a run that its checks say in a line each.

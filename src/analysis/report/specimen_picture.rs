@@ -268,7 +268,7 @@ fn flaw_list(specimen: &Specimen) -> Vec<String> {
         let [x, y] = hole.centre;
         lines.push(format!("hole {i}: diameter {} at ({}, {})", mm(2.0 * hole.radius), short(x / MM), mm(y)));
     }
-    if specimen.kind != SpecimenKind::Plate {
+    if !specimen.kind.is_plate() {
         return lines;
     }
     let angle = |from: Point, to: Point| {

@@ -8,11 +8,12 @@ use super::model_keys::KEYS_OF_BONDS;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use crate::error::{Result, input, input_missing};
 use crate::fatigue::growth_law::description::{Given, law_keys};
+use crate::fatigue::initiation::{self, SnLaw};
 use crate::fatigue::{Ageing, Driver, FatigueSettings, OVERLOAD_STRETCH, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS};
 use crate::input::{Folder, INTENSITY, LENGTH, number, refuse_given, slice, slice_beside};
 use crate::loading::Loading;
 use crate::material::Material;
-use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
+use crate::specimen::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
 use crate::units::MPA;
 
 const CYCLES_MAX: f64 = 1e9;
@@ -55,6 +56,7 @@ pub(super) fn from_value(
         critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
         threshold: threshold.unwrap_or(0.0),
+        initiation: read_initiation(&input, (driver, specimen, loading))?,
     };
     let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
     // What is driven by bonds to the end needs no rate over K.
@@ -107,6 +109,28 @@ fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Resu
         (None, None) if specimen.has_sharp_tips() => Ok(Driver::TipField),
         (None, _) => Ok(Driver::BondStrain),
     }
+}
+
+/// Reads the law by which the cracks of the case form.
+/// Errors: a plate whose cracks nobody lets form, or drilled holes that nobody says when they crack again.
+fn read_initiation(input: &FatigueKeys, (driver, specimen, loading): (Driver, &Specimen, &Loading)) -> Result<Option<SnLaw>> {
+    let Some(value) = &input.initiation else {
+        if specimen.kind == SpecimenKind::StopHole {
+            let problem = "is missing: the crack was stopped, and only an S-N law says when the holes crack again";
+            return Err(input_missing(
+                initiation::KEY,
+                problem,
+                "give range_mpa, cycles and slope of one point and the line through it",
+            ));
+        }
+        return Ok(None);
+    };
+    let law = SnLaw::read(value)?;
+    if driver != Driver::TipField || !specimen.is_through() || loading.spectrum.is_some() || loading.displacement().is_some() {
+        let problem = "goes with cycles of one load and through cracks that grow by K of their tips";
+        return Err(input_missing(initiation::KEY, problem, "leave it out"));
+    }
+    Ok(Some(law))
 }
 
 /// Reads the error of a block of growth by K; bonds that break one by one are solved for after every break, without such an error.

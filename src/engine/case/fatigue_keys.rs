@@ -32,6 +32,7 @@ pub(super) struct FatigueKeys {
     pub growth_rate: Option<Value>,
     pub allow_extrapolation: Option<bool>,
     pub lot: Option<Lot>,
+    pub initiation: Option<Value>,
     #[serde(rename = "failure")]
     _failure: Option<Failure>,
 }

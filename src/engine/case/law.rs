@@ -171,6 +171,11 @@ impl Case {
         self.material.yield_strength.filter(|_| self.stop.by_net_section)
     }
 
+    /// [`Case::limit_load`] at a crack length, m, that all tips have grown to alike, straight ahead.
+    pub fn limit_load_at(&self, crack_length: f64) -> Option<f64> {
+        self.specimen.limit_load_at(crack_length, self.material.yield_strength?)
+    }
+
     /// Nominal load, Pa or N, at which the weakest section is fully plastic, for a crack length, m, of a standard kind, or the cracks of
     /// a plate; `None` without yield strength, or where the loads determine what no section bears.
     pub fn limit_load(&self, crack_length: f64, cracks: &[CrackLine]) -> Option<f64> {

@@ -8,9 +8,9 @@ use crate::input::slice;
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::{SolverKind, Symmetry};
+use crate::specimen::Specimen;
 use crate::specimen::beta::KEY;
 use crate::specimen::handbook::handbook;
-use crate::specimen::{Specimen, SpecimenKind};
 use crate::units::MM;
 
 /// More points than this do not fit into the memory of an ordinary machine.
@@ -226,7 +226,7 @@ pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
         return Err(input(KEY, given, problem, if flaw / 9.0 < finest { NODES.to_owned() } else { ninth }));
     }
     check_columns(spacing, specimen)?;
-    let tips = specimen.tips.iter().filter(|tip| !tip.from_slot && specimen.kind == SpecimenKind::Plate);
+    let tips = specimen.tips.iter().filter(|tip| !tip.from_slot && specimen.kind.is_plate());
     let gap = tips.map(|tip| specimen.rim_distance(tip.position)).fold(f64::INFINITY, f64::min);
     if spacing > gap * (1.0 + 1e-9) {
         let problem = format!("is larger than the {} mm between a tip and a rim", round_mm(gap));

@@ -4,6 +4,7 @@ pub mod ageing;
 pub mod crack_tip;
 pub mod growth_law;
 pub mod growth_rate;
+pub mod initiation;
 pub mod paris;
 pub mod pieces;
 pub mod rate_constant;
@@ -91,6 +92,8 @@ pub struct FatigueSettings {
     pub walker_gamma: f64,
     /// Threshold of ΔK, Pa√m; 0 = none.
     pub threshold: f64,
+    /// When the cracks of the case form; `None` where they are there at N = 0.
+    pub initiation: Option<initiation::SnLaw>,
 }
 
 impl FatigueSettings {

@@ -59,9 +59,11 @@ pub fn critical_lengths(case: &Case) -> [Option<End>; 2] {
         .filter(|_| case.loading.residual.is_none())
         .zip(handbook(specimen))
         .map(|(toughness, formula)| end(first_reach(|a| formula.k_i(a, load), toughness, start, limit), StopReason::Toughness));
-    let net_section = case.yield_strength_at_end().filter(|_| specimen.ligament(start).is_some()).map(|strength| {
-        // Known for this kind, so the default is never taken.
-        let stress = |a: f64| specimen.net_section_stress(a, load).unwrap_or(f64::NAN);
+    let is_known = specimen.ligament(start).is_some() || handbook(specimen).is_some();
+    let net_section = case.yield_strength_at_end().filter(|_| is_known).map(|strength| {
+        // A plate reaches its strength at its limit load; NaN, which counts as reached, where nothing is left of it.
+        let of_plate = |a: f64| specimen.limit_load_at(a, strength).map(|limit| strength * load / limit);
+        let stress = |a: f64| specimen.net_section_stress(a, load).or_else(|| of_plate(a)).unwrap_or(f64::NAN);
         end(first_reach(stress, strength, start, limit), StopReason::NetSectionYield)
     });
     [toughness, net_section]

@@ -143,7 +143,7 @@ impl<'a> HandCalculation<'a> {
             delta_k: k_max * loading.range_share(),
             growth_rate: self.rate(crack_length),
             work: f64::NAN,
-            limit_load: self.case.limit_load(crack_length, &self.lines(crack_length)),
+            limit_load: self.case.limit_load_at(crack_length),
             broken_bonds: 0,
             tips: specimen
                 .tips

@@ -11,7 +11,7 @@ use super::{Input, LoadingKind, forces, grips};
 use crate::error::{Result, input, input_missing};
 use crate::input::{number, refuse_given, shorten, slice, table_of};
 use crate::specimen::geometry::{bounding_box, distance, unit};
-use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
+use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, Support};
 use crate::units::MM;
 
 /// One entry of `[supports]`.
@@ -25,7 +25,7 @@ struct SupportInput {
 
 /// Puts loads and supports on the specimen; returns the section that turns a force into the nominal stress, m².
 pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
-    if specimen.kind == SpecimenKind::Plate {
+    if specimen.kind.is_plate() {
         return apply_to_plate(input, supports, specimen, parallel_ratio);
     }
     let kind = specimen.kind;
@@ -47,6 +47,20 @@ pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Spec
 }
 
 fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+    let has_places = input_.places().iter().any(|(_, is_given)| *is_given);
+    if has_places || supports.is_some() || parallel_ratio != 0.0 || input_.crack_pressure_mpa.is_some() {
+        // K of a named plate is that of its own loads.
+        specimen.own_formula = None;
+    }
+    if supports.is_some() {
+        specimen.supports.clear();
+    }
+    if has_places {
+        specimen.loads.clear();
+        specimen.load_measure = LoadMeasure::Stress;
+    } else if !specimen.loads.is_empty() {
+        return keep_own_loads(supports, specimen, parallel_ratio);
+    }
     let held = read_supports(supports, specimen)?;
     let beside_edges = input_.edges.is_some() && input_.pins.is_some();
     if beside_edges {
@@ -128,6 +142,17 @@ fn pin_force(load: &Load) -> Option<(usize, Point)> {
         Load::Pin { hole, direction, force, .. } => Some((*hole, direction.map(|d| d * force))),
         _ => None,
     }
+}
+
+/// The forces that a named plate brings along, on what the case says of supports.
+fn keep_own_loads(supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+    read_supports(supports, specimen)?;
+    if parallel_ratio != 0.0 {
+        let problem = format!("does not go with the forces of {}", specimen.kind);
+        return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out, or give edges"));
+    }
+    check_balance(specimen, "supports")?;
+    Ok(1.0)
 }
 
 /// Reads `[supports]` into the specimen; returns the sides held along their normal.

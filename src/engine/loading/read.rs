@@ -11,7 +11,7 @@ use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
 use super::{boundary, grips};
 use crate::error::{self, Result, input, input_missing};
 use crate::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS, number, refuse_given, shorten, slice, slice_beside, table_of};
-use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
+use crate::specimen::{LoadMeasure, Specimen};
 use crate::units::MM;
 
 /// Keys that ask for a load history.
@@ -92,7 +92,7 @@ pub fn from_values(
         (LoadMeasure::Stress, Of::Stress) | (LoadMeasure::Force, Of::Force) => (largest, LoadControl::Load),
         (LoadMeasure::Stress, Of::Force) => (largest / area, LoadControl::Load),
         (LoadMeasure::Force, Of::Stress) => {
-            let is_plate = specimen.kind == SpecimenKind::Plate;
+            let is_plate = specimen.kind.is_plate();
             let who = if is_plate { "a plate loaded by pins or rollers" } else { specimen.kind.name() };
             let problem = format!("is a stress, but {who} takes a force");
             return Err(input_error(&magnitude, problem, "give force_max_n or force_range_n (or _kn)"));
@@ -144,7 +144,7 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
     const KEY: &str = "loading.crack_pressure_mpa";
     let Some(given) = input.crack_pressure_mpa else { return Ok(None) };
     let pressure = STRESS.read(KEY, given)?;
-    if specimen.kind != SpecimenKind::Plate {
+    if !specimen.kind.is_plate() {
         let problem = format!("does not go with {}, whose handbook K knows its own load alone", specimen.kind);
         return Err(error::input(KEY, given, problem, "describe the specimen as kind = \"plate\""));
     }

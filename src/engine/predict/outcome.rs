@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::initiation::PhaseOne;
 use crate::body::Body;
 use crate::case::budget::machine;
 use crate::growth::CrackGrowth;
@@ -9,7 +10,7 @@ pub use crate::growth::cross_check::CrossCheck;
 pub use crate::growth::record::{CurvePoint, StopReason, TipRecord};
 use crate::levels::PointGrid;
 use crate::solver::SolverUsed;
-use crate::specimen::{Specimen, SpecimenKind};
+use crate::specimen::Specimen;
 use crate::units::MM;
 
 /// Picture of the damaged plate at one moment.
@@ -80,7 +81,7 @@ impl RunFigures {
 /// What a run gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// The a-N curve: first row N = 0 at the initial crack length; cycles and length never fall.
+    /// The a-N curve: first row N = 0, or the end of phase I, at the initial crack length; cycles and length never fall.
     pub curve: Vec<CurvePoint>,
     /// Why it ended.
     pub stop: StopReason,
@@ -90,6 +91,8 @@ pub struct Prediction {
     pub grid: PointGrid,
     /// Figures.
     pub figures: RunFigures,
+    /// Phase I, before the cracks of the case had formed: the rows of the curve begin after it.
+    pub phase_one: Option<PhaseOne>,
     /// K against an independent one, where there is one.
     pub cross_check: Option<CrossCheck>,
     /// Cycles of the same curve by the mean rate of a pass, where retardation has counted them anew.
@@ -116,7 +119,7 @@ impl Prediction {
         let grown = |tip: &usize| last.tips[*tip].growth - before.tips[*tip].growth;
         let tip = (0..last.tips.len()).max_by(|a, b| grown(a).total_cmp(&grown(b)))?;
         let lengths = [first, last].map(|row| row.crack_length_of(specimen, tip));
-        (specimen.kind == SpecimenKind::Plate).then_some((tip, [lengths[0]?, lengths[1]?]))
+        (specimen.kind.is_plate()).then_some((tip, [lengths[0]?, lengths[1]?]))
     }
 
     /// Cycles at which the crack has a length, m, linear between rows; `None` where it never has.

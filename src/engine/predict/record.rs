@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::checkpoint::{self, Checkpoint};
+use super::initiation::{PhaseOne, phase_one};
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::way::Way;
@@ -66,6 +67,7 @@ pub struct Record<'a> {
     /// Hash of the case as it was given.
     hash: [u8; 32],
     checkpoint: Option<Checkpoint>,
+    phase_one: Option<PhaseOne>,
     observer: &'a dyn Observer,
 }
 
@@ -77,12 +79,31 @@ impl<'a> Record<'a> {
         if let Some(points) = case.model.points_mut() {
             points.spacing = points.fitting_spacing(&case.specimen);
         }
-        Record { started: Instant::now(), case, hash, checkpoint: None, observer }
+        Record { started: Instant::now(), case, hash, checkpoint: None, phase_one: None, observer }
     }
 
     /// The case that its run is of: the one given, with the spacing that its body has.
     pub fn case(&self) -> &Case {
         &self.case
+    }
+
+    /// Counts phase I before the run, whose growth has the cycles that it leaves.
+    /// Errors: as [`phase_one`].
+    pub(super) fn after_phase_one(mut self) -> Result<Self> {
+        self.phase_one = phase_one(&self.case)?;
+        if self.ends_in_phase_one().is_none() {
+            self.case.stop.cycles_max -= self.phase_one.and_then(|phase| phase.cycles).unwrap_or(0.0);
+        }
+        Ok(self)
+    }
+
+    /// Why the run ends before its cracks have formed.
+    pub(super) fn ends_in_phase_one(&self) -> Option<StopReason> {
+        match self.phase_one?.cycles {
+            None => Some(StopReason::NothingAges),
+            Some(cycles) if cycles >= self.case.stop.cycles_max => Some(StopReason::RunOut),
+            Some(_) => None,
+        }
     }
 
     /// Goes on from where an earlier run of the same case stood.
@@ -100,7 +121,8 @@ impl<'a> Record<'a> {
         growth: &mut G,
         mut increment: impl FnMut(&mut G) -> Result<Option<StopReason>>,
     ) -> Result<Prediction> {
-        let Record { started, case, hash, checkpoint, observer } = self;
+        let ends_early = self.ends_in_phase_one();
+        let Record { started, case, hash, checkpoint, phase_one, observer } = self;
         let case = &case;
         let is_new = checkpoint.is_none();
         let (mut snapshots, earlier_s) = match checkpoint {
@@ -156,6 +178,14 @@ impl<'a> Record<'a> {
             }
             None => (stop, None),
         };
+        if let Some(phase) = &phase_one {
+            let before = curve.clone();
+            phase.precede(&mut curve);
+            if ends_early == Some(StopReason::RunOut) {
+                curve.iter_mut().for_each(|row| row.cycles = case.stop.cycles_max);
+            }
+            snapshots.recount(&before, &curve);
+        }
         snapshots.keep_within(&curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
@@ -164,7 +194,9 @@ impl<'a> Record<'a> {
         warnings.extend(cross_check.and_then(|check| check.warning()));
         warnings.extend(of_order);
         warnings.extend(failure);
+        warnings.extend(phase_one.zip(case.fatigue.initiation).into_iter().flat_map(|(phase, law)| phase.warnings(&law)));
         Ok(Prediction {
+            phase_one,
             stop,
             figures: RunFigures::of(growth, curve.len() - 1, wall_s),
             snapshots: snapshots.taken,

@@ -112,6 +112,9 @@ impl Recorded {
             let problem = "shifts K whatever the load: no other life follows from the K(a) of this run";
             return Err(input(residual.key(), residual.words(), problem, "leave it out, or run each case by itself"));
         }
+        if prediction.phase_one.is_some() {
+            return Err(none("phase I is of no K"));
+        }
         let places = places(case, prediction).ok_or_else(|| none("no K is known"))?;
         if places.len() < 2 {
             return Err(none("no crack grew"));

@@ -55,9 +55,7 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
             let known = case.specimen.beta.as_ref().map_or(f64::INFINITY, |table| table.bounds()[1]);
             let (from, to) = (case.specimen.crack_length, case.specimen.length_limit().0.min(known));
             let lengths = (0..STEPS).map(|i| from + (to - from) * i as f64 / STEPS as f64);
-            lengths
-                .map(|a| strength(a, Some(formula.k_i(a, load)), case.limit_load(a, &case.specimen.grown_alike(a).crack_lines())))
-                .collect()
+            lengths.map(|a| strength(a, Some(formula.k_i(a, load)), case.limit_load_at(a))).collect()
         }
         None => {
             let known = |point: &CurvePoint| Some(point.k_max(&case.loading)).filter(|k| *k > 0.0);

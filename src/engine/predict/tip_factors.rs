@@ -21,7 +21,7 @@ use crate::growth::nodes::NodePlate;
 use crate::growth::part_through::Neighbours;
 use crate::growth::points::PointPlate;
 use crate::growth::record::TipRecord;
-use crate::specimen::handbook::handbook;
+use crate::specimen::handbook::handbook_beside;
 use crate::specimen::{FrontTip, PartThrough, TipSeed};
 use crate::units::MPA_SQRT_M;
 
@@ -199,7 +199,7 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
             "give a crack that starts in the notch; stresses of a plate without cracks: --method element_free_galerkin alone",
         ));
     }
-    let handbook_k_i = handbook(&case.specimen)
+    let handbook_k_i = handbook_beside(&case.specimen)
         .filter(|formula| formula.holds_at(case.specimen.crack_length) && case.loading.displacement().is_none())
         .map(|formula| formula.k_i(case.specimen.crack_length, case.loading.maximum));
     let mut results: Vec<TipResult> = tips

@@ -16,7 +16,12 @@ pub const SHORTEST_LENGTH_OVER_WIDTH: f64 = 1.5;
 const RANGE_SLACK: f64 = 1e-9;
 
 /// A figure over relative crack length.
-type Curve = fn(f64) -> f64;
+pub(super) type Curve = fn(f64) -> f64;
+/// The factor of K over relative crack length and [`HandbookFormula::shape`].
+pub(super) type Factor = fn(f64, f64) -> f64;
+
+/// Error of K, above which a formula is looked at beside others and gives no life.
+const ERROR_OF_LIVES: f64 = 0.01;
 
 /// A formula for K of one specimen.
 #[derive(Debug, Clone)]
@@ -29,37 +34,46 @@ pub struct HandbookFormula {
     pub range: &'static str,
     /// Smallest and largest relative crack length it holds for: 2a/W with two tips or two cracks, a/W with one.
     pub bounds: [f64; 2],
-    of: Curve,
+    pub(super) of: Factor,
     /// Error over that relative crack length, as its source states it.
-    error: Curve,
-    cracks: f64,
-    is_of_pins: bool,
-    width: f64,
-    thickness: f64,
+    pub(super) error: Curve,
+    pub(super) cracks: f64,
+    /// Whether it is of a force: `K = P / (B √W) f(a/W)`.
+    pub(super) is_of_pins: bool,
+    pub(super) width: f64,
+    pub(super) thickness: f64,
+    /// What else it depends on, over the width: radius of a hole, span of a beam; 0 where that is nothing.
+    pub(super) shape: f64,
+    /// Relative crack length at which no ligament is left.
+    pub(super) limit: f64,
     /// The table that stands in the place of the formula.
-    table: Option<BetaTable>,
+    pub(super) table: Option<BetaTable>,
 }
 
 impl PartialEq for HandbookFormula {
     fn eq(&self, other: &Self) -> bool {
-        (self.name, self.width, self.thickness, &self.table) == (other.name, other.width, other.thickness, &other.table)
+        (self.name, self.width, self.thickness, self.shape, &self.table)
+            == (other.name, other.width, other.thickness, other.shape, &other.table)
     }
 }
 
-/// The formula used for this specimen, `None` where no handbook covers it: `plate`, clamped ends, and plates shorter than
-/// 1.5 widths; a table of β that the case gives covers any.
+/// The formula used for this specimen, `None` where no handbook covers it: `plate`, clamped ends, plates shorter than
+/// 1.5 widths, and named plates whose formula is good to more than 1 %; a table of β that the case gives covers any.
 pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     if let Some(table) = &specimen.beta {
         return Some(of_table(specimen, table));
     }
+    if specimen.kind.is_plate() {
+        return specimen.own_formula.clone().filter(|formula| (formula.error)(0.0) <= ERROR_OF_LIVES);
+    }
     let long = specimen.length() >= SHORTEST_LENGTH_OVER_WIDTH * specimen.width;
-    let (name, source, range, bounds, of, error): (_, _, _, _, Curve, Curve) = match specimen.kind {
+    let (name, source, range, bounds, of, error): (_, _, _, _, Factor, Curve) = match specimen.kind {
         SpecimenKind::MiddleTension if long => (
             "Feddersen secant",
             "Feddersen 1966, ASTM STP 410; ASTM E647 annex A2",
             "0.3 % for 2a/W up to 0.7, 2 % low at 0.9; length/width 1.5 or more",
             [0.0, 0.95],
-            |x| (1.0 / half(x).cos()).sqrt(),
+            |x, _| (1.0 / half(x).cos()).sqrt(),
             |x| if x <= 0.7 { 0.003 } else { 0.003 + 0.085 * (x - 0.7) },
         ),
         SpecimenKind::SingleEdgeTension if long && !specimen.has_straight_grips() => (
@@ -67,7 +81,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
             "Tada, Paris and Irwin 2000, part II",
             "0.5 % for any a/W; ends free to rotate, length/width 2 or more",
             [0.0, 1.0],
-            |x| tangent(x) * (0.752 + 2.02 * x + 0.37 * (1.0 - half(x).sin()).powi(3)) / half(x).cos(),
+            |x, _| tangent(x) * (0.752 + 2.02 * x + 0.37 * (1.0 - half(x).sin()).powi(3)) / half(x).cos(),
             |_| 0.005,
         ),
         SpecimenKind::DoubleEdgeTension if long => (
@@ -75,7 +89,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
             "Tada, Paris and Irwin 2000, part II",
             "1 % for any 2a/W; length/width 1.5 or more",
             [0.0, 1.0],
-            |x| (1.0 + 0.122 * half(x).cos().powi(4)) * tangent(x),
+            |x, _| (1.0 + 0.122 * half(x).cos().powi(4)) * tangent(x),
             |_| 0.01,
         ),
         SpecimenKind::CompactTension => (
@@ -83,7 +97,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
             "ASTM E647 annex A1",
             "0.5 % for a/W 0.2 or more",
             [0.2, 1.0],
-            |x| {
+            |x, _| {
                 let polynomial = 0.886 + x * (4.64 + x * (-13.32 + x * (14.72 - 5.6 * x)));
                 (2.0 + x) / (1.0 - x).powf(1.5) * polynomial
             },
@@ -94,7 +108,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     let is_of_pins = specimen.kind == SpecimenKind::CompactTension;
     let (width, thickness) = (specimen.width, specimen.thickness);
     let cracks = specimen.kind.sharing()?.0;
-    Some(HandbookFormula { name, source, range, bounds, of, error, cracks, is_of_pins, width, thickness, table: None })
+    Some(HandbookFormula { name, source, range, bounds, of, error, cracks, is_of_pins, width, thickness, shape: 0.0, limit: 1.0, table: None })
 }
 
 /// K by a table of β, whose error nobody states.
@@ -105,17 +119,24 @@ fn of_table(specimen: &Specimen, table: &BetaTable) -> HandbookFormula {
         source: "specimen.beta_file of the case",
         range: "from its first to its last row",
         bounds: table.bounds().map(|length| length / width),
-        of: |_| f64::NAN,
+        of: |_, _| f64::NAN,
         error: |_| f64::NAN,
         cracks: 1.0,
         is_of_pins: false,
         width,
         thickness,
+        shape: 0.0,
+        limit: 1.0,
         table: Some(table.clone()),
     }
 }
 
-fn half(x: f64) -> f64 {
+/// The formula to set beside other results: also one that is too rough for a life.
+pub fn handbook_beside(specimen: &Specimen) -> Option<HandbookFormula> {
+    specimen.own_formula.clone().or_else(|| handbook(specimen))
+}
+
+pub(super) fn half(x: f64) -> f64 {
     PI * x / 2.0
 }
 
@@ -133,7 +154,7 @@ pub fn handbook_tada(specimen: &Specimen) -> Option<HandbookFormula> {
         range: "0.1 % for any 2a/W; length/width 1.5 or more",
         bounds: [0.0, 1.0],
         error: |_| 0.001,
-        of: |x| (1.0 - 0.025 * x.powi(2) + 0.06 * x.powi(4)) * (1.0 / half(x).cos()).sqrt(),
+        of: |x, _| (1.0 - 0.025 * x.powi(2) + 0.06 * x.powi(4)) * (1.0 / half(x).cos()).sqrt(),
         ..first
     })
 }
@@ -167,13 +188,18 @@ impl HandbookFormula {
 
     /// F (tension) or f (C(T)) of the formula, β of a table, dimensionless.
     pub fn factor(&self, crack_length: f64) -> f64 {
-        let of_formula = || (self.of)(self.relative_length(crack_length));
+        let of_formula = || (self.of)(self.relative_length(crack_length), self.shape);
         self.table.as_ref().map_or_else(of_formula, |table| table.at(crack_length))
     }
 
     /// Whether the formula holds at this crack length.
     pub fn holds_at(&self, crack_length: f64) -> bool {
         (self.bounds[0] - RANGE_SLACK..=self.bounds[1] + RANGE_SLACK).contains(&self.relative_length(crack_length))
+    }
+
+    /// Crack length at which it has no ligament left, m.
+    pub fn length_limit(&self) -> f64 {
+        self.limit * self.width / self.cracks
     }
 
     /// Relative crack length of the formula: 2a/W or a/W.

@@ -10,6 +10,7 @@ pub mod geometry;
 pub mod green;
 pub mod handbook;
 pub mod limit_load;
+pub mod named;
 pub mod net_section;
 pub mod part_through;
 pub mod pin;
@@ -40,6 +41,23 @@ crate::kinds! {
         CornerCrack = "corner_crack": "quarter of an ellipse on an edge of a plate; crack length = c from the edge, by hand calculation until it is through",
         EmbeddedCrack = "embedded_crack": "ellipse in the middle of a plate; crack length = half length c, by hand calculation until it is through",
         CornerCrackAtHole = "corner_crack_at_hole": "quarter of an ellipse at a round hole, on one side or both; crack length = c from the hole, by hand calculation until it is through",
+        CrackAtHole = "crack_at_hole": "plate with a round hole and a through crack on one side of it or both; crack length from the rim",
+        RowOfHoles = "row_of_holes": "plate with a row of equal holes across the load, cracked at their sides, such as a joint whose cracks link up; crack lengths from the rims",
+        Lug = "lug": "lug loaded by a pin, cracked at the sides of its hole, with a straight or round head; crack length from the rim",
+        EdgeNotch = "edge_notch": "plate with a U-shaped notch in one edge and a crack in its root; crack length from the root",
+        StopHole = "stop_hole": "plate with a central crack that was stopped by a drilled hole at each end; needs [fatigue.initiation]; crack length = half length from the centre to the tips beyond the holes",
+        SingleEdgeBend = "single_edge_bend": "SE(B) of ASTM E399 and E1820 on three rollers, or four where inner_span_mm is given; crack length from the edge",
+        EccentricSingleEdgeTension = "eccentric_single_edge_tension": "ESE(T) of ASTM E647 annex A3, loaded by pins; crack length from the edge",
+        WedgeOpening = "wedge_opening": "modified WOL of Novak and Rolfe, half height 0.486 W, loaded by pins; crack length from the load line",
+        Cruciform = "cruciform": "cross with rounded inner corners and a central crack, pulled at two arms or four; crack length = half length",
+    }
+}
+
+crate::kinds! {
+    /// Heads of a lug.
+    pub enum Head for "specimen.head" {
+        Straight = "straight": "square end, edge_distance_mm from the centre of the hole",
+        Round = "round": "half circle about the centre of the hole",
     }
 }
 
@@ -264,6 +282,8 @@ pub struct Specimen {
     pub load_measure: LoadMeasure,
     /// Supports; empty means the loads are in equilibrium by themselves and the plate floats.
     pub supports: Vec<Support>,
+    /// Handbook K of a named plate under the loads that it brings along ([`named`]); `None` under others.
+    pub own_formula: Option<handbook::HandbookFormula>,
     /// What of its crack does not go through the thickness; `cracks` and `tips` are then those that are seen from the front.
     pub part_through: Option<PartThrough>,
     /// β(a) of a table of the case, in place of a handbook's K.
@@ -295,6 +315,7 @@ impl Specimen {
             load_measure: LoadMeasure::Stress,
             crack_pressure: 0.0,
             supports: Vec::new(),
+            own_formula: None,
             part_through: None,
             beta: None,
         }
@@ -324,7 +345,7 @@ impl Specimen {
     /// Sizes of the flaws that spacing and horizon have to resolve, m: half length of a crack with two tips, whole length of one with
     /// one tip, length of a slot; C(T) from the load line.
     pub fn flaw_sizes(&self) -> Vec<f64> {
-        if self.kind != SpecimenKind::Plate {
+        if !self.kind.is_plate() {
             return vec![self.crack_length];
         }
         let cracks = self.crack_lines().into_iter().map(|line| line.length() / self.tips_of(&line).max(1) as f64);

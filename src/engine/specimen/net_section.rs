@@ -25,6 +25,9 @@ impl Specimen {
         if let Some(flaw) = &self.part_through {
             return (flaw.room(), "room beside the crack");
         }
+        if let Some(formula) = &self.own_formula {
+            return (formula.length_limit(), "width");
+        }
         let size = (self.gross_width.max(self.length()), "size");
         self.kind.sharing().map_or(size, |(cracks, name)| (self.width / cracks, name))
     }

@@ -80,6 +80,18 @@ struct NotchInput {
     width_mm: f64,
 }
 
+/// What a plate is drawn from, m.
+#[derive(Debug, Default)]
+pub(super) struct Drawing {
+    /// Outline, counter-clockwise and simple.
+    pub outline: Vec<Point>,
+    pub holes: Vec<Hole>,
+    pub slots: Vec<Slot>,
+    /// All corners of every crack.
+    pub cracks: Vec<Vec<Point>>,
+    pub thickness: f64,
+}
+
 pub(super) fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Result<Specimen> {
     let input: Input = slice(value, "specimen")?;
     let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
@@ -95,21 +107,35 @@ pub(super) fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>
         Ok(Slot { from, to, width: LENGTH.read(&format!("{path}.width_mm"), item.width_mm)? })
     })?;
     cracks.extend(items("specimen.cracks", &input.cracks, |item: CrackInput, path| crack_path(path, item))?);
-    let [low, high] = bounding_box(&outline);
-    let (width, length) = (high[0] - low[0], high[1] - low[1]);
-    let mut specimen = Specimen {
-        outline,
-        holes,
-        loads: vec![],
-        crack_plane_y: None,
-        convention: LengthConvention::SumOfTips,
-        ..Specimen::strip(SpecimenKind::Plate, width, length, thickness)
-    };
-    check_holes(&specimen)?;
-    let slot_tips = place_slots(&mut specimen, slots)?;
-    place_cracks(&mut specimen, cracks, slot_tips, notes)?;
-    [specimen.crack_plane_x, specimen.crack_plane_y] = [0, 1].map(|axis| common_line(&specimen.cracks, axis));
-    Ok(specimen)
+    Drawing { outline, holes, slots, cracks, thickness }.specimen(SpecimenKind::Plate, notes)
+}
+
+impl Drawing {
+    /// The plate, not yet loaded. What was done to ends of cracks goes into `notes`.
+    /// Errors: holes, slots or cracks that do not fit into it or beside each other.
+    pub(super) fn specimen(self, kind: SpecimenKind, notes: &mut Vec<String>) -> Result<Specimen> {
+        let [low, high] = bounding_box(&self.outline);
+        let (width, length) = (high[0] - low[0], high[1] - low[1]);
+        let mut specimen = Specimen {
+            outline: self.outline,
+            holes: self.holes,
+            loads: vec![],
+            crack_plane_y: None,
+            convention: LengthConvention::SumOfTips,
+            ..Specimen::strip(kind, width, length, self.thickness)
+        };
+        check_holes(&specimen)?;
+        let slot_tips = place_slots(&mut specimen, self.slots)?;
+        place_cracks(&mut specimen, self.cracks, slot_tips, notes)?;
+        [specimen.crack_plane_x, specimen.crack_plane_y] = [0, 1].map(|axis| common_line(&specimen.cracks, axis));
+        Ok(specimen)
+    }
+}
+
+/// The rectangle centred on 0, m.
+pub(super) fn rectangle(width: f64, length: f64) -> Vec<Point> {
+    let (x, y) = (width / 2.0, length / 2.0);
+    vec![[-x, -y], [x, -y], [x, y], [-x, y]]
 }
 
 /// `holes = [{ x_mm, y_mm, diameter_mm }]`.
@@ -165,8 +191,8 @@ fn outline(input: &Input) -> Result<Vec<Point>> {
             })?;
             LENGTH.read(key, value)
         };
-        let (x, y) = (need("specimen.width_mm", input.width_mm)? / 2.0, need("specimen.length_mm", input.length_mm)? / 2.0);
-        return Ok(vec![[-x, -y], [x, -y], [x, y], [-x, y]]);
+        let width = need("specimen.width_mm", input.width_mm)?;
+        return Ok(rectangle(width, need("specimen.length_mm", input.length_mm)?));
     };
     if input.width_mm.is_some() || input.length_mm.is_some() {
         let remedy = "give either the outline or the rectangle";

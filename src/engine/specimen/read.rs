@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use super::{Specimen, SpecimenKind, part_through, plate, standard};
+use super::{Specimen, SpecimenKind, named, part_through, plate, standard};
 use crate::error::{Result, input, input_missing};
 use crate::input::{Folder, shorten, table_of};
 
@@ -72,6 +72,9 @@ pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Re
     if let Some(key) = PART_THROUGH_KEYS.iter().find(|key| table.contains_key(**key)) {
         let problem = format!("describes a crack that does not go through, and the crack of {kind} does");
         return Err(input(&format!("specimen.{key}"), shorten(&table[*key]), problem, give_a_kind()));
+    }
+    if let Some(description) = kind.named() {
+        return named::from_value(description, value, notes);
     }
     match kind {
         SpecimenKind::SingleEdgeTension => standard::single_edge_from_value(value),

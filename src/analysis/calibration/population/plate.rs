@@ -122,6 +122,9 @@ impl Population {
 /// Why lives of a case can have no band, whatever its run gives; the lot where they can.
 /// Errors: as [`Population::of_record`].
 pub fn lot_of(case: &Case) -> Result<std::result::Result<Population, NoBand>> {
+    if case.fatigue.initiation.is_some() {
+        return Ok(Err("phase I is of an S-N law, whose scatter is not known".to_owned()));
+    }
     let LawSource::Fitted(record) = &case.law else {
         return Ok(Err("the law of the case is no fitted record of measured lives".to_owned()));
     };

@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::fatigue::pieces::{Connectivity, remove_fragments};
 use crate::solver::{Equilibrium, SolverKind};
 use crate::specimen::geometry::distance;
-use crate::specimen::{Crack, CrackLine, Point, Specimen, SpecimenKind};
+use crate::specimen::{Crack, CrackLine, Point, Specimen};
 use crate::state::Bonds;
 use crate::units::MM;
 
@@ -40,7 +40,7 @@ pub(super) fn all_tips(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>>
     let plate = &mut CrackedPlate::new(case)?;
     let unmoved = plate.solve(&plate.growth_of_all(0.0))?;
     let shared = started.elapsed().as_secs_f64();
-    let is_plate = plate.case.specimen.kind == SpecimenKind::Plate;
+    let is_plate = plate.case.specimen.kind.is_plate();
     let axes = Mirror::of(&plate.body, &unmoved.bonds.multiplier).lines.map(|line| line.is_some());
     let mut results = Vec::with_capacity(tips.len());
     // The standard specimens are symmetric about the crack plane, and their tips are each other's mirror images.
