@@ -135,7 +135,7 @@ fn row_of_holes_links_up_as_by_finite_elements() {
 /// `tests/reference` (`grow`, steps of 0.5 mm, uniform stress at the held end): 65 000 cycles to x = 22 mm, where those have 64 940.
 #[test]
 fn lug_lives_as_by_finite_elements() {
-    let keys = "kind = \"lug\"\nwidth_mm = 50\nlength_mm = 100\nthickness_mm = 5\nhead = \"straight\"\nhole_diameter_mm = 20\ncrack_length_mm = 3";
+    let keys = "kind = \"lug\"\nwidth_mm = 50\nlength_mm = 100\nthickness_mm = 5\nhead = \"straight\"\nhole_diameter_mm = 20\ncrack_length_mm = 3\npin_half_angle_deg = 90";
     let run = run(&case(keys, "force_max_kn = 10", ""));
     assert_cycles("lug", &run, &[(0, &[(15.0, 19_968.8), (18.0, 43_895.0), (21.0, 61_098.1)])], 1.0);
 }

@@ -69,7 +69,7 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
 pub fn pins(case: &Case) -> Vec<String> {
     let words = |load: &Load| match load {
         Load::Pin { hole, contact, .. } => Some(format!("hole {hole}: {}", contact.words())),
-        Load::Edge { .. } => None,
+        Load::Edge { .. } | Load::Bent { .. } => None,
     };
     case.specimen.loads.iter().filter_map(words).collect()
 }

@@ -130,7 +130,7 @@ pub fn solve_with(
     if section.is_none() {
         forces.iter_mut().for_each(|force| *force *= load);
     }
-    let others = forces.clone();
+    let mut others = forces.clone();
     let pins = press_pins(specimen, plate, &factor, &others, load)?;
     if let Some(pins) = &pins {
         forces.iter_mut().zip(&pins.forces).for_each(|(force, of_pins)| *force += of_pins);
@@ -139,9 +139,9 @@ pub fn solve_with(
     factor.forward(&mut y);
     let mut of_residual = Vec::new();
     if let Some(residual) = residual {
-        of_residual = vec![0.0; forces.len()];
+        of_residual = vec![0.0; y.len()];
         press_cracks(&mut of_residual, specimen, plate, &|at| residual.at(at))?;
-        forces.iter_mut().zip(&of_residual).for_each(|(force, released)| *force += released);
+        others.iter_mut().zip(&of_residual).for_each(|(force, released)| *force += released);
         factor.forward(&mut of_residual);
         y.iter_mut().zip(&of_residual).for_each(|(y, released)| *y += released);
         factor.backward(&mut of_residual);

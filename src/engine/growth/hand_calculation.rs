@@ -15,7 +15,7 @@ use crate::quadrature::integrate;
 use crate::specimen::geometry::along;
 use crate::specimen::green::centre_crack;
 use crate::specimen::handbook::{HandbookFormula, handbook};
-use crate::specimen::{CrackLine, LengthConvention};
+use crate::specimen::LengthConvention;
 use crate::units::MM;
 
 /// Intervals of the a-N curve, their lengths in constant ratio: what is taken linear between two rows is then off by less than
@@ -121,12 +121,6 @@ impl<'a> HandCalculation<'a> {
             }
             if self.cycles(from, middle) > cycles { above = middle } else { below = middle }
         }
-    }
-
-    /// The cracks of a plate, by which its sections are known; those of a standard kind are not asked for.
-    fn lines(&self, crack_length: f64) -> Vec<CrackLine> {
-        let specimen = &self.case.specimen;
-        if specimen.ligament(crack_length).is_some() { Vec::new() } else { specimen.grown_alike(crack_length).crack_lines() }
     }
 
     /// Row of the curve; K and rate are unknown (NaN) where the plate ends.

@@ -52,9 +52,11 @@ fn changes(case: &Case) -> Result<Vec<(usize, f64)>> {
         let solution = solve(&specimen, &plate, far, case.loading.maximum)?;
         let share = case.loading.share(solution.work);
         let size = |tip: usize| {
-            let [k_i, k_ii] =
-                factors::read(&plate, &solution.u, tip, room(&specimen, &lines, &tips[tip]), &|at| solution.pressure_at(at))?
-                    .factors;
+            let [k_i, k_ii] = factors::read(&plate, &solution.u, tip, room(&specimen, &lines, &tips[tip]), &|at| {
+                let pressure = solution.pressure_at(at);
+                [pressure, pressure, 0.0]
+            })?
+            .factors;
             Ok(share * k_i.hypot(k_ii))
         };
         (0..tips.len()).map(size).collect()

@@ -108,7 +108,21 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     let is_of_pins = specimen.kind == SpecimenKind::CompactTension;
     let (width, thickness) = (specimen.width, specimen.thickness);
     let cracks = specimen.kind.sharing()?.0;
-    Some(HandbookFormula { name, source, range, bounds, of, error, cracks, is_of_pins, width, thickness, shape: 0.0, limit: 1.0, table: None })
+    Some(HandbookFormula {
+        name,
+        source,
+        range,
+        bounds,
+        of,
+        error,
+        cracks,
+        is_of_pins,
+        width,
+        thickness,
+        shape: 0.0,
+        limit: 1.0,
+        table: None,
+    })
 }
 
 /// K by a table of β, whose error nobody states.

@@ -78,11 +78,9 @@ impl Specimen {
 impl Specimen {
     /// The same of a crack length that all tips have grown to alike, straight ahead, as a handbook takes it.
     pub fn limit_load_at(&self, crack_length: f64, yield_strength: f64) -> Option<f64> {
-        let mut grown = self.clone();
-        if self.kind.is_plate() {
-            grown.move_tips(&vec![crack_length - self.crack_length; self.tips.len()]);
-        }
-        self.limit_load(crack_length, &grown.crack_lines(), yield_strength)
+        // The sections of a standard kind are known without its cracks.
+        let cracks = if self.kind.is_plate() { self.grown_alike(crack_length).crack_lines() } else { Vec::new() };
+        self.limit_load(crack_length, &cracks, yield_strength)
     }
 }
 

@@ -187,7 +187,6 @@ impl Load {
     }
 }
 
-
 /// What is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Support {

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::input::{self, slice};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::plate::Drawing;
-use crate::specimen::{Hole, SpecimenKind};
+use crate::specimen::{Bearing, Hole, SpecimenKind};
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::EccentricSingleEdgeTension, layout };
 
@@ -67,6 +67,6 @@ fn layout(value: &Value) -> Result<Layout> {
         limit: 1.0,
         table: None,
     };
-    let loads = vec![pin(0, [0.0, 1.0]), pin(1, [0.0, -1.0])];
+    let loads = vec![pin(0, [0.0, 1.0], Bearing::Unknown), pin(1, [0.0, -1.0], Bearing::Unknown)];
     Ok(Layout { drawing, loads, crack_length: Some(a), formula: Some(formula), supports: Vec::new() })
 }

@@ -1,7 +1,8 @@
 //! A lug: the pin pulls along y at the hole about the origin, the other end is held.
 //!
 //! A straight head ends `edge_distance_mm` beyond the centre of the hole (half the width where it is left out), a round one is half a circle of
-//! the width about it. `length_mm` reaches from the centre to the held end. A pin fills its hole; `loading.pins` says otherwise.
+//! the width about it. `length_mm` reaches from the centre to the held end. Where the pin touches is said by `pin_diameter_mm` (elastic contact) or
+//! `pin_half_angle_deg`, as of a compact specimen.
 
 use std::f64::consts::PI;
 
@@ -12,8 +13,9 @@ use super::shapes::{AtHole, arc, below, pin};
 use super::{Description, Layout};
 use crate::error::{Result, input};
 use crate::input::{LENGTH, slice};
+use crate::specimen::pin::PinKeys;
 use crate::specimen::plate::Drawing;
-use crate::specimen::{Head, Hole, Point, SpecimenKind, Support};
+use crate::specimen::{Bearing, Head, Hole, Point, SpecimenKind, Support};
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::Lug, layout };
 
@@ -32,6 +34,11 @@ struct Input {
     crack_length_mm: Option<f64>,
     cracks: Option<usize>,
     crack_lengths_mm: Option<[f64; 2]>,
+    pin_half_angle_deg: Option<f64>,
+    pin_diameter_mm: Option<f64>,
+    pin_friction: Option<f64>,
+    pin_youngs_modulus_gpa: Option<f64>,
+    pin_poisson_ratio: Option<f64>,
 }
 
 fn layout(value: &Value) -> Result<Layout> {
@@ -45,6 +52,14 @@ fn layout(value: &Value) -> Result<Layout> {
     below("hole_diameter_mm", 2.0 * radius, (2.0 * half_width).min(2.0 * length), "width and twice the length")?;
     let key = if cracks.shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
     below(key, cracks.lengths[0].max(cracks.lengths[1]), half_width - radius, "the way from the rim to the side")?;
+    let keys: PinKeys<'_> = [
+        ("pin_half_angle_deg", input_.pin_half_angle_deg),
+        ("pin_diameter_mm", input_.pin_diameter_mm),
+        ("pin_friction", input_.pin_friction),
+        ("pin_youngs_modulus_gpa", input_.pin_youngs_modulus_gpa),
+        ("pin_poisson_ratio", input_.pin_poisson_ratio),
+    ];
+    let contact = Bearing::read("specimen", &keys, radius)?;
     let mut outline: Vec<Point> = vec![[-half_width, -length], [half_width, -length]];
     match (input_.head, distance) {
         (Head::Straight, distance) => {
@@ -69,7 +84,7 @@ fn layout(value: &Value) -> Result<Layout> {
     let (from, to) = ([-half_width, -length], [half_width, -length]);
     Ok(Layout {
         drawing,
-        loads: vec![pin(0, [0.0, 1.0])],
+        loads: vec![pin(0, [0.0, 1.0], contact)],
         supports: vec![Support::Fixed { from, to, depth: 0.0, x: true, y: true }],
         crack_length: cracks.shared,
         formula: None,

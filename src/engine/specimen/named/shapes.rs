@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::error::{Result, input, input_missing};
 use crate::input::LENGTH;
 use crate::specimen::geometry::distance;
-use crate::specimen::{Load, Point, SNUG_PIN};
+use crate::specimen::{Bearing, Load, Point};
 use crate::units::MM;
 
 /// Angle of one side of a polygon that stands for an arc, rad: 2°, whose middle lies 1.5e-4 of the radius off the arc.
@@ -20,9 +20,9 @@ pub(super) fn arc(centre: Point, radius: f64, [from, to]: [f64; 2]) -> impl Iter
     })
 }
 
-/// A pin that fills its hole.
-pub(super) fn pin(hole: usize, direction: Point) -> Load {
-    Load::Pin { hole, direction, force: 1.0, contact: SNUG_PIN }
+/// A pin.
+pub(super) fn pin(hole: usize, direction: Point, contact: Bearing) -> Load {
+    Load::Pin { hole, direction, force: 1.0, contact }
 }
 
 /// A roller on the stretch `from`-`to` of the outline, pushing with a share of the force.
