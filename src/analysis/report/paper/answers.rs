@@ -10,7 +10,7 @@ const INSPECTIONS_MOST: usize = 20;
 
 /// The sections of what was asked; nothing where nobody asked.
 pub fn sections(result: &Value, sheets: &mut Sheets<'_>) -> String {
-    inspections(result) + &fleet(&result["fleet"], sheets) + &sensitivities(&result["sensitivities"], sheets)
+    inspections(result, sheets) + &fleet(&result["fleet"], sheets) + &sensitivities(&result["sensitivities"], sheets)
 }
 
 /// A probability: as it is, or as a power of ten where it is small.
@@ -26,7 +26,7 @@ fn table(head: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     format!("<div class=\"scroll\"><table><thead><tr>{head}</tr></thead><tbody>\n{rows}</tbody></table></div>\n")
 }
 
-fn inspections(result: &Value) -> String {
+fn inspections(result: &Value, sheets: &mut Sheets<'_>) -> String {
     let (found, window) = (&result["inspections"], &result["inspection"]);
     let Some(rows) = found["rows"].as_array() else { return String::new() };
     let number = |of: &Value, key: &str| of[key].as_f64().unwrap_or(f64::NAN);
@@ -62,7 +62,7 @@ fn inspections(result: &Value) -> String {
         String::new()
     };
     let table = table(&head, rows.iter().take(INSPECTIONS_MOST).map(row));
-    format!("<h1 class=\"paged\">Inspections</h1>\n{}{table}{more}", terms(&lines))
+    format!("{}{}{table}{more}", sheets.title("Inspections"), terms(&lines))
 }
 
 /// Quantiles in words: 5 %, half, 95 %.
@@ -119,8 +119,9 @@ fn fleet(fleet: &Value, sheets: &mut Sheets<'_>) -> String {
             missed.iter().enumerate().map(row),
         )
     });
+    let title = sheets.title("Fleet");
     let picture = sheets.picture("fleet.svg", "Share of the plates of the fleet that have ended");
-    format!("<h1 class=\"paged\">Fleet</h1>\n{picture}{}{missed}", terms(&rows))
+    format!("{title}{picture}{}{missed}", terms(&rows))
 }
 
 fn sensitivities(all: &Value, sheets: &mut Sheets<'_>) -> String {
@@ -135,6 +136,7 @@ fn sensitivities(all: &Value, sheets: &mut Sheets<'_>) -> String {
         vec![text("input"), text("change"), format!("{bound}{life}"), change, text("ended_by").replace('_', " ")]
     };
     let table = table(&["Input", "Change", "Life, cycles", "Of the life", "Ends by"], all.iter().map(row));
+    let title = sheets.title("What moves the life most");
     let picture = sheets.picture("sensitivities.svg", "Change of the life by each input, the widest on top");
-    format!("<h1 class=\"paged\">What moves the life most</h1>\n{picture}{table}")
+    format!("{title}{picture}{table}")
 }

@@ -122,9 +122,23 @@ struct Sheets<'d> {
     drawings: &'d Drawings,
     /// Number of the last figure.
     last: usize,
+    /// Whether one has begun.
+    has_begun: bool,
 }
 
 impl Sheets<'_> {
+    /// Behind the first sheet.
+    fn begin(drawings: &Drawings, last: usize) -> Sheets<'_> {
+        Sheets { drawings, last, has_begun: false }
+    }
+
+    /// Title of a section; the first one begins a sheet.
+    fn title(&mut self, words: &str) -> String {
+        let class = if self.has_begun { "sheet" } else { "sheet paged" };
+        self.has_begun = true;
+        format!("<h1 class=\"{class}\">{words}</h1>\n")
+    }
+
     /// A drawing of the folder as wide as the sheet; nothing where the run has none.
     fn picture(&mut self, name: &str, caption: &str) -> String {
         let drawings = self.drawings;

@@ -20,7 +20,7 @@ pub fn section(result: &Value, tables: &RunTables, sheets: &mut Sheets<'_>) -> S
     if !found.is_object() {
         return String::new();
     }
-    let mut page = "<h1 class=\"paged\">Crack that is not through</h1>\n".to_owned();
+    let mut page = sheets.title("Crack that is not through");
     page += &sheets.picture("section.svg", "Section through the crack, its front at quarters of the cycles; grey: at the start");
     if let Some(svg) = lengths_svg(tables) {
         page += &sheets.figure(&svg, "Length c on the face and depth a over cycles; a ends where the crack is through");

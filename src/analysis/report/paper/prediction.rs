@@ -53,7 +53,7 @@ pub fn body(result: &Value, tables: &RunTables, drawings: &Drawings, signed: &Si
         quoted(&version)
     );
     page += &hashes(&result["inputs"], HASHES_MOST);
-    let mut sheets = Sheets { drawings, last: FIGURES };
+    let mut sheets = Sheets::begin(drawings, FIGURES);
     page += &spectrum::section(result, &mut sheets);
     page += &part_through::section(result, tables, &mut sheets);
     page += &answers::sections(result, &mut sheets);

@@ -11,12 +11,13 @@ pub fn section(result: &Value, sheets: &mut Sheets<'_>) -> String {
     if !spectrum.is_object() {
         return String::new();
     }
+    let title = sheets.title("Spectrum");
     let picture =
         sheets.picture("spectrum.svg", "A pass of the spectrum: maxima that are as large or larger, and cycles by their range");
     let understood = terms(&understood(spectrum, &result["case"]["loading"]));
     let counted = terms(&counted(result, spectrum));
     format!(
-        "<h1 class=\"paged\">Spectrum</h1>\n{picture}<div class=\"cols\"><div><h2>As understood</h2>{understood}</div>\
+        "{title}{picture}<div class=\"cols\"><div><h2>As understood</h2>{understood}</div>\
          <div><h2>Order of cycles, and the life</h2>{counted}</div></div>\n"
     )
 }

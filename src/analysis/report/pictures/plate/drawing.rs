@@ -97,7 +97,7 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     let middle = along(low, high, 0.5);
     let origin = [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale];
     let mut sketch = Sketch::new(scale, origin);
-    let drawing = Drawing { plate, ways: &ways, life: tables.life(), text: size.text };
+    let drawing = Drawing { plate, ways: &ways, life: tables.life(), text: size.text, width: size.width };
     drawing.body(&mut sketch);
     drawing.loads(&mut sketch);
     drawing.cracks(&mut sketch, !is_small);
@@ -121,7 +121,7 @@ pub fn growth_svg(plate: &Plate, result: &Value, tables: &RunTables, size: Size)
     let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
     let middle = along(low, high, 0.5);
     let mut sketch = Sketch::new(scale, [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale]);
-    let drawing = Drawing { plate, ways: &[], life, text: size.text };
+    let drawing = Drawing { plate, ways: &[], life, text: size.text, width: size.width };
     drawing.body(&mut sketch);
     drawing.loads(&mut sketch);
     drawing.cracks(&mut sketch, true);
@@ -146,6 +146,8 @@ struct Drawing<'a> {
     ways: &'a [Way],
     life: f64,
     text: f64,
+    /// Width of the picture, px.
+    width: f64,
 }
 
 impl Drawing<'_> {
@@ -234,6 +236,9 @@ impl Drawing<'_> {
             self.hold(sketch, *from, *to);
         }
         let mut is_named = false;
+        // Words wider than the picture are written smaller.
+        let letters = self.plate.load.chars().count() as f64;
+        let text = self.text.min((self.width - 8.0) / (0.54 * letters.max(1.0)));
         for load in &self.plate.loads {
             let way = [load.direction[0], -load.direction[1]];
             let (from, to) = (sketch.place(load.from_mm), sketch.place(load.to_mm));
@@ -267,14 +272,14 @@ impl Drawing<'_> {
                     ([middle[0] + 12.0, place[1] + 14.0], "start")
                 } else {
                     // Words wider than the plate stay within the picture.
-                    ([place[0].max(4.0 + 0.27 * self.text * self.plate.load.chars().count() as f64), place[1]], "middle")
+                    ([place[0].max(4.0 + 0.27 * text * letters), place[1]], "middle")
                 };
-                sketch.name(place, &self.plate.load, anchor, self.text, INK);
+                sketch.name(place, &self.plate.load, anchor, text, INK);
             }
         }
         if !is_named {
             let place = [8.0, 1.2 * self.text];
-            sketch.name(place, &self.plate.load, "start", self.text, INK);
+            sketch.name(place, &self.plate.load, "start", text, INK);
         }
     }
 
