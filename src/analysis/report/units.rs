@@ -80,6 +80,12 @@ pub fn of_result(value: &Value, to: System) -> Value {
     }
 }
 
+/// A result that was written in either units, in metric ones.
+pub fn metric_result(value: Value) -> Value {
+    let is_us = value.as_object().is_some_and(|fields| fields.keys().any(|key| renamed(key, System::Si).is_some()));
+    if is_us { of_result(&value, System::Si) } else { value }
+}
+
 fn of_fields(fields: &Map<String, Value>, beside: &Map<String, Value>, to: System) -> Value {
     let field = |(key, value): (&String, &Value)| {
         if KEPT.contains(&key.as_str()) {

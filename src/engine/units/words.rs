@@ -5,7 +5,7 @@ use super::us::{System, UNITS, Unit, clean, renamed};
 /// Significant digits that a converted number has at least, so that a round one (2 mm) stays what it was.
 const DIGITS_LEAST: usize = 4;
 /// What may stand between two numbers of one unit.
-const TIES: [&str; 6] = [" to ", " × ", "–", " ± ", " and ", " for "];
+const TIES: [&str; 7] = [" to ", " × ", " x ", "–", " ± ", " and ", " for "];
 /// Ties that also join a number of something else, as in "tips 1 and 5 mm": before them only a number with decimals counts.
 const LOOSE: [&str; 2] = [" and ", " for "];
 /// Spaces that a number and its unit are set apart by.
@@ -40,7 +40,7 @@ pub fn in_units(text: &str, to: System) -> String {
     let mut parts: Vec<(usize, usize, String)> = places
         .iter()
         .filter(|(place, unit)| {
-            unit.is_unmistakable() || before(text, &numbers, *place).is_some_and(|last| numbers[last].factor != 1.0)
+            unit.is_unmistakable() || before(text, &numbers, *place).is_some_and(|[_, last]| numbers[last].factor != 1.0)
         })
         .map(|(place, unit)| (*place, place + unit.word(from).len(), unit.word(to).to_owned()))
         .collect();
@@ -121,26 +121,31 @@ fn end_of_number(text: &str, from: usize) -> usize {
     to
 }
 
-/// The number that a unit at `place` belongs to: the last one before it, or the last in brackets before it.
-fn before(text: &str, numbers: &[Number], place: usize) -> Option<usize> {
+/// The numbers that a unit at `place` belongs to, the first and the last: one, or all in brackets before it.
+fn before(text: &str, numbers: &[Number], place: usize) -> Option<[usize; 2]> {
     let near = text[..place].trim_end_matches(SPACES);
     let last = numbers.iter().rposition(|number| number.to <= near.len())?;
-    let between = &text[numbers[last].to..near.len()];
-    (between.is_empty() || between == ")").then_some(last)
+    if let Some(open) = near.strip_suffix(')').and_then(|within| within.rfind('(')) {
+        let first = numbers.iter().position(|number| number.from > open)?;
+        return (first <= last).then_some([first, last]);
+    }
+    (numbers[last].to == near.len()).then_some([last; 2])
 }
 
-/// Gives the numbers before a unit its factor: one, those tied to it, and all in brackets.
+/// Gives the numbers before a unit its factor, and those tied to them.
 fn mark(text: &str, numbers: &mut [Number], place: usize, factor: f64) {
-    let Some(mut last) = before(text, numbers, place) else { return };
+    let Some([mut first, mut last]) = before(text, numbers, place) else { return };
     loop {
-        numbers[last].factor = factor;
-        let Some(earlier) = last.checked_sub(1) else { return };
-        let between = &text[numbers[earlier].to..numbers[last].from];
+        numbers[first..=last].iter_mut().for_each(|number| number.factor = factor);
+        let Some(earlier) = first.checked_sub(1) else { return };
+        let between = &text[numbers[earlier].to..numbers[first].from];
         let is_tied = TIES.contains(&between.trim_end_matches('(').trim_start_matches(')')) || is_listed(text, numbers, earlier);
         if !is_tied || (LOOSE.contains(&between) && !is_surely_one(text, &numbers[earlier])) {
             return;
         }
-        last = earlier;
+        // Both coordinates of a pair.
+        let is_pair = between.starts_with(')') && earlier > 0 && is_listed(text, numbers, earlier - 1);
+        (first, last) = (earlier - usize::from(is_pair), earlier);
     }
 }
 

@@ -15,8 +15,7 @@ use crate::report::pictures::fit::{
 use crate::report::pictures::plate::Plate;
 use crate::report::pictures::tables::RunTables;
 use crate::report::run::CRACK_PATH_FILE;
-use crate::report::units::of_result;
-use crate::units::us::System;
+use crate::report::units::metric_result;
 
 /// A run or a fit with its tables.
 pub enum Source {
@@ -148,11 +147,9 @@ impl Files<'_> {
         let bytes = self.opened.read(&self.folder.join(name), name)?;
         let value: Value =
             serde_json::from_slice(&bytes).map_err(|error| self.damaged(name, format!("is cut off or damaged: {error}")))?;
-        if value.is_object() {
-            Ok(of_result(&value, System::Si))
-        } else {
-            Err(self.damaged(name, format!("is no object that `{command}` wrote")))
-        }
+        let is_object = value.is_object();
+        let refuse = || self.damaged(name, format!("is no object that `{command}` wrote"));
+        is_object.then(|| metric_result(value)).ok_or_else(refuse)
     }
 
     fn check_keys(&self, object: &Value, name: &str, wanted: &[Key]) -> Result<()> {
