@@ -93,7 +93,7 @@ fn sweep(args: &Args, asked: &str) -> Result<()> {
     let file = claim("--out", out, tables::COLUMNS)?;
     let beta = args.beta.as_deref().map(|path| claim("--beta", path, HEADER)).transpose()?;
     case.warnings.iter().for_each(|warning| console.warn(warning));
-    let found = factor_sweep(&case, &lengths, console).map_err(|error| document.locate(error))?;
+    let found = factor_sweep(&case, &lengths, true, console).map_err(|error| document.locate(error))?;
     found.warnings.iter().for_each(|warning| console.warn(warning));
     file.write(tables::table(&found).as_bytes())?;
     beta.map_or(Ok(()), |file| file.write(tables::beta_table(&found).as_bytes()))?;
