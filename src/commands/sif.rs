@@ -91,16 +91,15 @@ fn sweep(args: &Args, asked: &str) -> Result<()> {
     };
     // Claimed first: a file that cannot be written should not cost a run.
     let file = claim("--out", out, tables::COLUMNS)?;
-    let beta = args.beta.as_deref().map(|path| Ok((path, claim("--beta", path, HEADER)?))).transpose()?;
+    let beta = args.beta.as_deref().map(|path| claim("--beta", path, HEADER)).transpose()?;
     case.warnings.iter().for_each(|warning| console.warn(warning));
-    let found = factor_sweep(&case, &lengths, console).map_err(|error| document.locate(error))?;
+    let found = factor_sweep(&case, &lengths, true, console).map_err(|error| document.locate(error))?;
     found.warnings.iter().for_each(|warning| console.warn(warning));
     file.write(tables::table(&found).as_bytes())?;
-    let beta_name = beta.as_ref().map(|(path, _)| path.to_path_buf());
-    beta.map_or(Ok(()), |(_, file)| file.write(tables::beta_table(&found).as_bytes()))?;
+    beta.map_or(Ok(()), |file| file.write(tables::beta_table(&found).as_bytes()))?;
     let [from, to] = [lengths[0], lengths[lengths.len() - 1]].map(|length| length / MM);
     if out != Path::new(STREAM) {
         console.say(&format!("{}: {} rows from {from} to {to} mm", out.display(), found.rows.len()));
     }
-    console.object(&json!({ "file": out, "beta_file": beta_name, "rows": found.rows.len(), "lead_tip": found.lead }))
+    console.object(&json!({ "file": out, "beta_file": args.beta, "rows": found.rows.len(), "lead_tip": found.lead }))
 }

@@ -30,7 +30,7 @@ pub fn table(sweep: &FactorSweep) -> String {
 
 /// β of the tip that grows farthest over its own a, as [`crate::specimen::beta`] reads it.
 pub fn beta_table(sweep: &FactorSweep) -> String {
-    let rows = sweep.rows.iter().filter(|row| row.tip == sweep.lead);
+    let rows = sweep.rows.iter().filter(|row| row.tip == sweep.lead && row.beta > 0.0);
     lines(HEADER, rows.map(|row| format!("{},{}", number(row.beta_length / MM), number(row.beta))))
 }
 

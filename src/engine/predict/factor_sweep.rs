@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::factor_curve::{EXPONENT_USUAL, unit_growth};
+use super::factor_curve::{EXPONENT_USUAL, TipFactors, unit_growth};
 use super::moment::{grown, rows_before_meeting};
 use super::{CurvePoint, Observer};
 use crate::case::{Case, Engine};
@@ -77,9 +77,10 @@ pub struct FactorSweep {
     pub warnings: Vec<String>,
 }
 
-/// K and compliance of a case, whose crack is as long as the first of these lengths or a `plate` shorter, m, rising.
+/// K of a case, whose crack is as long as the first of these lengths or a `plate` shorter, m, rising, and what takes a solve at every length
+/// if `has_compliance`.
 /// Errors: cracks that are none, lengths that the crack does not reach, displacement in place of load; as [`super::predict`].
-pub fn factor_sweep(case: &Case, lengths: &[f64], observer: &dyn Observer) -> Result<FactorSweep> {
+pub fn factor_sweep(case: &Case, lengths: &[f64], has_compliance: bool, observer: &dyn Observer) -> Result<FactorSweep> {
     let case = &ready(case, lengths)?;
     let mut warnings = Vec::new();
     let stands = if case.engine() == Engine::Handbook {
@@ -87,9 +88,11 @@ pub fn factor_sweep(case: &Case, lengths: &[f64], observer: &dyn Observer) -> Re
     } else {
         by_run(case, lengths, observer, &mut warnings)?
     };
-    let found = stands.par_iter().map(|stand| Ok((stand, Compliance::of(case, stand)?))).collect::<Result<Vec<_>>>()?;
+    let compliance = |stand: &Stand| has_compliance.then(|| Compliance::of(case, stand)).transpose();
+    let found = stands.par_iter().map(compliance).collect::<Result<Vec<_>>>()?;
     let mut rows = Vec::new();
-    for (Stand { specimen, factors, t_stress }, compliance) in found {
+    for (Stand { specimen, factors, t_stress }, compliance) in stands.iter().zip(found) {
+        let beside = compliance.as_ref();
         for (tip, seed) in specimen.tips.iter().enumerate() {
             let beta_length = beta_length(specimen, tip);
             let stress = specimen.beta_stress(case.loading.maximum);
@@ -98,12 +101,12 @@ pub fn factor_sweep(case: &Case, lengths: &[f64], observer: &dyn Observer) -> Re
                 tip,
                 position: seed.position,
                 factors: factors[tip],
-                t_stress: t_stress[tip].or(compliance.t_stress[tip]),
+                t_stress: t_stress[tip].or(beside.and_then(|found| found.t_stress[tip])),
                 beta_length,
                 beta: equivalent_factor(factors[tip]) / (stress * (PI * beta_length).sqrt()),
-                mouth_opening: compliance.mouths[tip],
-                load_line: compliance.load_line,
-                back_face_strain: compliance.back_face_strain,
+                mouth_opening: beside.and_then(|found| found.mouths[tip]),
+                load_line: beside.and_then(|found| found.load_line),
+                back_face_strain: beside.and_then(|found| found.back_face_strain),
             });
         }
     }
@@ -175,7 +178,8 @@ fn by_formula(case: &Case, lengths: &[f64], warnings: &mut Vec<String>) -> Resul
 fn by_run(case: &Case, lengths: &[f64], observer: &dyn Observer, warnings: &mut Vec<String>) -> Result<Vec<Stand>> {
     let run = unit_growth(case, EXPONENT_USUAL, observer)?;
     warnings.extend(run.warnings);
-    let rows: Vec<CurvePoint> = rows_before_meeting(&run.curve).iter().filter(|row| row.is_solved).cloned().collect();
+    let mut rows = rows_before_meeting(&run.curve).to_vec();
+    rows.dedup_by(|next, before| next.crack_length <= before.crack_length);
     let last = lengths[lengths.len() - 1];
     let reached = rows.last().map_or(0.0, |row| row.crack_length);
     if rows.len() < 2 || reached < last * (1.0 - SAME) {
@@ -186,18 +190,42 @@ fn by_run(case: &Case, lengths: &[f64], observer: &dyn Observer, warnings: &mut 
             last / MM
         )));
     }
-    let curve = |value: &dyn Fn(&CurvePoint) -> f64| Parabolas::new(rows.iter().map(|row| (row.crack_length, value(row))));
-    let of_tip = |tip: usize| {
-        let factor = |mode: usize| curve(&|row| row.tips[tip].factors.map_or(f64::NAN, |factors| factors[mode]));
-        ([factor(0), factor(1)], curve(&|row| row.tips[tip].t_stress.unwrap_or(f64::NAN)))
-    };
-    let tips: Vec<_> = (0..case.specimen.tips.len()).map(of_tip).collect();
+    let tips: Vec<TipCurves> = (0..case.specimen.tips.len()).map(|tip| TipCurves::of(&rows, tip)).collect();
     let stand = |&length: &f64| Stand {
         specimen: grown(&case.specimen, &up_to(&rows, length)),
-        factors: tips.iter().map(|(factors, _)| [0, 1].map(|mode| factors[mode].at(length))).collect(),
-        t_stress: tips.iter().map(|(_, t_stress)| Some(t_stress.at(length)).filter(|t| t.is_finite())).collect(),
+        factors: tips.iter().map(|tip| tip.factors(length)).collect(),
+        t_stress: tips.iter().map(|tip| Some(tip.t_stress.at(length)).filter(|t| t.is_finite())).collect(),
     };
     Ok(lengths.iter().map(stand).collect())
+}
+
+/// K and T of a tip between the rows of a run.
+struct TipCurves {
+    /// K_eq, which the growth follows.
+    equivalent: TipFactors,
+    /// Angle of K_II over K_I, rad.
+    angle: Parabolas,
+    t_stress: Parabolas,
+}
+
+impl TipCurves {
+    fn of(rows: &[CurvePoint], tip: usize) -> Self {
+        let factors = |row: &CurvePoint| row.tips[tip].factors.unwrap_or([f64::NAN; 2]);
+        let over_length =
+            |value: &dyn Fn(&CurvePoint) -> f64| Parabolas::new(rows.iter().map(|row| (row.crack_length, value(row))));
+        TipCurves {
+            equivalent: TipFactors::new(rows.iter().map(|row| (row.crack_length, equivalent_factor(factors(row))))),
+            angle: over_length(&|row| factors(row)[1].atan2(factors(row)[0])),
+            t_stress: over_length(&|row| row.tips[tip].t_stress.unwrap_or(f64::NAN)),
+        }
+    }
+
+    /// K_I and K_II at a length, m; NaN around rows in which the load presses the tip shut.
+    fn factors(&self, length: f64) -> [f64; 2] {
+        let (sin, cos) = self.angle.at(length).sin_cos();
+        let scale = self.equivalent.at(length) / equivalent_factor([cos, sin]);
+        [scale * cos, scale * sin]
+    }
 }
 
 /// The rows up to a length, the last one there.
