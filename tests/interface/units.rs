@@ -13,7 +13,7 @@ use crate::interface::cli::{perilife, texts};
 
 /// Names without a unit: counts, cycles, shares, ratios and exponents. A number under any other name without one would be a length, a stress or the
 /// like that nobody converts.
-const WITHOUT_UNIT: [&str; 64] = [
+const WITHOUT_UNIT: [&str; 65] = [
     "beta",
     "blocks",
     "bonds",
@@ -58,6 +58,7 @@ const WITHOUT_UNIT: [&str; 64] = [
     "p",
     "p_error",
     "paris_m",
+    "passes",
     "paris_m_error",
     "points",
     "points_solved",

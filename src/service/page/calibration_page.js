@@ -10,6 +10,7 @@ import { warningList } from "./check.js";
 import { lawSections } from "./law_page.js";
 import { loadInto } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
+import { inShown, levelShown, unitShown } from "./units.js";
 
 const STRESS_INTENSITY = "MPa√m";
 const SPECIMENS_APART = 6;
@@ -145,7 +146,7 @@ function lawCard(s) {
     element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}, where the readings fix it best`),
       element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), element("small", null, "mm/cycle")),
       element("p", { class: "beside" }, element("strong", null, `± ${percent(s.rate_at_pivot_relative_error, 1)}`), " (one standard error)"),
-      element("p", { class: "quiet" }, `C = ${scientific(s.paris_c_mm_per_cycle, 3)}, quoted only together with m.`)),
+      element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}, quoted only together with m.`)),
     element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, fixed(s.paris_m, 2)),
       terms([
         Number.isFinite(s.paris_m_error) && ["±", fixed(s.paris_m_error, 2)],
@@ -164,9 +165,9 @@ function constants(s) {
   const horizon = Number.isFinite(s.horizon_mm) ? `, at a horizon of ${plain(s.horizon_mm, 5)} mm` : "";
   const atPivot = `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
   const rows = [
-    [name("Rate at the pivot", atPivot), scientific(s.rate_at_pivot_mm_per_cycle, 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
+    [name("Rate at the pivot", atPivot), scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
     [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error, 4)],
-    [name("Paris C", `mm/cycle, at ΔK = 1 ${STRESS_INTENSITY}`), scientific(s.paris_c_mm_per_cycle, 4), ""],
+    [name("Paris C", `${unitShown("mm/cycle")}, at ΔK = 1 ${unitShown(STRESS_INTENSITY)}`), scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 4), ""],
     [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error, 4)],
     [name("Bond constant A", `1/cycle${horizon}`), scientific(s.a, 4), ""],
   ];

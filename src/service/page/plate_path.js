@@ -2,6 +2,7 @@
 // cycles. `to(cycles)` shows it at a moment: what has grown in colour, what is to come dotted.
 
 import { shape as node, show, uniqueId } from "./dom.js";
+import { inShown, unitShown } from "./units.js";
 
 const STOPS = 5;
 const MARKS = [0.25, 0.5, 0.75, 0.9];
@@ -173,11 +174,13 @@ function createView(label, isWhole, heightMax) {
     });
   }
 
-  function ruleOf(scale, left, height, span) {
+  function ruleOf(pixels, left, height, whole) {
+    const per = inShown(1, "mm");
+    const [scale, span] = [pixels / per, whole * per];
     const power = 10 ** Math.floor(Math.log10(0.28 * span));
     const length = [5, 2, 1].map((factor) => factor * power).find((value) => value <= 0.28 * span);
     return node("g", { class: "plate-rule" }, node("path", { d: `M${left + 0.5} ${height - 11}v5h${length * scale}v-5` }),
-      node("text", { x: left + length * scale + 6, y: height - 6 }, `${length} mm`));
+      node("text", { x: left + length * scale + 6, y: height - 6 }, `${length} ${unitShown("mm")}`));
   }
 
   function to(cycles) {

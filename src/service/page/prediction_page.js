@@ -14,6 +14,7 @@ import { createPlatePath } from "./plate_path.js";
 import { partThroughTerms, spectrumCard, spectrumTerms } from "./prediction_more.js";
 import { createRemaining } from "./remaining.js";
 import { curveChoices } from "./resample.js";
+import { levelShown, unitShown } from "./units.js";
 
 const STEPS = 1000;
 const PLAY_MS = 5000;
@@ -246,7 +247,7 @@ const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: `${fixed(leng
 function howComputed(job, r) {
   const law = r.law ?? {};
   const rate = law.rate_at_pivot_mm_per_cycle && `da/dN ${scientific(law.rate_at_pivot_mm_per_cycle, 3)} mm/cycle at ΔK ${significant(law.pivot_delta_k_mpa_sqrt_m, 4)} MPa√m`;
-  const given = !rate && law.paris_c_mm_per_cycle && `da/dN = ${scientific(law.paris_c_mm_per_cycle, 4)} ΔK^m mm/cycle (ΔK in MPa√m)`;
+  const given = !rate && law.paris_c_mm_per_cycle && `da/dN = ${scientific(levelShown(law.paris_c_mm_per_cycle, law.paris_m), 4)} ΔK^m ${unitShown("mm/cycle")} (ΔK in ${unitShown("MPa√m")})`;
   const paris = law.paris_m && `m ${significant(law.paris_m, 4)}${law.paris_m_error ? ` ± ${significant(law.paris_m_error, 2)}` : ""}`;
   const range = law.delta_k_min_mpa_sqrt_m && `ΔK ${significant(law.delta_k_min_mpa_sqrt_m, 3)} to ${significant(law.delta_k_max_mpa_sqrt_m, 3)} MPa√m`;
   const isNodes = r.model?.method === "element_free_galerkin";

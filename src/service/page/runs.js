@@ -227,7 +227,7 @@ function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
   const factors = (s.tips ?? []).flatMap((tip) => Object.values(tip.methods ?? {})).filter((read) => Number.isFinite(read.k_i_mpa_sqrt_m));
   if (kind === "sif" && factors.length > 0) {
     const most = factors.reduce((one, other) => (other.k_i_mpa_sqrt_m > one.k_i_mpa_sqrt_m ? other : one));
-    return [two(`${significant(most.k_i_mpa_sqrt_m, 4)} MPa√m`, `K II ${significant(most.k_ii_mpa_sqrt_m, 3)}`), ""];
+    return [two(`${significant(most.k_i_mpa_sqrt_m, 4)} MPa√m`, `K II ${significant(most.k_ii_mpa_sqrt_m, 3)} MPa√m`), ""];
   }
   if (kind === "sweep" && s.life_cycles?.p50) {
     const figure = (value) => cycles(Math.round(value));

@@ -72,9 +72,15 @@ export function apart(text, unit) {
 /** The unit that is shown in place of a metric one. */
 export const unitShown = (unit) => (isUs && UNITS[unit]?.[0]) || unit;
 
+/** A number that is written apart from its unit. */
+export const inShown = (value, unit) => value / ((isUs && UNITS[unit]?.[1]) || 1);
+
+/** C of C ΔK^m, mm/cycle at 1 MPa√m, in the units that are shown. */
+export const levelShown = (c, m) => (isUs ? (c * KSI_SQRT_IN ** m) / INCH : c);
+
 /** An axis of a chart with its unit and what its values are multiplied by. */
 export function axisShown(axis) {
-  return { ...axis, unit: unitShown(axis.unit), per: 1 / ((isUs && UNITS[axis.unit]?.[1]) || 1) };
+  return { ...axis, unit: unitShown(axis.unit), per: inShown(1, axis.unit) };
 }
 
 /** Changes the words of a node, unless they are kept; a unit in an element of its own goes with the number before it. */
