@@ -224,7 +224,7 @@ fn bending_in_the_plane() {
 /// Bearing beside bypass: K is that of the bypass on both edges and that of a pin whose force one edge bears, in two runs.
 #[test]
 fn bearing_and_bypass() {
-    let hole = "holes = [{ centre_mm = [0, 0], radius_mm = 4 }]";
+    let hole = "holes = [{ x_mm = 0, y_mm = 0, diameter_mm = 8 }]";
     let plate = |loading: &str| {
         let specimen = format!(
             "kind = \"plate\"\nwidth_mm = 60\nlength_mm = 120\n{hole}\ncracks = [{{ from_mm = [4, 0], to_mm = [9, 0] }}]"
