@@ -126,7 +126,7 @@ fn draw_loads(sketch: &mut Sketch, specimen: &Specimen) {
                     let share = (i as f64 + 0.5) / count as f64;
                     let traction = along(first, last, share);
                     let size = traction[0].hypot(traction[1]);
-                    if size < 0.02 * largest {
+                    if size == 0.0 || first != last && size < 0.02 * largest {
                         continue;
                     }
                     let reach = ARROW * (size / largest).max(0.4) / size;

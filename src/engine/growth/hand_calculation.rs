@@ -127,6 +127,8 @@ impl<'a> HandCalculation<'a> {
     fn point(&self, cycles: f64, crack_length: f64) -> CurvePoint {
         let (specimen, loading) = (&self.case.specimen, &self.case.loading);
         let (k_max, of_residual) = self.factors(crack_length);
+        // Pressed shut.
+        let k_max = if k_max < 0.0 { 0.0 } else { k_max };
         let growth = (crack_length - specimen.crack_length) / self.sharing;
         let ahead =
             |seed: &crate::specimen::TipSeed| along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth);

@@ -69,9 +69,10 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// The same K_res in another K at maximum load, Pa√m.
+    /// The same K_res in another K at maximum load, Pa√m; there is no ratio where that is 0.
     pub fn beside(self, k_max: f64, loading: &Loading) -> Residual {
-        Residual { ratio: loading.ratio_at(self.factor / k_max), ..self }
+        let share = self.factor / k_max;
+        Residual { ratio: if share.is_finite() { loading.ratio_at(share) } else { f64::NAN }, ..self }
     }
 
     /// Share of K_max that counts as range, as [`Loading::range_share`].
