@@ -114,11 +114,12 @@ fn every_plate_of_a_fleet_has_its_own_interval() {
     let tough = hand_case(PANEL, &["material.toughness_mpa_sqrt_m=40", "stop.crack_length_mm=70"]);
     let formula = perilife::specimen::handbook::handbook(&tough.specimen).unwrap();
     let (drawn, _) = fleet(&tough, &by_load, Some(looks));
-    for plate in drawn.plates.iter().filter(|plate| plate.life.stop == StopReason::Toughness) {
-        let k = formula.k_i(plate.critical_length.unwrap(), plate.load * tough.loading.maximum);
-        assert!((k / (40.0 * MPA_SQRT_M) - 1.0).abs() < 5e-3, "{k} {plate:?}");
+    // Under a lower load than that of the run the record ends before the plate does.
+    for plate in &drawn.plates {
+        let k = formula.k_i(plate.critical_length.unwrap(), plate.load * tough.loading.maximum) / (40.0 * MPA_SQRT_M);
+        assert!(plate.life.stop == StopReason::Toughness, "{plate:?}");
+        assert!(if plate.load > 1.0 { (k - 1.0).abs() < 5e-3 } else { k < 1.0 + 5e-3 }, "{k} {plate:?}");
     }
-    assert!(drawn.plates.iter().filter(|plate| plate.life.stop == StopReason::Toughness).count() > 1900);
     // Where cracks break before they can be found there is no interval.
     let (blind, _) = fleet(&tough, &by_load, Some(Looks { detectable: 60.0 * MM, ..looks }));
     assert!(blind.looked.is_none() && blind.plates.iter().all(|plate| left(plate) == 0.0 && plate.missed.is_none()));
