@@ -31,7 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Four crates are compiled one on the other: `src/engine` from a case to its life, `src/analysis` with calibration, verification and
+//! Crates are compiled one on the other: `src/engine` from a case to its life, `src/analysis` with calibration, verification and
 //! reports, `src/service`, and here the command line. Rooms stand in the order in which data flows; a file uses only rooms listed above
 //! its own (kept by `tests/unit/layering.rs`).
 #![warn(missing_docs)]

@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use crate::errors::raised;
 use crate::values;
 
-/// Reads a document: `source` is the path of a file, or a dict of sections whose files lie in the current folder; `set` overrides keys,
-/// `law` takes the place of the law in `[fatigue]`, and `files` are known by name before any on disk.
+/// Reads a document: `source` is the path of a file, or a dict of sections whose files lie in the current folder; `set` overrides
+/// keys, `law` takes the place of the law in `[fatigue]`, and `files` are known by name before any on disk.
 pub fn document(
     source: &Bound<'_, PyAny>,
     name: &str,

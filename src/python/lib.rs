@@ -126,7 +126,8 @@ mod _perilife {
         Ok((specimens, cycles, lengths, measured.warnings))
     }
 
-    /// Name, words, E in GPa, ν, yield strength in MPa, toughness in MPa√m of the materials of the library, and whether one has growth data.
+    /// Name, words, E in GPa, ν, yield strength in MPa and toughness in MPa√m of the materials of the library, and whether growth
+    /// data are there.
     #[pyfunction]
     #[expect(clippy::type_complexity, reason = "one row of a table")]
     fn materials() -> PyResult<Vec<(String, String, Option<f64>, Option<f64>, Option<f64>, Option<f64>, bool)>> {

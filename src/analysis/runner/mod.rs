@@ -132,8 +132,8 @@ pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, wat
 }
 
 /// Refuses what a run would be refused for after it: what is wrong there should not cost a run.
-/// Errors: a record that is damaged, a fleet in which nothing scatters, a factor that is none, a plate without known strength, a load that
-/// breaks it at once.
+/// Errors: a record that is damaged, a fleet in which nothing scatters, a factor that is none, a plate without known strength, a load
+/// that breaks it at once.
 pub fn check_wanted(case: &Case, wanted: &Wanted) -> Result<()> {
     let lot = lot_of(case)?;
     case.fleet.as_ref().map_or(Ok(()), |fleet| fleet::check(fleet, lot.as_ref().err()))?;

@@ -1,8 +1,8 @@
 """Fatigue life of cracked plates: from readings of a test to the life of a part.
 
-Quantities carry their unit in their name (mm, MPa, N, MPa√m, mm/cycle). A case is the path of a TOML file, or a dict of the same tables:
-``{"specimen": {"kind": "middle_tension", "width_mm": 100.0, ...}, "material": {...}, "loading": {...}}``; paths in a dict start at the
-current folder. ``set={"model.spacing_mm": 0.5}`` overrides keys, as ``--set`` does.
+Quantities carry their unit in their name (mm, MPa, N, MPa√m, mm/cycle). A case is the path of a TOML file, or a dict of the same
+tables: ``{"specimen": {"kind": "middle_tension", "width_mm": 100.0, ...}, "material": {...}, "loading": {...}}``; paths in a dict
+start at the current folder. ``set={"model.spacing_mm": 0.5}`` overrides keys, as ``--set`` does.
 """
 
 from __future__ import annotations
@@ -66,9 +66,9 @@ def calibrate(
 ) -> Calibration:
     """Fits the growth law to readings of tests.
 
-    ``readings`` are a data frame of pandas or polars, a dict of columns, the path of a laboratory's table (CSV, text, ``.xlsx``), several
-    of these in a list, or the path of a calibration file, which has all sections itself. Columns are found by their names (``specimen``,
-    ``cycles``, ``crack_length_mm``, loads); what names do not say ``measured`` does.
+    ``readings`` are a data frame of pandas or polars, a dict of columns, the path of a laboratory's table (CSV, text, ``.xlsx``),
+    several of these in a list, or the path of a calibration file, which has all sections itself. Columns are found by their names
+    (``specimen``, ``cycles``, ``crack_length_mm``, loads); what names do not say ``measured`` does.
     """
     source: Case
     files: dict[str, bytes] = {}
@@ -114,9 +114,9 @@ def predict(
 ) -> Prediction:
     """Runs a case of cycles to its life.
 
-    ``law`` takes the place of the law of the case. The options are those of ``perilife predict``: ``measured`` is a table of readings of
-    this very plate, ``pod`` the crack lengths in mm that an inspection finds with 50 and with 90 %. ``progress`` is called now and then
-    with a :class:`Progress`; answering ``False`` ends the run.
+    ``law`` takes the place of the law of the case. The options are those of ``perilife predict``: ``measured`` is a table of readings
+    of this very plate, ``pod`` the crack lengths in mm that an inspection finds with 50 and with 90 %. ``progress`` is called now and
+    then with a :class:`Progress`; answering ``False`` ends the run.
     """
     wishes: dict[str, Any] = {
         "error_estimate": error_estimate,
@@ -208,7 +208,7 @@ def materials() -> tuple[Material, ...]:
 
 
 def read_table(path: StrPath) -> Table:
-    """Reads a laboratory's table, whose columns and units are found by their names: ``specimen``, ``cycles``, ``crack_length_mm``.
+    """Reads a laboratory's table, columns and units found by their names, as ``specimen``, ``cycles`` and ``crack_length_mm``.
 
     To fit a law give the path itself to :func:`calibrate`, which also takes the loads and remarks that the table has.
     """

@@ -36,7 +36,7 @@ CASE: dict[str, Any] = {
     "stop": {"crack_length_mm": 40.0},
 }
 # Some seconds of work.
-LONG = {**CASE, "model": {"method": "peridynamics", "spacing_mm": 0.4}}
+LONG = {**CASE, "model": {"method": "peridynamics", "spacing_mm": 0.6}}
 
 
 def calibration(readings: Any) -> perilife.Calibration:
