@@ -22,7 +22,7 @@ fn of_repository() -> Option<String> {
     // A package that was unpacked into another repository is not of that one.
     git(&["ls-files", "--error-unmatch", "Cargo.toml"])?;
     let commit = git(&["rev-parse", "HEAD"])?;
-    let changes = git(&["status", "--porcelain", "--untracked-files=no", "--", "src", "Cargo.toml", "data"])?;
+    let changes = git(&["status", "--porcelain", "--untracked-files=no", "--", ":/src", ":/Cargo.toml", ":/data"])?;
     let mark = if changes.trim().is_empty() { "" } else { " with changes" };
     Some(format!("{}{mark}", commit.trim()))
 }

@@ -13,25 +13,25 @@
 //! As a library, from readings of a test to the life of another plate; lengths are metres inside, and names of what is not SI say so:
 //!
 //! ```
-//! use perilife::calibration::{calibrate::calibrate, case::CalibrationCase, results::record};
-//! use perilife::{case::Case, input::Folder, predict::{Silent, predict}};
+//! use perilife::{predict::{Silent, predict}, runner::Draft};
+//! use toml::toml;
 //!
 //! let csv = "cycles,crack_length_mm\n0,9\n20000,9.6\n40000,10.3\n60000,11.2\n80000,12.3\n100000,13.6\n120000,15.3\n140000,17.6\n";
-//! let panel = r#"specimen = { kind = "middle_tension", width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 }
-//!     material = { name = "al2024-t3" }
-//!     loading = { stress_range_mpa = 48.28, stress_ratio = 0.2 }
-//!     model = { method = "handbook" }"#;
-//! let readings = Folder::at_hand([("panel.csv".to_owned(), csv.into())]);
-//! let test = CalibrationCase::from_text(&format!("measured.files = ['panel.csv']\n{panel}"), "panel", readings)?;
-//! let law = record(&test, &calibrate(&test, &Silent)?);
-//! let narrower = format!("{panel}\nstop = {{ crack_length_mm = 20.0 }}").replace("152.4", "120.0");
-//! let life = predict(&Case::from_toml_with_law(&narrower, "narrower", Folder::none(), law)?, &Silent)?;
+//! let panel = Draft::new("panel")
+//!     .section("specimen", toml! { kind = "middle_tension", width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 })
+//!     .section("material", toml! { name = "al2024-t3" })
+//!     .section("loading", toml! { stress_range_mpa = 48.28, stress_ratio = 0.2 })
+//!     .section("model", toml! { method = "handbook" });
+//! let test = panel.clone().readings("panel.csv", csv).calibration()?;
+//! let law = test.fit(&Silent)?.record_text()?;
+//! let narrower = panel.section("specimen", toml! { width_mm = 120.0 }).section("stop", toml! { crack_length_mm = 20.0 });
+//! let life = predict(&narrower.law(&law).case()?, &Silent)?;
 //! println!("{:.0} cycles to {:.1} mm", life.life_cycles(), life.crack_length_final_mm());
 //! # assert!(life.life_cycles() > 1e5 && (life.crack_length_final_mm() - 20.0).abs() < 1e-6);
-//! # Ok::<(), perilife::Error>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Four crates are compiled one on the other: `src/engine` from a case to its life, `src/analysis` with calibration, verification and
+//! Crates are compiled one on the other: `src/engine` from a case to its life, `src/analysis` with calibration, verification and
 //! reports, `src/service`, and here the command line. Rooms stand in the order in which data flows; a file uses only rooms listed above
 //! its own (kept by `tests/unit/layering.rs`).
 #![warn(missing_docs)]

@@ -69,7 +69,7 @@ pub fn run(args: &Args) -> Result<()> {
         console.warn(warning);
     }
     let report = fitted.report(wall_s);
-    folder.fill(|path| fit::write(path, &fitted, &report))?;
+    folder.fill(|path| fit::write(path, &fitted, &fit::Kept::of(&fitted, &report)?))?;
     // Nobody else writes there until the predictions stand in it.
     let place = folder.finish()?;
     for line in fitted.summary(wall_s) {

@@ -6,9 +6,7 @@ use serde_json::json;
 
 use super::console::Console;
 use crate::error::Result;
-use crate::input::Opened;
-use crate::report::output::{OutputFile, Sort};
-use crate::report::paper::{SIGN, Signed, html, read};
+use crate::report::paper::{Signed, write};
 
 /// Arguments of `perilife report`.
 #[derive(Debug, clap::Args)]
@@ -43,21 +41,15 @@ pub struct Args {
 /// Runs `perilife report`.
 /// Errors: a folder without a whole run or fit; a file in the way.
 pub fn run(args: &Args) -> Result<()> {
-    let opened = Opened::default();
-    let source = read(&args.folder, &opened)?;
     let signed = Signed {
         laboratory: args.laboratory.clone(),
         operator: args.operator.clone(),
         reviewer: args.reviewer.clone(),
         date: args.date.clone(),
     };
-    let sort = Sort { option: "--out", sign: SIGN.as_bytes() };
-    let file = OutputFile::claim(&args.out, sort, &opened.so_far())?;
-    let is_file = file.is_file();
-    let page = html(&source, &signed);
-    file.write(page.as_bytes())?;
+    let (bytes, is_file) = write(&args.folder, &args.out, &signed)?;
     if is_file {
         args.console.say(&format!("report         {}", args.out.display()));
     }
-    args.console.object(&json!({ "file": args.out, "bytes": page.len() }))
+    args.console.object(&json!({ "file": args.out, "bytes": bytes }))
 }

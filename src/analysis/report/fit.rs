@@ -18,58 +18,82 @@ use crate::calibration::case::CalibrationCase;
 use crate::calibration::fit::Fit;
 use crate::calibration::readings::readings_csv;
 use crate::calibration::results::{fit_curves_csv, fitted_rates_csv, rates_csv, rates_taken_csv};
+use crate::case::RECORD;
 use crate::error::{Error, Result};
 use crate::units::{MM, MPA_SQRT_M};
 
+/// The law, for `fatigue.fitted`.
+pub const LAW_FILE: &str = RECORD;
 /// Table of the rates that a law was fitted to.
 const RATES_FILE: &str = "rates.csv";
 /// Growth rate over ΔK with the law.
 const DA_DN_FILE: &str = "da_dn.svg";
 
-/// Writes all files of a fit into `folder`; `report` is the content of `fit.json`.
-pub fn write(folder: &Path, fitted: &Fitted<'_>, report: &Value) -> Result<()> {
-    let unwritable = |error: toml::ser::Error| {
-        Error::file(&folder.join("fitted.toml"), "cannot write", std::io::Error::other(error.to_string()))
-    };
-    let law = fitted.record_text().map_err(unwritable)?;
+/// A fit as its folder keeps it.
+#[derive(Debug, Clone)]
+pub struct Kept {
+    /// Content of `fit.json`.
+    pub json: Value,
+    /// The law and all tables, by the names of their files.
+    pub tables: Vec<(&'static str, String)>,
+}
+
+impl Kept {
+    /// Of a fit and its report.
+    /// Errors: a law that has no form in TOML.
+    pub fn of(fitted: &Fitted<'_>, report: &Value) -> Result<Self> {
+        let unwritable =
+            |error: toml::ser::Error| Error::file(Path::new(LAW_FILE), "cannot write", std::io::Error::other(error.to_string()));
+        let law = fitted.record_text().map_err(unwritable)?;
+        let mut json = report.clone();
+        let tables = match fitted {
+            Fitted::Lives(calibration, fit) => {
+                let delta_k = |length: f64| fit.delta_k(calibration, length);
+                let tables = vec![
+                    (LAW_FILE, law),
+                    (CURVES_FILE, fit_curves_csv(fit)),
+                    (BAND_FILE, band(calibration, fit)),
+                    (RATES_FILE, fitted_rates_csv(calibration, fit)),
+                    (READINGS_FILE, readings_csv(calibration, &delta_k)),
+                ];
+                if let Some(object) = json.as_object_mut() {
+                    object.insert("test".to_owned(), test_record::test(calibration));
+                    object.insert("criteria".to_owned(), test_record::criteria(calibration, &delta_k).into());
+                    object.insert("plate".to_owned(), json!(Plate::of(&calibration.case)));
+                }
+                let listed: Vec<(&str, &str)> = tables.iter().map(|(name, text)| (*name, &**text)).collect();
+                provenance::add(&mut json, &calibration.case.provenance, &listed);
+                tables
+            }
+            Fitted::Rates(case, fits) => {
+                vec![(LAW_FILE, law), (RATES_FITTED_FILE, rates_csv(case, fits)), (RATES_FILE, rates_taken_csv(case))]
+            }
+        };
+        Ok(Kept { json, tables })
+    }
+
+    /// A table by the name of its file.
+    pub fn table(&self, name: &str) -> &str {
+        self.tables.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text)
+    }
+}
+
+/// Writes all files of a fit into `folder`.
+pub fn write(folder: &Path, fitted: &Fitted<'_>, kept: &Kept) -> Result<()> {
     let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
-    let mut json = report.clone();
+    kept.tables.iter().try_for_each(|(name, text)| put(name, text))?;
     match fitted {
         Fitted::Lives(calibration, fit) => {
-            let (curves, band, rates) = (fit_curves_csv(fit), band(calibration, fit), fitted_rates_csv(calibration, fit));
-            let provenance = &calibration.case.provenance;
-            let delta_k = |length: f64| fit.delta_k(calibration, length);
-            let readings = readings_csv(calibration, &delta_k);
-            let tables = [
-                ("fitted.toml", &*law),
-                (CURVES_FILE, &*curves),
-                (BAND_FILE, &*band),
-                (RATES_FILE, &*rates),
-                (READINGS_FILE, &*readings),
-            ];
-            if let Some(object) = json.as_object_mut() {
-                object.insert("test".to_owned(), test_record::test(calibration));
-                object.insert("criteria".to_owned(), test_record::criteria(calibration, &delta_k).into());
-                object.insert("plate".to_owned(), json!(Plate::of(&calibration.case)));
-            }
-            provenance::add(&mut json, provenance, &tables);
-            tables.iter().try_for_each(|(name, text)| put(name, text))?;
-            provenance::write(folder, "calibrate", calibration.input.clone(), provenance)?;
+            provenance::write(folder, "calibrate", calibration.input.clone(), &calibration.case.provenance)?;
             write_tables(folder, calibration, fit)?;
-            let tables = FitTables::read(&json, [&curves, &band, &readings])?;
+            let tables = FitTables::read(&kept.json, [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| kept.table(name)))?;
             put("fit.svg", &tables.lives_svg(LARGE))?;
             put(DA_DN_FILE, &tables.rates_svg(LARGE))?;
         }
-        Fitted::Rates(case, fits) => {
-            put("fitted.toml", &law)?;
-            let rates = rates_csv(case, fits);
-            put(RATES_FITTED_FILE, &rates)?;
-            put(RATES_FILE, &rates_taken_csv(case))?;
-            put(DA_DN_FILE, &law_svg(&rates_fitted(&rates)?, LARGE))?;
-        }
+        Fitted::Rates(..) => put(DA_DN_FILE, &law_svg(&rates_fitted(kept.table(RATES_FITTED_FILE))?, LARGE))?,
     }
-    put(FIT_FILE, &format!("{json:#}\n"))?;
-    show_folder(folder, &mut json)
+    put(FIT_FILE, &format!("{:#}\n", kept.json))?;
+    show_folder(folder, &mut kept.json.clone())
 }
 
 /// Standard errors from the middle of a 95 % band to its ends.

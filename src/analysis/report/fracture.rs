@@ -56,8 +56,8 @@ pub fn crack_path(path: &[PathPoint]) -> String {
     text
 }
 
-/// All tables by name.
-fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
+/// All tables by the names of their files.
+pub fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
     [
         ("history.csv", history(fracture)),
         ("crack_path.csv", crack_path(&fracture.path)),

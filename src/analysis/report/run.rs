@@ -165,29 +165,43 @@ pub const FIGURES: [&str; 29] = [
     "memory_mb",
 ];
 
-/// Writes all files of a run into `folder`; returns the content of `result.json`.
-pub fn write(
-    folder: &Path,
-    case: &Case,
-    prediction: &Prediction,
-    (lives, quality, answers): (&Lives, &Quality, &Answers),
-) -> Result<Value> {
-    let mut result = json::result(case, prediction);
-    lives.add_to(&mut result);
-    quality.add_to(&mut result);
-    answers.add_to(&mut result);
-    let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement()));
-    let path = csv::crack_path(prediction, &case.specimen.cracks);
-    if let Some(object) = result.as_object_mut() {
-        object.insert("plate".to_owned(), json!(Plate::of(case)));
+/// A run as its folder keeps it: what is drawn and read from later.
+#[derive(Debug, Clone)]
+pub struct Kept {
+    /// Content of `result.json`.
+    pub result: Value,
+    /// `a_n.csv`.
+    pub a_n: String,
+    /// `crack_path.csv`.
+    pub crack_path: String,
+}
+
+impl Kept {
+    /// Of a run and what was found about it.
+    pub fn of(case: &Case, prediction: &Prediction, (lives, quality, answers): (&Lives, &Quality, &Answers)) -> Self {
+        let mut result = json::result(case, prediction);
+        lives.add_to(&mut result);
+        quality.add_to(&mut result);
+        answers.add_to(&mut result);
+        let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement()));
+        let crack_path = csv::crack_path(prediction, &case.specimen.cracks);
+        if let Some(object) = result.as_object_mut() {
+            object.insert("plate".to_owned(), json!(Plate::of(case)));
+        }
+        provenance::add(&mut result, &case.provenance, &[(csv::A_N_FILE, &a_n), (CRACK_PATH_FILE, &crack_path)]);
+        if let (Some(refusal), Some(object)) = (refusal(case, prediction), result.as_object_mut()) {
+            object.insert("refused".to_owned(), refusal.to_string().into());
+        }
+        Kept { result, a_n, crack_path }
     }
-    provenance::add(&mut result, &case.provenance, &[(csv::A_N_FILE, &a_n), (CRACK_PATH_FILE, &path)]);
-    if let (Some(refusal), Some(object)) = (refusal(case, prediction), result.as_object_mut()) {
-        object.insert("refused".to_owned(), refusal.to_string().into());
-    }
+}
+
+/// Writes all files of a run into `folder`.
+pub fn write(folder: &Path, case: &Case, prediction: &Prediction, answers: &Answers, kept: &Kept) -> Result<()> {
+    let Kept { result, a_n, crack_path } = kept;
     // Tables and figures first: what a full disk cuts off are pictures.
     write_file(&folder.join(csv::A_N_FILE), a_n.as_bytes())?;
-    write_file(&folder.join(CRACK_PATH_FILE), path.as_bytes())?;
+    write_file(&folder.join(CRACK_PATH_FILE), crack_path.as_bytes())?;
     if factors::are_known(prediction) {
         write_file(&folder.join(factors::FACTORS_FILE), factors::factors(case, prediction)?.as_bytes())?;
         if let Some(beta) = factors::beta(case, prediction) {
@@ -197,9 +211,8 @@ pub fn write(
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
     provenance::write(folder, "predict", input_of(case), &case.provenance)?;
     answers.write(folder, case)?;
-    draw(folder, case, prediction, &result, [&a_n, &path])?;
-    vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)?;
-    Ok(result)
+    draw(folder, case, prediction, result, [a_n, crack_path])?;
+    vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)
 }
 
 /// The input of a case, with a record that came with no file as a file.

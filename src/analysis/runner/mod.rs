@@ -1,18 +1,22 @@
 //! From a document to results: one reader and one runner of whatever an input file asks for, used by the commands, by sweeps and by
 //! the workers of a service.
 
+mod draft;
 pub mod factor_sweep;
 mod factors;
+mod judged;
 pub mod sweep;
 pub mod sweep_folder;
 mod task;
 
+pub use draft::{Draft, put_law};
+pub use judged::Judged;
 pub use task::{Kind, Task, Wanted};
 
 use std::path::Path;
 use std::time::Instant;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::calibration::calibrate::{Calibration, Fitted};
 use crate::calibration::case::CalibrationCase;
@@ -22,13 +26,10 @@ use crate::error::{Error, Result};
 use crate::fracture::checkpoint::SceneCheckpoint;
 use crate::fracture::{self, Fracture, Scene, SceneEnd, SceneObserver};
 use crate::predict::checkpoint::Checkpoint;
-use crate::predict::residual_strength::{check_strength, residual_strength};
+use crate::predict::residual_strength::check_strength;
 use crate::predict::{Observer, Prediction, Silent, predict, resume};
 use crate::report;
-use crate::report::answers::{Answers, Asked};
-use crate::report::band::Lives;
 use crate::report::output::Share;
-use crate::report::quality::Quality;
 use crate::report::sweep::Plan;
 use crate::report::units::show_folder;
 use crate::sweep::fleet;
@@ -104,15 +105,7 @@ impl TaskCheckpoint {
 pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
     match task {
         Task::Prediction { case, wanted } => {
-            // A record that is damaged, and a factor that is none, should not cost a run either.
-            let lot = lot_of(case)?;
-            case.fleet.as_ref().map_or(Ok(()), |fleet| fleet::check(fleet, lot.as_ref().err()))?;
-            wanted.inspection.map_or(Ok(()), |from| from.check())?;
-            if wanted.strength {
-                // A plate without known strength should not cost a run; K of its curve comes later.
-                check_strength(case)?;
-            }
-            report::run::refuse_beforehand(case)?;
+            check_wanted(case, wanted)?;
             let prediction = match from {
                 Some(TaskCheckpoint::Cycles(checkpoint)) => resume(case, *checkpoint, watcher)?,
                 _ => predict(case, watcher)?,
@@ -140,8 +133,22 @@ pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, wat
     }
 }
 
+/// Refuses what a run would be refused for after it: what is wrong there should not cost a run.
+/// Errors: a record that is damaged, a fleet in which nothing scatters, a factor that is none, a plate without known strength, a load
+/// that breaks it at once.
+pub fn check_wanted(case: &Case, wanted: &Wanted) -> Result<()> {
+    let lot = lot_of(case)?;
+    case.fleet.as_ref().map_or(Ok(()), |fleet| fleet::check(fleet, lot.as_ref().err()))?;
+    wanted.inspection.map_or(Ok(()), |from| from.check())?;
+    if wanted.strength {
+        // K of its curve comes later.
+        check_strength(case)?;
+    }
+    report::run::refuse_beforehand(case)
+}
+
 /// Judges a run of cycles and writes its files.
-/// Errors: as [`report::run::judge`]; a damaged record; files that cannot be written.
+/// Errors: as [`Judged::of`]; files that cannot be written.
 pub fn of_prediction(
     case: &Case,
     prediction: &Prediction,
@@ -149,53 +156,12 @@ pub fn of_prediction(
     folder: Option<&Path>,
     watcher: &dyn Watcher,
 ) -> Result<Summary> {
-    use report::run;
-    // What a check says in a line stands in the file at length.
-    let told = run::told_by_checks(case, prediction);
-    let warn = |warnings: &[String]| warnings.iter().filter(|line| !told.contains(line)).for_each(|line| watcher.warn(line));
-    warn(&prediction.warnings);
-    let judged = run::judge(case, prediction)?;
-    warn(&judged);
-    report::checks::lines(&report::checks::of_run(case, prediction)).iter().for_each(|line| watcher.warn(line));
-    // If that fails, the run itself is written all the same.
-    let strengths = wanted.strength.then(|| residual_strength(case, &prediction.curve)).transpose();
-    let mut lives = Lives::of(case, prediction)?;
-    let quality = Quality::of(case, prediction, [!wanted.no_estimate, wanted.cross_check]);
-    let asked = wanted.readings.as_ref().map_or(Ok(()), |curve| lives.narrow(curve));
-    let asked = asked.and_then(|()| wanted.inspection.map_or(Ok(()), |from| lives.inspect(from)));
-    let answered = asked.and_then(|()| {
-        Answers::of(case, prediction, &lives, Asked { detection: wanted.detection, sensitivities: wanted.sensitivities })
-    });
-    let (answers, asked) = match answered {
-        Ok(answers) => (answers, Ok(())),
-        Err(error) => (Answers::default(), Err(error)),
-    };
-    let mut result = match folder {
-        Some(folder) => run::write(folder, case, prediction, (&lives, &quality, &answers))?,
-        None => {
-            let mut result = run::result(case, prediction);
-            lives.add_to(&mut result);
-            quality.add_to(&mut result);
-            answers.add_to(&mut result);
-            result
-        }
-    };
-    if let (Some(folder), Ok(Some(strengths))) = (folder, &strengths) {
-        run::write_strength(folder, case, strengths)?;
+    let mut judged = Judged::of(case, prediction, wanted, watcher)?;
+    if let Some(folder) = folder {
+        judged.write(folder, case, prediction)?;
+        judged.show(folder)?;
     }
-    folder.map_or(Ok(()), |folder| show_folder(folder, &mut result))?;
-    let refusal = run::refusal(case, prediction);
-    let mut warnings: Vec<String> = refusal.iter().map(Error::to_string).collect();
-    warnings.extend(result["warnings"].as_array().into_iter().flatten().filter_map(|warning| Some(warning.as_str()?.to_owned())));
-    let new: Vec<String> = judged.into_iter().filter(|warning| !warnings.contains(warning)).collect();
-    warnings.extend(new);
-    let figures = run::FIGURES.iter().filter_map(|key| Some(((*key).to_owned(), result.get(*key)?.clone())));
-    let mut figures: Map<String, Value> = figures.collect();
-    figures.insert("warnings".to_owned(), json!(warnings));
-    let mut lines = run::words(case, prediction, &lives, &quality);
-    lines.extend(answers.words());
-    let refusal = refusal.or(strengths.err()).or(asked.err());
-    Ok(Summary { result, figures: figures.into(), lines, refusal, ..Summary::default() })
+    Ok(judged.summary(case, prediction))
 }
 
 /// Writes the files of a scene that was run.
@@ -218,7 +184,7 @@ fn of_fit(calibration: &Calibration, folder: Option<&Path>, watcher: &dyn Watche
     let wall_s = started.elapsed().as_secs_f64();
     fitted.warnings().iter().for_each(|warning| watcher.warn(warning));
     let result = fitted.report(wall_s);
-    folder.map_or(Ok(()), |folder| report::fit::write(folder, &fitted, &result))?;
+    folder.map_or(Ok(()), |folder| report::fit::write(folder, &fitted, &report::fit::Kept::of(&fitted, &result)?))?;
     let mut figures = result.clone();
     if let Fitted::Lives(CalibrationCase { case, .. }, _) = fitted {
         // What the law is of.

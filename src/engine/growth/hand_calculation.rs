@@ -12,10 +12,10 @@ use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::growth_law::GrowthLaw;
 use crate::loading::residual::ResidualStress;
 use crate::quadrature::integrate;
+use crate::specimen::LengthConvention;
 use crate::specimen::geometry::along;
 use crate::specimen::green::centre_crack;
 use crate::specimen::handbook::{HandbookFormula, handbook};
-use crate::specimen::LengthConvention;
 use crate::units::MM;
 
 /// Intervals of the a-N curve, their lengths in constant ratio: what is taken linear between two rows is then off by less than

@@ -15,8 +15,13 @@ mod spectrum;
 pub use drawings::Drawings;
 pub use folder::{Source, read};
 
+use std::path::Path;
+
 use super::chart::Size;
+use super::output::{OutputFile, Sort};
 use super::specimen_picture::sketch::escaped;
+use crate::error::Result;
+use crate::input::Opened;
 use crate::units::shown::told;
 
 /// What stands near the beginning of a report, and of no other file.
@@ -55,6 +60,18 @@ pub fn html(source: &Source, signed: &Signed) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n<style>\n{style}</style>\n</head>\n\
          <body>\n<main>\n{body}</main>\n</body>\n</html>\n"
     )
+}
+
+/// Writes the report of what stands in `folder`; gives its bytes, and whether it went into a file.
+/// Errors: a folder without a whole run or fit; a file in the way.
+pub fn write(folder: &Path, out: &Path, signed: &Signed) -> Result<(usize, bool)> {
+    let opened = Opened::default();
+    let source = read(folder, &opened)?;
+    let file = OutputFile::claim(out, Sort { option: "--out", sign: SIGN.as_bytes() }, &opened.so_far())?;
+    let is_file = file.is_file();
+    let page = html(&source, signed);
+    file.write(page.as_bytes())?;
+    Ok((page.len(), is_file))
 }
 
 /// Text, or that nobody has recorded it.

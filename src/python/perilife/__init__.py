@@ -1,0 +1,265 @@
+"""Fatigue life of cracked plates: from readings of a test to the life of a part.
+
+Quantities carry their unit in their name (mm, MPa, N, MPa√m, mm/cycle). A case is the path of a TOML file, or a dict of the same
+tables: ``{"specimen": {"kind": "middle_tension", "width_mm": 100.0, ...}, "material": {...}, "loading": {...}}``; paths in a dict
+start at the current folder. ``set={"model.spacing_mm": 0.5}`` overrides keys, as ``--set`` does.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from . import _perilife
+from .errors import FileError, InputError, MechanicsError, PerilifeError
+from .inputs import Readings, csv_of, overrides
+from .results import Calibration, Checked, Factors, Fracture, Material, Prediction, Progress, StrPath
+from .table import Table
+
+__all__ = [
+    "Calibration",
+    "Case",
+    "Checked",
+    "Factors",
+    "FileError",
+    "Fracture",
+    "InputError",
+    "Law",
+    "Material",
+    "MechanicsError",
+    "PerilifeError",
+    "Prediction",
+    "Progress",
+    "Readings",
+    "Table",
+    "calibrate",
+    "check",
+    "fracture",
+    "materials",
+    "predict",
+    "read_table",
+    "sif",
+]
+
+Case = StrPath | Mapping[str, Any]
+"""Path of a TOML file, or its tables."""
+Law = Calibration | StrPath | Mapping[str, Any]
+"""A calibration, a ``fitted.toml``, or keys of ``[fatigue]``."""
+_Callback = Callable[[Progress], bool | None]
+
+
+def calibrate(
+    readings: Readings,
+    *,
+    specimen: Mapping[str, Any] | None = None,
+    material: Mapping[str, Any] | None = None,
+    loading: Mapping[str, Any] | None = None,
+    model: Mapping[str, Any] | None = None,
+    fit: Mapping[str, Any] | None = None,
+    measured: Mapping[str, Any] | None = None,
+    name: str = "calibration",
+    set: Mapping[str, Any] | None = None,
+    progress: _Callback | None = None,
+) -> Calibration:
+    """Fits the growth law to readings of tests.
+
+    ``readings`` are a data frame of pandas or polars, a dict of columns, the path of a laboratory's table (CSV, text, ``.xlsx``),
+    several of these in a list, or the path of a calibration file, which has all sections itself. Columns are found by their names
+    (``specimen``, ``cycles``, ``crack_length_mm``, loads); what names do not say ``measured`` does.
+    """
+    source: Case
+    files: dict[str, bytes] = {}
+    sections = {"specimen": specimen, "material": material, "loading": loading, "model": model, "fit": fit}
+    if isinstance(readings, (str, os.PathLike)) and Path(readings).suffix == ".toml":
+        if measured is not None or any(section is not None for section in sections.values()):
+            raise TypeError("a calibration file has its own sections; override keys of it by set")
+        source = readings
+    else:
+        names, files = csv_of(readings)
+        source = {"measured": {"files": names, **(measured or {})}, **sections}
+    run = _run("calibration", source, name, set, None, files, progress=progress)
+    result = json.loads(run.result)
+    return Calibration(
+        **_common(run, result, _name(source, name)),
+        _run=run,
+        a=result.get("a"),
+        p=result.get("p"),
+        horizon_mm=result.get("horizon_mm"),
+        paris_c_mm_per_cycle=result.get("paris_c_mm_per_cycle"),
+        paris_m=result.get("paris_m"),
+        paris_m_error=result.get("paris_m_error"),
+        fitted=dict(run.tables())["fitted.toml"],
+    )
+
+
+def predict(
+    case: Case,
+    *,
+    law: Law | None = None,
+    name: str = "case",
+    set: Mapping[str, Any] | None = None,
+    measured: StrPath | None = None,
+    error_estimate: bool = True,
+    cross_check: bool = False,
+    residual_strength: bool = False,
+    sensitivities: bool = False,
+    inspect_from_mm: float | None = None,
+    factor: float = 3.0,
+    tip: int | None = None,
+    pod: tuple[float, float] | None = None,
+    progress: _Callback | None = None,
+) -> Prediction:
+    """Runs a case of cycles to its life.
+
+    ``law`` takes the place of the law of the case. The options are those of ``perilife predict``: ``measured`` is a table of readings
+    of this very plate, ``pod`` the crack lengths in mm that an inspection finds with 50 and with 90 %. ``progress`` is called now and
+    then with a :class:`Progress`; answering ``False`` ends the run.
+    """
+    wishes: dict[str, Any] = {
+        "error_estimate": error_estimate,
+        "cross_check": cross_check,
+        "residual_strength": residual_strength,
+        "sensitivities": sensitivities,
+        "inspect_from_mm": inspect_from_mm,
+        "factor": factor,
+        "tip": tip,
+        "pod": None if pod is None else ",".join(str(length) for length in pod),
+        "measured": None if measured is None else Path(measured),
+    }
+    run = _run("prediction", case, name, set, law, {}, wishes=wishes, progress=progress)
+    result = json.loads(run.result)
+    return Prediction(
+        **_common(run, result, _name(case, name)),
+        _run=run,
+        life_cycles=result["life_cycles"],
+        stop_reason=result["stop_reason"],
+        stop_meaning=result["stop_meaning"],
+        verdict=result["verdict"],
+        checks=tuple(result["checks"]),
+        band=result["band"],
+        error_estimate_percent=result["error_estimate_percent"],
+    )
+
+
+def sif(
+    case: Case,
+    *,
+    methods: Sequence[str] = (),
+    name: str = "case",
+    set: Mapping[str, Any] | None = None,
+    progress: _Callback | None = None,
+) -> Factors:
+    """Stress intensity factors of every crack tip, by every method or by those that are named."""
+    run = _run("sif", case, name, set, None, {}, methods=methods, progress=progress)
+    result = json.loads(run.result)
+    columns = ["k_i_mpa_sqrt_m", "k_ii_mpa_sqrt_m", "t_stress_mpa"]
+    rows = [
+        [number, tip["x_mm"], tip["y_mm"], method, *map(found.get, columns), tip["handbook_k_i_mpa_sqrt_m"]]
+        for number, tip in enumerate(result.get("tips", []))
+        for method, found in tip["methods"].items()
+    ]
+    header = ["tip", "x_mm", "y_mm", "method", *columns, "handbook_k_i_mpa_sqrt_m"]
+    lines = [",".join("" if cell is None else str(cell) for cell in row) for row in [header, *rows]]
+    return Factors(**_common(run, result, _name(case, name)), tips=Table("\n".join(lines)))
+
+
+def fracture(
+    scene: Case,
+    *,
+    name: str = "scene",
+    set: Mapping[str, Any] | None = None,
+    progress: _Callback | None = None,
+) -> Fracture:
+    """Runs a scene without cycles: one equilibrium, a growing load, or motion in time."""
+    run = _run("scene", scene, name, set, None, {}, progress=progress)
+    result = json.loads(run.result)
+    return Fracture(
+        **_common(run, result, _name(scene, name)),
+        _run=run,
+        stop_reason=result["stop_reason"],
+        stop_meaning=result["stop_meaning"],
+        peak_load_n=result["peak_load_n"],
+    )
+
+
+def check(case: Case, *, law: Law | None = None, name: str = "case", set: Mapping[str, Any] | None = None) -> Checked:
+    """Reads a case, calibration or scene without running it: what was understood, and a drawing of it."""
+    keys, files = _law(law)
+    text, drawing = _perilife.check(_source(case), name, overrides(set), keys, files)
+    result = json.loads(text)
+    understood: dict[str, str] = result["understood"]
+    return Checked(
+        name=result["name"],
+        warnings=tuple(result["warnings"]),
+        result=result,
+        summary="\n".join(f"{what:<12} {words}" for what, words in understood.items()),
+        kind=result["kind"],
+        understood=understood,
+        drawing=drawing,
+    )
+
+
+def materials() -> tuple[Material, ...]:
+    """The materials of the library."""
+    return tuple(Material(*row) for row in _perilife.materials())
+
+
+def read_table(path: StrPath) -> Table:
+    """Reads a laboratory's table, columns and units found by their names, as ``specimen``, ``cycles`` and ``crack_length_mm``.
+
+    To fit a law give the path itself to :func:`calibrate`, which also takes the loads and remarks that the table has.
+    """
+    specimens, cycles, lengths, _ = _perilife.read_table(Path(path))
+    columns = {"specimen": specimens, "cycles": cycles, "crack_length_mm": lengths}
+    return Table(csv_of(columns)[1]["readings.csv"].decode())
+
+
+def _run(
+    kind: str,
+    source: Case,
+    name: str,
+    set: Mapping[str, Any] | None,
+    law: Law | None,
+    files: dict[str, bytes],
+    *,
+    methods: Sequence[str] = (),
+    wishes: dict[str, Any] | None = None,
+    progress: _Callback | None = None,
+) -> _perilife.Run:
+    keys, of_law = _law(law)
+    tell = None if progress is None else (lambda *figures: progress(Progress(*figures)))
+    return _perilife.run(
+        kind,
+        _source(source),
+        name,
+        overrides(set),
+        keys,
+        files | of_law,
+        methods=list(methods),
+        wishes=wishes,
+        progress=tell,
+    )
+
+
+def _source(case: Case) -> Path | Mapping[str, Any]:
+    return case if isinstance(case, Mapping) else Path(case)
+
+
+def _name(case: Case, name: str) -> str:
+    return name if isinstance(case, Mapping) else Path(case).stem
+
+
+def _law(law: Law | None) -> tuple[Mapping[str, Any] | None, dict[str, bytes]]:
+    """Keys of ``[fatigue]`` that stand for a law, and the files that they name."""
+    if law is None or isinstance(law, Mapping):
+        return law, {}
+    if isinstance(law, Calibration):
+        return {"fitted": "fitted.toml"}, {"fitted.toml": law.fitted.encode()}
+    return {"fitted": str(Path(law).absolute())}, {}
+
+
+def _common(run: _perilife.Run, result: dict[str, Any], name: str) -> dict[str, Any]:
+    return {"name": name, "warnings": tuple(run.warnings), "result": result, "summary": "\n".join(run.lines)}

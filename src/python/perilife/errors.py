@@ -1,0 +1,49 @@
+"""What can go wrong, with the messages of the command line."""
+
+from __future__ import annotations
+
+
+class PerilifeError(Exception):
+    """Anything that perilife refuses or cannot do."""
+
+
+class InputError(PerilifeError, ValueError):
+    """Wrong input: where it stands, what is wrong with it and what would be right.
+
+    Attributes that are not known are ``None``; ``line`` counts from 1.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        file: str | None = None,
+        line: int | None = None,
+        key: str | None = None,
+        value: str | None = None,
+        problem: str = "",
+        remedy: str = "",
+    ) -> None:
+        super().__init__(message)
+        self.file = file
+        self.line = line
+        self.key = key
+        self.value = value
+        self.problem = problem
+        self.remedy = remedy
+
+
+class MechanicsError(PerilifeError):
+    """No convergence, a run that was ended, or mechanics that gave no result."""
+
+
+class FileError(PerilifeError, OSError):
+    """A file that cannot be read or written."""
+
+    def __init__(self, message: str, *, filename: str | None = None, errno: int | None = None) -> None:
+        super().__init__(message)
+        self.filename = filename
+        self.errno = errno
+
+    def __str__(self) -> str:
+        return str(self.args[0])

@@ -1,0 +1,84 @@
+"""Tables of results: columns with their units in their names."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import pandas
+    import polars
+
+
+class Table(Mapping[str, "npt.NDArray[Any]"]):
+    """A table as a mapping of column names to arrays.
+
+    A column of numbers is ``float64`` with NaN where a cell is empty; any other is text.
+    """
+
+    def __init__(self, text: str) -> None:
+        """Takes the text of a CSV file, which is read when a column is asked for."""
+        self._text = text
+
+    @cached_property
+    def _columns(self) -> dict[str, npt.NDArray[Any]]:
+        header, *rows = csv.reader(io.StringIO(self._text))
+        cells = zip(*rows) if rows else [()] * len(header)
+        return {name: _column(column) for name, column in zip(header, cells)}
+
+    def __getitem__(self, name: str) -> npt.NDArray[Any]:
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        """Number of columns."""
+        return len(self._columns)
+
+    @property
+    def rows(self) -> int:
+        """Number of rows."""
+        return len(next(iter(self._columns.values()), ()))
+
+    def to_numpy(self) -> npt.NDArray[Any]:
+        """As a structured array with the names of the columns."""
+        array = np.empty(self.rows, dtype=[(name, column.dtype) for name, column in self.items()])
+        for name, column in self.items():
+            array[name] = column
+        return array
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """As a data frame of pandas."""
+        import pandas
+
+        return pandas.DataFrame(self._columns)
+
+    def to_polars(self) -> polars.DataFrame:
+        """As a data frame of polars."""
+        import polars
+
+        return polars.DataFrame(self._columns)
+
+    def to_csv(self) -> str:
+        """As the command line writes it, with all digits."""
+        return self._text
+
+    def __repr__(self) -> str:
+        return f"Table({self.rows} rows: {', '.join(self)})"
+
+    def _repr_html_(self) -> str:
+        return str(self.to_pandas().to_html(max_rows=12))
+
+
+def _column(cells: tuple[str, ...]) -> npt.NDArray[Any]:
+    try:
+        return np.array([float(cell) if cell else np.nan for cell in cells], dtype=np.float64)
+    except ValueError:
+        return np.array(cells, dtype=np.str_)
