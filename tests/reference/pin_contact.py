@@ -15,7 +15,7 @@ from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri, MeshTri2
 from skfem.helpers import ddot, dot, sym_grad, trace
 
-from fracture_fe import build_mesh, solve, stress_intensity
+from fracture_fe import Crack, Plate, build_mesh, solve, stress_intensity
 from standard import compact_tension
 
 
@@ -168,6 +168,14 @@ def contact(plate, cracks, pins, friction, fineness=1.0, reach=165.0):
     return k, ends, float(np.degrees(np.mean(lengths[0]) / plate.holes[0][2])), turn
 
 
+def strip(crack, radius_share, friction, young=210e3, force=2e4):
+    """A strip of 60 x 200 x 5 mm with pins in holes of 20 mm that pull it apart, a crack of this length, mm, at the side of one."""
+    outline = np.array([[-30, -100], [30, -100], [30, 100], [-30, 100.0]])
+    plate = Plate(outline, 5.0, [(0, 60, 10), (0, -60, 10)], rim_fineness=10.0)
+    pins = [(hole, (0, sign), force, 10 * radius_share, young, 0.3) for hole, sign in ((0, 1), (1, -1))]
+    return contact(plate, [Crack(np.array([[10, 60], [10 + crack, 60.0]]), (None, 0))], pins, friction)
+
+
 def scene(a, radius_share, friction, young=210e3, force=1e4, fineness=1.0, rim=10.0):
     """C(T) of standard.py under this force with pins of this share of the radius of the hole."""
     plate, cracks = compact_tension(a)
@@ -190,14 +198,16 @@ SCENES = {
     "e647": (20.0, 0.96, 0.0), "e647_short": (10.0, 0.96, 0.0), "snug": (10.0, 1.0, 0.0), "close": (10.0, 0.998, 0.0),
     "snug_friction": (10.0, 1.0, 0.3), "close_friction": (10.0, 0.998, 0.3),
 }
+# The same of the strip.
+STRIPS = {"strip_snug": (5.0, 1.0, 0.0), "strip_close": (5.0, 0.997, 0.0)}
 
 if __name__ == "__main__":
-    for a in (10.0, 20.0):
+    for a in () if sys.argv[1:] else (10.0, 20.0):
         x = a / 50.0
         formula = 1e4 / (10 * 50**0.5) * (2 + x) / (1 - x) ** 1.5 * (0.886 + 4.64 * x - 13.32 * x**2 + 14.72 * x**3 - 5.6 * x**4) / 1000**0.5
         print(f"a {a}: E647 {formula:.4f}, arcs of 15, 30, 90 degrees", *(f"{with_arc(a, arc):.4f}" for arc in (15, 30, 90)), flush=True)
-    for name in sys.argv[1:] or SCENES:
+    for name in sys.argv[1:] or [*SCENES, *STRIPS]:
         clock = time.time()
-        k, ends, side, turns = scene(*SCENES[name])
+        k, ends, side, turns = scene(*SCENES[name]) if name in SCENES else strip(*STRIPS[name])
         words = "; ".join(f"{low:.1f} to {high:.1f}" for low, high in ends)
         print(f"{name}: K {k[0]:.4f}, contact {words} degrees, sides of {side:.2f}, {turns} turns, {time.time() - clock:.0f} s", flush=True)

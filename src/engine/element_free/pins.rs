@@ -7,8 +7,9 @@
 //! r_k = u of the plate under H_k - u of the plane with a hole,   N_k = ∫ H_k² dθ
 //! D = Σ_k r_k ⟨H_k, ·⟩/N_k + Σ_k H_k ⟨r_k - P r_k, ·⟩/N_k,       P the projection on all H
 //! ```
-//! The second sum is the first turned round (Maxwell and Betti): a crack that begins at the hole makes r_k jump. A floating plate reacts to a
-//! single load at its three held unknowns; the reactions vanish with the sum of all loads.
+//! The second sum is the first turned round (Maxwell and Betti). Of what is read on a rim only waves up to n = 4 are kept, and the jump
+//! where a crack begins at the hole, drawn out linearly round the rim: shorter ones are those of the nodes, and would show in the pressure.
+//! A floating plate reacts to a single load at its three held unknowns; the reactions vanish with the sum of all loads.
 
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
@@ -18,6 +19,7 @@ use super::dissection::Factor;
 use super::field::Discretisation;
 use super::pin_contact::{Borne, PinRim, bear};
 use crate::error::Result;
+use crate::specimen::geometry::{along, circle_shares};
 use crate::specimen::pin::{Contact, Pin};
 use crate::specimen::{Bearing, Hole, Load, Point, Specimen};
 use crate::williams::Elasticity;
@@ -39,6 +41,8 @@ struct Bore<'a> {
     middle: f64,
     /// Force, N.
     force: f64,
+    /// Where cracks begin at the hole, rad from its direction.
+    mouths: Vec<f64>,
 }
 
 /// A harmonic load on the rim of a pin, 1 Pa: e^(inθ), its real part or its imaginary one, along the radius or the rim.
@@ -85,6 +89,31 @@ fn place_angle(place: usize) -> f64 {
     TURN * (place as f64 + 0.5) / PLACES as f64
 }
 
+/// What is read at the places of a rim without waves shorter than [`HARMONICS`], but for jumps at these angles.
+fn smooth(mut read: Vec<[f64; 2]>, mouths: &[f64]) -> Vec<[f64; 2]> {
+    let mut jumps = vec![[0.0; 2]; PLACES];
+    for mouth in mouths {
+        let after = (mouth / TURN * PLACES as f64 + 0.5).rem_euclid(PLACES as f64) as usize % PLACES;
+        let before = (after + PLACES - 1) % PLACES;
+        let jump = [0, 1].map(|part| read[after][part] - read[before][part]);
+        for (k, sum) in jumps.iter_mut().enumerate() {
+            let way = ((k + PLACES - after) % PLACES) as f64 + 0.5;
+            (0..2).for_each(|part| sum[part] += jump[part] * (0.5 - way / PLACES as f64));
+        }
+    }
+    read.iter_mut().zip(&jumps).for_each(|(u, jump)| *u = [u[0] - jump[0], u[1] - jump[1]]);
+    let mut kept = jumps;
+    for waves in 0..=HARMONICS {
+        let size = if waves == 0 { 1.0 } else { 2.0 } / PLACES as f64;
+        let angle = |place: usize| f64::from(waves) * place_angle(place);
+        for shape in [f64::cos, f64::sin] {
+            let sums = [0, 1].map(|part| read.iter().enumerate().map(|(k, u)| shape(angle(k)) * u[part]).sum::<f64>());
+            kept.iter_mut().enumerate().for_each(|(k, u)| (0..2).for_each(|part| u[part] += size * shape(angle(k)) * sums[part]));
+        }
+    }
+    kept
+}
+
 /// Between the places of a rim, in a straight line.
 fn between(values: &[[f64; 2]], angle: f64) -> [f64; 2] {
     let at = (angle / TURN * PLACES as f64 - 0.5).rem_euclid(PLACES as f64);
@@ -104,13 +133,20 @@ impl Bore<'_> {
     }
 }
 
-/// Elastic pins at a nominal load, Pa or N.
-fn bores(specimen: &Specimen, nominal: f64) -> Vec<Bore<'_>> {
+/// Elastic pins of a plate at a nominal load, Pa or N.
+fn bores<'a>(specimen: &'a Specimen, plate: &Discretisation, nominal: f64) -> Vec<Bore<'a>> {
     let mut bores = Vec::new();
+    let pieces = || plate.obstacles.cuts[..plate.cracks].iter().flat_map(|cut| cut.points.windows(2));
     for (load, of) in specimen.loads.iter().enumerate() {
         if let Load::Pin { hole, direction, force, contact: Bearing::Elastic(pin) } = of {
-            let (middle, force) = (direction[1].atan2(direction[0]), force * nominal);
-            bores.push(Bore { load, hole: specimen.holes[*hole], pin, middle, force });
+            let (middle, force, hole) = (direction[1].atan2(direction[0]), force * nominal, specimen.holes[*hole]);
+            let crossing = |piece: &[Point]| {
+                let shares = circle_shares(piece[0], piece[1], hole.centre, hole.radius)?;
+                let share = shares.into_iter().find(|share| (0.0..=1.0).contains(share))?;
+                let [x, y] = along(piece[0], piece[1], share);
+                Some((y - hole.centre[1]).atan2(x - hole.centre[0]) - middle)
+            };
+            bores.push(Bore { load, hole, pin, middle, force, mouths: pieces().filter_map(crossing).collect() });
         }
     }
     bores
@@ -136,7 +172,7 @@ pub fn press_pins(
     others: &[f64],
     nominal: f64,
 ) -> Result<Option<Pins>> {
-    let bores = bores(specimen, nominal);
+    let bores = bores(specimen, plate, nominal);
     if bores.is_empty() {
         return Ok(None);
     }
@@ -159,7 +195,8 @@ pub fn press_pins(
     columns.par_iter_mut().for_each(|column| factor.backward(column));
     let on_rims = |u: &Vec<f64>| -> OnRims {
         let read = |(bore, rows): (&Bore<'_>, &Vec<Vec<(u32, Point)>>)| {
-            rows.iter().enumerate().map(|(place, row)| moved(u, row, bore.axes(place_angle(place)))).collect()
+            let read = rows.iter().enumerate().map(|(place, row)| moved(u, row, bore.axes(place_angle(place))));
+            smooth(read.collect(), &bore.mouths)
         };
         bores.iter().zip(&rows).map(read).collect()
     };
