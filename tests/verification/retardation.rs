@@ -74,7 +74,7 @@ fn overloads_slow_a_crack_down_as_each_model_says() {
         assert_eq!(march.at.cycles, cycles);
     }
     let before = grown(&FIRST, plate, None, 5000.0);
-    assert!((0.25 + before.a / INCH - 0.390121).abs() < 1e-4 * 0.39);
+    assert!((0.25 + before.at.a / INCH - 0.390121).abs() < 1e-4 * 0.39);
 }
 
 /// Cycles at which the own zone passes that of the overload; with Willenborg's model, at its shut-off ratio, never.
