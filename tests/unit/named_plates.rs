@@ -134,7 +134,7 @@ fn named_plates_are_plates() {
     for (kind, plate, loading, more, length) in rows() {
         // What a named plate brings along is left out beside its name.
         let own: Vec<&str> = loading.lines().filter(|line| !line.starts_with("pins") && !line.starts_with("rollers")).collect();
-        let of_name = if more.starts_with("[supports]") { "" } else { &more };
+        let of_name = if more.starts_with("[supports]") { "" } else { more.as_str() };
         let named = read(&kind, &own.join("\n"), of_name).unwrap_or_else(|error| panic!("{kind}: {error}"));
         let corners: Vec<String> = named.outline.iter().map(|[x, y]| format!("[{:?}, {:?}]", x / MM, y / MM)).collect();
         let keys = format!(

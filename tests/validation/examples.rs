@@ -25,13 +25,16 @@ fn folder() -> PathBuf {
 /// Examples whose number is compared with a calculation by hand, and those that only have their own: quick ones, and those whose
 /// first steps or first cycles are tested with every check and whose lives by the long test.
 const BY_HAND: [&str; 4] = ["compact_tension", "double_edge", "single_edge", "virkler_panel"];
-const OWN: [(&str, f64, StopReason); 8] = [
+const OWN: [(&str, f64, StopReason); 15] = [
     // 25 938.8 of them until the corner crack is through.
     ("corner_crack_at_hole", 91_816.9, StopReason::NetSectionYield),
     // What is left beside hole and crack no longer bears the load a little before the tip enters the hole.
     ("crack_beside_hole", 72_120.8, StopReason::NetSectionYield),
     // Simpson's rule over Feddersen's K from 4 to 49.8 mm gives the same.
     ("fleet_of_panels", 482_502.2, StopReason::CrackLengthReached),
+    // Both as of the same plates drawn as `plate`.
+    ("fuselage_panel", 37_861.3, StopReason::NetSectionYield),
+    ("lug", 72_914.9, StopReason::NetSectionYield),
     // 1.4 % over that of virkler_panel, whose points are fine everywhere.
     ("hand_calculation", 247_247.1, StopReason::CrackLengthReached),
     ("plate_with_hole", 32_924.4, StopReason::NetSectionYield),
@@ -39,6 +42,13 @@ const OWN: [(&str, f64, StopReason); 8] = [
     ("two_cracks_plate", 39_031.3, StopReason::NetSectionYield),
     // A quadrature by the secant and the Green function of the strip; 304 994 without the residual stress.
     ("welded_panel", 135_129.0, StopReason::Toughness),
+    // Through after 534 604.0 cycles, then into the hole.
+    ("corner_crack_to_next_hole", 1_411_527.0, StopReason::EnteredHole),
+    ("hole_under_flights", 3_017_058.8, StopReason::NetSectionYield),
+    ("bracket", 62_681.5, StopReason::Toughness),
+    ("compact_with_pins", 243_507.1, StopReason::CrackLengthReached),
+    // 139 168.9 cycles of phase I by the S-N law, the rest of growth.
+    ("stop_hole", 359_070.8, StopReason::NetSectionYield),
 ];
 const OWN_LONG: [(&str, f64, StopReason); 4] = [
     ("notched_plate", 49_982.7, StopReason::NetSectionYield),
