@@ -126,7 +126,7 @@ fn a_drawing_is_the_plate_of_the_keys() {
     let lowest = |specimen: &Specimen| specimen.outline.iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
     for (keys, text) in &drawings {
         let name = if keys.starts_with(DXF) { "part.dxf" } else { "part.svg" };
-        let drawn = plate(keys, &[(name, text)]);
+        let drawn = plate(keys, &[(name, text.as_str())]);
         // An SVG begins at the lower left corner of its viewBox.
         let [dx, dy] = if name == "part.svg" { [50.0 * MM, lowest(&drawn) + 100.0 * MM] } else { [0.0; 2] };
         let near = |a: [f64; 2], b: [f64; 2]| (a[0] - dx - b[0]).abs() < 1e-12 && (a[1] - dy - b[1]).abs() < 1e-12;
@@ -233,7 +233,8 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         (3, &[RECTANGLE], &["unit 3"]),
     ];
     for (unit, entities, words) in of_dxf {
-        refused(DXF, ("part.dxf", &dxf(unit, entities)), words);
+        let text = dxf(unit, entities);
+        refused(DXF, ("part.dxf", text.as_str()), words);
     }
     let size = "width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\"";
     let rect = "<rect id=\"outline\" width=\"100\" height=\"200\"/>";
@@ -259,7 +260,8 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         (size, "<rect id=\"outline\" width=\"100%\" height=\"200\"/>", &["layer outline", "no plain number"]),
     ];
     for (size, content, words) in of_svg {
-        refused(SVG, ("part.svg", &svg(size, content)), words);
+        let text = svg(size, content);
+        refused(SVG, ("part.svg", text.as_str()), words);
     }
     let good = dxf(4, &[RECTANGLE, HOLE, CRACK]);
     let of_keys: [(&str, &str, &str, &[&str]); 9] = [
@@ -286,7 +288,7 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
     for (keys, name, text, words) in of_keys {
         refused(keys, (name, text), words);
     }
-    refused(DXF, ("other.dxf", &good), &["part.dxf", "was not sent along"]);
+    refused(DXF, ("other.dxf", good.as_str()), &["part.dxf", "was not sent along"]);
 }
 
 fn refused(keys: &str, file: (&str, &str), words: &[&str]) {
