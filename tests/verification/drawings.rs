@@ -126,7 +126,7 @@ fn a_drawing_is_the_plate_of_the_keys() {
     let lowest = |specimen: &Specimen| specimen.outline.iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
     for (keys, text) in &drawings {
         let name = if keys.starts_with(DXF) { "part.dxf" } else { "part.svg" };
-        let drawn = plate(keys, &[(name, text)]);
+        let drawn = plate(keys, &[(name, text.as_str())]);
         // An SVG begins at the lower left corner of its viewBox.
         let [dx, dy] = if name == "part.svg" { [50.0 * MM, lowest(&drawn) + 100.0 * MM] } else { [0.0; 2] };
         let near = |a: [f64; 2], b: [f64; 2]| (a[0] - dx - b[0]).abs() < 1e-12 && (a[1] - dy - b[1]).abs() < 1e-12;
@@ -152,8 +152,10 @@ fn a_drawing_is_the_plate_of_the_keys() {
     assert!((drawn / keys - 1.0).abs() < 1e-9, "{drawn} {keys}");
 }
 
-/// Shoulder fillet of a flat bar, D/d = 2, r/d = 0.25: K_tn = 1.68 by the fit of Pilkey (1997, chart 3.1, table 6-1, ±3 %).
+/// Shoulder fillet of a flat bar, t/r = 2, 2t/D = 0.5: K_tn = 1.852 by the fit of Pilkey (Peterson's Stress Concentration Factors 1997,
+/// chart 3.1); the same outline given by keys: 1.865.
 #[test]
+#[ignore = "long: 18 s, four solves up to 39 431 nodes"]
 fn a_drawn_fillet_concentrates_stress_as_in_the_charts() {
     let (d, t, r, l) = (40.0, 20.0, 10.0, 80.0);
     let quarter = [
@@ -179,14 +181,14 @@ fn a_drawn_fillet_concentrates_stress_as_in_the_charts() {
     let h = t / r;
     let x = 2.0 * t / (d + 2.0 * t);
     let c = [
-        1.042 + 0.982 * f64::sqrt(h) - 0.036 * h,
-        -0.074 - 0.156 * f64::sqrt(h) - 0.010 * h,
-        -3.418 + 1.220 * f64::sqrt(h) - 0.005 * h,
-        3.450 - 2.046 * f64::sqrt(h) + 0.051 * h,
+        1.020 + 1.009 * f64::sqrt(h) - 0.048 * h,
+        -0.065 - 0.165 * f64::sqrt(h) - 0.007 * h,
+        -3.459 + 1.266 * f64::sqrt(h) - 0.016 * h,
+        3.505 - 2.109 * f64::sqrt(h) + 0.069 * h,
     ];
     let chart = c.iter().rev().fold(0.0, |sum, c| sum * x + c);
     println!("fillet: {factor:.3} at {:?}, chart {chart:.3}, change {:?}", peak.at, found.change);
-    assert!((factor / chart - 1.0).abs() < 0.03, "{factor} for {chart}");
+    assert!((factor / chart - 1.0).abs() < 0.02, "{factor} for {chart}");
 }
 
 /// Every refusal with its layer and place.
@@ -231,7 +233,8 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         (3, &[RECTANGLE], &["unit 3"]),
     ];
     for (unit, entities, words) in of_dxf {
-        refused(DXF, ("part.dxf", &dxf(unit, entities)), words);
+        let text = dxf(unit, entities);
+        refused(DXF, ("part.dxf", text.as_str()), words);
     }
     let size = "width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\"";
     let rect = "<rect id=\"outline\" width=\"100\" height=\"200\"/>";
@@ -257,7 +260,8 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         (size, "<rect id=\"outline\" width=\"100%\" height=\"200\"/>", &["layer outline", "no plain number"]),
     ];
     for (size, content, words) in of_svg {
-        refused(SVG, ("part.svg", &svg(size, content)), words);
+        let text = svg(size, content);
+        refused(SVG, ("part.svg", text.as_str()), words);
     }
     let good = dxf(4, &[RECTANGLE, HOLE, CRACK]);
     let of_keys: [(&str, &str, &str, &[&str]); 9] = [
@@ -284,7 +288,7 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
     for (keys, name, text, words) in of_keys {
         refused(keys, (name, text), words);
     }
-    refused(DXF, ("other.dxf", &good), &["part.dxf", "was not sent along"]);
+    refused(DXF, ("other.dxf", good.as_str()), &["part.dxf", "was not sent along"]);
 }
 
 fn refused(keys: &str, file: (&str, &str), words: &[&str]) {
