@@ -17,8 +17,8 @@ use crate::units::shown::shown;
 use crate::units::us::{Renamed, System, clean, renamed};
 use crate::units::words::in_units;
 
-/// Keys of results that stay as they are: what was given, names, hashes, and constants whose name says SI.
-const KEPT: [&str; 13] = [
+/// Keys of results that stay as they are: what was given, names, hashes, lists of keys, and constants whose name says SI.
+const KEPT: [&str; 15] = [
     "case",
     "constants_si",
     "commit",
@@ -28,6 +28,8 @@ const KEPT: [&str; 13] = [
     "fatigue",
     "inputs",
     "key",
+    "kinds",
+    "laws",
     "name",
     "overrides",
     "sources",
