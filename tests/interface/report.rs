@@ -249,7 +249,7 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
     let run = |case: &str, more: &str| {
         let file = cases.join(case);
         let arguments =
-            [&["predict", file.to_str().unwrap(), "--out", "run"][..], &more.split_whitespace().collect::<Vec<_>>()].concat();
+            [&["predict", file.to_str().unwrap(), "--out", "run"][..], &more.split_whitespace().collect::<Vec<_>>()[..]].concat();
         let output = perilife(dir.path(), &arguments);
         assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
         let page = report(dir.path(), "run", &[]);
