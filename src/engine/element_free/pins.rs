@@ -24,7 +24,7 @@ use crate::specimen::pin::{Contact, Pin};
 use crate::specimen::{Bearing, Hole, Load, Point, Specimen};
 use crate::williams::Elasticity;
 
-/// Waves around a rim up to which the plate is not taken as a plane with one hole.
+/// Waves around a rim up to which the plate is not taken as a plane with one hole, and displacement is kept as it is read.
 const HARMONICS: i32 = 4;
 /// Places around a rim where displacement is read and harmonics are loaded.
 const PLACES: usize = 180;

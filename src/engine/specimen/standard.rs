@@ -19,11 +19,11 @@
 //! height 1.2 W, holes of diameter 0.25 W at (0, ±0.275 W). The machined notch and the pre-crack together are one crack
 //! from the front face x = -0.25 W to x = a.
 //!
-//! Where nothing is given of the pins ([`super::pin`]), they have a diameter of 0.24 W and roll on flats: they touch the far side of their holes over a narrow arc and bring
-//! no friction. How wide the arc is matters for short cracks, whose tips lie close to the holes (Newman 1974, ASTM STP 560,
-//! p. 105): a pressure over the whole half circle spreads the hole and raises K by 4.3, 2.4, 1.3, 0.2 % at a/W = 0.2, 0.25,
-//! 0.3, 0.4 (own finite elements, quadratic, K by J), while arcs of 5 to 20° agree with each other and with the formula of
-//! E647 within 0.2 %, of 45° within 1 %.
+//! Where nothing is given of the pins ([`super::pin`]), they have a diameter of 0.24 W and roll on flats: they touch the far side of
+//! their holes over a narrow arc and bring no friction. How wide the arc is matters for short cracks, whose tips lie close to the holes
+//! (Newman 1974, ASTM STP 560, p. 105): a pressure over the whole half circle spreads the hole and raises K by 4.3, 2.4, 1.3, 0.2 % at
+//! a/W = 0.2, 0.25, 0.3, 0.4 (own finite elements, quadratic, K by J), while arcs of 5 to 20° agree with each other and with the formula
+//! of E647 within 0.2 %, of 45° within 1 %.
 
 use serde::Deserialize;
 use toml::Value;
