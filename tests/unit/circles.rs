@@ -161,35 +161,37 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("report", 10974),
-    ("fracture", 6934),
-    ("calibration", 6155),
+    ("report", 11971),
+    ("fracture", 6938),
+    ("calibration", 6166),
+    ("growth", 6161),
     ("service", 5856),
-    ("growth", 5618),
+    ("specimen", 5706),
     ("solver", 5287),
     ("verify", 4917),
-    ("element_free", 4167),
-    ("measured", 3880),
-    ("specimen", 3183),
-    ("commands", 2973),
-    ("case", 2841),
-    ("predict", 2538),
-    ("body", 2534),
-    ("fatigue", 2347),
+    ("element_free", 4863),
+    ("measured", 3879),
+    ("predict", 3191),
+    ("commands", 3039),
+    ("case", 3036),
+    ("body", 2557),
+    ("fatigue", 2433),
+    ("loading", 2286),
     ("levels", 1728),
-    ("loading", 1607),
-    ("sweep", 1339),
-    ("runner", 954),
-    ("input", 744),
-    ("stress_intensity", 681),
-    ("check", 603),
+    ("sweep", 1474),
+    ("runner", 1204),
+    ("input", 887),
+    ("stress_intensity", 688),
+    ("check", 607),
+    ("python", 577),
+    ("units", 429),
     ("bond_law", 394),
     ("tables", 342),
     ("material", 322),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 80381;
+const LINES_OF_ALL: usize = 88422;
 
 #[test]
 fn rooms_do_not_grow() {
