@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use crate::errors::raised;
 use crate::values;
 
-/// Reads a document: `source` is the path of a file, or a dict of sections whose files lie in the current folder; `set` overrides
-/// keys, `law` takes the place of the law in `[fatigue]`, and `files` are known by name before any on disk.
+/// Reads a document: `source` is the path of a file, or a dict of sections whose files lie in the current folder; `set` overrides keys,
+/// `law` takes the place of the law in `[fatigue]`, and `files` are known by name before any on disk.
 pub fn document(
     source: &Bound<'_, PyAny>,
     name: &str,
@@ -20,11 +20,15 @@ pub fn document(
     files: HashMap<String, Vec<u8>>,
 ) -> PyResult<Document> {
     let law = law.map(|law| values::table("law", law)).transpose()?;
-    if let Ok(path) = source.extract::<PathBuf>() {
-        let mut document = Document::read(&path, set).map_err(raised)?;
-        if let Some(law) = law {
+    let read = || {
+        let Ok(path) = source.extract::<PathBuf>() else { return Ok(None) };
+        let mut document = Document::read(&path, set)?;
+        if let Some(law) = law.clone() {
             put_law(&mut document.table, law);
         }
+        Ok(Some(document))
+    };
+    if let Some(mut document) = read().map_err(raised)? {
         let opened = document.folder.opened().so_far();
         document.folder = document.folder.anew_with(files);
         opened.files.into_iter().for_each(|file| document.folder.opened().add(file));
@@ -36,7 +40,9 @@ pub fn document(
         put_law(&mut table, law);
     }
     let draft = files.into_iter().fold(Draft::of(name, table), |draft, (name, content)| draft.file(name, content));
-    let mut document = draft.document().map_err(raised)?;
-    document.set_all(set).map_err(raised)?;
-    Ok(document)
+    let overridden = || {
+        let mut document = draft.document()?;
+        document.set_all(set).map(|()| document)
+    };
+    overridden().map_err(raised)
 }
