@@ -52,7 +52,6 @@ const OWN: [(&str, f64, StopReason); 15] = [
 ];
 const OWN_LONG: [(&str, f64, StopReason); 5] = [
     // The same outline, hole and crack given by keys.
-    ("bracket", 63_676.4, StopReason::Toughness),
     ("notched_plate", 49_982.7, StopReason::NetSectionYield),
     ("slant_crack_nodes", 86_753.6, StopReason::Severed),
     ("ti_slant_30", 17_122.7, StopReason::CrackLengthReached),
