@@ -152,10 +152,10 @@ fn a_sweep_writes_the_tables_and_reads_them_back() {
     let by_hand = SMALL_CASE.replace("spacing_mm = 2.0", "method = \"handbook\"");
     let by_hand = by_hand.replace("a = 1e5\np = 3.0\nhorizon_mm = 6.03", "paris_c_mm_per_cycle = 1e-8\nparis_m = 3.0");
     fs::write(dir.path().join("small.toml"), by_hand).unwrap();
-    let sweep = ["sif", "small.toml", "--sweep", "10:20.5:1", "--out", "k.csv", "--beta", "beta.csv", "--json"];
+    let sweep = ["sif", "small.toml", "--sweep", "10:20.5:0.5", "--out", "k.csv", "--beta", "beta.csv", "--json"];
     for _ in 0..2 {
         let object = json(dir.path(), &sweep);
-        assert_eq!((&object["rows"], &object["lead_tip"]), (&24.into(), &0.into()), "both tips at 12 lengths: {object}");
+        assert_eq!((&object["rows"], &object["lead_tip"]), (&44.into(), &0.into()), "both tips at 22 lengths: {object}");
     }
     let [table, beta] = ["k.csv", "beta.csv"].map(|name| fs::read_to_string(dir.path().join(name)).unwrap());
     assert!(
@@ -163,7 +163,7 @@ fn a_sweep_writes_the_tables_and_reads_them_back() {
         "{table}"
     );
     let rows: Vec<&str> = beta.lines().collect();
-    assert!(rows.len() == 13 && rows[0] == "crack_length_mm,beta" && rows[12].starts_with("20.5"), "{beta}");
+    assert!(rows.len() == 23 && rows[0] == "crack_length_mm,beta" && rows[22].starts_with("20.5"), "{beta}");
     let life = |more: &[&str]| {
         let arguments = [&["predict", "small.toml", "--out", "run", "--json"][..], more].concat();
         json(dir.path(), &arguments)["life_cycles"].as_f64().unwrap()

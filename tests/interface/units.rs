@@ -13,7 +13,7 @@ use crate::interface::cli::{perilife, texts};
 
 /// Names without a unit: counts, cycles, shares, ratios and exponents. A number under any other name without one would be a length, a stress or the
 /// like that nobody converts.
-const WITHOUT_UNIT: [&str; 65] = [
+const WITHOUT_UNIT: [&str; 66] = [
     "beta",
     "blocks",
     "bonds",
@@ -26,6 +26,7 @@ const WITHOUT_UNIT: [&str; 65] = [
     "cycles_at_break_through",
     "cycles_fitted",
     "cycles_high",
+    "depth_over_thickness",
     "cycles_low",
     "cycles_measured",
     "direction",

@@ -166,24 +166,24 @@ const LINES: &[(&str, usize)] = &[
     ("calibration", 6166),
     ("growth", 6161),
     ("service", 5856),
-    ("specimen", 5706),
+    ("specimen", 5708),
     ("solver", 5287),
     ("verify", 4917),
     ("element_free", 4863),
     ("measured", 3879),
-    ("predict", 3191),
+    ("predict", 3201),
     ("commands", 3039),
     ("case", 3036),
     ("body", 2557),
     ("fatigue", 2433),
-    ("loading", 2286),
+    ("loading", 2312),
     ("levels", 1728),
     ("sweep", 1474),
     ("runner", 1204),
     ("input", 887),
     ("stress_intensity", 688),
     ("check", 607),
-    ("python", 577),
+    ("python", 583),
     ("units", 429),
     ("bond_law", 394),
     ("tables", 342),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 88422;
+const LINES_OF_ALL: usize = 88466;
 
 #[test]
 fn rooms_do_not_grow() {

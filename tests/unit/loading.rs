@@ -4,6 +4,7 @@ use std::path::Path;
 
 use perilife::case::Case;
 use perilife::loading::Loading;
+use perilife::specimen::pin::{LOOSE_PIN, SNUG_PIN};
 use perilife::specimen::{Bearing, Load, Support};
 
 const PANEL: &str = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10";
@@ -112,8 +113,11 @@ fn a_pin_touches_over_at_most_half_its_hole() {
         if let Load::Pin { contact, .. } = &case.specimen.loads[0] { contact.clone() } else { panic!("no pin") }
     };
     for unknown in [pins(""), compact("")] {
-        assert_eq!(bearing(unknown.unwrap()), Bearing::Unknown);
+        assert_eq!(bearing(unknown.unwrap()), Bearing::Unknown(LOOSE_PIN));
     }
+    // A pin that something else holds against, as in a lug, fits its hole.
+    let lug = "kind = \"lug\"\nwidth_mm = 50\nlength_mm = 100\nthickness_mm = 5\nhead = \"round\"\nhole_diameter_mm = 20\ncrack_length_mm = 3\n";
+    assert_eq!(bearing(case(lug, "force_max_n = 10\nstress_ratio = 0").unwrap()), Bearing::Unknown(SNUG_PIN));
     for given in [pins(", contact_half_angle_deg = 40"), compact("pin_half_angle_deg = 40")] {
         assert!((bearing(given.unwrap()).half_angle().unwrap() - 40_f64.to_radians()).abs() < 1e-9);
     }

@@ -29,7 +29,7 @@ fn dxf(unit: u8, entities: &[&str]) -> String {
     for entity in entities {
         let mut words = entity.split_whitespace();
         let _ = writeln!(text, "0\n{}\n8\n{}", words.next().unwrap(), words.next().unwrap());
-        words.for_each(|word| drop(writeln!(text, "{word}")));
+        words.for_each(|word| writeln!(text, "{word}").unwrap());
     }
     text + "0\nENDSEC\n0\nEOF\n"
 }

@@ -48,7 +48,7 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
     let is_plain =
         loading.displacement().is_none() && specimen.crack_pressure == 0.0 && loading.residual.is_none() && !has_fields;
     let has_own_pins =
-        specimen.loads.iter().any(|load| matches!(load, Load::Pin { contact, .. } if *contact != Bearing::Unknown));
+        specimen.loads.iter().any(|load| matches!(load, Load::Pin { contact: Bearing::Cosine(_) | Bearing::Elastic(_), .. }));
     if has_own_pins && handbook(specimen).is_some() {
         return (Method::ElementFreeGalerkin, "the formula of the specimen is for pins of its standard".to_owned());
     }

@@ -11,8 +11,12 @@ use super::{Input, LoadingKind, forces, grips};
 use crate::error::{Result, input, input_missing};
 use crate::input::{number, refuse_given, shorten, slice, table_of};
 use crate::specimen::geometry::{bounding_box, distance, unit};
-use crate::specimen::{Component, Edge, Load, LoadMeasure, Point, Specimen, Support};
+use crate::specimen::pin::SNUG_PIN;
+use crate::specimen::{Bearing, Component, Edge, Load, LoadMeasure, Point, Specimen, Support};
 use crate::units::MM;
+
+/// Resultant of pins that pull against each other, over the sum of their forces.
+const BALANCED: f64 = 1e-6;
 
 /// One entry of `[supports]`.
 #[derive(Deserialize)]
@@ -25,6 +29,28 @@ struct SupportInput {
 
 /// Puts loads and supports on the specimen; returns the section that turns a force into the nominal stress, m².
 pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+    let area = apply_loads(input, supports, specimen, parallel_ratio)?;
+    fit_unknown_pins(specimen);
+    Ok(area)
+}
+
+/// Pins of which nothing is known fill their holes where they do not pull against each other.
+fn fit_unknown_pins(specimen: &mut Specimen) {
+    let forces: Vec<Point> = specimen.loads.iter().filter_map(pin_force).map(|(_, force)| force).collect();
+    let [x, y] = [0, 1].map(|i| forces.iter().map(|force| force[i]).sum::<f64>());
+    let all: f64 = forces.iter().map(|[x, y]| x.hypot(*y)).sum();
+    if x.hypot(y) <= BALANCED * all {
+        return;
+    }
+    for load in &mut specimen.loads {
+        if let Load::Pin { contact: Bearing::Unknown(half_angle), .. } = load {
+            *half_angle = SNUG_PIN;
+        }
+    }
+}
+
+/// Puts loads and supports on the specimen, as [`apply`].
+fn apply_loads(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     if specimen.kind.is_plate() {
         return apply_to_plate(input, supports, specimen, parallel_ratio);
     }

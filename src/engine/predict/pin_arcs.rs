@@ -10,42 +10,52 @@ use crate::growth::nodes::initial_plate;
 use crate::specimen::pin::{LOOSE_PIN, SNUG_PIN};
 use crate::specimen::{Bearing, Load, SpecimenKind};
 
-/// Half angles that are compared with [`LOOSE_PIN`], rad: 15° less, which is the narrowest arc, 15° more, a pin that fills its hole.
-const OTHERS: [f64; 3] = [LOOSE_PIN / 15.0, 2.0 * LOOSE_PIN, SNUG_PIN];
+/// Change of the arc that is told, rad.
+const OTHER: f64 = 15.0 * std::f64::consts::PI / 180.0;
+/// Narrowest arc, rad.
+const NARROW: f64 = std::f64::consts::PI / 180.0;
 
 /// One line on pins of which nothing is known: the arc that is taken, and K of the initial tips under others, on nodes; `None` without such
 /// pins, by a handbook, whose K is that of its own, and where nodes cannot say it.
 pub fn line(case: &Case) -> Option<String> {
-    let is_unknown = |load: &Load| matches!(load, Load::Pin { contact: Bearing::Unknown, .. });
-    if case.engine() == Engine::Handbook || !case.specimen.loads.iter().any(is_unknown) {
-        return None;
-    }
-    let changes = changes(case).ok()?;
-    let of = |k: usize| {
-        let (tip, change) = changes[k];
-        (tip, format!("{:+.1} %", 100.0 * change))
+    let unknown = |load: &Load| match load {
+        Load::Pin { contact: Bearing::Unknown(half_angle), .. } => Some(*half_angle),
+        _ => None,
     };
-    let ((_, narrow), (tip, wide), (_, snug)) = (of(0), of(1), of(2));
+    let usual = case.specimen.loads.iter().find_map(unknown).filter(|_| case.engine() != Engine::Handbook)?;
+    let (fits, extreme) = if usual < SNUG_PIN {
+        ("as of pins that pull against each other in holes with clearance", SNUG_PIN)
+    } else {
+        ("as of a pin that fills its hole", LOOSE_PIN)
+    };
+    let mut others = vec![(usual - OTHER).max(NARROW), (usual + OTHER).min(SNUG_PIN), extreme];
+    others.retain(|other| (other - usual).abs() > 0.5 * NARROW);
+    let found = changes(case, usual, &others).ok()?;
+    let several = case.specimen.tips.len() > 1;
+    let told = others.iter().zip(&found).map(|(other, (tip, change))| {
+        let of_tip = if several { format!(" (tip {tip})") } else { String::new() };
+        format!("{:+.1} % at ±{:.0}°{of_tip}", 100.0 * change, other.to_degrees())
+    });
     let key = match case.specimen.kind {
         SpecimenKind::Plate => "pin_diameter_mm or contact_half_angle_deg of loading.pins",
         _ => "specimen.pin_diameter_mm or specimen.pin_half_angle_deg",
     };
-    let most = if case.specimen.tips.len() > 1 { format!(" (tip {tip})") } else { String::new() };
     Some(format!(
-        "pins: nothing known of them, ±15° of their holes taken; K at N = 0 is {narrow} with 15° less, {wide} with 15° more{most}, {snug} with \
-         pins that fill their holes (±90°): give {key}"
+        "pins: nothing known of them, ±{:.0}° of their holes taken, {fits}; K at N = 0 would be {}: give {key}",
+        usual.to_degrees(),
+        told.collect::<Vec<_>>().join(", ")
     ))
 }
 
 /// The tip whose K changes most with each of the other arcs, and by what share.
-fn changes(case: &Case) -> Result<Vec<(usize, f64)>> {
+fn changes(case: &Case, usual: f64, others: &[f64]) -> Result<Vec<(usize, f64)>> {
     let plate = initial_plate(case)?;
     let (lines, tips) = initial_cracks(&case.specimen);
     let far = case.nodes().resolution.far;
     let under = |half_angle: f64| -> Result<Vec<f64>> {
         let mut specimen = case.specimen.clone();
         for load in &mut specimen.loads {
-            if let Load::Pin { contact: contact @ Bearing::Unknown, .. } = load {
+            if let Load::Pin { contact: contact @ Bearing::Unknown(_), .. } = load {
                 *contact = Bearing::Cosine(half_angle);
             }
         }
@@ -61,8 +71,8 @@ fn changes(case: &Case) -> Result<Vec<(usize, f64)>> {
         };
         (0..tips.len()).map(size).collect()
     };
-    let usual = under(LOOSE_PIN)?;
-    OTHERS
+    let usual = under(usual)?;
+    others
         .iter()
         .map(|&half_angle| {
             let shares = under(half_angle)?.into_iter().zip(&usual).map(|(k, usual)| k / usual - 1.0).enumerate();

@@ -8,7 +8,7 @@ use crate::units::GPA;
 
 /// Half angle of contact of a pin that fills its hole, rad: a pin without friction pushes over half the circle.
 pub const SNUG_PIN: f64 = std::f64::consts::FRAC_PI_2;
-/// Half angle of contact where nothing is known of the pin, rad: Hertz contact of a steel pin with the clearance of ASTM E647 in aluminium
+/// Half angle of contact of pins of which nothing is known and which pull against each other, as those of a clevis, rad: Hertz contact of a steel pin with the clearance of ASTM E647 in aluminium
 /// gives `b = √(4 P' R / π E*)` = 1.4 mm at W = 50 mm and P' = 640 N/mm, or 13° of the hole (1/E* = (1-ν²)/E of both, R = 150 mm).
 pub const LOOSE_PIN: f64 = std::f64::consts::PI / 12.0;
 /// Young's modulus of a pin of which only the diameter is given, GPa: steel.
@@ -21,8 +21,9 @@ const FITS: f64 = 1.0 + 1e-9;
 /// Where a pin bears on its hole.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Bearing {
-    /// Nothing is known of the pin: a cosine over ±[`LOOSE_PIN`].
-    Unknown,
+    /// Nothing is known of the pin: a cosine over this half angle, rad. It is [`LOOSE_PIN`] of pins that pull against each other, as in test
+    /// specimens, and [`SNUG_PIN`] of those that something else holds against, as in lugs and joints, whose pins fit.
+    Unknown(f64),
     /// Pressure `p cos(π θ / 2θ_c)`, |θ| up to θ_c, rad, about the direction of the force; up to [`SNUG_PIN`].
     Cosine(f64),
     /// An elastic pin: what it presses on follows from the load.
@@ -91,7 +92,7 @@ impl Bearing {
                     let problem = format!("is missing beside {key}: where a pin touches depends on its clearance");
                     Err(input_missing(&full(diameter.0), problem, "give the diameter of the pin"))
                 }
-                None => Ok(Bearing::Unknown),
+                None => Ok(Bearing::Unknown(LOOSE_PIN)),
             };
         };
         let radius = LENGTH.read(&full(diameter.0), given)? / 2.0;
@@ -112,8 +113,7 @@ impl Bearing {
     /// Half angle of the cosine, rad; `None` of an elastic pin.
     pub fn half_angle(&self) -> Option<f64> {
         match self {
-            Bearing::Unknown => Some(LOOSE_PIN),
-            Bearing::Cosine(half_angle) => Some(*half_angle),
+            Bearing::Unknown(half_angle) | Bearing::Cosine(half_angle) => Some(*half_angle),
             Bearing::Elastic(_) => None,
         }
     }
@@ -121,7 +121,7 @@ impl Bearing {
     /// In words, for answers.
     pub fn words(&self) -> String {
         match self {
-            Bearing::Unknown => format!("nothing known of it, ±{:.0}° taken", LOOSE_PIN.to_degrees()),
+            Bearing::Unknown(half_angle) => format!("nothing known of it, ±{:.0}° taken", half_angle.to_degrees()),
             Bearing::Cosine(half_angle) => format!("bears over ±{:.1}°, given", half_angle.to_degrees()),
             Bearing::Elastic(pin) => pin.words(),
         }

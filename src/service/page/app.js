@@ -15,7 +15,7 @@ import { createRunsView } from "./runs.js";
 import { forgetToken, readToken } from "./token.js";
 import { startUnits } from "./units.js";
 
-startUnits(byId("units"));
+startUnits(byId("shown-units"));
 
 const predict = createPredictView();
 const views = { measure: createCalibrateView(), predict, runs: createRunsView(), new: createNewRunView({ predict }) };

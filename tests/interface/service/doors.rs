@@ -68,9 +68,9 @@ fn a_drawing_is_sent_along() {
     let sent = |files: serde_json::Value| service.post("/v1/check", &json!({ "input": case, "files": files }));
     let plate = sent(json!({ "bracket.dxf": drawing })).expect(200);
     assert!(plate.text().contains("\"holes\""), "{}", plate.text());
-    let missing = sent(json!({})).expect(400);
+    let missing = sent(json!({})).expect(422);
     assert!(missing.text().contains("bracket.dxf") && missing.text().contains("was not sent along"), "{}", missing.text());
-    let broken = sent(json!({ "bracket.dxf": drawing.replace("\nholes\n", "\nbores\n") })).expect(400);
+    let broken = sent(json!({ "bracket.dxf": drawing.replace("\nholes\n", "\nbores\n") })).expect(422);
     assert!(broken.text().contains("specimen.outline_file") && broken.text().contains("bores"), "{}", broken.text());
 }
 

@@ -11,6 +11,7 @@ use super::{Description, Layout};
 use crate::error::Result;
 use crate::input::{LENGTH, slice};
 use crate::specimen::handbook::HandbookFormula;
+use crate::specimen::pin::LOOSE_PIN;
 use crate::specimen::plate::Drawing;
 use crate::specimen::{Bearing, Hole, SpecimenKind};
 
@@ -66,6 +67,6 @@ fn layout(value: &Value) -> Result<Layout> {
         limit: 1.0,
         table: None,
     };
-    let loads = vec![pin(0, [0.0, 1.0], Bearing::Unknown), pin(1, [0.0, -1.0], Bearing::Unknown)];
+    let loads = vec![pin(0, [0.0, 1.0], Bearing::Unknown(LOOSE_PIN)), pin(1, [0.0, -1.0], Bearing::Unknown(LOOSE_PIN))];
     Ok(Layout { drawing, loads, crack_length: Some(a), formula: Some(formula), supports: Vec::new() })
 }
