@@ -56,7 +56,7 @@ fn a_run_on_nodes_read_back_gives_the_life_of_its_own_factors() {
     let rate = |length: f64| 2.0 * c * (by_nodes.loading.range_share() * curve.at(length) / 1e6).powf(m);
     let own =
         lengths([16.0, 40.0], 240).windows(2).map(|pair| integrate(|a| 1.0 / rate(a), pair[0], pair[1], 1e-9).value).sum::<f64>();
-    let found = sweep(&by_nodes, [16.0, 40.0], 48);
+    let found = sweep(&by_nodes, [16.0, 40.0], 96);
     let first = &found.rows[0];
     assert!((first.beta_length / MM - 8.0).abs() < 1e-9 && (first.crack_length / MM - 16.0).abs() < 1e-9, "{first:?}");
     let ratio = life(plate, &set[1..], &beta_table(&found)) / own;
