@@ -30,7 +30,7 @@ fn case_in(folder: &Path, specimen: &str, loading: &str, law: &str, set: &[&str]
 }
 
 fn plate(width: f64, cracks: &str, loading: &str, set: &[&str]) -> Case {
-    let specimen = format!("kind = \"plate\"\nwidth_mm = {width}\nlength_mm = {width}\ncracks = [{cracks}]");
+    let specimen = format!("kind = \"plate\"\nwidth_mm = {width}\nlength_mm = {}\ncracks = [{cracks}]", 2.0 * width);
     case_of(&specimen, loading, WALKER, set).unwrap()
 }
 
@@ -259,7 +259,7 @@ fn bearing_and_bypass() {
 #[test]
 fn what_does_not_know_residual_stress() {
     let panel = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\ncrack_length_mm = 8";
-    let edge = "kind = \"single_edge_tension\"\nwidth_mm = 100\nlength_mm = 300\ncrack_length_mm = 8";
+    let edge = "kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 100\nlength_mm = 300\ncrack_length_mm = 8";
     let steady = "paris_c_mm_per_cycle = 1e-8\nparis_m = 3";
     let pulled = "stress_max_mpa = 100\nstress_ratio = 0";
     let dir = tempfile::tempdir().unwrap();

@@ -1,6 +1,6 @@
 //! Both ends of a front through the cycles of a spectrum in their order, each with the plastic zone of its own last overload.
 //!
-//! The end that grows most, by length, is marched through the loads ([`March`]) over a hundredth of its axis, and the other one over the same
+//! The end that grows most, by length, is marched through the loads ([`March`]) over half a hundredth of its axis, and the other one over the same
 //! cycles. K of each end between the start and the end of such a step is a power of e over its way (second order); where the other axis ends up is
 //! taken from the step before and corrected until it holds. Zones are those of plane strain at an end inside the material, and those of the plane state
 //! of the plate at a face.
@@ -12,7 +12,7 @@ use crate::loading::spectrum::Spectrum;
 use crate::material::Plane;
 
 /// Growth of the leading axis in a step, over the axis.
-const STEP: f64 = 0.01;
+const STEP: f64 = 0.005;
 /// Least step: where K is infinite a shorter one ahead, the width ends.
 const STEP_LEAST: f64 = 2e-6;
 /// Corrections of the other axis in a step, and its change, over the axis, that needs no other.
