@@ -166,7 +166,7 @@ const LINES: &[(&str, usize)] = &[
     ("calibration", 6166),
     ("growth", 6161),
     ("service", 5856),
-    ("specimen", 5708),
+    ("specimen", 5711),
     ("solver", 5287),
     ("verify", 4917),
     ("element_free", 4863),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 88466;
+const LINES_OF_ALL: usize = 88469;
 
 #[test]
 fn rooms_do_not_grow() {
