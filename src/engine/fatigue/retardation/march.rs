@@ -207,9 +207,11 @@ impl<'a> March<'a> {
         let share = growth / (mean(start + 0.5 * growth) * self.spectrum.per_pass);
         let (here, slope) = (k(self.at.a), (k(self.at.a) / k(start)).ln().abs() / growth);
         let way = (JUMP / slope.max(f64::MIN_POSITIVE)).min(0.5 * (to - self.at.a)).min(is.size.max(growth * WORTH) * 50.0);
+        let most = (cycles_max - self.at.cycles) / self.spectrum.per_pass;
+        let way = way.min(most * share * mean(self.at.a) * self.spectrum.per_pass);
         let middle = self.at.a + 0.5 * way;
         let per_pass = share * mean(middle) * self.spectrum.per_pass;
-        let passes = (way / per_pass).min((cycles_max - self.at.cycles) / self.spectrum.per_pass).floor();
+        let passes = (way / per_pass).min(most).floor();
         if !(passes >= WORTH && per_pass.is_finite()) {
             return;
         }
