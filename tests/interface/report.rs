@@ -260,7 +260,7 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
     // Thousands apart, as the report writes them.
     let grouped = |cycles: f64| {
         let digits = format!("{cycles:.0}");
-        let place = |i: usize| i > 0 && digits.len() > 4 && (digits.len() - i) % 3 == 0;
+        let place = |i: usize| i > 0 && digits.len() > 4 && (digits.len() - i).is_multiple_of(3);
         let text: String =
             digits.char_indices().flat_map(|(i, c)| place(i).then_some('\u{202f}').into_iter().chain([c])).collect();
         format!("{text} cycles")
