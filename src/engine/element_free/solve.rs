@@ -24,7 +24,7 @@ use crate::williams::Elasticity;
 pub struct Solution {
     /// Unknowns, m.
     pub u: Vec<f64>,
-    /// Work of the loads `Σ f u`, J; of elastic pins what [`super::pins::Pins::work`] says.
+    /// Work of the loads `Σ f u`, J; of elastic pins what their contact says (`pins.rs`).
     pub work: f64,
     /// Points of integration.
     pub points: usize,
