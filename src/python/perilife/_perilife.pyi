@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, final
 
+__all__ = ["Run", "check", "materials", "read_table", "report", "run"]
+
 @final
 class Run:
     @property
