@@ -180,7 +180,7 @@ const LINES: &[(&str, usize)] = &[
     ("levels", 1728),
     ("sweep", 1474),
     ("runner", 1204),
-    ("input", 887),
+    ("input", 893),
     ("stress_intensity", 688),
     ("check", 607),
     ("python", 583),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 88471;
+const LINES_OF_ALL: usize = 88477;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -11,6 +11,9 @@ use super::slice::{path_steps, shorten, value_at};
 use super::us_keys::{Written, as_written, metric, to_metric, twin};
 use crate::error::{Error, InputError, Result, input, input_missing};
 
+/// What is said of a value that an option overrides.
+const BY_SET: &str = " (value given by --set)";
+
 /// A parsed input file that still knows where everything stands in the text.
 #[derive(Debug, Clone)]
 pub struct Document {
@@ -88,7 +91,10 @@ impl Document {
         trouble = as_written(trouble, &self.written);
         if let Some(key) = &trouble.key {
             if is_overridden {
-                trouble.remedy.push_str(" (value given by --set)");
+                // A document without a file may be asked twice.
+                if !trouble.remedy.ends_with(BY_SET) {
+                    trouble.remedy.push_str(BY_SET);
+                }
             } else if trouble.line.is_none() {
                 trouble.line = line_of_key(&self.text, key);
             }
