@@ -18,9 +18,18 @@
 //!
 //! let csv = "cycles,crack_length_mm\n0,9\n20000,9.6\n40000,10.3\n60000,11.2\n80000,12.3\n100000,13.6\n120000,15.3\n140000,17.6\n";
 //! let panel = Draft::new("panel")
-//!     .section("specimen", toml! { kind = "middle_tension", width_mm = 152.4, length_mm = 300.0, thickness_mm = 2.54, crack_length_mm = 9.0 })
+//!     .section("specimen", toml! {
+//!         kind = "middle_tension"
+//!         width_mm = 152.4
+//!         length_mm = 300.0
+//!         thickness_mm = 2.54
+//!         crack_length_mm = 9.0
+//!     })
 //!     .section("material", toml! { name = "al2024-t3" })
-//!     .section("loading", toml! { stress_range_mpa = 48.28, stress_ratio = 0.2 })
+//!     .section("loading", toml! {
+//!         stress_range_mpa = 48.28
+//!         stress_ratio = 0.2
+//!     })
 //!     .section("model", toml! { method = "handbook" });
 //! let test = panel.clone().readings("panel.csv", csv).calibration()?;
 //! let law = test.fit(&Silent)?.record_text()?;

@@ -179,7 +179,7 @@ const LINES: &[(&str, usize)] = &[
     ("loading", 2312),
     ("levels", 1728),
     ("sweep", 1474),
-    ("runner", 1204),
+    ("runner", 1216),
     ("input", 893),
     ("stress_intensity", 688),
     ("check", 607),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 88477;
+const LINES_OF_ALL: usize = 88498;
 
 #[test]
 fn rooms_do_not_grow() {

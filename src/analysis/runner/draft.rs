@@ -16,10 +16,22 @@ use crate::input::{Document, Folder};
 /// use toml::toml;
 ///
 /// let panel = Draft::new("panel")
-///     .section("specimen", toml! { kind = "middle_tension", width_mm = 100.0, length_mm = 300.0, thickness_mm = 2.0, crack_length_mm = 5.0 })
+///     .section("specimen", toml! {
+///         kind = "middle_tension"
+///         width_mm = 100.0
+///         length_mm = 300.0
+///         thickness_mm = 2.0
+///         crack_length_mm = 5.0
+///     })
 ///     .section("material", toml! { name = "al2024-t3" })
-///     .section("loading", toml! { stress_max_mpa = 80.0, stress_ratio = 0.1 })
-///     .section("fatigue", toml! { paris_c_mm_per_cycle = 8e-8, paris_m = 3.0 });
+///     .section("loading", toml! {
+///         stress_max_mpa = 80.0
+///         stress_ratio = 0.1
+///     })
+///     .section("fatigue", toml! {
+///         paris_c_mm_per_cycle = 8e-8
+///         paris_m = 3.0
+///     });
 /// let shorter = predict(&panel.clone().section("loading", toml! { stress_max_mpa = 90.0 }).case()?, &Silent)?;
 /// assert!(shorter.life_cycles() < predict(&panel.case()?, &Silent)?.life_cycles());
 /// # Ok::<(), perilife_analysis::Error>(())
