@@ -20,7 +20,9 @@ mod golden;
 mod hand_over;
 mod lives;
 mod measured;
+mod named;
 mod paths;
+mod pins;
 pub mod references;
 mod rims;
 pub mod scene;
@@ -65,6 +67,13 @@ pub const TOPICS: &[Topic] = &[
         0,
         factors::all,
     ),
+    topic(
+        "named_plates",
+        "cracks at holes, rows of holes, lugs, bent and eccentric specimens: K beside handbooks, lives beside finite elements",
+        0,
+        named::rows,
+    ),
+    topic("pins", "pins in contact: arcs by Persson, arcs and K of compact specimens and lugs by finite elements", 0, pins::rows),
     topic("golden", "golden lives by hand calculation, rates of readings", 0, golden::by_hand),
     topic("golden_peridynamics", "the golden lives by peridynamics", 0, golden::on_points),
     topic("life", "lives of standard specimens by m, bond law, kernel and on nodes against quadrature", 0, lives::standard),
