@@ -55,9 +55,8 @@ fn factors(table: &mut Table) -> Result<()> {
             let formula = formula.ok_or_else(|| Error::Mechanics(format!("{name}: no handbook")))?;
             let tip = stress_intensity(&case, &[StressIntensityMethod::ElementFreeGalerkin])?.swap_remove(0);
             let ratio = tip.methods[0].intensity.k_i.unwrap_or(f64::NAN) / tip.handbook_k_i.unwrap_or(f64::NAN);
-            let bound = 100.0 * (formula.error)(length * MM / formula.width) + OF_NODES;
-            let share = length * MM / formula.width;
-            table.compare(format!("{name}, a/W {share:.2}: K_I on nodes over handbook"), ratio, 1.0, bound, formula.source);
+            let bound = 100.0 * formula.error_at(length * MM) + OF_NODES;
+            table.compare(format!("{name}, a {length} mm: K_I on nodes over handbook"), ratio, 1.0, bound, formula.source);
         }
     }
     Ok(())

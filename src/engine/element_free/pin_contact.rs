@@ -10,6 +10,7 @@
 //! to which what the plate is not, a plane with one hole, adds smooth terms ([`super::pins`]). Sought are p ≥ 0 with the gap g ≥ 0, p g = 0,
 //! and |q| ≤ μ p, which is reached against the slip. Rigid motions of every pin, and its turn where there is friction, are unknowns beside
 //! the condition that it bears the force of its load, none across it and no moment. Friction is that of one step from no load to the largest.
+//! With the limits of q given, all this is a quadratic program; the limits follow the pressure in rounds (Panagiotopoulos 1975, Ing.-Arch. 44:421).
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -27,13 +28,14 @@ const SOUGHT: [f64; 2] = [2.5, 2.8];
 const FIRST: f64 = 1.0;
 /// Overlap, slip or excess of friction that is none, over the scale of each.
 const ROUND_OFF: f64 = 1e-9;
-/// Turns of the active set at the most.
-const TURNS: usize = 200;
+/// Steps to the least energy at the most.
+const TURNS: usize = 2000;
+/// Rounds in which limits of friction follow the pressure at the most, and their change that is none.
+const ROUNDS: usize = 60;
+const SETTLED: f64 = 1e-6;
 /// Gauss points and weights on 0..1.
 const GAUSS: [(f64, f64); 3] = [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-/// Share of the contact whose friction may be left undecided.
-const FLICKER: f64 = 0.05;
-/// Turns without fewer wrong pieces before they are exchanged one by one.
+/// Turns without fewer wrong pieces before they are not exchanged at once any more.
 const CHANCES: usize = 5;
 
 /// A pin and the pieces of rim that it may touch.
@@ -73,11 +75,6 @@ impl PinRim {
         };
         let gaps = angles.iter().map(gap).collect();
         PinRim { radius, width, angles, gaps, friction: pin.friction, force, thickness, pin: pin_constants, half_arc }
-    }
-
-    /// Whether it bears forces along the rim.
-    pub fn has_friction(&self) -> bool {
-        self.friction > 0.0
     }
 
     /// Area of a piece, m².
@@ -125,13 +122,12 @@ fn cell(x: f64, width: f64, a: f64, b: f64) -> Complex<f64> {
     if own { smooth + 2.0 * half * (half.ln() - 1.0) * (a + b) } else { smooth }
 }
 
-/// A piece of rim in contact: what it does along the rim.
+/// Where a component of the force on a piece stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum State {
-    Open,
-    Sticks,
-    /// q = ± μ p.
-    Slips(f64),
+enum Place {
+    Lower,
+    Free,
+    Upper,
 }
 
 /// Forces of pins.
@@ -153,29 +149,32 @@ pub fn bear(rims: &[PinRim], plate: Elasticity, moved: &[f64], mut finite: DMatr
         let mut own = finite.view_mut((2 * start, 2 * start), (size, size));
         own += rim.plane(plate);
     }
-    let mut search = Search { rims, starts, moved, compliance: finite, states: Vec::new(), scale: [0.0; 2] };
     let largest = rims.iter().map(|rim| rim.force / (rim.radius * rim.thickness)).fold(f64::MIN_POSITIVE, f64::max);
-    search.scale = [largest, largest * rims[0].radius / plate.plane_modulus];
-    let begins = |rim: &PinRim| rim.half_arc.min(FIRST).max(0.5 * rim.width);
-    let first = |rim: &PinRim, angle: f64| if angle.abs() <= begins(rim) { State::Sticks } else { State::Open };
-    search.states = rims.iter().flat_map(|rim| rim.angles.iter().map(|&angle| first(rim, angle)).collect::<Vec<_>>()).collect();
-    let (mut fewest, mut chances) = (usize::MAX, CHANCES);
-    for turn in 0..TURNS {
-        let solved = search.solve()?;
-        let mut wrong = search.wrong(&solved);
-        let is_settled = turn + 1 == TURNS && search.flickers(&wrong);
-        if wrong.is_empty() || is_settled {
+    let scale = [largest, largest * rims[0].radius / plate.plane_modulus];
+    let pieces = || rims.iter().flat_map(|rim| rim.angles.iter().map(move |angle| (rim, *angle)));
+    let begins = |(rim, angle): (&PinRim, f64)| angle.abs() <= rim.half_arc.min(FIRST).max(1.5 * rim.width);
+    let places = pieces().flat_map(|piece| [if begins(piece) { Place::Free } else { Place::Lower }, Place::Lower]).collect();
+    let bounds = pieces().flat_map(|_| [[0.0, f64::INFINITY], [0.0; 2]]).collect();
+    let friction: Vec<f64> = pieces().map(|(rim, _)| rim.friction).collect();
+    let mut search = Search { rims, starts, moved, compliance: finite, places, bounds, scale };
+    // All of the force of a pin at its middle is no contact, but bears it.
+    let mut force = DVector::zeros(moved.len());
+    for (piece, (rim, _)) in pieces().enumerate().filter(|(_, (_, angle))| *angle == 0.0) {
+        force[2 * piece] = rim.force / (rim.area() * largest);
+    }
+    let mut solved = search.settle(force)?;
+    if friction.iter().all(|friction| *friction == 0.0) {
+        return Ok(search.borne(&solved));
+    }
+    for _ in 0..ROUNDS {
+        let limits = friction.iter().enumerate().map(|(piece, friction)| friction * solved.force[2 * piece].max(0.0));
+        let limits: Vec<f64> = limits.collect();
+        let change = limits.iter().enumerate().map(|(piece, limit)| (limit - search.bounds[2 * piece + 1][1]).abs());
+        if change.fold(0.0, f64::max) < SETTLED * limits.iter().fold(0.0, |largest: f64, limit| largest.max(*limit)) {
             return Ok(search.borne(&solved));
         }
-        // As contact of flanks does (Júdice and Pires 1994): all at once while fewer are wrong, else one, with friction not always the same.
-        if wrong.len() < fewest {
-            (fewest, chances) = (wrong.len(), CHANCES);
-        } else if chances > 0 {
-            chances -= 1;
-        } else {
-            wrong = vec![wrong[turn % wrong.len()]];
-        }
-        wrong.into_iter().for_each(|(piece, state)| search.states[piece] = state);
+        search.limit(&limits);
+        solved = search.settle(solved.force)?;
     }
     Err(no_contact())
 }
@@ -186,13 +185,18 @@ fn no_contact() -> Error {
     )
 }
 
+/// Seeks the forces F on pieces that make `½ F·C F + F·(g₀ + u)` least within their bounds and bear those of the pins: then gaps and slips, its
+/// gradient, are 0 where F is within its bounds, and push it against them elsewhere.
 struct Search<'a> {
     rims: &'a [PinRim],
     /// First piece of every rim.
     starts: Vec<usize>,
     moved: &'a [f64],
     compliance: DMatrix<f64>,
-    states: Vec<State>,
+    /// Of every component of every piece.
+    places: Vec<Place>,
+    /// Least and largest, scaled.
+    bounds: Vec<[f64; 2]>,
     /// Pressure, Pa, and displacement, m, that count as 1.
     scale: [f64; 2],
 }
@@ -212,98 +216,169 @@ impl Search<'_> {
         (rim, piece - self.starts[rim])
     }
 
-    /// What a unit motion of its pin along and across its force, or a unit turn, takes off gap and slip of a piece.
-    fn rigid(&self, piece: usize) -> [[f64; 3]; 2] {
-        let (rim, own) = self.place(piece);
+    /// What a unit motion of its pin along and across its force, or a unit turn, takes off gap or slip of a piece.
+    fn rigid(&self, component: usize) -> (usize, [f64; 3]) {
+        let (rim, own) = self.place(component / 2);
         let (sin, cos) = self.rims[rim].angles[own].sin_cos();
-        [[cos, sin, 0.0], [-sin, cos, 1.0]]
+        (rim, if component.is_multiple_of(2) { [cos, sin, 0.0] } else { [-sin, cos, 1.0] })
     }
 
-    /// Solves with the states that are assumed.
+    /// Gap or slip without forces on pieces, scaled.
+    fn before(&self, component: usize) -> f64 {
+        let (rim, own) = self.place(component / 2);
+        let gap = if component.is_multiple_of(2) { self.rims[rim].gaps[own] } else { 0.0 };
+        (gap + self.moved[component]) / self.scale[1]
+    }
+
+    /// Takes other limits of friction; what had none sticks.
+    fn limit(&mut self, limits: &[f64]) {
+        for (piece, &limit) in limits.iter().enumerate() {
+            let component = 2 * piece + 1;
+            let had_none = self.bounds[component][1] == 0.0;
+            self.bounds[component] = [-limit, limit];
+            self.places[component] = match self.places[component] {
+                _ if limit == 0.0 => Place::Lower,
+                _ if had_none => Place::Free,
+                same => same,
+            };
+        }
+    }
+
+    /// Force of a component at a bound.
+    fn at_bound(&self, component: usize) -> f64 {
+        match self.places[component] {
+            Place::Lower => self.bounds[component][0],
+            Place::Free => 0.0,
+            Place::Upper => self.bounds[component][1],
+        }
+    }
+
+    /// Solves with the places that are assumed.
     fn solve(&self) -> Result<Solved> {
         let [pressure, length] = self.scale;
-        let is_closed = |piece: &usize| self.states[*piece] != State::Open;
-        let closed: Vec<usize> = (0..self.states.len()).filter(is_closed).collect();
-        let has_friction = |piece: usize| self.rims[self.place(piece).0].has_friction();
-        // Unknowns: components of forces by their row in the compliance, then the motions of the pins.
-        let unknowns: Vec<usize> =
-            closed.iter().map(|piece| 2 * piece).chain(closed.iter().filter(|p| has_friction(**p)).map(|p| 2 * p + 1)).collect();
-        let motions: Vec<(usize, usize)> = self
-            .rims
-            .iter()
-            .enumerate()
-            .flat_map(|(rim, of)| (0..if of.has_friction() { 3 } else { 2 }).map(move |m| (rim, m)))
-            .collect();
-        let (n, all) = (unknowns.len(), unknowns.len() + motions.len());
+        let mut force = DVector::from_fn(self.places.len(), |component, _| self.at_bound(component));
+        let free: Vec<usize> = (0..self.places.len()).filter(|component| self.places[*component] == Place::Free).collect();
+        let unit = pressure / length;
+        let mut between = &self.compliance * &force * unit;
+        (0..self.places.len()).for_each(|component| between[component] += self.before(component));
+        // A pin that nothing holds along its rim is not turned.
+        let holds = |rim: usize| free.iter().any(|component| component % 2 == 1 && self.place(component / 2).0 == rim);
+        let motions: Vec<(usize, usize)> =
+            (0..self.rims.len()).flat_map(|rim| (0..if holds(rim) { 3 } else { 2 }).map(move |motion| (rim, motion))).collect();
+        let (n, all) = (free.len(), free.len() + motions.len());
         let (mut matrix, mut right) = (DMatrix::zeros(all, all), DVector::zeros(all));
-        let normal_of = |piece: usize| closed.binary_search(&piece).unwrap_or(0);
-        for (row, &unknown) in unknowns.iter().enumerate() {
-            let (piece, part) = (unknown / 2, unknown % 2);
-            let (rim, own) = self.place(piece);
-            let rigid = self.rigid(piece)[part];
-            for (column, &(of, motion)) in motions.iter().enumerate().filter(|(_, (of, _))| *of == rim) {
-                // Forces along and across that of the pin, and its moment.
-                matrix[(n + column, row)] = rigid[motion] * self.rims[of].area() / self.rims[of].radius.powi(2);
-            }
-            if let (State::Slips(sign), 1) = (self.states[piece], part) {
-                matrix[(row, row)] = 1.0;
-                matrix[(row, normal_of(piece))] = -sign * self.rims[rim].friction;
-                continue;
-            }
-            unknowns
-                .iter()
-                .enumerate()
-                .for_each(|(k, &of)| matrix[(row, k)] = self.compliance[(unknown, of)] * pressure / length);
-            for (column, &(_, motion)) in motions.iter().enumerate().filter(|(_, (of, _))| *of == rim) {
-                matrix[(row, n + column)] = -rigid[motion];
-            }
-            let gap = if part == 0 { self.rims[rim].gaps[own] } else { 0.0 };
-            right[row] = -(gap + self.moved[unknown]) / length;
+        for (row, &component) in free.iter().enumerate() {
+            free.iter().enumerate().for_each(|(column, &of)| matrix[(row, column)] = self.compliance[(component, of)] * unit);
+            right[row] = -between[component];
         }
-        for (column, &(rim, motion)) in motions.iter().enumerate().filter(|(_, (_, motion))| *motion == 0) {
-            right[n + column + motion] = self.rims[rim].force / pressure / self.rims[rim].radius.powi(2);
+        // Forces along and across those of the pins, and their moments.
+        for (column, &(rim, motion)) in motions.iter().enumerate() {
+            let area = self.rims[rim].area() / self.rims[rim].radius.powi(2);
+            let of =
+                |component: usize| Some(self.rigid(component)).filter(|(of, _)| *of == rim).map_or(0.0, |(_, by)| by[motion]);
+            for (row, &component) in free.iter().enumerate() {
+                (matrix[(row, n + column)], matrix[(n + column, row)]) = (-of(component), of(component) * area);
+            }
+            let asked = if motion == 0 { self.rims[rim].force / pressure / self.rims[rim].radius.powi(2) } else { 0.0 };
+            let borne: f64 = force.iter().enumerate().filter(|(_, size)| **size != 0.0).map(|(c, size)| size * of(c)).sum();
+            right[n + column] = asked - borne * area;
         }
         let x = matrix.lu().solve(&right).filter(|x| x.iter().all(|x| x.is_finite())).ok_or_else(no_contact)?;
-        let mut force = DVector::zeros(2 * self.states.len());
-        unknowns.iter().enumerate().for_each(|(k, &unknown)| force[unknown] = x[k]);
+        free.iter().enumerate().for_each(|(k, &component)| {
+            force[component] = x[k];
+            between.axpy(x[k] * unit, &self.compliance.column(component), 1.0);
+        });
         let mut rigid = vec![[0.0; 3]; self.rims.len()];
         motions.iter().enumerate().for_each(|(k, &(rim, motion))| rigid[rim][motion] = x[n + k]);
-        let mut between = &self.compliance * &force * (pressure / length);
-        for piece in 0..self.states.len() {
-            let (rim, own) = self.place(piece);
-            for (part, of_rigid) in self.rigid(piece).iter().enumerate() {
-                let gap = if part == 0 { self.rims[rim].gaps[own] } else { 0.0 };
-                let taken: f64 = of_rigid.iter().zip(rigid[rim]).map(|(of, motion)| of * motion).sum();
-                between[2 * piece + part] += (gap + self.moved[2 * piece + part]) / length - taken;
-            }
+        for component in 0..self.places.len() {
+            let (rim, by) = self.rigid(component);
+            between[component] -= by.iter().zip(rigid[rim]).map(|(by, motion)| by * motion).sum::<f64>();
         }
         Ok(Solved { force, between, rigid })
     }
 
-    /// Pieces that cannot be as they are assumed, and how they are then.
-    fn wrong(&self, solved: &Solved) -> Vec<(usize, State)> {
-        let of_piece = |(piece, &state): (usize, &State)| {
-            let [p, q] = [0, 1].map(|part| solved.force[2 * piece + part]);
-            let [gap, slip] = [0, 1].map(|part| solved.between[2 * piece + part]);
-            let friction = self.rims[self.place(piece).0].friction;
-            let new = match state {
-                State::Open if gap < -ROUND_OFF => State::Sticks,
-                State::Open => State::Open,
-                _ if p < 0.0 => State::Open,
-                State::Sticks if friction > 0.0 && q.abs() > friction * p + ROUND_OFF => State::Slips(q.signum()),
-                State::Slips(sign) if sign * slip > ROUND_OFF => State::Sticks,
+    /// Components that cannot be where they are assumed, with the place that they take then.
+    fn wrong(&self, solved: &Solved) -> Vec<(usize, Place)> {
+        let of_component = |(component, &place): (usize, &Place)| {
+            let (force, gradient, [lower, upper]) = (solved.force[component], solved.between[component], self.bounds[component]);
+            let new = match place {
+                Place::Free if force < lower - ROUND_OFF => Place::Lower,
+                Place::Free if force > upper + ROUND_OFF => Place::Upper,
+                Place::Lower if gradient < -ROUND_OFF && upper > lower => Place::Free,
+                Place::Upper if gradient > ROUND_OFF => Place::Free,
                 same => same,
             };
-            (new != state).then_some((piece, new))
+            (new != place).then_some((component, new))
         };
-        self.states.iter().enumerate().filter_map(of_piece).collect()
+        self.places.iter().enumerate().filter_map(of_component).collect()
     }
 
-    /// Whether what is wrong is no more than a few pieces that neither stick nor slip: with friction no states need be right.
-    fn flickers(&self, wrong: &[(usize, State)]) -> bool {
-        let closed = self.states.iter().filter(|state| **state != State::Open).count();
-        let is_of_friction = |(piece, new): &(usize, State)| self.states[*piece] != State::Open && *new != State::Open;
-        wrong.len() as f64 <= FLICKER * closed as f64 && wrong.iter().all(is_of_friction)
+    /// Finds the places; `force` bears those of the pins.
+    fn settle(&mut self, force: DVector<f64>) -> Result<Solved> {
+        let (mut fewest, mut chances) = (usize::MAX, CHANCES);
+        while chances > 0 {
+            let solved = self.solve()?;
+            let wrong = self.wrong(&solved);
+            if wrong.is_empty() {
+                return Ok(solved);
+            }
+            // All at once while that makes fewer wrong, as with contact of flanks (Júdice and Pires 1994).
+            (fewest, chances) = if wrong.len() < fewest { (wrong.len(), CHANCES) } else { (fewest, chances - 1) };
+            wrong.into_iter().for_each(|(component, place)| self.places[component] = place);
+        }
+        self.descend(force)
+    }
+
+    /// The same from a force within its bounds: goes towards what solves with the places as they are up to the first bound, which is one
+    /// place more at a bound, or all the way, and then lets go what its gradient pulls off. The energy falls with every step.
+    fn descend(&mut self, mut force: DVector<f64>) -> Result<Solved> {
+        for (component, place) in self.places.iter_mut().enumerate() {
+            let [lower, upper] = self.bounds[component];
+            force[component] = force[component].clamp(lower, upper);
+            *place = match (lower < upper, *place) {
+                (true, Place::Free) => Place::Free,
+                (true, _) if force[component] > lower && force[component] < upper => Place::Free,
+                (true, _) if force[component] >= upper => Place::Upper,
+                _ => Place::Lower,
+            };
+        }
+        let mut moved = f64::INFINITY;
+        for _ in 0..TURNS {
+            let solved = self.solve()?;
+            let way = &solved.force - &force;
+            if let Some((share, component, place)) = self.first_bound(&force, &way) {
+                force.axpy(share, &way, 1.0);
+                moved += share * way.amax();
+                self.places[component] = place;
+                continue;
+            }
+            moved += way.amax();
+            force.copy_from(&solved.force);
+            let mut wrong = self.wrong(&solved);
+            if wrong.is_empty() {
+                return Ok(solved);
+            }
+            if moved < ROUND_OFF {
+                // Together they are no way down; the one that pulls most is.
+                let pull = |(component, _): &(usize, Place)| solved.between[*component].abs();
+                wrong.sort_by(|a, b| pull(b).total_cmp(&pull(a)));
+                wrong.truncate(1);
+            }
+            moved = 0.0;
+            wrong.into_iter().for_each(|(component, place)| self.places[component] = place);
+        }
+        Err(no_contact())
+    }
+
+    /// The bound that is met first on a way, after which share of it, and by which component.
+    fn first_bound(&self, force: &DVector<f64>, way: &DVector<f64>) -> Option<(f64, usize, Place)> {
+        let meets = |(component, place): (usize, &Place)| {
+            let ([lower, upper], from, way) = (self.bounds[component], force[component], way[component]);
+            let (bound, at) = if way < 0.0 { (lower, Place::Lower) } else { (upper, Place::Upper) };
+            let share = (bound - from) / way;
+            (*place == Place::Free && way != 0.0 && share < 1.0).then_some((share.max(0.0), component, at))
+        };
+        self.places.iter().enumerate().filter_map(meets).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     fn borne(&self, solved: &Solved) -> Borne {
@@ -312,7 +387,7 @@ impl Search<'_> {
         let mut contacts = Vec::with_capacity(self.rims.len());
         for (index, (rim, &start)) in self.rims.iter().zip(&self.starts).enumerate() {
             let of_piece = |own: usize| [0, 1].map(|part| solved.force[2 * (start + own) + part]);
-            let closed: Vec<usize> = (0..rim.angles.len()).filter(|own| self.states[start + own] != State::Open).collect();
+            let closed: Vec<usize> = (0..rim.angles.len()).filter(|&own| of_piece(own)[0] > 0.0).collect();
             let pieces = closed.iter().map(|&own| RimForce {
                 angle: rim.angles[own],
                 width: rim.width,
@@ -327,7 +402,7 @@ impl Search<'_> {
                 let share = (last[1] / (before[1] - last[1]).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
                 last[0] + sign * share * rim.width
             };
-            let sticks = closed.iter().filter(|&&own| rim.has_friction() && self.states[start + own] == State::Sticks).count();
+            let sticks = closed.iter().filter(|&&own| self.places[2 * (start + own) + 1] == Place::Free).count();
             contacts.push(Contact {
                 ends: [end(closed.first(), closed.get(1), -1.0), end(closed.last(), closed.iter().rev().nth(1), 1.0)],
                 pressure: closed.iter().map(|&own| of_piece(own)[0] * pressure).fold(0.0, f64::max),

@@ -2,7 +2,8 @@
 //!
 //! Nodes are a third of a radius apart, far too coarse for the narrow contact of a loose pin. So a plate is taken as a plane with one hole,
 //! known in closed form ([`super::pin_contact`]), and what it is beyond that: D, which is smooth on the rim, since loads e^(inθ) are felt at
-//! a distance d as (R/d)^n. With the factor at hand, one column for each load H_k = cos nθ, sin nθ up to n = 4 gives
+//! a distance d as (R/d)^n. With the factor at hand, one column for each load H_k = cos nθ, sin nθ up to n = 4, and where cracks begin at the
+//! hole one that jumps there, gives
 //! ```text
 //! r_k = u of the plate under H_k - u of the plane with a hole,   N_k = ∫ H_k² dθ
 //! D = Σ_k r_k ⟨H_k, ·⟩/N_k + Σ_k H_k ⟨r_k - P r_k, ·⟩/N_k,       P the projection on all H
@@ -10,6 +11,8 @@
 //! The second sum is the first turned round (Maxwell and Betti). Of what is read on a rim only waves up to n = 4 are kept, and the jump
 //! where a crack begins at the hole, drawn out linearly round the rim: shorter ones are those of the nodes, and would show in the pressure.
 //! A floating plate reacts to a single load at its three held unknowns; the reactions vanish with the sum of all loads.
+
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Complex, DMatrix};
 use rayon::prelude::*;
@@ -30,7 +33,7 @@ const HARMONICS: i32 = 4;
 const PLACES: usize = 180;
 /// Columns that are solved for together.
 const TOGETHER: usize = 16;
-const TURN: f64 = std::f64::consts::TAU;
+const TURN: f64 = TAU;
 
 /// An elastic pin among the loads of a plate.
 struct Bore<'a> {
@@ -45,40 +48,81 @@ struct Bore<'a> {
     mouths: Vec<f64>,
 }
 
-/// A harmonic load on the rim of a pin, 1 Pa: e^(inθ), its real part or its imaginary one, along the radius or the rim.
+/// A load on the rim of a pin, 1 Pa, along the radius or the rim.
 struct Mode {
     bore: usize,
-    waves: i32,
-    is_sine: bool,
+    shape: Shape,
     is_tangential: bool,
 }
 
-impl Mode {
-    /// On the plate along radius and rim, Pa.
-    fn traction(&self, angle: f64) -> [f64; 2] {
-        let (sin, cos) = (f64::from(self.waves) * angle).sin_cos();
-        let size = if self.is_sine { sin } else { cos };
-        if self.is_tangential { [0.0, size] } else { [size, 0.0] }
+/// Its course round the rim; all those of a rim are orthogonal.
+#[derive(Clone)]
+enum Shape {
+    /// e^(inθ), its real part or its imaginary one.
+    Wave { waves: i32, is_sine: bool },
+    /// Sum of jumps ([`jump`]) at angles, each by its weight.
+    Jumps(Vec<[f64; 2]>),
+}
+
+/// What waves up to [`HARMONICS`] leave of a jump by 1 at x = 0 that is drawn out linearly round the rim: Σ sin nx / πn of all shorter waves.
+fn jump(x: f64) -> f64 {
+    let waves: f64 = (1..=HARMONICS).map(f64::from).map(|n| (n * x).sin() / n).sum();
+    0.5 - x.rem_euclid(TURN) / TURN - waves / PI
+}
+
+/// ∫ of the product of two such jumps that are x apart: Σ cos nx / πn², all waves of which make a parabola.
+fn jumps_product(x: f64) -> f64 {
+    let x = x.rem_euclid(TURN);
+    let waves: f64 = (1..=HARMONICS).map(f64::from).map(|n| (n * x).cos() / (n * n)).sum();
+    (PI * PI / 6.0 - 0.5 * PI * x + 0.25 * x * x - waves) / PI
+}
+
+impl Shape {
+    fn at(&self, angle: f64) -> f64 {
+        match self {
+            Shape::Wave { waves, is_sine: false } => (f64::from(*waves) * angle).cos(),
+            Shape::Wave { waves, .. } => (f64::from(*waves) * angle).sin(),
+            Shape::Jumps(jumps) => jumps.iter().map(|[weight, place]| weight * jump(angle - place)).sum(),
+        }
     }
 
     /// N_k.
     fn norm(&self) -> f64 {
-        if self.waves == 0 { TURN } else { 0.5 * TURN }
+        match self {
+            Shape::Wave { waves: 0, .. } => TURN,
+            Shape::Wave { .. } => 0.5 * TURN,
+            Shape::Jumps(jumps) => product(jumps, jumps),
+        }
     }
 
-    /// u_r and u_θ, m, of a plane with a hole of this radius: F_n e^(inθ) moves it by R/2G F_n/(n+1) and R/2G κ F₋ₙ/(n-1).
-    fn plane(&self, angle: f64, radius: f64, plate: Elasticity) -> [f64; 2] {
-        let n = f64::from(self.waves);
-        let half = if self.is_sine { Complex::new(0.0, -0.5) } else { Complex::new(0.5, 0.0) };
-        let turned = if self.is_tangential { Complex::i() } else { Complex::new(1.0, 0.0) };
+    /// u_r and u_θ, m, of a plane with a hole of this radius: F_n e^(inθ) moves it by R/2G F_n/(n+1) and R/2G κ F₋ₙ/(n-1). Of what jumps
+    /// there are shorter waves only, which are not kept.
+    fn plane(&self, angle: f64, is_tangential: bool, radius: f64, plate: Elasticity) -> [f64; 2] {
+        let Shape::Wave { waves, is_sine } = *self else { return [0.0; 2] };
+        let n = f64::from(waves);
+        let half = if is_sine { Complex::new(0.0, -0.5) } else { Complex::new(0.5, 0.0) };
+        let turned = if is_tangential { Complex::i() } else { Complex::new(1.0, 0.0) };
         let (forth, back) = (half * turned * Complex::cis(n * angle), half.conj() * turned * Complex::cis(-n * angle));
-        let moved = match self.waves {
+        let moved = match waves {
             0 => turned,
             1 => 0.5 * forth,
             _ => forth / (n + 1.0) + back * (plate.kappa / (n - 1.0)),
         };
         let u = moved * (0.5 * radius / plate.shear_modulus);
         [u.re, u.im]
+    }
+}
+
+/// ∫ of the product of two sums of jumps.
+fn product(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
+    a.iter().flat_map(|[w, x]| b.iter().map(move |[v, y]| w * v * jumps_product(x - y))).sum()
+}
+
+impl Mode {
+    /// On the plate along radius and rim, Pa.
+    fn traction(&self, angle: f64) -> [f64; 2] {
+        let size = self.shape.at(angle);
+        if self.is_tangential { [0.0, size] } else { [size, 0.0] }
     }
 }
 
@@ -89,11 +133,16 @@ fn place_angle(place: usize) -> f64 {
     TURN * (place as f64 + 0.5) / PLACES as f64
 }
 
+/// The place after a mouth.
+fn after(mouth: f64) -> usize {
+    (mouth / TURN * PLACES as f64 + 0.5).rem_euclid(PLACES as f64) as usize % PLACES
+}
+
 /// What is read at the places of a rim without waves shorter than [`HARMONICS`], but for jumps at these angles.
 fn smooth(mut read: Vec<[f64; 2]>, mouths: &[f64]) -> Vec<[f64; 2]> {
     let mut jumps = vec![[0.0; 2]; PLACES];
     for mouth in mouths {
-        let after = (mouth / TURN * PLACES as f64 + 0.5).rem_euclid(PLACES as f64) as usize % PLACES;
+        let after = after(*mouth);
         let before = (after + PLACES - 1) % PLACES;
         let jump = [0, 1].map(|part| read[after][part] - read[before][part]);
         for (k, sum) in jumps.iter_mut().enumerate() {
@@ -204,7 +253,8 @@ pub fn press_pins(
     let Some(beside) = fields.pop() else { return Ok(None) };
     for (mode, field) in modes.iter().zip(&mut fields) {
         for (place, u) in field[mode.bore].iter_mut().enumerate() {
-            let plane = mode.plane(place_angle(place), bores[mode.bore].hole.radius, elasticity);
+            let radius = bores[mode.bore].hole.radius;
+            let plane = mode.shape.plane(place_angle(place), mode.is_tangential, radius, elasticity);
             *u = [u[0] - plane[0], u[1] - plane[1]];
         }
     }
@@ -228,18 +278,36 @@ pub fn press_pins(
     Ok(Some(Pins { contacts: bores.iter().map(|bore| bore.load).zip(contacts).collect(), forces, work }))
 }
 
-/// Harmonics of every pin.
+/// Loads on the rim of every pin.
 fn modes(bores: &[Bore<'_>]) -> Vec<Mode> {
     let mut modes = Vec::new();
     for (bore, of) in bores.iter().enumerate() {
+        let shapes = shapes(&of.mouths);
         for is_tangential in [false, true].into_iter().filter(|is_tangential| !is_tangential || of.pin.friction > 0.0) {
-            for waves in 0..=HARMONICS {
-                let kinds = [false, true].into_iter().filter(|is_sine| !is_sine || waves > 0);
-                modes.extend(kinds.map(|is_sine| Mode { bore, waves, is_sine, is_tangential }));
-            }
+            modes.extend(shapes.iter().map(|shape| Mode { bore, shape: shape.clone(), is_tangential }));
         }
     }
     modes
+}
+
+/// Waves, and jumps between the places where cracks begin.
+fn shapes(mouths: &[f64]) -> Vec<Shape> {
+    let waves = (0..=HARMONICS).flat_map(|waves| {
+        [false, true].into_iter().filter(move |is_sine| !is_sine || waves > 0).map(move |is_sine| Shape::Wave { waves, is_sine })
+    });
+    let mut jumps: Vec<Vec<[f64; 2]>> = Vec::new();
+    for mouth in mouths {
+        let mut next = vec![[1.0, TURN * after(*mouth) as f64 / PLACES as f64]];
+        for other in &jumps {
+            let share = product(&next, other) / product(other, other);
+            next.extend(other.iter().map(|[weight, place]| [-share * weight, *place]));
+        }
+        // Cracks that begin at one place jump as one.
+        if product(&next, &next) > 1e-3 * jumps_product(0.0) {
+            jumps.push(next);
+        }
+    }
+    waves.chain(jumps.into_iter().map(Shape::Jumps)).collect()
 }
 
 /// D for all pieces of all rims, m/Pa.
@@ -257,12 +325,15 @@ fn finite(rims: &[PinRim], modes: &[Mode], fields: &[OnRims]) -> DMatrix<f64> {
     let field = table(&|k, rim, angle| between(&fields[k][rim], angle));
     let rest = table(&|k, rim, angle| between(&rests[k][rim], angle));
     let weighed = |of: &DMatrix<f64>, weight: &dyn Fn(usize, usize) -> f64| {
-        DMatrix::from_fn(of.nrows(), of.ncols(), |row, k| of[(row, k)] * weight(pieces[row / 2].0, k) / modes[k].norm())
+        DMatrix::from_fn(of.nrows(), of.ncols(), |row, k| of[(row, k)] * weight(pieces[row / 2].0, k) / modes[k].shape.norm())
     };
     let loaded = weighed(&own, &|rim, _| rims[rim].width);
     // Work is force by way: lengths of rims of unlike radius count.
     let turned = weighed(&rest, &|rim, k| rims[rim].width * rims[rim].radius / rims[modes[k].bore].radius);
-    field * loaded.transpose() + own * turned.transpose()
+    let read = field * loaded.transpose() + own * turned.transpose();
+    // What nodes and places leave of Maxwell's symmetry: in between.
+    let area = |row: usize| rims[pieces[row / 2].0].width * rims[pieces[row / 2].0].radius;
+    DMatrix::from_fn(read.nrows(), read.ncols(), |i, j| 0.5 * (read[(i, j)] + read[(j, i)] * area(j) / area(i)))
 }
 
 /// r - P r.
@@ -271,7 +342,7 @@ fn rest(field: &OnRims, modes: &[Mode]) -> OnRims {
     for mode in modes {
         let tractions: Vec<[f64; 2]> = (0..PLACES).map(|place| mode.traction(place_angle(place))).collect();
         let sum: f64 = tractions.iter().zip(&field[mode.bore]).map(|(h, u)| h[0] * u[0] + h[1] * u[1]).sum();
-        let size = sum * TURN / PLACES as f64 / mode.norm();
+        let size = sum * TURN / PLACES as f64 / mode.shape.norm();
         rest[mode.bore].iter_mut().zip(tractions).for_each(|(u, h)| *u = [u[0] - size * h[0], u[1] - size * h[1]]);
     }
     rest
