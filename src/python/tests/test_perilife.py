@@ -169,22 +169,23 @@ def test_progress_is_told_while_other_threads_run_and_may_end_the_run() -> None:
 
 
 def test_ctrl_c_ends_a_run_soon() -> None:
-    # An equilibrium is finished first: one of these 127 000 points takes seconds, the whole run a minute.
+    # Hundreds of equilibria of 127 000 points, of which at most an iteration is finished: not minutes, on a busy machine too.
+    steps = {**LONG, "fatigue": {**LAW, "step_error_percent": 0.001}}
     begun = time.perf_counter()
     threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
-        perilife.predict(LONG)
-    assert time.perf_counter() - begun < 20.0
+        perilife.predict(steps)
+    assert time.perf_counter() - begun < 10.0
     assert perilife.predict(CASE).life_cycles
 
 
 def test_a_call_costs_less_than_5_ms() -> None:
     def seconds() -> float:
-        begun = time.perf_counter()
+        begun = time.process_time()
         assert perilife.predict(CASE).life_cycles
-        return time.perf_counter() - begun
+        return time.process_time() - begun
 
-    # The least of many: others use the machine too.
+    # Of the processor, and the least of many: others use the machine too.
     least = min(seconds() for _ in range(30))
     print(f"a call takes {1e3 * least:.2f} ms")
     assert least < 5e-3

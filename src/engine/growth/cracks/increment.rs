@@ -10,6 +10,7 @@ use crate::fatigue::crack_tip::TipState;
 use crate::growth::cross_check::ReleasedEnergy;
 use crate::growth::end_of_life::{self, gone};
 use crate::growth::record::{CurvePoint, StopReason};
+use crate::specimen::Load;
 use crate::units::MM;
 
 /// Compliance over that at the start from which a plate without equilibrium is as good as severed: what one side of it has let go turns
@@ -304,6 +305,9 @@ impl<P: CrackedPlate> Cracks<'_, P> {
 
     /// Compares the energy that the new segments released by their K with what the plate did.
     fn compare_energies(&mut self, step: &Increment, growths: &[f64], cycles: f64) {
+        if self.case.specimen.loads.iter().any(Load::has_friction) {
+            return;
+        }
         let ((now, work_now), (before, work)) = (self.energies(), &step.before);
         let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
         let (block, length) = ReleasedEnergy::of_block(self.case, [before, &now], growths, &grown, [*work, work_now], cycles);
