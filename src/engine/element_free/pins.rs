@@ -2,13 +2,13 @@
 //!
 //! Nodes are a third of a radius apart, far too coarse for the narrow contact of a loose pin. So a plate is taken as a plane with one hole,
 //! known in closed form ([`super::pin_contact`]), and what it is beyond that: D, which is smooth on the rim, since loads e^(inθ) are felt at
-//! a distance d as (R/d)^n. With the factor at hand, one column for each load H_k = cos nθ, sin nθ up to n = 4, and where cracks begin at the
-//! hole one that jumps there, gives
+//! a distance d as (R/d)^n. With the factor at hand, one column for each load H_k = cos nθ, sin nθ up to n = 4, at a hole where cracks begin up
+//! to n = 12 and one that jumps there, gives
 //! ```text
 //! r_k = u of the plate under H_k - u of the plane with a hole,   N_k = ∫ H_k² dθ
 //! D = Σ_k r_k ⟨H_k, ·⟩/N_k + Σ_k H_k ⟨r_k - P r_k, ·⟩/N_k,       P the projection on all H
 //! ```
-//! The second sum is the first turned round (Maxwell and Betti). Of what is read on a rim only waves up to n = 4 are kept, and the jump
+//! The second sum is the first turned round (Maxwell and Betti). Of what is read on a rim only these waves are kept, and the jump
 //! where a crack begins at the hole, drawn out linearly round the rim: shorter ones are those of the nodes, and would show in the pressure.
 //! A floating plate reacts to a single load at its three held unknowns; the reactions vanish with the sum of all loads.
 
@@ -22,13 +22,14 @@ use super::dissection::Factor;
 use super::field::Discretisation;
 use super::pin_contact::{Borne, PinRim, bear};
 use crate::error::Result;
-use crate::specimen::geometry::{along, circle_shares};
+use crate::specimen::geometry::circle_crossing;
 use crate::specimen::pin::{Contact, Pin};
 use crate::specimen::{Bearing, Hole, Load, Point, Specimen};
 use crate::williams::Elasticity;
 
-/// Waves around a rim up to which the plate is not taken as a plane with one hole, and displacement is kept as it is read.
-const HARMONICS: i32 = 4;
+/// Waves around a rim up to which the plate is not taken as a plane with one hole, and displacement is kept as it is read: without cracks from
+/// it, and with, where nodes are finer ([`super::resolution`]).
+const HARMONICS: [i32; 2] = [4, 12];
 /// Places around a rim where displacement is read and harmonics are loaded.
 const PLACES: usize = 180;
 /// Columns that are solved for together.
@@ -60,20 +61,20 @@ struct Mode {
 enum Shape {
     /// e^(inθ), its real part or its imaginary one.
     Wave { waves: i32, is_sine: bool },
-    /// Sum of jumps ([`jump`]) at angles, each by its weight.
-    Jumps(Vec<[f64; 2]>),
+    /// Sum of jumps ([`jump`]) at angles, each by its weight, without waves up to a number.
+    Jumps { jumps: Vec<[f64; 2]>, without: i32 },
 }
 
-/// What waves up to [`HARMONICS`] leave of a jump by 1 at x = 0 that is drawn out linearly round the rim: Σ sin nx / πn of all shorter waves.
-fn jump(x: f64) -> f64 {
-    let waves: f64 = (1..=HARMONICS).map(f64::from).map(|n| (n * x).sin() / n).sum();
+/// What waves up to a number leave of a jump by 1 at x = 0 that is drawn out linearly round the rim: Σ sin nx / πn of all shorter waves.
+fn jump(x: f64, without: i32) -> f64 {
+    let waves: f64 = (1..=without).map(f64::from).map(|n| (n * x).sin() / n).sum();
     0.5 - x.rem_euclid(TURN) / TURN - waves / PI
 }
 
 /// ∫ of the product of two such jumps that are x apart: Σ cos nx / πn², all waves of which make a parabola.
-fn jumps_product(x: f64) -> f64 {
+fn jumps_product(x: f64, without: i32) -> f64 {
     let x = x.rem_euclid(TURN);
-    let waves: f64 = (1..=HARMONICS).map(f64::from).map(|n| (n * x).cos() / (n * n)).sum();
+    let waves: f64 = (1..=without).map(f64::from).map(|n| (n * x).cos() / (n * n)).sum();
     (PI * PI / 6.0 - 0.5 * PI * x + 0.25 * x * x - waves) / PI
 }
 
@@ -82,7 +83,7 @@ impl Shape {
         match self {
             Shape::Wave { waves, is_sine: false } => (f64::from(*waves) * angle).cos(),
             Shape::Wave { waves, .. } => (f64::from(*waves) * angle).sin(),
-            Shape::Jumps(jumps) => jumps.iter().map(|[weight, place]| weight * jump(angle - place)).sum(),
+            Shape::Jumps { jumps, without } => jumps.iter().map(|[weight, place]| weight * jump(angle - place, *without)).sum(),
         }
     }
 
@@ -91,7 +92,7 @@ impl Shape {
         match self {
             Shape::Wave { waves: 0, .. } => TURN,
             Shape::Wave { .. } => 0.5 * TURN,
-            Shape::Jumps(jumps) => product(jumps, jumps),
+            Shape::Jumps { jumps, without } => product(jumps, jumps, *without),
         }
     }
 
@@ -114,8 +115,8 @@ impl Shape {
 }
 
 /// ∫ of the product of two sums of jumps.
-fn product(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
-    a.iter().flat_map(|[w, x]| b.iter().map(move |[v, y]| w * v * jumps_product(x - y))).sum()
+fn product(a: &[[f64; 2]], b: &[[f64; 2]], without: i32) -> f64 {
+    a.iter().flat_map(|[w, x]| b.iter().map(move |[v, y]| w * v * jumps_product(x - y, without))).sum()
 }
 
 impl Mode {
@@ -133,12 +134,17 @@ fn place_angle(place: usize) -> f64 {
     TURN * (place as f64 + 0.5) / PLACES as f64
 }
 
+/// Waves that are kept around a rim with these mouths of cracks.
+fn kept_waves(mouths: &[f64]) -> i32 {
+    HARMONICS[usize::from(!mouths.is_empty())]
+}
+
 /// The place after a mouth.
 fn after(mouth: f64) -> usize {
     (mouth / TURN * PLACES as f64 + 0.5).rem_euclid(PLACES as f64) as usize % PLACES
 }
 
-/// What is read at the places of a rim without waves shorter than [`HARMONICS`], but for jumps at these angles.
+/// What is read at the places of a rim without shorter waves than are kept, but for jumps at these angles.
 fn smooth(mut read: Vec<[f64; 2]>, mouths: &[f64]) -> Vec<[f64; 2]> {
     let mut jumps = vec![[0.0; 2]; PLACES];
     for mouth in mouths {
@@ -152,7 +158,7 @@ fn smooth(mut read: Vec<[f64; 2]>, mouths: &[f64]) -> Vec<[f64; 2]> {
     }
     read.iter_mut().zip(&jumps).for_each(|(u, jump)| *u = [u[0] - jump[0], u[1] - jump[1]]);
     let mut kept = jumps;
-    for waves in 0..=HARMONICS {
+    for waves in 0..=kept_waves(mouths) {
         let size = if waves == 0 { 1.0 } else { 2.0 } / PLACES as f64;
         let angle = |place: usize| f64::from(waves) * place_angle(place);
         for shape in [f64::cos, f64::sin] {
@@ -190,9 +196,7 @@ fn bores<'a>(specimen: &'a Specimen, plate: &Discretisation, nominal: f64) -> Ve
         if let Load::Pin { hole, direction, force, contact: Bearing::Elastic(pin) } = of {
             let (middle, force, hole) = (direction[1].atan2(direction[0]), force * nominal, specimen.holes[*hole]);
             let crossing = |piece: &[Point]| {
-                let shares = circle_shares(piece[0], piece[1], hole.centre, hole.radius)?;
-                let share = shares.into_iter().find(|share| (0.0..=1.0).contains(share))?;
-                let [x, y] = along(piece[0], piece[1], share);
+                let [x, y] = circle_crossing(piece[0], piece[1], hole.centre, hole.radius)?;
                 Some((y - hole.centre[1]).atan2(x - hole.centre[0]) - middle)
             };
             bores.push(Bore { load, hole, pin, middle, force, mouths: pieces().filter_map(crossing).collect() });
@@ -292,22 +296,23 @@ fn modes(bores: &[Bore<'_>]) -> Vec<Mode> {
 
 /// Waves, and jumps between the places where cracks begin.
 fn shapes(mouths: &[f64]) -> Vec<Shape> {
-    let waves = (0..=HARMONICS).flat_map(|waves| {
+    let without = kept_waves(mouths);
+    let waves = (0..=without).flat_map(|waves| {
         [false, true].into_iter().filter(move |is_sine| !is_sine || waves > 0).map(move |is_sine| Shape::Wave { waves, is_sine })
     });
     let mut jumps: Vec<Vec<[f64; 2]>> = Vec::new();
     for mouth in mouths {
         let mut next = vec![[1.0, TURN * after(*mouth) as f64 / PLACES as f64]];
         for other in &jumps {
-            let share = product(&next, other) / product(other, other);
+            let share = product(&next, other, without) / product(other, other, without);
             next.extend(other.iter().map(|[weight, place]| [-share * weight, *place]));
         }
         // Cracks that begin at one place jump as one.
-        if product(&next, &next) > 1e-3 * jumps_product(0.0) {
+        if product(&next, &next, without) > 1e-3 * jumps_product(0.0, without) {
             jumps.push(next);
         }
     }
-    waves.chain(jumps.into_iter().map(Shape::Jumps)).collect()
+    waves.chain(jumps.into_iter().map(|jumps| Shape::Jumps { jumps, without })).collect()
 }
 
 /// D for all pieces of all rims, m/Pa.

@@ -11,9 +11,10 @@ use super::grid::{Grid, Source};
 use super::rims::{Stretch, stretches};
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{
-    along, bounding_box, circle_shares, direction, distance, edges, meeting_share, point_in_polygon, segments_touch,
+    along, bounding_box, circle_crossing, circle_shares, direction, distance, edges, meeting_share, point_in_polygon,
+    segments_touch,
 };
-use crate::specimen::{CrackLine, Point, Specimen};
+use crate::specimen::{CrackLine, Hole, Load, Point, Specimen};
 use crate::units::{MM, place_mm};
 
 /// Cells at the most.
@@ -21,6 +22,8 @@ const CELLS_MOST: usize = 200_000;
 
 /// Spacings in the radius of a hole or fillet that K of a crack nearby asks for.
 pub const IN_RADIUS: f64 = 2.4;
+/// The same over that at a hole from which cracks begin and in which an elastic pin stands: short waves of its rim are read from nodes.
+const AT_PIN: f64 = 2.0;
 /// Turn of a re-entrant corner of the outline up to which it belongs to an arc drawn as a polygon, rad; beyond, the corner is sharp.
 pub const ARC_TURN: f64 = 0.45;
 /// Reach of rims and ligaments, in spacings of the coarser level.
@@ -88,7 +91,7 @@ impl Resolution {
             let at = lines[tip.end.line].end(tip.end.at_last);
             sources.push(Source::point(at, spacing, self.reach));
         }
-        sources.extend(self.of_rims(specimen));
+        sources.extend(self.of_rims(specimen, lines));
         sources.extend(self.of_corners(specimen, lines, tips));
         sources.extend(self.of_cracks(specimen, lines, tips));
         let grid = Grid::new(bounds, self.far, &sources, CELLS_MOST);
@@ -102,11 +105,17 @@ impl Resolution {
     }
 
     /// Holes by their radius, and ligaments between rims by the way straight into the material.
-    fn of_rims(&self, specimen: &Specimen) -> Vec<Source> {
-        let holes = specimen
-            .holes
-            .iter()
-            .map(|hole| Source { radius: hole.radius, ..Source::point(hole.centre, hole.radius / self.in_radius, RIM_REACH) });
+    fn of_rims(&self, specimen: &Specimen, lines: &[CrackLine]) -> Vec<Source> {
+        let in_radius = |index: usize| {
+            let is_pin = |load: &Load| matches!(load, Load::Pin { hole, .. } if *hole == index && load.is_elastic_pin());
+            let Hole { centre, radius } = specimen.holes[index];
+            let cuts = |line: &CrackLine| line.points.windows(2).any(|p| circle_crossing(p[0], p[1], centre, radius).is_some());
+            if specimen.loads.iter().any(is_pin) && lines.iter().any(cuts) { AT_PIN * self.in_radius } else { self.in_radius }
+        };
+        let holes = specimen.holes.iter().enumerate().map(|(index, hole)| Source {
+            radius: hole.radius,
+            ..Source::point(hole.centre, hole.radius / in_radius(index), RIM_REACH)
+        });
         let mut sources: Vec<Source> = holes.collect();
         sources.extend(self.of_arcs(&specimen.outline));
         let rims = stretches(specimen);
