@@ -22,6 +22,7 @@ mod pin_contact;
 mod pins;
 pub mod resolution;
 pub mod rim_stress;
+mod rim_waves;
 pub mod rims;
 pub mod solve;
 pub mod stress_field;

@@ -58,16 +58,25 @@ pub struct PinRim {
 }
 
 impl PinRim {
-    /// A pin under its force, N, in a hole of this radius, m; `pin_constants` in the plane state of the plate.
-    pub fn new(pin: &Pin, pin_constants: Elasticity, plate: Elasticity, [radius, thickness, force]: [f64; 3]) -> Self {
+    /// A pin under its force, N, in a hole of this radius, m, with mouths of cracks at angles from the direction of the force, rad;
+    /// `pin_constants` in the plane state of the plate.
+    pub fn new(
+        pin: &Pin,
+        pin_constants: Elasticity,
+        plate: Elasticity,
+        [radius, thickness, force]: [f64; 3],
+        mouths: &[f64],
+    ) -> Self {
         let clearance = radius - pin.radius;
         let compliance = 1.0 / plate.plane_modulus + 1.0 / pin_constants.plane_modulus;
         let curvature = clearance / (radius * pin.radius);
         // b = √(4 P' R / π E*), R of both (Johnson 1985, Contact mechanics, equation (4.43)).
         let half_arc = (4.0 * force / thickness * compliance / (std::f64::consts::PI * curvature)).sqrt() / radius;
         let width = (half_arc / IN_HALF_ARC).clamp(WIDTHS[0], WIDTHS[1]);
-        let count = ((SOUGHT[0] * half_arc).clamp(4.0 * width, SOUGHT[1]) / width) as i32;
-        let angles: Vec<f64> = (-count..=count).map(|k| f64::from(k) * width).collect();
+        let (width, first) = beside_mouths(width, mouths);
+        let reach = (SOUGHT[0] * half_arc).clamp(4.0 * width, SOUGHT[1]);
+        let [from, to] = [((-reach - first) / width).ceil() as i32, ((reach - first) / width).floor() as i32];
+        let angles: Vec<f64> = (from..=to).map(|k| first + f64::from(k) * width).collect();
         let gap = |angle: &f64| {
             let aside = clearance * angle.sin();
             let depth = (pin.radius * pin.radius - aside * aside).max(0.0).sqrt();
@@ -103,6 +112,15 @@ impl PinRim {
         }
         matrix
     }
+}
+
+/// Width of pieces of about this width, rad, and the middle of one of them, such that the first two mouths lie between pieces: what presses
+/// on a piece presses on one flank of a crack.
+fn beside_mouths(width: f64, mouths: &[f64]) -> (f64, f64) {
+    let Some(&mouth) = mouths.first() else { return (width, 0.0) };
+    let apart = mouths.get(1).map_or(0.0, |other| (other - mouth).abs());
+    let width = if apart > width { apart / (apart / width).ceil() } else { width };
+    (width, mouth + 0.5 * width)
 }
 
 /// `∫ e^-iy [A L(y) + B L*(y)] dy` over a piece of rim of this width whose middle is x away.
@@ -157,10 +175,13 @@ pub fn bear(rims: &[PinRim], plate: Elasticity, moved: &[f64], mut finite: DMatr
     let bounds = pieces().flat_map(|_| [[0.0, f64::INFINITY], [0.0; 2]]).collect();
     let friction: Vec<f64> = pieces().map(|(rim, _)| rim.friction).collect();
     let mut search = Search { rims, starts, moved, compliance: finite, places, bounds, scale };
-    // All of the force of a pin at its middle is no contact, but bears it.
+    // All of the force of a pin on the two pieces at its middle is no contact, but bears it.
     let mut force = DVector::zeros(moved.len());
-    for (piece, (rim, _)) in pieces().enumerate().filter(|(_, (_, angle))| *angle == 0.0) {
-        force[2 * piece] = rim.force / (rim.area() * largest);
+    for (rim, &start) in rims.iter().zip(&search.starts) {
+        let right = rim.angles.partition_point(|angle| *angle <= 0.0).clamp(1, rim.angles.len() - 1);
+        let [a, b] = [rim.angles[right - 1], rim.angles[right]];
+        let unit = rim.force / (rim.area() * largest * (b - a).sin());
+        (force[2 * (start + right - 1)], force[2 * (start + right)]) = (unit * b.sin(), -unit * a.sin());
     }
     let mut solved = search.settle(force)?;
     if friction.iter().all(|friction| *friction == 0.0) {
@@ -181,7 +202,7 @@ pub fn bear(rims: &[PinRim], plate: Elasticity, moved: &[f64], mut finite: DMatr
 
 fn no_contact() -> Error {
     Error::Mechanics(
-        "the contact of a pin with its hole is not found; give its contact_half_angle_deg instead of its diameter".into(),
+        "the contact of a pin with its hole is not found; give the half angle over which it bears instead of its diameter".into(),
     )
 }
 

@@ -12,29 +12,23 @@
 //! where a crack begins at the hole, drawn out linearly round the rim: shorter ones are those of the nodes, and would show in the pressure.
 //! A floating plate reacts to a single load at its three held unknowns; the reactions vanish with the sum of all loads.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::boundary::motions;
 use super::dissection::Factor;
 use super::field::Discretisation;
 use super::pin_contact::{Borne, PinRim, bear};
+use super::rim_waves::{PLACES, Places, Shape};
 use crate::error::Result;
 use crate::specimen::geometry::circle_crossing;
 use crate::specimen::pin::{Contact, Pin};
 use crate::specimen::{Bearing, Hole, Load, Point, Specimen};
-use crate::williams::Elasticity;
 
-/// Waves around a rim up to which the plate is not taken as a plane with one hole, and displacement is kept as it is read: without cracks from
-/// it, and with, where nodes are finer ([`super::resolution`]).
-const HARMONICS: [i32; 2] = [4, 12];
-/// Places around a rim where displacement is read and harmonics are loaded.
-const PLACES: usize = 180;
 /// Columns that are solved for together.
 const TOGETHER: usize = 16;
-const TURN: f64 = TAU;
 
 /// An elastic pin among the loads of a plate.
 struct Bore<'a> {
@@ -45,8 +39,8 @@ struct Bore<'a> {
     middle: f64,
     /// Force, N.
     force: f64,
-    /// Where cracks begin at the hole, rad from its direction.
-    mouths: Vec<f64>,
+    /// Its rim, angles from its direction.
+    places: Places,
 }
 
 /// A load on the rim of a pin, 1 Pa, along the radius or the rim.
@@ -54,69 +48,6 @@ struct Mode {
     bore: usize,
     shape: Shape,
     is_tangential: bool,
-}
-
-/// Its course round the rim; all those of a rim are orthogonal.
-#[derive(Clone)]
-enum Shape {
-    /// e^(inθ), its real part or its imaginary one.
-    Wave { waves: i32, is_sine: bool },
-    /// Sum of jumps ([`jump`]) at angles, each by its weight, without waves up to a number.
-    Jumps { jumps: Vec<[f64; 2]>, without: i32 },
-}
-
-/// What waves up to a number leave of a jump by 1 at x = 0 that is drawn out linearly round the rim: Σ sin nx / πn of all shorter waves.
-fn jump(x: f64, without: i32) -> f64 {
-    let waves: f64 = (1..=without).map(f64::from).map(|n| (n * x).sin() / n).sum();
-    0.5 - x.rem_euclid(TURN) / TURN - waves / PI
-}
-
-/// ∫ of the product of two such jumps that are x apart: Σ cos nx / πn², all waves of which make a parabola.
-fn jumps_product(x: f64, without: i32) -> f64 {
-    let x = x.rem_euclid(TURN);
-    let waves: f64 = (1..=without).map(f64::from).map(|n| (n * x).cos() / (n * n)).sum();
-    (PI * PI / 6.0 - 0.5 * PI * x + 0.25 * x * x - waves) / PI
-}
-
-impl Shape {
-    fn at(&self, angle: f64) -> f64 {
-        match self {
-            Shape::Wave { waves, is_sine: false } => (f64::from(*waves) * angle).cos(),
-            Shape::Wave { waves, .. } => (f64::from(*waves) * angle).sin(),
-            Shape::Jumps { jumps, without } => jumps.iter().map(|[weight, place]| weight * jump(angle - place, *without)).sum(),
-        }
-    }
-
-    /// N_k.
-    fn norm(&self) -> f64 {
-        match self {
-            Shape::Wave { waves: 0, .. } => TURN,
-            Shape::Wave { .. } => 0.5 * TURN,
-            Shape::Jumps { jumps, without } => product(jumps, jumps, *without),
-        }
-    }
-
-    /// u_r and u_θ, m, of a plane with a hole of this radius: F_n e^(inθ) moves it by R/2G F_n/(n+1) and R/2G κ F₋ₙ/(n-1). Of what jumps
-    /// there are shorter waves only, which are not kept.
-    fn plane(&self, angle: f64, is_tangential: bool, radius: f64, plate: Elasticity) -> [f64; 2] {
-        let Shape::Wave { waves, is_sine } = *self else { return [0.0; 2] };
-        let n = f64::from(waves);
-        let half = if is_sine { Complex::new(0.0, -0.5) } else { Complex::new(0.5, 0.0) };
-        let turned = if is_tangential { Complex::i() } else { Complex::new(1.0, 0.0) };
-        let (forth, back) = (half * turned * Complex::cis(n * angle), half.conj() * turned * Complex::cis(-n * angle));
-        let moved = match waves {
-            0 => turned,
-            1 => 0.5 * forth,
-            _ => forth / (n + 1.0) + back * (plate.kappa / (n - 1.0)),
-        };
-        let u = moved * (0.5 * radius / plate.shear_modulus);
-        [u.re, u.im]
-    }
-}
-
-/// ∫ of the product of two sums of jumps.
-fn product(a: &[[f64; 2]], b: &[[f64; 2]], without: i32) -> f64 {
-    a.iter().flat_map(|[w, x]| b.iter().map(move |[v, y]| w * v * jumps_product(x - y, without))).sum()
 }
 
 impl Mode {
@@ -129,52 +60,6 @@ impl Mode {
 
 /// u_r and u_θ, m, at the places of every pin.
 type OnRims = Vec<Vec<[f64; 2]>>;
-
-fn place_angle(place: usize) -> f64 {
-    TURN * (place as f64 + 0.5) / PLACES as f64
-}
-
-/// Waves that are kept around a rim with these mouths of cracks.
-fn kept_waves(mouths: &[f64]) -> i32 {
-    HARMONICS[usize::from(!mouths.is_empty())]
-}
-
-/// The place after a mouth.
-fn after(mouth: f64) -> usize {
-    (mouth / TURN * PLACES as f64 + 0.5).rem_euclid(PLACES as f64) as usize % PLACES
-}
-
-/// What is read at the places of a rim without shorter waves than are kept, but for jumps at these angles.
-fn smooth(mut read: Vec<[f64; 2]>, mouths: &[f64]) -> Vec<[f64; 2]> {
-    let mut jumps = vec![[0.0; 2]; PLACES];
-    for mouth in mouths {
-        let after = after(*mouth);
-        let before = (after + PLACES - 1) % PLACES;
-        let jump = [0, 1].map(|part| read[after][part] - read[before][part]);
-        for (k, sum) in jumps.iter_mut().enumerate() {
-            let way = ((k + PLACES - after) % PLACES) as f64 + 0.5;
-            (0..2).for_each(|part| sum[part] += jump[part] * (0.5 - way / PLACES as f64));
-        }
-    }
-    read.iter_mut().zip(&jumps).for_each(|(u, jump)| *u = [u[0] - jump[0], u[1] - jump[1]]);
-    let mut kept = jumps;
-    for waves in 0..=kept_waves(mouths) {
-        let size = if waves == 0 { 1.0 } else { 2.0 } / PLACES as f64;
-        let angle = |place: usize| f64::from(waves) * place_angle(place);
-        for shape in [f64::cos, f64::sin] {
-            let sums = [0, 1].map(|part| read.iter().enumerate().map(|(k, u)| shape(angle(k)) * u[part]).sum::<f64>());
-            kept.iter_mut().enumerate().for_each(|(k, u)| (0..2).for_each(|part| u[part] += size * shape(angle(k)) * sums[part]));
-        }
-    }
-    kept
-}
-
-/// Between the places of a rim, in a straight line.
-fn between(values: &[[f64; 2]], angle: f64) -> [f64; 2] {
-    let at = (angle / TURN * PLACES as f64 - 0.5).rem_euclid(PLACES as f64);
-    let (low, share) = (at as usize % PLACES, at.fract());
-    [0, 1].map(|part| (1.0 - share) * values[low][part] + share * values[(low + 1) % PLACES][part])
-}
 
 impl Bore<'_> {
     fn axes(&self, angle: f64) -> [Point; 2] {
@@ -199,7 +84,7 @@ fn bores<'a>(specimen: &'a Specimen, plate: &Discretisation, nominal: f64) -> Ve
                 let [x, y] = circle_crossing(piece[0], piece[1], hole.centre, hole.radius)?;
                 Some((y - hole.centre[1]).atan2(x - hole.centre[0]) - middle)
             };
-            bores.push(Bore { load, hole, pin, middle, force, mouths: pieces().filter_map(crossing).collect() });
+            bores.push(Bore { load, hole, pin, middle, force, places: Places::new(pieces().filter_map(crossing).collect()) });
         }
     }
     bores
@@ -230,15 +115,14 @@ pub fn press_pins(
         return Ok(None);
     }
     let elasticity = plate.elasticity();
-    let places =
-        |bore: &Bore<'_>| (0..PLACES).map(|place| motions(plate, bore.at(place_angle(place)))).collect::<Result<Vec<_>>>();
+    let places = |bore: &Bore<'_>| bore.places.angles().map(|angle| motions(plate, bore.at(angle))).collect::<Result<Vec<_>>>();
     let rows = bores.iter().map(places).collect::<Result<Vec<_>>>()?;
     let modes = modes(&bores);
     let column = |mode: &Mode| {
         let (bore, mut column) = (&bores[mode.bore], vec![0.0; others.len()]);
-        let area = bore.hole.radius * specimen.thickness * TURN / PLACES as f64;
-        for (place, row) in rows[mode.bore].iter().enumerate() {
-            push(&mut column, row, bore.axes(place_angle(place)), mode.traction(place_angle(place)).map(|size| size * area));
+        let area = bore.hole.radius * specimen.thickness * TAU / PLACES as f64;
+        for (angle, row) in bore.places.angles().zip(&rows[mode.bore]) {
+            push(&mut column, row, bore.axes(angle), mode.traction(angle).map(|size| size * area));
         }
         column
     };
@@ -248,17 +132,16 @@ pub fn press_pins(
     columns.par_iter_mut().for_each(|column| factor.backward(column));
     let on_rims = |u: &Vec<f64>| -> OnRims {
         let read = |(bore, rows): (&Bore<'_>, &Vec<Vec<(u32, Point)>>)| {
-            let read = rows.iter().enumerate().map(|(place, row)| moved(u, row, bore.axes(place_angle(place))));
-            smooth(read.collect(), &bore.mouths)
+            bore.places.smooth(bore.places.angles().zip(rows).map(|(angle, row)| moved(u, row, bore.axes(angle))).collect())
         };
         bores.iter().zip(&rows).map(read).collect()
     };
     let mut fields: Vec<OnRims> = columns.par_iter().map(on_rims).collect();
     let Some(beside) = fields.pop() else { return Ok(None) };
     for (mode, field) in modes.iter().zip(&mut fields) {
-        for (place, u) in field[mode.bore].iter_mut().enumerate() {
-            let radius = bores[mode.bore].hole.radius;
-            let plane = mode.shape.plane(place_angle(place), mode.is_tangential, radius, elasticity);
+        let bore = &bores[mode.bore];
+        for (angle, u) in bore.places.angles().zip(&mut field[mode.bore]) {
+            let plane = mode.shape.plane(angle, mode.is_tangential, bore.hole.radius, elasticity);
             *u = [u[0] - plane[0], u[1] - plane[1]];
         }
     }
@@ -266,12 +149,15 @@ pub fn press_pins(
         .iter()
         .map(|bore| {
             let constants = elasticity.another(bore.pin.youngs_modulus, bore.pin.poisson_ratio);
-            PinRim::new(bore.pin, constants, elasticity, [bore.hole.radius, specimen.thickness, bore.force])
+            PinRim::new(bore.pin, constants, elasticity, [bore.hole.radius, specimen.thickness, bore.force], bore.places.mouths())
         })
         .collect();
-    let of_others: Vec<f64> =
-        rims.iter().zip(&beside).flat_map(|(rim, field)| rim.angles.iter().flat_map(|&angle| between(field, angle))).collect();
-    let Borne { contacts, work } = bear(&rims, elasticity, &of_others, finite(&rims, &modes, &fields))?;
+    let places: Vec<&Places> = bores.iter().map(|bore| &bore.places).collect();
+    let on_pieces = |(index, rim): (usize, &PinRim)| -> Vec<f64> {
+        rim.angles.iter().flat_map(|&angle| places[index].between(&beside[index], angle)).collect()
+    };
+    let of_others: Vec<f64> = rims.iter().enumerate().flat_map(on_pieces).collect();
+    let Borne { contacts, work } = bear(&rims, elasticity, &of_others, finite(&rims, &places, &modes, &fields))?;
     let mut forces = vec![0.0; others.len()];
     for (bore, contact) in bores.iter().zip(&contacts) {
         for piece in &contact.pieces {
@@ -286,7 +172,7 @@ pub fn press_pins(
 fn modes(bores: &[Bore<'_>]) -> Vec<Mode> {
     let mut modes = Vec::new();
     for (bore, of) in bores.iter().enumerate() {
-        let shapes = shapes(&of.mouths);
+        let shapes = of.places.shapes();
         for is_tangential in [false, true].into_iter().filter(|is_tangential| !is_tangential || of.pin.friction > 0.0) {
             modes.extend(shapes.iter().map(|shape| Mode { bore, shape: shape.clone(), is_tangential }));
         }
@@ -294,32 +180,11 @@ fn modes(bores: &[Bore<'_>]) -> Vec<Mode> {
     modes
 }
 
-/// Waves, and jumps between the places where cracks begin.
-fn shapes(mouths: &[f64]) -> Vec<Shape> {
-    let without = kept_waves(mouths);
-    let waves = (0..=without).flat_map(|waves| {
-        [false, true].into_iter().filter(move |is_sine| !is_sine || waves > 0).map(move |is_sine| Shape::Wave { waves, is_sine })
-    });
-    let mut jumps: Vec<Vec<[f64; 2]>> = Vec::new();
-    for mouth in mouths {
-        let mut next = vec![[1.0, TURN * after(*mouth) as f64 / PLACES as f64]];
-        for other in &jumps {
-            let share = product(&next, other, without) / product(other, other, without);
-            next.extend(other.iter().map(|[weight, place]| [-share * weight, *place]));
-        }
-        // Cracks that begin at one place jump as one.
-        if product(&next, &next, without) > 1e-3 * jumps_product(0.0, without) {
-            jumps.push(next);
-        }
-    }
-    waves.chain(jumps.into_iter().map(|jumps| Shape::Jumps { jumps, without })).collect()
-}
-
 /// D for all pieces of all rims, m/Pa.
-fn finite(rims: &[PinRim], modes: &[Mode], fields: &[OnRims]) -> DMatrix<f64> {
+fn finite(rims: &[PinRim], places: &[&Places], modes: &[Mode], fields: &[OnRims]) -> DMatrix<f64> {
     let pieces: Vec<(usize, f64)> =
         rims.iter().enumerate().flat_map(|(rim, of)| of.angles.iter().map(move |&angle| (rim, angle))).collect();
-    let rests: Vec<OnRims> = fields.par_iter().map(|field| rest(field, modes)).collect();
+    let rests: Vec<OnRims> = fields.par_iter().map(|field| rest(field, places, modes)).collect();
     let table = |of: &dyn Fn(usize, usize, f64) -> [f64; 2]| {
         DMatrix::from_fn(2 * pieces.len(), modes.len(), |row, k| {
             let (rim, angle) = pieces[row / 2];
@@ -327,8 +192,8 @@ fn finite(rims: &[PinRim], modes: &[Mode], fields: &[OnRims]) -> DMatrix<f64> {
         })
     };
     let own = table(&|k, rim, angle| if modes[k].bore == rim { modes[k].traction(angle) } else { [0.0; 2] });
-    let field = table(&|k, rim, angle| between(&fields[k][rim], angle));
-    let rest = table(&|k, rim, angle| between(&rests[k][rim], angle));
+    let field = table(&|k, rim, angle| places[rim].between(&fields[k][rim], angle));
+    let rest = table(&|k, rim, angle| places[rim].between(&rests[k][rim], angle));
     let weighed = |of: &DMatrix<f64>, weight: &dyn Fn(usize, usize) -> f64| {
         DMatrix::from_fn(of.nrows(), of.ncols(), |row, k| of[(row, k)] * weight(pieces[row / 2].0, k) / modes[k].shape.norm())
     };
@@ -342,12 +207,12 @@ fn finite(rims: &[PinRim], modes: &[Mode], fields: &[OnRims]) -> DMatrix<f64> {
 }
 
 /// r - P r.
-fn rest(field: &OnRims, modes: &[Mode]) -> OnRims {
+fn rest(field: &OnRims, places: &[&Places], modes: &[Mode]) -> OnRims {
     let mut rest = field.clone();
     for mode in modes {
-        let tractions: Vec<[f64; 2]> = (0..PLACES).map(|place| mode.traction(place_angle(place))).collect();
+        let tractions: Vec<[f64; 2]> = places[mode.bore].angles().map(|angle| mode.traction(angle)).collect();
         let sum: f64 = tractions.iter().zip(&field[mode.bore]).map(|(h, u)| h[0] * u[0] + h[1] * u[1]).sum();
-        let size = sum * TURN / PLACES as f64 / mode.shape.norm();
+        let size = sum * TAU / PLACES as f64 / mode.shape.norm();
         rest[mode.bore].iter_mut().zip(tractions).for_each(|(u, h)| *u = [u[0] - size * h[0], u[1] - size * h[1]]);
     }
     rest

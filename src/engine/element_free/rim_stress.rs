@@ -1,15 +1,17 @@
 //! Stress along the rims of a plate of nodes: of holes, slots and the outline.
 //!
-//! On a rim that nothing presses the only stress is that along it, `σ_t = tᵀ σ t`. Gradients of the shape functions are least exact on a rim,
-//! where nodes lie on one side alone. The stress is therefore recovered from the material (as Zienkiewicz and Zhu 1992, IJNME 33:1331, do
-//! for elements): at every place of a rim σ_t is read at some depths, and a quadratic through them by least squares gives that at depth 0; a
-//! second one along the rim, over eight spacings, evens out what is left from place to place.
+//! Strain along a rim is the slope of the displacement there, `ε_t = t·∂u/∂s`, and with the stress across it `σ_t = E' ε_t + ν' σ_n`
+//! (plane strain: ν' = ν/(1-ν)); on a rim that nothing presses σ_n is 0. Displacements of nodes without elements are far better than their
+//! gradients, which are least exact on a rim, where nodes lie on one side alone: a polynomial of the fourth degree in the way along the rim,
+//! through the displacements of eight spacings by least squares, is differentiated. σ_n under a load is read from gradients.
+
+use nalgebra::{DMatrix, DVector};
 
 use super::field::{Discretisation, Local};
 use super::resolution::{ARC_TURN, turn_at};
 use crate::error::{Error, Result};
-use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges};
-use crate::specimen::{Hole, Point, Specimen, Support};
+use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges, segments_touch};
+use crate::specimen::{Hole, Load, Point, Specimen, Support};
 
 /// Places on the rim of a hole: the stress of `cos 2θ` is read within 1e-5 of its peak.
 const PLACES_ON_HOLE: usize = 720;
@@ -17,14 +19,14 @@ const PLACES_ON_HOLE: usize = 720;
 const PLACES_IN_SPACING: f64 = 4.0;
 /// Places on a straight side at the most.
 const PLACES_ON_SIDE: f64 = 2000.0;
-/// Depths at which the stress is read, in local spacings.
-const DEPTHS: [f64; 6] = [0.5, 0.9, 1.3, 1.7, 2.1, 2.5];
-/// Depths of them that a quadratic needs at the least.
-const DEPTHS_LEAST: usize = 4;
-/// Half of the way along the rim over which the stress is evened out, in local spacings: single readings err by 2 to 3 % rms, and by less with
-/// finer nodes only slowly, since strains of Gauss points err from node to node.
+/// Half of the way along the rim over which displacements are fitted, in local spacings.
 const HALF_WINDOW: f64 = 4.0;
-/// Step from a rim into the material, in local spacings, where the stress is read on the rim itself.
+/// Degree of the polynomial, and places that it needs at the least.
+const DEGREE: usize = 4;
+const PLACES_LEAST: usize = 8;
+/// Share of the size of a plate by which a place may lie off a rim that it belongs to.
+const OFF: f64 = 1e-9;
+/// Step from a rim into the material, in local spacings, where the plate is read on the rim itself.
 const INWARD: f64 = 1e-6;
 
 /// Which rim.
@@ -167,68 +169,96 @@ struct Reader<'a> {
     share: f64,
 }
 
+/// What is read at a place.
+struct Reading {
+    place: Place,
+    /// Displacement, m.
+    u: Point,
+    /// Stress across the rim, Pa.
+    across: f64,
+}
+
 impl Reader<'_> {
-    /// Stress along a stretch of rim, evened out; `around` is the way round a closed one, m.
+    /// Stress along a stretch of rim; `around` is the way round a closed one, m.
     fn stresses(&self, places: &[Place], around: Option<f64>) -> Vec<StressAt> {
         let mut local = Local::default();
-        let read: Vec<(Place, f64)> = places.iter().filter_map(|place| Some((*place, self.at_rim(place, &mut local)?))).collect();
-        let even = |index: usize| {
-            let (place, own) = read[index];
-            let mut window = Vec::new();
-            let mut gather = |indices: &mut dyn Iterator<Item = usize>| {
-                for other in indices.take(read.len() - 1) {
-                    let mut way = read[other].0.way - place.way;
-                    if let Some(around) = around {
-                        way -= around * (way / around).round();
-                    }
-                    if way.abs() > HALF_WINDOW * place.spacing {
+        let read: Vec<Reading> = places.iter().filter_map(|place| self.read(place, &mut local)).collect();
+        let count = read.len();
+        let is_cut: Vec<bool> = (0..count).map(|index| self.is_cut(&read[index], &read[(index + 1) % count])).collect();
+        let elasticity = self.plate.elasticity();
+        let lateral = (3.0 - elasticity.kappa) / (1.0 + elasticity.kappa);
+        let stress = |index: usize| {
+            let place = read[index].place;
+            let mut window = vec![index];
+            // Forth and back along the rim, up to its ends and the cracks that begin at it.
+            for forth in [true, false] {
+                let mut last = index;
+                while window.len() < count {
+                    let next = if forth { (last + 1) % count } else { (last + count - 1) % count };
+                    let (is_end, gap) = if forth { (next < last, last) } else { (next > last, next) };
+                    if is_end && around.is_none() || is_cut[gap] || way(&place, &read[next].place, around).abs() > HALF_WINDOW {
                         break;
                     }
-                    window.push((way / place.spacing, read[other].1));
+                    window.push(next);
+                    last = next;
                 }
-            };
-            let is_closed = around.is_some();
-            gather(&mut (index + 1..read.len()).chain((0..index).filter(|_| is_closed)));
-            gather(&mut (0..index).rev().chain((index + 1..read.len()).rev().filter(|_| is_closed)));
-            window.push((0.0, own));
-            StressAt { at: place.at, stress: at_origin(&window).unwrap_or(own) }
+            }
+            let ways: Vec<f64> = window.iter().map(|&other| way(&place, &read[other].place, around)).collect();
+            let [x, y] = [0, 1].map(|part| slope_at_origin(&ways, window.iter().map(|&other| read[other].u[part])));
+            let strain = (x? * place.tangent[0] + y? * place.tangent[1]) / place.spacing;
+            let across = window.iter().map(|&other| read[other].across).sum::<f64>() / window.len() as f64;
+            let stress = self.share * (elasticity.plane_modulus * strain + lateral * across);
+            Some(StressAt { at: place.at, stress })
         };
-        (0..read.len()).map(even).collect()
+        (0..count).filter_map(stress).collect()
     }
 
-    /// Stress along the rim at depth 0, from the depths that lie in the material.
-    fn at_rim(&self, place: &Place, local: &mut Local) -> Option<f64> {
-        let depths = DEPTHS.map(|depth| Some((depth, self.at_depth(place, depth, local)?)));
-        let known: Vec<(f64, f64)> = depths.into_iter().map_while(|read| read).collect();
-        let fitted = if known.len() < DEPTHS_LEAST { None } else { at_origin(&known) };
-        fitted.or_else(|| self.at_depth(place, INWARD, local))
-    }
-
-    /// Stress along the rim, Pa, at a depth in local spacings.
-    fn at_depth(&self, place: &Place, depth: f64, local: &mut Local) -> Option<f64> {
-        let ([x, y], step) = (place.tangent, depth * place.spacing);
+    fn read(&self, place: &Place, local: &mut Local) -> Option<Reading> {
+        let ([x, y], step) = (place.tangent, INWARD * place.spacing);
         let at = [place.at[0] - step * y, place.at[1] + step * x];
-        if !self.specimen.contains(at) {
-            return None;
-        }
-        let (_, gradient) = self.plate.displacement(self.u, at, local)?;
-        let [xx, yy, xy] = self.plate.elasticity().stress(&gradient);
-        Some(self.share * (xx * x * x + yy * y * y + 2.0 * xy * x * y))
+        let (u, gradient) = self.plate.displacement(self.u, at, local)?;
+        let across = if self.is_loaded(place.at) {
+            let [xx, yy, xy] = self.plate.elasticity().stress(&gradient);
+            xx * y * y + yy * x * x - 2.0 * xy * x * y
+        } else {
+            0.0
+        };
+        Some(Reading { place: *place, u, across })
+    }
+
+    /// Whether a load acts on a place of a rim.
+    fn is_loaded(&self, at: Point) -> bool {
+        let off = OFF * self.specimen.width;
+        self.specimen.loads.iter().any(|load| match *load {
+            Load::Pin { hole, .. } => {
+                let Hole { centre, radius } = self.specimen.holes[hole];
+                (distance(at, centre) - radius).abs() < off
+            }
+            Load::Edge { from, to, .. } => distance_to_segment(at, from, to) < off,
+        })
+    }
+
+    /// Whether a crack begins between two places.
+    fn is_cut(&self, a: &Reading, b: &Reading) -> bool {
+        let cuts = &self.plate.obstacles.cuts[..self.plate.cracks];
+        cuts.iter().flat_map(|cut| cut.points.windows(2)).any(|piece| segments_touch(a.place.at, b.place.at, piece[0], piece[1]))
     }
 }
 
-/// Value at x = 0 of the parabola through points (x, y) by least squares; `None` where they do not tell one.
-fn at_origin(points: &[(f64, f64)]) -> Option<f64> {
-    let (mut s, mut t) = ([0.0; 5], [0.0; 3]);
-    for &(x, y) in points {
-        let powers = [1.0, x, x * x, x * x * x, x * x * x * x];
-        s.iter_mut().zip(powers).for_each(|(sum, power)| *sum += power);
-        t.iter_mut().zip(powers).for_each(|(sum, power)| *sum += power * y);
+/// Way along the rim from one place to another, in spacings of the first.
+fn way(from: &Place, to: &Place, around: Option<f64>) -> f64 {
+    let way = to.way - from.way;
+    around.map_or(way, |around| way - around * (way / around).round()) / from.spacing
+}
+
+/// Slope at x = 0 of the polynomial through points (x, y) by least squares; `None` where they do not tell one.
+fn slope_at_origin(x: &[f64], y: impl Iterator<Item = f64>) -> Option<f64> {
+    if x.len() < PLACES_LEAST {
+        return None;
     }
-    let first = [s[2] * s[4] - s[3] * s[3], s[2] * s[3] - s[1] * s[4], s[1] * s[3] - s[2] * s[2]];
-    let determinant = s[0] * first[0] + s[1] * first[1] + s[2] * first[2];
-    let value = first.iter().zip(t).map(|(factor, t)| factor * t).sum::<f64>() / determinant;
-    (determinant > 1e-9 * s[0] * first[0]).then_some(value)
+    let powers = DMatrix::from_fn(x.len(), DEGREE + 1, |row, power| x[row].powi(power as i32));
+    let right = powers.tr_mul(&DVector::from_iterator(x.len(), y));
+    Some(powers.tr_mul(&powers).cholesky()?.solve(&right)[1])
 }
 
 fn extremes(rim: Rim, places: Vec<StressAt>, [is_sharp, is_round]: [bool; 2]) -> Result<RimStress> {
