@@ -20,6 +20,9 @@ use crate::williams::Elasticity;
 pub const SETTLED: f64 = 3e-3;
 /// Spacings in the radius of a hole or fillet to begin with.
 const IN_RADIUS_FIRST: f64 = 4.0;
+/// Reach of a hole or fillet in spacings of the coarser level: a ring of every level around it. Where a hole lies in a single cell that is halved
+/// at its rim alone, peaks are half as large again.
+const RIM_REACH: f64 = 6.0;
 /// Spacings in the radius below which peaks may agree by chance.
 const IN_RADIUS_LEAST: f64 = 16.0;
 /// Refinements at the most.
@@ -76,7 +79,7 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
     let elasticity = Elasticity::of(&case.material);
     let mut resolution = case.nodes().resolution;
     let far = resolution.far;
-    resolution.in_radius = IN_RADIUS_FIRST;
+    (resolution.in_radius, resolution.rim_reach) = (IN_RADIUS_FIRST, RIM_REACH);
     let (mut rims, mut solves): (Vec<RimStress>, usize) = (Vec::new(), 0);
     loop {
         let plate = Discretisation::new(specimen, elasticity, &lines, &tips, &resolution)?;

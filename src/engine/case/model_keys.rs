@@ -6,7 +6,7 @@ use toml::{Table, Value};
 use super::{Case, Method, Model};
 use crate::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use crate::element_free::basis::{BasisKind, Enrichment};
-use crate::element_free::resolution::{ElementFreeSettings, IN_RADIUS, Resolution};
+use crate::element_free::resolution::{ElementFreeSettings, IN_RADIUS, RIM_REACH, Resolution};
 use crate::error::{Result, input, input_missing};
 use crate::input::{LENGTH, Quantity, number};
 use crate::solver::{SolverKind, Symmetry};
@@ -187,6 +187,7 @@ fn nodes_for(specimen: &Specimen, percent: f64, basis: BasisKind) -> ElementFree
             hold: HOLD,
             reach,
             in_radius: IN_RADIUS,
+            rim_reach: RIM_REACH,
             fineness: 1.0,
             support: if basis == BasisKind::Quadratic { INFLUENCE_OF_QUADRATIC } else { of_linear },
             basis,

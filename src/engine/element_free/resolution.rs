@@ -26,8 +26,8 @@ pub const IN_RADIUS: f64 = 2.4;
 const AT_PIN: f64 = 2.0;
 /// Turn of a re-entrant corner of the outline up to which it belongs to an arc drawn as a polygon, rad; beyond, the corner is sharp.
 pub const ARC_TURN: f64 = 0.45;
-/// Reach of rims and ligaments, in spacings of the coarser level.
-const RIM_REACH: f64 = 1.5;
+/// Reach of rims and ligaments, in spacings of the coarser level, that K of a crack nearby asks for.
+pub const RIM_REACH: f64 = 1.5;
 /// Reach of a sharp corner, in spacings of the coarser level: neighbours differ by one level.
 const CORNER_REACH: f64 = 2.5;
 /// Spacings across a ligament.
@@ -59,6 +59,8 @@ pub struct Resolution {
     pub reach: f64,
     /// Spacings in the radius of a hole or fillet.
     pub in_radius: f64,
+    /// Reach of a hole or fillet, in spacings of the coarser level.
+    pub rim_reach: f64,
     /// Spacings across ligaments, members and at corners over those that are usual.
     pub fineness: f64,
     /// Radius of influence of a node, in its spacings.
@@ -114,7 +116,7 @@ impl Resolution {
         };
         let holes = specimen.holes.iter().enumerate().map(|(index, hole)| Source {
             radius: hole.radius,
-            ..Source::point(hole.centre, hole.radius / in_radius(index), RIM_REACH)
+            ..Source::point(hole.centre, hole.radius / in_radius(index), self.rim_reach)
         });
         let mut sources: Vec<Source> = holes.collect();
         sources.extend(self.of_arcs(&specimen.outline));
@@ -190,7 +192,7 @@ impl Resolution {
             for end in [before, after] {
                 let share = 0.5 * side / distance(at, end);
                 let place = |i: usize| along(at, end, share * i as f64 / count as f64);
-                sources.extend((0..count).map(|i| Source::point(place(i), spacing, RIM_REACH)));
+                sources.extend((0..count).map(|i| Source::point(place(i), spacing, self.rim_reach)));
             }
         }
         sources
