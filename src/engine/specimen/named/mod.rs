@@ -93,7 +93,11 @@ pub(super) fn from_value(description: &Description, value: &Value, notes: &mut V
     let crack_key = description.kind.crack_key(convention);
     let first = notes.len();
     let plate = drawing.specimen(description.kind, notes).map_err(|error| by_own_keys(error, crack_key, value))?;
-    notes[first..].iter_mut().filter(|note| note.starts_with(CRACKS)).for_each(|note| *note = format!("{crack_key}: {note}"));
+    for note in &mut notes[first..] {
+        if let Some((_, rest)) = note.strip_prefix(CRACKS).and_then(|rest| rest.split_once(']')) {
+            *note = format!("{crack_key}: a crack{rest}");
+        }
+    }
     let crack_length = crack_length.unwrap_or(plate.crack_length);
     let load_measure = if loads.is_empty() { LoadMeasure::Stress } else { LoadMeasure::Force };
     Ok(Specimen { loads, supports, crack_length, convention, load_measure, own_formula: formula, ..plate })
