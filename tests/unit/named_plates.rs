@@ -12,11 +12,15 @@ const FORCE: &str = "force_max_n = 1000";
 const SIZES: &str = "width_mm = 100\nlength_mm = 200\nthickness_mm = 2\n";
 
 fn read(specimen: &str, loading: &str, more: &str) -> Result<Specimen> {
+    read_case(specimen, loading, more).map(|case| case.specimen)
+}
+
+fn read_case(specimen: &str, loading: &str, more: &str) -> Result<Case> {
     let text = format!(
         "[specimen]\n{specimen}\n[material]\nname = \"al2024-t3\"\n[loading]\n{loading}\nstress_ratio = 0.1\n{more}\n\
          [fatigue]\nparis_c_mm_per_cycle = 1e-7\nparis_m = 3"
     );
-    Case::from_toml(&text, "test", Path::new(""), &[]).map(|case| case.specimen)
+    Case::from_toml(&text, "test", Path::new(""), &[])
 }
 
 /// Every kind: its keys, then those of the same plate beside the outline, its loads and supports, and its crack length in mm.
@@ -185,6 +189,37 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (row("holes = 6\npitch_mm = 20\ncrack_length_mm = 1"), TENSION, "specimen.pitch_mm = 20"),
         (row("holes = 3\npitch_mm = 20\ncrack_length_mm = 8"), TENSION, "half the ligament, 7.5 mm"),
         (row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[1, 1]]"), TENSION, "are not those of 3 holes"),
+        (
+            row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[0, 10], [16, 0], [0, 0]]"),
+            TENSION,
+            "specimen.crack_lengths_mm[1][0] = 16: is longer than the ligament to the next hole, 15 mm",
+        ),
+        // All that was cracked has linked: no tip is left.
+        (
+            row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[0, 10], [10, 0], [0, 0]]"),
+            TENSION,
+            "specimen.crack_lengths_mm = [[0, 10], [10, 0], [0, 0]]: has no end inside the material",
+        ),
+        (
+            hole("hole_diameter_mm = 6\ncrack_length_mm = 46.99"),
+            TENSION,
+            "specimen.crack_length_mm = 46.99: has no end inside the material that could grow; give lengths",
+        ),
+        (
+            "kind = \"crack_at_hole\"\nwidth_mm = 100\nlength_mm = 30\nthickness_mm = 2\nhole_diameter_mm = 40\ncrack_length_mm = 3".to_owned(),
+            TENSION,
+            "specimen.hole_diameter_mm = 40: reaches beyond the outline",
+        ),
+        (
+            hole("hole_diameter_mm = 10\ncrack_length_mm = 3\nbeta_file = \"beta.csv\""),
+            TENSION,
+            "specimen.beta_file = \"beta.csv\": does not go with crack_at_hole",
+        ),
+        (
+            format!("kind = \"edge_notch\"\n{SIZES}notch_depth_mm = 8\nnotch_radius_mm = 3"),
+            TENSION,
+            "specimen.crack_length_mm: is missing",
+        ),
         (lug("head = \"round\"\nedge_distance_mm = 30\ncrack_length_mm = 3"), FORCE, "specimen.edge_distance_mm = 30"),
         (lug("head = \"square\"\ncrack_length_mm = 3"), FORCE, "use one of straight, round"),
         (lug("head = \"round\"\ncrack_length_mm = 3"), TENSION, "is a stress"),
@@ -208,6 +243,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         let error = read(&keys, loading, "").expect_err(&keys);
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains(words), "{words} in {error}");
+        assert!(!error.to_string().contains("specimen.cracks["), "{error}");
     }
     // A named plate takes other loads than its own, and then has no formula.
     let keys = lug("head = \"straight\"\ncrack_length_mm = 3");
@@ -216,4 +252,45 @@ fn what_does_not_fit_is_said_by_its_keys() {
     let two = hole("hole_diameter_mm = 10\ncrack_length_mm = 3\ncracks = 2");
     assert!(read(&two, TENSION, "").unwrap().own_formula.is_some());
     assert!(read(&two, "stress_max_mpa = 50\nstress_parallel_ratio = 0.5", "").unwrap().own_formula.is_none());
+}
+
+/// A crack from the root of a notch begins there, however short it is, and nothing is said of what nobody drew; one that a `plate` begins
+/// within a hole is as long as what lies in the material.
+#[test]
+fn a_crack_begins_at_the_root_however_short() {
+    for length in [0.01, 0.05, 3.0, 40.0] {
+        let keys = format!(
+            "kind = \"edge_notch\"\nwidth_mm = 60\nlength_mm = 120\nthickness_mm = 2\nnotch_depth_mm = 10\nnotch_radius_mm = 5\n\
+             crack_length_mm = {length}"
+        );
+        let case = read_case(&keys, TENSION, "").unwrap_or_else(|error| panic!("{keys}: {error}"));
+        assert!(case.warnings.iter().all(|warning| !warning.contains("crack_length_mm:")), "{:?}", case.warnings);
+        assert!(case.warnings.iter().all(|warning| !warning.contains("specimen.cracks")), "{:?}", case.warnings);
+        let [tip] = case.specimen.tips[..] else { panic!("{length}: {:?}", case.specimen.tips) };
+        assert!((tip.position[0] / MM - (length - 20.0)).abs() < 1e-9, "{length}: {tip:?}");
+        let drawn = case.specimen.crack_lines()[0].length();
+        assert!((drawn / MM - length).abs() < 1e-9, "{length}: {drawn}");
+    }
+    // An end that all but reaches the edge is said by the key of the kind.
+    let through = format!("kind = \"crack_at_hole\"\n{SIZES}hole_diameter_mm = 10\ncrack_lengths_mm = [10, 44.99]");
+    let warnings = read_case(&through, TENSION, "").unwrap().warnings;
+    let words = "specimen.crack_lengths_mm: a crack ends 0.01 mm from a rim";
+    assert!(warnings.iter().any(|warning| warning.contains(words)), "{warnings:?}");
+    let at_hole = format!(
+        "kind = \"plate\"\n{SIZES}holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = 10 }}]\ncracks = [{{ from_mm = [0, 0], to_mm = [5.04, 0] }}]"
+    );
+    let plate = read(&at_hole, TENSION, "").unwrap();
+    assert!((plate.crack_length / MM - 0.04).abs() < 1e-9 && plate.tips.len() == 1, "{plate:?}");
+}
+
+/// Two lengths that fill a ligament have linked their holes; one may be all of it.
+#[test]
+fn cracks_that_fill_a_ligament_have_linked() {
+    for pair in ["[1, 15], [0, 0]", "[1, 10], [5, 0]", "[1, 10], [9, 0]"] {
+        let keys = format!(
+            "kind = \"row_of_holes\"\n{SIZES}hole_diameter_mm = 5\nholes = 3\npitch_mm = 20\ncrack_lengths_mm = [{pair}, [0, 0]]"
+        );
+        let row = read(&keys, TENSION, "").unwrap_or_else(|error| panic!("{keys}: {error}"));
+        assert!((row.crack_length / MM - 16.0).abs() < 1e-9 && row.tips.len() == 1, "{pair}: {row:?}");
+    }
 }

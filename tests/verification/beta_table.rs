@@ -123,7 +123,11 @@ fn tables_that_are_none_are_refused_by_line_and_value() {
         ("crack_length_mm,beta\n9,1\n20,-1\n50,1.2\n", "beta.csv:3: beta = -1"),
         ("crack_length_mm,beta\n9,1\n20,one\n50,1.2\n", "beta.csv:3: beta = one: is not a number"),
         ("crack_length_mm,beta\n9,1\n20,1,3\n50,1.2\n", "beta.csv:3: row = 20,1,3"),
-        ("a,b\n9,1\n20,1\n", "crack_length_mm = a: is not a number"),
+        ("a,b\n9,1\n20,1\n", "beta.csv:1: row = a,b: stands where the header crack_length_mm,beta is expected; begin with"),
+        ("9,1\n50,1.2\n", "beta.csv:1: row = 9,1: stands where the header crack_length_mm,beta is expected"),
+        ("crack_length_in,beta\n0.3,1\n0.4,x\n", "beta.csv:3: beta = x: is not a number"),
+        ("crack_length_in,beta\n0,1\n0.4,1\n", "beta.csv:2: crack_length_in = 0: is not a number above zero"),
+        ("crack_length_mm;beta\n9;1;2\n50;1\n", "beta.csv:2: row = 9;1;2"),
         ("crack_length_mm,beta\n10,1\n50,1.2\n", "beta.csv:2: crack_length_mm = 10: is where the table begins"),
         ("crack_length_mm,beta\n5,1\n8,1.2\n", "beta.csv:3: crack_length_mm = 8: is where the table ends"),
         (
@@ -139,6 +143,15 @@ fn tables_that_are_none_are_refused_by_line_and_value() {
         let message = run.unwrap_err().to_string();
         assert!(message.contains(words), "{text}: {message}");
     }
+    // The same table in inches, with decimal commas and between tabs.
+    let same = [
+        "crack_length_mm,beta\n7.62,1\n25.4,1.1\n63.5,1.25\n",
+        "crack_length_in, beta\n0.3,1\n1,1.1\n2.5,1.25\n",
+        "crack_length_mm;beta\n7,62;1\n25,4;1,1\n63,5;1,25\n",
+        "# from a sheet\ncrack_length_in\tbeta\n0,3\t1\n1\t1,1\n2,5\t1,25\n",
+    ];
+    let lives = same.map(|text| life(PANEL, &["stop.crack_length_mm=49.8"], text));
+    assert!(lives.iter().all(|life| (life / lives[0] - 1.0).abs() < 1e-9), "{lives:?}");
     // A way to K beside it, cracks of unlike length, slots and lengths that are not reached.
     let good = || Folder::at_hand([("beta.csv".to_owned(), b"crack_length_mm,beta\n1,1\n90,1.2\n".to_vec())]);
     let plate = "kind = \"plate\"\nwidth_mm = 100.0\nlength_mm = 200.0\nthickness_mm = 2.0\nbeta_file = \"beta.csv\"\n";
@@ -159,4 +172,10 @@ fn tables_that_are_none_are_refused_by_line_and_value() {
     );
     let message = factor_sweep(&slant.unwrap(), &lengths([5.0, 20.0], 3), false, &Silent).unwrap_err().to_string();
     assert!(message.contains("--sweep = 5") && message.contains("initial crack length 10 mm"), "{message}");
+    let named = try_case(
+        "kind = \"crack_at_hole\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\nhole_diameter_mm = 10\ncrack_length_mm = 8\n",
+        &[],
+    );
+    let message = factor_sweep(&named.unwrap(), &lengths([5.0, 20.0], 3), false, &Silent).unwrap_err().to_string();
+    assert!(message.contains("begin there, or give a smaller specimen.crack_length_mm"), "{message}");
 }

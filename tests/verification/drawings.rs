@@ -6,7 +6,7 @@ use perilife::Result;
 use perilife::case::Case;
 use perilife::input::Folder;
 use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
-use perilife::specimen::Specimen;
+use perilife::specimen::{Edge, Specimen};
 use perilife::stress_concentration::stressed;
 use perilife::units::MM;
 
@@ -99,6 +99,8 @@ fn a_drawing_is_the_plate_of_the_keys() {
         (DXF.to_owned(), dxf(1, &[&inch(RECTANGLE), &inch(HOLE), &inch(CRACK)])),
         (format!("{DXF}\noutline_unit = \"mm\""), dxf(0, &of_lines)),
         (DXF.to_owned(), dxf(4, &polyline)),
+        // R12 writes capitals.
+        (DXF.to_owned(), dxf(4, &polyline).replace("outline", "OUTLINE").replace("holes", "Holes").replace("cracks", "CRACKS")),
         (format!("{DXF}\noutline_symmetry = \"y=0\""), dxf(4, &half)),
         (format!("{DXF}\noutline_symmetry = \"y=0\""), dxf(4, &closed_half)),
         (
@@ -197,7 +199,7 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
     let spline = "SPLINE outline 10 3 20 4";
     let open = "LWPOLYLINE outline 70 0 10 -50 20 -100 10 50 20 -100 10 50 20 100 10 -50 20 100";
     let bow = "LWPOLYLINE outline 70 1 10 -50 20 -100 10 50 20 100 10 50 20 -100 10 -50 20 100";
-    let of_dxf: [(u8, &[&str], &[&str]); 20] = [
+    let of_dxf: [(u8, &[&str], &[&str]); 25] = [
         (4, &[open, HOLE], &["layer outline", "open", "(-50", "(-50.0000, 100.0000) mm"]),
         (4, &[bow], &["crosses or touches itself", "(-50.0000, -100.0000) mm"]),
         (4, &[RECTANGLE, spline], &["layer outline", "SPLINE at (3, 4)", "no circular arc"]),
@@ -229,6 +231,15 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         (4, &[RECTANGLE, "CIRCLE holes 10 0 20 0"], &["layer holes", "lacks group code 40"]),
         (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 40 1 230 -1"], &["CIRCLE at (3, 4)", "from behind"]),
         (4, &["POLYLINE outline 70 5", "VERTEX outline 10 3 20 4", "SEQEND outline"], &["POLYLINE on line", "fitted by curves"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 40 1 210 0.6 230 0.8"], &["CIRCLE at (3, 4)", "tilted plane"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 30 2 40 1"], &["layer holes", "CIRCLE at (3, 4)", "z = 2", "z = 0"]),
+        (4, &[RECTANGLE, "LWPOLYLINE cracks 38 2 70 0 10 3 20 4 10 5 20 6"], &["layer cracks", "LWPOLYLINE at (3, 4)", "z = 2"]),
+        (
+            4,
+            &["POLYLINE outline 70 1", "VERTEX outline 10 3 20 4", "VERTEX outline 10 3 20 4 30 5", "SEQEND outline"],
+            &["layer outline", "POLYLINE on line", "z = 5"],
+        ),
+        (4, &[RECTANGLE, "CIRCLE holes 60 1 10 3 20 4 40 1"], &["layer holes", "CIRCLE at (3, 4)", "is hidden", "remove it"]),
         (0, &[RECTANGLE], &["specimen.outline_unit", "is missing"]),
         (3, &[RECTANGLE], &["unit 3"]),
     ];
@@ -238,7 +249,19 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
     }
     let size = "width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\"";
     let rect = "<rect id=\"outline\" width=\"100\" height=\"200\"/>";
-    let of_svg: [(&str, &str, &[&str]); 11] = [
+    let table = |name: &str, flags: u8, colour: i8| {
+        let layers = format!("0\nLAYER\n2\noutline\n70\n0\n62\n7\n0\nLAYER\n2\n{name}\n70\n{flags}\n62\n{colour}\n");
+        let tables =
+            format!("0\nSECTION\n2\nTABLES\n0\nTABLE\n2\nLAYER\n70\n2\n{layers}0\nENDTAB\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n");
+        dxf(4, &[RECTANGLE, HOLE, CRACK]).replace("0\nSECTION\n2\nENTITIES\n", &tables)
+    };
+    for (name, flags, colour, why) in [("HOLES", 1, 7, "frozen"), ("holes", 0, -7, "switched off")] {
+        refused(DXF, ("part.dxf", &table(name, flags, colour)), &["layer holes", "CIRCLE at (0, 0)", why, "show it"]);
+    }
+    for (name, flags) in [("holes", 0), ("frame", 1), ("holes", 4)] {
+        assert_eq!(plate(DXF, &[("part.dxf", &table(name, flags, 7))]).holes.len(), 1);
+    }
+    let of_svg: [(&str, &str, &[&str]); 16] = [
         (size, "<path id=\"outline\" d=\"M0 0H100V200\"/>", &["layer outline", "open", "(0.0000, 200.0000) mm"]),
         (
             size,
@@ -256,6 +279,31 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
             &["layer holes", "ellipse holes"],
         ),
         ("width=\"100mm\" height=\"100mm\" viewBox=\"0 0 100 200\"", rect, &["stretched"]),
+        (
+            size,
+            "<g id=\"OUTLINE\" style=\"fill:none; display : none\"><rect width=\"100\" height=\"200\"/></g>",
+            &["layer outline", "rect at (0, 200)", "is hidden (display: none)", "remove it"],
+        ),
+        (
+            size,
+            "<g display=\"none\"><g style=\"display:inline\"><rect id=\"outline\" width=\"100\" height=\"200\"/></g></g>",
+            &["layer outline", "is hidden (display: none)"],
+        ),
+        (
+            size,
+            "<rect id=\"outline\" width=\"100\" height=\"200\"/><circle id=\"holes\" visibility=\"hidden\" cx=\"30\" cy=\"50\" r=\"4\"/>",
+            &["layer holes", "circle at (34, 150)", "is hidden (visibility: hidden)"],
+        ),
+        (
+            size,
+            "<g style=\"visibility:hidden\"><rect id=\"outline\" width=\"100\" height=\"200\"/></g>",
+            &["layer outline", "is hidden (visibility: hidden)"],
+        ),
+        (
+            size,
+            "<g id=\"outline\"><svg x=\"3\" y=\"4\" width=\"50\" viewBox=\"0 0 100 200\"><rect width=\"100\" height=\"200\"/></svg></g>",
+            &["layer outline", "svg at (3, 4)", "drawing within the drawing"],
+        ),
         ("viewBox=\"0 0 100 200\"", rect, &["specimen.outline_unit", "is missing"]),
         (size, "<rect id=\"outline\" width=\"100%\" height=\"200\"/>", &["layer outline", "no plain number"]),
     ];
@@ -263,6 +311,10 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         let text = svg(size, content);
         refused(SVG, ("part.svg", text.as_str()), words);
     }
+    // What is shown again within a hidden group is shown.
+    let shown = "<g visibility=\"hidden\"><rect id=\"outline\" style=\"visibility:visible\" width=\"100\" height=\"200\"/></g>\
+                 <line id=\"cracks\" y1=\"100\" x2=\"9\" y2=\"100\"/>";
+    assert_eq!(plate(SVG, &[("part.svg", &svg(size, shown))]).outline.len(), 4);
     let good = dxf(4, &[RECTANGLE, HOLE, CRACK]);
     let of_keys: [(&str, &str, &str, &[&str]); 9] = [
         (DXF, "part.dxf", "0\nSECTION\n", &["ends before its end mark"]),
@@ -289,6 +341,30 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         refused(keys, (name, text), words);
     }
     refused(DXF, ("other.dxf", good.as_str()), &["part.dxf", "was not sent along"]);
+}
+
+/// Gaps and overlaps of a hundredth of a millimetre, along sides, across them and at an arc, leave level and upright what was drawn so.
+#[test]
+fn gaps_that_are_closed_tilt_no_side() {
+    let slip = 0.01;
+    let sides = [
+        line("outline", [[-40.0, -100.0], [50.0, -100.0]]),
+        line("outline", [[50.0 + slip, -100.0], [50.0 + slip, 100.0 - slip]]),
+        line("outline", [[50.0, 100.0], [-40.0, 100.0]]),
+        format!("ARC outline 10 -40 20 {} 40 10 50 90 51 180", 90.0 - slip),
+        line("outline", [[-50.0 - slip, 90.0], [-50.0 - slip, -90.0]]),
+        format!("ARC outline 10 -40 20 {} 40 10 50 180 51 270", slip - 90.0),
+    ];
+    for turn in 0..sides.len() {
+        let turned = (0..sides.len()).map(|side| sides[(side + turn) % sides.len()].as_str());
+        let turned: Vec<&str> = turned.chain([CRACK]).collect();
+        let plate = plate(DXF, &[("part.dxf", &dxf(4, &turned))]);
+        for (edge, length) in [(Edge::Top, 90.0), (Edge::Bottom, 90.0), (Edge::Right, 200.0), (Edge::Left, 180.0)] {
+            let [(from, to)] = edge.stretches(&plate)[..] else { panic!("{turn} {edge}: {:?}", plate.outline) };
+            let found = (to[0] - from[0]).hypot(to[1] - from[1]) / MM;
+            assert!((found - length).abs() < 0.03, "{turn} {edge}: {found} of {length}");
+        }
+    }
 }
 
 fn refused(keys: &str, file: (&str, &str), words: &[&str]) {

@@ -125,7 +125,7 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
     let mm = |length: f64| (length / MM * 1e6).round() / 1e6;
     if !specimen.is_through() || !specimen.has_sharp_tips() {
         let problem = "needs sharp cracks through the thickness, and tips of every one of them";
-        return Err(input_missing(KEY, problem, "leave it out, or give specimen.cracks"));
+        return Err(input_missing(KEY, problem, format!("leave it out, or give {}", specimen.crack_key())));
     }
     if case.loading.displacement().is_some() || specimen.crack_pressure > 0.0 {
         let problem = "needs a load on rims or holes: β is K over its stress";
@@ -133,7 +133,7 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
     }
     if *first < specimen.crack_length * (1.0 - SAME) {
         let problem = format!("begins below the initial crack length {} mm of the plate", mm(specimen.crack_length));
-        return Err(input(KEY, mm(*first), problem, "begin there, or give shorter specimen.cracks"));
+        return Err(input(KEY, mm(*first), problem, format!("begin there, or give a smaller {}", specimen.crack_key())));
     }
     let (limit, name) = specimen.length_limit();
     if specimen.convention == LengthConvention::MeanOfTips && *last >= limit {

@@ -194,9 +194,9 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
     let tips: Vec<usize> = (0..case.specimen.tips.len()).filter(|&tip| !case.specimen.tips[tip].from_slot).collect();
     if tips.is_empty() {
         return Err(input_missing(
-            "specimen.cracks",
+            case.specimen.crack_key(),
             "is missing: only the tip of a sharp crack has stress intensity factors, a notch has none",
-            "give a crack that starts in the notch; stresses of a plate without cracks: --method element_free_galerkin alone",
+            "give a crack, such as one that starts in the notch; stresses of a plate without cracks: --method element_free_galerkin alone",
         ));
     }
     let handbook_k_i = handbook_beside(&case.specimen)

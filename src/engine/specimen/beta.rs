@@ -1,4 +1,5 @@
-//! β(a) of a specimen from a table, `specimen.beta_file`: K for hand calculation of any through crack.
+//! β(a) of a specimen from a table, `specimen.beta_file`: K for hand calculation of a `plate` and of the standard specimens
+//! with through cracks.
 //!
 //! ```text
 //! K = β(a) σ √(πa)
@@ -14,12 +15,14 @@ use super::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
 use crate::error::{Error, InputError, Result, input_missing};
 use crate::input::Folder;
 use crate::parabolas::Parabolas;
-use crate::units::MM;
+use crate::units::{INCH, MM};
 
 /// Key of the file.
 pub const KEY: &str = "specimen.beta_file";
-/// First line of the file; it may be left out.
+/// First line of the file.
 pub const HEADER: &str = "crack_length_mm,beta";
+/// The same of a table in inches.
+const HEADER_INCH: &str = "crack_length_in,beta";
 /// Share of a length by which the table may end before it.
 const SLACK: f64 = 1e-9;
 /// Share by which cracks of one table may differ in length.
@@ -166,18 +169,38 @@ impl Row {
     }
 }
 
-/// The rows of the table: two numbers a line between commas, semicolons, tabs or blanks, below the header or without one.
+/// The first line: the column of lengths, with its unit in m, and whether the file has decimal commas, since its cells stand between
+/// other marks. A table without it does not say its unit.
+fn header((line, content): (usize, &str)) -> Result<(&'static str, f64, bool)> {
+    let names = cells(content, !content.contains(','));
+    match names[..] {
+        ["crack_length_mm", "beta"] => Ok(("crack_length_mm", MM, !content.contains(','))),
+        ["crack_length_in", "beta"] => Ok(("crack_length_in", INCH, !content.contains(','))),
+        _ => {
+            let problem = format!("stands where the header {HEADER} is expected");
+            Err(fault(line, "row", content, problem, &format!("begin with {HEADER} or {HEADER_INCH}, then one pair a line")))
+        }
+    }
+}
+
+/// Cells between semicolons, tabs or blanks, and commas where those are not decimal.
+fn cells(content: &str, has_decimal_commas: bool) -> Vec<&str> {
+    let parts = |mark: char| matches!(mark, ';' | '\t' | ' ') || (mark == ',' && !has_decimal_commas);
+    content.split(parts).filter(|cell| !cell.is_empty()).collect()
+}
+
+/// The rows of the table: two numbers a line below the header.
 fn rows(text: &str) -> Result<Vec<Row>> {
     let mut rows: Vec<Row> = Vec::new();
     let lines = text.trim_start_matches('\u{feff}').lines().enumerate().map(|(place, line)| (place + 1, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
-    lines.next_if(|(_, line)| line.replace(' ', "") == HEADER);
+    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let (column, unit, has_decimal_commas) = lines.next().map_or(Ok(("crack_length_mm", MM, false)), header)?;
     for (line, content) in lines {
-        let cells: Vec<&str> = content.split([',', ';', '\t', ' ']).filter(|cell| !cell.is_empty()).collect();
-        let [length, beta] = cells[..] else {
-            return Err(fault(line, "row", content, "is no pair of crack length and beta", &format!("give {HEADER}")));
+        let [length, beta] = cells(content, has_decimal_commas)[..] else {
+            return Err(fault(line, "row", content, "is no pair of crack length and beta", &format!("give {column},beta")));
         };
-        let row = Row { line, length: positive(line, "crack_length_mm", length)? * MM, beta: positive(line, "beta", beta)? };
+        let number = |column, cell| positive(line, column, cell, has_decimal_commas);
+        let row = Row { line, length: number(column, length)? * unit, beta: number("beta", beta)? };
         if let Some(before) = rows.last().filter(|before| before.length >= row.length) {
             let problem = format!("does not rise above the {} mm of line {}", round(before.length), before.line);
             return Err(row.fault(problem, "sort the rows by crack length, each length once"));
@@ -191,12 +214,11 @@ fn rows(text: &str) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn positive(line: usize, column: &str, cell: &str) -> Result<f64> {
-    match cell.parse::<f64>() {
+fn positive(line: usize, column: &str, cell: &str, has_decimal_commas: bool) -> Result<f64> {
+    let number = if has_decimal_commas { cell.replace(',', ".").parse::<f64>() } else { cell.parse::<f64>() };
+    match number {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        Ok(_) => {
-            Err(fault(line, column, cell, "is not a number above zero", "give lengths in mm and beta = K/(σ√(πa)), above zero"))
-        }
+        Ok(_) => Err(fault(line, column, cell, "is not a number above zero", "give lengths and beta = K/(σ√(πa)), above zero")),
         Err(_) => Err(fault(line, column, cell, "is not a number", "give numbers with a decimal point")),
     }
 }

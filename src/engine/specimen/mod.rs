@@ -410,6 +410,11 @@ impl Specimen {
         }
     }
 
+    /// Key that its cracks were given by.
+    pub fn crack_key(&self) -> &'static str {
+        self.kind.crack_key(self.convention)
+    }
+
     /// The cracks as lines, in their order.
     pub fn crack_lines(&self) -> Vec<CrackLine> {
         let mut lines: Vec<CrackLine> = Vec::with_capacity(self.cracks.len());

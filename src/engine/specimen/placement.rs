@@ -106,14 +106,18 @@ pub(super) fn place_cracks(
         let key = format!("specimen.cracks[{i}]");
         let [Some(&asked_from), Some(&asked_to)] = [path.first(), path.last()] else { continue };
         let (second, last_but_one) = (path[1], path[path.len() - 2]);
-        let length = path.windows(2).map(|piece| distance(piece[0], piece[1])).sum();
-        let (from, from_open) = trimmed_end(specimen, [asked_from, second], length, &key, notes)?;
-        let (to, to_open) = trimmed_end(specimen, [asked_to, last_but_one], length, &key, notes)?;
+        let cut =
+            [cut_end(specimen, [asked_from, second], &key, notes)?, cut_end(specimen, [asked_to, last_but_one], &key, notes)?];
         let mut corners = path.clone();
-        corners[0] = from;
-        if let Some(last) = corners.last_mut() {
-            *last = to;
-        }
+        set_ends(&mut corners, cut.map(|(end, _)| end));
+        // What lies outside the material says nothing of how near an end is to a rim.
+        let length = corners.windows(2).map(|piece| distance(piece[0], piece[1])).sum();
+        let others = [second, last_but_one];
+        let [(from, from_open), (to, to_open)] = [0, 1].map(|end| match cut[end] {
+            (at, false) => at_mouth(specimen, [at, others[end]], length, &key, notes),
+            open => open,
+        });
+        set_ends(&mut corners, [from, to]);
         let is_left = |asked: [Point; 2], left: [Point; 2]| {
             let ahead = direction(asked[0], asked[1]);
             (left[1][0] - left[0][0]) * ahead[0] + (left[1][1] - left[0][1]) * ahead[1] >= 10.0 * TOUCH
@@ -236,14 +240,15 @@ fn is_overlap(a: Crack, b: Crack) -> bool {
     off_s.abs() < TOUCH && off_t.abs() < TOUCH && s.min(t).max(0.0) + TOUCH < s.max(t).min(distance(a.from, a.to))
 }
 
-/// Where a crack of this length, m, really ends, and whether that end is open (on an edge, in a hole or in a slot) and so not a tip.
-fn trimmed_end(
-    specimen: &Specimen,
-    [end, other]: [Point; 2],
-    length: f64,
-    key: &str,
-    notes: &mut Vec<String>,
-) -> Result<(Point, bool)> {
+fn set_ends(corners: &mut [Point], [from, to]: [Point; 2]) {
+    if let [first, .., last] = corners {
+        (*first, *last) = (from, to);
+    }
+}
+
+/// Where a crack leaves what is no material at one of its ends, and whether that end is open (on an edge, in a hole or in a slot) and so
+/// not a tip.
+fn cut_end(specimen: &Specimen, [end, other]: [Point; 2], key: &str, notes: &mut Vec<String>) -> Result<(Point, bool)> {
     if let Some(hole) = specimen.holes.iter().find(|hole| distance(end, hole.centre) <= hole.radius + TOUCH) {
         return Ok((leave_hole(hole, end, other), true));
     }
@@ -265,8 +270,13 @@ fn trimmed_end(
         notes.push(format!("{key} ends outside the plate at {}: cut off at the edge, at {}", words(end), words(edge)));
         return Ok((edge, true));
     }
+    Ok((end, false))
+}
+
+/// The same of an end in the material of a crack of this length, m: one that all but reaches a rim is open.
+fn at_mouth(specimen: &Specimen, [end, other]: [Point; 2], length: f64, key: &str, notes: &mut Vec<String>) -> (Point, bool) {
     let Some((gap, mouth)) = mouth(specimen, end, other).filter(|(gap, _)| *gap <= MOUTH * length) else {
-        return Ok((end, false));
+        return (end, false);
     };
     notes.push(format!(
         "{key} ends {} mm from a rim, less than a hundredth of its length ({} mm): it was taken to start there, at {}",
@@ -274,7 +284,7 @@ fn trimmed_end(
         round(length),
         words(mouth)
     ));
-    Ok((mouth, true))
+    (mouth, true)
 }
 
 /// Distance of an end of a crack, coming from `other`, from the nearest rim, m, and where it meets that: straight ahead, or at the nearest place.

@@ -42,8 +42,9 @@ impl Specimen {
     pub fn check_growth(&self) -> Result<()> {
         if self.cracks.is_empty() && self.slots.is_empty() {
             let problem = "is missing, and there is no notch either: nothing can grow";
-            let remedy = "give cracks or notches; for the stress of the plate `perilife sif --method element_free_galerkin`";
-            return Err(input_missing("specimen.cracks", problem, remedy));
+            let what = if self.kind == SpecimenKind::Plate { "cracks or notches" } else { "it" };
+            let remedy = format!("give {what}; for the stress of the plate `perilife sif --method element_free_galerkin`");
+            return Err(input_missing(self.crack_key(), problem, remedy));
         }
         Ok(())
     }
@@ -66,6 +67,13 @@ pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Re
         return Err(input("specimen.kind", format!("\"{kind}\""), problem, give_a_kind()));
     }
     let kind = kind.parse::<SpecimenKind>()?;
+    if let Some(given) = table.get("beta_file").filter(|_| kind.part_through().is_some() || kind.named().is_some()) {
+        let takes = |kind: &&SpecimenKind| kind.part_through().is_none() && kind.named().is_none();
+        let known: Vec<&str> = SpecimenKind::ALL.iter().filter(takes).map(|kind| kind.name()).collect();
+        let problem = format!("does not go with {kind}, whose K is its own");
+        let remedy = format!("leave it out, or use one of {}", known.join(", "));
+        return Err(input(super::beta::KEY, shorten(given), problem, remedy));
+    }
     if let Some(description) = kind.part_through() {
         return part_through::from_value(description, value, notes);
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::specimen::Point;
-use crate::specimen::geometry::{along, distance};
+use crate::specimen::geometry::{along, distance, meeting_share};
 
 /// Turn of an arc from one corner of its polyline to the next at the most, rad: 2.5°. Corners lie on the arc, and chords within
 /// r (1 - cos 1.25°) = 2.4e-4 radii of it.
@@ -53,6 +53,12 @@ impl Curve {
     /// Its end.
     pub fn end(&self) -> Point {
         self.pieces.last().map_or(self.from, |piece| piece.to)
+    }
+
+    fn end_at(&mut self, at: Point) {
+        if let Some(last) = self.pieces.last_mut() {
+            last.to = at;
+        }
     }
 
     /// Whether its end is its start, within `tolerance`, m.
@@ -139,6 +145,22 @@ pub fn bulged(from: Point, to: Point, bulge: f64) -> Piece {
     Piece { to, arc: Some(Arc { centre, sweep }) }
 }
 
+/// Where the last piece of a curve and the first of the next one meet, whose ends lie within `tolerance` of each other, m: straight pieces
+/// keep their directions, so that a gap that is closed tilts no side of a plate.
+fn joint(curve: &Curve, next: &Curve, tolerance: f64) -> Point {
+    let (end, start) = (curve.end(), next.from);
+    let before = curve.pieces.len().checked_sub(2).map_or(curve.from, |piece| curve.pieces[piece].to);
+    match (curve.pieces.last(), next.pieces.first()) {
+        (Some(Piece { arc: Some(_), .. }), Some(Piece { arc: None, .. })) => start,
+        (Some(Piece { arc: None, .. }), Some(Piece { arc: None, to })) if end != start => {
+            let crossing = meeting_share(before, end, start, *to).map(|share| along(before, end, share));
+            // Lines that are all but parallel cross anywhere.
+            crossing.filter(|at| [end, start].iter().all(|end| distance(*at, *end) <= 2.0 * tolerance)).unwrap_or(end)
+        }
+        _ => end,
+    }
+}
+
 /// Chains curves whose ends lie within `tolerance` of each other, m.
 /// Errors: the place where more than two of them meet.
 pub fn chained(mut curves: Vec<Curve>, tolerance: f64) -> Result<Vec<Curve>, Point> {
@@ -157,9 +179,16 @@ pub fn chained(mut curves: Vec<Curve>, tolerance: f64) -> Result<Vec<Curve>, Poi
                     return Err(end);
                 }
                 let next = curves.remove(first);
-                chain.pieces.extend(if is_near(next.from, end) { next.pieces } else { next.reversed().pieces });
+                let next = if is_near(next.from, end) { next } else { next.reversed() };
+                chain.end_at(joint(&chain, &next, tolerance));
+                chain.pieces.extend(next.pieces);
             }
             chain = chain.reversed();
+        }
+        if chain.pieces.len() > 1 && chain.is_closed(tolerance) {
+            let at = joint(&chain, &chain, tolerance);
+            chain.end_at(at);
+            chain.from = at;
         }
         chains.push(chain);
     }

@@ -4,7 +4,7 @@
 //! no line, arc, circle or polyline is refused and never left out, since it might be a hole.
 
 use super::curve::{Arc, Curve, Piece, bulged};
-use super::{Drawing, Drawn, Fault, place};
+use super::{Drawing, Drawn, Fault, known_layer, place};
 use crate::specimen::Point;
 
 /// Entities that say nothing of a shape.
@@ -15,6 +15,11 @@ const CLOSED: i64 = 1;
 const FITTED: i64 = 2 | 4;
 /// See [`CLOSED`].
 const IN_SPACE: i64 = 8 | 16 | 64;
+
+/// Flag of a layer that is frozen.
+const FROZEN: i64 = 1;
+/// Size of a coordinate that is round-off, in units of the drawing.
+const ROUND_OFF: f64 = 1e-9;
 
 /// A group: code, value, line of the value.
 type Group<'t> = (i64, &'t str, usize);
@@ -43,6 +48,7 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
         "0" => None,
         other => return Err(Fault::of(format!("has the unit {other} ($INSUNITS)"), "save it in mm or inches")),
     };
+    let hidden = hidden_layers(&groups);
     let entities = entities(&groups);
     let mut lines = Vec::new();
     let mut at = 0;
@@ -50,7 +56,10 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
         let entity = &entities[at];
         let vertices = entities[at + 1..].iter().take_while(|next| entity.kind == "POLYLINE" && next.kind == "VERTEX").count();
         if !SILENT.contains(&entity.kind) && entity.number(67)? != Some(1.0) {
-            let curve = entity.curve(&entities[at + 1..=at + vertices])?;
+            let vertices = &entities[at + 1..=at + vertices];
+            entity.check_shown(&hidden)?;
+            entity.check_plane(vertices)?;
+            let curve = entity.curve(vertices)?;
             lines.push(Drawn { layer: entity.layer(), what: format!("{} at {}", entity.kind, place(curve.from)), curve });
         }
         at += 1 + vertices;
@@ -74,6 +83,25 @@ fn groups(text: &str) -> Result<Vec<Group<'_>>, Fault> {
     Ok(groups)
 }
 
+/// Layers that are not shown, by the table LAYER, and why.
+fn hidden_layers<'t>(groups: &[Group<'t>]) -> Vec<(&'t str, &'static str)> {
+    let is_table = |pair: &[Group<'_>]| (pair[0].0, pair[0].1) == (0, "TABLE") && (pair[1].0, pair[1].1) == (2, "LAYER");
+    let Some(first) = groups.windows(2).position(is_table) else { return Vec::new() };
+    let table: Vec<Group<'t>> =
+        groups[first + 2..].iter().copied().take_while(|group| (group.0, group.1) != (0, "ENDTAB")).collect();
+    let records = table.split(|group| group.0 == 0).skip(1);
+    let hidden = |record: &[Group<'t>]| {
+        let first = |code: i64| record.iter().find(|group| group.0 == code).map(|group| group.1);
+        let number = |code: i64| first(code).and_then(|value| value.parse::<i64>().ok()).unwrap_or(0);
+        match (number(62) < 0, number(70) & FROZEN != 0) {
+            (_, true) => Some((first(2)?, "is on a layer that is frozen")),
+            (true, _) => Some((first(2)?, "is on a layer that is switched off")),
+            _ => None,
+        }
+    };
+    records.filter_map(hidden).collect()
+}
+
 /// Those of the section ENTITIES.
 fn entities<'t>(groups: &[Group<'t>]) -> Vec<Entity<'t>> {
     let begins = |pair: &[Group<'_>]| pair[0].1 == "SECTION" && (pair[1].0, pair[1].1) == (2, "ENTITIES");
@@ -91,7 +119,46 @@ fn entities<'t>(groups: &[Group<'t>]) -> Vec<Entity<'t>> {
 
 impl Entity<'_> {
     fn layer(&self) -> String {
-        self.groups.iter().find(|group| group.0 == 8).map_or("0", |group| group.1).to_owned()
+        let name = self.layer_name();
+        known_layer(name).unwrap_or(name).to_owned()
+    }
+
+    /// As the file has it.
+    fn layer_name(&self) -> &str {
+        self.groups.iter().find(|group| group.0 == 8).map_or("0", |group| group.1)
+    }
+
+    /// Refuses what a viewer does not show: it might be meant or not.
+    fn check_shown(&self, hidden: &[(&str, &str)]) -> Result<(), Fault> {
+        const REMEDY: &str = "show it, or remove it from the drawing";
+        if self.number(60)? == Some(1.0) {
+            return Err(self.refused("is hidden (group code 60)", REMEDY));
+        }
+        match hidden.iter().find(|(layer, _)| layer.eq_ignore_ascii_case(self.layer_name())) {
+            Some((_, why)) => Err(self.refused(why, REMEDY)),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses what does not lie in the plane z = 0; `vertices` follow a POLYLINE.
+    fn check_plane(&self, vertices: &[Entity<'_>]) -> Result<(), Fault> {
+        const REMEDY: &str = "draw it in the plane z = 0, seen from the front";
+        let first_not = |codes: &[i64]| {
+            let groups =
+                [self].into_iter().chain(vertices).flat_map(|entity| &entity.groups).filter(|group| codes.contains(&group.0));
+            let values = groups.map(|group| self.value(group)).collect::<Result<Vec<_>, Fault>>()?;
+            Ok::<_, Fault>(values.into_iter().find(|value| value.abs() > ROUND_OFF))
+        };
+        if self.number(230)?.is_some_and(|z| z < 0.0) {
+            return Err(self.refused("is drawn from behind (extrusion along -z)", REMEDY));
+        }
+        if first_not(&[210, 220])?.is_some() {
+            return Err(self.refused("is drawn in a tilted plane (extrusion not along z)", REMEDY));
+        }
+        match first_not(&[30, 31, 38])? {
+            Some(z) => Err(self.refused(&format!("lies at z = {z}"), REMEDY)),
+            None => Ok(()),
+        }
     }
 
     /// The first value of a code.
@@ -133,9 +200,6 @@ impl Entity<'_> {
     /// Its curve; `vertices` follow a POLYLINE.
     fn curve(&self, vertices: &[Entity<'_>]) -> Result<Curve, Fault> {
         let circle = |entity: &Self| Ok::<_, Fault>((entity.point(10)?, entity.needed(40)?));
-        if self.number(230)?.is_some_and(|z| z < 0.0) {
-            return Err(self.refused("is drawn from behind (extrusion along -z)", "draw it in the plane seen from the front"));
-        }
         match self.kind {
             "LINE" => Ok(Curve { from: self.point(10)?, pieces: vec![Piece::straight(self.point(11)?)] }),
             "CIRCLE" => circle(self).map(|(centre, radius)| Curve::circle(centre, radius)),

@@ -92,6 +92,11 @@ impl Fault {
     }
 }
 
+/// The layer that a name in a file stands for: some programs write capitals.
+fn known_layer(name: &str) -> Option<&'static str> {
+    LAYERS.into_iter().find(|layer| layer.eq_ignore_ascii_case(name))
+}
+
 /// A place in words, in the unit that it is given in.
 fn place([x, y]: Point) -> String {
     let round = |value: f64| (value * 1e4).round() / 1e4 + 0.0;

@@ -10,7 +10,7 @@ use quick_xml::events::{BytesStart, Event};
 use svgtypes::{Length, LengthUnit, PathParser, PathSegment, Transform, ViewBox};
 
 use super::curve::{Arc, Curve, Piece};
-use super::{Drawing, Drawn, Fault, LAYERS, place};
+use super::{Drawing, Drawn, Fault, known_layer, place};
 use crate::specimen::Point;
 use crate::specimen::geometry::distance;
 
@@ -26,6 +26,10 @@ const ALIKE: f64 = 1e-4;
 struct Around {
     names: Vec<String>,
     map: Transform,
+    /// `display: none`, of the element or a group around it.
+    is_left_out: bool,
+    /// `visibility: hidden`, which an element within may end.
+    is_invisible: bool,
 }
 
 /// Reads a file.
@@ -65,9 +69,19 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
                 is_svg = true;
                 let (map, millimetres) = element.view()?;
                 drawing.millimetres = millimetres;
-                Around { names: Vec::new(), map }
+                element.shown(Around { names: Vec::new(), map, is_left_out: false, is_invisible: false })
             }
             None => return Err(broken(format!("begins with <{name}>"))),
+            Some(outside) if name == "svg" => {
+                let at = ["x", "y"].map(|name| element.attribute(name).unwrap_or_else(|| "0".to_owned()));
+                let what = format!("svg at ({})", at.join(", "));
+                return Err(Fault::at(
+                    &outside.layer(),
+                    &what,
+                    "is a drawing within the drawing",
+                    "place its lines in the outer one",
+                ));
+            }
             Some(outside) => element.within(outside)?,
         };
         if !SILENT.contains(&name) {
@@ -87,6 +101,27 @@ struct Element<'a> {
 impl Element<'_> {
     fn attribute(&self, name: &str) -> Option<String> {
         self.tag.try_get_attribute(name).ok().flatten().map(|attribute| attribute.value.trim().to_owned())
+    }
+
+    /// The value of a property, from `style` before the attribute of that name.
+    fn property(&self, name: &str) -> Option<String> {
+        let of_style = self.attribute("style").and_then(|style| {
+            let mut declared = style.split(';').filter_map(|declared| declared.split_once(':'));
+            declared.rfind(|(key, _)| key.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.to_owned())
+        });
+        let value = of_style.or_else(|| self.attribute(name))?;
+        Some(value.trim_end_matches("!important").trim().to_ascii_lowercase())
+    }
+
+    /// What of the element is shown.
+    fn shown(&self, around: Around) -> Around {
+        let is_left_out = around.is_left_out || self.property("display").is_some_and(|value| value == "none");
+        let is_invisible = match self.property("visibility").as_deref() {
+            Some("visible") => false,
+            Some("hidden" | "collapse") => true,
+            _ => around.is_invisible,
+        };
+        Around { is_left_out, is_invisible, ..around }
     }
 
     /// The number of an attribute; 0 where that is left out.
@@ -122,7 +157,7 @@ impl Element<'_> {
     }
 
     fn within(&self, outside: &Around) -> Result<Around, Fault> {
-        let mut inside = outside.clone();
+        let mut inside = self.shown(outside.clone());
         inside.names.extend(["id", "inkscape:label"].into_iter().filter_map(|name| self.attribute(name)));
         let Some(text) = self.attribute("transform") else { return Ok(inside) };
         let fault = |problem: String| Fault::at(&inside.layer(), self.name, problem, "apply transforms before saving");
@@ -170,6 +205,10 @@ impl Element<'_> {
         for curve in curves {
             let curve = curve.mapped(|[x, y]| [a * x + c * y + e, b * x + d * y + f], a * d - b * c < 0.0);
             let what = format!("{} at {}", self.name, place(curve.from));
+            if let Some(property) = around.hidden_by() {
+                let problem = format!("is hidden ({property})");
+                return Err(Fault::at(&around.layer(), &what, problem, "show it, or remove it from the drawing"));
+            }
             lines.push(Drawn { layer: around.layer(), what, curve });
         }
         Ok(())
@@ -179,10 +218,19 @@ impl Element<'_> {
 const DRAW: &str = "draw it as lines and circular arcs (M L H V A Z)";
 
 impl Around {
+    /// The property that hides what is in it.
+    fn hidden_by(&self) -> Option<&'static str> {
+        match (self.is_left_out, self.is_invisible) {
+            (true, _) => Some("display: none"),
+            (_, true) => Some("visibility: hidden"),
+            _ => None,
+        }
+    }
+
     /// The innermost name that is a layer, else the innermost one.
     fn layer(&self) -> String {
-        let known = self.names.iter().rev().find(|name| LAYERS.contains(&name.as_str()));
-        known.or(self.names.last()).cloned().unwrap_or_default()
+        let known = self.names.iter().rev().find_map(|name| known_layer(name));
+        known.or(self.names.last().map(String::as_str)).unwrap_or_default().to_owned()
     }
 }
 

@@ -52,7 +52,8 @@ fn layout(value: &Value) -> Result<Layout> {
     if depth > radius * (1.0 + 1e-6) {
         outline.push([-x, -radius]);
     }
-    let cracks = crack_length.map(|a| vec![centre, [-x + depth + a, 0.0]]).into_iter().collect();
+    let root = -x + depth;
+    let cracks = crack_length.map(|a| vec![[root, 0.0], [root + a, 0.0]]).into_iter().collect();
     let drawing = Drawing { outline, cracks, thickness, ..Drawing::default() };
     Ok(Layout { drawing, crack_length, ..Layout::default() })
 }

@@ -25,7 +25,8 @@ use toml::Value;
 use super::handbook::HandbookFormula;
 use super::plate::Drawing;
 use super::{LengthConvention, Load, LoadMeasure, Specimen, SpecimenKind, Support};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::input::shorten;
 
 /// Every kind.
 const KINDS: &[&Description] = &[
@@ -66,6 +67,18 @@ impl SpecimenKind {
         KINDS.iter().copied().find(|description| description.kind == self)
     }
 
+    /// Key by which cracks of such a kind are given whose length is read like this.
+    pub(super) fn crack_key(self, convention: LengthConvention) -> &'static str {
+        match (self, convention) {
+            (SpecimenKind::Plate, _) => "specimen.cracks",
+            (SpecimenKind::StopHole, _) => "specimen.formed_length_mm",
+            (SpecimenKind::CrackAtHole | SpecimenKind::RowOfHoles | SpecimenKind::Lug, LengthConvention::SumOfTips) => {
+                "specimen.crack_lengths_mm"
+            }
+            _ => "specimen.crack_length_mm",
+        }
+    }
+
     /// Whether it is a plate of free shape, drawn or named: holes, cracks and loads of its own, no formulas of its standard.
     pub fn is_plate(self) -> bool {
         self == SpecimenKind::Plate || self.named().is_some()
@@ -76,11 +89,38 @@ impl SpecimenKind {
 /// Errors: as of a `plate`, named by the keys of the kind as far as they go.
 pub(super) fn from_value(description: &Description, value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
     let Layout { drawing, loads, supports, crack_length, formula } = (description.layout)(value)?;
-    let plate = drawing.specimen(description.kind, notes)?;
-    let (crack_length, convention) = match crack_length {
-        Some(length) => (length, LengthConvention::MeanOfTips),
-        None => (plate.crack_length, LengthConvention::SumOfTips),
-    };
+    let convention = if crack_length.is_some() { LengthConvention::MeanOfTips } else { LengthConvention::SumOfTips };
+    let crack_key = description.kind.crack_key(convention);
+    let first = notes.len();
+    let plate = drawing.specimen(description.kind, notes).map_err(|error| by_own_keys(error, crack_key, value))?;
+    for note in &mut notes[first..] {
+        if let Some((_, rest)) = note.strip_prefix(CRACKS).and_then(|rest| rest.split_once(']')) {
+            *note = format!("{crack_key}: a crack{rest}");
+        }
+    }
+    let crack_length = crack_length.unwrap_or(plate.crack_length);
     let load_measure = if loads.is_empty() { LoadMeasure::Stress } else { LoadMeasure::Force };
     Ok(Specimen { loads, supports, crack_length, convention, load_measure, own_formula: formula, ..plate })
+}
+
+/// What a `plate` says of its cracks and holes begins like this.
+const CRACKS: &str = "specimen.cracks[";
+/// See [`CRACKS`].
+const HOLES: &str = "specimen.holes[";
+
+/// What a `plate` refuses, by the keys of a kind: its cracks by that of their lengths, its holes by their diameter.
+fn by_own_keys(error: Error, crack_key: &'static str, value: &Value) -> Error {
+    let Error::Input(mut refused) = error else { return error };
+    let (own, remedy) = match refused.key.as_deref() {
+        Some(key) if key.starts_with(CRACKS) => {
+            (crack_key, "give lengths of which one at the least ends in the material, clear of rims")
+        }
+        Some(key) if key.starts_with(HOLES) => ("specimen.hole_diameter_mm", "give a smaller one, or a larger plate"),
+        _ => return Error::Input(refused),
+    };
+    let given = own.strip_prefix("specimen.").and_then(|key| value.get(key));
+    refused.key = Some(own.to_owned());
+    refused.value = given.map(shorten);
+    refused.remedy = remedy.to_owned();
+    Error::Input(refused)
 }

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Value;
 
-use super::shapes::{below, length_or_none};
+use super::shapes::{SLACK, below, in_mm, length_or_none};
 use super::{Description, Layout};
 use crate::error::{Result, input, input_missing};
 use crate::input::{LENGTH, slice};
@@ -52,10 +52,12 @@ fn layout(value: &Value) -> Result<Layout> {
     let edge = (width - diameter) / 2.0 - xs[count - 1];
     let key = if shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
     below(key, lengths[0][0].max(lengths[count - 1][1]), edge, "the way from the row to the edge")?;
+    let radius = diameter / 2.0;
+    check_ligaments(&lengths, pitch - diameter)?;
     let drawing = Drawing {
         outline: rectangle(width, length),
-        holes: xs.iter().map(|&x| Hole { centre: [x, 0.0], radius: diameter / 2.0 }).collect(),
-        cracks: paths(&xs, diameter / 2.0, &lengths),
+        holes: xs.iter().map(|&x| Hole { centre: [x, 0.0], radius }).collect(),
+        cracks: paths(&xs, radius, &lengths),
         thickness,
         ..Drawing::default()
     };
@@ -88,6 +90,17 @@ fn lengths(given: &Input) -> Result<(Vec<[f64; 2]>, Option<f64>)> {
     }
 }
 
+/// Refuses a crack that would end beyond the next hole: one that fills the ligament has linked both.
+fn check_ligaments(lengths: &[[f64; 2]], ligament: f64) -> Result<()> {
+    let last = lengths.len() - 1;
+    let inner = lengths.iter().enumerate().flat_map(|(hole, pair)| [(hole, 0, pair[0]), (hole, 1, pair[1])]);
+    let mut inner = inner.filter(|&(hole, side, _)| (hole, side) != (0, 0) && (hole, side) != (last, 1));
+    let Some((hole, side, length)) = inner.find(|(_, _, length)| *length > ligament * (1.0 + SLACK)) else { return Ok(()) };
+    let problem = format!("is longer than the ligament to the next hole, {} mm", in_mm(ligament));
+    let remedy = "give at most the ligament: two lengths that together fill it are cracks that have linked";
+    Err(input(&format!("specimen.crack_lengths_mm[{hole}][{side}]"), in_mm(length), problem, remedy))
+}
+
 /// Cracks from left to right; those that fill the ligament between two holes have cut it, as after link-up.
 fn paths(xs: &[f64], radius: f64, lengths: &[[f64; 2]]) -> Vec<Vec<Point>> {
     let mut paths = Vec::new();
@@ -100,7 +113,7 @@ fn paths(xs: &[f64], radius: f64, lengths: &[[f64; 2]]) -> Vec<Vec<Point>> {
     for (i, pair) in xs.windows(2).enumerate() {
         let (left, right) = (pair[0] + radius, pair[1] - radius);
         let (out, back) = (lengths[i][1], lengths[i + 1][0]);
-        if out + back >= right - left {
+        if out + back >= (right - left) * (1.0 - SLACK) {
             line(left, right);
         } else {
             line(left, left + out);

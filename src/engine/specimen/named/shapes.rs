@@ -11,9 +11,9 @@ use crate::units::MM;
 /// Angle of one side of a polygon that stands for an arc, rad: 2°, whose middle lies 1.5e-4 of the radius off the arc.
 const ARC_SIDE: f64 = PI / 90.0;
 
-/// Corners of an arc from one angle to another, rad, both ends included.
+/// Corners of an arc from one angle to another, rad, both ends included; a half circle has one in its middle, where cracks start.
 pub(super) fn arc(centre: Point, radius: f64, [from, to]: [f64; 2]) -> impl Iterator<Item = Point> {
-    let sides = ((to - from).abs() / ARC_SIDE).ceil().max(1.0);
+    let sides = ((to - from).abs() / ARC_SIDE - 1e-9).ceil().max(1.0);
     (0..=sides as usize).map(move |i| {
         let (sin, cos) = (from + (to - from) * i as f64 / sides).sin_cos();
         [centre[0] + radius * cos, centre[1] + radius * sin]
@@ -90,14 +90,18 @@ pub(super) fn length_or_none(key: &str, given: f64) -> Result<f64> {
 }
 
 /// Share of a size by which two that are equal in the file may differ.
-const SLACK: f64 = 1e-9;
+pub(super) const SLACK: f64 = 1e-9;
+
+/// Metres as mm, rounded for messages.
+pub(super) fn in_mm(metres: f64) -> f64 {
+    (metres / MM * 1e6).round() / 1e6
+}
 
 /// Refuses a size that does not lie below a limit, both in m.
 pub(super) fn below(key: &str, size: f64, limit: f64, what: &str) -> Result<()> {
-    let mm = |metres: f64| (metres / MM * 1e6).round() / 1e6;
     if size < limit * (1.0 - SLACK) {
         return Ok(());
     }
-    let problem = format!("is not below {what}, {} mm", mm(limit));
-    Err(input(&format!("specimen.{key}"), mm(size), problem, "give a smaller one, or a larger plate"))
+    let problem = format!("is not below {what}, {} mm", in_mm(limit));
+    Err(input(&format!("specimen.{key}"), in_mm(size), problem, "give a smaller one, or a larger plate"))
 }
