@@ -16,6 +16,9 @@ const RIM_SHARE: f64 = 0.4;
 const FLANK_SHARE: f64 = 0.25;
 /// Distance from a tip, in spacings, within which the nearest node becomes that of the tip.
 const TIP_SHARE: f64 = 0.5;
+/// Distance of two nodes beside a crack, in spacings, within which they are one: where corners of a rim come closer to its mouth than
+/// [`FLANK_SHARE`], those on either side of it have the same foot, and two nodes on one place leave no stiffness to either.
+const TWIN_SHARE: f64 = 0.1;
 /// Pieces of a hole between nodes at the least.
 const PIECES_LEAST: usize = 12;
 
@@ -90,6 +93,7 @@ impl Nodes {
             }
         }
         let mut parted = Nodes::default();
+        let mut flanks: Vec<Point> = Vec::new();
         for (k, (&at, &spacing)) in self.at.iter().zip(&self.spacing).enumerate() {
             let reach = FLANK_SHARE * spacing;
             let piece = cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]);
@@ -101,12 +105,12 @@ impl Nodes {
             let ([x, y], foot) = (direction(a, b), nearest_of_segment(at, a, b));
             for side in [-reach, reach] {
                 let beside = [foot[0] - side * y, foot[1] + side * x];
-                if specimen.contains(beside) {
-                    parted.push(beside, spacing);
-                } else {
-                    // At a mouth that is not square to its rim.
-                    let moved = [at[0] - side * y, at[1] + side * x];
-                    parted.push(nearest_on_rim(specimen, moved), spacing);
+                // At a mouth that is not square to its rim.
+                let moved = || nearest_on_rim(specimen, [at[0] - side * y, at[1] + side * x]);
+                let flank = if specimen.contains(beside) { beside } else { moved() };
+                if flanks.iter().all(|other| distance(*other, flank) > TWIN_SHARE * spacing) {
+                    flanks.push(flank);
+                    parted.push(flank, spacing);
                 }
             }
         }

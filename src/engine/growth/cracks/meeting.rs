@@ -12,6 +12,8 @@ const ALL: f64 = 0.999;
 const ALIKE: f64 = 1.1;
 /// Way straight on to a rim over the distance from the nearest rim, up to which a tip heads for it.
 const AHEAD: f64 = 1.5;
+/// Cosine between a tip and the way to what is nearest to it, below which the tip goes away from that.
+const LEAVING: f64 = -0.7;
 /// Cosine of the angle between a tip and the way to a rim below which it passes that.
 const PASSING: f64 = 0.5;
 
@@ -100,13 +102,24 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let of_both = |other: usize| tip.rate / (tip.rate + self.state.tips[other].rate);
         let (room, scales) = (self.room(index), &self.scales.step);
         // A tip that passes a rim does not run into it, however few cycles are left.
-        let aside = if room < scales.last_aside { room } else { f64::INFINITY };
+        let aside = if room < scales.last_aside && !self.leaves(index, room) { room } else { f64::INFINITY };
         let ahead = if gap < AHEAD * room { gap } else { f64::INFINITY };
         let length = faces.map_or_else(|| ahead.min(aside), |other| gap * of_both(other));
         let cycles = self.curve.last().map_or(0.0, |row| row.cycles);
         let [reach, at_once] = scales.last;
         let is_last = length < reach && (length < self.scales.step.share_left * cycles * tip.rate || length < at_once);
         (is_last && tip.growth > 0.0).then_some(LastWay { length, faces })
+    }
+
+    /// Whether a tip goes away from the rim or crack nearest to it, at the distance `room`, m, as a short crack from its hole does.
+    fn leaves(&self, index: usize, room: f64) -> bool {
+        let (specimen, tip) = (&self.case.specimen, &self.state.tips[index]);
+        let (at, ahead) = (self.state.position(tip), self.direction(tip, 0.0));
+        let nearest = ahead::beside(specimen, &self.state.lines, tip.end.line, at, 1.01 * room);
+        nearest.is_some_and(|(nearest, _)| {
+            let way = direction(at, nearest);
+            ahead[0] * way[0] + ahead[1] * way[1] < LEAVING
+        })
     }
 
     /// The next segments of crack at all tips, which grow by these lengths, m; tips that face each other meet between them.
