@@ -15,13 +15,16 @@ use crate::units::MPA_SQRT_M;
 /// Material and law of all plates.
 const REST: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\nplane = \"stress\"\n\
                     [fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
+/// Where K under contact comes from.
+const ELEMENTS: &str = "finite elements with contact (tests/reference/pin_contact.py)";
 /// By how much an end of contact may be off, degrees: nodes are a third of a radius apart, sides of the elements 1.4° long.
 const OFF: f64 = 3.0;
 
 /// All rows of the topic.
 pub fn rows(table: &mut Table) -> Result<()> {
     persson(table)?;
-    compact(table)
+    compact(table)?;
+    lugs(table)
 }
 
 /// The contact of the pin that a load is, once it was sought.
@@ -31,6 +34,11 @@ fn contact(case: &Case, load: usize) -> Result<&Contact> {
         _ => None,
     };
     found.ok_or_else(|| Error::Mechanics(format!("{}: no pin in contact", case.name)))
+}
+
+/// K_I of the first tip at the start, MPa√m.
+fn k_i(case: &Case) -> Result<f64> {
+    Ok(initial_tips::<NodePlate>(case)?.tips[0].factors.map_or(f64::NAN, |factors| factors[0]) / MPA_SQRT_M)
 }
 
 /// A row on an end of contact, both in degrees.
@@ -71,12 +79,13 @@ fn persson(table: &mut Table) -> Result<()> {
 /// C(T) of 50 x 10 mm under 10 kN, E 70 and 210 GPa: crack length in mm, radius of the pin over that of the hole, friction, K in MPa√m, ends of
 /// contact at the upper hole in degrees from its direction, towards the tip and towards the mouth of the crack. Pins of E647 have 0.96.
 fn compact(table: &mut Table) -> Result<()> {
-    const SOURCE: &str = "finite elements with contact (tests/reference/pin_contact.py)";
     for (crack, share, friction, right, ends) in [
         (20.0, 0.96, 0.0, 32.480, [-17.2, 18.4]),
         (10.0, 0.96, 0.0, 19.154, [-17.2, 18.4]),
         (10.0, 1.0, 0.0, 19.884, [-69.3, 127.9]),
+        (10.0, 1.0, 0.3, 19.831, [-73.6, 132.1]),
         (10.0, 0.998, 0.0, 19.690, [-56.4, 99.3]),
+        (10.0, 0.998, 0.3, 19.617, [-57.9, 100.7]),
     ] {
         let text = format!(
             "[specimen]\nkind = \"compact_tension\"\nwidth_mm = 50\nthickness_mm = 10\ncrack_length_mm = {crack}\npin_diameter_mm = {}\n\
@@ -84,13 +93,37 @@ fn compact(table: &mut Table) -> Result<()> {
             12.5 * share
         );
         let case = case(&text, NODES)?;
-        let k = initial_tips::<NodePlate>(&case)?.tips[0].factors.map_or(f64::NAN, |factors| factors[0]) / MPA_SQRT_M;
+        let k = k_i(&case)?;
         let name = format!("C(T) a/W {}, pin {share} of the hole, friction {friction}", crack / 50.0);
-        table.compare(format!("{name}: K_I on nodes, MPa√m"), k, right, 0.5, SOURCE);
+        table.compare(format!("{name}: K_I on nodes, MPa√m"), k, right, 0.5, ELEMENTS);
         let found = contact(&case, 0)?.ends.map(f64::to_degrees);
         for (side, (found, wanted)) in ["tip", "mouth"].into_iter().zip(found.into_iter().zip(ends)) {
-            end(table, format!("{name}: end of contact towards the {side}"), found, wanted, SOURCE);
+            end(table, format!("{name}: end of contact towards the {side}"), found, wanted, ELEMENTS);
         }
+    }
+    Ok(())
+}
+
+/// A lug of 50 x 5 mm with a round head and a hole of 20 mm, E 70 and 210 GPa, 10 kN, a crack at its right: diameter of the pin and length of the
+/// crack in mm, friction, K_I in MPa√m. The pin bears on the rim right up to the mouth of the crack.
+fn lugs(table: &mut Table) -> Result<()> {
+    for (diameter, crack, friction, right) in [
+        (19.95, 3.0, 0.0, 14.390),
+        (19.95, 7.5, 0.0, 15.951),
+        (19.95, 7.5, 0.2, 16.048),
+        (19.95, 12.0, 0.2, 21.037),
+        (20.0, 3.0, 0.0, 11.753),
+        (20.0, 3.0, 0.2, 11.853),
+        (20.0, 7.5, 0.2, 14.119),
+        (20.0, 12.0, 0.0, 20.458),
+    ] {
+        let text = format!(
+            "[specimen]\nkind = \"lug\"\nhead = \"round\"\nwidth_mm = 50\nlength_mm = 100\nthickness_mm = 5\nhole_diameter_mm = 20\n\
+             crack_length_mm = {crack}\npin_diameter_mm = {diameter}\npin_friction = {friction}\n\
+             [loading]\nforce_max_kn = 10\nstress_ratio = 0\n{REST}"
+        );
+        let name = format!("lug, pin of {diameter} in 20 mm, crack of {crack} mm, friction {friction}");
+        table.compare(format!("{name}: K_I on nodes, MPa√m"), k_i(&case(&text, NODES)?)?, right, 0.5, ELEMENTS);
     }
     Ok(())
 }

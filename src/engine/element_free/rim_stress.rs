@@ -22,8 +22,8 @@ const PLACES_ON_SIDE: f64 = 2000.0;
 /// Half of the way along the rim over which displacements are fitted: in local spacings at the least, and over the radius of the rim, where the
 /// fourth degree errs by 5e-4 of a stress of `cos 2θ`.
 const HALF_WINDOW: [f64; 2] = [4.0, 0.35];
-/// Degree of the polynomial, and places that it needs at the least.
-const DEGREE: usize = 4;
+/// Degree of the polynomial, also where the window is cut short to less than half on one side, and places that it needs at the least.
+const DEGREE: [usize; 2] = [4, 2];
 const PLACES_LEAST: usize = 8;
 /// Share of the size of a plate by which a place may lie off a rim that it belongs to.
 const OFF: f64 = 1e-9;
@@ -271,7 +271,9 @@ fn slope_at_origin(x: &[f64], y: impl Iterator<Item = f64>) -> Option<f64> {
     if x.len() < PLACES_LEAST {
         return None;
     }
-    let powers = DMatrix::from_fn(x.len(), DEGREE + 1, |row, power| x[row].powi(power as i32));
+    let sides = [-1.0, 1.0].map(|side| x.iter().map(|x| side * x).fold(0.0, f64::max));
+    let degree = DEGREE[usize::from(sides[0].min(sides[1]) < 0.5)];
+    let powers = DMatrix::from_fn(x.len(), degree + 1, |row, power| x[row].powi(power as i32));
     let right = powers.tr_mul(&DVector::from_iterator(x.len(), y));
     Some(powers.tr_mul(&powers).cholesky()?.solve(&right)[1])
 }
