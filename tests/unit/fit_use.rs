@@ -79,7 +79,7 @@ fn the_plastic_zone_is_told_and_warned_about() {
     );
 }
 
-/// A crack of 1.5 mm at the hole of a lug whose ligament is 13.5 mm: the crack is what is too short, until it has grown.
+/// A crack of 1.5 mm at the hole of a lug whose ligament is 13.5 mm, less what the chords of its head take: the crack is what is too short, until it has grown.
 #[test]
 fn a_short_crack_at_a_rim_is_not_called_a_ligament() {
     let case = |force: f64| {
@@ -98,13 +98,13 @@ fn a_short_crack_at_a_rim_is_not_called_a_ligament() {
         row.delta_k = 0.9 * 345e6 * (needed * std::f64::consts::FRAC_PI_4).sqrt();
     }
     let zone = plastic_zone(&case(10.0), &run.curve).unwrap();
-    assert!((zone.first.ligament - 13.5e-3).abs() < 1e-9 && (zone.first.crack - 1.5e-3).abs() < 1e-9, "{:?}", zone.first);
+    assert!((zone.first.ligament - 13.5e-3).abs() < 5e-6 && (zone.first.crack - 1.5e-3).abs() < 1e-9, "{:?}", zone.first);
     assert_eq!((zone.first.room().1, zone.too_small, zone.too_large_from), ("crack length", "crack length", Some(first)));
     assert!(zone.too_large_to.is_some_and(|to| to > first && to < last) && zone.life_share_too_large < 1.0, "{zone:?}");
     let lines = warnings(&case(10.0), &run.curve);
     assert!(lines[0].contains("the crack length is smaller than ASTM E647 asks of a ligament"), "{lines:?}");
     assert!(lines[0].contains("from a crack length of 1.5 mm to 1.5 mm (") && !lines[0].contains("100.00 %"), "{lines:?}");
     let told = &json::result(&case(10.0), &run)["plastic_zone"];
-    assert!((told["first"]["ligament_mm"].as_f64().unwrap() - 13.5).abs() < 1e-6, "{told}");
+    assert!((told["first"]["ligament_mm"].as_f64().unwrap() - 13.5).abs() < 5e-3, "{told}");
     assert!(told["first"]["over_crack"].as_f64().unwrap() > told["first"]["over_ligament"].as_f64().unwrap());
 }

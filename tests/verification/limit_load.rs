@@ -291,7 +291,8 @@ fn a_pin_shears_out_on_both_sides() {
     // the head is nearer, 2 x 18.45 x 5 mm x 345 MPa/√(3/4 sin² 30° + 3 cos² 30°) = 40.8 kN.
     let along = (25.0_f64.powi(2) - (10.0 * 30.0_f64.to_radians().cos()).powi(2)).sqrt() - 10.0 * 0.5;
     let askew = 2.0 * along * 5.0 * 345.0 / (0.75 * 0.25 + 3.0 * 0.75_f64).sqrt();
-    assert!((38e3..45e3).contains(&short) && (short / askew - 1.0).abs() < 0.01, "{short} {askew}");
+    // With the crack on one of both sides less; by the allowable load of Melcon and Hoblit some 38 kN.
+    assert!(short > 38e3 && short < askew * 1.001, "{short} {askew}");
     for head in ["round", "straight"] {
         for length in [1.5, 5.0, 10.0, 13.0] {
             let [right, left] = [[length, 0.0], [0.0, length]].map(|cracks| lug(head, cracks, up));
