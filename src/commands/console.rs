@@ -18,7 +18,7 @@ use crate::report::output::OutputFolder;
 use crate::report::units::shown_result;
 use crate::runner::{Summary, Watcher};
 use crate::units::MM;
-use crate::units::shown::told;
+use crate::units::shown::{told, told_of_file};
 use crate::watch::Watch;
 
 /// Options of every command that prints results.
@@ -153,7 +153,10 @@ const STEPS: u64 = 1000;
 
 /// The message for stderr.
 pub fn error_words(error: &Error) -> String {
-    let plain = told(&format!("error: {error}"));
+    let plain = match error {
+        Error::Input(_) => told_of_file(&format!("error: {error}")),
+        _ => told(&format!("error: {error}")),
+    };
     if !std::io::stderr().is_terminal() {
         return plain;
     }
@@ -171,11 +174,11 @@ pub fn with_source_line(input: &InputError) -> Option<String> {
     let start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();
     let length = text.lines().nth(line - 1)?.len();
     // Where the trouble stands is part of the message already; the shown line takes their place.
-    let message = told(&InputError { file: None, line: None, remedy: String::new(), ..input.clone() }.to_string());
+    let message = told_of_file(&InputError { file: None, line: None, remedy: String::new(), ..input.clone() }.to_string());
     let label = LabeledSpan::new(Some("here".to_owned()), start, length);
     let mut shown = MietteDiagnostic::new(message).with_label(label);
     if !input.remedy.is_empty() {
-        shown = shown.with_help(told(&input.remedy));
+        shown = shown.with_help(told_of_file(&input.remedy));
     }
     let report = Report::from(shown).with_source_code(NamedSource::new(file.display().to_string(), text));
     let mut words = String::new();

@@ -184,6 +184,18 @@ fn a_hole_is_a_bound_only_where_the_plate_was_shown_to_bear_its_load() {
     }
 }
 
+/// One crack has the length that its specimen gives it, from the load line of WOL, and not that from its mouth in the front face.
+#[test]
+fn one_crack_is_as_long_as_its_specimen_says() {
+    let text = format!(
+        "[specimen]\nkind = \"wedge_opening\"\nwidth_mm = 50\nthickness_mm = 10\ncrack_length_mm = 20\n{MATERIAL}[loading]\n\
+         stress_ratio = 0.1\nforce_max_n = 2000\n{LAW}[stop]\ncrack_length_mm = 21\n"
+    );
+    let (code, _, said) = predicted(&text, &[]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("crack length   20.000 mm to 21.000 mm"), "{said}");
+}
+
 /// In a plate with several cracks the length of the crack of a tip is asked for, not that of all.
 #[test]
 fn inspections_are_of_the_crack_of_a_tip() {

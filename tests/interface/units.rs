@@ -13,7 +13,7 @@ use crate::interface::cli::{perilife, texts};
 
 /// Names without a unit: counts, cycles, shares, ratios and exponents. A number under any other name without one would be a length, a stress or the
 /// like that nobody converts.
-const WITHOUT_UNIT: [&str; 66] = [
+const WITHOUT_UNIT: [&str; 67] = [
     "beta",
     "blocks",
     "bonds",
@@ -52,6 +52,7 @@ const WITHOUT_UNIT: [&str; 66] = [
     "marks",
     "method",
     "misfit",
+    "over_crack",
     "over_horizon",
     "over_ligament",
     "over_thickness",

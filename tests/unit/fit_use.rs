@@ -1,6 +1,10 @@
 //! What is said about the fit behind a run.
 
+use std::path::Path;
+
+use perilife::case::Case;
 use perilife::predict::plastic_zone::{plastic_zone, warnings};
+use perilife::predict::{Silent, predict};
 use perilife::report::{fit_use, json};
 
 use crate::support::hand_cases::{PANEL, hand_case, hand_run};
@@ -73,4 +77,34 @@ fn the_plastic_zone_is_told_and_warned_about() {
         plastic_zone(&hand_case(PANEL, &[]), &run.curve).is_none()
             && json::result(&hand_case(PANEL, &[]), &run)["plastic_zone"].is_null()
     );
+}
+
+/// A crack of 1.5 mm at the hole of a lug whose ligament is 13.5 mm, less what the chords of its head take: the crack is what is too short, until it has grown.
+#[test]
+fn a_short_crack_at_a_rim_is_not_called_a_ligament() {
+    let case = |force: f64| {
+        let text = format!(
+            "[specimen]\nkind = \"lug\"\nhead = \"round\"\nwidth_mm = 50\nlength_mm = 100\nthickness_mm = 5\nhole_diameter_mm = 20\n\
+             crack_length_mm = 1.5\ncracks = 2\n[material]\nname = \"al2024-t3\"\n[loading]\nforce_max_kn = {force}\nstress_ratio = 0.1\n\
+             [fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n"
+        );
+        Case::from_toml(&text, "lug", Path::new("."), &[]).unwrap()
+    };
+    // K of a row is set by hand: 4/π (K/345)² = 1.75 mm at 12.79 MPa√m, and 1.0 mm later.
+    let mut run = predict(&case(10.0), &Silent).unwrap();
+    run.curve.truncate(2);
+    let (first, last) = (run.curve[0].crack_length, run.curve[1].crack_length);
+    for (row, needed) in run.curve.iter_mut().zip([1.75e-3_f64, 1.0e-3]) {
+        row.delta_k = 0.9 * 345e6 * (needed * std::f64::consts::FRAC_PI_4).sqrt();
+    }
+    let zone = plastic_zone(&case(10.0), &run.curve).unwrap();
+    assert!((zone.first.ligament - 13.5e-3).abs() < 5e-6 && (zone.first.crack - 1.5e-3).abs() < 1e-9, "{:?}", zone.first);
+    assert_eq!((zone.first.room().1, zone.too_small, zone.too_large_from), ("crack length", "crack length", Some(first)));
+    assert!(zone.too_large_to.is_some_and(|to| to > first && to < last) && zone.life_share_too_large < 1.0, "{zone:?}");
+    let lines = warnings(&case(10.0), &run.curve);
+    assert!(lines[0].contains("the crack length is smaller than ASTM E647 asks of a ligament"), "{lines:?}");
+    assert!(lines[0].contains("from a crack length of 1.5 mm to 1.5 mm (") && !lines[0].contains("100.00 %"), "{lines:?}");
+    let told = &json::result(&case(10.0), &run)["plastic_zone"];
+    assert!((told["first"]["ligament_mm"].as_f64().unwrap() - 13.5).abs() < 5e-3, "{told}");
+    assert!(told["first"]["over_crack"].as_f64().unwrap() > told["first"]["over_ligament"].as_f64().unwrap());
 }

@@ -5,7 +5,7 @@ use perilife::input::{Document, Folder};
 use perilife::predict::{Silent, predict};
 use perilife::report::units::{of_result, of_table};
 use perilife::units::us::{System, renamed};
-use perilife::units::words::in_units;
+use perilife::units::words::{in_units, with_keys};
 use serde_json::json;
 use toml::Value;
 
@@ -170,6 +170,30 @@ fn quantities_in_words_change_and_nothing_else() {
         in_units("crack 0.39370 inch, 13.872 ksi√in, 12 in the plate", System::Si),
         "crack 10.000 mm, 15.243 MPa√m, 12 in the plate"
     );
+}
+
+#[test]
+fn keys_in_words_are_those_of_the_units() {
+    let told = [
+        ("end the life there by stop.crack_length_mm: beyond it", "end the life there by stop.crack_length_in: beyond it"),
+        ("give fatigue.delta_k_threshold_mpa_sqrt_m.", "give fatigue.delta_k_threshold_ksi_sqrt_in."),
+        ("not above fatigue.initiation.limit_mpa = 137.9", "not above fatigue.initiation.limit_ksi = 20.00"),
+        (
+            "loading.force_max_n=4448.222 and pins[0].pin_diameter_mm",
+            "loading.force_max_lbf=1000.000 and pins[0].pin_diameter_in",
+        ),
+        ("model.spacing_mm = 2.54 mm", "model.spacing_in = 0.1000 inch"),
+        // What has no size here stays as it is.
+        ("paris_c_mm_per_cycle = 1e-8, outline_mm = [[0, 1]]", "paris_c_mm_per_cycle = 1e-8, outline_mm = [[0, 1]]"),
+        ("a_n and a_n.csv in out/case_mm", "a_n and a_n.csv in out/case_mm"),
+    ];
+    for (metric, us) in told {
+        assert_eq!(with_keys(metric, System::Us), us);
+        assert_eq!(with_keys(us, System::Us), us, "told twice");
+    }
+    let result = json!({ "checks": [{ "remedy": told[0].0 }] });
+    let us = of_result(&result, System::Us);
+    assert_eq!((&us["checks"][0]["remedy"], of_result(&us, System::Si)), (&json!(told[0].1), result));
 }
 
 #[test]

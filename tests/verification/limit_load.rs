@@ -5,7 +5,7 @@ use std::path::Path;
 use perilife::case::Case;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::specimen::limit_load::weakest_section;
-use perilife::specimen::{CrackLine, Point, Specimen, SpecimenKind};
+use perilife::specimen::{CrackLine, Load, Point, Specimen, SpecimenKind};
 use perilife::units::{MM, MPA};
 
 use crate::support::hand_cases::{ALL, hand_case};
@@ -262,4 +262,52 @@ fn a_section_through_a_row_of_cracks_does_not_meet_itself() {
             assert!(found > 0.95 * strips && found <= 1.0, "{seed} {height}: {found} {strips}");
         }
     }
+}
+
+/// A lug of 50 x 5 mm with a hole of 20 mm and cracks at its sides, pulled along a direction, N.
+fn lug(head: &str, cracks: [f64; 2], direction: Point) -> f64 {
+    let lengths = format!("[{}, {}]", cracks[0], cracks[1]);
+    let text = format!(
+        "[specimen]\nkind = \"lug\"\nhead = \"{head}\"\nwidth_mm = 50\nlength_mm = 100\nthickness_mm = 5\nhole_diameter_mm = 20\n\
+         crack_lengths_mm = {lengths}\npin_half_angle_deg = 90\n[material]\nyoungs_modulus_gpa = 72\npoisson_ratio = 0.33\n\
+         yield_strength_mpa = 345\n[loading]\nforce_max_kn = 4\nstress_ratio = 0.1\n[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n"
+    );
+    let mut specimen = Case::from_toml(&text, "lug", Path::new("."), &[]).unwrap().specimen;
+    for load in &mut specimen.loads {
+        if let Load::Pin { direction: own, .. } = load {
+            let size = direction[0].hypot(direction[1]);
+            *own = direction.map(|x| x / size);
+        }
+    }
+    limit(&specimen)
+}
+
+/// A pin bears on both sides of a section along its force: mirror images are equal, and a tilt changes little.
+#[test]
+fn a_pin_shears_out_on_both_sides() {
+    let up = [0.0, 1.0];
+    let short = lug("round", [0.0, 1.5], up);
+    // Net section 28.5 x 5 mm x 345 MPa = 49.2 kN, shear on both sides along the force 2 x 22.9 x 5 mm x 345 MPa/√3 = 45.6 kN; askew, where
+    // the head is nearer, 2 x 18.45 x 5 mm x 345 MPa/√(3/4 sin² 30° + 3 cos² 30°) = 40.8 kN.
+    let along = (25.0_f64.powi(2) - (10.0 * 30.0_f64.to_radians().cos()).powi(2)).sqrt() - 10.0 * 0.5;
+    let askew = 2.0 * along * 5.0 * 345.0 / (0.75 * 0.25 + 3.0 * 0.75_f64).sqrt();
+    // With the crack on one of both sides less; by the allowable load of Melcon and Hoblit some 38 kN.
+    assert!(short > 38e3 && short < askew * 1.001, "{short} {askew}");
+    for head in ["round", "straight"] {
+        for length in [1.5, 5.0, 10.0, 13.0] {
+            let [right, left] = [[length, 0.0], [0.0, length]].map(|cracks| lug(head, cracks, up));
+            assert!((right / left - 1.0).abs() < 1e-6, "{head} {length}: {right} {left}");
+        }
+        for tilt in [1e-9, 1e-6, 1e-3] {
+            let [right, left] = [tilt, -tilt].map(|tilt| lug(head, [0.0, 1.5], [tilt, 1.0]));
+            let straight = lug(head, [0.0, 1.5], up);
+            assert!((right / straight - 1.0).abs() < 10.0 * tilt + 1e-9, "{head} {tilt}: {right} {straight}");
+            assert!((left / straight - 1.0).abs() < 10.0 * tilt + 1e-9, "{head} {tilt}: {left} {straight}");
+        }
+    }
+    // Long cracks at both sides leave 2 x 3 mm: 10.35 kN.
+    let long = lug("round", [12.0, 12.0], up);
+    assert!(long <= 6.0 * 5.0 * 345.0 * (1.0 + 1e-6) && long > 0.8 * 6.0 * 5.0 * 345.0, "{long}");
+    let [shorter, longer] = [5.0, 12.0].map(|length| lug("round", [length, 0.0], up));
+    assert!(longer < shorter && shorter <= short * (1.0 + 1e-6), "{longer} {shorter} {short}");
 }

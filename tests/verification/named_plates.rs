@@ -4,6 +4,7 @@ use std::path::Path;
 
 use perilife::case::Case;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
+use perilife::units::MPA;
 
 /// The law of the finite elements.
 const LAW: &str = "paris_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874";
@@ -35,6 +36,15 @@ fn cracks_form_by_the_line_and_then_grow() {
     assert!((first / (1e5 * (300.0 / (0.8 * 3.008 * 100.0_f64)).powi(5)) - 1.0).abs() < 0.05, "{first}");
     assert!(((whole.life_cycles() - first) / grown.life_cycles() - 1.0).abs() < 1e-9);
     assert_eq!((whole.curve[0].cycles, whole.stop), (first, grown.stop));
+    // The line is one of elastic stress: 300.8 MPa at the rim.
+    let told = |strength: f64| {
+        let mut case = case(keys, "stress_max_mpa = 100", &line("[stop]\ncycles_max = 1e5"));
+        case.material.yield_strength = Some(strength * MPA);
+        run(&case).warnings.into_iter().filter(|line| line.starts_with("phase I: ")).collect::<Vec<_>>()
+    };
+    let yields = |lines: &[String]| lines.iter().any(|line| line.contains("is beyond the yield strength of 290.0 MPa"));
+    assert!(yields(&told(290.0)) && told(310.0).iter().all(|line| !line.contains("yield strength")), "{:?}", told(290.0));
+    assert!(told(310.0).iter().any(|line| line.ends_with("the stress ratio of the case, 0.2")));
     // Below the limit nothing forms; a run may end before anything has formed.
     let none = life(&line("limit_mpa = 250"));
     assert_eq!((none.life(), none.stop), (None, StopReason::NothingAges));

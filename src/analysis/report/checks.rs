@@ -241,9 +241,15 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
     let percent = 100.0 * zone.life_share_too_large;
     let words = match zone.too_large_from {
         None => "small-scale yielding: holds to the end".to_owned(),
-        Some(from) => format!("small-scale yielding: not from {} mm on, {percent:.1} % of life", two_digits(from / MM)),
+        Some(from) => {
+            let until = zone.too_large_to.map_or_else(|| "on".to_owned(), |to| format!("to {} mm", two_digits(to / MM)));
+            format!("small-scale yielding: not from {} mm {until}, {percent:.1} % of life", two_digits(from / MM))
+        }
     };
-    let remedy = "end the life there by stop.crack_length_mm: beyond it cracks grow faster than K says";
+    let remedy = match zone.too_small {
+        "ligament" => "end the life there by stop.crack_length_mm: beyond it cracks grow faster than K says",
+        _ => "begin with a longer crack: shorter ones grow faster than K says",
+    };
     Some(Check::sized(NAME, percent, percent > DOUBTFUL_PERCENT, Side::Unsafe, words, remedy))
 }
 

@@ -152,6 +152,8 @@ fn plastic_zone(case: &Case, prediction: &Prediction) -> Value {
             "over_horizon": clean(zone.size / prediction.figures.horizon),
             "ligament_mm": clean(zone.ligament / MM),
             "over_ligament": clean(zone.size / zone.ligament),
+            // Of cracks from a rim of a plate.
+            "over_crack": Some(zone.size / zone.crack).filter(|_| zone.crack.is_finite()).map(clean),
             "over_thickness": clean(zone.size / case.specimen.thickness),
         })
     };
@@ -160,6 +162,7 @@ fn plastic_zone(case: &Case, prediction: &Prediction) -> Value {
         "last": zone(&found.last),
         "small_scale_yielding": found.too_large_from.is_none(),
         "too_large_from_mm": found.too_large_from.map(|length| clean(length / MM)),
+        "too_large_to_mm": found.too_large_to.map(|length| clean(length / MM)),
         "life_share_too_large": clean(found.life_share_too_large),
     })
 }

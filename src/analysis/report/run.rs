@@ -34,7 +34,7 @@ use crate::predict::residual_strength::Strength;
 use crate::predict::{Prediction, StopReason};
 use crate::specimen::handbook::handbook;
 use crate::specimen::part_through::{SOURCE, STATED_ERROR};
-use crate::specimen::{LoadMeasure, PartThrough, Point};
+use crate::specimen::{LengthConvention, LoadMeasure, PartThrough, Point};
 use crate::units::{KN, MM, MPA, MPA_SQRT_M};
 
 /// Table of the ways of the tips.
@@ -346,7 +346,10 @@ pub fn told_by_checks(case: &Case, prediction: &Prediction) -> Vec<String> {
 /// How far the crack grew: by the length of the standard of the specimen, or that of the crack whose tip leads, and what all of them sum to.
 fn length_words(case: &Case, prediction: &Prediction) -> String {
     let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
+    let of_standard = || format!("{from:.3} mm to {to:.3} mm{}", depth_words(case, prediction));
     match prediction.leading_tip(&case.specimen) {
+        // Of one crack the length is that from where its specimen counts it.
+        Some(_) if case.specimen.convention == LengthConvention::MeanOfTips && case.specimen.tips.len() == 1 => of_standard(),
         Some((tip, [first, last])) => {
             let all = if case.specimen.crack_lines().len() > 1 {
                 format!("; all cracks {from:.3} mm to {to:.3} mm")
@@ -355,7 +358,7 @@ fn length_words(case: &Case, prediction: &Prediction) -> String {
             };
             format!("tip {tip}: its crack {:.3} mm to {:.3} mm{all}", first / MM, last / MM)
         }
-        None => format!("{from:.3} mm to {to:.3} mm{}", depth_words(case, prediction)),
+        None => of_standard(),
     }
 }
 
@@ -380,12 +383,13 @@ fn through_words(case: &Case, prediction: &Prediction) -> Option<String> {
 fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
     let PlasticZone { first, last, .. } = PlasticZone::of(case, prediction)?;
     let (horizon, thickness) = (prediction.figures.horizon, case.specimen.thickness);
+    let (room, name) = last.room();
     let of_horizon = if horizon > 0.0 { format!(", {:.2} of the horizon", last.size / horizon) } else { String::new() };
     Some(format!(
-        "{:.3} mm to {:.3} mm ({:.3} of the ligament, {:.2} of the thickness{of_horizon})",
+        "{:.3} mm to {:.3} mm ({:.3} of the {name}, {:.2} of the thickness{of_horizon})",
         first.size / MM,
         last.size / MM,
-        last.size / last.ligament,
+        last.size / room,
         last.size / thickness
     ))
 }

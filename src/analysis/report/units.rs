@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::input::sha256;
 use crate::units::shown::shown;
 use crate::units::us::{Renamed, System, clean, renamed};
-use crate::units::words::in_units;
+use crate::units::words::{in_units, with_keys};
 
 /// Keys of results that stay as they are: what was given, names, hashes, lists of keys, and constants whose name says SI.
 const KEPT: [&str; 15] = [
@@ -77,7 +77,7 @@ pub fn of_result(value: &Value, to: System) -> Value {
     match value {
         Value::Object(fields) => of_fields(fields, fields, to),
         Value::Array(items) => items.iter().map(|item| of_result(item, to)).collect(),
-        Value::String(words) => in_units(words, to).into(),
+        Value::String(words) => with_keys(words, to).into(),
         other => other.clone(),
     }
 }

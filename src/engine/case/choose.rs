@@ -7,7 +7,7 @@ use super::model_keys::{KEYS_OF_BONDS, telling_key};
 use crate::input::value_at;
 use crate::loading::Loading;
 use crate::specimen::beta::KEY;
-use crate::specimen::handbook::handbook;
+use crate::specimen::handbook::{HandbookFormula, handbook, handbook_beside};
 use crate::specimen::part_through::SOURCE;
 use crate::specimen::{Bearing, Load, Specimen};
 
@@ -44,23 +44,47 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
     if !specimen.has_sharp_tips() || !specimen.slots.is_empty() {
         return (Method::Peridynamics, "cracks start from a slot or notch".to_owned());
     }
-    let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
-    let is_plain =
-        loading.displacement().is_none() && specimen.crack_pressure == 0.0 && loading.residual.is_none() && !has_fields;
     let has_own_pins =
         specimen.loads.iter().any(|load| matches!(load, Load::Pin { contact: Bearing::Cosine(_) | Bearing::Elastic(_), .. }));
     if has_own_pins && handbook(specimen).is_some() {
         return (Method::ElementFreeGalerkin, "the formula of the specimen is for pins of its standard".to_owned());
     }
-    let formula = handbook(specimen).filter(|formula| is_plain && formula.holds_at(specimen.crack_length));
-    match formula {
-        Some(formula) if 100.0 * EXPONENT_USUAL * formula.error_at(specimen.crack_length) <= percent => {
-            (Method::Handbook, format!("standard specimen within the range of its formula ({})", formula.name))
-        }
-        Some(formula) => (
-            Method::ElementFreeGalerkin,
-            format!("the formula of the specimen ({}) is good to less than {percent} % of life", formula.name),
-        ),
-        None => (Method::ElementFreeGalerkin, "no handbook formula covers the plate".to_owned()),
+    let Some(formula) = handbook_beside(specimen) else {
+        return (Method::ElementFreeGalerkin, "no handbook formula covers the plate".to_owned());
+    };
+    match beyond_formula(&formula, asked, specimen, loading, percent) {
+        None => (Method::Handbook, format!("standard specimen within the range of its formula ({})", formula.name)),
+        Some(why) => (Method::ElementFreeGalerkin, format!("the formula of the specimen ({}) {why}", formula.name)),
     }
+}
+
+/// Why a formula does not do for a case; `None` where it does.
+fn beyond_formula(
+    formula: &HandbookFormula,
+    asked: &Sections<'_>,
+    specimen: &Specimen,
+    loading: &Loading,
+    percent: f64,
+) -> Option<String> {
+    let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
+    let unknown = [
+        (loading.displacement().is_some(), "knows no cycles of a displacement"),
+        (specimen.crack_pressure != 0.0, "knows no pressure in cracks"),
+        (loading.residual.is_some(), "knows no residual stress"),
+        (has_fields, "has no fields, for which output.paraview asks"),
+    ];
+    if let Some((_, why)) = unknown.iter().find(|(is_so, _)| *is_so) {
+        return Some((*why).to_owned());
+    }
+    if !formula.holds_at(specimen.crack_length) {
+        return Some(format!("does not hold at this crack length: {}", formula.range));
+    }
+    let error = 100.0 * formula.error_at(specimen.crack_length);
+    let is_good = EXPONENT_USUAL * error <= percent && handbook(specimen).is_some();
+    (!is_good).then(|| {
+        format!(
+            "may be {error:.1} % off in K, which is {:.1} % of life at m = {EXPONENT_USUAL}; asked for are {percent} %",
+            EXPONENT_USUAL * error
+        )
+    })
 }

@@ -195,6 +195,7 @@ impl<'a> Record<'a> {
         warnings.extend(of_order);
         warnings.extend(failure);
         warnings.extend(phase_one.zip(case.fatigue.initiation).into_iter().flat_map(|(phase, law)| phase.warnings(&law)));
+        warnings.extend(phase_one.iter().flat_map(|phase| of_local_stress(case, phase)));
         Ok(Prediction {
             phase_one,
             stop,
@@ -233,6 +234,22 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
     let is_on_points = case.engine() == Engine::Points;
     warnings.extend(curve.first().filter(|_| is_on_points).and_then(|row| tip_factors::beside_nodes(case, &row.tips)));
     warnings
+}
+
+/// What the user should know of the local stress for which the S-N line of phase I is taken: its ratio, and yield.
+fn of_local_stress(case: &Case, phase: &PhaseOne) -> Vec<String> {
+    let ratio = case.loading.ratio;
+    let mut words = vec![format!("phase I: the S-N line is taken for one at the stress ratio of the case, {ratio}")];
+    let largest = phase.range / (1.0 - ratio);
+    if let Some(strength) = case.material.yield_strength.filter(|strength| largest > *strength) {
+        words.push(format!(
+            "phase I: the largest local stress, {:.1} MPa if all stays elastic, is beyond the yield strength of {:.1} MPa: S-N lines of \
+             elastic stress do not hold there; take its life for a guess, or give the line of tests with the same concentration and load",
+            largest / MPA,
+            strength / MPA
+        ));
+    }
+    words
 }
 
 /// What the user should know of tips whose straight path is unstable, with T where it has become so.

@@ -12,6 +12,11 @@
 //! same criterion: `λ² (3/4/λ₀² + 3 (V/b)²) ≤ 1`, λ ≤ λ₀, b the length that is left. Where supports hold both sides, or rigid ends do not
 //! turn, they take the moment.
 //!
+//! A pin bears on each side of a section by its pressure there: a section along its force through the middle of its hole has half of it. Its
+//! pressure is the cosine over half of the hole, whatever arc it has while all is elastic: at the limit load the rim has yielded to its shape.
+//! It shears out of the plate on both sides at once, from the sides of the hole at any angle outwards (lugs: Melcon and Hoblit 1953, Prod. Eng.
+//! 24(6):160, whose allowable loads, from tests, hold this and the net section).
+//!
 //! That is `σ_Y (W - 2a) h` of M(T), and tension with bending of SE(T) with free ends and C(T) (Kumar, German and Shih 1981, EPRI NP-1931,
 //! without their factor 1.07).
 
@@ -19,8 +24,10 @@ mod cuts;
 
 use cuts::Cut;
 
-use super::geometry::{direction, distance, distance_to_segment, edges, point_in_polygon};
-use super::{CrackLine, Load, Point, Specimen, Support};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use super::geometry::{along, circle_shares, direction, distance, distance_to_segment, edges, point_in_polygon};
+use super::{CrackLine, Hole, Load, Point, Specimen, Support};
 
 /// Share of the size of a plate within which places are the same.
 const SAME: f64 = 1e-7;
@@ -55,6 +62,11 @@ pub fn weakest_section(specimen: &Specimen, cracks: &[CrackLine]) -> Option<Sect
     cuts::of_plate(&plate).iter().for_each(|cut| {
         take(&plate, cut);
     });
+    for load in &specimen.loads {
+        if let Load::Pin { hole, direction, .. } = load {
+            cuts::of_pin(&plate, *hole, *direction, &mut |cut| take(&plate, cut));
+        }
+    }
     for line in 0..cracks.len() {
         cuts::of_crack(&plate, line, &mut |cut| take(&plate, cut));
     }
@@ -167,33 +179,65 @@ impl<'a> Plate<'a> {
                 shares.extend(ends.map(|end| (distance(a, end) / length).clamp(0.0, 1.0)));
                 shares.sort_by(f64::total_cmp);
                 for pair in shares.windows(2).filter(|pair| pair[1] > pair[0]) {
-                    let middle = super::geometry::along(a, b, 0.5 * (pair[0] + pair[1]));
+                    let middle = along(a, b, 0.5 * (pair[0] + pair[1]));
                     let side = &mut sides[usize::from(!is_right(self.place(middle)?))];
                     load.forces_between([pair[0], pair[1]]).into_iter().for_each(|(at, force)| side.add(at, force));
                 }
             }
             if let Load::Pin { hole, direction, force, .. } = load {
                 let hole = specimen.holes[*hole];
-                let bearing = [0, 1].map(|i| hole.centre[i] + (hole.radius + self.same) * direction[i]);
-                let side = usize::from(!point_in_polygon(bearing, &self.right_of(cut, from, to)));
-                sides[side].add(hole.centre, direction.map(|d| d * force / specimen.thickness));
+                let shares = self.shares_of_pin(hole, *direction, cut, &self.right_of(cut, from, to));
+                for (side, share) in sides.iter_mut().zip(shares) {
+                    // The pressure passes through the middle of the hole everywhere.
+                    side.add(hole.centre, share.map(|part| part * force / specimen.thickness));
+                }
             }
         }
         for [a, b] in cut.cracked.iter().filter(|_| specimen.crack_pressure != 0.0) {
             let [x, y] = direction(*a, *b);
             let push = specimen.crack_pressure * distance(*a, *b);
-            let middle = super::geometry::along(*a, *b, 0.5);
+            let middle = along(*a, *b, 0.5);
             sides[0].add(middle, [push * y, -push * x]);
             sides[1].add(middle, [-push * y, push * x]);
         }
         for support in &specimen.supports {
             let Support::Fixed { from: a, to: b, x, y, .. } = support else { continue };
             for share in [0.01, 0.5, 0.99] {
-                let side = &mut sides[usize::from(!is_right(self.place(super::geometry::along(*a, *b, share))?))];
+                let side = &mut sides[usize::from(!is_right(self.place(along(*a, *b, share))?))];
                 side.held = [side.held[0] || *x, side.held[1] || *y];
             }
         }
         Some(sides)
+    }
+
+    /// Force on the rim of a hole right and left of a cut, of a pin that bears with the force 1 along a direction.
+    fn shares_of_pin(&self, hole: Hole, [x, y]: Point, cut: &Cut, right: &[Point]) -> [Point; 2] {
+        // Angles from the direction of the force, counter-clockwise, at which the side may change.
+        let mut bounds = vec![-FRAC_PI_2, FRAC_PI_2];
+        for piece in cut.points.windows(2) {
+            let slack = self.same / distance(piece[0], piece[1]);
+            let shares = circle_shares(piece[0], piece[1], hole.centre, hole.radius).into_iter().flatten();
+            for share in shares.filter(|share| (-slack..=1.0 + slack).contains(share)) {
+                let at = along(piece[0], piece[1], share);
+                let from_centre = [at[0] - hole.centre[0], at[1] - hole.centre[1]];
+                let angle = (x * from_centre[1] - y * from_centre[0]).atan2(dot([x, y], from_centre));
+                bounds.push(angle.clamp(-FRAC_PI_2, FRAC_PI_2));
+            }
+        }
+        bounds.sort_by(f64::total_cmp);
+        let mut shares = [[0.0; 2]; 2];
+        for arc in bounds.windows(2).filter(|arc| arc[1] > arc[0]) {
+            let (sine, cosine) = (0.5 * (arc[0] + arc[1])).sin_cos();
+            let reach = hole.radius + self.same;
+            let middle = [hole.centre[0] + reach * (x * cosine - y * sine), hole.centre[1] + reach * (y * cosine + x * sine)];
+            // 2/π ∫ cos θ (cos θ, sin θ) dθ along the force and across it.
+            let until = |angle: f64| [angle / PI + (2.0 * angle).sin() / TAU, angle.sin().powi(2) / PI];
+            let ([ahead_0, aside_0], [ahead_1, aside_1]) = (until(arc[0]), until(arc[1]));
+            let [ahead, aside] = [ahead_1 - ahead_0, aside_1 - aside_0];
+            let share = &mut shares[usize::from(!point_in_polygon(middle, right))];
+            *share = [share[0] + ahead * x - aside * y, share[1] + ahead * y + aside * x];
+        }
+        shares
     }
 
     /// The part of the plate right of a cut whose ends have these places on the outline.

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::us::{System, Unit, renamed};
-use super::words::in_units;
+use super::words::{in_units, with_keys};
 
 static SHOWN: OnceLock<System> = OnceLock::new();
 
@@ -17,8 +17,13 @@ pub fn shown() -> System {
     SHOWN.get().copied().unwrap_or(System::Si)
 }
 
-/// Words with their quantities in the units that are shown.
+/// Words with their quantities in the units that are shown, and keys as they are in these.
 pub fn told(words: &str) -> String {
+    if shown() == System::Si { words.to_owned() } else { with_keys(words, shown()) }
+}
+
+/// The same of words about a file, whose keys stay as it has them.
+pub fn told_of_file(words: &str) -> String {
     if shown() == System::Si { words.to_owned() } else { in_units(words, shown()) }
 }
 

@@ -1,6 +1,6 @@
 //! Quantities in sentences: every number that stands before its unit, and the names of units alone.
 
-use super::us::{System, UNITS, Unit, clean, renamed};
+use super::us::{Renamed, System, UNITS, Unit, clean, renamed};
 
 /// Significant digits that a converted number has at least, so that a round one (2 mm) stays what it was.
 const DIGITS_LEAST: usize = 4;
@@ -56,6 +56,51 @@ pub fn in_units(text: &str, to: System) -> String {
         done = to;
     }
     out + &text[done..]
+}
+
+/// The same of words that name keys for whoever writes in the units of `to`: a key has the name that it has there (`crack_length_in`), and a
+/// number that is said to be its value goes with it.
+pub fn with_keys(text: &str, to: System) -> String {
+    let text = in_units(text, to);
+    let mut out = String::with_capacity(text.len() + 16);
+    let mut rest = text.as_str();
+    while let Some(start) = rest.find(|c: char| c.is_ascii_alphanumeric() || c == '_') {
+        let word = &rest[start..];
+        let word = &word[..word.find(|c: char| !(c.is_ascii_alphanumeric() || "_.[]".contains(c))).unwrap_or(word.len())];
+        let word = word.trim_end_matches(['.', '[', ']']);
+        let is_apart = !rest[..start].ends_with(['/', '\\', '-']);
+        out.push_str(&rest[..start]);
+        let behind = &rest[start + word.len()..];
+        let new = Some(word).filter(|word| is_apart && is_key(word)).and_then(|word| renamed(word, to));
+        let (new, behind) = new.and_then(|new| key_and_value(new, behind, to)).unwrap_or((word.to_owned(), behind));
+        out.push_str(&new);
+        rest = behind;
+    }
+    out + rest
+}
+
+/// Whether a word can be a key with a unit: one in its section, or one whose unit has more than a letter, as `a_n` has not.
+fn is_key(word: &str) -> bool {
+    let unit = word.rsplit('_').next().unwrap_or("");
+    word.starts_with(|c: char| c.is_ascii_lowercase()) && unit.len() < word.len() && (unit.len() > 1 || word.contains('.'))
+}
+
+/// A key with the value that stands behind its sign of equality, and what follows; `None` where that is no number, or one whose size is not
+/// known here.
+fn key_and_value(new: Renamed, behind: &str, to: System) -> Option<(String, &str)> {
+    let Some(value) = behind.trim_start_matches(' ').strip_prefix('=') else { return Some((new.name, behind)) };
+    let value = value.trim_start_matches(' ');
+    let digit = usize::from(value.starts_with('-'));
+    if !value[digit..].starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    let (number, after) = value.split_at(end_of_number(value, digit));
+    if UNITS.iter().any(|unit| after.trim_start_matches(SPACES).starts_with(unit.word(to))) {
+        // It has a unit of its own, and has been told.
+        return Some((new.name, behind));
+    }
+    let factor = new.factor(|_| None).ok()?;
+    Some((format!("{}{}{}", new.name, &behind[..behind.len() - value.len()], times(number, factor)), after))
 }
 
 /// Where units of a system are named, the longest name at a place.

@@ -235,11 +235,12 @@ function pathsOf({ tip, cycles: steps, x_mm: xs, y_mm: ys }) {
 
 const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id: "band", name: "9 of 10 specimens", kind: "band", tone: 0, x: low, x2: high, y: lengths }] : []);
 
-/** Where small-scale yielding ends: said in the crack length of the plate, shown in that of the crack that ends the life. */
+/** Where small-scale yielding ends, or begins where the crack was too short: said in the crack length of the plate, shown in that of the crack that ends the life. */
 function limitsOf(result, columns, lengths) {
-  const from = result?.plastic_zone?.too_large_from_mm;
+  const begins = result?.plastic_zone?.too_large_to_mm;
+  const from = begins ?? result?.plastic_zone?.too_large_from_mm;
   const row = from ? columns.crack_length_mm.findIndex((length) => length >= from) : -1;
-  return row < 0 ? [] : [{ id: "yielding", kind: "limit", name: `small-scale yielding ends, ${fixed(lengths[row], 1)} mm`, y: [lengths[row]] }];
+  return row < 0 ? [] : [{ id: "yielding", kind: "limit", name: `small-scale yielding ${begins ? "begins" : "ends"}, ${fixed(lengths[row], 1)} mm`, y: [lengths[row]] }];
 }
 
 const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: `${fixed(lengths.at(-1), 1)} mm`, x: [steps.at(-1)], y: [lengths.at(-1)] });

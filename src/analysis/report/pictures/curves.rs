@@ -144,7 +144,11 @@ fn a_n(result: &Value, tables: &RunTables, size: Size) -> Frame {
         }
     }
     if let Some(from) = result["plastic_zone"]["too_large_from_mm"].as_f64().filter(|_| !is_by_tip) {
-        frame.limit(from, "small-scale yielding ends");
+        let begins = result["plastic_zone"]["too_large_to_mm"].as_f64();
+        frame.limit(
+            begins.unwrap_or(from),
+            if begins.is_some() { "small-scale yielding begins" } else { "small-scale yielding ends" },
+        );
     }
     for (lengths, _) in &curves {
         frame.line(&smooth(&cycles, lengths), COMPUTED, 2.0, "");

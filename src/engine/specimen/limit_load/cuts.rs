@@ -5,7 +5,7 @@ use crate::specimen::geometry::{
     along, circle_shares, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share, point_in_polygon,
     segments_touch, turn,
 };
-use crate::specimen::{CrackLine, Point};
+use crate::specimen::{CrackLine, Hole, Load, Point};
 
 /// Corners of an outline from which on only those that point inwards are cut across: a curve drawn by points.
 const CORNERS_MOST: usize = 24;
@@ -15,6 +15,8 @@ const BACK: f64 = -0.3;
 const CHAIN_MOST: usize = 2;
 /// Holes and cracks beside one that a section goes on to: the nearest.
 const NEIGHBOURS: usize = 3;
+/// Angles outwards from the force of a pin at which it may shear out, in degrees.
+const SHEARED: [f64; 13] = [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0];
 /// Rounds in which both ends of a section are chosen in turn.
 const ROUNDS_MOST: usize = 4;
 
@@ -69,7 +71,7 @@ pub(super) fn of_plate(plate: &Plate<'_>) -> Vec<Cut> {
     let mut lines: Vec<(Point, Point)> = Vec::new();
     for hole in &specimen.holes {
         lines.extend(axes.map(|axis| (hole.centre, axis)));
-        lines.push((hole.centre, direction(hole.centre, nearest_of_outline(plate, hole.centre))));
+        lines.extend(nearest_of_outline(plate, hole.centre).into_iter().map(|way| (hole.centre, way)));
         lines.extend(nearest_holes(plate, hole.centre).into_iter().map(|other| (hole.centre, direction(hole.centre, other))));
     }
     let outline = &specimen.outline;
@@ -95,15 +97,41 @@ pub(super) fn of_plate(plate: &Plate<'_>) -> Vec<Cut> {
         .collect()
 }
 
-/// Sections along a crack, each end of which is chosen in turn for the least of what `load` says of the whole.
+/// Sections along a crack, each end of which is chosen for the least of what `load` says of the whole.
 pub(super) fn of_crack(plate: &Plate<'_>, line: usize, load: &mut dyn FnMut(&Cut) -> f64) {
     let crack = &plate.cracks[line];
     let [before, behind] = [false, true].map(|at_last| exits(plate, line, at_last, &mut vec![line]));
+    of_ends(plate, &before, &Cut::along_crack(crack.points.clone()), &behind, load);
+}
+
+/// Sections on which a pin shears out of the plate ahead of it: from both sides of its hole.
+pub(super) fn of_pin(plate: &Plate<'_>, hole: usize, ahead: Point, load: &mut dyn FnMut(&Cut) -> f64) {
+    let [left, right] = [1.0, -1.0].map(|side| side_of_pin(plate, hole, ahead, side));
+    let [before, behind] = [(left, 1.0), (right, -1.0)].map(|(at, side)| sheared(plate, at, ahead, side));
+    of_ends(plate, &before, &Cut { points: vec![left, right], ..Cut::default() }, &behind, load);
+}
+
+/// The place of a rim across the force of its pin, to the left (1) or to the right (-1).
+fn side_of_pin(plate: &Plate<'_>, hole: usize, ahead: Point, side: f64) -> Point {
+    let hole = plate.specimen.holes[hole];
+    [hole.centre[0] - side * hole.radius * ahead[1], hole.centre[1] + side * hole.radius * ahead[0]]
+}
+
+/// Ways from a side of a hole to the outline ahead of its pin.
+fn sheared(plate: &Plate<'_>, at: Point, ahead: Point, side: f64) -> Vec<Cut> {
+    let turned = |degrees: f64| {
+        let (sine, cosine) = (side * degrees.to_radians()).sin_cos();
+        [cosine * ahead[0] - sine * ahead[1], cosine * ahead[1] + sine * ahead[0]]
+    };
+    SHEARED.into_iter().filter_map(|degrees| ray(plate, at, turned(degrees))).collect()
+}
+
+/// Sections of a middle part and ways on from its ends, each of which is chosen in turn for the least of what `load` says of the whole.
+fn of_ends(plate: &Plate<'_>, before: &[Cut], middle: &Cut, behind: &[Cut], load: &mut dyn FnMut(&Cut) -> f64) {
     if before.is_empty() || behind.is_empty() {
         return;
     }
-    let middle = Cut::along_crack(crack.points.clone());
-    let whole = |a: usize, b: usize| before[a].reversed().joined(&middle).joined(&behind[b]);
+    let whole = |a: usize, b: usize| before[a].reversed().joined(middle).joined(&behind[b]);
     let mut chosen = [0, 0];
     let mut least = f64::INFINITY;
     for round in 0..ROUNDS_MOST {
@@ -134,10 +162,19 @@ fn exits(plate: &Plate<'_>, line: usize, at_last: bool, visited: &mut Vec<usize>
     }
     let touched = |other: &CrackLine| other.distance(at) <= plate.same;
     let others: Vec<usize> = (0..plate.cracks.len()).filter(|other| !visited.contains(other)).collect();
-    if let Some(hole) = specimen.holes.iter().find(|hole| distance(at, hole.centre) <= hole.radius + plate.same) {
+    let is_at = |(_, hole): &(usize, &Hole)| distance(at, hole.centre) <= hole.radius + plate.same;
+    if let Some((number, hole)) = specimen.holes.iter().enumerate().find(is_at) {
         let to_middle = here.joined(&Cut { points: vec![at, hole.centre], ..Cut::default() });
         let mut ways = straight(plate, hole.centre, ahead);
         ways.extend(chained(plate, hole.centre, &others, visited));
+        for load in &specimen.loads {
+            let Load::Pin { hole: own, direction, .. } = load else { continue };
+            for side in [1.0, -1.0].into_iter().filter(|_| *own == number) {
+                let from = side_of_pin(plate, number, *direction, side);
+                let to_side = Cut { points: vec![hole.centre, from], ..Cut::default() };
+                ways.extend(sheared(plate, from, *direction, side).iter().map(|way| to_side.clone().joined(way)));
+            }
+        }
         return ways.iter().map(|way| to_middle.clone().joined(way)).collect();
     }
     let near = |corners: &[Point; 4]| distance_to_polygon(at, corners) <= plate.same;
@@ -172,10 +209,10 @@ fn exits(plate: &Plate<'_>, line: usize, at_last: bool, visited: &mut Vec<usize>
 fn straight(plate: &Plate<'_>, at: Point, ahead: Point) -> Vec<Cut> {
     let mut ways = vec![ahead];
     let axes = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
-    let nearest = direction(at, nearest_of_outline(plate, at));
+    let nearest = nearest_of_outline(plate, at);
     let holes = nearest_holes(plate, at).into_iter().map(|hole| direction(at, hole));
     let is_on = |way: &Point| way[0] * ahead[0] + way[1] * ahead[1] > BACK;
-    ways.extend(axes.into_iter().chain([nearest]).chain(holes).filter(is_on));
+    ways.extend(axes.into_iter().chain(nearest).chain(holes).filter(is_on));
     ways.into_iter().filter_map(|way| ray(plate, at, way)).collect()
 }
 
@@ -233,9 +270,15 @@ fn nearest_holes(plate: &Plate<'_>, at: Point) -> Vec<Point> {
     middles
 }
 
-fn nearest_of_outline(plate: &Plate<'_>, at: Point) -> Point {
-    let places = edges(&plate.specimen.outline).map(|(a, b)| crate::specimen::geometry::nearest_of_segment(at, a, b));
-    places.min_by(|a, b| distance(at, *a).total_cmp(&distance(at, *b))).unwrap_or(at)
+/// Directions to the nearest place of the outline; of several equally near ones, as round a head, to the first and the last.
+fn nearest_of_outline(plate: &Plate<'_>, at: Point) -> Vec<Point> {
+    let places: Vec<Point> =
+        edges(&plate.specimen.outline).map(|(a, b)| crate::specimen::geometry::nearest_of_segment(at, a, b)).collect();
+    let least = places.iter().map(|place| distance(at, *place)).fold(f64::INFINITY, f64::min);
+    let near: Vec<Point> = places.into_iter().filter(|place| distance(at, *place) <= least + plate.same).collect();
+    let mut ways: Vec<Point> = near.first().into_iter().chain(near.last()).map(|place| direction(at, *place)).collect();
+    ways.dedup();
+    ways
 }
 
 /// Straight from a place to the outline, and what is left of the material on the way.
