@@ -161,19 +161,19 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("report", 11971),
+    ("report", 11988),
     ("fracture", 6938),
     ("calibration", 6166),
     ("growth", 6161),
     ("service", 5856),
-    ("specimen", 5711),
+    ("specimen", 5801),
     ("solver", 5287),
     ("verify", 4917),
     ("element_free", 4863),
     ("measured", 3879),
-    ("predict", 3201),
-    ("commands", 3039),
-    ("case", 3036),
+    ("predict", 3280),
+    ("commands", 3042),
+    ("case", 3060),
     ("body", 2557),
     ("fatigue", 2435),
     ("loading", 2312),
@@ -184,14 +184,14 @@ const LINES: &[(&str, usize)] = &[
     ("stress_intensity", 688),
     ("check", 607),
     ("python", 583),
-    ("units", 429),
+    ("units", 479),
     ("bond_law", 394),
     ("tables", 342),
     ("material", 322),
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 88498;
+const LINES_OF_ALL: usize = 88761;
 
 #[test]
 fn rooms_do_not_grow() {
