@@ -46,9 +46,9 @@ const OWN: [(&str, f64, StopReason); 15] = [
     ("corner_crack_to_next_hole", 1_412_104.0, StopReason::EnteredHole),
     ("hole_under_flights", 3_017_058.8, StopReason::NetSectionYield),
     ("bracket", 63_676.4, StopReason::Toughness),
-    ("compact_with_pins", 243_507.1, StopReason::CrackLengthReached),
-    // 139 168.9 cycles of phase I by the S-N law, the rest of growth.
-    ("stop_hole", 359_070.8, StopReason::NetSectionYield),
+    ("compact_with_pins", 243_506.9, StopReason::CrackLengthReached),
+    // 120 324.9 cycles of phase I by the S-N law, the rest of growth.
+    ("stop_hole", 340_226.8, StopReason::NetSectionYield),
 ];
 const OWN_LONG: [(&str, f64, StopReason); 4] = [
     ("notched_plate", 49_982.7, StopReason::NetSectionYield),

@@ -7,7 +7,7 @@ use perilife::element_free::basis::{BasisKind, Enrichment, Value};
 use perilife::element_free::crack::{Tip, TipAxes};
 use perilife::element_free::factors::integral;
 use perilife::element_free::field::{Discretisation, Local};
-use perilife::element_free::resolution::{IN_RADIUS, Resolution};
+use perilife::element_free::resolution::{IN_RADIUS, RIM_REACH, Resolution};
 use perilife::element_free::solve::solve;
 use perilife::growth::cracks::initial_tips;
 use perilife::growth::nodes::NodePlate;
@@ -41,7 +41,17 @@ fn tips(specimen: &Specimen) -> (Vec<CrackLine>, Vec<Tip>) {
 fn nodes(case: &Case, across: f64, (basis, enrichment, support): (BasisKind, Enrichment, f64)) -> (Discretisation, f64) {
     let (lines, tips) = tips(&case.specimen);
     let far = case.specimen.width / across;
-    let resolution = Resolution { far, hold: 3.0, reach: 4.0, in_radius: IN_RADIUS, fineness: 1.0, support, basis, enrichment };
+    let resolution = Resolution {
+        far,
+        hold: 3.0,
+        reach: 4.0,
+        in_radius: IN_RADIUS,
+        rim_reach: RIM_REACH,
+        fineness: 1.0,
+        support,
+        basis,
+        enrichment,
+    };
     let elasticity = Elasticity::of(&case.material);
     (Discretisation::new(&case.specimen, elasticity, &lines, &tips, &resolution).unwrap(), far)
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use perilife::case::Case;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::specimen::limit_load::weakest_section;
-use perilife::specimen::{CrackLine, Load, Point, Specimen, SpecimenKind};
+use perilife::specimen::{Bearing, CrackLine, Load, Point, Specimen, SpecimenKind};
 use perilife::units::{MM, MPA};
 
 use crate::support::hand_cases::{ALL, hand_case};
@@ -291,7 +291,7 @@ fn a_pin_shears_out_on_both_sides() {
     // the head is nearer, 2 x 18.45 x 5 mm x 345 MPa/√(3/4 sin² 30° + 3 cos² 30°) = 40.8 kN.
     let along = (25.0_f64.powi(2) - (10.0 * 30.0_f64.to_radians().cos()).powi(2)).sqrt() - 10.0 * 0.5;
     let askew = 2.0 * along * 5.0 * 345.0 / (0.75 * 0.25 + 3.0 * 0.75_f64).sqrt();
-    // With the crack on one of both sides less; by the allowable load of Melcon and Hoblit some 38 kN.
+    // At unlike angles less; by the allowable load of Melcon and Hoblit some 38 kN.
     assert!(short > 38e3 && short < askew * 1.001, "{short} {askew}");
     for head in ["round", "straight"] {
         for length in [1.5, 5.0, 10.0, 13.0] {
@@ -305,6 +305,20 @@ fn a_pin_shears_out_on_both_sides() {
             assert!((left / straight - 1.0).abs() < 10.0 * tilt + 1e-9, "{head} {tilt}: {left} {straight}");
         }
     }
+    // A pin beside the middle of a plate.
+    let beside = |x: f64| {
+        let specimen = format!(
+            "width_mm = 60\nlength_mm = 90\nholes = [{{ x_mm = {x}, y_mm = 20, diameter_mm = 12 }}]\n\
+             cracks = [{{ from_mm = [{}, 20], to_mm = [{}, 20] }}]",
+            1.75 * x,
+            2.25 * x
+        );
+        let mut specimen = drawn(&specimen, "[supports.bottom]\nfix = [\"x\", \"y\"]").specimen;
+        specimen.loads = vec![Load::Pin { hole: 0, direction: up, force: 1.0, contact: Bearing::Cosine(1.0) }];
+        limit(&specimen)
+    };
+    let [right, left] = [8.0, -8.0].map(beside);
+    assert!(right > 0.0 && (right / left - 1.0).abs() < 1e-6, "{right} {left}");
     // Long cracks at both sides leave 2 x 3 mm: 10.35 kN.
     let long = lug("round", [12.0, 12.0], up);
     assert!(long <= 6.0 * 5.0 * 345.0 * (1.0 + 1e-6) && long > 0.8 * 6.0 * 5.0 * 345.0, "{long}");

@@ -14,7 +14,7 @@
 //!
 //! A pin bears on each side of a section by its pressure there: a section along its force through the middle of its hole has half of it. Its
 //! pressure is the cosine over half of the hole, whatever arc it has while all is elastic: at the limit load the rim has yielded to its shape.
-//! It shears out of the plate on both sides at once, from the sides of the hole at any angle outwards (lugs: Melcon and Hoblit 1953, Prod. Eng.
+//! It shears out of the plate on both sides at once, from the sides of the hole at angles outwards that need not be alike (lugs: Melcon and Hoblit 1953, Prod. Eng.
 //! 24(6):160, whose allowable loads, from tests, hold this and the net section).
 //!
 //! That is `σ_Y (W - 2a) h` of M(T), and tension with bending of SE(T) with free ends and C(T) (Kumar, German and Shih 1981, EPRI NP-1931,

@@ -108,7 +108,10 @@ pub(super) fn of_crack(plate: &Plate<'_>, line: usize, load: &mut dyn FnMut(&Cut
 pub(super) fn of_pin(plate: &Plate<'_>, hole: usize, ahead: Point, load: &mut dyn FnMut(&Cut) -> f64) {
     let [left, right] = [1.0, -1.0].map(|side| side_of_pin(plate, hole, ahead, side));
     let [before, behind] = [(left, 1.0), (right, -1.0)].map(|(at, side)| sheared(plate, at, ahead, side));
-    of_ends(plate, &before, &Cut { points: vec![left, right], ..Cut::default() }, &behind, load);
+    let across = Cut { points: vec![left, right], ..Cut::default() };
+    // Which side is chosen first may matter, and mirror images are to bear alike.
+    of_ends(plate, &before, &across, &behind, load);
+    of_ends(plate, &behind, &across.reversed(), &before, load);
 }
 
 /// The place of a rim across the force of its pin, to the left (1) or to the right (-1).
