@@ -165,7 +165,7 @@ const LINES: &[(&str, usize)] = &[
     ("fracture", 6938),
     ("growth", 6178),
     ("calibration", 6166),
-    ("specimen", 6060),
+    ("specimen", 6063),
     ("service", 5856),
     ("solver", 5287),
     ("verify", 5206),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 89612;
+const LINES_OF_ALL: usize = 89615;
 
 #[test]
 fn rooms_do_not_grow() {
