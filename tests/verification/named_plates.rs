@@ -52,22 +52,21 @@ fn cracks_form_by_the_line_and_then_grow() {
     assert_eq!((short.life_cycles(), short.stop), (1e5, StopReason::RunOut));
 }
 
-/// A crack that was stopped: the stress at the holes is that of an ellipse as long as crack and holes with their radius, `1 + 2 √(a/ρ)` (Inglis 1913),
-/// in the width by Feddersen; which the hole at a crack's end is near.
+/// A crack that was stopped: the stress at the holes is 6.424 of the gross one by own finite elements (quadratic triangles; the same with rims of 360 and 720
+/// sides). An ellipse as long as crack and holes with their radius has `1 + 2 √(a/ρ)` (Inglis 1913), in the width by Feddersen 6.12.
 #[test]
 fn stopped_crack_starts_again() {
     let keys = "kind = \"stop_hole\"\nwidth_mm = 200\nlength_mm = 300\nthickness_mm = 2\nstopped_crack_length_mm = 20\nhole_diameter_mm = 8\nformed_length_mm = 0.5";
     let run = run(&case(keys, "stress_max_mpa = 50", "[fatigue.initiation]\nrange_mpa = 240\ncycles = 1e5\nslope = 5"));
     let phase = run.phase_one.unwrap();
-    let ellipse = (1.0 + 2.0 * (24.0_f64 / 4.0).sqrt()) * (1.0 / (std::f64::consts::PI * 24.0 / 200.0).cos()).sqrt();
     println!(
-        "K_tg {:.3} (ellipse {ellipse:.3}), N_I {:.0} of {:.0}, {}",
+        "K_tg {:.3}, N_I {:.0} of {:.0}, {}",
         phase.concentration.unwrap(),
         phase.cycles.unwrap(),
         run.life_cycles(),
         run.stop
     );
-    assert!((phase.concentration.unwrap() / ellipse - 1.0).abs() < 0.05, "{phase:?}");
+    assert!((phase.concentration.unwrap() / 6.424 - 1.0).abs() < 0.01, "{phase:?}");
     assert!(phase.at[0].abs() > 23.9e-3 && phase.at[1].abs() < 1e-3, "{phase:?}");
     assert!(phase.cycles.unwrap() < run.life_cycles());
 }

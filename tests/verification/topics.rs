@@ -3,7 +3,7 @@
 use perilife::report::verification::{line, markdown};
 use perilife::verify::{Row, Topic, faults, rows, topics};
 
-/// Topics of at most four seconds each.
+/// Topics of a few seconds each.
 const CHEAP: [&str; 7] = ["golden", "static_scenes", "dual_horizon", "golden_peridynamics", "same_plate", "named_plates", "pins"];
 
 /// The rows of the topics with these names, of which none fails and as many miss as are pinned.
