@@ -168,7 +168,7 @@ const LINES: &[(&str, usize)] = &[
     ("specimen", 6063),
     ("service", 5856),
     ("solver", 5287),
-    ("verify", 5206),
+    ("verify", 5211),
     ("element_free", 5147),
     ("measured", 3879),
     ("predict", 3280),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 89615;
+const LINES_OF_ALL: usize = 89620;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -89,7 +89,12 @@ fn handbooks(table: &mut Table) -> Result<()> {
         let tips = stress_intensity(&scene(specimen, &keys.join(" "))?, methods)?;
         let handbook = tips[0].handbook_k_i.unwrap_or(f64::NAN);
         for found in &tips[0].methods {
-            let bound = if found.method == StressIntensityMethod::ElementFreeGalerkin { 0.3 } else { bound };
+            // Pins that press over ±15° have K 0.2 % below the formula of C(T) by finite elements (tests/reference).
+            let bound = match (found.method, specimen) {
+                (StressIntensityMethod::ElementFreeGalerkin, COMPACT) => 0.5,
+                (StressIntensityMethod::ElementFreeGalerkin, _) => 0.3,
+                _ => bound,
+            };
             let ratio = found.intensity.k_i.unwrap_or(f64::NAN) / handbook;
             table.compare(format!("{name}: K_I by {} over handbook", found.method), ratio, 1.0, bound, source);
         }
