@@ -61,3 +61,23 @@ fn no_more_of_a_model_than_a_scene_needs() {
         assert!(named.chosen.is_none() && named.model == by_choice.model, "{set:?}");
     }
 }
+
+/// The formula of three rollers is for a/W of 0.25 and more; that of pure bending holds for all short cracks.
+#[test]
+fn a_formula_is_taken_within_its_range() {
+    use Method::{ElementFreeGalerkin, Handbook};
+    for (span, length, method) in [
+        ("", 2.0, ElementFreeGalerkin),
+        ("", 4.99, ElementFreeGalerkin),
+        ("", 5.01, Handbook),
+        ("", 10.0, Handbook),
+        ("span_mm = 160\ninner_span_mm = 60\n", 2.0, Handbook),
+    ] {
+        let text = format!(
+            "[specimen]\nkind = \"single_edge_bend\"\nwidth_mm = 20\nthickness_mm = 10\n{span}crack_length_mm = {length}\n{}",
+            REST.replace("stress_max_mpa = 60", "force_max_n = 1000")
+        );
+        let bent = Case::from_toml(&text, "bent", Path::new("."), &[]).unwrap();
+        assert_eq!(bent.model.method(), method, "{span}a {length} mm: {:?}", bent.chosen);
+    }
+}

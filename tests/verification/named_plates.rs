@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use perilife::case::Case;
+use perilife::growth::cracks::initial_tips;
+use perilife::growth::nodes::NodePlate;
 use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::units::MPA;
+use perilife::units::{MPA, MPA_SQRT_M};
 
 /// The law of the finite elements.
 const LAW: &str = "paris_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874";
@@ -69,4 +71,45 @@ fn stopped_crack_starts_again() {
     assert!((phase.concentration.unwrap() / 6.424 - 1.0).abs() < 0.01, "{phase:?}");
     assert!(phase.at[0].abs() > 23.9e-3 && phase.at[1].abs() < 1e-3, "{phase:?}");
     assert!(phase.cycles.unwrap() < run.life_cycles());
+}
+
+/// A crack of 3 mm from the root of a notch with a radius of 5 mm, however finely its arc is drawn; 14.09 MPa√m by own finite elements (quadratic
+/// triangles, quarter points at the tip).
+#[test]
+fn cracks_begin_at_arcs_of_any_sides() {
+    let k = |specimen: &str| {
+        let case = case(specimen, "stress_max_mpa = 50", "[model]\nmethod = \"element_free_galerkin\"");
+        initial_tips::<NodePlate>(&case).unwrap().tips[0].factors.unwrap()[0] / MPA_SQRT_M
+    };
+    let sizes = "width_mm = 60\nlength_mm = 120\nthickness_mm = 2";
+    let mut found =
+        vec![k(&format!("kind = \"edge_notch\"\n{sizes}\nnotch_depth_mm = 10\nnotch_radius_mm = 5\ncrack_length_mm = 3"))];
+    for sides in [24, 90, 360] {
+        let arc = (0..=sides).map(|side| (0.5 - f64::from(side) / f64::from(sides)) * std::f64::consts::PI);
+        let arc: String = arc.map(|angle| format!("[{:?}, {:?}], ", -25.0 + 5.0 * angle.cos(), 5.0 * angle.sin())).collect();
+        let outline = format!("[[-30, -60], [30, -60], [30, 60], [-30, 60], [-30, 5], {arc}[-30, -5]]");
+        let crack = "cracks = [{ from_mm = [-20, 0], to_mm = [-17, 0] }]";
+        found.push(k(&format!("kind = \"plate\"\noutline_mm = {outline}\nthickness_mm = 2\n{crack}")));
+    }
+    println!("{found:?}");
+    assert!(found.iter().all(|k| (k / 14.09 - 1.0).abs() < 0.005), "{found:?}");
+}
+
+/// A crack of 0.01 mm leaves the hole at which it begins, and grows through.
+#[test]
+fn a_crack_far_shorter_than_its_hole_leaves_it() {
+    for length in [0.01, 0.1] {
+        let keys = format!(
+            "kind = \"crack_at_hole\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\nhole_diameter_mm = 8\ncrack_length_mm = {length}"
+        );
+        let run = run(&case(&keys, "stress_max_mpa = 100", "[model]\nmethod = \"element_free_galerkin\""));
+        let last = run.curve.last().unwrap().tips[0].position[0];
+        println!(
+            "{length} mm: {} after {:.0} cycles, {} rows, last at {last:.4} m",
+            run.stop,
+            run.life_cycles(),
+            run.curve.len()
+        );
+        assert!(![StopReason::EnteredHole, StopReason::NothingAges].contains(&run.stop) && last > 0.02, "{length}: {}", run.stop);
+    }
 }

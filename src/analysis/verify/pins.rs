@@ -109,13 +109,17 @@ fn compact(table: &mut Table) -> Result<()> {
 fn lugs(table: &mut Table) -> Result<()> {
     for (diameter, crack, friction, right) in [
         (19.95, 3.0, 0.0, 14.390),
+        (19.95, 3.0, 0.2, 14.658),
         (19.95, 7.5, 0.0, 15.951),
         (19.95, 7.5, 0.2, 16.048),
+        (19.95, 12.0, 0.0, 21.075),
         (19.95, 12.0, 0.2, 21.037),
         (20.0, 3.0, 0.0, 11.753),
         (20.0, 3.0, 0.2, 11.853),
+        (20.0, 7.5, 0.0, 14.306),
         (20.0, 7.5, 0.2, 14.119),
         (20.0, 12.0, 0.0, 20.458),
+        (20.0, 12.0, 0.2, 20.010),
     ] {
         let text = format!(
             "[specimen]\nkind = \"lug\"\nhead = \"round\"\nwidth_mm = 50\nlength_mm = 100\nthickness_mm = 5\nhole_diameter_mm = 20\n\

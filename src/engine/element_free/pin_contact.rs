@@ -35,6 +35,8 @@ const ROUNDS: usize = 60;
 const SETTLED: f64 = 1e-6;
 /// Gauss points and weights on 0..1.
 const GAUSS: [(f64, f64); 3] = [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// Moment of friction that is none, over its forces.
+const BALANCED: f64 = 1e-12;
 /// Turns without fewer wrong pieces before they are not exchanged at once any more.
 const CHANCES: usize = 5;
 
@@ -228,6 +230,8 @@ struct Solved {
     /// Gap and slip of the plate against the pin.
     between: DVector<f64>,
     rigid: Vec<[f64; 3]>,
+    /// Components at a bound that are to leave it whatever their gradient is: without them a pin bears a moment.
+    freed: Vec<usize>,
 }
 
 impl Search<'_> {
@@ -311,11 +315,33 @@ impl Search<'_> {
         });
         let mut rigid = vec![[0.0; 3]; self.rims.len()];
         motions.iter().enumerate().for_each(|(k, &(rim, motion))| rigid[rim][motion] = x[n + k]);
+        let mut freed = Vec::new();
+        for rim in (0..self.rims.len()).filter(|rim| !holds(*rim)) {
+            let (turn, component) = self.turned(rim, &force, &between);
+            rigid[rim][2] = turn;
+            freed.extend(component);
+        }
         for component in 0..self.places.len() {
             let (rim, by) = self.rigid(component);
             between[component] -= by.iter().zip(rigid[rim]).map(|(by, motion)| by * motion).sum::<f64>();
         }
-        Ok(Solved { force, between, rigid })
+        Ok(Solved { force, between, rigid, freed })
+    }
+
+    /// The turn of a pin that slips at all of its rim, with `between` that of no turn: where limits of friction bear no moment it lies between
+    /// the slips of both directions, or amid those that exclude each other. A moment goes with the slip of the component that, once it is
+    /// free, bears it at the least energy.
+    fn turned(&self, rim: usize, force: &DVector<f64>, between: &DVector<f64>) -> (f64, Option<usize>) {
+        let slips = (self.starts[rim]..self.starts[rim] + self.rims[rim].angles.len()).map(|piece| 2 * piece + 1);
+        let slips: Vec<usize> = slips.filter(|&component| self.bounds[component][1] > 0.0).collect();
+        let [moment, size] = slips.iter().fold([0.0; 2], |[sum, size], &slip| [sum + force[slip], size + force[slip].abs()]);
+        let at = |place: Place| slips.iter().copied().filter(move |&slip| self.places[slip] == place);
+        let least = at(Place::Lower).min_by(|a, b| between[*a].total_cmp(&between[*b]));
+        let largest = at(Place::Upper).max_by(|a, b| between[*a].total_cmp(&between[*b]));
+        let freed = if moment < 0.0 { least } else { largest }.filter(|_| moment.abs() > BALANCED * size);
+        let bounds: Vec<f64> = [least, largest].into_iter().flatten().map(|slip| between[slip]).collect();
+        let middle = bounds.iter().sum::<f64>() / bounds.len().max(1) as f64;
+        (freed.map_or(middle, |slip| between[slip]), freed)
     }
 
     /// Components that cannot be where they are assumed, with the place that they take then.
@@ -325,6 +351,7 @@ impl Search<'_> {
             let new = match place {
                 Place::Free if force < lower - ROUND_OFF => Place::Lower,
                 Place::Free if force > upper + ROUND_OFF => Place::Upper,
+                Place::Lower | Place::Upper if solved.freed.contains(&component) => Place::Free,
                 Place::Lower if gradient < -ROUND_OFF && upper > lower => Place::Free,
                 Place::Upper if gradient > ROUND_OFF => Place::Free,
                 same => same,
@@ -380,15 +407,26 @@ impl Search<'_> {
                 return Ok(solved);
             }
             if moved < ROUND_OFF {
-                // Together they are no way down; the one that pulls most is.
-                let pull = |(component, _): &(usize, Place)| solved.between[*component].abs();
-                wrong.sort_by(|a, b| pull(b).total_cmp(&pull(a)));
-                wrong.truncate(1);
+                wrong = self.first_to_go(&solved, wrong);
             }
             moved = 0.0;
             wrong.into_iter().for_each(|(component, place)| self.places[component] = place);
         }
         Err(no_contact())
+    }
+
+    /// Of components that together are no way down: the one that bears a moment, or else pulls most. Where all of its pin slips, one slip alone
+    /// would bear a moment: the one that pulls most the other way goes too.
+    fn first_to_go(&self, solved: &Solved, mut wrong: Vec<(usize, Place)>) -> Vec<(usize, Place)> {
+        let pull = |component: usize| (solved.freed.contains(&component), solved.between[component].abs());
+        wrong.sort_by(|(a, _), (b, _)| pull(*b).partial_cmp(&pull(*a)).unwrap_or(std::cmp::Ordering::Equal));
+        let (first, rim) = (wrong[0].0, self.place(wrong[0].0 / 2).0);
+        let slips = |component: usize| !component.is_multiple_of(2) && self.place(component / 2).0 == rim;
+        let all_slip = slips(first) && (0..self.places.len()).all(|other| !slips(other) || self.places[other] != Place::Free);
+        let other = wrong.iter().copied().find(|&(other, _)| slips(other) && self.places[other] != self.places[first]);
+        wrong.truncate(1);
+        wrong.extend(other.filter(|_| all_slip && solved.freed.is_empty()));
+        wrong
     }
 
     /// The bound that is met first on a way, after which share of it, and by which component.

@@ -1,6 +1,7 @@
 //! Rims of a plate as straight sides: the outline, holes, slots; holes in sides a quarter of the local spacing long.
 
 use super::grid::Grid;
+use super::resolution::{ARC_TURN, turn_at};
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges};
 use crate::specimen::{Hole, Point, Specimen};
 
@@ -107,10 +108,13 @@ pub fn stretches(specimen: &Specimen) -> Vec<Stretch> {
 
 /// Straight sides of rims, by their ends, m, that cells are cut along.
 pub fn sides(specimen: &Specimen, grid: &Grid) -> Vec<[Point; 2]> {
-    let mut sides = Vec::new();
-    for stretch in stretches(specimen) {
+    let outline = &specimen.outline;
+    let kept = well_apart(outline, grid, 1.0 / SIDES_IN_SPACING);
+    let kept: Vec<Point> = outline.iter().zip(kept).filter(|(_, kept)| *kept).map(|(corner, _)| *corner).collect();
+    let mut sides: Vec<[Point; 2]> = edges(&kept).map(|(a, b)| [a, b]).collect();
+    for stretch in &stretches(specimen)[outline.len()..] {
         match stretch {
-            Stretch::Straight(ends) => sides.push(ends),
+            Stretch::Straight(ends) => sides.push(*ends),
             Stretch::Circle(_) => {
                 let shares = stretch.divided(grid, SIDES_LEAST, 1.0 / SIDES_IN_SPACING);
                 sides.extend(shares.windows(2).map(|pair| [stretch.at(pair[0]), stretch.at(pair[1])]));
@@ -118,4 +122,24 @@ pub fn sides(specimen: &Specimen, grid: &Grid) -> Vec<[Point; 2]> {
         }
     }
     sides
+}
+
+/// Of every corner of the outline, whether it is kept where corners of arcs are to be this share of the local spacing apart: sharp ones are.
+pub fn well_apart(outline: &[Point], grid: &Grid, share: f64) -> Vec<bool> {
+    let count = outline.len();
+    let corner = |k: usize| outline[k % count];
+    let is_sharp = |k: usize| turn_at(corner(k + count - 1), corner(k), corner(k + 1)).abs() > ARC_TURN;
+    let first = (0..count).find(|k| is_sharp(*k)).unwrap_or(0);
+    let mut kept = vec![true; count];
+    let mut way = 0.0;
+    for k in first + 1..first + count {
+        way += distance(corner(k - 1), corner(k));
+        let to_sharp = if is_sharp(k + 1) { distance(corner(k), corner(k + 1)) } else { f64::INFINITY };
+        if !is_sharp(k) && way.min(to_sharp) < share * grid.spacing(grid.leaf(corner(k))) {
+            kept[k % count] = false;
+        } else {
+            way = 0.0;
+        }
+    }
+    kept
 }
