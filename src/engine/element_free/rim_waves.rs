@@ -6,8 +6,9 @@ use nalgebra::Complex;
 
 use crate::williams::Elasticity;
 
-/// Waves around a rim that are loaded and read: without cracks from it, and with, where nodes are finer ([`super::resolution`]).
-const HARMONICS: [i32; 2] = [4, 12];
+/// Waves around a rim that are loaded and read: without cracks from it, and with, where nodes are finer ([`super::resolution`]). Where contact ends
+/// near the mouth of a crack, 12, 24 and 36 leave K 0.5, 0.14 and 0.12 % off finite elements.
+const HARMONICS: [i32; 2] = [4, 24];
 /// Places around a rim where displacement is read and harmonics are loaded.
 pub const PLACES: usize = 180;
 /// Share of an orthogonal jump in a whole one below which there is no other: cracks that begin at one place jump as one.
