@@ -1,5 +1,6 @@
 //! A run taken up from any of its checkpoints gives what the undisturbed run gives, bit for bit.
 
+use std::collections::BTreeSet;
 use std::sync::Mutex;
 
 use perilife::Result;
@@ -188,7 +189,7 @@ fn a_run_taken_up_hands_its_crack_over_alike() {
     let slot =
         "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\nnotches=[{from_mm=[-10,-4],to_mm=[10,4],width_mm=2}]\n";
     let case =
-        case(slot, &["model.spacing_mm=1", "model.solver=direct", "fatigue.step_error_percent=0.02", "stop.cycles_max=1e12"]);
+        case(slot, &["model.spacing_mm=1", "model.solver=window", "fatigue.step_error_percent=0.02", "stop.cycles_max=1e12"]);
     let keeping = Keeping::default();
     let whole = predict(&case, &keeping).unwrap();
     let handed_over = whole.curve.iter().find(|row| row.tips.iter().all(|tip| tip.factors.is_some())).unwrap().cycles;
@@ -196,7 +197,7 @@ fn a_run_taken_up_hands_its_crack_over_alike() {
     let early = kept.iter().filter(|checkpoint| checkpoint.progress().cycles < handed_over).count();
     println!("{early} of {} checkpoints before the hand-over at {handed_over:.0} cycles", kept.len());
     assert!(early > 0 && early < kept.len(), "{early} of {}", kept.len());
-    for at in [early / 2, early - 1, early, kept.len() - 1] {
+    for at in BTreeSet::from([early / 2, early - 1, early, kept.len() - 1]) {
         assert_same(&format!("checkpoint {at}"), &resume(&case, kept[at].clone(), &Silent).unwrap(), &whole);
     }
 }

@@ -8,11 +8,11 @@
 use super::basis::{BasisKind, Enrichment};
 use super::crack::Tip;
 use super::grid::{Grid, Source};
-use super::rims::{Stretch, stretches};
+use super::rims::{ARC_TURN, Stretch, stretches};
 use crate::error::{Error, Result};
 use crate::specimen::geometry::{
     along, bounding_box, circle_crossing, circle_shares, direction, distance, edges, meeting_share, point_in_polygon,
-    segments_touch,
+    segments_touch, turn_at,
 };
 use crate::specimen::{CrackLine, Hole, Load, Point, Specimen};
 use crate::units::{MM, place_mm};
@@ -24,8 +24,6 @@ const CELLS_MOST: usize = 200_000;
 pub const IN_RADIUS: f64 = 2.4;
 /// The same over that at a hole from which cracks begin and in which an elastic pin stands: short waves of its rim are read from nodes.
 const AT_PIN: f64 = 2.0;
-/// Turn of a re-entrant corner of the outline up to which it belongs to an arc drawn as a polygon, rad; beyond, the corner is sharp.
-pub const ARC_TURN: f64 = 0.45;
 /// Reach of rims and ligaments, in spacings of the coarser level, that K of a crack nearby asks for.
 pub const RIM_REACH: f64 = 1.5;
 /// Reach of a sharp corner, in spacings of the coarser level: neighbours differ by one level.
@@ -256,12 +254,6 @@ fn too_narrow(finest: &Source) -> Error {
         finest.spacing / MM,
         ACROSS_LIGAMENT * finest.spacing / MM
     ))
-}
-
-/// Turn of the way from `before` over `at` to `after`, rad, negative where a counter-clockwise outline is concave.
-pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
-    let ([ax, ay], [bx, by]) = (direction(before, at), direction(at, after));
-    (ax * by - ay * bx).atan2(ax * bx + ay * by)
 }
 
 /// Room of a tip, m.

@@ -8,9 +8,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::field::{Discretisation, Local};
-use super::resolution::{ARC_TURN, turn_at};
+use super::rims::ARC_TURN;
 use crate::error::{Error, Result};
-use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges, segments_touch};
+use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges, segments_touch, turn_at};
 use crate::specimen::{Hole, Load, Point, Specimen, Support};
 
 /// Places on the rim of a hole: the stress of `cos 2θ` is read within 1e-5 of its peak.

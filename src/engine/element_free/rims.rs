@@ -1,10 +1,11 @@
 //! Rims of a plate as straight sides: the outline, holes, slots; holes in sides a quarter of the local spacing long.
 
 use super::grid::Grid;
-use super::resolution::{ARC_TURN, turn_at};
-use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges};
+use crate::specimen::geometry::{along, direction, distance, distance_to_segment, edges, turn_at};
 use crate::specimen::{Hole, Point, Specimen};
 
+/// Turn of a re-entrant corner of the outline up to which it belongs to an arc drawn as a polygon, rad; beyond, the corner is sharp.
+pub const ARC_TURN: f64 = 0.45;
 /// Sides of a hole in its local spacing.
 const SIDES_IN_SPACING: f64 = 4.0;
 /// Sides of a hole at the least.

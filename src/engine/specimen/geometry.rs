@@ -31,6 +31,12 @@ pub fn turn(a: Point, b: Point, c: Point) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
+/// Turn of the way from `before` over `at` to `after`, rad, negative where a counter-clockwise outline is concave.
+pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
+    let ([ax, ay], [bx, by]) = (direction(before, at), direction(at, after));
+    (ax * by - ay * bx).atan2(ax * bx + ay * by)
+}
+
 /// Whether the closed segments ab and cd share a point; touching counts.
 pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
     // Most pairs are far apart: compare the boxes first.

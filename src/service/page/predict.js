@@ -6,9 +6,10 @@ import { createEditor } from "./editor.js";
 import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
 import { percent, scientific, sentence, significant, words } from "./format.js";
 import { filesOf, jobToStartFrom } from "./job.js";
+import { isThrough } from "./kinds.js";
 import { createPlate } from "./plate_form.js";
 import { problemBox } from "./notices.js";
-import { createLoading, createMaterial, createSpecimen, isThrough } from "./specimen_form.js";
+import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
 import { createSides } from "./sides_form.js";
 import { createSpectrum } from "./spectrum_form.js";
 import { startRun } from "./submit.js";
@@ -154,7 +155,9 @@ export function createPredictView() {
     const tooMuch = Object.values(others).some(filled) || isBeyond(model, ["spacing_mm", "method", "tolerance_percent"]) || isBeyond(stop, ["crack_length_mm", "cycles_max", "crack_depth_mm", "at_break_through"]) ||
       (own && isBeyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...besideLaw, ...own.constants.map(({ key }) => key)])) ||
       (!own && isBeyond(fatigue, ["fitted", ...besideLaw]));
-    if (tooMuch || !specimen.fill(s, l) || !material.fill(m) || !loading.fill(l, supports)) return false;
+    if (tooMuch || !specimen.fill(s, l) || !material.fill(m)) return false;
+    loading.suit(s.kind);
+    if (!loading.fill(l, supports)) return false;
     fillIn(method, model.method === "auto" ? "" : model.method);
     fillIn(tolerance, model.tolerance_percent);
     fillIn(spacing, model.spacing_mm);

@@ -2,29 +2,10 @@
 
 import { element, show } from "./dom.js";
 import { compact, fillIn, grid, group, numberIn } from "./form.js";
-import { plain, sentence, words } from "./format.js";
+import { plain } from "./format.js";
+import { BENDING, CHOICES, KINDS, OF_TESTS, SIZES, bearsForce, isThrough, titleOf } from "./kinds.js";
 import { isOfSpectrum } from "./spectrum_form.js";
 
-const STANDARD = ["middle_tension", "compact_tension", "single_edge_tension", "double_edge_tension"];
-/** Cracks that are not through, and what they have beside depth and half length. */
-const PART_THROUGH = { surface_crack: [], corner_crack: [], embedded_crack: [], corner_crack_at_hole: ["hole_diameter_mm", "cracks"] };
-/** Those of which K under bending is not known. */
-const TENSION_ALONE = ["embedded_crack"];
-/** Whether a crack of that kind of specimen goes through the plate. */
-export const isThrough = (kind) => !(kind in PART_THROUGH);
-const LENGTH_HINTS = {
-  middle_tension: "half of the length from tip to tip",
-  compact_tension: "from the load line",
-  single_edge_tension: "from the edge",
-  double_edge_tension: "of each crack, from its edge",
-};
-const WIDTH_HINTS = { compact_tension: "from the load line to the back face" };
-const ENDS = [
-  { value: "", title: "choose …" },
-  { value: "pinned", title: "Pinned grips, free to rotate" },
-  { value: "clamped", title: "Clamped grips" },
-  { value: "uniform_stress", title: "Uniform stress" },
-];
 const MAGNITUDES = [
   ["stress_range_mpa", "Stress range Δσ", "MPa", "gross section, maximum − minimum"],
   ["stress_max_mpa", "Maximum stress σmax", "MPa", "gross section"],
@@ -48,66 +29,54 @@ function onlyKnown(object, known) {
   return Object.keys(object).every((key) => known.includes(key));
 }
 
-/** Specimen: the standard kinds, and `plate` ({element, collect, fill}) where one is given. */
+/** Specimen: the kinds of tests, and all others where `plate` ({element, collect, fill}) is given. */
 export function createSpecimen(form, { plate } = {}) {
-  const kinds = [...STANDARD, ...(plate ? ["plate", ...Object.keys(PART_THROUGH)] : [])];
-  const title = (kind) => (kind === "plate" ? "Plate drawn here" : sentence(words(kind)));
-  const kind = form.choice("specimen.kind", { label: "Kind", options: kinds.map((value) => ({ value, title: title(value) })) });
-  const number = (key, label, hint) => form.number(`specimen.${key}`, { label, unit: "mm", hint });
-  const width = number("width_mm", "Width W");
-  const length = number("length_mm", "Length L", "between the loaded ends");
-  const thickness = number("thickness_mm", "Thickness B");
-  const crack = number("crack_length_mm", "Initial crack length a");
-  const ends = form.choice("specimen.ends", { label: "Ends", options: ENDS, needed: true });
-  const depth = number("crack_depth_mm", "Crack depth a", "into the thickness");
-  const half = number("crack_half_length_mm", "Crack length c", "along the face; half of it where it has two ends there");
-  const hole = number("hole_diameter_mm", "Hole diameter");
-  const count = form.choice("specimen.cracks", { label: "Cracks at the hole", options: [{ value: "1", title: "One" }, { value: "2", title: "Two, one on each side" }] });
-  const fields = { width_mm: width, length_mm: length, thickness_mm: thickness, crack_length_mm: crack,
-    crack_depth_mm: depth, crack_half_length_mm: half, hole_diameter_mm: hole, cracks: count };
+  const kinds = plate ? Object.keys(KINDS) : OF_TESTS;
+  const kind = form.choice("specimen.kind", { label: "Kind", options: kinds.map((value) => ({ value, title: titleOf(value) })) });
+  const keysOf = (of) => [...KINDS[of].needs, ...(KINDS[of].may ?? [])];
+  const used = new Set(kinds.flatMap(keysOf));
+  const pick = (table, make) => Object.entries(table).filter(([key]) => used.has(key)).map(([key, about]) => [key, make(`specimen.${key}`, about)]);
+  const fields = Object.fromEntries([
+    ...pick(SIZES, (key, [label, unit]) => form.number(key, { label, unit, optional: true, signed: key.includes("angle") || key.includes("offset") })),
+    ...pick(CHOICES, (key, [label, options]) => form.choice(key, { label, options: options.map(([value, title]) => ({ value, title })) })),
+  ]);
 
   function arrange() {
-    const chosen = kind.input.value;
-    const hint = (field, words) => {
-      field.note.textContent = words ?? "";
-      field.note.hidden = !words;
-    };
-    length.node.hidden = chosen === "compact_tension";
-    const flaw = PART_THROUGH[chosen];
-    crack.node.hidden = chosen === "plate" || Boolean(flaw);
-    for (const field of [depth, half]) field.node.hidden = !flaw;
-    for (const key of ["hole_diameter_mm", "cracks"]) fields[key].node.hidden = !flaw?.includes(key);
-    ends.node.hidden = chosen !== "single_edge_tension";
-    hint(crack, LENGTH_HINTS[chosen]);
-    hint(width, WIDTH_HINTS[chosen]);
-    hint(length, flaw ? "along the load; left out: three widths" : chosen === "plate" ? "along the load" : "between the loaded ends");
-    length.needed = !flaw;
-    if (plate) plate.element.hidden = chosen !== "plate";
+    const { needs, hints = {} } = KINDS[kind.input.value];
+    const shown = keysOf(kind.input.value);
+    for (const [key, field] of Object.entries(fields)) {
+      field.node.hidden = !shown.includes(key);
+      field.needed = needs.includes(key);
+      const optional = field.node.querySelector(".optional");
+      if (optional) optional.hidden = field.needed;
+      const hint = hints[key] ?? SIZES[key]?.[2] ?? "";
+      field.note.textContent = hint;
+      field.note.hidden = hint === "";
+    }
+    if (plate) plate.element.hidden = kind.input.value !== "plate";
   }
   kind.input.addEventListener("input", arrange);
   arrange();
 
   return {
-    element: group("Specimen", grid(kind.node, ...Object.values(fields).map((field) => field.node), ends.node), plate?.element),
-    fields: { kind, ...fields, ends },
+    element: group("Specimen", grid(kind.node, ...Object.values(fields).map((field) => field.node)), plate?.element),
+    fields: { kind, ...fields },
     collect() {
       const chosen = kind.input.value;
-      const sizes = Object.entries(fields).filter(([, field]) => !field.node.hidden).map(([key, field]) => [key, numberIn(field)]);
+      const given = ([key, field]) => [key, key in CHOICES && key !== "cracks" ? field.input.value : numberIn(field)];
       return compact({
         kind: chosen,
-        ...Object.fromEntries(sizes),
-        ends: chosen === "single_edge_tension" ? ends.input.value : undefined,
+        ...Object.fromEntries(Object.entries(fields).filter(([, field]) => !field.node.hidden).map(given)),
         ...(chosen === "plate" ? plate.collect() : {}),
       });
     },
     /** Takes a specimen over; false when it says something the form cannot show. */
     fill(specimen, loading) {
+      if (!kinds.includes(specimen.kind)) return false;
       const isPlate = specimen.kind === "plate";
-      const own = Object.keys(fields).filter((key) => key !== "cracks" || specimen.kind in PART_THROUGH);
-      const known = ["kind", "ends", ...own, ...(isPlate ? ["holes", "cracks"] : [])];
-      if (!kinds.includes(specimen.kind) || !onlyKnown(specimen, known)) return false;
+      const own = keysOf(specimen.kind);
+      if (!onlyKnown(specimen, ["kind", ...own, ...(isPlate ? ["holes", "cracks"] : [])])) return false;
       fillIn(kind, specimen.kind);
-      fillIn(ends, specimen.ends);
       for (const key of own) fillIn(fields[key], specimen[key] ?? (key === "cracks" ? 1 : undefined));
       arrange();
       if (isPlate) plate.fill(specimen, loading);
@@ -201,6 +170,7 @@ export function createLoading(form, { places, plate, spectrum } = {}) {
   const magnitude = form.number(magnitudes.map(([key]) => `loading.${key}`), { label: "Load", unit: "MPa", hint: "gross section" });
   const ratio = form.number("loading.stress_ratio", { label: "Stress ratio R", signed: true, hint: "minimum / maximum" });
   const bending = form.number("loading.bending_ratio", { label: "Bending Sb / St", optional: true, hint: "stress of the bending at the face of the crack over the tension; the run then ends where the crack is through" });
+  const across = form.number("loading.stress_parallel_ratio", { label: "Stress across / along", optional: true, signed: true, hint: "of the arms across the load over those along it; 0 where it is left out" });
   let suits = ""; // the specimen that it is for
   const isSpectrum = () => isOfSpectrum(quantity.input.value);
 
@@ -213,7 +183,8 @@ export function createLoading(form, { places, plate, spectrum } = {}) {
     magnitude.note.hidden = hint === "";
     magnitude.input.dataset.key = `loading.${key}`;
     ratio.node.hidden = isSpectrum();
-    bending.node.hidden = isThrough(suits) || TENSION_ALONE.includes(suits);
+    bending.node.hidden = !BENDING.includes(suits);
+    across.node.hidden = !KINDS[suits]?.biaxial;
     spectrum?.arrange({ used: isSpectrum(), isThrough: isThrough(suits) });
   }
   quantity.input.addEventListener("input", arrange);
@@ -221,7 +192,7 @@ export function createLoading(form, { places, plate, spectrum } = {}) {
   const isDrawn = () => places && suits === "plate";
 
   return {
-    element: group(spectrum ? "Loading" : "Loading, constant amplitude", grid(quantity.node, magnitude.node, ratio.node, bending.node), spectrum?.element, places?.element),
+    element: group(spectrum ? "Loading" : "Loading, constant amplitude", grid(quantity.node, magnitude.node, ratio.node, bending.node, across.node), spectrum?.element, places?.element),
     /** What the readings say of the load, where nobody has said anything yet. */
     propose({ stress_ratio: given, ...load }) {
       const [[key, value] = []] = Object.entries(load);
@@ -232,9 +203,9 @@ export function createLoading(form, { places, plate, spectrum } = {}) {
       }
       if (given !== undefined && !ratio.touched) fillIn(ratio, given);
     },
-    /** A compact specimen is pulled by pins: it takes no stress. */
+    /** What is pulled by pins or bent by rollers takes no stress. */
     suit(specimenKind) {
-      const [was, is] = [suits, specimenKind].map((kind) => kind === "compact_tension");
+      const [was, is] = [suits, specimenKind].map(bearsForce);
       suits = specimenKind;
       if (places) places.element.hidden = !isDrawn();
       arrange();
@@ -247,12 +218,12 @@ export function createLoading(form, { places, plate, spectrum } = {}) {
     collect() {
       const kind = isSpectrum() ? "spectrum" : quantity.input.value.startsWith("displacement") ? "displacement" : "constant_amplitude";
       const shown = (field) => (field.node.hidden ? undefined : numberIn(field));
-      return compact({ kind, [quantity.input.value]: numberIn(magnitude), stress_ratio: shown(ratio), bending_ratio: shown(bending), ...(isSpectrum() ? spectrum.collect() : {}), ...(isDrawn() ? { edges: places.edges(), pins: plate.pins() } : {}) });
+      return compact({ kind, [quantity.input.value]: numberIn(magnitude), stress_ratio: shown(ratio), bending_ratio: shown(bending), stress_parallel_ratio: shown(across), ...(isSpectrum() ? spectrum.collect() : {}), ...(isDrawn() ? { edges: places.edges(), pins: plate.pins() } : {}) });
     },
     fill(loading, supports) {
       const keys = magnitudes.map(([key]) => key).filter((key) => key in loading);
       const isPinned = (loading.pins ?? []).every((pin) => onlyKnown(pin, ["hole", "direction"]));
-      const known = ["kind", "stress_ratio", "bending_ratio", ...keys, ...(places ? ["edges", "pins"] : [])];
+      const known = ["kind", "stress_ratio", "bending_ratio", ...(KINDS[suits]?.biaxial ? ["stress_parallel_ratio"] : []), ...keys, ...(places ? ["edges", "pins"] : [])];
       const others = Object.fromEntries(Object.entries(loading).filter(([key]) => !known.includes(key)));
       if (keys.length !== 1 || !isPinned) return false;
       if (isOfSpectrum(keys[0]) ? !spectrum.fill(others) : !onlyKnown(others, [])) return false;
@@ -262,6 +233,7 @@ export function createLoading(form, { places, plate, spectrum } = {}) {
       fillIn(magnitude, loading[keys[0]]);
       fillIn(ratio, loading.stress_ratio);
       fillIn(bending, loading.bending_ratio);
+      fillIn(across, loading.stress_parallel_ratio);
       return true;
     },
   };
