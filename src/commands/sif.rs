@@ -12,9 +12,11 @@ use crate::predict::factor_sweep::factor_sweep;
 use crate::predict::tip_factors::StressIntensityMethod;
 use crate::report::factor_sweep as tables;
 use crate::report::output::{OutputFile, OutputFolder, Sort};
+use crate::report::units::of_table;
 use crate::runner::{self, Kind, Task};
 use crate::specimen::beta::HEADER;
 use crate::units::MM;
+use crate::units::shown::shown;
 
 /// Arguments of `perilife sif`.
 #[derive(Debug, clap::Args)]
@@ -95,8 +97,8 @@ fn sweep(args: &Args, asked: &str) -> Result<()> {
     case.warnings.iter().for_each(|warning| console.warn(warning));
     let found = factor_sweep(&case, &lengths, true, console).map_err(|error| document.locate(error))?;
     found.warnings.iter().for_each(|warning| console.warn(warning));
-    file.write(tables::table(&found).as_bytes())?;
-    beta.map_or(Ok(()), |file| file.write(tables::beta_table(&found).as_bytes()))?;
+    file.write(of_table(&tables::table(&found), shown()).as_bytes())?;
+    beta.map_or(Ok(()), |file| file.write(of_table(&tables::beta_table(&found), shown()).as_bytes()))?;
     let [from, to] = [lengths[0], lengths[lengths.len() - 1]].map(|length| length / MM);
     if out != Path::new(STREAM) {
         console.say(&format!("{}: {} rows from {from} to {to} mm", out.display(), found.rows.len()));

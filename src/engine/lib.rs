@@ -10,7 +10,7 @@ pub mod tables;
 pub mod parallel;
 pub mod watch;
 pub mod monotone;
-pub mod parabolas;
+pub mod blended;
 pub mod quadrature;
 pub mod line;
 pub mod block_cholesky;

@@ -116,9 +116,14 @@ pub fn at(stage: Stage, share: f64) -> Result<()> {
 /// What work ends with that was asked to.
 const CANCELLED: &str = "the run was cancelled";
 
+/// Who watches the work of this thread, for threads that do a part of it.
+pub fn watching() -> Option<Arc<Watch>> {
+    WATCHED_BY.with_borrow(Clone::clone)
+}
+
 /// Whether the work of this thread was asked to end.
 pub fn is_cancelled() -> bool {
-    WATCHED_BY.with_borrow(|watch| watch.as_ref().is_some_and(|watch| watch.is_cancelled()))
+    watching().is_some_and(|watch| watch.is_cancelled())
 }
 
 /// What came of work that may have been asked to end: then that is said, whatever it ended with.

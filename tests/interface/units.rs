@@ -13,7 +13,8 @@ use crate::interface::cli::{perilife, texts};
 
 /// Names without a unit: counts, cycles, shares, ratios and exponents. A number under any other name without one would be a length, a stress or the
 /// like that nobody converts.
-const WITHOUT_UNIT: [&str; 67] = [
+const WITHOUT_UNIT: [&str; 68] = [
+    "back_face_strain",
     "beta",
     "blocks",
     "bonds",
@@ -302,13 +303,23 @@ fn other_commands_print_in_the_units_asked_for() {
             run(here, &[&["check", &panel, "--units", units][..], &set].concat()),
             run(here, &["list", "material", "--units", units]).lines().filter(|line| line.contains("; E ")).collect::<String>(),
             run(here, &["rates", &readings, "--specimen", &panel, "--units", units, "--out", &format!("rates_{units}.csv")]),
+            run(
+                here,
+                &[
+                    &["sif", &panel, "--sweep", "30:34:2", "--units", units, "--out", &format!("sweep_{units}.csv")][..],
+                    &["--beta", &format!("beta_{units}.csv")],
+                ]
+                .concat(),
+            ),
         ];
         if units == "us" {
             all.iter().for_each(|printed| no_metric_unit_in(printed, "printed"));
         }
     }
     assert!(same_folders(&here.join("si"), &here.join("us")) >= 7);
-    same_table(&here.join("rates_si.csv"), &here.join("rates_us.csv"));
+    for table in ["rates", "sweep", "beta"] {
+        same_table(&here.join(format!("{table}_si.csv")), &here.join(format!("{table}_us.csv")));
+    }
     // A fit whose figures are written in US units drives a case like any other.
     assert_eq!(fs::read(here.join("si/fitted.toml")).unwrap(), fs::read(here.join("us/fitted.toml")).unwrap());
     let inline = "paris_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874";

@@ -1,11 +1,12 @@
 //! What a life rests on: verdicts, effects, sides.
 
 use perilife::case::Case;
-use perilife::predict::{Prediction, StopReason};
+use perilife::input::Folder;
+use perilife::predict::{Prediction, Silent, StopReason, predict};
 use perilife::report::checks::{Check, Side, Verdict, is_bound_below, lines, of_case, of_run, verdict};
 use perilife::report::run::{refusal, refuse_beforehand};
 
-use crate::support::hand_cases::{PANEL, hand_case, hand_run};
+use crate::support::hand_cases::{PANEL, hand_case, hand_run, try_hand_case_in};
 use crate::support::{made_up_case, made_up_run};
 
 const STRENGTHS: [&str; 2] = ["material.toughness_mpa_sqrt_m=60", "material.yield_strength_mpa=345"];
@@ -42,6 +43,36 @@ fn strengths_that_are_not_given_are_not_checked() {
         let check = named(&case, &run, name);
         assert!(check.verdict == Verdict::NotChecked && check.words.contains("turned off by stop."), "{check:?}");
     }
+}
+
+/// A crack on the side that bending presses: turned over, which is half a cycle later, it has a life.
+#[test]
+fn a_tip_that_minimum_load_opens_is_not_passed_over() {
+    let plate = "kind = \"edge_notch\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\nnotch_depth_mm = 8\nnotch_radius_mm = 3\n\
+                 crack_length_mm = 5\n";
+    let of = |ratio: f64, bending: &str| {
+        let set = [
+            format!("loading.stress_ratio={ratio}"),
+            format!("loading.edge_bending_ratio={bending}"),
+            "stop.crack_length_mm=8".into(),
+        ];
+        let set: Vec<&str> = set.iter().map(String::as_str).collect();
+        let case = try_hand_case_in(plate, &set, Folder::none()).unwrap();
+        let run = predict(&case, &Silent).unwrap();
+        (of_run(&case, &run), run)
+    };
+    let (checks, run) = of(-1.0, "pure");
+    let check = find(&checks, "reversal");
+    assert_eq!((check.verdict, check.side), (Verdict::Fails, Some(Side::Unsafe)));
+    assert!(check.words.contains("opens tip 0") && verdict(&checks).starts_with("not to be used: "), "{check:?}");
+    assert!(run.warnings.iter().any(|warning| warning.contains("turn the load round")), "{:?}", run.warnings);
+    // K of a tip that is shut is not said to change with the nodes.
+    assert!(run.warnings.iter().all(|warning| !warning.contains("times finer")), "{:?}", run.warnings);
+    // Without a load of the other sign, and on the side that is pulled, there is nothing to say.
+    let (checks, run) = of(0.1, "pure");
+    assert!(checks.iter().all(|check| check.name != "reversal") && run.stop == StopReason::NothingAges);
+    let (checks, run) = of(-1.0, "-3.0");
+    assert!(checks.iter().all(|check| check.name != "reversal") && run.life_cycles().is_finite());
 }
 
 #[test]

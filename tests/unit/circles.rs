@@ -161,26 +161,26 @@ fn imports_are_taken_apart() {
 /// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
 /// that grows is given its new figure here, with the reason in the message of the commit.
 const LINES: &[(&str, usize)] = &[
-    ("report", 11988),
+    ("report", 12000),
     ("fracture", 6938),
-    ("growth", 6178),
+    ("growth", 6253),
+    ("specimen", 6237),
     ("calibration", 6166),
-    ("specimen", 6069),
     ("service", 5856),
-    ("solver", 5287),
-    ("element_free", 5208),
+    ("solver", 5300),
+    ("element_free", 5215),
     ("verify", 5201),
     ("measured", 3879),
-    ("predict", 3280),
+    ("predict", 3291),
     ("case", 3061),
-    ("commands", 3042),
+    ("commands", 3044),
     ("body", 2557),
     ("fatigue", 2435),
-    ("loading", 2312),
+    ("loading", 2326),
     ("levels", 1728),
     ("sweep", 1474),
-    ("runner", 1216),
-    ("input", 893),
+    ("runner", 1223),
+    ("input", 898),
     ("stress_intensity", 688),
     ("check", 607),
     ("python", 583),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 89677;
+const LINES_OF_ALL: usize = 90011;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -167,6 +167,7 @@ fn named_plates_are_plates() {
 #[test]
 fn what_does_not_fit_is_said_by_its_keys() {
     let hole = |keys: &str| format!("kind = \"crack_at_hole\"\n{SIZES}{keys}");
+    let bent = |keys: &str| format!("kind = \"single_edge_bend\"\nwidth_mm = 20\nthickness_mm = 10\ncrack_length_mm = 5\n{keys}");
     let row = |keys: &str| format!("kind = \"row_of_holes\"\n{SIZES}hole_diameter_mm = 5\n{keys}");
     let lug =
         |keys: &str| format!("kind = \"lug\"\nwidth_mm = 50\nlength_mm = 100\nthickness_mm = 5\nhole_diameter_mm = 20\n{keys}");
@@ -211,15 +212,24 @@ fn what_does_not_fit_is_said_by_its_keys() {
             "specimen.hole_diameter_mm = 40: reaches beyond the outline",
         ),
         (
-            hole("hole_diameter_mm = 10\ncrack_length_mm = 3\nbeta_file = \"beta.csv\""),
+            hole("hole_diameter_mm = 10\ncrack_lengths_mm = [3, 4]\nbeta_file = \"beta.csv\""),
             TENSION,
-            "specimen.beta_file = \"beta.csv\": does not go with crack_at_hole",
+            "specimen.beta_file = \"beta.csv\": is one table, and cracks of unlike length have each their own K",
         ),
         (
             format!("kind = \"edge_notch\"\n{SIZES}notch_depth_mm = 8\nnotch_radius_mm = 3"),
             TENSION,
             "specimen.crack_length_mm: is missing",
         ),
+        (
+            hole("hole_diameter_mm = 10\ncrack_length_mm = 3"),
+            "force_max_n = 5000\nedge_bending_ratio = \"pure\"",
+            "loading.force_max_n: is none in pure bending",
+        ),
+        (bent("span_mm = 1.5"), FORCE, "specimen.span_mm = 1.5: is not above two contacts, 2 mm"),
+        (bent("inner_span_mm = 90"), FORCE, "specimen.inner_span_mm = 90: is not below the span less two contacts, 78 mm"),
+        (bent("length_mm = 70"), FORCE, "specimen.length_mm = 70: has no room for the span of 80 mm"),
+        (bent("length_mm = 70\nspan_mm = 72"), FORCE, "specimen.span_mm = 72: is not below the length less a contact, 69 mm"),
         (lug("head = \"round\"\nedge_distance_mm = 30\ncrack_length_mm = 3"), FORCE, "specimen.edge_distance_mm = 30"),
         (lug("head = \"square\"\ncrack_length_mm = 3"), FORCE, "use one of straight, round"),
         (lug("head = \"round\"\ncrack_length_mm = 3"), TENSION, "is a stress"),

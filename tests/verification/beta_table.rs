@@ -2,10 +2,8 @@
 
 use perilife::case::Case;
 use perilife::input::Folder;
-use perilife::predict::factor_curve::FactorCurve;
 use perilife::predict::factor_sweep::{FactorSweep, factor_sweep};
 use perilife::predict::{Silent, predict};
-use perilife::quadrature::integrate;
 use perilife::report::factor_sweep::{COLUMNS, beta_table, table};
 use perilife::units::MM;
 
@@ -43,25 +41,57 @@ fn a_handbook_read_back_gives_its_own_life() {
     }
 }
 
-/// K of a run on nodes read back: the life of the law over the K(a) of that run, whose crack has two tips.
+/// K of a run on nodes, 0.25 mm apart, read back: the life of the law over K of that run as it is between, whose crack has two tips.
 #[test]
 fn a_run_on_nodes_read_back_gives_the_life_of_its_own_factors() {
     let plate = "kind = \"plate\"\nwidth_mm = 100.0\nlength_mm = 200.0\nthickness_mm = 2.0\n\
                  cracks = [{ from_mm = [-8, 0], to_mm = [8, 0] }]\n";
     let set = ["model.method=element_free_galerkin", "stop.crack_length_mm=40"];
     let by_nodes = try_hand_case_in(plate, &set, Folder::none()).unwrap();
-    let curve = FactorCurve::of(&by_nodes, &Silent).unwrap();
     let (c, m) = (8.95422e-8 * MM, 2.874);
-    // Both tips lengthen the crack.
-    let rate = |length: f64| 2.0 * c * (by_nodes.loading.range_share() * curve.at(length) / 1e6).powf(m);
-    let own =
-        lengths([16.0, 40.0], 240).windows(2).map(|pair| integrate(|a| 1.0 / rate(a), pair[0], pair[1], 1e-9).value).sum::<f64>();
+    let dense = sweep(&by_nodes, [16.0, 40.0], 480);
+    let of_tip: Vec<_> = dense.rows.iter().filter(|row| row.tip == 0).collect();
+    // Both tips lengthen the crack; Simpson's rule over 0.1 mm.
+    let inverse: Vec<f64> =
+        of_tip.iter().map(|row| 0.5 / c * (by_nodes.loading.range_share() * row.factors[0] / 1e6).powf(-m)).collect();
+    let own: f64 = inverse.windows(3).step_by(2).map(|at| (at[0] + 4.0 * at[1] + at[2]) * 0.1 * MM / 6.0).sum();
     let found = sweep(&by_nodes, [16.0, 40.0], 96);
     let first = &found.rows[0];
     assert!((first.beta_length / MM - 8.0).abs() < 1e-9 && (first.crack_length / MM - 16.0).abs() < 1e-9, "{first:?}");
     let ratio = life(plate, &set[1..], &beta_table(&found)) / own;
     println!("nodes: {:e}", ratio - 1.0);
     assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
+}
+
+/// K between the solves of a sweep is that of plates cut at its lengths: a central crack within what its formula is right to, and a crack at a
+/// hole read back gives the life of its run on nodes.
+#[test]
+fn a_sweep_has_the_factors_of_every_length() {
+    let panel = "kind = \"plate\"\nwidth_mm = 100.0\nlength_mm = 300.0\nthickness_mm = 2.0\n\
+                 cracks = [{ from_mm = [-10, 0], to_mm = [10, 0] }]\n";
+    let case = try_hand_case_in(panel, &["model.method=element_free_galerkin"], Folder::none()).unwrap();
+    let found = sweep(&case, [20.0, 80.0], 60);
+    let (mut off, mut rows_off) = (0.0_f64, 0.0_f64);
+    // Tada, 0.1 % for any 2a/W.
+    let of = |x: f64| (1.0 - 0.025 * x.powi(2) + 0.06 * x.powi(4)) / (std::f64::consts::FRAC_PI_2 * x).cos().sqrt();
+    for row in &found.rows {
+        off = off.max((row.beta / of(row.crack_length / (100.0 * MM)) - 1.0).abs());
+    }
+    // The rows of a prediction, whose steps are longer, up to a crack of half the width.
+    for row in predict(&case, &Silent).unwrap().curve.iter().filter(|row| row.crack_length < 50.0 * MM) {
+        let stress = case.loading.range_share() * case.loading.maximum * (0.5 * std::f64::consts::PI * row.crack_length).sqrt();
+        rows_off = rows_off.max((row.delta_k / stress / of(row.crack_length / (100.0 * MM)) - 1.0).abs());
+    }
+    println!("sweep within {:.3} %, rows of a prediction within {:.3} %", 100.0 * off, 100.0 * rows_off);
+    assert!(off < 0.002 && rows_off < 0.006, "{off} {rows_off}");
+
+    let hole = "kind = \"crack_at_hole\"\nwidth_mm = 100.0\nlength_mm = 200.0\nthickness_mm = 2.0\nhole_diameter_mm = 10.0\ncrack_length_mm = 2.0\n";
+    let stop = "stop.crack_length_mm=20";
+    let by_nodes = try_hand_case_in(hole, &["model.method=element_free_galerkin", stop], Folder::none()).unwrap();
+    let own = predict(&by_nodes, &Silent).unwrap().life_cycles();
+    let ratio = life(hole, &[stop], &beta_table(&sweep(&by_nodes, [2.0, 20.0], 18))) / own;
+    println!("crack at a hole: {:e}", ratio - 1.0);
+    assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
 }
 
 /// Compliance of a compact specimen over a/W by the polynomials of ASTM E647-15 (A1, table A1.1, E v B/P at the front face and on the load
@@ -73,9 +103,11 @@ fn compliance_is_that_of_the_standard() {
     let (width, thickness, load) = (50.0 * MM, 12.5 * MM, case.loading.maximum);
     let modulus = case.material.plane_modulus();
     let solved = |case: &Case, range, steps| factor_sweep(case, &lengths(range, steps), true, &Silent).unwrap();
-    let found = solved(&case, [15.0, 30.0], 3);
+    // As its crack is at every length, and as a run on nodes leaves it.
+    let by_nodes = hand_case(specimen, &["model.method=element_free_galerkin"]);
+    let rows = [solved(&case, [15.0, 40.0], 5).rows, solved(&by_nodes, [15.0, 40.0], 5).rows].concat();
     let inverse = |u: f64, c: [f64; 6]| c.iter().rev().fold(0.0, |sum, c| sum * u + c);
-    for row in &found.rows {
+    for row in &rows {
         let u = |compliance: f64| 1.0 / (compliance.sqrt() + 1.0);
         let of = |opening: f64| u(modulus * opening * thickness / load);
         let at_front = inverse(of(row.mouth_opening.unwrap()), [1.0010, -4.6695, 18.460, -236.82, 1214.9, -2143.6]);

@@ -367,6 +367,110 @@ fn gaps_that_are_closed_tilt_no_side() {
     }
 }
 
+/// What programs write is understood as it is meant: round-off of sides and ends, flaws in large panels, cracks from arcs, units of print.
+#[test]
+fn what_programs_leave_in_a_drawing_changes_no_plate() {
+    let of = |entities: &[&str]| plate(DXF, &[("part.dxf", &dxf(4, entities))]);
+    // A step of round-off in a side; sides that are not quite as long as their opposites.
+    let stepped = |step: f64| {
+        format!(
+            "LWPOLYLINE outline 70 1 10 -50 20 -100 10 50 20 -100 10 50 20 {0} 10 0 20 {0} 10 0 20 100 10 -50 20 100",
+            100.0 + step
+        )
+    };
+    let top =
+        |plate: &Specimen| -> f64 { Edge::Top.stretches(plate).iter().map(|(from, to)| (to[0] - from[0]).abs() / MM).sum() };
+    for step in [0.0, 1e-7, 1e-5, -1e-5, 1e-4] {
+        assert!((top(&of(&[&stepped(step), CRACK])) - 100.0).abs() < 1e-6, "{step}");
+    }
+    refused(
+        DXF,
+        ("part.dxf", &dxf(4, &[&stepped(0.01), CRACK])),
+        &["loading.edges", "top", "has a step", "(0.0000, 100.0000) mm"],
+    );
+    // A step that is meant: the side is what lies on the bounding box.
+    refused(DXF, ("part.dxf", &dxf(4, &[&stepped(0.05), CRACK])), &["loading.edges", "not in equilibrium"]);
+    let tilted = "LWPOLYLINE outline 70 1 10 -50 20 -100 10 50.0004 20 -100 10 50 20 100 10 -50 20 100.000004";
+    assert_eq!(top(&of(&[tilted, CRACK])), 100.0);
+
+    // Flaws, and cracks that nearly meet, in a panel of 2 m.
+    let panel = "LWPOLYLINE outline 70 1 10 -400 20 -1000 10 400 20 -1000 10 400 20 1000 10 -400 20 1000";
+    let flaw = of(&[panel, "CIRCLE holes 10 50 20 0 40 2.5", "LINE cracks 10 52.5 20 0 11 52.627 21 0"]);
+    assert!(flaw.tips.len() == 1 && (flaw.crack_length / MM - 0.127).abs() < 1e-9, "{}", flaw.crack_length);
+    let two = of(&[panel, "LINE cracks 10 -20 20 0 11 -0.08 21 0", "LINE cracks 10 0.08 20 0 11 20 21 0"]);
+    assert_eq!(two.tips.len(), 4);
+    // Two cracks drawn from the middle of a hole.
+    let at_hole = of(&[RECTANGLE, HOLE, "LINE cracks 10 0 20 0 11 22 21 0", "LINE cracks 10 0 20 0 11 -25 21 0"]);
+    assert!(at_hole.tips.len() == 2 && (at_hole.crack_length / MM - 27.0).abs() < 1e-9, "{}", at_hole.crack_length);
+    let one = of(&[panel, "LINE cracks 10 -20 20 0 11 -0.0004 21 0", "LINE cracks 10 0 20 0 11 20 21 0"]);
+    assert_eq!(one.tips.len(), 2);
+
+    // Cracks of 1 mm on the concave sides, of radius 260 mm, of a waist: from the arc itself, and drawn from outside of it.
+    let waist = "LWPOLYLINE outline 70 1 10 -40 20 -100 10 40 20 -100 42 -0.2 10 40 20 100 10 -40 20 100 42 -0.2";
+    for height in [0.0, 1.0, 3.0, 7.0_f64] {
+        let arc = 280.0 - (260.0 * 260.0 - height * height).sqrt();
+        for from in [arc, arc + 4.0] {
+            let crack = format!("LINE cracks 10 -{from} 20 {height} 11 -{} 21 {height}", arc - 1.0);
+            let plate = of(&[waist, &crack]);
+            let length = plate.crack_length / MM;
+            assert!(
+                plate.tips.len() == 1 && (length - 1.0).abs() < 1e-6,
+                "{height} from {from}: {} tips, {length} mm",
+                plate.tips.len()
+            );
+        }
+    }
+
+    let points = "<rect id=\"outline\" width=\"100\" height=\"200\"/><line id=\"cracks\" y1=\"100\" x2=\"9\" y2=\"100\"/>";
+    let points = svg("width=\"72pt\" height=\"12pc\" viewBox=\"0 0 100 200\"", points);
+    assert!((plate(SVG, &[("part.svg", &points)]).gross_width / MM - 25.4).abs() < 1e-9);
+    assert_eq!(of(&[RECTANGLE, CRACK]), plate(DXF, &[("part.dxf", &(dxf(4, &[RECTANGLE, CRACK]) + "\n\n"))]));
+}
+
+/// What is not looked at, or cannot be meant, is refused.
+#[test]
+fn what_a_drawing_hides_or_repeats_is_refused() {
+    let twice: [(&[&str], &[&str]); 5] = [
+        (&[RECTANGLE, CRACK, CRACK], &["layer cracks", "LINE at (5, 0)", "drawn twice"]),
+        (&[RECTANGLE, CRACK, "LINE cracks 10 22 20 0 11 5 21 0"], &["layer cracks", "drawn twice"]),
+        (&[RECTANGLE, RECTANGLE, CRACK], &["layer outline", "drawn twice"]),
+        (&[RECTANGLE, HOLE, HOLE], &["layer holes", "CIRCLE at (10, 0)", "drawn twice"]),
+        (&[RECTANGLE, "CIRCLE holes 10 3 20 4 40 0"], &["layer holes", "circle at (3.0000, 4.0000) mm", "no radius"]),
+    ];
+    for (entities, words) in twice {
+        refused(DXF, ("part.dxf", &dxf(4, entities)), words);
+    }
+    let size = "width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\"";
+    let rect = "<rect id=\"outline\" width=\"100\" height=\"200\"/>";
+    let unread: [(&str, &str, &[&str]); 9] = [
+        (
+            size,
+            "<style>.st0{fill:none;display:none;}</style><g class=\"st0\"><circle id=\"holes\" r=\"3\"/></g>",
+            &["style sheet with display"],
+        ),
+        (size, "<style><![CDATA[ .a { visibility : hidden } ]]></style>", &["style sheet with visibility"]),
+        (size, "<circle id=\"holes\" style=\"transform:translate(-40px,0px)\" r=\"3\"/>", &["<circle> with transform"]),
+        (size, "<g id=\"holes\" clip-path=\"url(#c)\"><circle r=\"3\"/></g>", &["<g> with clip-path"]),
+        ("width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\" transform=\"scale(2)\"", rect, &["<svg> with transform"]),
+        (size, "<circle id=\"holes\" cx=\"50\" cy=\"50\"/>", &["layer holes", "no radius above zero"]),
+        (size, "<circle id=\"holes\" r=\"-3\"/>", &["layer holes", "no radius above zero"]),
+        ("width=\"100mm\" height=\"200mm\"", rect, &["width without viewBox"]),
+        (
+            size,
+            "<g inkscape:label=\"Plate\" id=\"layer1\"><rect id=\"rect8\" width=\"100\" height=\"200\"/></g>",
+            &["layer \"Plate\""],
+        ),
+    ];
+    for (size, content, words) in unread {
+        let content = if content == rect { rect.to_owned() } else { format!("{rect}{content}") };
+        refused(SVG, ("part.svg", &svg(size, &content)), words);
+    }
+    let plain = format!(
+        "<style>.a {{ fill: none; stroke: #000 }}</style>{rect}<line id=\"cracks\" class=\"a\" y1=\"100\" x2=\"9\" y2=\"100\"/>"
+    );
+    assert_eq!(plate(SVG, &[("part.svg", &svg(size, &plain))]).tips.len(), 1);
+}
+
 fn refused(keys: &str, file: (&str, &str), words: &[&str]) {
     let Err(error) = try_case(keys, &[file]) else { panic!("{keys} {}: taken, not refused: {words:?}", file.1) };
     let message = error.to_string();

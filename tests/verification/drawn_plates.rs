@@ -115,7 +115,8 @@ fn a_drawn_panel_is_fitted_as_the_standard_one() {
     let by_drawing = fitted(&calibration(&drawn, REST, 2.0, whole));
     let [of_standard, of_drawing] = [&by_standard, &by_drawing].map(|fit| (fit.record.constants.a, fit.record.constants.p));
     println!("standard {of_standard:?}, drawn {of_drawing:?}");
-    assert!((of_drawing.1 / of_standard.1 - 1.0).abs() < 0.002, "{of_standard:?} {of_drawing:?}");
+    // Both read K of the same lattice at other lengths, each to some tenths of a percent.
+    assert!((of_drawing.1 / of_standard.1 - 1.0).abs() < 0.003, "{of_standard:?} {of_drawing:?}");
     // The rate at the pivot, where A and p do not trade against each other: by the field, whose K both fits have.
     let pivot = by_standard.paris.pivot * MPA_SQRT_M;
     let rate = |fit: &Fit| {

@@ -11,7 +11,9 @@ use perilife::element_free::resolution::{IN_RADIUS, RIM_REACH, Resolution};
 use perilife::element_free::solve::solve;
 use perilife::growth::cracks::initial_tips;
 use perilife::growth::nodes::NodePlate;
+use perilife::input::Folder;
 use perilife::material::{Material, Plane};
+use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
 use perilife::predict::{Prediction, Silent, predict};
 use perilife::specimen::{CrackLine, Specimen};
 use perilife::verify::cases::{NODES as METHOD, case, cracked_plate, cracks, pulled_plate};
@@ -196,6 +198,27 @@ fn cracks_under_pressure_have_the_factors_of_the_same_stress_far_away() {
 
 /// Straight lines between rows are the curve: beside a run with steps a fifth as long they are off by 0.2 % of life at most, lines between rows
 /// with an equilibrium of their own by more than twice that.
+/// Slots whose walls lie on lines of the grid have no two nodes in one place where they meet the outline: K goes on smoothly there.
+#[test]
+fn a_slot_along_a_line_of_the_grid_is_a_slot_like_others() {
+    let k = |width: f64| {
+        let keys = format!(
+            "[specimen]\nkind = \"plate\"\nwidth_mm = 100.0\nlength_mm = 200.0\nthickness_mm = 2.5\n\
+             cracks = [{{ from_mm = [-50, 0], to_mm = [-40, 0] }}]\n\
+             notches = [{{ from_mm = [-50, 50], to_mm = [-45, 50], width_mm = {width} }}]\n[material]\nyoungs_modulus_gpa = 72\n\
+             poisson_ratio = 0.3\n[loading]\nstress_max_mpa = 70\nstress_ratio = 0.1\n[model]\nmethod = \"element_free_galerkin\"\n"
+        );
+        let case = Case::without_growth(keys.parse().unwrap(), "slot", &Folder::none()).unwrap();
+        let tips = stress_intensity(&case, &[StressIntensityMethod::ElementFreeGalerkin]).unwrap();
+        tips[0].methods[0].intensity.k_i.unwrap() / 1e6
+    };
+    for (on_line, beside) in [(1.25, 1.2501), (2.5, 2.501)] {
+        let [on_line, beside] = [on_line, beside].map(k);
+        println!("{on_line} {beside}");
+        assert!((on_line / beside - 1.0).abs() < 1e-3, "{on_line} {beside}");
+    }
+}
+
 #[test]
 fn straight_lines_between_rows_are_the_curve() {
     let run = |keys: &str| {

@@ -8,6 +8,7 @@ use serde_json::Value;
 use super::fit_use;
 use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource};
+use crate::fatigue::crack_tip::TipState;
 use crate::loading::LoadControl;
 use crate::material::growth_data::BATCH_FACTOR;
 use crate::predict::plastic_zone::plastic_zone;
@@ -112,6 +113,7 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(extrapolation(case, prediction));
     checks.extend(cross_check(case, prediction));
     checks.extend(part_through::checks(case, prediction));
+    checks.extend(reversal(case, prediction));
     checks.extend(stress_ratio(case));
     checks.extend(thickness(case));
     checks.extend(size(case));
@@ -344,6 +346,16 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
     let side = if check.difference > 0.0 { Side::Safe } else { Side::Unsafe };
     let remedy = "give a smaller model.spacing_mm";
     Some(Check::sized("cross_check", percent.abs(), check.warning().is_some(), side, words, remedy))
+}
+
+/// Tips that maximum load presses shut grow while minimum load, of the other sign, opens them, which is not counted.
+fn reversal(case: &Case, prediction: &Prediction) -> Option<Check> {
+    let [ratio, _] = case.loading.ratios();
+    let is_closed = |row: &CurvePoint| row.tips.iter().position(|tip| tip.state == TipState::Closed);
+    let tip = prediction.curve.iter().find_map(is_closed).filter(|_| ratio < 0.0)?;
+    let words = format!("reversal: minimum load opens tip {tip}, its growth is not counted");
+    let remedy = Some("turn the load round: maximum times R, ratio 1/R".to_owned());
+    Some(Check { side: Some(Side::Unsafe), remedy, ..Check::new("reversal", Verdict::Fails, words) })
 }
 
 /// Stress ratio of the law against that of the cycles.

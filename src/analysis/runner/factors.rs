@@ -13,6 +13,7 @@ use crate::predict::pin_arcs;
 use crate::predict::tip_factors::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
 use crate::report::units::show_folder;
 use crate::report::{model_words, stresses};
+use crate::specimen::handbook::handbook_beside;
 use crate::stress_concentration::stressed;
 use crate::units::shown::{column, per, told};
 use crate::units::{MM, MPA, MPA_SQRT_M};
@@ -41,6 +42,12 @@ pub(super) fn run(
             found.insert("pins".to_owned(), json!(pins));
         }
         tables.push_str(&table(&tips));
+        let is_beside = tips.iter().any(|tip| tip.handbook_k_i.is_some());
+        if let Some(formula) = handbook_beside(&case.specimen).filter(|_| is_beside) {
+            let words = format!("{}: {}", formula.name, formula.range);
+            tables.push_str(&format!("handbook K_I by {words}\n"));
+            found.insert("handbook".to_owned(), words.into());
+        }
         found.insert("tips".to_owned(), tips.iter().map(object).collect());
     }
     if folder.is_some() || !has_cracks {

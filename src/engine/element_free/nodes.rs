@@ -16,7 +16,7 @@ const RIM_SHARE: f64 = 0.4;
 const FLANK_SHARE: f64 = 0.25;
 /// Distance from a tip, in spacings, within which the nearest node becomes that of the tip.
 const TIP_SHARE: f64 = 0.5;
-/// Distance of two nodes beside a crack, in spacings, within which they are one: where corners of a rim come closer to its mouth than
+/// Distance of two nodes on rims or beside a crack, in spacings, within which they are one: where corners of a rim come closer to its mouth than
 /// [`FLANK_SHARE`], those on either side of it have the same foot, and two nodes on one place leave no stiffness to either.
 const TWIN_SHARE: f64 = 0.1;
 /// Distance of nodes on an arc that is drawn as a polygon, in spacings, at the least: where its corners are closer, not every one has a node. With
@@ -65,6 +65,7 @@ impl Nodes {
                 nodes.push(at, spacing);
             }
         }
+        let inside = nodes.at.len();
         let has_node = well_apart(&specimen.outline, grid, ON_ARC);
         for (index, stretch) in stretches(specimen).into_iter().enumerate() {
             let least = if matches!(stretch, Stretch::Circle(_)) { PIECES_LEAST } else { 1 };
@@ -73,8 +74,11 @@ impl Nodes {
             let first = usize::from(has_node.get(index) == Some(&false));
             for share in &shares[first..shares.len() - 1] {
                 let at = stretch.at(*share);
-                if is_on_plate(specimen, at, stretch.inward(*share), grid) {
-                    nodes.push(at, grid.spacing(grid.leaf(at)));
+                let spacing = grid.spacing(grid.leaf(at));
+                // Where the wall of a slot meets the outline both have a node.
+                let is_alone = nodes.at[inside..].iter().all(|other| distance(*other, at) > TWIN_SHARE * spacing);
+                if is_alone && is_on_plate(specimen, at, stretch.inward(*share), grid) {
+                    nodes.push(at, spacing);
                 }
             }
         }

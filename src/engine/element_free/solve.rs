@@ -17,6 +17,7 @@ use crate::material::Plane;
 use crate::specimen::geometry::bounding_box;
 use crate::specimen::pin::Contact;
 use crate::specimen::{Point, Specimen};
+use crate::watch::{self, Stage};
 use crate::williams::Elasticity;
 
 /// Displacement of a plate under its loads.
@@ -107,7 +108,8 @@ impl Matrices for Stiffness<'_> {
 }
 
 /// Solves `K u = f` at the nominal load `load`, Pa or N, by a Cholesky factor.
-/// Errors: [`crate::error::Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis.
+/// Errors: [`crate::error::Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis;
+/// the work was asked to end.
 pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -> Result<Solution> {
     solve_with(specimen, plate, far, load, None)
 }
@@ -120,6 +122,7 @@ pub fn solve_with(
     load: f64,
     residual: Option<&ResidualStress>,
 ) -> Result<Solution> {
+    watch::at(Stage::Equilibrium, 0.0)?;
     let cells = quadrature(specimen, plate);
     let Boundary { mut forces, held, of_grips } = Boundary::new(specimen, plate, far)?;
     let grips = (plate.unknowns()..plate.unknowns() + of_grips).step_by(UNKNOWNS_OF_GRIP);

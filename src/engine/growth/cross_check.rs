@@ -142,6 +142,8 @@ const SMALL: f64 = 0.2;
 pub fn largest_difference(before: &[[f64; 2]], now: &[[f64; 2]]) -> (usize, f64) {
     let size = |[a, b]: [f64; 2]| a.hypot(b);
     let least = SMALL * now.iter().map(|factors| size(*factors)).fold(0.0, f64::max);
-    let difference = |(a, b): (&[f64; 2], &[f64; 2])| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) / size(*b).max(least);
+    let difference = |(a, b): (&[f64; 2], &[f64; 2])| {
+        (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) / size(*b).max(least).max(f64::MIN_POSITIVE)
+    };
     before.iter().zip(now).map(difference).enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
 }

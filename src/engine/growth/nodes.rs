@@ -87,7 +87,9 @@ impl NodePlate {
 
     fn factors(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<[f64; 2]>> {
         self.solve(case, cracks)?;
-        Ok(self.read(case, cracks)?.into_iter().map(|reading| reading.map_or([f64::NAN; 2], |reading| reading.factors)).collect())
+        // A tip that is shut has none, and K_II of its last places in contact is noise.
+        let of = |reading: Reading| if reading.is_closed { [0.0; 2] } else { reading.factors };
+        Ok(self.read(case, cracks)?.into_iter().map(|reading| reading.map_or([f64::NAN; 2], of)).collect())
     }
 }
 

@@ -4,6 +4,7 @@ use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
 use crate::error::{Error, InputError, Result, input, input_missing};
+use crate::units::us::{System, renamed};
 
 /// Names fixed for later that no room has built yet: they get "is not built yet" instead of "is not a known kind".
 ///
@@ -105,7 +106,11 @@ fn explain(error: &toml::de::Error, value: &Value, path: &str, beside: &[&str]) 
         }
         let known = [&beside.join(", "), &*known].into_iter().filter(|list| !list.is_empty()).collect::<Vec<_>>().join(", ");
         let (value, known) = (given(&key).unwrap_or_default(), if known.is_empty() { "none".to_owned() } else { known });
-        return input(&key, value, "is not a known key", format!("known here: {known}"));
+        // The same quantity in another unit: what it is called is said first, in both systems.
+        let stem = |name: &str| name.rsplit_once('_').map(|(stem, _)| stem.to_owned());
+        let alike = known.split(", ").find(|own| stem(own).is_some() && stem(own) == stem(name));
+        let alike = alike.and_then(|own| Some(format!("use {own} or {}; ", renamed(own, System::Us)?.name))).unwrap_or_default();
+        return input(&key, value, "is not a known key", format!("{alike}known here: {known}"));
     }
     if let Some(name) = quoted_after(message, "missing field `") {
         return input_missing(&format!("{place}.{name}"), "is missing", "this key is required here");

@@ -13,10 +13,12 @@ use crate::input::{number, refuse_given, shorten, slice, table_of};
 use crate::specimen::geometry::{bounding_box, distance, unit};
 use crate::specimen::pin::SNUG_PIN;
 use crate::specimen::{Bearing, Component, Edge, Load, LoadMeasure, Point, Specimen, Support};
-use crate::units::MM;
+use crate::units::{MM, place_mm};
 
 /// Resultant of pins that pull against each other, over the sum of their forces.
 const BALANCED: f64 = 1e-6;
+/// Resultant of loads over the largest of them, and its moment over that times the plate, up to which they are in balance.
+const LEVEL: f64 = 1e-4;
 
 /// One entry of `[supports]`.
 #[derive(Deserialize)]
@@ -215,6 +217,11 @@ fn stretches(edge: Edge, specimen: &Specimen, key: &str) -> Result<Vec<(Point, P
         let remedy = "an edge is what lies on the bounding box of the outline";
         return Err(input(key, edge, "is no straight side of this outline", remedy));
     }
+    if let Some((from, to)) = edge.step(specimen) {
+        let problem =
+            format!("has a step: {} to {} is level with it but for less than 1e-4 of the plate", place_mm(from), place_mm(to));
+        return Err(input(key, edge, problem, "draw the side in one line, or the step deeper"));
+    }
     Ok(found)
 }
 
@@ -313,6 +320,13 @@ fn read_edge_bending(input_: &Input, loaded: &[Edge]) -> Result<Option<[f64; 2]>
         return Err(input(KEY, shorten(given), problem, "leave it out, or give cycles of a load"));
     }
     if given.as_str() == Some("pure") {
+        let forces = [
+            ("force_max_n", input_.force_max_n.is_some()),
+            ("force_range_n", input_.force_range_n.is_some()),
+            ("force_max_kn", input_.force_max_kn.is_some()),
+            ("force_range_kn", input_.force_range_kn.is_some()),
+        ];
+        refuse_given("loading", &forces, "is none in pure bending", "give loading.stress_max_mpa, that at the end of the edge")?;
         return Ok(Some([-1.0, 1.0]));
     }
     let ratio = given.as_float().or_else(|| given.as_integer().map(|whole| whole as f64)).ok_or_else(|| {
@@ -383,7 +397,7 @@ pub struct Imbalance {
     pub moment: bool,
 }
 
-/// What the loads of a specimen leave over, beyond round-off.
+/// What the loads of a specimen leave over, beyond what a drawing leaves.
 pub fn imbalance(specimen: &Specimen) -> Imbalance {
     let (mut force, mut moment, mut scale) = ([0.0; 2], 0.0_f64, 0.0_f64);
     for (place, f) in specimen.loads.iter().flat_map(|load| resultants(load, specimen)) {
@@ -392,7 +406,7 @@ pub fn imbalance(specimen: &Specimen) -> Imbalance {
         scale = scale.max(f[0].hypot(f[1]));
     }
     let reach = specimen.gross_width.max(specimen.length());
-    Imbalance { force: force.map(|f: f64| f.abs() > 1e-6 * scale), moment: moment.abs() > 1e-6 * scale * reach }
+    Imbalance { force: force.map(|f: f64| f.abs() > LEVEL * scale), moment: moment.abs() > LEVEL * scale * reach }
 }
 
 /// Places and forces of a load per unit of nominal load (per metre of thickness, which all share).

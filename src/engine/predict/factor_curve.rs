@@ -5,13 +5,13 @@
 //! tips the faster ones grow the farther ahead of the others the larger m is.
 
 use super::{CurvePoint, Observer, Prediction, RunFigures, StopReason, predict};
+use crate::blended::Blended;
 use crate::case::{Case, LawSource};
 use crate::error::{Error, Result};
 use crate::fatigue::Driver;
 use crate::fatigue::crack_tip::TipState;
 use crate::fatigue::paris::ParisLaw;
 use crate::growth::cracks::steering::equivalent_factor;
-use crate::parabolas::Parabolas;
 use crate::specimen::LengthConvention;
 use crate::units::MM;
 
@@ -35,7 +35,7 @@ pub struct FactorCurve {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TipFactors {
     /// ln of K_eq, K in Pa√m, over crack length, m.
-    logarithms: Parabolas,
+    logarithms: Blended,
 }
 
 impl FactorCurve {
@@ -50,7 +50,7 @@ impl FactorCurve {
         let done = unit_growth(case, m, observer)?;
         let tips = match case.specimen.convention {
             LengthConvention::MeanOfTips => {
-                vec![TipFactors::new(done.curve.iter().map(|row| (row.crack_length, row.k_max(&case.loading))))]
+                vec![TipFactors::new(solved(&done.curve).map(|row| (row.crack_length, row.k_max(&case.loading))))]
             }
             LengthConvention::SumOfTips => of_every_tip(&done.curve),
         };
@@ -103,6 +103,12 @@ pub(super) fn unit_growth(case: &Case, m: f64, observer: &dyn Observer) -> Resul
     Ok(done)
 }
 
+/// Rows whose K was solved for, and the last one: between them the curve is smooth, and rows there are what a run made of it on its way.
+pub(super) fn solved(curve: &[CurvePoint]) -> impl Iterator<Item = &CurvePoint> {
+    let last = curve.len().saturating_sub(1);
+    curve.iter().enumerate().filter(move |(index, row)| row.is_solved || *index == last).map(|(_, row)| row)
+}
+
 /// K of every tip over the rows in which it grows.
 fn of_every_tip(curve: &[CurvePoint]) -> Vec<TipFactors> {
     let count = curve.first().map_or(0, |row| row.tips.len());
@@ -112,7 +118,7 @@ fn of_every_tip(curve: &[CurvePoint]) -> Vec<TipFactors> {
             let factor = equivalent_factor(record.factors.filter(|_| record.state == TipState::Active)?);
             (factor > 0.0).then_some((row.crack_length, factor))
         };
-        TipFactors::new(curve.iter().filter_map(factor))
+        TipFactors::new(solved(curve).filter_map(factor))
     };
     (0..count).map(of_tip).filter(|tip| tip.lengths().len() > 1).collect()
 }
@@ -120,7 +126,7 @@ fn of_every_tip(curve: &[CurvePoint]) -> Vec<TipFactors> {
 impl TipFactors {
     /// Of its rows, at least two: lengths that rise, m, and K, Pa√m.
     pub fn new(rows: impl Iterator<Item = (f64, f64)>) -> Self {
-        TipFactors { logarithms: Parabolas::new(rows.map(|(length, k)| (length, k.ln()))) }
+        TipFactors { logarithms: Blended::new(rows.map(|(length, k)| (length, k.ln()))) }
     }
 
     fn lengths(&self) -> &[f64] {
@@ -133,7 +139,7 @@ impl TipFactors {
         (first * (1.0 - 1e-9)..=last * (1.0 + 1e-9)).contains(&length)
     }
 
-    /// K at a length: its logarithm is smooth between rows ([`Parabolas`]).
+    /// K at a length: its logarithm is smooth between rows ([`Blended`]).
     pub fn at(&self, length: f64) -> f64 {
         self.logarithms.at(length).exp()
     }

@@ -13,9 +13,10 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use super::factor_curve::{EXPONENT_USUAL, TipFactors, unit_growth};
+use super::factor_curve::{EXPONENT_USUAL, TipFactors, solved, unit_growth};
 use super::moment::{grown, rows_before_meeting};
 use super::{CurvePoint, Observer};
+use crate::blended::Blended;
 use crate::case::{Case, Engine};
 use crate::error::{Error, Result, input, input_missing};
 use crate::fatigue::growth_law::Walker;
@@ -24,20 +25,22 @@ use crate::growth::CrackGrowth;
 use crate::growth::cracks::steering::equivalent_factor;
 use crate::growth::cracks::{CrackedPlate, Cracks};
 use crate::growth::nodes::NodePlate;
-use crate::parabolas::Parabolas;
 use crate::specimen::geometry::{along, direction, distance, distance_to_segment};
 use crate::specimen::handbook::handbook;
 use crate::specimen::{CrackLine, LengthConvention, LoadMeasure, Point, Specimen, SpecimenKind};
 use crate::units::MM;
 
-/// Distance from a flank at which it is read, over the length of its crack.
-const BESIDE: f64 = 1e-6;
-/// Way of a mouth into the material at which it is read, over the length of the crack.
-const INSIDE: f64 = 1e-6;
+/// Distance from a flank at which it is read, over the length of its crack: at its end, and between its ends, where nodes see it straight that
+/// has bends of some 1e-4 of it.
+const BESIDE: [f64; 2] = [1e-4, 1e-3];
+/// Way of a mouth into the material at which it is read, over the length of the crack: both flanks are then in the plate, up to 60° of slant.
+const INSIDE: f64 = 2e-4;
 /// Gauge on the back face over the width.
 const GAUGE: f64 = 0.02;
 /// Share by which K_eq of two tips may differ that are alike.
 const ALIKE: f64 = 0.01;
+/// `fatigue.step_error_percent` of the run at the most: K between its rows is then right to 0.1 % (test).
+const STEP_ERROR_PERCENT: f64 = 0.02;
 /// Share of a length within which two are the same.
 const SAME: f64 = 1e-9;
 
@@ -142,6 +145,8 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
     let mut case = case.clone();
     (case.stop.crack_length, case.stop.required) = (*last, None);
     (case.stop.by_toughness, case.stop.by_net_section) = (false, false);
+    // A life takes longer steps than a table of K.
+    case.fatigue.step_error_percent = case.fatigue.step_error_percent.min(STEP_ERROR_PERCENT);
     Ok(case)
 }
 
@@ -204,17 +209,17 @@ struct TipCurves {
     /// K_eq, which the growth follows.
     equivalent: TipFactors,
     /// Angle of K_II over K_I, rad.
-    angle: Parabolas,
-    t_stress: Parabolas,
+    angle: Blended,
+    t_stress: Blended,
 }
 
 impl TipCurves {
     fn of(rows: &[CurvePoint], tip: usize) -> Self {
         let factors = |row: &CurvePoint| row.tips[tip].factors.unwrap_or([f64::NAN; 2]);
         let over_length =
-            |value: &dyn Fn(&CurvePoint) -> f64| Parabolas::new(rows.iter().map(|row| (row.crack_length, value(row))));
+            |value: &dyn Fn(&CurvePoint) -> f64| Blended::new(solved(rows).map(|row| (row.crack_length, value(row))));
         TipCurves {
-            equivalent: TipFactors::new(rows.iter().map(|row| (row.crack_length, equivalent_factor(factors(row))))),
+            equivalent: TipFactors::new(solved(rows).map(|row| (row.crack_length, equivalent_factor(factors(row))))),
             angle: over_length(&|row| factors(row)[1].atan2(factors(row)[0])),
             t_stress: over_length(&|row| row.tips[tip].t_stress.unwrap_or(f64::NAN)),
         }
@@ -287,8 +292,8 @@ impl Compliance {
         cracks.open()?;
         let (specimen, plate) = (&case.specimen, &cracks.plate);
         let lines = specimen.crack_lines();
-        let opening = |line: &CrackLine, at: Point| {
-            let beside = flanks(line, at)?;
+        let opening = |line: &CrackLine, (at, share): (Point, f64)| {
+            let beside = flanks(line, at, share)?;
             let [left, right] = [plate.displacement(case, beside.0[0])?, plate.displacement(case, beside.0[1])?];
             Some((left[0] - right[0]) * beside.1[0] + (left[1] - right[1]) * beside.1[1])
         };
@@ -305,29 +310,29 @@ impl Compliance {
         Ok(Compliance {
             t_stress: cracks.now().tips.iter().map(|tip| tip.t_stress).collect(),
             mouths: (0..specimen.tips.len()).map(mouth).collect(),
-            load_line: if is_compact { opening(&lines[0], [0.0; 2]) } else { load.map(|load| plate.work() / load) },
+            load_line: if is_compact { opening(&lines[0], ([0.0; 2], BESIDE[1])) } else { load.map(|load| plate.work() / load) },
             back_face_strain: back_face_strain(case, plate),
         })
     }
 }
 
-/// Two places on the flanks of a crack at a place on it, left and right of it, and the unit vector from right to left.
-fn flanks(line: &CrackLine, at: Point) -> Option<([Point; 2], Point)> {
+/// Two places on the flanks of a crack at a place on it, left and right of it by a share of its length, and the unit vector from right to left.
+fn flanks(line: &CrackLine, at: Point, share: f64) -> Option<([Point; 2], Point)> {
     let nearest = |piece: &[Point; 2]| distance_to_segment(at, piece[0], piece[1]);
     let [from, to] = line.pieces().min_by(|a, b| nearest(a).total_cmp(&nearest(b)))?;
     let [x, y] = direction(from, to);
-    let (across, by) = ([-y, x], BESIDE * line.length());
+    let (across, by) = ([-y, x], share * line.length());
     Some(([1.0, -1.0].map(|side| [0, 1].map(|i| at[i] + side * by * across[i])), across))
 }
 
-/// Where a crack is open: just inside the end that is no tip, or half way between two tips.
-fn mouth(specimen: &Specimen, line: &CrackLine) -> Point {
+/// Where a crack is open: just inside the end that is no tip, or half way between two tips; and how far from it its flanks are read.
+fn mouth(specimen: &Specimen, line: &CrackLine) -> (Point, f64) {
     let is_tip = |at_last: bool| specimen.tips.iter().any(|tip| tip.position == line.end(at_last));
     let inside = INSIDE * line.length();
     match [false, true].into_iter().find(|&at_last| !is_tip(at_last)) {
-        Some(true) => way(line, line.length() - inside),
-        Some(false) => way(line, inside),
-        None => way(line, 0.5 * line.length()),
+        Some(true) => (way(line, line.length() - inside), BESIDE[0]),
+        Some(false) => (way(line, inside), BESIDE[0]),
+        None => (way(line, 0.5 * line.length()), BESIDE[1]),
     }
 }
 

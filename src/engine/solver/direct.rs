@@ -16,6 +16,7 @@ use super::system::{LinearSolver, Solved, SolverUsed, System};
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
+use crate::watch::{self, Stage};
 
 /// Solves after which it begins anew: it remembers nothing, so that this costs one more solve.
 const SOLVES_MOST: usize = 32;
@@ -33,6 +34,8 @@ impl<const N: usize> LinearSolver<N> for DirectSolver {
     }
 
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        // Nothing looks while it factorises, which takes seconds; iterations that were asked to end must not lead here.
+        watch::at(Stage::Equilibrium, 0.0)?;
         let System { bonds, product, f, .. } = system;
         match product.dilatation() {
             None => factorise_and_solve::<N, N>(system, &Springs::new(product), u)?,

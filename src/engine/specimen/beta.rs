@@ -7,14 +7,14 @@
 //! σ is the nominal stress of the case, or under a force P on pins or rollers P / (B W), with thickness B and width W of the specimen
 //! ([`Specimen::width`]; of a `plate` its size along x). a is the crack length of a standard specimen; of a `plate` half the length of a
 //! crack with two tips, the whole length of one with one tip, kinks included. Tips of several cracks grow alike. ln β is smooth between
-//! the rows ([`Parabolas`]).
+//! the rows ([`Blended`]).
 
 use std::f64::consts::PI;
 
 use super::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
+use crate::blended::Blended;
 use crate::error::{Error, InputError, Result, input_missing};
 use crate::input::Folder;
-use crate::parabolas::Parabolas;
 use crate::units::{INCH, MM};
 
 /// Key of the file.
@@ -32,7 +32,7 @@ const ALIKE: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq)]
 pub struct BetaTable {
     /// ln β over a, m.
-    logarithms: Parabolas,
+    logarithms: Blended,
     /// Crack length of the specimen at the start in its own convention, and the a of β there, m.
     start: [f64; 2],
     /// Tips whose growth adds up to the crack length of a `plate`; else 1.
@@ -74,7 +74,7 @@ impl Specimen {
             return Err(row.fault(problem, "give a table from the initial crack length to the end").in_file(&folder.path(file)));
         }
         self.beta = Some(BetaTable {
-            logarithms: Parabolas::new(rows.iter().map(|row| (row.length, row.beta.ln()))),
+            logarithms: Blended::new(rows.iter().map(|row| (row.length, row.beta.ln()))),
             start: [self.crack_length, a],
             tips,
             stress: self.beta_stress(1.0),

@@ -270,8 +270,18 @@ impl Edge {
         }
     }
 
-    /// Stretches of the outline on this side; empty where only a corner touches the bounding box.
+    /// Stretches of the outline on this side, within 1e-6 of the size of the plate; empty where only a corner touches the bounding box.
     pub fn stretches(self, specimen: &Specimen) -> Vec<(Point, Point)> {
+        self.level(specimen, [-1.0, 1e-6])
+    }
+
+    /// A stretch along this side that lies deeper than those of it by less than a drawing can tell from a slip, 1e-4 of the size of the plate.
+    pub fn step(self, specimen: &Specimen) -> Option<(Point, Point)> {
+        self.level(specimen, [1e-6, 1e-4]).first().copied()
+    }
+
+    /// Stretches of the outline along this side whose ends lie so deep in the bounding box, over its size.
+    fn level(self, specimen: &Specimen, [above, deepest]: [f64; 2]) -> Vec<(Point, Point)> {
         let [low, high] = bounding_box(&specimen.outline);
         let (axis, place) = match self {
             Edge::Top => (1, high[1]),
@@ -279,7 +289,12 @@ impl Edge {
             Edge::Left => (0, low[0]),
             Edge::Right => (0, high[0]),
         };
-        let near = 1e-9 * (high[0] - low[0]).max(high[1] - low[1]);
-        edges(&specimen.outline).filter(|(a, b)| (a[axis] - place).abs() <= near && (b[axis] - place).abs() <= near).collect()
+        let size = (high[0] - low[0]).max(high[1] - low[1]);
+        let is_level = |(a, b): &(Point, Point)| {
+            let [shallow, deep] =
+                [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| of((a[axis] - place).abs(), (b[axis] - place).abs()));
+            deep <= deepest * size && deep > above * size && deep - shallow <= 1e-3 * distance(*a, *b)
+        };
+        edges(&specimen.outline).filter(is_level).collect()
     }
 }

@@ -102,7 +102,7 @@ pub(super) fn place_cracks(
     notes: &mut Vec<String>,
 ) -> Result<()> {
     let mut ends: Vec<TipSeed> = Vec::new();
-    for (i, path) in with_shared_ends_joined(paths) {
+    for (i, path) in with_shared_ends_joined(specimen, paths) {
         let key = format!("specimen.cracks[{i}]");
         let [Some(&asked_from), Some(&asked_to)] = [path.first(), path.last()] else { continue };
         let (second, last_but_one) = (path[1], path[path.len() - 2]);
@@ -199,8 +199,9 @@ fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
     lines.iter().enumerate().flat_map(passed).collect()
 }
 
-/// Paths with their numbers; two that share an end, where no third comes, are one crack with a bend there.
-fn with_shared_ends_joined(paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
+/// Paths with their numbers; two that share an end, where no third comes, are one crack with a bend there. In a hole they do not meet.
+fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
+    let is_in_hole = |at: Point| specimen.holes.iter().any(|hole| distance(at, hole.centre) < hole.radius - TOUCH);
     let mut joined: Vec<(usize, Vec<Point>)> = paths.into_iter().enumerate().collect();
     let is_same = |a: Point, b: Point| distance(a, b) < TOUCH;
     let ends = |path: &[Point]| [path[0], path[path.len() - 1]];
@@ -210,6 +211,9 @@ fn with_shared_ends_joined(paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
             let shared: Vec<Point> =
                 ends(&joined[i].1).into_iter().filter(|&a| ends(&joined[j].1).into_iter().any(|b| is_same(a, b))).collect();
             let [at] = shared[..] else { return None };
+            if is_in_hole(at) {
+                return None;
+            }
             (joined.iter().filter(|(_, path)| comes(path, at)).count() == 2).then_some((i, j, at))
         });
         let Some((i, j, at)) = pair else { return joined };

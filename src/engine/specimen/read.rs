@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use super::{Specimen, SpecimenKind, named, part_through, plate, standard};
+use super::{LengthConvention, Specimen, SpecimenKind, named, part_through, plate, standard};
 use crate::error::{Result, input, input_missing};
 use crate::input::{Folder, shorten, table_of};
 
@@ -67,9 +67,11 @@ pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Re
         return Err(input("specimen.kind", format!("\"{kind}\""), problem, give_a_kind()));
     }
     let kind = kind.parse::<SpecimenKind>()?;
-    if let Some(given) = table.get("beta_file").filter(|_| kind.part_through().is_some() || kind.named().is_some()) {
-        let takes = |kind: &&SpecimenKind| kind.part_through().is_none() && kind.named().is_none();
-        let known: Vec<&str> = SpecimenKind::ALL.iter().filter(takes).map(|kind| kind.name()).collect();
+    // Holes that cracks run into on their way, and fronts, have no one K over one length.
+    let takes =
+        |kind: SpecimenKind| kind.part_through().is_none() && !matches!(kind, SpecimenKind::RowOfHoles | SpecimenKind::StopHole);
+    if let Some(given) = table.get("beta_file").filter(|_| !takes(kind)) {
+        let known: Vec<&str> = SpecimenKind::ALL.iter().filter(|kind| takes(**kind)).map(|kind| kind.name()).collect();
         let problem = format!("does not go with {kind}, whose K is its own");
         let remedy = format!("leave it out, or use one of {}", known.join(", "));
         return Err(input(super::beta::KEY, shorten(given), problem, remedy));
@@ -82,7 +84,14 @@ pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Re
         return Err(input(&format!("specimen.{key}"), shorten(&table[*key]), problem, give_a_kind()));
     }
     if let Some(description) = kind.named() {
-        return named::from_value(description, value, notes);
+        let mut own = table.clone();
+        let table_of_beta = own.remove("beta_file");
+        let specimen = named::from_value(description, &Value::Table(own), notes)?;
+        if let Some(given) = table_of_beta.filter(|_| specimen.convention == LengthConvention::SumOfTips) {
+            let problem = "is one table, and cracks of unlike length have each their own K";
+            return Err(input(super::beta::KEY, shorten(&given), problem, "leave it out, or give crack_length_mm"));
+        }
+        return Ok(specimen);
     }
     match kind {
         SpecimenKind::SingleEdgeTension => standard::single_edge_from_value(value),

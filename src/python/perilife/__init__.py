@@ -118,6 +118,8 @@ def predict(
     of this very plate, ``pod`` the crack lengths in mm that an inspection finds with 50 and with 90 %. ``progress`` is called now and
     then with a :class:`Progress`; answering ``False`` ends the run.
     """
+    if tip is not None and (inspect_from_mm is None or tip < 0):
+        raise ValueError(f"tip = {tip}: is the number of the tip, from 0, whose crack inspect_from_mm is the length of; give both")
     wishes: dict[str, Any] = {
         "error_estimate": error_estimate,
         "cross_check": cross_check,
@@ -147,7 +149,7 @@ def predict(
 def sif(
     case: Case,
     *,
-    methods: Sequence[str] = (),
+    methods: str | Sequence[str] = (),
     name: str = "case",
     set: Mapping[str, Any] | None = None,
     progress: _Callback | None = None,
@@ -225,7 +227,7 @@ def _run(
     law: Law | None,
     files: dict[str, bytes],
     *,
-    methods: Sequence[str] = (),
+    methods: str | Sequence[str] = (),
     wishes: dict[str, Any] | None = None,
     progress: _Callback | None = None,
 ) -> _perilife.Run:
@@ -238,7 +240,7 @@ def _run(
         overrides(set),
         keys,
         files | of_law,
-        methods=list(methods),
+        methods=[methods] if isinstance(methods, str) else list(methods),
         wishes=wishes,
         progress=tell,
     )

@@ -53,6 +53,9 @@ def _text(table: Any) -> str:
     rows.writerow(table)
     # What numpy holds is written as its number.
     columns = [column.tolist() if hasattr(column, "tolist") else column for column in table.values()]
+    lengths = {name: len(column) for name, column in zip(table, columns)}
+    if len({*lengths.values()}) > 1:
+        raise ValueError(f"readings: columns of unlike lengths: {', '.join(f'{name} {count}' for name, count in lengths.items())}")
     rows.writerows(zip(*columns, strict=True))
     return text.getvalue()
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Table(Mapping[str, "npt.NDArray[Any]"]):
     """A table as a mapping of column names to arrays.
 
-    A column of numbers is ``float64`` with NaN where a cell is empty; any other is text.
+    A column of numbers is ``float64`` with NaN where a cell is empty; any other is text. Columns are read-only.
     """
 
     def __init__(self, text: str) -> None:
@@ -78,7 +78,11 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
 
 
 def _column(cells: tuple[str, ...]) -> npt.NDArray[Any]:
+    column: npt.NDArray[Any]
     try:
-        return np.array([float(cell) if cell else np.nan for cell in cells], dtype=np.float64)
+        column = np.array([float(cell) if cell else np.nan for cell in cells], dtype=np.float64)
     except ValueError:
-        return np.array(cells, dtype=np.str_)
+        column = np.array(cells, dtype=np.str_)
+    # A result is what was computed: whoever wants to change it takes a copy.
+    column.flags.writeable = False
+    return column

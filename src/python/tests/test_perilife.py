@@ -93,6 +93,9 @@ def test_factors_scenes_checks_and_materials() -> None:
     handbook = 60.35 * np.sqrt(np.pi * 9e-3 / np.cos(np.pi * 9.0 / 152.4))
     assert factors.tips["k_i_mpa_sqrt_m"] == pytest.approx(handbook, rel=0.01) and factors.tips.rows == 4
     assert factors.plot().get_ylabel() == "K_I, MPa√m"
+    assert perilife.sif(CASE, methods="ring").tips.rows == 2
+    with pytest.raises(ValueError, match="read-only"):
+        factors.tips["k_i_mpa_sqrt_m"][0] = 0.0
 
     scene = {
         "specimen": {"kind": "plate", "width_mm": 20.0, "length_mm": 20.0, "thickness_mm": 1.0},
@@ -137,6 +140,11 @@ def test_what_is_refused_says_where_and_what_would_be_right(tmp_path: Path) -> N
         calibration(readings)
     with pytest.raises(TypeError):
         calibration(3.0)
+    with pytest.raises(ValueError, match="columns of unlike lengths: cycles 3, crack_length_mm 2"):
+        calibration({"cycles": [1, 2, 3], "crack_length_mm": [5, 6]})
+    for tip, inspected in ((-1, 10.0), (0, None)):
+        with pytest.raises(ValueError, match=f"tip = {tip}: .* give both"):
+            perilife.predict(CASE, tip=tip, inspect_from_mm=inspected)
 
 
 def test_progress_is_told_while_other_threads_run_and_may_end_the_run() -> None:
@@ -169,13 +177,22 @@ def test_progress_is_told_while_other_threads_run_and_may_end_the_run() -> None:
 
 
 def test_ctrl_c_ends_a_run_soon() -> None:
-    # Hundreds of equilibria of 127 000 points, of which at most an iteration is finished: not minutes, on a busy machine too.
+    # Hundreds of equilibria of 127 000 points, of which at most an iteration is finished.
     steps = {**LONG, "fatigue": {**LAW, "step_error_percent": 0.001}}
+    asked: list[float] = []
+
+    def ask(look: perilife.Progress) -> None:
+        if look.share > 0.02 and not asked:
+            asked.append(time.perf_counter())
+            os.kill(os.getpid(), signal.SIGINT)
+
     begun = time.perf_counter()
-    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
     with pytest.raises(KeyboardInterrupt):
-        perilife.predict(steps)
-    assert time.perf_counter() - begun < 10.0
+        perilife.predict(steps, progress=ask)
+    before, after = asked[0] - begun, time.perf_counter() - asked[0]
+    print(f"asked to end after {before:.2f} s, the run ended {after:.2f} s later")
+    # The rest would take twenty times what was done, a factorisation of the whole plate twice as long.
+    assert after < before
     assert perilife.predict(CASE).life_cycles
 
 

@@ -63,6 +63,11 @@ export function createForm(onChange) {
       const input = element("input", numeric(options.signed, options.value ?? ""));
       return add({ ...wrap([key].flat(), input, { id: uniqueId("field"), ...options }), numeric: true, needed: !options.optional });
     },
+    /** Several numbers in groups, as `numbersIn` reads them. */
+    numbers(key, options) {
+      const input = element("input", { type: "text", autocomplete: "off", spellcheck: "false" });
+      return add({ ...wrap([key], input, { id: uniqueId("field"), optional: true, ...options }), numeric: true, several: true });
+    },
     /** A choice among `options`: {value, title}; `needed` where the empty one is none. */
     choice(key, options) {
       const input = element("select", null, options.options.map(({ value, title }) => element("option", { value }, title)));
@@ -94,8 +99,9 @@ export function createForm(onChange) {
       let good = true;
       for (const field of fields) {
         if (!field.numeric || !inUse(field) || empty(field)) continue;
-        if (!Number.isNaN(parseNumber(field.input.value))) continue;
-        say(field, `“${field.input.value.trim()}” is not a number: give a plain one, such as 12.5 or 1e-7`);
+        const wrong = (field.several ? groupsIn(field).flat() : [field.input.value]).find((number) => Number.isNaN(parseNumber(number)));
+        if (wrong === undefined) continue;
+        say(field, `“${wrong.trim()}” is not a number: give a plain one, such as 12.5 or 1e-7`);
         good = false;
       }
       return good;
@@ -126,9 +132,22 @@ export function numberIn(field) {
   return Number.isNaN(value) ? undefined : value;
 }
 
+/** What stands between semicolons, and there between blanks; commas before blanks do not count. */
+function groupsIn(field) {
+  return field.input.value.split(";").map((group) => group.trim().split(/,?\s+/));
+}
+
+/** Numbers in a field of several: a list, or a list of lists where semicolons divide them; undefined where it is empty. */
+export function numbersIn(field) {
+  if (field.input.value.trim() === "") return undefined;
+  const groups = groupsIn(field).map((group) => group.map(parseNumber));
+  return groups.length > 1 ? groups : groups[0];
+}
+
 /** Sets a field as if it were typed, without telling anybody. */
 export function fillIn(field, value) {
-  field.input.value = value === undefined || value === null ? "" : String(value);
+  const several = (list) => list.map((item) => (Array.isArray(item) ? several(item) : item)).join(list.some(Array.isArray) ? "; " : " ");
+  field.input.value = value === undefined || value === null ? "" : Array.isArray(value) ? several(value) : String(value);
 }
 
 /** A group of fields. */

@@ -9,12 +9,16 @@ export const SIZES = {
   arm_width_mm: ["Width of the arms", "mm"],
   thickness_mm: ["Thickness B", "mm"],
   crack_length_mm: ["Initial crack length a", "mm"],
+  stopped_crack_length_mm: ["Stopped crack", "mm", "half of its length, to the middles of the holes"],
   crack_angle_deg: ["Angle of the crack", "°", "against x, which is across the load"],
   crack_depth_mm: ["Crack depth a", "mm", "into the thickness"],
   crack_half_length_mm: ["Crack length c", "mm", "along the face; half of it where it has two ends there"],
+  holes: ["Number of holes", ""],
+  pitch_mm: ["Pitch of the holes", "mm", "from middle to middle"],
   hole_diameter_mm: ["Hole diameter", "mm"],
   hole_offset_mm: ["Hole from the middle", "mm", "across the load"],
   edge_distance_mm: ["Edge distance", "mm", "of a straight head, from the middle of the hole; half of the width where it is left out"],
+  formed_length_mm: ["Cracks that form", "mm", "from the rims of the holes, at the end of phase I"],
   notch_depth_mm: ["Depth of the notch", "mm", "from the edge to its root"],
   notch_radius_mm: ["Radius of the notch", "mm", "at its root"],
   fillet_radius_mm: ["Radius of the fillets", "mm", "between the arms"],
@@ -22,6 +26,11 @@ export const SIZES = {
   inner_span_mm: ["Inner span", "mm", "between two rollers; one in the middle where it is left out"],
   pin_diameter_mm: ["Pin diameter", "mm", "its clearance decides where it touches the hole; left out, an arc is assumed and what it matters is said"],
   pin_friction: ["Friction of the pin", "", "coefficient; 0 where it is left out"],
+};
+
+/** Keys of several numbers, in the place of the one length of all cracks. */
+export const LISTS = {
+  crack_lengths_mm: ["Cracks of unlike lengths", "mm", "left and right from the rim, such as 1 4, and 0 without one; of every hole of a row: 1 1; 1 4; 1 1"],
 };
 
 /** Keys that are chosen from a list. */
@@ -36,10 +45,11 @@ const FROM_EDGE = "from the edge";
 const THREE_WIDTHS = "along the load; left out: three widths";
 const FLAW = ["width_mm", "thickness_mm", "crack_depth_mm", "crack_half_length_mm"];
 const ALONG = { length_mm: "along the load" };
+const UNLIKE = "crack_lengths_mm";
 const PIN = ["pin_diameter_mm", "pin_friction"];
 const PLATE = ["width_mm", "length_mm", "thickness_mm"];
 
-/** Of every kind: keys that it needs, those that it may have, hints of its own, `force` where it bears forces alone, `flaw` where its crack is not through. */
+/** Of every kind: keys that it needs, those that it may have, hints of its own, `force` where it bears forces alone, `flaw` where its crack is not through, `initiation` where a crack has to form first. */
 export const KINDS = {
   middle_tension: { needs: [...PLATE, "crack_length_mm"], hints: { crack_length_mm: "half of the length from tip to tip" } },
   compact_tension: { needs: ["width_mm", "thickness_mm", "crack_length_mm"], may: PIN, force: true,
@@ -47,8 +57,10 @@ export const KINDS = {
   single_edge_tension: { needs: [...PLATE, "crack_length_mm", "ends"], hints: { crack_length_mm: FROM_EDGE } },
   double_edge_tension: { needs: [...PLATE, "crack_length_mm"], hints: { crack_length_mm: "of each crack, from its edge" } },
   plate: { needs: PLATE, hints: ALONG, title: "Plate drawn here" },
-  crack_at_hole: { needs: [...PLATE, "crack_length_mm", "hole_diameter_mm", "cracks"], may: ["hole_offset_mm"], hints: { ...ALONG, crack_length_mm: AT_RIM } },
-  lug: { needs: [...PLATE, "crack_length_mm", "hole_diameter_mm", "head", "cracks"], may: ["edge_distance_mm", ...PIN], force: true,
+  crack_at_hole: { needs: [...PLATE, "crack_length_mm", "hole_diameter_mm", "cracks"], may: [UNLIKE, "hole_offset_mm"], hints: { ...ALONG, crack_length_mm: AT_RIM } },
+  row_of_holes: { needs: [...PLATE, "crack_length_mm", "holes", "pitch_mm", "hole_diameter_mm"], may: [UNLIKE], hints: { ...ALONG, crack_length_mm: "of all, from the rims of the holes" } },
+  stop_hole: { needs: [...PLATE, "stopped_crack_length_mm", "hole_diameter_mm", "formed_length_mm"], hints: ALONG, initiation: true },
+  lug: { needs: [...PLATE, "crack_length_mm", "hole_diameter_mm", "head", "cracks"], may: [UNLIKE, "edge_distance_mm", ...PIN], force: true,
     hints: { length_mm: "from the middle of the hole to the held end", crack_length_mm: AT_RIM } },
   edge_notch: { needs: [...PLATE, "crack_length_mm", "notch_depth_mm", "notch_radius_mm"], hints: { ...ALONG, crack_length_mm: "from the root of the notch" } },
   single_edge_bend: { needs: ["width_mm", "thickness_mm", "crack_length_mm"], may: ["length_mm", "span_mm", "inner_span_mm"], force: true,

@@ -6,7 +6,7 @@ import { createEditor } from "./editor.js";
 import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
 import { percent, scientific, sentence, significant, words } from "./format.js";
 import { filesOf, jobToStartFrom } from "./job.js";
-import { isThrough } from "./kinds.js";
+import { KINDS, isThrough } from "./kinds.js";
 import { createPlate } from "./plate_form.js";
 import { problemBox } from "./notices.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
@@ -23,6 +23,14 @@ const START = {
   material: { name: "al2024-t3", plane: "stress" },
   loading: { kind: "constant_amplitude", stress_max_mpa: 70, stress_ratio: 0.2 },
   model: {},
+};
+
+/** An S-N line of local stress: label, unit, hint. */
+const INITIATION = {
+  range_mpa: ["Range of local stress Δσ", "MPa", "at a point of the S-N line, of specimens with the surface of drilled holes"],
+  cycles: ["Cycles N there", "cycles"],
+  slope: ["Slope k", "", "of log N over log Δσ"],
+  limit_mpa: ["Endurance limit", "MPa", "range of local stress up to which no crack forms"],
 };
 
 const BY_HAND = "law:paris";
@@ -57,6 +65,9 @@ export function createPredictView() {
   const gamma = form.number("fatigue.walker_gamma", { label: "Walker’s γ", optional: true, hint: "for a law of another stress ratio" });
   const beyond = form.choice("fatigue.allow_extrapolation", { label: "ΔK the law was not measured at", options: [{ value: "", title: "up to 25 % of the life" }, { value: "true", title: "allowed" }] });
   const besides = grid(gamma.node, beyond.node); // what holds for every law
+  const initiation = Object.fromEntries(Object.entries(INITIATION).map(([key, [label, unit, hint]]) =>
+    [key, form.number(`fatigue.initiation.${key}`, { label, unit, hint, optional: key === "limit_mpa" })]));
+  const formation = group("Formation of cracks (phase I)", grid(...Object.values(initiation).map((field) => field.node)));
   let laws = [];
   let fieldsOfLaw = {};
   const length = { unit: "mm", optional: true };
@@ -81,6 +92,7 @@ export function createPredictView() {
     loading.suit(kind);
     if (kind === "plate") plate.draw();
     for (const field of [stopDepth, breakThrough]) field.node.hidden = isThrough(kind);
+    formation.hidden = fields.hidden || !KINDS[kind]?.initiation;
     material.needStrength(spectrum.isRetarded());
     const own = laws.find((one) => `law:${one.name}` === law.input.value);
     if (constants.dataset.law !== (own?.name ?? "")) drawConstants(own);
@@ -115,7 +127,9 @@ export function createPredictView() {
 
   const isFitted = () => !law.input.value.startsWith("law:");
 
-  const besidesOf = () => ({ walker_gamma: gamma.node.hidden ? undefined : numberIn(gamma), allow_extrapolation: beyond.input.value === "true" || undefined });
+  const initiationOf = () => compact(Object.fromEntries(Object.entries(initiation).map(([key, field]) => [key, numberIn(field)])));
+
+  const besidesOf = () => ({ initiation: formation.hidden ? undefined : initiationOf(), walker_gamma: gamma.node.hidden ? undefined : numberIn(gamma), allow_extrapolation: beyond.input.value === "true" || undefined });
 
   function fatigueOf() {
     const name = law.input.value.replace("law:", "");
@@ -150,11 +164,11 @@ export function createPredictView() {
     const { specimen: s, material: m, loading: l, supports, model = {}, fatigue = {}, stop = {}, ...others } = input;
     const filled = (table) => Object.keys(table ?? {}).length > 0;
     const isBeyond = (table, known) => Object.keys(table).some((key) => !known.includes(key));
-    const besideLaw = ["walker_gamma", "allow_extrapolation"];
+    const besideLaw = ["walker_gamma", "allow_extrapolation", ...(KINDS[s?.kind]?.initiation ? ["initiation"] : [])];
     const own = isFitted() || !filled(fatigue) ? null : lawOf(fatigue);
     const tooMuch = Object.values(others).some(filled) || isBeyond(model, ["spacing_mm", "method", "tolerance_percent"]) || isBeyond(stop, ["crack_length_mm", "cycles_max", "crack_depth_mm", "at_break_through"]) ||
       (own && isBeyond(fatigue, ["growth_law", "delta_k_threshold_mpa_sqrt_m", ...besideLaw, ...own.constants.map(({ key }) => key)])) ||
-      (!own && isBeyond(fatigue, ["fitted", ...besideLaw]));
+      (!own && isBeyond(fatigue, ["fitted", ...besideLaw])) || isBeyond(fatigue.initiation ?? {}, Object.keys(INITIATION));
     if (tooMuch || !specimen.fill(s, l) || !material.fill(m)) return false;
     loading.suit(s.kind);
     if (!loading.fill(l, supports)) return false;
@@ -169,6 +183,7 @@ export function createPredictView() {
     arrange();
     if (own) Object.entries(fieldsOfLaw).forEach(([key, field]) => fillIn(field, fatigue[key]));
     fillIn(gamma, fatigue.walker_gamma);
+    Object.entries(initiation).forEach(([key, field]) => fillIn(field, fatigue.initiation?.[key]));
     fillIn(beyond, fatigue.allow_extrapolation ? "true" : "");
     if (own) fillIn(threshold, fatigue.delta_k_threshold_mpa_sqrt_m);
     return true;
@@ -177,7 +192,7 @@ export function createPredictView() {
   show(fields, specimen.element, material.element, loading.element,
     group("End", grid(stopLength.node, stopDepth.node, breakThrough.node, stopCycles.node, name.node)),
     group("How it is computed", grid(method.node, tolerance.node, spacing.node)));
-  show(byId("law-fields"), group("Growth law", grid(law.node), constants, besides, lawNote));
+  show(byId("law-fields"), group("Growth law", grid(law.node), constants, besides, lawNote), formation);
 
   // While another run's input is on its way, what stands in the form is not what the user means to start.
   let opening = false;

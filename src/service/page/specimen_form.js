@@ -1,9 +1,9 @@
 // Form of a test or a plate: specimen, material, loading. Keys are those of the input file.
 
 import { element, show } from "./dom.js";
-import { compact, fillIn, grid, group, numberIn } from "./form.js";
+import { compact, fillIn, grid, group, numberIn, numbersIn } from "./form.js";
 import { plain } from "./format.js";
-import { BENDING, CHOICES, KINDS, OF_TESTS, SIZES, bearsForce, isThrough, titleOf } from "./kinds.js";
+import { BENDING, CHOICES, KINDS, LISTS, OF_TESTS, SIZES, bearsForce, isThrough, titleOf } from "./kinds.js";
 import { isOfSpectrum } from "./spectrum_form.js";
 
 const MAGNITUDES = [
@@ -38,24 +38,27 @@ export function createSpecimen(form, { plate } = {}) {
   const pick = (table, make) => Object.entries(table).filter(([key]) => used.has(key)).map(([key, about]) => [key, make(`specimen.${key}`, about)]);
   const fields = Object.fromEntries([
     ...pick(SIZES, (key, [label, unit]) => form.number(key, { label, unit, optional: true, signed: key.includes("angle") || key.includes("offset") })),
+    ...pick(LISTS, (key, [label, unit, hint]) => form.numbers(key, { label, unit, hint })),
     ...pick(CHOICES, (key, [label, options]) => form.choice(key, { label, options: options.map(([value, title]) => ({ value, title })) })),
   ]);
 
   function arrange() {
     const { needs, hints = {} } = KINDS[kind.input.value];
-    const shown = keysOf(kind.input.value);
+    // Lengths of their own say how many cracks there are and how long each is.
+    const areUnlike = fields.crack_lengths_mm?.input.value.trim() && keysOf(kind.input.value).includes("crack_lengths_mm");
+    const shown = keysOf(kind.input.value).filter((key) => !(areUnlike && ["crack_length_mm", "cracks"].includes(key)));
     for (const [key, field] of Object.entries(fields)) {
       field.node.hidden = !shown.includes(key);
       field.needed = needs.includes(key);
       const optional = field.node.querySelector(".optional");
       if (optional) optional.hidden = field.needed;
-      const hint = hints[key] ?? SIZES[key]?.[2] ?? "";
+      const hint = hints[key] ?? (SIZES[key] ?? LISTS[key])?.[2] ?? "";
       field.note.textContent = hint;
       field.note.hidden = hint === "";
     }
     if (plate) plate.element.hidden = kind.input.value !== "plate";
   }
-  kind.input.addEventListener("input", arrange);
+  for (const field of [kind, fields.crack_lengths_mm]) field?.input.addEventListener("input", arrange);
   arrange();
 
   return {
@@ -63,7 +66,7 @@ export function createSpecimen(form, { plate } = {}) {
     fields: { kind, ...fields },
     collect() {
       const chosen = kind.input.value;
-      const given = ([key, field]) => [key, key in CHOICES && key !== "cracks" ? field.input.value : numberIn(field)];
+      const given = ([key, field]) => [key, key in CHOICES && key !== "cracks" ? field.input.value : key in LISTS ? numbersIn(field) : numberIn(field)];
       return compact({
         kind: chosen,
         ...Object.fromEntries(Object.entries(fields).filter(([, field]) => !field.node.hidden).map(given)),

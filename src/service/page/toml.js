@@ -1,7 +1,7 @@
 // Writes the input of a form as the TOML file the command line reads, so that a run made here can be repeated there.
 
 /** Keys that count: whole numbers. */
-const COUNTS = ["count", "samples", "seed", "hole", "cracks"];
+const COUNTS = ["count", "samples", "seed", "hole", "holes", "cracks"];
 
 function text(value) {
   // JSON escapes are TOML escapes, as long as the delete character is spelt out too.

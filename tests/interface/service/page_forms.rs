@@ -199,6 +199,8 @@ fn named_plates_have_forms() {
     let sizes = [("width_mm", "50"), ("length_mm", "120"), ("thickness_mm", "5"), ("crack_length_mm", "3")];
     for (kind, own) in [
         ("crack_at_hole", &[("hole_diameter_mm", "10")][..]),
+        ("row_of_holes", &[("holes", "3"), ("pitch_mm", "12"), ("hole_diameter_mm", "4"), ("crack_length_mm", "1")]),
+        ("stop_hole", &[("stopped_crack_length_mm", "10"), ("hole_diameter_mm", "6"), ("formed_length_mm", "0.5")]),
         ("edge_notch", &[("notch_depth_mm", "8"), ("notch_radius_mm", "3")]),
         ("cruciform", &[("arm_width_mm", "40"), ("fillet_radius_mm", "8"), ("crack_angle_deg", "30")]),
         ("single_edge_bend", &[("length_mm", "240"), ("crack_length_mm", "20")]),
@@ -220,6 +222,13 @@ fn named_plates_have_forms() {
             forms.fill("loading.force_range_kn", "9");
         }
         assert_eq!(forms.shown("loading.stress_parallel_ratio"), kind == "cruciform");
+        for (key, value) in [("range_mpa", "240"), ("cycles", "1e5"), ("slope", "5")] {
+            let key = format!("fatigue.initiation.{key}");
+            assert_eq!(forms.shown(&key), kind == "stop_hole");
+            if kind == "stop_hole" {
+                forms.fill(&key, value);
+            }
+        }
         page.see("#predict:not([disabled])");
         page.until(&format!("document.querySelector('#plate-check').textContent.includes('{kind}')"));
         let text = forms.toml();
@@ -227,8 +236,34 @@ fn named_plates_have_forms() {
             let number: f64 = value.parse().unwrap();
             assert!(text.contains(&format!("{key} = {number}")), "{key} in {text}");
         }
+        assert_eq!(text.contains("range_mpa = 240"), kind == "stop_hole", "{text}");
         page.see("#predict:not([disabled])");
     }
+    // Cracks of unlike lengths stand in the place of the one length, and survive the way through the text.
+    for (kind, given, written) in [
+        ("row_of_holes", "1 1; 1 2.5; 0, 1", "crack_lengths_mm = [[1.0, 1.0], [1.0, 2.5], [0.0, 1.0]]"),
+        ("crack_at_hole", "2 4", "crack_lengths_mm = [2.0, 4.0]"),
+    ] {
+        forms.choose("specimen.kind", kind);
+        forms.fill("specimen.hole_diameter_mm", "4");
+        forms.choose("loading.kind", "stress_max_mpa");
+        forms.fill("loading.stress_max_mpa", "60");
+        forms.fill("specimen.crack_lengths_mm", "1 2 x");
+        page.until("document.querySelector('#view-predict').textContent.includes('“x” is not a number')");
+        forms.fill("specimen.crack_lengths_mm", given);
+        assert!(!forms.shown("specimen.crack_length_mm") && !forms.shown("specimen.cracks"), "{kind}");
+        page.see("#predict:not([disabled])");
+        for _ in 0..2 {
+            let text = forms.toml();
+            assert!(text.contains(written) && !text.contains("crack_length_mm"), "{text}");
+            page.see("#predict:not([disabled])");
+        }
+        forms.choose("specimen.crack_lengths_mm", "");
+        assert!(forms.shown("specimen.crack_length_mm"));
+    }
+    forms.choose("specimen.kind", "lug");
+    forms.fill("specimen.hole_diameter_mm", "20");
+    forms.fill("loading.force_range_kn", "9");
     forms.choose("specimen.head", "round");
     page.see("#predict:not([disabled])");
     walk.look("27_named_plate");

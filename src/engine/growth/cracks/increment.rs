@@ -2,7 +2,7 @@
 
 use super::meeting::Segment;
 use super::steering::equivalent_factor;
-use super::step::Course;
+use super::step::{Counted, Course, FactorCourse};
 use super::tip::{Reading, Tip, pair_twins};
 use super::{CrackedPlate, Cracks, Parted, kink, step};
 use crate::error::Error;
@@ -186,13 +186,20 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         // turns a corner the rate is that of its new kink, not that with which it has ended its step.
         let is_smooth = lead.is_growing() && !is_over && !has_ended;
         let (factor, rate) = if is_smooth { (lead.equivalent(), self.rate(lead)) } else { (step.factor, step.rate) };
-        let (cycles, curvature_share) = if step.is_kink {
-            (kink::cycles(growth, [step.rate, rate], [step.factor, factor]), 0.0)
+        let Counted { cycles, curvature_share, bend } = if step.is_kink {
+            let cycles = kink::cycles(growth, [step.rate, rate], [step.factor, factor]);
+            Counted { cycles, curvature_share: 0.0, bend: 0.0 }
         } else if self.scales.by_root && growth > 0.0 && rate.is_finite() {
             step::cycles_by_root(step.past, [step.rate, rate], step.root, growth)
         } else {
             step::cycles(step.past, step.rate, rate, growth)
         };
+        let way = (is_smooth && growth > 0.0).then(|| {
+            let is_by_root = self.scales.by_root || step.is_kink;
+            let rise = (step.root * step.root + growth).sqrt() - step.root;
+            let weight = if is_by_root { [step.root, rise] } else { [1.0, 0.0] };
+            FactorCourse::new(Course { weight, gain: (rate / step.rate).ln(), bend }, [step.factor, factor])
+        });
         for (index, tip) in self.state.tips.iter_mut().enumerate().filter(|_| self.scales.by_root) {
             let growth = if is_smooth && index != step.lead { growths[index] } else { 0.0 };
             tip.count_arrears(growth, (step.rate, rate), growths[step.lead]);
@@ -210,7 +217,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         if has_ended || is_over || self.state.active().any(is_closing) {
             self.state.balance.forget();
         } else {
-            self.compare_energies(step, &growths, cycles);
+            let way = way.as_ref().filter(|_| !step.is_kink);
+            self.compare_energies(step, &growths, way.map_or(1.0, FactorCourse::square_beside_chord), cycles);
         }
         self.plate.update(&self.state);
         let work = if is_over { f64::NAN } else { self.work() };
@@ -236,7 +244,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         if step.parted.bonds == 0 && cycles <= 0.0 {
             return end_of_life::row_after(self.case, self.last(), next, end).1;
         }
-        let between = if is_smooth { self.rows_between(step, &next, [rate, factor], cycles / all) } else { Vec::new() };
+        let between = way.as_ref().map_or_else(Vec::new, |way| self.rows_between(step, &next, way, cycles / all));
         for row in between {
             let (row, reason) = end_of_life::row_after(self.case, self.last(), row, None);
             self.curve.push(row);
@@ -249,20 +257,21 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         reason
     }
 
-    /// Rows between the last one and the `next`, so that straight lines between rows are the curve by which cycles were counted; `then` are
-    /// rate, m/cycle, and K, Pa√m, of the lead at the end.
-    fn rows_between(&self, step: &Increment, next: &CurvePoint, then: [f64; 2], of_all: f64) -> Vec<CurvePoint> {
-        let ([rate, factor], growths, last) = (then, step.growths(), self.last());
-        let is_by_root = self.scales.by_root || step.is_kink;
-        let rise = (step.root * step.root + growths[step.lead]).sqrt() - step.root;
-        let course = Course { weight: if is_by_root { [step.root, rise] } else { [1.0, 0.0] }, gain: (rate / step.rate).ln() };
+    /// Rows between the last one and the `next`, so that straight lines between rows are the curve by which cycles were counted; the lead
+    /// goes `way`.
+    fn rows_between(&self, step: &Increment, next: &CurvePoint, way: &FactorCourse, of_all: f64) -> Vec<CurvePoint> {
+        let (course, last) = (&way.course, self.last());
+        let (rate, factor) = (step.rate * course.gain.exp(), way.at(1.0));
         let row_at = |t: f64| {
             let mut row = next.clone().between(last, t);
             let of_lead = course.growth(t);
+            // The same of all tips.
+            let beside_chord = way.beside_chord(t);
             for (index, tip) in row.tips.iter_mut().enumerate() {
                 let own = &self.state.tips[index];
                 let share = if index == step.lead { of_lead } else { own.share_at(of_lead, (step.rate, rate)) };
                 let [from, to] = [&last.tips[index], &next.tips[index]];
+                tip.factors = tip.factors.map(|factors| factors.map(|k| beside_chord * k));
                 if own.has_begun_kink() {
                     // K at a corner is that of the crack before it.
                     let of_end = (step.factor / factor).powf(1.0 - t);
@@ -274,14 +283,14 @@ impl<P: CrackedPlate> Cracks<'_, P> {
                 tip.position = [0, 1].map(|i| mix(from.position[i], to.position[i]));
             }
             let grown: Vec<f64> = row.tips.iter().map(|tip| tip.growth).collect();
-            let (k_max, loading) = (step.factor * (factor / step.factor).powf(t), &self.case.loading);
+            let (k_max, loading) = (way.at(t), &self.case.loading);
             let residual = row.residual.map(|residual| residual.beside(k_max, loading));
             CurvePoint {
                 cycles: last.cycles + course.cycles(t) * (next.cycles - last.cycles),
                 crack_length: self.case.specimen.crack_length_after(&grown),
                 delta_k: residual.map_or(loading.range_share(), |residual| residual.range_share()) * k_max,
                 residual,
-                growth_rate: step.rate * (course.gain * t).exp(),
+                growth_rate: step.rate * course.rise(t).exp(),
                 ..row
             }
         };
@@ -304,13 +313,15 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     }
 
     /// Compares the energy that the new segments released by their K with what the plate did.
-    fn compare_energies(&mut self, step: &Increment, growths: &[f64], cycles: f64) {
+    /// `beside_chord` is what K² of the lead is on its way over its chord.
+    fn compare_energies(&mut self, step: &Increment, growths: &[f64], beside_chord: f64, cycles: f64) {
         if self.case.specimen.loads.iter().any(Load::has_friction) {
             return;
         }
         let ((now, work_now), (before, work)) = (self.energies(), &step.before);
         let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
         let (block, length) = ReleasedEnergy::of_block(self.case, [before, &now], growths, &grown, [*work, work_now], cycles);
+        let block = ReleasedEnergy { of_tips: beside_chord * block.of_tips, ..block };
         self.state.balance.take(block, length, self.scales.energy_interval);
     }
 }

@@ -62,10 +62,17 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     fn contact_warning(&self) -> Option<String> {
         let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.was_closed);
         let tips = closed.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
+        let [ratio, _] = self.case.loading.ratios();
         (!tips.is_empty()).then(|| {
+            let reversed = if ratio < 0.0 {
+                "; the minimum load opens it, and what it grows then is not counted, which is unsafe: turn the load round (its maximum times the \
+                 stress ratio, and one over that ratio) for the life of this tip"
+            } else {
+                ""
+            };
             format!(
                 "the load presses the crack shut at tip {tips}, which does not grow while it does: flanks carry pressure, and slide without \
-                 friction"
+                 friction{reversed}"
             )
         })
     }

@@ -99,17 +99,26 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     }
 }
 
+/// Cycles of a step.
+pub(super) struct Counted {
+    pub cycles: f64,
+    /// Share that the parabola adds to those of the straight line, whether they are counted or not.
+    pub curvature_share: f64,
+    /// c of `ln r = ln r₀ + gain t + c t (t - 1)`, t from 0 to 1 over the step; 0 where the parabola is not counted.
+    pub bend: f64,
+}
+
 /// Cycles of a step of the fastest tip: its rates at the start of the step before, where known, with that step's length, at the
-/// start and at the end of this one, m/cycle, whose length is `grown`, m. Gives the share that the parabola adds, too.
-pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f64) -> (f64, f64) {
+/// start and at the end of this one, m/cycle, whose length is `grown`, m.
+pub(super) fn cycles(past: Option<[f64; 2]>, rate: f64, rate_then: f64, grown: f64) -> Counted {
     let curvature_share = past.map_or(0.0, |[before, way]| curvature_share([before, rate, rate_then], [way, grown]));
     let counted = if curvature_share.abs() < CURVATURE_SHARE_MOST { curvature_share } else { 0.0 };
-    (grown * mean_inverse(rate, rate_then) * (1.0 + counted), curvature_share)
+    Counted { cycles: grown * mean_inverse(rate, rate_then) * (1.0 + counted), curvature_share, bend: 6.0 * counted }
 }
 
 /// The same with ln r a parabola in the root x of the length of crack, `∫ da/r = ∫ 2x dx/r`, x from that at the start, `root`, m^½, to
 /// √(root² + grown).
-pub(super) fn cycles_by_root(past: Option<[f64; 2]>, [rate, rate_then]: [f64; 2], root: f64, grown: f64) -> (f64, f64) {
+pub(super) fn cycles_by_root(past: Option<[f64; 2]>, [rate, rate_then]: [f64; 2], root: f64, grown: f64) -> Counted {
     let then = (root * root + grown).sqrt();
     let rise = then - root;
     let slope = (rate_then / rate).ln() / rise;
@@ -123,17 +132,21 @@ pub(super) fn cycles_by_root(past: Option<[f64; 2]>, [rate, rate_then]: [f64; 2]
     };
     let straight = integral(0.0);
     let share = integral(curvature) / straight - 1.0;
-    let share = if share.is_finite() { share } else { 0.0 };
-    let counted = if share.abs() < CURVATURE_SHARE_MOST { share } else { 0.0 };
-    (straight * (1.0 + counted), share)
+    let curvature_share = if share.is_finite() { share } else { 0.0 };
+    let is_counted = curvature_share.abs() < CURVATURE_SHARE_MOST && curvature.is_finite();
+    let (counted, bend) = if is_counted { (curvature_share, curvature * rise * rise) } else { (0.0, 0.0) };
+    Counted { cycles: straight * (1.0 + counted), curvature_share, bend }
 }
 
-/// How growth and cycles of an increment go along in what its rate is continued in, t from 0 to 1: `da/dt ∝ a + b t` and ln r linear in t.
+/// How growth and cycles of an increment go along in what its rate is continued in, t from 0 to 1: `da/dt ∝ a + b t` and
+/// `ln r = ln r₀ + gain t + bend t (t - 1)`.
 pub(super) struct Course {
     /// a and b: the root of the length of crack and its rise, or 1 and 0 in the growth itself.
     pub weight: [f64; 2],
     /// Rise of ln r.
     pub gain: f64,
+    /// That of a parabola through its ends, [`Counted::bend`].
+    pub bend: f64,
 }
 
 /// What a chord of a-N between two rows may be off by over all cycles so far.
@@ -142,9 +155,10 @@ const CHORD: f64 = 1e-3;
 const PARTS_MOST: f64 = 8.0;
 
 impl Course {
-    /// In how many parts an increment that took the share `of_all` of all cycles so far is written: a chord of it is off by `g ΔN/8`.
+    /// In how many parts an increment that took the share `of_all` of all cycles so far is written: a chord of it is off by `g ΔN/8`,
+    /// g the largest slope of ln r.
     pub(super) fn parts(&self, of_all: f64) -> usize {
-        (self.gain.abs() * of_all / (8.0 * CHORD)).sqrt().ceil().clamp(1.0, PARTS_MOST) as usize
+        ((self.gain.abs() + self.bend.abs()) * of_all / (8.0 * CHORD)).sqrt().ceil().clamp(1.0, PARTS_MOST) as usize
     }
 
     /// Share of the growth of the increment at t.
@@ -153,11 +167,50 @@ impl Course {
         t * (from + 0.5 * rise * t) / (from + 0.5 * rise)
     }
 
+    /// Rise of ln r until t.
+    pub(super) fn rise(&self, t: f64) -> f64 {
+        self.gain * t + self.bend * t * (t - 1.0)
+    }
+
     /// Share of its cycles at t.
     pub(super) fn cycles(&self, t: f64) -> f64 {
         let [from, rise] = self.weight;
-        let until = |end: f64| integrate(|t| (from + rise * t) * (-self.gain * t).exp(), 0.0, end, 1e-10).value;
+        let until = |end: f64| integrate(|t| (from + rise * t) * (-self.rise(t)).exp(), 0.0, end, 1e-10).value;
         until(t) / until(1.0)
+    }
+}
+
+/// K of the lead over an increment: `ln K = ln K₀ + rise t + bend t (t - 1)`, its bend to that of ln r as their rises are.
+pub(super) struct FactorCourse {
+    pub course: Course,
+    from: f64,
+    rise: f64,
+    bend: f64,
+}
+
+impl FactorCourse {
+    /// From one K to another, Pa√m, while the rate goes along `course`.
+    pub(super) fn new(course: Course, [from, to]: [f64; 2]) -> Self {
+        let rise = (to / from).ln();
+        let bend = if course.gain == 0.0 { 0.0 } else { course.bend * rise / course.gain };
+        FactorCourse { course, from, rise, bend }
+    }
+
+    /// K at t, Pa√m.
+    pub(super) fn at(&self, t: f64) -> f64 {
+        self.from * (self.rise * t + self.bend * t * (t - 1.0)).exp()
+    }
+
+    /// That over the chord between both ends.
+    pub(super) fn beside_chord(&self, t: f64) -> f64 {
+        self.at(t) / (self.from + t * (self.at(1.0) - self.from))
+    }
+
+    /// `∫ K² da` over that of the chord of K² over a.
+    pub(super) fn square_beside_chord(&self) -> f64 {
+        let [from, rise] = self.course.weight;
+        let square = |t: f64| (from + rise * t) / (from + 0.5 * rise) * self.at(t).powi(2);
+        2.0 * integrate(square, 0.0, 1.0, 1e-8).value / (self.from.powi(2) + self.at(1.0).powi(2))
     }
 }
 

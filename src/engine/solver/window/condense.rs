@@ -5,7 +5,7 @@
 //! bond crosses (a strip as wide as the bonds reach), both halves are condensed onto their surroundings, and the
 //! separator is eliminated from their sum. Only the dense matrices of the branch at hand are in memory; window points are never eliminated.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::ldlt;
@@ -18,6 +18,7 @@ use faer::{Accum, Mat, MatMut, MatRef, Par};
 use crate::body::Body;
 use crate::solver::assembly::{Assembly, for_joints};
 use crate::state::Bonds;
+use crate::watch::{self, Watch};
 
 /// Lattice places of a region that is eliminated at once.
 const LEAF: usize = 64;
@@ -54,7 +55,7 @@ pub fn condense<const M: usize, A: Assembly<M>>(
     for place in body.points.iter().map(|&place| place as usize) {
         ground[place] = !kept[place] && (0..M).all(|c| assembly.is_held(place, c));
     }
-    let condenser = Condenser { body, bonds, assembly, kept, ground, pool: Pool::default() };
+    let condenser = Condenser { body, bonds, assembly, kept, ground, pool: Pool::default(), watch: watch::watching() };
     let rest = condenser.eliminate(condenser.around_moving())?;
 
     // What is left couples window points only; bonds among them come in now.
@@ -250,6 +251,8 @@ struct Condenser<'a, const M: usize, A> {
     /// Points held in all components, the window's not counted.
     ground: Vec<bool>,
     pool: Pool,
+    /// Who watches: halves are condensed by other threads too.
+    watch: Option<Arc<Watch>>,
 }
 
 impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
@@ -264,8 +267,12 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         if around.columns.1 == 0 { Rectangle { columns: (0, 0), rows: (0, 0) } } else { around }
     }
 
-    /// Condenses all points of a region but the window's onto their surroundings and the window.
+    /// Condenses all points of a region but the window's onto their surroundings and the window; `None` also where the work was
+    /// asked to end, which the next equilibrium says.
     fn eliminate(&self, region: Rectangle) -> Option<Front<M>> {
+        if self.watch.as_ref().is_some_and(|watch| watch.is_cancelled()) {
+            return None;
+        }
         let (below, own) = match region.split(self.body.lattice.padding) {
             None => (Vec::new(), region),
             Some([a, b, separator]) => {

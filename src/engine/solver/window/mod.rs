@@ -19,6 +19,7 @@ use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
 use crate::error::{Error, Result};
 use crate::state::Bonds;
+use crate::watch::{self, Stage};
 use condense::{Condensed, condense};
 use update::Update;
 
@@ -145,6 +146,8 @@ impl<const N: usize> WindowSolver<N> {
 
 impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        // A block may have thousands of breaks, each a solve within the window.
+        watch::at(Stage::Equilibrium, 1.0)?;
         let broken = std::mem::take(&mut self.broken);
         if let Some(window) = &mut self.window {
             if !window.take_in(system.body, system.product, &broken) {

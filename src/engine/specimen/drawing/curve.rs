@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::specimen::Point;
-use crate::specimen::geometry::{along, distance, meeting_share};
+use crate::specimen::geometry::{along, circle_shares, distance, meeting_share};
 
 /// Turn of an arc from one corner of its polyline to the next at the most, rad: 2.5°. Corners lie on the arc, and chords within
 /// r (1 - cos 1.25°) = 2.4e-4 radii of it.
@@ -98,6 +98,44 @@ impl Curve {
         points
     }
 
+    /// The same curve with corners where cracks cross its arcs, or end within `tolerance` of them, m, so that its polyline passes through these places.
+    pub fn cornered(&self, cracks: &[&Curve], tolerance: f64) -> Self {
+        let mut pieces = Vec::with_capacity(self.pieces.len());
+        let mut from = self.from;
+        for piece in &self.pieces {
+            if let Some(Arc { centre, sweep }) = piece.arc {
+                let radius = distance(centre, from);
+                let met = cracks.iter().flat_map(|crack| crack.meets(centre, radius, tolerance));
+                let mut cuts: Vec<(f64, Point)> = met.map(|at| (turned(centre, from, at, sweep), at)).collect();
+                cuts.retain(|(angle, _)| (tolerance / radius..sweep.abs() - tolerance / radius).contains(angle));
+                cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+                cuts.dedup_by(|next, before| next.0 - before.0 < tolerance / radius);
+                let mut gone = 0.0;
+                for (angle, to) in cuts {
+                    pieces.push(Piece { to, arc: Some(Arc { centre, sweep: (angle - gone).copysign(sweep) }) });
+                    gone = angle;
+                }
+                pieces.push(Piece { to: piece.to, arc: Some(Arc { centre, sweep: (sweep.abs() - gone).copysign(sweep) }) });
+            } else {
+                pieces.push(*piece);
+            }
+            from = piece.to;
+        }
+        Curve { from: self.from, pieces }
+    }
+
+    /// Where its corners lie on a circle, within `tolerance`, and its lines cross that.
+    fn meets(&self, centre: Point, radius: f64, tolerance: f64) -> Vec<Point> {
+        let points = self.points();
+        let mut met: Vec<Point> =
+            points.iter().copied().filter(|at| (distance(*at, centre) - radius).abs() <= tolerance).collect();
+        for pair in points.windows(2) {
+            let shares = circle_shares(pair[0], pair[1], centre, radius).into_iter().flatten();
+            met.extend(shares.filter(|share| (0.0..=1.0).contains(share)).map(|share| along(pair[0], pair[1], share)));
+        }
+        met
+    }
+
     /// The same curve from its end to its start.
     pub fn reversed(&self) -> Self {
         let starts = std::iter::once(self.from).chain(self.pieces.iter().map(|piece| piece.to));
@@ -133,6 +171,12 @@ impl Curve {
     }
 }
 
+/// Angle about `centre` from one place to another in the sense of `sweep`, rad, 0 to 2π.
+fn turned(centre: Point, from: Point, to: Point, sweep: f64) -> f64 {
+    let angle = |at: Point| (at[1] - centre[1]).atan2(at[0] - centre[0]);
+    ((angle(to) - angle(from)) * sweep.signum()).rem_euclid(TAU)
+}
+
 /// The arc from one place to another that turns by `4 atan(bulge)`, as DXF has it; straight without a bulge.
 pub fn bulged(from: Point, to: Point, bulge: f64) -> Piece {
     if bulge == 0.0 {
@@ -161,9 +205,9 @@ fn joint(curve: &Curve, next: &Curve, tolerance: f64) -> Point {
     }
 }
 
-/// Chains curves whose ends lie within `tolerance` of each other, m.
+/// Chains curves whose ends lie within `tolerance` of each other, m, where they may meet.
 /// Errors: the place where more than two of them meet.
-pub fn chained(mut curves: Vec<Curve>, tolerance: f64) -> Result<Vec<Curve>, Point> {
+pub fn chained(mut curves: Vec<Curve>, tolerance: f64, may_meet: impl Fn(Point) -> bool) -> Result<Vec<Curve>, Point> {
     let is_near = |a: Point, b: Point| distance(a, b) <= tolerance;
     let mut chains = Vec::new();
     while !curves.is_empty() {
@@ -171,6 +215,9 @@ pub fn chained(mut curves: Vec<Curve>, tolerance: f64) -> Result<Vec<Curve>, Poi
         for _ in 0..2 {
             while !chain.is_closed(tolerance) {
                 let end = chain.end();
+                if !may_meet(end) {
+                    break;
+                }
                 let meets =
                     |curve: &Curve| !curve.is_closed(tolerance) && (is_near(curve.from, end) || is_near(curve.end(), end));
                 let mut next = (0..curves.len()).filter(|&curve| meets(&curves[curve]));

@@ -19,7 +19,7 @@ const IN_SPACE: i64 = 8 | 16 | 64;
 /// Flag of a layer that is frozen.
 const FROZEN: i64 = 1;
 /// Size of a coordinate that is round-off, in units of the drawing.
-const ROUND_OFF: f64 = 1e-9;
+const ROUND_OFF: f64 = 1e-6;
 
 /// A group: code, value, line of the value.
 type Group<'t> = (i64, &'t str, usize);
@@ -76,6 +76,10 @@ fn groups(text: &str) -> Result<Vec<Group<'_>>, Fault> {
             Fault::of(format!("is no DXF: line {} has \"{code}\" in place of a group code", 2 * pair + 1), "save it as ASCII DXF")
         })?;
         groups.push((number, *value, 2 * pair + 2));
+        // What follows the end is no part of it.
+        if (number, *value) == (0, "EOF") {
+            break;
+        }
     }
     if !groups.iter().any(|group| (group.0, group.1) == (0, "EOF")) {
         return Err(Fault::of("ends before its end mark EOF", "save it as ASCII DXF, and send all of it"));

@@ -5,8 +5,8 @@
 //! holes     full circles
 //! cracks    open lines; arcs become polylines
 //! ```
-//! Pieces are chained where their ends lie within 1e-4 of the size of the drawing. Fillets and other arcs of an outline are polylines with
-//! corners on the arc ([`curve::TURN`]). With `outline_symmetry` the half is drawn on one side of x = 0 or y = 0; what lies on that line is
+//! Pieces are chained where their ends lie within 1e-4 of the size of the drawing, cracks within 1e-3 of the shortest of their lines. Fillets
+//! and other arcs of an outline are polylines with corners on the arc ([`curve::TURN`]) and where a crack meets it. With `outline_symmetry` the half is drawn on one side of x = 0 or y = 0; what lies on that line is
 //! no rim, and all else is there twice.
 
 pub mod curve;
@@ -27,6 +27,12 @@ pub const KEY: &str = "specimen.outline_file";
 const LAYERS: [&str; 3] = ["outline", "holes", "cracks"];
 /// Distance of ends that are one, over the size of the drawing.
 const TOLERANCE: f64 = 1e-4;
+/// Distance of a corner of the outline from the straight line between its neighbours that is round-off, over the size of the drawing.
+const FLAT: f64 = 1e-6;
+/// Distance of ends of cracks that are one, over the shortest line of a crack.
+const OF_CRACK: f64 = 1e-3;
+/// Least radius of a hole, m: that of `holes`.
+const RADIUS_LEAST: f64 = 5e-7;
 /// Lines at the most: ends are compared with each other.
 const LINES_MAX: usize = 5000;
 
@@ -152,22 +158,31 @@ fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std:
         return Err(Fault::of("has nothing on the layer outline", "draw the rim of the plate on a layer of that name"));
     }
     let [low, high] = bounding_box(&corners);
-    let tolerance = TOLERANCE * (high[0] - low[0]).max(high[1] - low[1]);
+    let size = (high[0] - low[0]).max(high[1] - low[1]);
+    let tolerance = TOLERANCE * size;
+    refuse_twice(&lines, FLAT * size)?;
     let lines = match symmetry {
         Some(plane) => mirrored(lines, usize::from(plane == SymmetryPlane::Y), tolerance)?,
         None => lines,
     };
-    let chains = |layer: &str| {
-        let is_long = |curve: &Curve| {
-            curve.pieces.len() > 1 || curve.pieces[0].arc.is_some() || distance(curve.from, curve.end()) > tolerance
-        };
-        let curves = lines.iter().filter(|line| line.layer == layer).map(|line| line.curve.clone()).filter(is_long).collect();
-        chained(curves, tolerance)
+    let of_cracks: Vec<&Curve> = lines.iter().filter(|line| line.layer == "cracks").map(|line| &line.curve).collect();
+    let length = |curve: &&Curve| curve.points().windows(2).map(|pair| distance(pair[0], pair[1])).sum::<f64>();
+    let shortest = of_cracks.iter().map(length).filter(|length| *length > 1e-9 * size).fold(f64::INFINITY, f64::min);
+    // Cracks may be as short as a flaw, and end close to each other.
+    let tolerance_of_cracks = (OF_CRACK * shortest).clamp(FLAT * size, tolerance);
+    let chains = |layer: &str, holes: &[Hole]| {
+        let (tolerance, least) = if layer == "cracks" { (tolerance_of_cracks, 1e-9 * size) } else { (tolerance, tolerance) };
+        let is_long =
+            |curve: &Curve| curve.pieces.len() > 1 || curve.pieces[0].arc.is_some() || distance(curve.from, curve.end()) > least;
+        let cornered = |curve: &Curve| if layer == "outline" { curve.cornered(&of_cracks, FLAT * size) } else { curve.clone() };
+        let curves = lines.iter().filter(|line| line.layer == layer).map(|line| cornered(&line.curve)).filter(is_long).collect();
+        let is_in_hole = |at: Point| holes.iter().any(|hole| distance(at, hole.centre) < hole.radius);
+        chained(curves, tolerance, |at| !is_in_hole(at))
             .map_err(|at| Fault::at(layer, "at", format!("{} more than two ends meet", place_mm(at)), "draw lines end to end"))
     };
-    let (outline, inner) = outline(&chains("outline")?, tolerance)?;
+    let (outline, inner) = outline(&chains("outline", &[])?, tolerance, FLAT * size)?;
     let mut holes = inner;
-    for curve in chains("holes")? {
+    for curve in chains("holes", &[])? {
         let (centre, radius) = curve.as_circle(tolerance).ok_or_else(|| {
             let problem = format!("the line from {} is no full circle", place_mm(curve.from));
             Fault::at(
@@ -179,21 +194,39 @@ fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std:
         })?;
         holes.push(Hole { centre, radius });
     }
-    let crack = |curve: &Curve| match curve.is_closed(tolerance) {
+    if let Some(hole) = holes.iter().find(|hole| hole.radius < RADIUS_LEAST) {
+        let what = format!("the circle at {}", place_mm(hole.centre));
+        return Err(Fault::at("holes", &what, "has no radius", "draw it larger, or remove it"));
+    }
+    let crack = |curve: &Curve| match curve.is_closed(tolerance_of_cracks) {
         true => Err(Fault::at(
             "cracks",
             "the line from",
             format!("{} is closed", place_mm(curve.from)),
             "draw a crack as an open line",
         )),
-        false => Ok(plain(curve.points(), tolerance, false)),
+        false => Ok(plain(curve.points(), [tolerance_of_cracks, 0.0], false)),
     };
-    let cracks = chains("cracks")?.iter().map(crack).collect::<std::result::Result<_, _>>()?;
+    let cracks = chains("cracks", &holes)?.iter().map(crack).collect::<std::result::Result<_, _>>()?;
     Ok(Shape { outline, holes, cracks })
 }
 
+/// Refuses a line that is drawn twice, ends within `tolerance` of each other, m.
+fn refuse_twice(lines: &[Drawn], tolerance: f64) -> std::result::Result<(), Fault> {
+    let points: Vec<Vec<Point>> = lines.iter().map(|line| line.curve.points()).collect();
+    let is_near = |(a, b): (&Point, &Point)| distance(*a, *b) <= tolerance;
+    let is_same = |i: usize, j: usize| {
+        let (a, b) = (&points[i], &points[j]);
+        lines[i].layer == lines[j].layer
+            && a.len() == b.len()
+            && (a.iter().zip(b).all(is_near) || a.iter().zip(b.iter().rev()).all(is_near))
+    };
+    let twice = (0..lines.len()).find(|&i| (0..i).any(|j| is_same(i, j)));
+    twice.map_or(Ok(()), |i| Err(Fault::at(&lines[i].layer, &lines[i].what, "is drawn twice", "remove one of the two")))
+}
+
 /// The rim of the plate, and full circles within it.
-fn outline(chains: &[Curve], tolerance: f64) -> std::result::Result<(Vec<Point>, Vec<Hole>), Fault> {
+fn outline(chains: &[Curve], tolerance: f64, flat: f64) -> std::result::Result<(Vec<Point>, Vec<Hole>), Fault> {
     if let Some(open) = chains.iter().find(|chain| !chain.is_closed(tolerance)) {
         let problem = format!("the line from {} to {} is open", place_mm(open.from), place_mm(open.end()));
         return Err(Fault::at("outline", "", problem, "close the rim of the plate, and draw cracks on the layer cracks"));
@@ -211,11 +244,11 @@ fn outline(chains: &[Curve], tolerance: f64) -> std::result::Result<(Vec<Point>,
     };
     let holes =
         chains.iter().filter(|chain| !std::ptr::eq(*chain, largest)).map(hole).collect::<std::result::Result<_, Fault>>()?;
-    Ok((plain(largest.points(), tolerance, true), holes))
+    Ok((plain(largest.points(), [tolerance, flat], true), holes))
 }
 
-/// Corners without those that are one and those that lie straight between their neighbours.
-fn plain(mut points: Vec<Point>, tolerance: f64, is_closed: bool) -> Vec<Point> {
+/// Corners without those that are one and those that lie straight between their neighbours, or as near to that as `flat`, m.
+fn plain(mut points: Vec<Point>, [tolerance, flat]: [f64; 2], is_closed: bool) -> Vec<Point> {
     if is_closed && points.len() > 1 && distance(points[0], points[points.len() - 1]) <= tolerance {
         points.pop();
     }
@@ -225,8 +258,9 @@ fn plain(mut points: Vec<Point>, tolerance: f64, is_closed: bool) -> Vec<Point> 
         let is_end = !is_closed && (i == 0 || i + 1 == count);
         let before = left.last().copied().unwrap_or(points[count - 1]);
         let after = points[(i + 1) % count];
-        let is_straight = turn(before, at, after).abs() <= 1e-9 * distance(before, at) * distance(at, after)
-            && distance_to_segment(at, before, after) < tolerance;
+        let beside = distance_to_segment(at, before, after);
+        let turns = turn(before, at, after).abs() > 1e-9 * distance(before, at) * distance(at, after);
+        let is_straight = beside <= flat || !turns && beside < tolerance;
         if is_end || !is_straight {
             left.push(at);
         }

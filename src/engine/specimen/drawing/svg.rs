@@ -18,6 +18,8 @@ use crate::specimen::geometry::distance;
 const SILENT: [&str; 6] = ["svg", "g", "a", "title", "desc", "metadata"];
 /// Elements whose content is not drawn.
 const HIDDEN: [&str; 7] = ["defs", "metadata", "style", "namedview", "symbol", "clipPath", "mask"];
+/// Properties that move an element or cut pieces off it.
+const MOVING: [&str; 3] = ["transform", "clip-path", "mask"];
 /// Share by which two scales may differ that are one.
 const ALIKE: f64 = 1e-4;
 
@@ -25,6 +27,8 @@ const ALIKE: f64 = 1e-4;
 #[derive(Clone)]
 struct Around {
     names: Vec<String>,
+    /// The innermost name that a user has given a layer.
+    label: Option<String>,
     map: Transform,
     /// `display: none`, of the element or a group around it.
     is_left_out: bool,
@@ -38,7 +42,7 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
     let mut reader = Reader::from_str(text);
     let mut drawing = Drawing { lines: Vec::new(), millimetres: None };
     let mut around: Vec<Around> = Vec::new();
-    let (mut hidden, mut is_svg) = (0, false);
+    let (mut hidden, mut is_svg, mut is_style) = (0, false, false);
     let broken = |problem: String| Fault::of(problem, "save it as plain SVG");
     loop {
         let (tag, is_empty) = match reader.read_event() {
@@ -52,6 +56,14 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
                 around.pop();
                 continue;
             }
+            Ok(Event::Text(text)) if is_style => {
+                check_style(text.as_ref())?;
+                continue;
+            }
+            Ok(Event::CData(text)) if is_style => {
+                check_style(text.as_ref())?;
+                continue;
+            }
             Ok(Event::Eof) if is_svg && around.is_empty() => return Ok(drawing),
             Ok(Event::Eof) => return Err(broken("is no whole SVG".to_owned())),
             Ok(_) => continue,
@@ -61,6 +73,7 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
         let name: &str = name.as_ref();
         if hidden > 0 || HIDDEN.contains(&name) {
             hidden += usize::from(!is_empty);
+            is_style = name == "style";
             continue;
         }
         let element = Element { tag: &tag, name };
@@ -69,7 +82,8 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
                 is_svg = true;
                 let (map, millimetres) = element.view()?;
                 drawing.millimetres = millimetres;
-                element.shown(Around { names: Vec::new(), map, is_left_out: false, is_invisible: false })
+                element.check_map()?;
+                element.shown(Around { names: Vec::new(), label: None, map, is_left_out: false, is_invisible: false })
             }
             None => return Err(broken(format!("begins with <{name}>"))),
             Some(outside) if name == "svg" => {
@@ -124,6 +138,20 @@ impl Element<'_> {
         Around { is_left_out, is_invisible, ..around }
     }
 
+    /// Refuses what moves or cuts the element other than by the attribute `transform`, and that of the whole drawing.
+    fn check_map(&self) -> Result<(), Fault> {
+        let style = self.attribute("style").unwrap_or_default();
+        let of_style = style.split(';').filter_map(|declared| Some(declared.split_once(':')?.0.trim().to_ascii_lowercase()));
+        let mut found = of_style.filter(|key| MOVING.contains(&key.as_str()));
+        let cut = || MOVING[1..].iter().find(|name| self.property(name).is_some_and(|value| value != "none"));
+        let whole = || (self.name == "svg" && self.attribute("transform").is_some()).then_some(MOVING[0]);
+        let Some(name) = found.next().or_else(|| Some((*cut().or(whole().as_ref())?).to_owned())) else { return Ok(()) };
+        Err(Fault::of(
+            format!("has a <{}> with {name}, which is not read", self.name),
+            "apply transforms and clips before saving",
+        ))
+    }
+
     /// The number of an attribute; 0 where that is left out.
     fn number(&self, around: &Around, name: &str) -> Result<f64, Fault> {
         let Some(text) = self.attribute(name) else { return Ok(0.0) };
@@ -145,6 +173,9 @@ impl Element<'_> {
             .attribute("viewBox")
             .map(|text| ViewBox::from_str(&text).map_err(|_| fault(format!("has the viewBox \"{text}\""))));
         let (width, height, view) = (size("width")?, size("height")?, view.transpose()?);
+        if width.is_some() && view.is_none() {
+            return Err(fault("has a width without viewBox, so that no unit of its numbers is said".to_owned()));
+        }
         let (Some(view), Some(width)) = (view, width) else {
             let (x, top) = view.map_or((0.0, 0.0), |view| (view.x, view.y + view.h));
             return Ok((Transform::new(1.0, 0.0, 0.0, -1.0, -x, top), None));
@@ -157,7 +188,9 @@ impl Element<'_> {
     }
 
     fn within(&self, outside: &Around) -> Result<Around, Fault> {
+        self.check_map()?;
         let mut inside = self.shown(outside.clone());
+        inside.label = self.attribute("inkscape:label").filter(|_| self.name == "g").or(inside.label);
         inside.names.extend(["id", "inkscape:label"].into_iter().filter_map(|name| self.attribute(name)));
         let Some(text) = self.attribute("transform") else { return Ok(inside) };
         let fault = |problem: String| Fault::at(&inside.layer(), self.name, problem, "apply transforms before saving");
@@ -180,6 +213,7 @@ impl Element<'_> {
             Fault::at(&around.layer(), &what, problem, remedy)
         };
         let curves = match self.name {
+            "circle" if number("r")? <= 0.0 => return Err(refused("has no radius above zero", "draw it larger, or remove it")),
             "circle" => vec![Curve::circle([number("cx")?, number("cy")?], number("r")?)],
             "line" => {
                 let [from, to] = [["x1", "y1"], ["x2", "y2"]].map(|names| names.map(number));
@@ -230,8 +264,17 @@ impl Around {
     /// The innermost name that is a layer, else the innermost one.
     fn layer(&self) -> String {
         let known = self.names.iter().rev().find_map(|name| known_layer(name));
-        known.or(self.names.last().map(String::as_str)).unwrap_or_default().to_owned()
+        known.or(self.label.as_deref()).or(self.names.last().map(String::as_str)).unwrap_or_default().to_owned()
     }
+}
+
+/// Refuses a style sheet that hides, moves or cuts: which elements its rules are for is not looked at.
+fn check_style(text: &str) -> Result<(), Fault> {
+    let declared =
+        |name: &str| text.split(['{', ';']).any(|part| part.split_once(':').is_some_and(|(key, _)| key.trim() == name));
+    let Some(name) = ["display", "visibility"].into_iter().chain(MOVING).find(|name| declared(name)) else { return Ok(()) };
+    let remedy = "remove what is hidden, apply transforms and clips, or save with attributes in place of a style sheet";
+    Err(Fault::of(format!("has a style sheet with {name}, which is not read"), remedy))
 }
 
 fn millimetres(length: Length) -> Option<f64> {
@@ -239,6 +282,8 @@ fn millimetres(length: Length) -> Option<f64> {
         LengthUnit::Mm => Some(length.number),
         LengthUnit::Cm => Some(10.0 * length.number),
         LengthUnit::In => Some(25.4 * length.number),
+        LengthUnit::Pc => Some(25.4 / 6.0 * length.number),
+        LengthUnit::Pt => Some(25.4 / 72.0 * length.number),
         _ => None,
     }
 }

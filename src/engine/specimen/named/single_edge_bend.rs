@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 use serde::Deserialize;
 use toml::Value;
 
-use super::shapes::{below, roller};
+use super::shapes::{below, in_mm, roller};
 use super::{Description, Layout};
-use crate::error::Result;
+use crate::error::{Result, input as error};
 use crate::input::{LENGTH, slice};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::plate::Drawing;
@@ -48,8 +48,18 @@ fn layout(value: &Value) -> Result<Layout> {
     let inner = LENGTH.read_optional("specimen.inner_span_mm", input.inner_span_mm)?;
     let length = LENGTH.read_optional("specimen.length_mm", input.length_mm)?.unwrap_or(span + OVERHANG * w);
     below("crack_length_mm", a, w, "the width")?;
-    below("span_mm", span + CONTACT * w, length, "the length less a contact")?;
-    below("inner_span_mm", inner.unwrap_or(0.0) + 2.0 * CONTACT * w, span, "the span less two contacts")?;
+    let contact = CONTACT * w;
+    if input.span_mm.is_some() {
+        below("span_mm", span, length - contact, "the length less a contact")?;
+    } else if length <= span + contact {
+        let problem = format!("has no room for the span of {} mm and a contact", in_mm(span));
+        return Err(error("specimen.length_mm", in_mm(length), problem, "give a longer beam, or span_mm"));
+    }
+    if span <= 2.0 * contact {
+        let problem = format!("is not above two contacts, {} mm", in_mm(2.0 * contact));
+        return Err(error("specimen.span_mm", in_mm(span), problem, "give a longer one"));
+    }
+    inner.map_or(Ok(()), |inner| below("inner_span_mm", inner, span - 2.0 * contact, "the span less two contacts"))?;
     let at = |x: f64, y: f64, share: f64| {
         // As the outline runs: up behind the crack, down at the edge where it starts.
         let side = if x > 0.0 { 1.0 } else { -1.0 };
