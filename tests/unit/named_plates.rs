@@ -204,7 +204,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (
             hole("hole_diameter_mm = 6\ncrack_length_mm = 46.99"),
             TENSION,
-            "specimen.crack_length_mm = 46.99: has no end inside the material that could grow; give lengths",
+            "specimen.crack_length_mm = 46.99: has no end inside the material that could grow: one within a hundredth",
         ),
         (
             "kind = \"crack_at_hole\"\nwidth_mm = 100\nlength_mm = 30\nthickness_mm = 2\nhole_diameter_mm = 40\ncrack_length_mm = 3".to_owned(),

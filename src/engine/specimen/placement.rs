@@ -168,7 +168,7 @@ pub(super) fn place_cracks(
             let remedy = "end it inside the plate";
             return Err(input_missing(
                 &format!("specimen.cracks[{i}]"),
-                "has no end inside the material that could grow",
+                "has no end inside the material that could grow: one within a hundredth of its length of a rim counts as on it",
                 remedy,
             ));
         }

@@ -237,6 +237,9 @@ fn named_plates_have_forms() {
             assert!(text.contains(&format!("{key} = {number}")), "{key} in {text}");
         }
         assert_eq!(text.contains("range_mpa = 240"), kind == "stop_hole", "{text}");
+        if kind == "stop_hole" {
+            walk.look("30_stop_hole");
+        }
         page.see("#predict:not([disabled])");
     }
     // Cracks of unlike lengths stand in the place of the one length, and survive the way through the text.
@@ -258,6 +261,7 @@ fn named_plates_have_forms() {
             assert!(text.contains(written) && !text.contains("crack_length_mm"), "{text}");
             page.see("#predict:not([disabled])");
         }
+        walk.look(&format!("29_unlike_cracks_{kind}"));
         forms.choose("specimen.crack_lengths_mm", "");
         assert!(forms.shown("specimen.crack_length_mm"));
     }
