@@ -39,7 +39,7 @@ const INSIDE: f64 = 2e-4;
 const GAUGE: f64 = 0.02;
 /// Share by which K_eq of two tips may differ that are alike.
 const ALIKE: f64 = 0.01;
-/// `fatigue.step_error_percent` of the run at the most: K between its rows is then right to 0.1 % (test).
+/// `fatigue.step_error_percent` of the run at the most: K between its rows is then right to 0.2 % (test).
 const STEP_ERROR_PERCENT: f64 = 0.02;
 /// Share of a length within which two are the same.
 const SAME: f64 = 1e-9;
