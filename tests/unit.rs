@@ -1,6 +1,7 @@
 //! Does each part do its job?
 
 mod belonging;
+mod blended;
 mod boundary;
 mod budget;
 mod calibration_case;

@@ -1,7 +1,7 @@
 //! Smooth interpolation of a table of any course: polynomials through five points each, blended.
 //!
 //! Between two points the quartic through the five about the one, and that about the other, the nearer point's taken the more, as Overhauser
-//! (1968) blends parabolas: value and slope are continuous, and the integral errs by the sixth power of the distance of the points. Where
+//! (1968) blends parabolas: value and slope are continuous, and the value errs by the fifth power of the distance of the points. Where
 //! points lie unevenly a quartic may swing far between them: there parabolas through three are blended.
 
 use std::ops::RangeInclusive;

@@ -164,7 +164,7 @@ const LINES: &[(&str, usize)] = &[
     ("report", 12000),
     ("fracture", 6938),
     ("growth", 6253),
-    ("specimen", 6237),
+    ("specimen", 6241),
     ("calibration", 6166),
     ("service", 5856),
     ("solver", 5300),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 90011;
+const LINES_OF_ALL: usize = 90015;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -6,8 +6,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use perilife::case::Case;
 use perilife::fracture::{Scene, SceneObserver, SceneProgress};
 use perilife::input::Folder;
+use perilife::parallel::in_pool;
 use perilife::predict::{Observer, Progress, predict};
+use perilife::solver::SolverKind;
+use perilife::state::Bonds;
 use perilife::watch::{self, Stage, Watch};
+
+use crate::support::statics::{body, loaded_with};
 
 /// Hands out a watch; counts rows.
 #[derive(Default)]
@@ -78,6 +83,24 @@ fn a_run_that_is_asked_to_end_ends_before_its_first_row() {
     assert!(eyes.watch.now().is_some());
     eyes.watch.cancel();
     assert_eq!(perilife::fracture::run(&scene, &eyes).unwrap_err().to_string(), "scene: the run was cancelled");
+}
+
+/// An equilibrium that was asked to end is none, whatever solver it is sought by: what an iteration has not solved for that is not factorised.
+#[test]
+fn an_equilibrium_that_is_asked_to_end_is_none() {
+    let case = Case::from_toml(&format!("{PLATE}{}", DRIVERS[1]), "case", Folder::none(), &[]).unwrap();
+    let body = body(&case);
+    for solver in [SolverKind::Window, SolverKind::Multigrid, SolverKind::Direct] {
+        let solved = |watch: Arc<Watch>| {
+            let (body, bonds) = (body.clone(), Bonds::new(&body));
+            in_pool(|| watch::with(Some(watch), || loaded_with(body, bonds, case.loading.maximum, solver)))
+        };
+        assert!(solved(Arc::default()).is_ok());
+        let cancelled = Arc::new(Watch::default());
+        cancelled.cancel();
+        let Err(error) = solved(cancelled) else { panic!("{solver}: solved all the same") };
+        assert_eq!(error.to_string(), "the run was cancelled", "{solver}");
+    }
 }
 
 /// A watch alone ends a run within a row: no solver takes what was asked to end for what it could not solve.

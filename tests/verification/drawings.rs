@@ -465,8 +465,10 @@ fn what_a_drawing_hides_or_repeats_is_refused() {
         let content = if content == rect { rect.to_owned() } else { format!("{rect}{content}") };
         refused(SVG, ("part.svg", &svg(size, &content)), words);
     }
+    // What a style sheet says of colours, what is set to nothing, and words of other elements are no matter.
     let plain = format!(
-        "<style>.a {{ fill: none; stroke: #000 }}</style>{rect}<line id=\"cracks\" class=\"a\" y1=\"100\" x2=\"9\" y2=\"100\"/>"
+        "<style/><style>.a {{ fill: none; stroke: #000 }}</style><desc>display: none; mask: all</desc>\
+         <g style=\"mask:none;clip-path:none\" clip-path=\"none\">{rect}</g><line id=\"cracks\" class=\"a\" y1=\"100\" x2=\"9\" y2=\"100\"/>"
     );
     assert_eq!(plate(SVG, &[("part.svg", &svg(size, &plain))]).tips.len(), 1);
 }

@@ -49,7 +49,7 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
             Ok(Event::Start(tag)) => (tag, false),
             Ok(Event::Empty(tag)) => (tag, true),
             Ok(Event::End(_)) if hidden > 0 => {
-                hidden -= 1;
+                (hidden, is_style) = (hidden - 1, false);
                 continue;
             }
             Ok(Event::End(_)) => {
@@ -73,7 +73,7 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
         let name: &str = name.as_ref();
         if hidden > 0 || HIDDEN.contains(&name) {
             hidden += usize::from(!is_empty);
-            is_style = name == "style";
+            is_style = name == "style" && !is_empty;
             continue;
         }
         let element = Element { tag: &tag, name };
@@ -117,13 +117,16 @@ impl Element<'_> {
         self.tag.try_get_attribute(name).ok().flatten().map(|attribute| attribute.value.trim().to_owned())
     }
 
+    /// The value that `style` declares of a property.
+    fn of_style(&self, name: &str) -> Option<String> {
+        let style = self.attribute("style")?;
+        let mut declared = style.split(';').filter_map(|declared| declared.split_once(':'));
+        declared.rfind(|(key, _)| key.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.to_owned())
+    }
+
     /// The value of a property, from `style` before the attribute of that name.
     fn property(&self, name: &str) -> Option<String> {
-        let of_style = self.attribute("style").and_then(|style| {
-            let mut declared = style.split(';').filter_map(|declared| declared.split_once(':'));
-            declared.rfind(|(key, _)| key.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.to_owned())
-        });
-        let value = of_style.or_else(|| self.attribute(name))?;
+        let value = self.of_style(name).or_else(|| self.attribute(name))?;
         Some(value.trim_end_matches("!important").trim().to_ascii_lowercase())
     }
 
@@ -140,12 +143,12 @@ impl Element<'_> {
 
     /// Refuses what moves or cuts the element other than by the attribute `transform`, and that of the whole drawing.
     fn check_map(&self) -> Result<(), Fault> {
-        let style = self.attribute("style").unwrap_or_default();
-        let of_style = style.split(';').filter_map(|declared| Some(declared.split_once(':')?.0.trim().to_ascii_lowercase()));
-        let mut found = of_style.filter(|key| MOVING.contains(&key.as_str()));
-        let cut = || MOVING[1..].iter().find(|name| self.property(name).is_some_and(|value| value != "none"));
-        let whole = || (self.name == "svg" && self.attribute("transform").is_some()).then_some(MOVING[0]);
-        let Some(name) = found.next().or_else(|| Some((*cut().or(whole().as_ref())?).to_owned())) else { return Ok(()) };
+        let is_set = |value: Option<String>| value.is_some_and(|value| !value.trim().eq_ignore_ascii_case("none"));
+        let of_whole = self.attribute(MOVING[0]).filter(|_| self.name == "svg");
+        let is_moved = is_set(self.of_style(MOVING[0])) || is_set(of_whole);
+        let moving = MOVING.into_iter().enumerate();
+        let found = moving.map(|(i, name)| (name, if i == 0 { is_moved } else { is_set(self.property(name)) }));
+        let Some((name, _)) = found.into_iter().find(|(_, is_set)| *is_set) else { return Ok(()) };
         Err(Fault::of(
             format!("has a <{}> with {name}, which is not read", self.name),
             "apply transforms and clips before saving",
@@ -270,8 +273,9 @@ impl Around {
 
 /// Refuses a style sheet that hides, moves or cuts: which elements its rules are for is not looked at.
 fn check_style(text: &str) -> Result<(), Fault> {
-    let declared =
-        |name: &str| text.split(['{', ';']).any(|part| part.split_once(':').is_some_and(|(key, _)| key.trim() == name));
+    let declared = |name: &str| {
+        text.split(['{', ';']).any(|part| part.split_once(':').is_some_and(|(key, _)| key.trim().eq_ignore_ascii_case(name)))
+    };
     let Some(name) = ["display", "visibility"].into_iter().chain(MOVING).find(|name| declared(name)) else { return Ok(()) };
     let remedy = "remove what is hidden, apply transforms and clips, or save with attributes in place of a style sheet";
     Err(Fault::of(format!("has a style sheet with {name}, which is not read"), remedy))
