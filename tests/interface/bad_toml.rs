@@ -168,6 +168,17 @@ const BAD: &[Bad] = &[
         "cracks = [{ from_mm = [-50, 70], to_mm = [50, 70] }]",
         &["cracks[0]", "no end inside"],
     ),
+    // Both meet; the first parts the plate, whatever ends on it.
+    plate(
+        "cracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]",
+        "cracks = [{ from_mm = [-50, 70], to_mm = [50, 70] }, { from_mm = [0, 50], to_mm = [0, 70] }]",
+        &["cracks[0]", "meets another crack", "no end inside", "inside the plate"],
+    ),
+    plate(
+        "cracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]\nnotches = [{ from_mm = [-50, 40], to_mm = [-40, 40], width_mm = 2 }]",
+        "cracks = [{ from_mm = [-20, 0], to_mm = [20, 0] }, { from_mm = [0, 100], to_mm = [0, 0] }]",
+        &["cracks[0]", "meets another crack", "no end inside", "inside the plate"],
+    ),
     plate("x_mm = 20,", "x_mm = -14,", &[":6:", "specimen.holes[1]", "overlaps holes[0]", "apart"]),
     plate("x_mm = 20,", "x_mm = 48,", &["specimen.holes[0]", "beyond the outline"]),
     plate("diameter_mm = 10 }]", "diameter_mm = 0 }]", &["specimen.holes[1].diameter_mm", "above zero"]),

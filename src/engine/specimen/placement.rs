@@ -160,17 +160,18 @@ pub(super) fn place_cracks(
     for (i, line) in lines.iter().enumerate() {
         let is_joined =
             || lines.iter().enumerate().any(|(other, crack)| other != i && line.pieces().any(|[a, b]| crack.meets(a, b, TOUCH)));
-        // A cut between holes, such as cracks leave that have linked them, does not grow; other tips do. One from edge to edge parts the plate.
+        // A cut between holes, such as cracks leave that have linked them, does not grow; other tips do. One from edge to edge parts the
+        // plate, whatever meets it, and cracks that only meet each other have no tip at all.
         let is_from_edge_to_edge =
             || [false, true].iter().all(|&at_last| distance_to_polygon(line.end(at_last), &specimen.outline) <= TOUCH);
-        let is_allowed = || !specimen.tips.is_empty() && !is_from_edge_to_edge();
-        if specimen.tips_of(line) == 0 && !is_joined() && !is_allowed() {
-            let remedy = "end it inside the plate";
-            return Err(input_missing(
-                &format!("specimen.cracks[{i}]"),
-                "has no end inside the material that could grow: one within a hundredth of its length of a rim counts as on it",
-                remedy,
-            ));
+        if specimen.tips_of(line) == 0 && (is_from_edge_to_edge() || specimen.tips.is_empty()) {
+            let key = format!("specimen.cracks[{i}]");
+            if is_joined() {
+                let problem = "meets another crack and has no end inside the material that could grow";
+                return Err(input_missing(&key, problem, "end one of both inside the plate"));
+            }
+            let problem = "has no end inside the material that could grow: one within a hundredth of its length of a rim counts as on it";
+            return Err(input_missing(&key, problem, "end it inside the plate"));
         }
     }
     notes.extend(closely_passed(specimen, &lines));
