@@ -17,10 +17,11 @@ mod _perilife {
     use perilife_analysis::input::Folder;
     use perilife_analysis::material::{growth_data, library};
     use perilife_analysis::measured::{self, Import};
+    use perilife_analysis::predict::factor_sweep::factor_sweep;
     use perilife_analysis::report::band::InspectFrom;
     use perilife_analysis::report::paper::{self, Signed};
-    use perilife_analysis::report::provenance;
-    use perilife_analysis::runner::{Kind, Task};
+    use perilife_analysis::report::{factor_sweep as tables, provenance};
+    use perilife_analysis::runner::{self, Kind, Task};
     use perilife_analysis::units::MM;
     use pyo3::prelude::*;
 
@@ -91,6 +92,27 @@ mod _perilife {
                 });
             }
             Run::of(task, document.folder.opened().so_far(), told)
+        };
+        watched(py, progress, |told| work(told).map_err(|error| document.locate(error)))
+    }
+
+    /// K over the crack lengths `first:last:step` in mm: its table, the β table of the tip that grows farthest, that tip, and warnings.
+    #[pyfunction]
+    fn sif_sweep(
+        py: Python<'_>,
+        source: &Bound<'_, PyAny>,
+        name: &str,
+        set: Vec<String>,
+        lengths: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(String, String, usize, Vec<String>)> {
+        let document = document(source, name, &set, None, HashMap::new())?;
+        let work = |told: &crate::watcher::Told| {
+            let lengths = runner::factor_sweep::lengths(lengths)?;
+            let case = runner::factor_sweep::case(&document, &lengths)?;
+            let found = factor_sweep(&case, &lengths, true, told)?;
+            let warnings = [case.warnings, found.warnings.clone()].concat();
+            Ok((tables::table(&found), tables::beta_table(&found), found.lead, warnings))
         };
         watched(py, progress, |told| work(told).map_err(|error| document.locate(error)))
     }

@@ -110,16 +110,28 @@ fn a_coarse_disc_lies_symmetric_between_platens_and_stretches_as_hondros_says() 
     assert!(disc.penetration < 0.005 * DIAMETER / 51.0, "{}", disc.penetration);
 }
 
-/// At twice the spacing of the scene. The load of the platens within 10 % of π D t f_t/2, and one column of points gone.
-#[test]
-fn a_coarse_disc_splits_along_one_column_at_the_brazilian_load() {
-    let fracture = run(&file(&["model.spacing_mm=0.498", "loading.steps=20"]), &Silent).unwrap();
+/// The load of the platens within a share of π D t f_t/2, and one column of points gone.
+fn splits_along_one_column(spacing: &str, share: f64) {
+    let fracture = run(&file(&[spacing, "loading.steps=20"]), &Silent).unwrap();
     let gone = summary("coarse, influence", &fracture);
     assert_eq!(fracture.end, SceneEnd::LoadFallen);
-    assert!((fracture.peak_load() / brazilian_load() - 1.0).abs() < 0.1, "{} N", fracture.peak_load());
+    assert!((fracture.peak_load() / brazilian_load() - 1.0).abs() < share, "{} N", fracture.peak_load());
     assert!(fracture.onset_step.unwrap() <= peak_step(&fracture), "onset before the peak");
-    let (middle, all) = (gone[25], gone.iter().sum::<usize>());
-    assert!(middle >= 25 && all - middle <= middle / 5, "{gone:?}");
+    let (middle, all) = (gone[gone.len() / 2], gone.iter().sum::<usize>());
+    assert!(middle >= gone.len() / 2 && all - middle <= middle / 5, "{gone:?}");
+}
+
+/// At nearly three times the spacing of the scene, by which the load is 16 % too high.
+#[test]
+fn a_coarse_disc_splits_along_one_column() {
+    splits_along_one_column("model.spacing_mm=0.7257", 0.2);
+}
+
+/// At twice the spacing of the scene.
+#[test]
+#[ignore = "long: a quarter of a minute"]
+fn a_disc_of_twice_the_spacing_splits_at_the_brazilian_load() {
+    splits_along_one_column("model.spacing_mm=0.498", 0.1);
 }
 
 /// The other criterion of the source, stretch, on a disc of nearly three times the spacing, with the stretch that the strength means at the centre:

@@ -111,7 +111,7 @@ fn a_life_between_grips() {
     }
 }
 
-/// Slanted cracks between ends that move apart, and sheared sides: points and nodes agree, and every solver of points gives the same.
+/// Slanted cracks between ends that move apart, and sheared sides: points and nodes agree, and every solver of points gives the same where sides are sheared.
 #[test]
 fn engines_agree_between_grips() {
     let slant = [[-8.0, -5.0], [8.0, 5.0]];
@@ -128,8 +128,9 @@ fn engines_agree_between_grips() {
         let size = nodes[0].hypot(nodes[1]);
         println!("{name}: points {points:.3?}, nodes {nodes:.3?}");
         assert!((0..2).all(|i| (points[i] - nodes[i]).abs() < 0.015 * size), "{name}: {points:?}, {nodes:?}");
-        for set in ["model.solver=\"direct\"", "model.solver=\"multigrid\""] {
-            let other = of(&[set]);
+        // Sheared, every part of the edge is moved and held: one plate for all solvers.
+        for set in if name == "sheared" { ["model.solver=\"direct\"", "model.solver=\"multigrid\""].as_slice() } else { &[] } {
+            let other = of(&[*set]);
             assert!((0..2).all(|i| (points[i] - other[i]).abs() < 1e-4 * size), "{name} {set}: {points:?}, {other:?}");
         }
     }

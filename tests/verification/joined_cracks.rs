@@ -1,7 +1,6 @@
 //! Kinked, branched and crossing initial cracks against finite elements (`../shared/data/field/mechanics/kinked_start`).
 
 use std::path::Path;
-use std::sync::LazyLock;
 
 use perilife::case::Case;
 use perilife::growth::cracks::initial_tips;
@@ -15,37 +14,29 @@ fn case(path: &Path, set: &[&str]) -> Case {
     Case::from_file(path, &set.into_iter().map(str::to_owned).collect::<Vec<_>>()).unwrap()
 }
 
-/// A double cantilever whose crack has a kink. Its first equilibrium takes seconds.
-static DCB_KINKED: LazyLock<Option<Prediction>> = LazyLock::new(|| {
-    shared("field/mechanics/kinked_start/dcb_kinked.toml").map(|path| predict(&case(&path, &[]), &Silent).unwrap())
-});
-
 /// K_I and K_II of every tip in MPa√m, within 1 % of the size of both.
 #[test]
 fn k_of_joined_cracks() {
-    let plates: [(&str, &[[f64; 2]]); 4] = [
+    let plates: [(&str, &[[f64; 2]]); 3] = [
         ("kinked_45", &[[9.733, -0.314], [5.763, 5.644]]),
         ("cross", &[[7.704, 0.0]; 4]),
         ("tee", &[[8.510, -1.381], [8.510, 1.381], [6.447, 0.0]]),
-        ("dcb_kinked", &[[2.4446, -0.0037]]),
     ];
     for (name, reference) in plates {
         let Some(path) = shared(&format!("field/mechanics/kinked_start/{name}.toml")) else { return };
-        let factors: Vec<[f64; 2]> = match &*DCB_KINKED {
-            Some(run) if name == "dcb_kinked" => run.curve[0].tips.iter().map(|tip| tip.factors.unwrap()).collect(),
-            _ => {
-                let tips = initial_tips::<PointPlate>(&case(&path, &["model.spacing_mm=1"])).unwrap().tips;
-                tips.iter().map(|tip| tip.factors.unwrap()).collect()
-            }
-        };
-        assert_eq!(factors.len(), reference.len(), "{name}");
-        for (found, right) in factors.iter().zip(reference) {
-            let found = found.map(|k| k / 1e6);
-            println!("{name}: {found:.4?}, finite elements {right:?}");
-            let off = (found[0] - right[0]).hypot(found[1] - right[1]);
-            assert!(off < 0.01 * right[0].hypot(right[1]), "{name}: {found:?}, {right:?}");
+        let tips = initial_tips::<PointPlate>(&case(&path, &["model.spacing_mm=1"])).unwrap().tips;
+        assert_eq!(tips.len(), reference.len(), "{name}");
+        for (tip, right) in tips.iter().zip(reference) {
+            is_near(name, tip.factors.unwrap(), *right);
         }
     }
+}
+
+fn is_near(name: &str, found: [f64; 2], right: [f64; 2]) {
+    let found = found.map(|k| k / 1e6);
+    println!("{name}: {found:.4?}, finite elements {right:?}");
+    let off = (found[0] - right[0]).hypot(found[1] - right[1]);
+    assert!(off < 0.01 * right[0].hypot(right[1]), "{name}: {found:?}, {right:?}");
 }
 
 /// A line as two cracks that share an end, and as one path.
@@ -65,10 +56,13 @@ fn at_height(run: &Prediction, y: f64) -> [f64; 2] {
     [1, 2].map(|i| pair[0][i] + share * (pair[1][i] - pair[0][i]))
 }
 
-/// Path and cycles of a double cantilever whose crack has a kink, at heights of 2 to 15 mm. (At 1 mm cycles are 2.4 % short.)
+/// K, path and cycles of a double cantilever whose crack has a kink, at heights of 2 to 15 mm. (At 1 mm cycles are 2.4 % short.)
 #[test]
+#[ignore = "long: twelve seconds, most of them the first equilibrium"]
 fn a_kinked_double_cantilever_grows_as_by_finite_elements() {
-    let Some(run) = &*DCB_KINKED else { return };
+    let Some(path) = shared("field/mechanics/kinked_start/dcb_kinked.toml") else { return };
+    let run = predict(&case(&path, &[]), &Silent).unwrap();
+    is_near("dcb_kinked", run.curve[0].tips[0].factors.unwrap(), [2.4446, -0.0037]);
     let reference = [
         (2.0, -10.34, 3.598e6),
         (4.0, -8.14, 4.507e6),
@@ -78,7 +72,7 @@ fn a_kinked_double_cantilever_grows_as_by_finite_elements() {
         (15.0, -4.87, 5.146e6),
     ];
     for (y, x, cycles) in reference {
-        let found = at_height(run, y);
+        let found = at_height(&run, y);
         println!("y {y}: x {:.3}, {x}, {:.4e} cycles, {cycles:.4e}", found[0], found[1]);
         assert!((found[0] - x).abs() < 0.15 && (found[1] / cycles - 1.0).abs() < 0.02, "y {y}: {found:?}, {x}, {cycles}");
     }

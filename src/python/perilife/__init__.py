@@ -16,13 +16,14 @@ from typing import Any
 from . import _perilife
 from .errors import FileError, InputError, MechanicsError, PerilifeError
 from .inputs import Readings, csv_of, overrides
-from .results import Calibration, Checked, Factors, Fracture, Material, Prediction, Progress, StrPath
+from .results import Calibration, Checked, Factors, FactorSweep, Fracture, Material, Prediction, Progress, StrPath
 from .table import Table
 
 __all__ = [
     "Calibration",
     "Case",
     "Checked",
+    "FactorSweep",
     "Factors",
     "FileError",
     "Fracture",
@@ -42,6 +43,7 @@ __all__ = [
     "predict",
     "read_table",
     "sif",
+    "sif_sweep",
 ]
 
 Case = StrPath | Mapping[str, Any]
@@ -168,6 +170,27 @@ def sif(
     return Factors(**_common(run, result, _name(case, name)), tips=Table("\n".join(lines)))
 
 
+def sif_sweep(
+    case: Case,
+    lengths_mm: str | tuple[float, float, float],
+    *,
+    name: str = "case",
+    set: Mapping[str, Any] | None = None,
+    progress: _Callback | None = None,
+) -> FactorSweep:
+    """K, T, β and compliance over crack length along the crack's own path.
+
+    ``lengths_mm`` are first, last and step, or the text ``"first:last:step"`` of ``perilife sif --sweep``, in the convention of the
+    specimen. ``beta.to_csv(path)`` of the result is what ``specimen.beta_file`` and AFGROW-like programs read.
+    """
+    lengths = lengths_mm if isinstance(lengths_mm, str) else ":".join(str(float(length)) for length in lengths_mm)
+    table, beta, lead, warnings = _perilife.sif_sweep(_source(case), name, overrides(set), lengths, _told(progress))
+    rows = Table(table)
+    reached = dict.fromkeys(rows["crack_length_mm"])
+    summary = f"K at {len(reached)} lengths from {min(reached):g} to {max(reached):g} mm"
+    return FactorSweep(_name(case, name), tuple(warnings), {"lead_tip": lead}, summary, rows, Table(beta), lead)
+
+
 def fracture(
     scene: Case,
     *,
@@ -232,7 +255,6 @@ def _run(
     progress: _Callback | None = None,
 ) -> _perilife.Run:
     keys, of_law = _law(law)
-    tell = None if progress is None else (lambda *figures: progress(Progress(*figures)))
     return _perilife.run(
         kind,
         _source(source),
@@ -242,8 +264,12 @@ def _run(
         files | of_law,
         methods=[methods] if isinstance(methods, str) else list(methods),
         wishes=wishes,
-        progress=tell,
+        progress=_told(progress),
     )
+
+
+def _told(progress: _Callback | None) -> Callable[[float, float | None, float | None, str | None], bool | None] | None:
+    return None if progress is None else (lambda *figures: progress(Progress(*figures)))
 
 
 def _source(case: Case) -> Path | Mapping[str, Any]:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, final
 
-__all__ = ["Run", "check", "materials", "read_table", "report", "run"]
+__all__ = ["Run", "check", "materials", "read_table", "report", "run", "sif_sweep"]
 
 @final
 class Run:
@@ -29,6 +29,13 @@ def run(
     wishes: dict[str, Any] | None,
     progress: Callable[[float, float | None, float | None, str | None], bool | None] | None,
 ) -> Run: ...
+def sif_sweep(
+    source: Path | Mapping[str, Any],
+    name: str,
+    set: list[str],
+    lengths: str,
+    progress: Callable[[float, float | None, float | None, str | None], bool | None] | None,
+) -> tuple[str, str, int, list[str]]: ...
 def check(
     source: Path | Mapping[str, Any], name: str, set: list[str], law: Mapping[str, Any] | None, files: dict[str, bytes]
 ) -> tuple[str, str]: ...

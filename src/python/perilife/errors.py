@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
+from typing import Any
+
 
 class PerilifeError(Exception):
     """Anything that perilife refuses or cannot do."""
@@ -44,6 +47,10 @@ class FileError(PerilifeError, OSError):
         super().__init__(message)
         self.filename = filename
         self.errno = errno
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Without it an error out of another process lacks both.
+        return partial(type(self), filename=self.filename, errno=self.errno), self.args
 
     def __str__(self) -> str:
         return str(self.args[0])

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _perilife
+from .errors import FileError
 from .table import Table
 
 if TYPE_CHECKING:
@@ -49,9 +50,34 @@ class _Result:
         return "\n".join([self.summary, *(f"warning: {warning}" for warning in self.warnings)])
 
 
+class _Written:
+    """A run in another process: its tables, and the files that it writes."""
+
+    def __init__(self, run: _perilife.Run | _Written) -> None:
+        self._tables = run.tables()
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = Path(scratch) / "run"
+            run.save(folder)
+            self._files = {file.relative_to(folder): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+
+    def tables(self) -> list[tuple[str, str]]:
+        return self._tables
+
+    def save(self, folder: Path) -> None:
+        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+            raise FileError(f"{folder}: is there already; name a new folder", filename=str(folder))
+        for name, content in self._files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(content)
+
+
 @dataclass(frozen=True)
 class _Run(_Result):
-    _run: _perilife.Run = field(repr=False, compare=False)
+    _run: _perilife.Run | _Written = field(repr=False, compare=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is pickled: a run itself cannot leave its process, its tables and files can."""
+        return self.__dict__ | {"_run": self._run if isinstance(self._run, _Written) else _Written(self._run)}
 
     @cached_property
     def tables(self) -> dict[str, Table]:
@@ -186,6 +212,26 @@ class Factors(_Result):
             is_by = self.tips["method"] == method
             ax.plot(self.tips["tip"][is_by], self.tips["k_i_mpa_sqrt_m"][is_by], "o", label=str(method))
         return _labelled(ax, "Tip", "K_I, MPa√m")
+
+
+@dataclass(frozen=True)
+class FactorSweep(_Result):
+    """Stress intensity factors over crack length."""
+
+    table: Table
+    """A row for every length and tip: place, K_I, K_II, T-stress, β, CMOD, load-line displacement, back-face strain."""
+    beta: Table
+    """β over its own length of the tip that grows farthest, as ``specimen.beta_file`` reads it."""
+    lead_tip: int
+    """Its number."""
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draws K_I of every tip over crack length."""
+        ax = _axes(ax)
+        for tip in dict.fromkeys(self.table["tip"]):
+            is_its = self.table["tip"] == tip
+            ax.plot(self.table["crack_length_mm"][is_its], self.table["k_i_mpa_sqrt_m"][is_its], label=f"tip {tip:.0f}")
+        return _labelled(ax, "Crack length, mm", "K_I, MPa√m")
 
 
 @dataclass(frozen=True)

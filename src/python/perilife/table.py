@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from collections.abc import Iterator, Mapping
 from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -66,8 +68,10 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
 
         return polars.DataFrame(self._columns)
 
-    def to_csv(self) -> str:
-        """As the command line writes it, with all digits."""
+    def to_csv(self, path: str | os.PathLike[str] | None = None) -> str:
+        """As the command line writes it, with all digits; also into a file where a path is given."""
+        if path is not None:
+            Path(path).write_text(self._text, encoding="utf-8")
         return self._text
 
     def __repr__(self) -> str:

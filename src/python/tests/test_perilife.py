@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import signal
 import threading
 import time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -110,6 +113,50 @@ def test_factors_scenes_checks_and_materials() -> None:
     assert checked.kind == "case" and "specimen" in checked.understood and checked.drawing.startswith("<svg")
     library = {material.name: material for material in perilife.materials()}
     assert library["al2024-t3"].youngs_modulus_gpa == 73.1 and sum(one.has_growth_data for one in library.values()) > 20
+
+
+def test_factors_over_crack_length_are_read_back(tmp_path: Path) -> None:
+    looks: list[perilife.Progress] = []
+    found = perilife.sif_sweep(CASE, (9.0, 40.0, 0.5), progress=looks.append)
+    table = found.table
+    handbook = 60.35 * np.sqrt(np.pi * 1e-3 * table["crack_length_mm"] / np.cos(np.pi * table["crack_length_mm"] / 152.4))
+    assert table["k_i_mpa_sqrt_m"] == pytest.approx(handbook, rel=1e-3) and table.rows == 63 * 2
+    assert list(found.beta) == ["crack_length_mm", "beta"] and found.lead_tip in (0, 1) and found.plot().get_xlabel() == "Crack length, mm"
+    file = tmp_path / "beta.csv"
+    assert found.beta.to_csv(file) == file.read_text()
+    life = perilife.predict({**CASE, "specimen": {**SPECIMEN, "beta_file": str(file)}}).life_cycles
+    assert life == pytest.approx(perilife.predict(CASE).life_cycles, rel=1e-6)
+    assert perilife.sif_sweep(CASE, "9:40:0.5").table.to_csv() == table.to_csv()
+    with pytest.raises(perilife.InputError, match=r"--sweep = 9.0:5.0:1.0: does not rise"):
+        perilife.sif_sweep(CASE, (9, 5, 1))
+
+
+def life_from(length: float) -> perilife.Prediction:
+    return perilife.predict({**CASE, "specimen": {**SPECIMEN, "crack_length_mm": length}})
+
+
+def test_cases_run_side_by_side_in_processes(tmp_path: Path) -> None:
+    lengths = [9.0, 10.0]
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        lives = list(pool.map(life_from, lengths))
+        with pytest.raises(perilife.InputError) as caught:
+            pool.submit(life_from, 90.0).result()
+        assert caught.value.key == "specimen.crack_length_mm"
+    for length, life in zip(lengths, lives):
+        here = life_from(length)
+        assert life.life_cycles == here.life_cycles and life.a_n.to_csv() == here.a_n.to_csv()
+        files = [
+            {file.relative_to(folder): file.read_bytes() for file in folder.rglob("*") if file.is_file()}
+            for folder in (life.save(tmp_path / f"there_{length}"), pickle.loads(pickle.dumps(life)).save(tmp_path / f"twice_{length}"))
+        ]
+        assert files[0] == files[1] and set(files[0]) == {
+            file.relative_to(tmp_path / "here") for file in here.save(tmp_path / "here").rglob("*") if file.is_file()
+        }
+        assert "<!doctype html>" in life.report(tmp_path / "panel.html").read_text()
+    with pytest.raises(perilife.FileError, match="is there already"):
+        lives[0].save(tmp_path / "here")
+    missing = pickle.loads(pickle.dumps(perilife.FileError("a: cannot read", filename="a", errno=2)))
+    assert (missing.filename, missing.errno, str(missing)) == ("a", 2, "a: cannot read")
 
 
 def test_what_is_refused_says_where_and_what_would_be_right(tmp_path: Path) -> None:
