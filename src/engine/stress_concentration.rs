@@ -1,7 +1,7 @@
 //! Displacement and stress of a plate under its load, without growth, on nodes ([`crate::element_free`]): largest stress on every rim and
 //! stress concentration.
 //!
-//! `K_tg = σ_max / σ`, with σ the stress on the loaded edges (gross section). Spacings in the radius of holes and fillets are doubled until the largest stress of every hole and arc changes by less than [`SETTLED`]; the change is
+//! `K_tg = σ_max / σ`, with σ the nominal stress on the loaded edges (gross section). Spacings in the radius of holes and fillets are doubled until the largest stress of every hole and arc changes by less than [`SETTLED`]; the change is
 //! reported and is no bound of the error.
 
 use crate::case::Case;
@@ -35,7 +35,7 @@ const NODES_MOST: usize = 12_000;
 pub struct Stressed {
     /// Stress of every rim: holes, slots, outline.
     pub rims: Vec<RimStress>,
-    /// Stress on the loaded edges, Pa; `None` under forces.
+    /// Nominal stress on the loaded edges, Pa: of bent ones the mean, in pure bending that at their ends; `None` under forces.
     pub gross: Option<f64>,
     /// Largest change of a rim's peak in the last refinement, as a share; `None` where there was none.
     pub change: Option<f64>,
@@ -101,7 +101,7 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
             let grid = raster(specimen, far);
             return Ok(Stressed {
                 pieces: stress_pieces(specimen, &plate, &solution.u, case.material.plane, share),
-                gross: specimen.gross_stress(share * load),
+                gross: specimen.gross_stress(share * load).map(|_| share * load),
                 moved: most_moved(&grid, &displacement),
                 resolution,
                 nodes,

@@ -168,6 +168,17 @@ const BAD: &[Bad] = &[
         "cracks = [{ from_mm = [-50, 70], to_mm = [50, 70] }]",
         &["cracks[0]", "no end inside"],
     ),
+    plate(
+        "from_mm = [-5, 0], to_mm = [5, 0]",
+        "path_mm = [[-5, 20], [5, 20], [-3, 22]]",
+        &["specimen.cracks[0]", "turns by 166° at (5, 20) mm", "end the crack at that corner"],
+    ),
+    // They share an end, which then is no tip of either.
+    plate(
+        "cracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]",
+        "cracks = [{ from_mm = [-5, 20], to_mm = [5, 20] }, { from_mm = [1, 20], to_mm = [5, 20] }]",
+        &["specimen.cracks[0]", "shares its end", "over some length", "once"],
+    ),
     // Both meet; the first parts the plate, whatever ends on it.
     plate(
         "cracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]",

@@ -6,7 +6,9 @@ use perilife::case::Case;
 use perilife::growth::cracks::initial_tips;
 use perilife::growth::points::PointPlate;
 use perilife::predict::{Prediction, Silent, predict};
+use perilife::units::MM;
 
+use super::drawings::{DXF, RECTANGLE, dxf, line, plate};
 use crate::support::shared::shared;
 
 fn case(path: &Path, set: &[&str]) -> Case {
@@ -46,6 +48,27 @@ fn cracks_that_share_an_end_are_one() {
     let one = "specimen.cracks=[{path_mm=[[-10,0],[10,0],[13.535533905932738,3.5355339059327373]]}]";
     let [two, one] = [&[][..], &[one]].map(|set| initial_tips::<PointPlate>(&case(&path, set)).unwrap().tips);
     assert_eq!(two, one);
+}
+
+/// A crack that branches in the plane of symmetry: its stem lies in that plane. Ends of branches are one within the round-off of a drawing.
+#[test]
+fn a_crack_may_branch() {
+    let half = format!("{DXF}\noutline_symmetry = \"y=0\"");
+    let upper = "LWPOLYLINE outline 70 0 10 -50 20 0 10 -50 20 100 10 50 20 100 10 50 20 0";
+    let apart = [[[-50.0, 0.0], [-40.0, 0.0]], [[-34.0, 5.0], [-40.0002, 0.0001]], [[-40.0, 0.0001], [-34.0, -5.0]]];
+    let [stem, up, down] = apart.map(|ends| line("cracks", ends));
+    let drawn = [
+        plate(&half, &[("part.dxf", &dxf(4, &[upper, "LWPOLYLINE cracks 70 0 10 -50 20 0 10 -40 20 0 10 -34 20 5"]))]),
+        plate(&half, &[("part.dxf", &dxf(4, &[upper, &stem, &up]))]),
+        plate(DXF, &[("part.dxf", &dxf(4, &[RECTANGLE, &stem, &up, &down]))]),
+    ];
+    for specimen in drawn {
+        let mut tips: Vec<[f64; 2]> =
+            specimen.tips.iter().map(|tip| tip.position.map(|x| (x / MM * 1e6).round() / 1e6)).collect();
+        tips.sort_by(|a, b| a[1].total_cmp(&b[1]));
+        assert_eq!((tips, specimen.cracks.len()), (vec![[-34.0, -5.0], [-34.0, 5.0]], 3));
+        assert!((specimen.crack_length - (10.0 + 2.0 * 61.0_f64.sqrt()) * MM).abs() < 1e-6, "{}", specimen.crack_length);
+    }
 }
 
 fn at_height(run: &Prediction, y: f64) -> [f64; 2] {

@@ -148,6 +148,21 @@ pub enum Task {
     },
 }
 
+/// Points of a plate from which K on points takes minutes.
+const POINTS_QUICK: f64 = 3e5;
+
+/// The methods for K where none is named: all, or nodes alone where a small crack asks for many points.
+fn quick_methods(case: &mut Case) -> Vec<StressIntensityMethod> {
+    let points = Budget::on_points(case).points;
+    if points <= POINTS_QUICK || !case.specimen.is_through() {
+        return StressIntensityMethod::ALL.to_vec();
+    }
+    case.warnings.push(format!(
+        "K is that of nodes alone, since the plate would have {points:.1e} points: for K on points give --method ring or energy_release"
+    ));
+    vec![StressIntensityMethod::ElementFreeGalerkin]
+}
+
 impl Task {
     /// Reads a document as input of a kind of run; `methods` are names of [`StressIntensityMethod`] where that asks for them.
     pub fn read(kind: Kind, document: &Document, methods: &[String]) -> Result<Task> {
@@ -164,10 +179,10 @@ impl Task {
                     }
                 }
                 let is_of_nodes = chosen == [StressIntensityMethod::ElementFreeGalerkin];
-                let case = Box::new(if is_of_nodes { Case::plate_on_nodes(document)? } else { Case::plate_of(document)? });
+                let mut case = Box::new(if is_of_nodes { Case::plate_on_nodes(document)? } else { Case::plate_of(document)? });
                 let on_nodes = is_of_nodes
                     || chosen.is_empty() && case.chosen.is_none() && case.model.method() == Method::ElementFreeGalerkin;
-                let methods = if chosen.is_empty() { StressIntensityMethod::ALL.to_vec() } else { chosen };
+                let methods = if chosen.is_empty() { quick_methods(&mut case) } else { chosen };
                 Task::Factors { case, methods, on_nodes }
             }
             Kind::Sweep => Task::sweep(document.clone(), &[], CASES_MAX)?,
@@ -243,7 +258,11 @@ impl Task {
     /// What its runs take up, of every `n`-th of many with `n` so that there are at most `most`; nothing of a fit to rates.
     pub fn budgets(&self, most: usize) -> Result<Vec<Budget>> {
         Ok(match self {
-            Task::Prediction { case, .. } | Task::Factors { case, .. } => vec![Budget::of(case)],
+            Task::Prediction { case, .. } => vec![Budget::of(case)],
+            Task::Factors { case, methods, .. } => {
+                let has_points = methods.iter().any(|method| *method != StressIntensityMethod::ElementFreeGalerkin);
+                vec![if has_points { Budget::on_points(case) } else { Budget::of(case) }]
+            }
             Task::Scene(scene) => vec![scene.budget()],
             Task::Fit(Calibration::Lives(calibration)) => vec![Budget::of(&calibration.case)],
             Task::Fit(Calibration::Rates(_)) => Vec::new(),

@@ -223,12 +223,17 @@ impl Budget {
             Model::Handbook(_) if !case.specimen.is_through() => of_nodes(&case.specimen, &case.nodes()),
             Model::Handbook(_) => Budget { bytes: BASE, disk_bytes: DISK_BASE, ..Budget::none() },
             Model::Nodes(nodes) => of_nodes(&case.specimen, nodes),
-            Model::Points(points) => {
-                let is_direct = points.solver == SolverKind::Direct;
-                plate_of(&case.specimen, points).budget(points.bond_law.surface_correction, 0.0, is_direct)
-            }
+            Model::Points(_) => return Budget::on_points(case),
         };
         budget.with_files(case.output)
+    }
+
+    /// What the plate of a case takes up on points, whatever its model.
+    pub fn on_points(case: &Case) -> Budget {
+        let points = case.points();
+        let is_direct = points.solver == SolverKind::Direct;
+        let plate = plate_of(&case.specimen, &points);
+        plate.budget(points.bond_law.surface_correction, 0.0, is_direct).with_files(case.output)
     }
 
     /// The same with the files that are asked for.

@@ -118,18 +118,15 @@ impl Case {
         if let Some(file) = value_at(sections.required("specimen")?, "beta_file").and_then(Value::as_str) {
             specimen.read_beta(file, folder)?;
         }
-        let asked = choose::Sections {
-            model: sections.optional("model"),
-            fatigue: sections.optional("fatigue"),
-            output: sections.optional("output"),
-        };
-        let (model, chosen) = model::from_value(&asked, (&specimen, &material, &loading), &mut choices, &mut warnings)?;
         let (with_law, law_record) = law_source::expanded(sections.optional("fatigue"), folder)?.unzip();
         let section = with_law.as_ref().unwrap_or(sections.optional("fatigue"));
         let of_library = law_source::of_library(section, sections.required("material")?, specimen.thickness, folder)?;
         let (with_growth, growth_data) = of_library.unzip();
+        let with_growth = with_growth.as_ref().unwrap_or(section);
+        let asked = choose::Sections { model: sections.optional("model"), fatigue: with_growth, output: sections.optional("output") };
+        let (model, chosen) = model::from_value(&asked, (&specimen, &material, &loading), &mut choices, &mut warnings)?;
         let fatigue = fatigue::from_value(
-            with_growth.as_ref().unwrap_or(section),
+            with_growth,
             model.method(),
             (&specimen, &material, &loading),
             folder,

@@ -76,7 +76,7 @@ fn apply_loads(input: &Input, supports: Option<&Value>, specimen: &mut Specimen,
 
 fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     let has_places = input_.places().iter().any(|(_, is_given)| *is_given);
-    if has_places || supports.is_some() || parallel_ratio != 0.0 || input_.crack_pressure_mpa.is_some() {
+    if has_places || supports.is_some() || parallel_ratio != 0.0 || input_.edge_bending_ratio.is_some() {
         // K of a named plate is that of its own loads.
         specimen.own_formula = None;
     }

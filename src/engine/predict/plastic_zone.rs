@@ -62,6 +62,8 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
         .iter()
         .filter(|point| point.delta_k.is_finite())
         .map(|point| (point, zone(case, point, point.k_max(&case.loading), strength)))
+        // Where every tip has reached an edge there is no room for a zone.
+        .filter(|(_, zone)| zone.room().0.is_finite())
         .collect();
     // Once the zone has outgrown its room, K says nothing about either.
     let yielded = known.iter().find(|(_, zone)| zone.size >= zone.room().0);
@@ -114,7 +116,8 @@ fn zone(case: &Case, point: &CurvePoint, k_max: f64, strength: f64) -> Zone {
     let beside = case.specimen.part_through.map(|flaw| flaw.room() - point.crack_length);
     let of_standard = case.specimen.ligament(point.crack_length).or(beside).map(|ligament| [ligament, f64::INFINITY]);
     let [ligament, crack] = of_standard.unwrap_or_else(|| {
-        let ways = (0..point.tips.len()).map(|tip| ways_to_edges(&case.specimen, point, tip));
+        let near = ON_RIM * case.specimen.gross_width;
+        let ways = (0..point.tips.len()).map(|tip| ways_to_edges(&case.specimen, point, tip)).filter(|ways| ways[0] > near);
         ways.fold([f64::INFINITY; 2], |least, ways| [least[0].min(ways[0]), least[1].min(ways[1])])
     });
     Zone { crack_length: point.crack_length, k_max, size, ligament, crack }

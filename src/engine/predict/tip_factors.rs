@@ -200,7 +200,8 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
         ));
     }
     let handbook_k_i = handbook_beside(&case.specimen)
-        .filter(|formula| formula.holds_at(case.specimen.crack_length) && case.loading.displacement().is_none())
+        .filter(|formula| formula.holds_at(case.specimen.crack_length))
+        .filter(|_| case.loading.displacement().is_none() && case.loading.residual.is_none())
         .map(|formula| formula.k_i(case.specimen.crack_length, case.loading.maximum));
     let mut results: Vec<TipResult> = tips
         .iter()

@@ -58,8 +58,11 @@ impl PartialEq for HandbookFormula {
 }
 
 /// The formula used for this specimen, `None` where no handbook covers it: `plate`, clamped ends, plates shorter than
-/// 1.5 widths, and named plates whose formula is good to more than 1 %; a table of β that the case gives covers any.
+/// 1.5 widths, named plates whose formula is good to more than 1 %, and pressure in cracks; a table of β that the case gives covers any plate.
 pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
+    if specimen.crack_pressure != 0.0 {
+        return None;
+    }
     if let Some(table) = &specimen.beta {
         return Some(of_table(specimen, table));
     }
@@ -147,7 +150,7 @@ fn of_table(specimen: &Specimen, table: &BetaTable) -> HandbookFormula {
 
 /// The formula to set beside other results: also one that is too rough for a life.
 pub fn handbook_beside(specimen: &Specimen) -> Option<HandbookFormula> {
-    specimen.own_formula.clone().or_else(|| handbook(specimen))
+    specimen.own_formula.clone().filter(|_| specimen.crack_pressure == 0.0).or_else(|| handbook(specimen))
 }
 
 pub(super) fn half(x: f64) -> f64 {

@@ -13,6 +13,10 @@ const TOUCH: f64 = 1e-7;
 /// Distance of an end of a crack from a rim, over the length of the crack, up to which it is its mouth: what is left there breaks within
 /// a few cycles.
 const MOUTH: f64 = 0.01;
+/// Turn of a crack at a corner, degrees, from which the material ahead of the corner is stressed nearly as ahead of a tip (Williams 1952: the
+/// exponent of an opening of 90° is 0.544, that of a crack 0.5), and from which the crack is one that was folded.
+const SHARP: f64 = 90.0;
+const FOLDED: f64 = 150.0;
 /// Way ahead, over the distance from a rim, within which a crack goes on to it straight.
 const AHEAD: f64 = 3.0;
 
@@ -127,8 +131,13 @@ pub(super) fn place_cracks(
             return Err(input_missing(&key, "does not reach into the material", "end it inside the plate, beyond hole and slot"));
         }
         let cracks: Vec<Crack> = pieces().enumerate().map(|(j, [from, to])| Crack { from, to, continues: j > 0 }).collect();
-        for &crack in &cracks {
+        for (j, &crack) in cracks.iter().enumerate() {
             check_path(specimen, crack, &key)?;
+            // Of cracks that share an end, too, which are one by now.
+            if cracks[..j].iter().any(|other| is_overlap(crack, *other)) {
+                let problem = "turns back along itself, or another crack that shares its end lies along it over some length";
+                return Err(input_missing(&key, problem, "give every part of a crack once"));
+            }
             if let Some(other) = specimen.cracks.iter().find(|other| is_overlap(crack, **other)) {
                 let line =
                     specimen.crack_lines().iter().position(|line| line.pieces().any(|piece| piece == [other.from, other.to]));
@@ -136,6 +145,7 @@ pub(super) fn place_cracks(
                 return Err(input_missing(&key, problem, "give both as one crack"));
             }
         }
+        check_corners(&corners, &key, notes)?;
         // A crack that starts from the end face of a slot takes the place of that face's seed.
         slot_seeds.retain(|seed| {
             distance(seed.position, from) > half_width_at(specimen, seed)
@@ -170,7 +180,8 @@ pub(super) fn place_cracks(
                 let problem = "meets another crack and has no end inside the material that could grow";
                 return Err(input_missing(&key, problem, "end one of both inside the plate"));
             }
-            let problem = "has no end inside the material that could grow: one within a hundredth of its length of a rim counts as on it";
+            let problem =
+                "has no end inside the material that could grow: one within a hundredth of its length of a rim counts as on it";
             return Err(input_missing(&key, problem, "end it inside the plate"));
         }
     }
@@ -243,6 +254,23 @@ fn is_overlap(a: Crack, b: Crack) -> bool {
     };
     let ([s, off_s], [t, off_t]) = (seat(b.from), seat(b.to));
     off_s.abs() < TOUCH && off_t.abs() < TOUCH && s.min(t).max(0.0) + TOUCH < s.max(t).min(distance(a.from, a.to))
+}
+
+/// No crack turns back at a corner, which is no tip and does not grow.
+fn check_corners(corners: &[Point], key: &str, notes: &mut Vec<String>) -> Result<()> {
+    for corner in corners.windows(3) {
+        let [before, after] = [direction(corner[0], corner[1]), direction(corner[1], corner[2])];
+        let turn = (before[0] * after[1] - before[1] * after[0]).atan2(before[0] * after[0] + before[1] * after[1]).abs().to_degrees();
+        let problem = format!("turns by {turn:.0}° at {}", words(corner[1]));
+        if turn > FOLDED {
+            let remedy = "end the crack at that corner, and give what lies behind it, if it is one, as a crack that does not share its end";
+            return Err(input_missing(key, format!("{problem}, where it is as sharp as a tip and would not grow"), remedy));
+        }
+        if turn > SHARP {
+            notes.push(format!("{key} {problem}: ahead of that corner stress is nearly that of a tip, but nothing grows from it"));
+        }
+    }
+    Ok(())
 }
 
 fn set_ends(corners: &mut [Point], [from, to]: [Point; 2]) {

@@ -70,7 +70,8 @@ def calibrate(
 
     ``readings`` are a data frame of pandas or polars, a dict of columns, the path of a laboratory's table (CSV, text, ``.xlsx``),
     several of these in a list, or the path of a calibration file, which has all sections itself. Columns are found by their names
-    (``specimen``, ``cycles``, ``crack_length_mm``, loads); what names do not say ``measured`` does.
+    (``specimen``, ``cycles``, ``crack_length_mm``, loads); what names do not say ``measured`` does. Rates da/dN over ΔK are fitted by
+    ``calibrate([], measured={"rates": ["rates.csv"]}, material=...)``.
     """
     source: Case
     files: dict[str, bytes] = {}
@@ -81,18 +82,26 @@ def calibrate(
         source = readings
     else:
         names, files = csv_of(readings)
-        source = {"measured": {"files": names, **(measured or {})}, **sections}
+        of_rates = measured is not None and "rates" in measured
+        if measured is not None and "files" in measured:
+            raise TypeError("the tables are the argument readings: leave files out of measured")
+        if bool(names) == of_rates:
+            raise TypeError("give readings, or an empty list of them and measured={'rates': [...]}")
+        source = {"measured": {**({"files": names} if names else {}), **(measured or {})}, **sections}
     run = _run("calibration", source, name, set, None, files, progress=progress)
     result = json.loads(run.result)
+    # Of a fit to rates these are constants of the law that was chosen, which may have others.
+    constants = result.get("constants", {})
+    paris = constants if constants.keys() == {"paris_c_mm_per_cycle", "paris_m"} else result
     return Calibration(
         **_common(run, result, _name(source, name)),
         _run=run,
         a=result.get("a"),
         p=result.get("p"),
         horizon_mm=result.get("horizon_mm"),
-        paris_c_mm_per_cycle=result.get("paris_c_mm_per_cycle"),
-        paris_m=result.get("paris_m"),
-        paris_m_error=result.get("paris_m_error"),
+        paris_c_mm_per_cycle=paris.get("paris_c_mm_per_cycle"),
+        paris_m=paris.get("paris_m"),
+        paris_m_error=result.get("standard_errors", {}).get("paris_m") if paris is constants else result.get("paris_m_error"),
         fitted=dict(run.tables())["fitted.toml"],
     )
 
@@ -120,6 +129,8 @@ def predict(
     of this very plate, ``pod`` the crack lengths in mm that an inspection finds with 50 and with 90 %. ``progress`` is called now and
     then with a :class:`Progress`; answering ``False`` ends the run.
     """
+    if pod is not None and inspect_from_mm is None:
+        raise ValueError(f"pod = {pod}: is of inspections from a crack length; give inspect_from_mm, too")
     if tip is not None and (inspect_from_mm is None or tip < 0):
         raise ValueError(f"tip = {tip}: is the number of the tip, from 0, whose crack inspect_from_mm is the length of; give both")
     wishes: dict[str, Any] = {

@@ -45,7 +45,9 @@ def _text(table: Any) -> str:
     if hasattr(table, "write_csv"):
         return str(table.write_csv())
     if not isinstance(table, Mapping) and hasattr(table, "to_csv"):
-        return str(table.to_csv(index=False))
+        # An index with a name is a column.
+        is_named = any(name is not None for name in getattr(getattr(table, "index", None), "names", ()))
+        return str((table.reset_index() if is_named else table).to_csv(index=False))
     if not isinstance(table, Mapping):
         raise TypeError(f"readings are a data frame, a dict of columns or a path, not {type(table).__name__}")
     text = io.StringIO()

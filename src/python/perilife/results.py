@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _perilife
 from .errors import FileError
-from .table import Table
+from .table import Table, write_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,7 +104,8 @@ class _Reported(_Run):
     ) -> Path:
         """Writes one self-contained HTML page, to be printed and signed."""
         with tempfile.TemporaryDirectory() as scratch:
-            folder = Path(scratch) / self.name
+            # A name may hold what a path means something by.
+            folder = Path(scratch) / (re.sub(r"[^\w.-]+", "_", self.name).strip(".") or "run")
             self._run.save(folder)
             _perilife.report(folder, Path(path), laboratory, operator, reviewer, date)
         return Path(path)
@@ -180,9 +182,9 @@ class Calibration(_Reported):
 
     def save(self, path: StrPath) -> Path:
         """Writes the law into a ``.toml`` file, or all that the command line writes into a folder."""
-        if Path(path).suffix != ".toml":
+        if Path(path).suffix.lower() != ".toml":
             return super().save(path)
-        Path(path).write_text(self.fitted, encoding="utf-8")
+        write_text(path, self.fitted)
         return Path(path)
 
     def plot(self, ax: Axes | None = None) -> Axes:

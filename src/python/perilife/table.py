@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from .errors import FileError
+
 if TYPE_CHECKING:
     import pandas
     import polars
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
 class Table(Mapping[str, "npt.NDArray[Any]"]):
     """A table as a mapping of column names to arrays.
 
-    A column of numbers is ``float64`` with NaN where a cell is empty; any other is text. Columns are read-only.
+    A column of numbers is ``float64`` with NaN where a cell is empty; any other is text, and so are names of specimens. Columns are
+    read-only.
     """
 
     def __init__(self, text: str) -> None:
@@ -32,7 +35,7 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
     def _columns(self) -> dict[str, npt.NDArray[Any]]:
         header, *rows = csv.reader(io.StringIO(self._text))
         cells = zip(*rows) if rows else [()] * len(header)
-        return {name: _column(column) for name, column in zip(header, cells)}
+        return {name: _column(column, name in _NAMES) for name, column in zip(header, cells)}
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         return self._columns[name]
@@ -71,7 +74,7 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
     def to_csv(self, path: str | os.PathLike[str] | None = None) -> str:
         """As the command line writes it, with all digits; also into a file where a path is given."""
         if path is not None:
-            Path(path).write_text(self._text, encoding="utf-8")
+            write_text(path, self._text)
         return self._text
 
     def __repr__(self) -> str:
@@ -81,9 +84,23 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         return str(self.to_pandas().to_html(max_rows=12))
 
 
-def _column(cells: tuple[str, ...]) -> npt.NDArray[Any]:
+_NAMES = ("specimen", "file")
+"""Columns of names, which may look like numbers: 01 is not 1."""
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Writes a file; what the system refuses is a ``FileError``."""
+    try:
+        Path(path).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise FileError(f"{path}: cannot write: {error.strerror}", filename=str(path), errno=error.errno) from error
+
+
+def _column(cells: tuple[str, ...], is_of_names: bool) -> npt.NDArray[Any]:
     column: npt.NDArray[Any]
     try:
+        if is_of_names:
+            raise ValueError
         column = np.array([float(cell) if cell else np.nan for cell in cells], dtype=np.float64)
     except ValueError:
         column = np.array(cells, dtype=np.str_)

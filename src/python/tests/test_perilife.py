@@ -90,6 +90,43 @@ def test_a_result_has_tables_figures_and_the_files_of_its_command(tmp_path: Path
     assert life.plot().get_xlabel() == "Cycles"
 
 
+def test_rates_names_and_columns_in_an_index(tmp_path: Path) -> None:
+    delta_k = np.linspace(8.0, 30.0, 25)
+    columns = {"delta_k_mpa_sqrt_m": delta_k, "da_dn_mm_per_cycle": 7e-8 * delta_k**2.9, "stress_ratio": 0.1 + 0.0 * delta_k}
+    pandas.DataFrame(columns).to_csv(tmp_path / "rates.csv", index=False)
+    rates = {"rates": [str(tmp_path / "rates.csv")]}
+    fit = perilife.calibrate([], measured=rates, material=MATERIAL, fit={"law": "paris"})
+    assert (fit.paris_c_mm_per_cycle, fit.paris_m) == (pytest.approx(7e-8, rel=1e-6), pytest.approx(2.9, abs=1e-6))
+    assert fit.paris_m_error == pytest.approx(0.0, abs=1e-6) and len(fit.plot().lines) == 2
+    with pytest.raises(perilife.FileError, match="cannot write"):
+        fit.save(tmp_path / "none" / "fitted.toml")
+    for readings, measured in ((READINGS, {"files": ["other.csv"]}), (READINGS, rates), ([], None)):
+        with pytest.raises(TypeError, match="readings"):
+            perilife.calibrate(readings, measured=measured, material=MATERIAL)
+
+    frame = pandas.read_csv(READINGS)
+    two = pandas.concat([frame.assign(specimen="01"), frame.assign(specimen="1")])
+    by_index = calibration(two.set_index("specimen"))
+    assert by_index.paris_m == calibration(two).paris_m and set(by_index.readings["specimen"]) == {"01", "1"}
+
+
+def test_names_lead_nowhere_and_dicts_end(tmp_path: Path) -> None:
+    life = perilife.predict(CASE, name="../../out of here", error_estimate=False)
+    before = set(tmp_path.parent.iterdir())
+    assert "<!doctype html>" in life.report(tmp_path / "page.html").read_text()
+    assert set(tmp_path.parent.iterdir()) == before
+    endless: dict[str, Any] = {**CASE}
+    endless["specimen"] = endless
+    deep: Any = 1
+    for _ in range(100_000):
+        deep = [deep]
+    for strange in (endless, {**CASE, "stop": {"crack_length_mm": deep}}):
+        with pytest.raises(perilife.InputError, match="64 dicts or lists within each other"):
+            perilife.check(strange)
+    with pytest.raises(ValueError, match="give inspect_from_mm, too"):
+        perilife.predict(CASE, pod=(1.0, 3.0))
+
+
 def test_factors_scenes_checks_and_materials() -> None:
     factors = perilife.sif(CASE, methods=["energy_release", "ring"])
     # Middle tension by Feddersen's secant formula at maximum load, 60.35 MPa.

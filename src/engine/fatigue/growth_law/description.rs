@@ -76,6 +76,8 @@ pub struct Constant {
     pub quantity: Quantity,
     /// What it is to the rates.
     pub role: Role,
+    /// Whether it is the exponent of ΔK.
+    pub is_exponent: bool,
     /// Value in a case that does not give it; `None`: it is refused.
     pub default: Option<f64>,
     /// Value in a fit where it is not given; `None`: it is searched.
@@ -112,12 +114,25 @@ impl Constant {
     /// A constant that a case has to give and no search looks for.
     pub const fn new(key: &'static str, name: &'static str, quantity: Quantity) -> Self {
         let (role, none, told_by) = (Role::Plain, [f64::NAN; 2], POWER);
-        Constant { key, name, quantity, role, default: None, held: None, bounds: none, starts: none, told_by, error_max: 0.0 }
+        Constant {
+            key,
+            name,
+            quantity,
+            role,
+            is_exponent: false,
+            default: None,
+            held: None,
+            bounds: none,
+            starts: none,
+            told_by,
+            error_max: 0.0,
+        }
     }
 
     /// The exponent of ΔK.
     pub const fn exponent(key: &'static str, name: &'static str) -> Self {
-        Constant::new(key, name, number("an exponent", 0.5, 20.0)).searched([0.5, 20.0], [3.0; 2], POWER, 1.0)
+        let constant = Constant::new(key, name, number("an exponent", 0.5, 20.0)).searched([0.5, 20.0], [3.0; 2], POWER, 1.0);
+        Constant { is_exponent: true, ..constant }
     }
 
     /// The same, searched between ends from starts.

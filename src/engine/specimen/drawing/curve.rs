@@ -152,22 +152,19 @@ impl Curve {
         Curve { from: map(self.from), pieces }
     }
 
-    /// The curves that are left of it without some straight pieces.
-    pub fn without(&self, is_left_out: impl Fn(Point, Point) -> bool) -> Vec<Curve> {
-        let mut left: Vec<Curve> = Vec::new();
-        let (mut from, mut is_open) = (self.from, false);
+    /// Parted into curves without some of its straight pieces, and those of these alone.
+    pub fn parted(&self, is_taken: impl Fn(Point, Point) -> bool) -> [Vec<Curve>; 2] {
+        let mut parts: [Vec<Curve>; 2] = Default::default();
+        let (mut from, mut last) = (self.from, None);
         for piece in &self.pieces {
-            if piece.arc.is_none() && is_left_out(from, piece.to) {
-                is_open = false;
-            } else if let Some(curve) = left.last_mut().filter(|_| is_open) {
-                curve.pieces.push(*piece);
-            } else {
-                left.push(Curve { from, pieces: vec![*piece] });
-                is_open = true;
+            let part = usize::from(piece.arc.is_none() && is_taken(from, piece.to));
+            match parts[part].last_mut().filter(|_| last == Some(part)) {
+                Some(curve) => curve.pieces.push(*piece),
+                None => parts[part].push(Curve { from, pieces: vec![*piece] }),
             }
-            from = piece.to;
+            (from, last) = (piece.to, Some(part));
         }
-        left
+        parts
     }
 }
 
@@ -203,6 +200,21 @@ fn joint(curve: &Curve, next: &Curve, tolerance: f64) -> Point {
         }
         _ => end,
     }
+}
+
+/// Places where more than two ends of curves lie within `tolerance` of each other, m, which then are one.
+pub fn branched(curves: &mut [Curve], tolerance: f64) -> Vec<Point> {
+    let ends: Vec<Point> = curves.iter().flat_map(|curve| [curve.from, curve.end()]).collect();
+    let near = |at: Point| ends.iter().filter(move |end| distance(**end, at) <= tolerance);
+    let mut places: Vec<Point> = ends.iter().copied().filter(|at| near(*at).count() > 2).collect();
+    places.dedup_by(|next, before| distance(*next, *before) <= tolerance);
+    let place = |end: Point| places.iter().copied().find(|at| distance(*at, end) <= tolerance).unwrap_or(end);
+    for curve in curves {
+        let [from, to] = [curve.from, curve.end()].map(place);
+        curve.from = from;
+        curve.end_at(to);
+    }
+    places
 }
 
 /// Chains curves whose ends lie within `tolerance` of each other, m, where they may meet.

@@ -3,7 +3,7 @@
 //! ```text
 //! outline   lines and arcs that close to one line; a full circle within it is a hole
 //! holes     full circles
-//! cracks    open lines; arcs become polylines
+//! cracks    open lines, which may branch; arcs become polylines
 //! ```
 //! Pieces are chained where their ends lie within 1e-4 of the size of the drawing, cracks within 1e-3 of the shortest of their lines. Fillets
 //! and other arcs of an outline are polylines with corners on the arc ([`curve::TURN`]) and where a crack meets it. With `outline_symmetry` the half is drawn on one side of x = 0 or y = 0; what lies on that line is
@@ -13,7 +13,7 @@ pub mod curve;
 mod dxf;
 mod svg;
 
-use curve::{Curve, chained};
+use curve::{Curve, branched, chained};
 
 use super::geometry::{bounding_box, distance, distance_to_segment, polygon_area, turn};
 use super::{Hole, Point};
@@ -175,9 +175,13 @@ fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std:
         let is_long =
             |curve: &Curve| curve.pieces.len() > 1 || curve.pieces[0].arc.is_some() || distance(curve.from, curve.end()) > least;
         let cornered = |curve: &Curve| if layer == "outline" { curve.cornered(&of_cracks, FLAT * size) } else { curve.clone() };
-        let curves = lines.iter().filter(|line| line.layer == layer).map(|line| cornered(&line.curve)).filter(is_long).collect();
+        let mut curves: Vec<Curve> =
+            lines.iter().filter(|line| line.layer == layer).map(|line| cornered(&line.curve)).filter(is_long).collect();
         let is_in_hole = |at: Point| holes.iter().any(|hole| distance(at, hole.centre) < hole.radius);
-        chained(curves, tolerance, |at| !is_in_hole(at))
+        // A crack may branch, a rim may not.
+        let branches = if layer == "cracks" { branched(&mut curves, tolerance) } else { Vec::new() };
+        let is_branch = |at: Point| branches.iter().any(|branch| distance(at, *branch) <= tolerance);
+        chained(curves, tolerance, |at| !is_in_hole(at) && !is_branch(at))
             .map_err(|at| Fault::at(layer, "at", format!("{} more than two ends meet", place_mm(at)), "draw lines end to end"))
     };
     let (outline, inner) = outline(&chains("outline", &[])?, tolerance, FLAT * size)?;
@@ -280,8 +284,7 @@ fn mirrored(lines: Vec<Drawn>, axis: usize, tolerance: f64) -> std::result::Resu
     for line in lines {
         let is_centred = line.curve.as_circle(tolerance).is_some_and(|(centre, _)| is_on(centre));
         let on_plane = |from: Point, to: Point| is_on(from) && is_on(to);
-        let is_crack_in_plane = line.layer == "cracks" && line.curve.points().iter().all(|at| is_on(*at));
-        if is_centred || is_crack_in_plane {
+        if is_centred {
             whole.push(line);
             continue;
         }
@@ -292,12 +295,16 @@ fn mirrored(lines: Vec<Drawn>, axis: usize, tolerance: f64) -> std::result::Resu
             }
             side = at[axis];
         }
-        for curve in line.curve.without(on_plane) {
+        let drawn = |curve: Curve| Drawn { layer: line.layer.clone(), what: line.what.clone(), curve };
+        let [beside, in_plane] = line.curve.parted(on_plane);
+        for curve in beside {
             let half = curve.mapped(snapped, false);
             let other = half.mapped(beyond, true);
-            let (layer, what) = (&line.layer, &line.what);
-            whole.extend([half, other].map(|curve| Drawn { layer: layer.clone(), what: what.clone(), curve }));
+            whole.extend([half, other].map(drawn));
         }
+        // What lies in the plane is no rim, but may be a crack.
+        let is_crack = line.layer == "cracks";
+        whole.extend(in_plane.into_iter().filter(|_| is_crack).map(|curve| drawn(curve.mapped(snapped, false))));
     }
     Ok(whole)
 }

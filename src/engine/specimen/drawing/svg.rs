@@ -18,8 +18,37 @@ use crate::specimen::geometry::distance;
 const SILENT: [&str; 6] = ["svg", "g", "a", "title", "desc", "metadata"];
 /// Elements whose content is not drawn.
 const HIDDEN: [&str; 7] = ["defs", "metadata", "style", "namedview", "symbol", "clipPath", "mask"];
-/// Properties that move an element or cut pieces off it.
-const MOVING: [&str; 3] = ["transform", "clip-path", "mask"];
+/// Attributes that change what is seen of an element and are not read, where they are not `none`.
+const CHANGING: [&str; 4] = ["clip-path", "mask", "filter", "transform-origin"];
+/// Beginnings of the names of properties that a style may declare: they paint. Any other may move a line, cut it or set its size.
+const PAINT: [&str; 26] = [
+    "fill",
+    "stroke",
+    "color",
+    "marker",
+    "paint-order",
+    "font",
+    "text",
+    "line-height",
+    "letter-spacing",
+    "word-spacing",
+    "white-space",
+    "writing-mode",
+    "direction",
+    "baseline",
+    "dominant-baseline",
+    "alignment-baseline",
+    "shape-",
+    "image-rendering",
+    "enable-background",
+    "isolation",
+    "mix-blend-mode",
+    "solid-",
+    "stop-",
+    "vector-effect",
+    "clip-rule",
+    "-inkscape",
+];
 /// Share by which two scales may differ that are one.
 const ALIKE: f64 = 1e-4;
 
@@ -34,6 +63,8 @@ struct Around {
     is_left_out: bool,
     /// `visibility: hidden`, which an element within may end.
     is_invisible: bool,
+    /// `opacity: 0`, of the element or a group around it.
+    is_clear: bool,
 }
 
 /// Reads a file.
@@ -64,6 +95,9 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
                 check_style(text.as_ref())?;
                 continue;
             }
+            Ok(Event::PI(instruction)) if instruction.target() == "xml-stylesheet" => {
+                return Err(broken("has a style sheet in another file, which is not read".to_owned()));
+            }
             Ok(Event::Eof) if is_svg && around.is_empty() => return Ok(drawing),
             Ok(Event::Eof) => return Err(broken("is no whole SVG".to_owned())),
             Ok(_) => continue,
@@ -83,7 +117,14 @@ pub fn read(text: &str) -> Result<Drawing, Fault> {
                 let (map, millimetres) = element.view()?;
                 drawing.millimetres = millimetres;
                 element.check_map()?;
-                element.shown(Around { names: Vec::new(), label: None, map, is_left_out: false, is_invisible: false })
+                element.shown(Around {
+                    names: Vec::new(),
+                    label: None,
+                    map,
+                    is_left_out: false,
+                    is_invisible: false,
+                    is_clear: false,
+                })
             }
             None => return Err(broken(format!("begins with <{name}>"))),
             Some(outside) if name == "svg" => {
@@ -119,15 +160,12 @@ impl Element<'_> {
 
     /// The value that `style` declares of a property.
     fn of_style(&self, name: &str) -> Option<String> {
-        let style = self.attribute("style")?;
-        let mut declared = style.split(';').filter_map(|declared| declared.split_once(':'));
-        declared.rfind(|(key, _)| key.trim().eq_ignore_ascii_case(name)).map(|(_, value)| value.to_owned())
+        declared(&self.attribute("style")?).filter(|(key, _)| key == name).last().map(|(_, value)| value)
     }
 
     /// The value of a property, from `style` before the attribute of that name.
     fn property(&self, name: &str) -> Option<String> {
-        let value = self.of_style(name).or_else(|| self.attribute(name))?;
-        Some(value.trim_end_matches("!important").trim().to_ascii_lowercase())
+        self.of_style(name).or_else(|| self.attribute(name).map(|value| value.to_ascii_lowercase()))
     }
 
     /// What of the element is shown.
@@ -138,20 +176,21 @@ impl Element<'_> {
             Some("hidden" | "collapse") => true,
             _ => around.is_invisible,
         };
-        Around { is_left_out, is_invisible, ..around }
+        let is_clear = around.is_clear || self.property("opacity").is_some_and(|value| is_zero(&value));
+        Around { is_left_out, is_invisible, is_clear, ..around }
     }
 
     /// Refuses what moves or cuts the element other than by the attribute `transform`, and that of the whole drawing.
     fn check_map(&self) -> Result<(), Fault> {
-        let is_set = |value: Option<String>| value.is_some_and(|value| !value.trim().eq_ignore_ascii_case("none"));
-        let of_whole = self.attribute(MOVING[0]).filter(|_| self.name == "svg");
-        let is_moved = is_set(self.of_style(MOVING[0])) || is_set(of_whole);
-        let moving = MOVING.into_iter().enumerate();
-        let found = moving.map(|(i, name)| (name, if i == 0 { is_moved } else { is_set(self.property(name)) }));
-        let Some((name, _)) = found.into_iter().find(|(_, is_set)| *is_set) else { return Ok(()) };
+        let style = self.attribute("style").unwrap_or_default();
+        let of_style = declared(&style).find(|(name, value)| is_unread(name, value)).map(|(name, _)| name);
+        let of_whole = ["transform"].into_iter().filter(|_| self.name == "svg");
+        let is_set = |name: &&str| self.attribute(name).is_some_and(|value| !value.eq_ignore_ascii_case("none"));
+        let of_attributes = || CHANGING.into_iter().chain(of_whole).find(is_set).map(str::to_owned);
+        let Some(name) = of_style.or_else(of_attributes) else { return Ok(()) };
         Err(Fault::of(
             format!("has a <{}> with {name}, which is not read", self.name),
-            "apply transforms and clips before saving",
+            "apply transforms and clips before saving, and give places and sizes as attributes",
         ))
     }
 
@@ -257,11 +296,9 @@ const DRAW: &str = "draw it as lines and circular arcs (M L H V A Z)";
 impl Around {
     /// The property that hides what is in it.
     fn hidden_by(&self) -> Option<&'static str> {
-        match (self.is_left_out, self.is_invisible) {
-            (true, _) => Some("display: none"),
-            (_, true) => Some("visibility: hidden"),
-            _ => None,
-        }
+        let hidden =
+            [(self.is_left_out, "display: none"), (self.is_invisible, "visibility: hidden"), (self.is_clear, "opacity: 0")];
+        hidden.into_iter().find_map(|(is_so, property)| is_so.then_some(property))
     }
 
     /// The innermost name that is a layer, else the innermost one.
@@ -271,14 +308,39 @@ impl Around {
     }
 }
 
-/// Refuses a style sheet that hides, moves or cuts: which elements its rules are for is not looked at.
+/// Names and values that a style declares, in small letters.
+fn declared(style: &str) -> impl DoubleEndedIterator<Item = (String, String)> {
+    let plain = |text: &str| text.trim().trim_end_matches("!important").trim().to_ascii_lowercase();
+    style.split(';').filter_map(move |part| part.split_once(':').map(|(name, value)| (plain(name), plain(value))))
+}
+
+/// Whether a property changes the shape that is seen in a way that is not read.
+fn is_unread(name: &str, value: &str) -> bool {
+    const READ: [&str; 3] = ["display", "visibility", "opacity"];
+    // What cuts an element off at the edge of the picture.
+    let is_harmless = value == "none" || name == "overflow" || name == "pointer-events" || name == "cursor";
+    !READ.contains(&name) && !is_harmless && !PAINT.iter().any(|paint| name.starts_with(paint))
+}
+
+fn is_zero(value: &str) -> bool {
+    value.trim_end_matches('%').parse::<f64>().is_ok_and(|number| number <= 0.0)
+}
+
+/// Refuses a style sheet that hides, moves, cuts or sets sizes: which elements its rules are for is not looked at.
 fn check_style(text: &str) -> Result<(), Fault> {
-    let declared = |name: &str| {
-        text.split(['{', ';']).any(|part| part.split_once(':').is_some_and(|(key, _)| key.trim().eq_ignore_ascii_case(name)))
-    };
-    let Some(name) = ["display", "visibility"].into_iter().chain(MOVING).find(|name| declared(name)) else { return Ok(()) };
+    let mut plain = String::new();
+    for (i, part) in text.split("/*").enumerate() {
+        plain.push_str(if i == 0 { part } else { part.split_once("*/").map_or("", |(_, after)| after) });
+    }
     let remedy = "remove what is hidden, apply transforms and clips, or save with attributes in place of a style sheet";
-    Err(Fault::of(format!("has a style sheet with {name}, which is not read"), remedy))
+    let refused = |name: &str| Err(Fault::of(format!("has a style sheet with {name}, which is not read"), remedy));
+    if plain.contains("@import") {
+        return refused("@import");
+    }
+    let rules: Vec<(String, String)> =
+        plain.split('}').filter_map(|rule| rule.rsplit_once('{')).flat_map(|(_, style)| declared(style)).collect();
+    let hides = |name: &str, value: &str| matches!(name, "display" | "visibility") || name == "opacity" && is_zero(value);
+    rules.iter().find(|(name, value)| is_unread(name, value) || hides(name, value)).map_or(Ok(()), |(name, _)| refused(name))
 }
 
 fn millimetres(length: Length) -> Option<f64> {
