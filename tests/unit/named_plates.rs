@@ -190,6 +190,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (row("holes = 6\npitch_mm = 20\ncrack_length_mm = 1"), TENSION, "specimen.pitch_mm = 20"),
         (row("holes = 3\npitch_mm = 20\ncrack_length_mm = 8"), TENSION, "half the ligament, 7.5 mm"),
         (row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[1, 1]]"), TENSION, "are not those of 3 holes"),
+        (row("holes = 2\npitch_mm = 20\ncrack_lengths_mm = [[0, 0], [0, 0]]"), TENSION, "has no crack"),
         (
             row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[0, 10], [16, 0], [0, 0]]"),
             TENSION,

@@ -38,6 +38,10 @@ fn cracks_form_by_the_line_and_then_grow() {
     assert!((first / (1e5 * (300.0 / (0.8 * 3.008 * 100.0_f64)).powi(5)) - 1.0).abs() < 0.05, "{first}");
     assert!(((whole.life_cycles() - first) / grown.life_cycles() - 1.0).abs() < 1e-9);
     assert_eq!((whole.curve[0].cycles, whole.stop), (first, grown.stop));
+    // Of bent edges σ is the mean; at the hole of radius r a gradient adds 2 ρ r/(W/2).
+    let bent = run(&case(keys, "stress_max_mpa = 100\nedge_bending_ratio = 1.0", &line("[stop]\ncycles_max = 1e3")));
+    let concentration = bent.phase_one.unwrap().concentration.unwrap();
+    assert!((concentration / 3.108 - 1.0).abs() < 0.01, "{concentration}");
     // The line is one of elastic stress: 300.8 MPa at the rim.
     let told = |strength: f64| {
         let mut case = case(keys, "stress_max_mpa = 100", &line("[stop]\ncycles_max = 1e5"));

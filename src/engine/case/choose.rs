@@ -73,7 +73,7 @@ fn beyond_formula(
     let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
     let unknown = [
         (loading.displacement().is_some(), "knows no cycles of a displacement"),
-        (loading.residual.is_some(), "knows no residual stress"),
+        (loading.residual.is_some(), "does not say how well it holds with residual stress"),
         (has_fields, "has no fields, for which output.paraview asks"),
     ];
     if let Some((_, why)) = unknown.iter().find(|(is_so, _)| *is_so) {

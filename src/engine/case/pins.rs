@@ -5,22 +5,25 @@ use crate::element_free::crack::initial_cracks;
 use crate::element_free::field::Discretisation;
 use crate::element_free::solve::solve;
 use crate::error::{Error, Result, input};
-use crate::specimen::{Bearing, Load};
+use crate::specimen::{Bearing, Load, SpecimenKind};
+use crate::units::MM;
 use crate::williams::Elasticity;
 
 /// Finds where the elastic pins of a case touch at maximum load, on nodes with the initial cracks, and puts that on its loads. Points keep
 /// it as the cracks grow; nodes find contact anew in every equilibrium.
 /// Errors: what does not go with such pins; those of the equilibrium.
 pub(super) fn settle(case: &mut Case) -> Result<()> {
-    let Some(hole) = case.specimen.loads.iter().find_map(|load| match load {
-        Load::Pin { hole, .. } if load.is_elastic_pin() => Some(*hole),
+    let Some((hole, radius)) = case.specimen.loads.iter().find_map(|load| match load {
+        Load::Pin { hole, contact: Bearing::Elastic(pin), .. } => Some((*hole, pin.radius)),
         _ => None,
     }) else {
         return Ok(());
     };
-    let key =
-        if case.specimen.kind == crate::specimen::SpecimenKind::Plate { "loading.pins" } else { "specimen.pin_diameter_mm" };
-    let refused = |problem: &str, remedy: &str| Err(input(key, format!("pin of hole {hole}"), problem, remedy));
+    let (key, value) = match case.specimen.kind {
+        SpecimenKind::Plate => ("loading.pins", format!("pin of hole {hole}")),
+        _ => ("specimen.pin_diameter_mm", ((2e6 * radius / MM).round() / 1e6).to_string()),
+    };
+    let refused = |problem: &str, remedy: &str| Err(input(key, value.clone(), problem, remedy));
     if case.loading.displacement().is_some() {
         let problem = "touches as its force says, which cycles of a displacement do not know beforehand";
         return refused(problem, "give its contact half angle");

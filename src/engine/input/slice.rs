@@ -147,7 +147,7 @@ fn plain(wanted: &str) -> &str {
         "a string" => "text in quotes",
         "a boolean" => "true or false",
         "a sequence" => "a list [...]",
-        "an array of length 2" | "an array of size 2" | "fewer elements in array" => "a pair of numbers [x, y]",
+        "an array of length 2" | "an array of size 2" | "fewer elements in array" => "a pair of numbers, such as [1, 2]",
         other => other,
     }
 }

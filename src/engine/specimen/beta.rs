@@ -41,6 +41,7 @@ pub struct BetaTable {
     stress: f64,
     file: String,
     last_line: usize,
+    column: Column,
 }
 
 impl Specimen {
@@ -80,6 +81,7 @@ impl Specimen {
             stress: self.beta_stress(1.0),
             file: file.to_owned(),
             last_line: last.line,
+            column: last.column,
         });
         Ok(())
     }
@@ -148,7 +150,7 @@ impl BetaTable {
             return Ok(());
         }
         let a = self.logarithms.x()[self.logarithms.x().len() - 1];
-        let row = Row { line: self.last_line, length: a, beta: f64::NAN };
+        let row = Row { line: self.last_line, length: a, beta: f64::NAN, column: self.column };
         let problem = format!("is where the table ends, and growth goes on to {} mm", round(self.length_at(crack_length)));
         let most = round(self.bounds()[1]);
         Err(row.fault(problem, &format!("give a longer table, or stop.crack_length_mm up to {most}")).in_file(self.file.as_ref()))
@@ -161,11 +163,17 @@ struct Row {
     line: usize,
     length: f64,
     beta: f64,
+    column: Column,
 }
 
+/// Name and unit, m, of the column of lengths.
+type Column = (&'static str, f64);
+
 impl Row {
+    /// What is wrong with it, its length as the file has it.
     fn fault(self, problem: impl Into<String>, remedy: &str) -> Error {
-        fault(self.line, "crack_length_mm", &round(self.length).to_string(), problem, remedy)
+        let length = (self.length / self.column.1 * 1e6).round() / 1e6;
+        fault(self.line, self.column.0, &length.to_string(), problem, remedy)
     }
 }
 
@@ -200,7 +208,7 @@ fn rows(text: &str) -> Result<Vec<Row>> {
             return Err(fault(line, "row", content, "is no pair of crack length and beta", &format!("give {column},beta")));
         };
         let number = |column, cell| positive(line, column, cell, has_decimal_commas);
-        let row = Row { line, length: number(column, length)? * unit, beta: number("beta", beta)? };
+        let row = Row { line, length: number(column, length)? * unit, beta: number("beta", beta)?, column: (column, unit) };
         if let Some(before) = rows.last().filter(|before| before.length >= row.length) {
             let problem = format!("does not rise above the {} mm of line {}", round(before.length), before.line);
             return Err(row.fault(problem, "sort the rows by crack length, each length once"));

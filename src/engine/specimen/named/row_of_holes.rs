@@ -75,6 +75,9 @@ fn lengths(given: &Input) -> Result<(Vec<[f64; 2]>, Option<f64>)> {
             below("crack_length_mm", length, ligament / 2.0, "half the ligament")?;
             Ok((vec![[length; 2]; given.holes], Some(length)))
         }
+        (None, Some(list)) if list.iter().flatten().all(|length| *length == 0.0) => {
+            Err(input(KEY, format!("{list:?}"), "has no crack", REMEDY))
+        }
         (None, Some(list)) if list.len() == given.holes => {
             let one = |(i, pair): (usize, &[f64; 2])| -> Result<[f64; 2]> {
                 Ok([length_or_none(&format!("{KEY}[{i}][0]"), pair[0])?, length_or_none(&format!("{KEY}[{i}][1]"), pair[1])?])
