@@ -27,10 +27,10 @@ pub(super) fn is_length(column: &Column) -> bool {
 /// Columns of a header as it stands in the file, and with the units of the row below.
 pub(super) fn columns_of(header: &[String], names: &[String], import: &Import) -> Vec<Column> {
     let mut columns: Vec<Column> = names.iter().enumerate().map(|(index, name)| Column::named(index, name)).collect();
-    // Beside each other these are sides of one specimen; one alone may be its name.
-    for pair in [["aL", "aR"], ["aF", "aB"]] {
+    // `aL` and `aR` beside each other are sides of one specimen; one alone may be its name.
+    for pair in [["al", "ar"], ["af", "ab"]] {
         let place = |side: &str| {
-            let is_side = |name: &String| name.starts_with('a') && is_length_of(name, &side.to_lowercase());
+            let is_side = |name: &String| name.starts_with('a') && is_length_of(name, side);
             names.iter().position(is_side).filter(|index| columns[*index].role == Role::Unknown)
         };
         if let [Some(one), Some(other)] = pair.map(place) {

@@ -170,8 +170,7 @@ pub(super) fn place_cracks(
                 let problem = "meets another crack and has no end inside the material that could grow";
                 return Err(input_missing(&key, problem, "end one of both inside the plate"));
             }
-            let problem =
-                "has no end inside the material that could grow: one within a hundredth of its length of a rim counts as on it";
+            let problem = "has no end inside the material that could grow: one within a hundredth of its length of a rim counts as on it";
             return Err(input_missing(&key, problem, "end it inside the plate"));
         }
     }

@@ -1,7 +1,7 @@
 //! What a sheet of a workbook hides: rows of readings that somebody took out, columns that nobody sees.
 
 use std::collections::HashSet;
-use std::io::{BufReader, Cursor, Read};
+use std::io::{BufReader, Cursor};
 
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::{Reader, XmlVersion};
@@ -70,14 +70,13 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
 
 fn each_element(archive: &mut Archive<'_>, path: &str, mut look: impl FnMut(&BytesStart<'_>)) {
     let Ok(entry) = archive.by_name(path) else { return };
-    let mut text = String::new();
-    let _ = BufReader::new(entry).read_to_string(&mut text);
-    let mut reader = Reader::from_str(&text);
-    while let Ok(event) = reader.read_event() {
+    let (mut reader, mut buffer) = (Reader::from_reader(BufReader::new(entry)), Vec::new());
+    while let Ok(event) = reader.read_event_into(&mut buffer) {
         match event {
             Event::Start(element) | Event::Empty(element) => look(&element),
             Event::Eof => break,
             _ => {}
         }
+        buffer.clear();
     }
 }
