@@ -121,10 +121,10 @@ impl Column {
             let is_other = [OTHER, MAX, MIN].iter().any(|list| any_in(words, list)) || load(words, &[]).is_some();
             // One in a unit of load is told of if it is not read.
             let in_units = unit_of(words, bracket, load_unit).into_iter().map(|(_, unit)| unit);
-            let of_load =
+            let mut of_load =
                 in_units.filter(|unit| matches!(unit, Named::Is(_)) && (!bracket.is_empty() || words.last() != Some(&"n")));
             match is_other {
-                true => column(Role::Other, of_load.last().unwrap_or(Named::No)),
+                true => column(Role::Other, of_load.next().unwrap_or(Named::No)),
                 false => column(Role::Unknown, Named::No),
             }
         })
