@@ -24,4 +24,5 @@ mod support {
     pub mod shared;
     pub mod slurm;
     pub mod statics;
+    pub mod workbook;
 }

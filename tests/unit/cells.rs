@@ -9,7 +9,7 @@ use perilife::measured::{Import, parse, survey};
 use perilife::tables::{csv, frame, parquet, read_parquet};
 use polars::prelude::{AnyValue, Column, DataFrame, DataType, Scalar};
 
-use super::import::workbook;
+use crate::support::workbook::workbook;
 
 #[test]
 fn no_text_is_a_formula_and_all_of_it_comes_back() {

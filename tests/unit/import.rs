@@ -1,10 +1,11 @@
 //! Tables as laboratories write them: every dress of one curve is that curve, and what cannot be told is refused by name.
 
-use std::io::Write as _;
 use std::path::Path;
 
 use perilife::measured::{ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Sheet, parse};
 use perilife::units::MM;
+
+use crate::support::workbook::workbook;
 
 /// Cycles and crack length in mm, as plain as they can be written.
 const CURVE: [(f64, f64); 6] =
@@ -337,68 +338,6 @@ fn tables_of_this_program_are_read() {
     let with_ratio: String =
         rates.lines().map(|line| format!("{line},{}\n", if line.starts_with('s') { "stress_ratio" } else { "0.1" })).collect();
     is_the_curve("rates at a stress ratio", with_ratio.as_bytes(), &Import::default());
-}
-
-/// A workbook of one or more sheets; numbers as such, everything else as text.
-pub fn workbook(sheets: &[(&str, Vec<Vec<String>>)]) -> Vec<u8> {
-    let mut zip = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-    let mut put = |name: &str, text: String| {
-        zip.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
-        zip.write_all(text.as_bytes()).unwrap();
-    };
-    let each = |of: &dyn Fn(usize, &str) -> String| -> String {
-        sheets.iter().enumerate().map(|(i, (name, _))| of(i + 1, name)).collect()
-    };
-    let head = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
-    let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
-    let relations = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
-    put(
-        "[Content_Types].xml",
-        format!(
-            "{head}<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"><Default Extension=\"xml\" ContentType=\"application/xml\"/></Types>"
-        ),
-    );
-    put(
-        "_rels/.rels",
-        format!(
-            "{head}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship Id=\"rId1\" Type=\"{relations}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"
-        ),
-    );
-    put(
-        "xl/workbook.xml",
-        format!(
-            "{head}<workbook xmlns=\"{main}\" xmlns:r=\"{relations}\"><sheets>{}</sheets></workbook>",
-            each(&|i, name| format!("<sheet name=\"{name}\" sheetId=\"{i}\" r:id=\"rId{i}\"/>"))
-        ),
-    );
-    put(
-        "xl/_rels/workbook.xml.rels",
-        format!(
-            "{head}<Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">{}</Relationships>",
-            each(&|i, _| format!(
-                "<Relationship Id=\"rId{i}\" Type=\"{relations}/worksheet\" Target=\"worksheets/sheet{i}.xml\"/>"
-            ))
-        ),
-    );
-    for (i, (_, rows)) in sheets.iter().enumerate() {
-        let cell = |row: usize, column: usize, text: &str| {
-            let place = format!("{}{}", char::from(b'A' + column as u8), row + 1);
-            match text.parse::<f64>() {
-                Ok(_) => format!("<c r=\"{place}\"><v>{text}</v></c>"),
-                Err(_) => format!("<c r=\"{place}\" t=\"inlineStr\"><is><t>{text}</t></is></c>"),
-            }
-        };
-        let row = |(row, cells): (usize, &Vec<String>)| {
-            let cells: String = cells.iter().enumerate().map(|(column, text)| cell(row, column, text)).collect();
-            format!("<row r=\"{}\">{cells}</row>", row + 1)
-        };
-        let rows: String = rows.iter().enumerate().map(row).collect();
-        put(
-            &format!("xl/worksheets/sheet{}.xml", i + 1),
-            format!("{head}<worksheet xmlns=\"{main}\"><sheetData>{rows}</sheetData></worksheet>"),
-        );
-    }
-    zip.finish().unwrap().into_inner()
 }
 
 #[test]

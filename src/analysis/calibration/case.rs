@@ -12,7 +12,7 @@ use crate::case::{Case, LawSource};
 use crate::error::{input, input_missing};
 use crate::input::{Document, Folder, LENGTH, sha256, slice};
 use crate::measured::{
-    ColumnNames, CycleUnit, Decimal, Import, LeaveOut, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse,
+    ColumnNames, CycleUnit, Decimal, Import, LeaveOut, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, parse, round_off,
 };
 use crate::specimen::Specimen;
 use crate::specimen::handbook::{HandbookFormula, handbook};
@@ -20,6 +20,9 @@ use crate::units::MM;
 
 /// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
 const LENGTH_SLACK: f64 = 1e-9;
+
+/// Share by which the specimen's crack may be longer than the first reading: 12 mm are 0.4724 in of four decimals, or 11.999 mm.
+const ROUNDING: f64 = 1e-4;
 
 /// A checked calibration, SI inside.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,8 +127,8 @@ impl CalibrationCase {
         let read = measured.curves.clone();
         measured.leave_out(&keys.leave_out)?;
         let window_ends = window_ends(&keys)?;
-        let Measured { curves, mut warnings } = window(&measured, &keys)?;
-        check_start(&case.specimen, &curves)?;
+        let Measured { mut curves, mut warnings } = window(&measured, &keys)?;
+        check_start(&case.specimen, &mut curves)?;
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
         if let Some(formula) =
             formula.as_ref().filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
@@ -262,12 +265,12 @@ fn check_through(specimen: &Specimen) -> crate::Result<()> {
     Err(input("specimen.kind", format!("\"{}\"", flaw.kind()), problem, "fit the law to cracks that go through"))
 }
 
-/// The model starts at the specimen's crack length, so no reading may come before it.
-fn check_start(specimen: &Specimen, curves: &[MeasuredCurve]) -> crate::Result<()> {
+/// The model starts at the specimen's crack length, so no reading may come before it; one that its rounding puts there is at the start.
+fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> crate::Result<()> {
     for curve in curves {
         let first = curve.crack_length[0]; // a window keeps at least five readings
-        if specimen.crack_length > first + LENGTH_SLACK {
-            let mm = |length: f64| format!("{:.4}", length / MM).trim_end_matches('0').trim_end_matches('.').to_owned();
+        if specimen.crack_length > first * (1.0 + ROUNDING) {
+            let mm = |length: f64| round_off(length / MM).to_string();
             return Err(input(
                 "specimen.crack_length_mm",
                 mm(specimen.crack_length),
@@ -275,6 +278,7 @@ fn check_start(specimen: &Specimen, curves: &[MeasuredCurve]) -> crate::Result<(
                 "start the model at the first reading, or the window (measured.from_crack_length_mm) at the model",
             ));
         }
+        curve.crack_length.iter_mut().for_each(|length| *length = length.max(specimen.crack_length));
     }
     Ok(())
 }

@@ -3,7 +3,7 @@
 use super::decimal::decide;
 use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, CycleUnit, Decimal, Import, LoadUnit, Unit};
-use super::names::{Column, Named, Role, length_unit_at_end};
+use super::names::{Column, Named, Role, says_tip_to_tip, unit_at_end};
 use super::numerals::number;
 use super::table::{Fault, Table};
 use crate::error::{Error, Result};
@@ -118,10 +118,11 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
         ([_, second, ..], _) => Err(says_the_same(table, second.index, "cycles")),
         ([], [length]) if wide && length.index == 0 => {
             let length = length_column(table, *length, import)?;
-            let unit = Named::Is(Unit::Cycles(import.cycles.unwrap_or(CycleUnit::Cycles)));
-            let series =
-                specimens().map(|(name, i)| Series::of_one(name, Column::new(i, Role::Cycles, unit), length, vec![i])).collect();
-            Ok((Shape::WideCycles, series))
+            let series = specimens().map(|(name, i)| {
+                let cycles = Column::new(i, Role::Cycles, unit_at_end(&table.names[i], Role::Cycles));
+                Ok(Series::of_one(name, cycle_column(table, cycles, import)?, length, vec![i]))
+            });
+            Ok((Shape::WideCycles, series.collect::<Result<_>>()?))
         }
         ([_], []) if wide && are_places_of_one_crack(&table.header[1..]) => Err(table.header_fault(1).error(
             "begins a row of numbered crack lengths, which are places on the front of one crack or cracks of several specimens",
@@ -133,7 +134,13 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
         )),
         ([cycles], []) if wide && cycles.index == 0 => {
             let cycles = cycle_column(table, *cycles, import)?;
-            let series = specimens().map(|(name, i)| Ok(Series::of_one(name, cycles, wide_length(table, i, import)?, vec![i])));
+            // Where `2a` stands in names of some specimens alone it is part of their names.
+            let are_whole: Option<Vec<bool>> = table.names[1..].iter().map(|name| says_tip_to_tip(name)).collect();
+            let series = specimens().map(|(name, i)| {
+                let length = wide_length(table, i, import)?;
+                let is_whole = are_whole.as_ref().is_some_and(|are_whole| are_whole[i - 1]);
+                Ok(Series::of_one(name, cycles, if is_whole { length.tip_to_tip() } else { length }, vec![i]))
+            });
             Ok((Shape::WideLengths, series.collect::<Result<_>>()?))
         }
         _ => Err(unknown_shape(table, &columns)),
@@ -259,7 +266,7 @@ fn are_places_of_one_crack(names: &[String]) -> bool {
 
 /// A specimen's column in a wide table: in the unit of its name, or as the user says.
 fn wide_length(table: &Table, index: usize, import: &Import) -> Result<Column> {
-    let column = Column::new(index, Role::Length, length_unit_at_end(&table.names[index]));
+    let column = Column::new(index, Role::Length, unit_at_end(&table.names[index], Role::Length));
     match (column.unit, import.length) {
         (Named::No, None) => Err(table.header_fault(index).error(
             "does not say the unit of its crack lengths",
@@ -353,9 +360,12 @@ pub(super) fn is_stress(column: &Column) -> bool {
     matches!(column.unit, Named::Is(unit) if unit.is_stress())
 }
 
-/// A line about columns that nobody asked for and whose names say nothing.
+/// A line about columns that nobody asked for and whose names say nothing, or a load that is not read.
 fn not_read(table: &Table, columns: &[Column]) -> Option<String> {
-    let strange = columns.iter().filter(|column| matches!(column.role, Role::Unknown | Role::Load));
+    let strange = columns.iter().filter(|column| {
+        matches!(column.role, Role::Unknown | Role::Load)
+            || matches!((column.role, column.unit), (Role::Other, Named::Is(Unit::Load(_))))
+    });
     let names: Vec<&str> = strange.map(|column| table.header[column.index].as_str()).filter(|name| !name.is_empty()).collect();
     (!names.is_empty()).then(|| {
         format!(

@@ -77,6 +77,8 @@ pub struct Source {
     pub length_column: String,
     /// Metres per unit of that column.
     pub length_unit: f64,
+    /// Whether the file has lengths tip to tip, of which the half was taken.
+    pub is_tip_to_tip: bool,
     /// Whether the specimen has the name of its file.
     pub is_named_by_file: bool,
     /// Cycles of the file at the first reading of a window, which counts them from 0.

@@ -2,7 +2,7 @@
 //! beside each other, `N1, a1, N2, a2`, or `N, a, N, a`.
 
 use super::import::Import;
-use super::names::{Column, Role};
+use super::names::{Column, Named, Role, is_length_of};
 
 /// The role of a key of `measured.columns`.
 fn role_of(key: &str) -> Role {
@@ -27,9 +27,19 @@ pub(super) fn is_length(column: &Column) -> bool {
 /// Columns of a header as it stands in the file, and with the units of the row below.
 pub(super) fn columns_of(header: &[String], names: &[String], import: &Import) -> Vec<Column> {
     let mut columns: Vec<Column> = names.iter().enumerate().map(|(index, name)| Column::named(index, name)).collect();
+    // `aL` and `aR` beside each other are sides of one specimen; one alone may be its name.
+    for pair in [["al", "ar"], ["af", "ab"]] {
+        let place = |side: &str| {
+            let is_side = |name: &String| name.starts_with('a') && is_length_of(name, side);
+            names.iter().position(is_side).filter(|index| columns[*index].role == Role::Unknown)
+        };
+        if let [Some(one), Some(other)] = pair.map(place) {
+            [one, other].into_iter().for_each(|index| columns[index] = Column::given(index, Role::Side, &names[index]));
+        }
+    }
     for role in import.columns.given().map(|(key, _)| role_of(key)) {
         let same = |column: &&mut Column| column.role == role || (role == Role::Length && column.role == Role::Side);
-        columns.iter_mut().filter(same).for_each(|column| column.role = Role::Other);
+        columns.iter_mut().filter(same).for_each(|column| *column = Column::new(column.index, Role::Other, Named::No));
     }
     for (key, name) in import.columns.given() {
         if let Some(index) = place_of(name, header, names) {

@@ -11,7 +11,7 @@ use crate::line::line;
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::specimen::handbook::{HandbookFormula, handbook};
-use crate::specimen::{LoadMeasure, Specimen, SpecimenKind};
+use crate::specimen::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
 use crate::units::{MM, MPA_SQRT_M};
 
 /// Loads within this share of each other are equal: machines hold theirs to one percent.
@@ -35,6 +35,7 @@ impl Measured {
     /// Errors: readings beyond the specimen; loads that it cannot have.
     pub fn set_against(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
         let (limit, limit_name) = specimen.length_limit();
+        self.take_whole_lengths(specimen);
         self.leave_typing_errors_out();
         self.check_lengths(limit, limit_name)?;
         self.check_half_lengths(specimen)?;
@@ -43,6 +44,16 @@ impl Measured {
         self.leave_fracture_out(specimen, material, loading)?;
         self.check_sides(specimen);
         Ok(())
+    }
+
+    /// Takes lengths tip to tip as they are where those of the specimen are such, too.
+    fn take_whole_lengths(&mut self, specimen: &Specimen) {
+        let is_whole = specimen.convention == LengthConvention::SumOfTips;
+        for curve in self.curves.iter_mut().filter(|curve| is_whole && curve.source.is_tip_to_tip) {
+            curve.crack_length.iter_mut().chain(&mut curve.side_difference).for_each(|length| *length *= 2.0);
+            curve.source.length_unit *= 2.0;
+            curve.source.is_tip_to_tip = false;
+        }
     }
 
     /// Refuses lengths tip to tip of a central crack whose case has the half: a first reading that is twice the crack of the case.

@@ -1,7 +1,7 @@
 //! Tables of readings as laboratories write them: cycles, crack lengths and loads of one or many specimens.
 //!
 //! In the order data flows: what the user says of files (`import`); words and units of column `names`, the `header` they make up,
-//! and `numerals`; the cells of a `table` (CSV in any usual dress, a workbook, with the feature `tables` also Parquet); its `columns`
+//! and `numerals`; the cells of a `table` (CSV in any usual dress, a workbook, with the feature `tables` also Parquet) without rows that `marks` leave out; its `columns`
 //! and the `decimal` sign; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
@@ -14,6 +14,7 @@ mod header;
 mod import;
 mod leave_out;
 mod loads;
+mod marks;
 mod names;
 mod numerals;
 pub mod rates;

@@ -11,6 +11,7 @@ use super::columns::stated_unit;
 use super::decimal::decide;
 use super::header::columns_of;
 use super::import::{ColumnNames, Decimal, Import, IntensityUnit, RateUnit, Sheet, Unit};
+use super::marks::counts;
 use super::names::{Column, Named, Role};
 use super::readings::value;
 use super::table::{self, Fault, Table, whole_file};
@@ -67,6 +68,8 @@ pub struct RateTable {
     pub rows: Vec<RateRow>,
     /// Rows that carry a flag of `perilife rates`.
     pub flagged: usize,
+    /// What else the user should know.
+    pub warnings: Vec<String>,
     /// Names of the columns of ΔK and da/dN.
     pub columns: [String; 2],
     /// Whether the table, or the user, says its stress ratio.
@@ -174,13 +177,15 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     let unit = |column: Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
     let mut table = RateTable {
         columns: [delta_k, rate].map(|column| cells.header[column.index].clone()),
+        warnings: cells.warnings(),
         says_ratio: ratio.is_some() || keys.stress_ratio.is_some(),
         units: [unit(delta_k), unit(rate)],
         ..RateTable::default()
     };
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     for row in &cells.rows {
-        if flags.is_some_and(|flags| row.cell(flags).split_whitespace().any(|word| word != HARMLESS)) {
+        let speaks_against = |word: &str| word != HARMLESS && counts(word, true) != Some(true);
+        if flags.is_some_and(|flags| row.cell(flags).split_whitespace().any(speaks_against)) {
             table.flagged += 1;
             continue;
         }

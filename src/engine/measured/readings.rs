@@ -60,7 +60,9 @@ fn curves(table: &Table, decimal: Decimal, series: &Series, fate: Fate<'_>) -> R
         let length = &series.lengths[0];
         let (file, length_column) = (table.file.clone(), table.header[length.index].clone());
         let is_named_by_file = series.specimen.is_none() && series.own.is_empty();
-        let source = Source { file, length_column, length_unit: length.factor, is_named_by_file, ..Source::default() };
+        let is_tip_to_tip = series.lengths.iter().all(Column::is_tip_to_tip);
+        let length_unit = length.factor;
+        let source = Source { file, length_column, length_unit, is_tip_to_tip, is_named_by_file, ..Source::default() };
         MeasuredCurve { specimen: name.to_owned(), source, ..MeasuredCurve::default() }
     };
     // A specimen that has columns is one, even if nothing stands in them.

@@ -126,6 +126,7 @@ impl LawCase {
         if !found.says_ratio {
             return Err(lacks_ratio(&keys.file, "measured.rates").in_file(&path));
         }
+        self.warnings.extend(found.warnings);
         if found.flagged > 0 {
             let of = found.flagged + found.rows.len();
             self.warnings.push(format!(

@@ -39,6 +39,8 @@ pub enum Role {
     Width,
     /// Thickness of the specimen.
     Thickness,
+    /// Whether a reading counts.
+    Mark,
     /// Another quantity of a test.
     Other,
     /// Nothing that the name says.
@@ -84,6 +86,16 @@ impl Column {
         Column { unit: Named::Is(unit), factor: self.factor / own * unit.si(), ..self }
     }
 
+    /// Whether it holds lengths tip to tip (`2a`), of which the half is taken.
+    pub(super) fn is_tip_to_tip(&self) -> bool {
+        self.factor < Column::new(self.index, self.role, self.unit).factor
+    }
+
+    /// The same column of lengths tip to tip.
+    pub(super) fn tip_to_tip(self) -> Column {
+        Column { factor: 0.5 * self.factor, ..self }
+    }
+
     /// What a name means, whatever its case, blanks and brackets.
     pub(super) fn named(index: usize, name: &str) -> Column {
         of_words(name, |words, bracket| {
@@ -95,25 +107,34 @@ impl Column {
             if any_in(words, SPECIMEN) && all_in(words, &[SPECIMEN, SPECIMEN_MORE]) {
                 return column(Role::Specimen, Named::No);
             }
+            if any_marks(words) && all_in(words, &[MARKS, MARKS_KEEP, MARKS_OUT, MARKS_MORE]) {
+                return column(Role::Mark, Named::No);
+            }
             let known = cycles(words, bracket).or_else(|| load(words, bracket)).or_else(|| length(words, bracket));
             if let Some((role, unit)) = known {
-                let share = if words.contains(&"2a") { 0.5 } else { 1.0 };
                 let column = column(role, unit);
-                return Column { factor: share * column.factor, ..column };
+                return if words.contains(&"2a") { column.tip_to_tip() } else { column };
             }
             if let Some(column) = of_rates(index, words, bracket).or_else(|| size(index, words, bracket)) {
                 return column;
             }
             let is_other = [OTHER, MAX, MIN].iter().any(|list| any_in(words, list)) || load(words, &[]).is_some();
-            column(if is_other { Role::Other } else { Role::Unknown }, Named::No)
+            // One in a unit of load is told of if it is not read.
+            let in_units = unit_of(words, bracket, load_unit).into_iter().map(|(_, unit)| unit);
+            let mut of_load =
+                in_units.filter(|unit| matches!(unit, Named::Is(_)) && (!bracket.is_empty() || words.last() != Some(&"n")));
+            match is_other {
+                true => column(Role::Other, of_load.next().unwrap_or(Named::No)),
+                false => column(Role::Unknown, Named::No),
+            }
         })
     }
 
     /// The column that the user gives a role, its unit still that of its name.
     pub(super) fn given(index: usize, role: Role, name: &str) -> Column {
         let own = Column::named(index, name);
-        if role == Role::Length && own.factor < Column::new(index, Role::Length, own.unit).factor {
-            return own;
+        if matches!(role, Role::Length | Role::Side) && own.is_tip_to_tip() {
+            return Column { role, ..own };
         }
         if matches!(role, Role::DeltaK | Role::Rate) {
             return of_words(name, |words, bracket| of_quantity(index, role, words, bracket, &|_| true)).unwrap_or(Column::new(
@@ -192,8 +213,7 @@ fn cycle_unit(words: &[&str]) -> Option<Unit> {
 fn length(words: &[&str], bracket: &[&str]) -> Option<(Role, Named)> {
     unit_of(words, bracket, length_unit).into_iter().find_map(|(words, unit)| {
         let has = |list| any_in(words, list);
-        let is_double = words == ["2a"] || (words.contains(&"2a") && all_in(words, &["2a", LENGTH, LENGTH_MORE]));
-        if is_double || (has(LENGTH) && all_in(words, &[LENGTH, LENGTH_MORE])) {
+        if has(LENGTH) && all_in(words, &[LENGTH, LENGTH_MORE]) {
             return Some((Role::Length, unit));
         }
         let sides = has(SIDES) && all_in(words, &[SIDES, SIDE_MORE, LENGTH, LENGTH_MORE]);
@@ -214,9 +234,10 @@ fn load(words: &[&str], bracket: &[&str]) -> Option<(Role, Named)> {
     }
     unit_of(words, bracket, load_unit).into_iter().find_map(|(words, unit)| {
         let has = |lists: &[&str]| lists.iter().any(|list| any_in(words, list));
-        let stress = has(&[STRESS, MAX_STRESS, MIN_STRESS]);
-        let lists = [FORCE, STRESS, LOAD_MORE, RANGE, PART, MAX, MIN, MAX_WORDS, MIN_WORDS, MAX_STRESS, MIN_STRESS];
-        if !(stress || has(&[FORCE, MAX_WORDS, MIN_WORDS])) || !all_in(words, &lists) {
+        let stress = has(&[STRESS, MAX_STRESS, MIN_STRESS, RANGE_STRESS]);
+        let of_force = [FORCE, LOAD_MORE, RANGE, PART, MAX, MIN, MAX_WORDS, MIN_WORDS, RANGE_WORDS];
+        let lists = [&of_force[..], &[STRESS, MAX_STRESS, MIN_STRESS, RANGE_STRESS]].concat();
+        if !(stress || has(&[FORCE, MAX_WORDS, MIN_WORDS, RANGE_WORDS])) || !all_in(words, &lists) {
             return None;
         }
         // A unit of the other quantity is none: `stress max (kN)`.
@@ -224,9 +245,14 @@ fn load(words: &[&str], bracket: &[&str]) -> Option<(Role, Named)> {
             Named::Is(unit) if unit.is_stress() != stress => Named::Strange,
             unit => unit,
         };
+        // `dF (Hz)` is no load, and `DP` may be the number of a data point.
+        let is_short = matches!(words, ["dp" | "df" | "ds"]);
+        if is_short && unit == Named::Strange {
+            return None;
+        }
         let (largest, smallest) = (has(&[MAX, MAX_WORDS, MAX_STRESS]), has(&[MIN, MIN_WORDS, MIN_STRESS]));
-        let role = match (largest, smallest, has(&[RANGE])) {
-            _ if has(&[PART]) => Role::Load,
+        let role = match (largest, smallest, has(&[RANGE, RANGE_WORDS, RANGE_STRESS])) {
+            _ if has(&[PART]) || (is_short && unit == Named::No) => Role::Load,
             (true, false, false) => Role::Max,
             (false, true, false) => Role::Min,
             (false, false, true) => Role::Range,
@@ -283,20 +309,68 @@ fn load_unit(words: &[&str]) -> Option<Unit> {
     Unit::spelled(words, Unit::Load(LoadUnit::Newton))
 }
 
-/// The unit of length that a name ends with, whatever else it says: a specimen's name in a wide table.
-pub(super) fn length_unit_at_end(name: &str) -> Named {
-    of_words(name, |words, bracket| match words {
-        _ if !bracket.is_empty() => length_unit(bracket).map_or(Named::Strange, Named::Is),
-        [.., last] if words.len() > 1 && *last != "m" => length_unit(&[last]).map_or(Named::No, Named::Is),
-        _ => Named::No,
+/// The unit of cycles or length that a name ends with, whatever else it says: a specimen's name in a wide table.
+pub(super) fn unit_at_end(name: &str, role: Role) -> Named {
+    let known = if role == Role::Cycles { cycle_unit } else { length_unit };
+    // `CT-1000` and `plate m` end with no unit.
+    let is_said = |unit: &[&str]| {
+        let is_word = |word: &&str| word.starts_with('x') || (word.len() > 1 && word.chars().all(char::is_alphabetic));
+        name.contains(['^', '³', '⁶', '×']) || unit.iter().any(is_word)
+    };
+    of_words(name, |words, bracket| {
+        let mut readings = unit_of(words, bracket, known).into_iter().rev();
+        let said = readings.find(|(rest, unit)| *unit == Named::No || !bracket.is_empty() || is_said(&words[rest.len()..]));
+        said.map_or(Named::No, |(_, unit)| unit)
     })
 }
 
+/// Whether a specimen's name in a wide table says that its lengths are tip to tip (`P1 2a`) or the half (`P1 a`); `None` if neither.
+pub(super) fn says_tip_to_tip(name: &str) -> Option<bool> {
+    of_words(name, |words, _| match words.contains(&"2a") {
+        true => Some(true),
+        false => words.contains(&"a").then_some(false),
+    })
+}
+
+/// Whether a name is a word and perhaps a unit of length.
+pub(super) fn is_length_of(name: &str, word: &str) -> bool {
+    of_words(name, |words, bracket| unit_of(words, bracket, length_unit).iter().any(|(words, _)| *words == [word]))
+}
+
+fn any_marks(words: &[&str]) -> bool {
+    [MARKS, MARKS_KEEP, MARKS_OUT].iter().any(|list| any_in(words, list))
+}
+
+/// Whether a column that says which readings count marks those that do not.
+pub(super) fn marks_out(name: &str) -> bool {
+    of_words(name, |words, _| any_in(words, MARKS_OUT) || !any_in(words, MARKS_KEEP))
+}
+
+/// Characters of a cell in a row of units that is as good as blank.
+const NO_UNIT: &str = "-–—/%°1";
+
 /// A name with the unit of the row below it, unless it has one itself.
-pub(super) fn with_unit(name: &str, unit: &str) -> String {
-    let has_unit = Column::named(0, name).unit != Named::No;
+/// Errors: its own unit, where the row says another one.
+pub(super) fn with_unit(name: &str, unit: &str) -> std::result::Result<String, Unit> {
+    let column = Column::named(0, name);
     let unit = unit.trim_matches(['(', ')', '[', ']', '{', '}', ' ']);
-    if has_unit || unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") }
+    if unit.chars().all(|c| NO_UNIT.contains(c)) && column.unit != Named::No {
+        return Ok(name.to_owned());
+    }
+    let said = [column.unit, unit_at_end(name, Role::Length), unit_at_end(name, Role::Cycles)];
+    for own in said.into_iter().filter_map(|named| if let Named::Is(own) = named { Some(own) } else { None }) {
+        let below = of_words(unit, |words, _| match own {
+            Unit::Cycles(_) => cycle_unit(words),
+            _ => Unit::spelled(words, own),
+        });
+        match below {
+            Some(below) if below == own => return Ok(name.to_owned()),
+            Some(_) => return Err(own),
+            None => {}
+        }
+    }
+    let has_unit = column.unit != Named::No;
+    Ok(if has_unit || unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") })
 }
 
 /// Whether a cell of a row below the header is a unit, or blank.
@@ -304,7 +378,7 @@ pub(super) fn is_unit_or_blank(cell: &str) -> bool {
     const MORE: [&[&str]; 12] =
         [&["s"], &["sec"], &["h"], &["hz"], &["c"], &["f"], &["k"], &["v"], &["mm", "cycle"], &["cm"], &["um"], &["gpa"]];
     let text = cell.trim_matches(['(', ')', '[', ']', '{', '}', ' ', '.']);
-    if text.is_empty() || text.chars().all(|c| "-–—/%°1".contains(c)) {
+    if text.is_empty() || text.chars().all(|c| NO_UNIT.contains(c)) {
         return true;
     }
     of_words(text, |words, _| {

@@ -10,11 +10,10 @@ pub(super) const CYCLES_MORE: &str = "elapsed total number num no nr of count co
 /// `Axial Count` has no other word for cycles.
 pub(super) const COUNTS: &str = "count counts";
 
-pub(super) const LENGTH: &str = "a length len risslaenge risslange rissl fissure grieta cricca cracklength cracksize crack";
+pub(super) const LENGTH: &str = "a 2a length len risslaenge risslange rissl fissure grieta cricca cracklength cracksize crack";
 pub(super) const LENGTH_MORE: &str = "crack size average avg ave av mean mittlere mittel mittelwert visual optical measured current corrected physical \
     fatigue the of length longueur longitud lunghezza de la della moyenne media flaw a";
-pub(super) const SIDES: &str =
-    "front back rear left right vorne hinten links rechts vorderseite rueckseite vorn avant arriere gauche droite near far";
+pub(super) const SIDES: &str = "front back rear left right afront aback aleft aright vorne hinten links rechts vorderseite rueckseite vorn avant arriere gauche droite near far";
 /// Letters of sides, beside a word of length only.
 pub(super) const SIDE_LETTERS: &str = "f b l r fl fr bl br lf rf lb rb";
 pub(super) const SIDE_MORE: &str = "side face surface seite tip cote";
@@ -30,8 +29,17 @@ pub(super) const MIN: &str = "min minimum minimal minimale valley lower unter un
 /// A load and its extreme in one word.
 pub(super) const MAX_WORDS: &str = "pmax fmax loadmax maxload forcemax maxforce oberlast oberkraft maximallast hoechstlast";
 pub(super) const MIN_WORDS: &str = "pmin fmin loadmin minload forcemin minforce unterlast unterkraft minimallast";
+pub(super) const RANGE_WORDS: &str = "dp df deltap deltaf dload dforce prange frange loadrange forcerange";
+pub(super) const RANGE_STRESS: &str = "ds dsigma dstress deltas deltasigma srange sigmarange stressrange";
 pub(super) const MAX_STRESS: &str = "smax sigmamax maxstress stressmax oberspannung";
 pub(super) const MIN_STRESS: &str = "smin sigmamin minstress stressmin unterspannung";
+
+/// Words of columns that say whether a reading counts: of those that do, of those that do not, of either, and beside them.
+pub(super) const MARKS_KEEP: &str = "valid validity use used include included accept accepted keep";
+pub(super) const MARKS_OUT: &str = "exclude excluded reject rejected outlier outliers discard discarded omit omitted invalid";
+pub(super) const MARKS: &str = "flag flags flagged";
+pub(super) const MARKS_MORE: &str =
+    "data point points reading readings row rows in from for fit fitting the of is regression analysis e647 astm per";
 
 /// Names of the range of stress intensity.
 pub(super) const DELTA_K: [&str; 12] = [
@@ -109,7 +117,12 @@ pub(super) fn words(name: &str) -> (Vec<String>, Vec<String>) {
             // `Crack length (front)`, `Crack length (a)`: a bracket of words is part of the name.
             let is_word = |word: &String| {
                 let word = word.as_str();
-                is_in(SIDES, word) || is_in(SIDE_MORE, word) || word == "a" || is_in(MAX, word) || is_in(MIN, word)
+                is_in(SIDES, word)
+                    || is_in(SIDE_MORE, word)
+                    || word == "a"
+                    || word == "2a"
+                    || is_in(MAX, word)
+                    || is_in(MIN, word)
             };
             match inside.as_slice() {
                 [] => (before, Vec::new()),

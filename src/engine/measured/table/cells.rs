@@ -4,13 +4,16 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 
-use crate::error::{Error, InputError};
+use crate::error::{Error, InputError, Result};
 
 /// Longest cell or row repeated in a message.
 const SHOWN: usize = 40;
 
 /// Most columns of a table of readings.
 pub(super) const COLUMNS_MAX: usize = 4096;
+
+/// Lines that a note of rows left out names.
+const LINES_SHOWN: usize = 10;
 
 /// Rows that a message about a table of unknown shape shows.
 const ROWS_SHOWN: usize = 5;
@@ -78,6 +81,8 @@ pub(in crate::measured) struct Table {
     pub footer: Option<[usize; 2]>,
     /// What separates columns; `None` where the cells are stored, not written.
     pub separator: Option<Separator>,
+    /// What else the user should know.
+    pub notes: Vec<String>,
 }
 
 /// One row of cells.
@@ -129,7 +134,26 @@ impl Table {
             let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
             format!("{}: {lines} behind the readings hold text and no number: not read", self.file.display())
         };
-        self.footer.map(line).into_iter().collect()
+        self.footer.map(line).into_iter().chain(self.notes.iter().cloned()).collect()
+    }
+
+    /// Leaves rows out, which a note says; `why` ends its sentence.
+    /// Errors: no row is left.
+    pub(in crate::measured) fn leave_out(&mut self, why: &str, remedy: &str, is_out: impl Fn(&Row) -> bool) -> Result<()> {
+        let lines: Vec<usize> = self.rows.iter().filter(|row| is_out(row)).map(|row| row.line).collect();
+        let (out, all) = (lines.len(), self.rows.len());
+        if out == 0 {
+            return Ok(());
+        }
+        if out == all {
+            return Err(whole_file(&self.file).error(format!("has no row that counts: each is {why}"), remedy));
+        }
+        let shown: Vec<String> = lines.iter().take(LINES_SHOWN).map(usize::to_string).collect();
+        let more = if out > LINES_SHOWN { ", ..." } else { "" };
+        let lines = format!("line{} {}{more}", if out == 1 { "" } else { "s" }, shown.join(", "));
+        self.notes.push(format!("{}: {out} of {all} rows are left out, {why} ({lines}); {remedy}", self.file.display()));
+        self.rows.retain(|row| !is_out(row));
+        Ok(())
     }
 
     /// A complaint about a name in the header.

@@ -158,7 +158,9 @@ fn without_footer(rows: &[Row]) -> usize {
 
 /// A row below the header of nothing but units.
 fn is_row_of_units(row: &Row) -> bool {
-    !row.is_blank() && row.cells.iter().all(is_unit_or_blank)
+    // `1000, 1` is a reading.
+    let is_text = |cell: &str| !cell.is_empty() && !is_number(cell);
+    row.cells.iter().any(is_text) && row.cells.iter().all(is_unit_or_blank)
 }
 
 fn merit(rows: &[Row], place: Place) -> Merit {
@@ -169,7 +171,9 @@ fn merit(rows: &[Row], place: Place) -> Merit {
         .flat_map(|row| row.cells.iter())
         .filter(|cell| !cell.is_empty())
         .fold((0_usize, 0_usize), |(numbers, cells), cell| (numbers + usize::from(is_number(cell)), cells + 1));
-    Merit(place.named, fits, numbers as f64 / cells.max(1) as f64)
+    // Names that no row has a cell for each of are words of other names: `N,total crack length (mm)` cut at blanks.
+    let named = place.named && (body().next().is_none() || body().any(|row| row.cells.len() >= place.columns));
+    Merit(named, fits, numbers as f64 / cells.max(1) as f64)
 }
 
 /// The whole file by one separator.
@@ -205,10 +209,19 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Resu
         (Some(header), None) => cells(&rows[header]),
         (None, _) => (1..=place.columns).map(|column| format!("column {column}")).collect(),
     };
-    let units = place.header.filter(|header| header + 1 < place.body).map(|header| cells(&rows[header + 1]));
-    let names = units
-        .as_ref()
-        .map_or_else(|| header.clone(), |units| header.iter().zip(units).map(|(name, unit)| with_unit(name, unit)).collect());
+    let row_of_units = place.header.filter(|header| header + 1 < place.body).map(|header| &rows[header + 1]);
+    let units = row_of_units.map(cells);
+    let in_units = |(name, unit): (&String, &String)| {
+        let fault = Fault { line: row_of_units.map(|row| row.line), key: Some(name), value: Some(unit), ..whole_file(file) };
+        with_unit(name, unit).map_err(|own| {
+            let problem = format!("is another unit than that of the name above it, {}", own.name());
+            fault.error(problem, "name the unit in one place, or the same in both")
+        })
+    };
+    let names = match &units {
+        None => header.clone(),
+        Some(units) => header.iter().zip(units).map(in_units).collect::<Result<_>>()?,
+    };
     let header_line = place.header.map_or(0, |header| rows[header].line);
     let end = without_footer(&rows).max(place.body);
     let footer = rows.get(end).map(|first| [first.line, rows[rows.len() - 1].line]);
@@ -221,7 +234,8 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Resu
         row.cells = row.cells.iter().map(restored).collect();
     }
     let header = header.iter().map(|name| restored(name).to_owned()).collect();
-    Ok(Table { file: file.to_path_buf(), header, names, header_line, rows, footer, separator: None })
+    let notes = Vec::new();
+    Ok(Table { file: file.to_path_buf(), header, names, header_line, rows, footer, separator: None, notes })
 }
 
 /// A header behind the sign of a comment, as programs for arrays write it.

@@ -5,6 +5,7 @@
 
 mod cells;
 mod cut;
+mod hidden;
 mod lines;
 mod workbook;
 
@@ -13,10 +14,18 @@ use std::path::Path;
 pub(super) use cells::{Fault, Row, Separator, Table, whole_file};
 
 use super::import::Import;
+use super::marks::leave_marked_out;
 use crate::error::Result;
 
-/// Cuts the bytes of a file into cells: a workbook by its content, Parquet by the ending of its name, everything else as text.
+/// Cuts the bytes of a file into cells: a workbook by its content, Parquet by the ending of its name, everything else as text. Rows that
+/// the table itself marks as not counting are left out.
 pub(super) fn read(bytes: &[u8], file: &Path, import: &Import) -> Result<Table> {
+    let mut table = cells_of(bytes, file, import)?;
+    leave_marked_out(&mut table, import)?;
+    Ok(table)
+}
+
+fn cells_of(bytes: &[u8], file: &Path, import: &Import) -> Result<Table> {
     if workbook::is_workbook(bytes, file) {
         return workbook::table(bytes, file, import);
     }
@@ -46,6 +55,7 @@ fn parquet(bytes: &[u8], file: &Path) -> Result<Table> {
             rows,
             footer: None,
             separator: None,
+            notes: Vec::new(),
         })
     }
     #[cfg(not(feature = "tables"))]

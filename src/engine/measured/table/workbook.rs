@@ -9,7 +9,7 @@ use calamine::{Data, DataRef, Reader, Xlsx, XlsxError};
 use csv::StringRecord;
 
 use super::cells::{COLUMNS_MAX, Fault, Row, Table, whole_file};
-use super::cut;
+use super::{cut, hidden};
 use crate::cells::{CELLS_MAX, SMALLER, TEXT_MAX, UNPACKED_MAX, too_many};
 use crate::error::{Error, Result};
 use crate::measured::header::names_a_test;
@@ -36,8 +36,10 @@ pub(super) fn table(bytes: &[u8], file: &Path, import: &Import) -> Result<Table>
     }
     let mut taken = Taken::default();
     if let Some(wanted) = &import.sheet {
-        return sheet_table(&mut book, chosen(wanted, &sheets, file)?, file, import, &mut taken)?
-            .ok_or_else(|| sheet_fault(file, &wanted.0).error("is an empty sheet", "name the sheet of the readings"));
+        let name = chosen(wanted, &sheets, file)?;
+        let table = sheet_table(&mut book, name, file, import, &mut taken)?
+            .ok_or_else(|| sheet_fault(file, &wanted.0).error("is an empty sheet", "name the sheet of the readings"))?;
+        return without_hidden(table, bytes, name);
     }
     let mut found: Vec<(String, Table)> = Vec::new();
     let mut other = None;
@@ -50,7 +52,10 @@ pub(super) fn table(bytes: &[u8], file: &Path, import: &Import) -> Result<Table>
         }
     }
     match found.len() {
-        1 => Ok(found.remove(0).1),
+        1 => {
+            let (name, table) = found.remove(0);
+            without_hidden(table, bytes, &name)
+        }
         0 => other.unwrap_or_else(|| Err(whole_file(file).error("has no sheet with cells", "give the sheet of the readings"))),
         _ => {
             let names: Vec<String> = found.iter().map(|(name, _)| format!("{name:?}")).collect();
@@ -58,6 +63,19 @@ pub(super) fn table(bytes: &[u8], file: &Path, import: &Import) -> Result<Table>
             Err(whole_file(file).error(problem, format!("say which by measured.sheet = {} (--sheet)", names[0])))
         }
     }
+}
+
+/// The table without hidden rows, which are readings taken out; hidden columns are read, and told of.
+fn without_hidden(mut table: Table, bytes: &[u8], sheet: &str) -> Result<Table> {
+    let hidden = hidden::of_sheet(bytes, sheet);
+    let names = hidden.columns.iter().filter_map(|column| table.header.get(*column)).filter(|name| !name.is_empty());
+    let names: Vec<&str> = names.map(String::as_str).collect();
+    if !names.is_empty() {
+        let note = format!("{}: hidden columns are read like the others: {}", table.file.display(), names.join(", "));
+        table.notes.push(note);
+    }
+    table.leave_out("hidden in the workbook", "unhide them to read them", |row| hidden.rows.contains(&row.line))?;
+    Ok(table)
 }
 
 /// The sheet of that name, or else of that number.
