@@ -43,7 +43,9 @@ fn value(key: &str, given: &Bound<'_, PyAny>, levels: usize) -> PyResult<Option<
             (.., Ok(items)) => Value::Array(
                 items
                     .enumerate()
-                    .filter_map(|(place, item)| item.and_then(|item| value(&format!("{key}[{place}]"), &item, levels)).transpose())
+                    .filter_map(|(place, item)| {
+                        item.and_then(|item| value(&format!("{key}[{place}]"), &item, levels)).transpose()
+                    })
                     .collect::<PyResult<_>>()?,
             ),
             _ => return Err(strange(key, given, "give numbers, text, true or false, lists or dicts of them")),

@@ -72,7 +72,12 @@ fn no_more_of_a_model_than_a_scene_needs() {
         (DOUBLE, &["model.tolerance_percent=5"], Handbook, "Tada double edge"),
         // The error of a life goes with the exponent of its law.
         (DOUBLE, &["fatigue.paris_m=2"], Handbook, "Tada double edge"),
-        (MIDDLE, &["fatigue.paris_m=8"], ElementFreeGalerkin, "0.3 % off in K, which is 2.4 % of life at m = 8; asked for are 2 %"),
+        (
+            MIDDLE,
+            &["fatigue.paris_m=8"],
+            ElementFreeGalerkin,
+            "0.3 % off in K, which is 2.4 % of life at m = 8; asked for are 2 %",
+        ),
         (AT_HOLES, &["model.tolerance_percent=5"], Handbook, "Newman"),
         (AT_HOLES, &["model.tolerance_percent=5", "loading.edge_bending_ratio=1"], ElementFreeGalerkin, "no handbook formula"),
         (AT_HOLES, &["model.tolerance_percent=5", "loading.crack_pressure_mpa=10"], ElementFreeGalerkin, "pressure in cracks"),

@@ -163,27 +163,27 @@ fn imports_are_taken_apart() {
 const LINES: &[(&str, usize)] = &[
     ("report", 12000),
     ("fracture", 6938),
+    ("specimen", 6367),
     ("growth", 6253),
-    ("specimen", 6241),
-    ("calibration", 6166),
+    ("calibration", 6171),
     ("service", 5856),
     ("solver", 5300),
     ("element_free", 5215),
     ("verify", 5201),
-    ("measured", 3879),
-    ("predict", 3291),
-    ("case", 3061),
+    ("measured", 4229),
+    ("predict", 3295),
+    ("case", 3072),
     ("commands", 3044),
     ("body", 2557),
-    ("fatigue", 2435),
+    ("fatigue", 2450),
     ("loading", 2326),
     ("levels", 1728),
     ("sweep", 1474),
-    ("runner", 1223),
+    ("runner", 1242),
     ("input", 898),
     ("stress_intensity", 688),
+    ("python", 615),
     ("check", 607),
-    ("python", 583),
     ("units", 479),
     ("bond_law", 394),
     ("tables", 342),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 90015;
+const LINES_OF_ALL: usize = 90577;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -95,7 +95,7 @@ fn beyond_formula(
 /// The exponent of ΔK that `[fatigue]` gives.
 fn exponent(fatigue: &Value) -> Option<f64> {
     let constants = GrowthLawKind::all().flat_map(|kind| kind.0.constants).filter(|constant| constant.is_exponent);
-    constants.filter_map(|constant| value_at(fatigue, constant.key)).find_map(|value| {
-        value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
-    })
+    constants
+        .filter_map(|constant| value_at(fatigue, constant.key))
+        .find_map(|value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)))
 }

@@ -123,15 +123,10 @@ impl Case {
         let of_library = law_source::of_library(section, sections.required("material")?, specimen.thickness, folder)?;
         let (with_growth, growth_data) = of_library.unzip();
         let with_growth = with_growth.as_ref().unwrap_or(section);
-        let asked = choose::Sections { model: sections.optional("model"), fatigue: with_growth, output: sections.optional("output") };
+        let asked =
+            choose::Sections { model: sections.optional("model"), fatigue: with_growth, output: sections.optional("output") };
         let (model, chosen) = model::from_value(&asked, (&specimen, &material, &loading), &mut choices, &mut warnings)?;
-        let fatigue = fatigue::from_value(
-            with_growth,
-            model.method(),
-            (&specimen, &material, &loading),
-            folder,
-            &mut choices,
-        )?;
+        let fatigue = fatigue::from_value(with_growth, model.method(), (&specimen, &material, &loading), folder, &mut choices)?;
         let stop = fatigue::stop_from_value(sections.optional("stop"), (&specimen, &material, &loading))?;
         let threshold = Some(fatigue.settings.threshold).filter(|threshold| *threshold > 0.0);
         let own = || match &fatigue.law {

@@ -260,14 +260,16 @@ fn is_overlap(a: Crack, b: Crack) -> bool {
 fn check_corners(corners: &[Point], key: &str, notes: &mut Vec<String>) -> Result<()> {
     for corner in corners.windows(3) {
         let [before, after] = [direction(corner[0], corner[1]), direction(corner[1], corner[2])];
-        let turn = (before[0] * after[1] - before[1] * after[0]).atan2(before[0] * after[0] + before[1] * after[1]).abs().to_degrees();
+        let turn =
+            (before[0] * after[1] - before[1] * after[0]).atan2(before[0] * after[0] + before[1] * after[1]).abs().to_degrees();
         let problem = format!("turns by {turn:.0}° at {}", words(corner[1]));
         if turn > FOLDED {
             let remedy = "end the crack at that corner, and give what lies behind it, if it is one, as a crack that does not share its end";
             return Err(input_missing(key, format!("{problem}, where it is as sharp as a tip and would not grow"), remedy));
         }
         if turn > SHARP {
-            notes.push(format!("{key} {problem}: ahead of that corner stress is nearly that of a tip, but nothing grows from it"));
+            notes
+                .push(format!("{key} {problem}: ahead of that corner stress is nearly that of a tip, but nothing grows from it"));
         }
     }
     Ok(())
