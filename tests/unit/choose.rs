@@ -29,7 +29,6 @@ fn formulas_stand_beside_the_loads_that_they_know() {
         (AT_HOLES, "loading.residual_stress=\"-20\"", false),
         (MIDDLE, "loading.stress_ratio=0.2", true),
         (MIDDLE, "loading.residual_stress=\"-20\"", false),
-        (MIDDLE, "loading.crack_pressure_mpa=10", false),
     ] {
         let tips = stress_intensity(&case(specimen, &[set, "fatigue.walker_gamma=0.5"]), &[]).unwrap();
         assert_eq!(tips[0].handbook_k_i.is_some(), is_known, "{specimen} {set}");

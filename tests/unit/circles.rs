@@ -180,7 +180,7 @@ const LINES: &[(&str, usize)] = &[
     ("levels", 1728),
     ("sweep", 1474),
     ("runner", 1242),
-    ("input", 898),
+    ("input", 904),
     ("stress_intensity", 688),
     ("python", 615),
     ("check", 607),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 90577;
+const LINES_OF_ALL: usize = 90583;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -191,6 +191,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (row("holes = 3\npitch_mm = 20\ncrack_length_mm = 8"), TENSION, "half the ligament, 7.5 mm"),
         (row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[1, 1]]"), TENSION, "are not those of 3 holes"),
         (row("holes = 2\npitch_mm = 20\ncrack_lengths_mm = [[0, 0], [0, 0]]"), TENSION, "has no crack"),
+        (row("holes = 2\npitch_mm = 20\ncrack_lengths_mm = [0, 2]"), TENSION, "is not a list of pairs, such as [[1, 2]"),
         (
             row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[0, 10], [16, 0], [0, 0]]"),
             TENSION,

@@ -132,12 +132,18 @@ fn explain(error: &toml::de::Error, value: &Value, path: &str, beside: &[&str]) 
         }));
     }
     let wanted = message.rsplit_once("expected ").map_or("another kind of value", |(_, wanted)| plain(wanted));
+    // One pair where a list of them belongs.
+    let is_pair = value_at(value, inner).and_then(Value::as_array).is_some_and(|list| list.len() == 2 && !list[0].is_array());
+    let wanted = if wanted == PAIR && is_pair { "a list of pairs, such as [[1, 2], [3, 4]]" } else { wanted };
     input(&place, given(&place).unwrap_or_default(), format!("is not {wanted}"), format!("give {wanted}"))
 }
 
 fn quoted_after<'t>(text: &'t str, start: &str) -> Option<&'t str> {
     text.strip_prefix(start)?.split('`').next()
 }
+
+/// Two numbers in a list.
+const PAIR: &str = "a pair of numbers, such as [1, 2]";
 
 /// Rust's words for a type to a reader's.
 fn plain(wanted: &str) -> &str {
@@ -147,7 +153,7 @@ fn plain(wanted: &str) -> &str {
         "a string" => "text in quotes",
         "a boolean" => "true or false",
         "a sequence" => "a list [...]",
-        "an array of length 2" | "an array of size 2" | "fewer elements in array" => "a pair of numbers, such as [1, 2]",
+        "an array of length 2" | "an array of size 2" | "fewer elements in array" => PAIR,
         other => other,
     }
 }
