@@ -17,7 +17,7 @@ fn write(folder: &Path, change: [&str; 2]) {
 
 #[test]
 fn bad_input_is_refused_by_name() {
-    let rows: [([&str; 2], &[&str]); 18] = [
+    let rows: [([&str; 2], &[&str]); 19] = [
         (
             ["crack_depth_mm = 1.27", "crack_depth_mm = 5.5"],
             &["hole.toml:1", "specimen.crack_depth_mm = 5.5", "a/t = 1.100", "through crack"],
@@ -52,6 +52,10 @@ fn bad_input_is_refused_by_name() {
         ),
         (["[fatigue]", "[stop]\ncrack_depth_mm = 6\n[fatigue]"], &["stop.crack_depth_mm = 6", "beyond 5 mm"]),
         (["stress_ratio = 0.1", "stress_ratio = 0.1\nbending_ratio = -1"], &["loading.bending_ratio", "beyond reason"]),
+        (
+            ["stress_ratio = 0.1", "stress_ratio = 0.1\nstress_parallel_ratio = -1"],
+            &["loading.stress_parallel_ratio = -1", "stress at the hole", "crack_at_hole"],
+        ),
         (
             ["cracks = 1 ", "holes = [{ x_mm = 8, y_mm = 1, diameter_mm = 6 }]\ncracks = 1 "],
             &["specimen.holes[0]", "lies on the crack"],

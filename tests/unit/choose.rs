@@ -33,13 +33,21 @@ fn formulas_stand_beside_the_loads_that_they_know() {
         let tips = stress_intensity(&case(specimen, &[set, "fatigue.walker_gamma=0.5"]), &[]).unwrap();
         assert_eq!(tips[0].handbook_k_i.is_some(), is_known, "{specimen} {set}");
     }
-    let by_hand = Case::from_toml(
-        &format!("[specimen]\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\n{AT_HOLES}\n{REST}"),
-        "bent",
-        Path::new("."),
-        &[bent.to_owned(), "model.method=handbook".to_owned()],
-    );
-    assert!(by_hand.unwrap_err().to_string().contains("has no K(a) for this specimen (crack_at_hole)"));
+    let compact = "[specimen]\nwidth_mm = 50\nthickness_mm = 10\nkind = \"compact_tension\"\ncrack_length_mm = 15";
+    let plate = format!("[specimen]\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\n{AT_HOLES}");
+    for (specimen, rest, set, words) in [
+        (plate.as_str(), REST.to_owned(), bent, "has no K(a) for this specimen (crack_at_hole)"),
+        (
+            compact,
+            REST.replace("stress_max_mpa = 60", "force_max_n = 1000"),
+            "specimen.pin_half_angle_deg=90",
+            "that of its own pins",
+        ),
+    ] {
+        let set = [set.to_owned(), "model.method=handbook".to_owned()];
+        let by_hand = Case::from_toml(&format!("{specimen}\n{rest}"), "by hand", Path::new("."), &set);
+        assert!(by_hand.as_ref().is_err_and(|error| error.to_string().contains(words)), "{set:?}: {by_hand:?}");
+    }
 }
 
 #[test]

@@ -163,20 +163,20 @@ fn imports_are_taken_apart() {
 const LINES: &[(&str, usize)] = &[
     ("report", 12000),
     ("fracture", 6938),
-    ("specimen", 6367),
+    ("specimen", 6371),
     ("growth", 6253),
     ("calibration", 6171),
     ("service", 5856),
     ("solver", 5300),
     ("element_free", 5215),
     ("verify", 5201),
-    ("measured", 4229),
-    ("predict", 3295),
-    ("case", 3072),
+    ("measured", 4434),
+    ("predict", 3299),
+    ("case", 3081),
     ("commands", 3044),
     ("body", 2557),
     ("fatigue", 2450),
-    ("loading", 2326),
+    ("loading", 2334),
     ("levels", 1728),
     ("sweep", 1474),
     ("runner", 1242),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 90583;
+const LINES_OF_ALL: usize = 90813;
 
 #[test]
 fn rooms_do_not_grow() {

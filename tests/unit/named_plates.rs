@@ -234,6 +234,11 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (bent("length_mm = 70\nspan_mm = 72"), FORCE, "specimen.span_mm = 72: is not below the length less a contact, 69 mm"),
         (lug("head = \"round\"\nedge_distance_mm = 30\ncrack_length_mm = 3"), FORCE, "specimen.edge_distance_mm = 30"),
         (lug("head = \"square\"\ncrack_length_mm = 3"), FORCE, "use one of straight, round"),
+        (
+            lug("head = \"round\"\ncrack_length_mm = 3"),
+            "force_max_n = 1000\nedge_bending_ratio = 1",
+            "loading.edge_bending_ratio: is of loaded edges, and the load is that of the forces of lug",
+        ),
         (lug("head = \"round\"\ncrack_length_mm = 3"), TENSION, "is a stress"),
         (
             lug("head = \"round\"\ncrack_length_mm = 3"),

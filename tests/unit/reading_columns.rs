@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use perilife::calibration::case::CalibrationCase;
-use perilife::measured::{Import, LengthUnit, Measured, RateFileKeys, parse, rates};
+use perilife::measured::{CycleUnit, Import, LengthUnit, Measured, RateFileKeys, parse, rates};
 use perilife::units::MM;
 use tempfile::tempdir;
 
@@ -248,5 +248,65 @@ fn lengths_left_and_right_are_sides_of_one_specimen() {
     }
     for header in ["N;AL (mm);AR (mm)", "N;aL (mm);S2 (mm)"] {
         all_are_the_curve(header, &read(&table(header, |n, a| format!("{n};{a};{a}")), &Import::default()).unwrap(), 2);
+    }
+}
+
+/// What stands above the header or beside the columns that are read, and contradicts how they are.
+#[test]
+fn what_a_table_says_against_its_columns_is_told() {
+    let rows = |header: &str, more: &dyn Fn(usize, f64) -> String| {
+        let line = |(i, (n, a)): (usize, &(f64, f64))| format!("{n},{a}{}\n", more(i, *a));
+        format!("{header}\n{}", CURVE.iter().enumerate().map(line).collect::<String>())
+    };
+    let plain = |_: usize, _: f64| String::new();
+    for preamble in [
+        "Cycle counts are given in kilocycles",
+        "Zyklen in Tausend",
+        "N x 1000",
+        "Cycles are counted in blocks of 1000 cycles",
+        "Unit of N;kilocycles",
+        "# Units: N [kcycles]",
+    ] {
+        let text = rows(&format!("{preamble}\nN,a (mm)"), &plain);
+        let error = read(&text, &Import::default()).unwrap_err().to_string();
+        assert!(error.contains("lab.csv:1: ") && error.contains("may say the unit of the cycles"), "{preamble}: {error}");
+        let said = Import { cycles: Some(CycleUnit::Cycles), ..Import::default() };
+        all_are_the_curve(preamble, &read(&text, &said).unwrap(), 1);
+    }
+    for preamble in ["Precracked for 50 thousand cycles", "Frequency 1000 Hz, cycles sinusoidal", "Plate 10 x 1000 mm"] {
+        all_are_the_curve(preamble, &read(&rows(&format!("{preamble}\nN,a (mm)"), &plain), &Import::default()).unwrap(), 1);
+    }
+    for (header, words) in [
+        ("N,a left from notch (mm)", "is measured from the notch"),
+        ("N,Crack A (mm),Crack B (mm)", "stands beside Crack B (mm): two cracks, or two specimens"),
+    ] {
+        let error =
+            read(&rows(header, &|_, a| if header.contains('B') { format!(",{a}") } else { String::new() }), &Import::default());
+        assert!(error.as_ref().is_err_and(|error| error.to_string().contains(words)), "{header}: {error:?}");
+    }
+    let warnings = |header: &str, more: &dyn Fn(usize, f64) -> String| {
+        let measured = read(&rows(header, more), &Import::default()).unwrap();
+        all_are_the_curve(header, &measured, 1);
+        measured.warnings.join("\n")
+    };
+    for (header, more, words) in [
+        ("N,a (mm),a DCPD (mm)", 1.05, "a DCPD (mm) is not read; its lengths differ by up to 5.0 % from those of a (mm)"),
+        ("N,a (mm),2a total optical (mm)", 2.1, "2a total optical (mm) is not read; its lengths differ by up to 5.0 %"),
+    ] {
+        let told = warnings(header, &|_, a| format!(",{}", more * a));
+        assert!(told.contains(words), "{header}: {told}");
+    }
+    assert!(warnings("N,a (mm),a DCPD (mm)", &|_, a| format!(",{}", 1.01 * a)).is_empty());
+    for remark in ["rejected", "ungültig", "void: grips slipped", "fail"] {
+        let told = warnings("N,a (mm),Comment", &|i, _| format!(",{}", if i == 2 { remark } else { "ok" }));
+        assert!(told.contains("lab.csv:4: Comment") && told.contains("it is the only one"), "{remark}: {told}");
+    }
+    assert!(warnings("N,a (mm),Comment", &|_, _| ",checked".to_owned()).is_empty());
+    // Statistics beside specimens are none.
+    for name in ["Mean", "Std dev", "s.d.", "Standardabweichung", "N mean", "-2s", "Predicted", "Design curve"] {
+        let text = table(&format!("a (mm);S1;S2;{name}"), |n, a| format!("{a};{n};{n};{n}"));
+        let measured = read(&text, &Import::default()).unwrap();
+        all_are_the_curve(name, &measured, 2);
+        assert!(measured.warnings.iter().any(|line| line.contains(&format!("of a model: {name}"))), "{:?}", measured.warnings);
     }
 }

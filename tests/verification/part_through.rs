@@ -271,6 +271,23 @@ fn a_through_crack_goes_on_as_that_of_a_plate() {
     assert!(bent.stop == StopReason::BrokenThrough && bent.warnings.iter().any(|line| line.contains("bending out of the plane")));
 }
 
+/// A section in tension with bending: of a rectangle `(σ/σ_Y)² + ρ σ/(1.5 σ_Y) = 1` (fully plastic under force and moment), 0.7208 at ρ = 1 and
+/// 0.5352 at ρ = 2; without bending all of it. The crack takes its share of the section in each.
+#[test]
+fn bending_lowers_the_limit_load() {
+    for kind in [KINDS[0], KINDS[1], KINDS[3]] {
+        let hole = if kind == KINDS[3] { "hole_diameter_mm = 4\ncracks = 1\n" } else { "" };
+        let limit = |set: &[&str]| {
+            let flaw = flaw(&keys(kind, [1.0, 0.4, 0.1], hole), set);
+            flaw.limit_stress(flaw.start(), 1.0)
+        };
+        let alone = limit(&[]);
+        for (set, share) in [("loading.bending_ratio=1", 0.7208), ("loading.bending_ratio=2", 0.5352)] {
+            assert!((limit(&[set]) / alone / share - 1.0).abs() < 1e-3, "{kind} {set}: {} of {alone}", limit(&[set]));
+        }
+    }
+}
+
 /// A run that is stopped after break-through and taken up again is the same run.
 #[test]
 fn a_checkpoint_behind_break_through_goes_on() {

@@ -8,9 +8,9 @@ use crate::input::slice;
 use crate::loading::Loading;
 use crate::material::Material;
 use crate::solver::{SolverKind, Symmetry};
-use crate::specimen::Specimen;
 use crate::specimen::beta::KEY;
 use crate::specimen::handbook::handbook;
+use crate::specimen::{Bearing, Load, Specimen};
 use crate::units::MM;
 
 /// More points than this do not fit into the memory of an ordinary machine.
@@ -154,6 +154,15 @@ fn check_beta(specimen: &Specimen, method: Method) -> Result<()> {
 
 /// Hand calculation needs a formula for K(a).
 fn check_formula(specimen: &Specimen) -> Result<()> {
+    // A table of β may be of any pins.
+    let angle = specimen.loads.iter().find_map(|load| match load {
+        Load::Pin { contact: Bearing::Cosine(angle), .. } => Some(angle.to_degrees()),
+        _ => None,
+    });
+    if let Some(angle) = angle.filter(|_| specimen.beta.is_none()) {
+        let problem = "is not known to the handbook, whose K is that of its own pins";
+        return Err(input("specimen.pin_half_angle_deg", angle, problem, "leave it out, or use another model.method"));
+    }
     if handbook(specimen).is_some() || !specimen.is_through() {
         return Ok(());
     }

@@ -87,7 +87,7 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
         specimen.loads.clear();
         specimen.load_measure = LoadMeasure::Stress;
     } else if !specimen.loads.is_empty() {
-        return keep_own_loads(supports, specimen, parallel_ratio);
+        return keep_own_loads(input_, supports, specimen, parallel_ratio);
     }
     let held = read_supports(supports, specimen)?;
     let beside_edges = input_.edges.is_some() && input_.pins.is_some();
@@ -173,8 +173,11 @@ fn pin_force(load: &Load) -> Option<(usize, Point)> {
 }
 
 /// The forces that a named plate brings along, on what the case says of supports.
-fn keep_own_loads(supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+fn keep_own_loads(input_: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     read_supports(supports, specimen)?;
+    let bent = [("edge_bending_ratio", input_.edge_bending_ratio.is_some())];
+    let problem = format!("is of loaded edges, and the load is that of the forces of {}", specimen.kind);
+    refuse_given("loading", &bent, &problem, "leave it out, or give edges")?;
     if parallel_ratio != 0.0 {
         let problem = format!("does not go with the forces of {}", specimen.kind);
         return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out, or give edges"));

@@ -82,6 +82,11 @@ pub fn from_values(
         number("a ratio", -10.0, 10.0).read("loading.stress_parallel_ratio", input.stress_parallel_ratio.unwrap_or(0.0))?;
     let area = boundary::apply(&input, supports, specimen, parallel_ratio)?;
     read_bending(&input, specimen)?;
+    if let Some(flaw) = specimen.part_through.as_ref().filter(|flaw| parallel_ratio != 0.0 && flaw.radius > 0.0) {
+        let problem = format!("changes the stress at the hole, by which K of a {} is not known", flaw.kind());
+        let remedy = "leave it out, or describe the crack as one that goes through (crack_at_hole)";
+        return Err(error::input("loading.stress_parallel_ratio", parallel_ratio, problem, remedy));
+    }
     // A range is maximum - minimum, hence maximum (1 - R), also where R is negative.
     let largest = match &spectrum {
         Some(spectrum) => magnitude.value * spectrum.largest[1],

@@ -1,6 +1,7 @@
 //! What the columns of a measured file are: one row a reading, or columns of every specimen; and in which units.
 
 use super::decimal::decide;
+use super::doubts::{check_cycles, check_names, not_specimens, other_lengths, rejected, statistics};
 use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, CycleUnit, Decimal, Import, LoadUnit, Unit};
 use super::names::{Column, Named, Role, says_tip_to_tip, unit_at_end};
@@ -65,6 +66,7 @@ const KNOWN: &str = "known are specimen, cycles (N, kilocycles, megacycles), cra
 /// Errors: columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
 pub(super) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
     check_given(table, import)?;
+    check_names(table, import)?;
     let mut warnings = table.warnings();
     let given = import.columns != ColumnNames::default();
     let (shape, series) = match if given { None } else { pairs_of(&table.names) } {
@@ -72,7 +74,14 @@ pub(super) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
         None => by_roles(table, import, &mut warnings)?,
     };
     let separator = table.separator.map_or("", |separator| separator.name());
-    let decimal = decide(table, &numbers(shape, &series), import.decimal)?;
+    let read = numbers(shape, &series);
+    let decimal = decide(table, &read, import.decimal)?;
+    let of_specimens = series.iter().filter_map(|series| series.specimen);
+    let known: Vec<usize> = read.iter().copied().chain(of_specimens).map(|column| column.index).collect();
+    if let [only] = series.as_slice() {
+        warnings.extend(other_lengths(table, &only.lengths, &known, decimal));
+    }
+    warnings.extend(rejected(table, &known));
     Ok(Layout { shape, series, decimal, separator, warnings })
 }
 
@@ -98,7 +107,10 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
     let of = |wanted: fn(&Column) -> bool| columns.iter().copied().filter(wanted).collect::<Vec<Column>>();
     let (cycles, lengths) = (of(|column| column.role == Role::Cycles), of(is_length));
     let wide = is_wide(&columns);
-    let specimens = || (1..columns.len()).map(|index| (table.header[index].clone(), index));
+    let of_several = Some(statistics(table)).filter(|found| wide && found.len() + 1 < columns.len()).unwrap_or_default();
+    warnings.extend(not_specimens(table, &of_several));
+    let specimens =
+        || (1..columns.len()).filter(|index| !of_several.contains(index)).map(|index| (table.header[index].clone(), index));
     match (cycles.as_slice(), lengths.as_slice()) {
         ([cycles], [_, ..]) => {
             let specimen = of(|column| column.role == Role::Specimen);
@@ -288,7 +300,10 @@ fn cycle_column(table: &Table, column: Column, import: &Import) -> Result<Column
                 "known are cycles, kilocycles (x1000) and megacycles; set measured.cycle_unit (--cycle-unit)",
             ));
         }
-        (None, _) => Unit::Cycles(CycleUnit::Cycles),
+        (None, _) => {
+            check_cycles(table)?;
+            Unit::Cycles(CycleUnit::Cycles)
+        }
     };
     Ok(column.in_unit(unit))
 }

@@ -2,7 +2,8 @@
 
 use super::header::columns_of;
 use super::import::Import;
-use super::names::{Role, marks_out};
+use super::names::{Role, marks_out, says_one_of};
+use super::numerals::is_number;
 use super::table::{Row, Table};
 use crate::error::Result;
 
@@ -14,6 +15,8 @@ const NO: &str = "no n false f 0 nein non falsch faux";
 const COUNTS: &str = "ok good valid keep kept use used include included accept accepted pass passed";
 /// See [`COUNTS`].
 const COUNTS_NOT: &str = "bad invalid reject rejected outlier exclude excluded discard discarded fail failed";
+/// Further words of remarks on readings that do not count.
+const REMARKS: &str = "void voided unusable ungueltig verworfen ausreisser rejete rejetee invalide rechazado scartato";
 
 /// What a cell says of its row: whether it counts; `None` where it cannot be understood. `is_out`: the column marks rows that do not.
 pub(super) fn counts(cell: &str, is_out: bool) -> Option<bool> {
@@ -29,6 +32,12 @@ pub(super) fn counts(cell: &str, is_out: bool) -> Option<bool> {
         _ if is(NO) => Some(is_out),
         _ => None,
     }
+}
+
+/// Whether a remark says that its reading does not count.
+pub(super) fn rejects(remark: &str) -> bool {
+    // "not rejected" and "no outlier" are rare, and only told of.
+    !is_number(remark) && [COUNTS_NOT, REMARKS].iter().any(|list| says_one_of(remark, list))
 }
 
 fn is_blank(cell: &str) -> bool {

@@ -10,6 +10,7 @@
 mod columns;
 mod curve;
 mod decimal;
+mod doubts;
 mod header;
 mod import;
 mod leave_out;

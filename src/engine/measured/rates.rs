@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use super::columns::stated_unit;
 use super::decimal::decide;
+use super::doubts::rejected;
 use super::header::columns_of;
 use super::import::{ColumnNames, Decimal, Import, IntensityUnit, RateUnit, Sheet, Unit};
 use super::marks::counts;
@@ -174,10 +175,12 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     let read: Vec<Column> = [delta_k, rate].into_iter().chain(ratio).collect();
     let decimal = decide(&cells, &read, keys.decimal)?;
 
+    let known = read.iter().chain(&specimen).map(|column| column.index).chain(flags);
+    let remarks = rejected(&cells, &known.collect::<Vec<_>>());
     let unit = |column: Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
     let mut table = RateTable {
         columns: [delta_k, rate].map(|column| cells.header[column.index].clone()),
-        warnings: cells.warnings(),
+        warnings: cells.warnings().into_iter().chain(remarks).collect(),
         says_ratio: ratio.is_some() || keys.stress_ratio.is_some(),
         units: [unit(delta_k), unit(rate)],
         ..RateTable::default()

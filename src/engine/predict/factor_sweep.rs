@@ -130,7 +130,11 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
         let problem = "needs sharp cracks through the thickness, and tips of every one of them";
         return Err(input_missing(KEY, problem, format!("leave it out, or give {}", specimen.crack_key())));
     }
-    if case.loading.displacement().is_some() || specimen.crack_pressure > 0.0 {
+    if specimen.crack_pressure > 0.0 {
+        let problem = "goes with --sweep no more than cycles of a displacement: β is K over the stress of a load";
+        return Err(input_missing("loading.crack_pressure_mpa", problem, "leave it out"));
+    }
+    if case.loading.displacement().is_some() {
         let problem = "needs a load on rims or holes: β is K over its stress";
         return Err(input_missing(KEY, problem, "give loading.stress_max_mpa or force_max_n"));
     }

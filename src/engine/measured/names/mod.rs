@@ -165,6 +165,11 @@ fn any_in(words: &[&str], list: &str) -> bool {
     words.iter().any(|word| is_in(list, word))
 }
 
+/// Whether a word of a text is one of a list.
+pub(super) fn says_one_of(text: &str, list: &str) -> bool {
+    of_words(text, |words, _| any_in(words, list))
+}
+
 /// Whether every word is one of the lists.
 fn all_in(words: &[&str], lists: &[&str]) -> bool {
     words.iter().all(|word| lists.iter().any(|list| is_in(list, word)))
@@ -329,6 +334,52 @@ pub(super) fn says_tip_to_tip(name: &str) -> Option<bool> {
     of_words(name, |words, _| match words.contains(&"2a") {
         true => Some(true),
         false => words.contains(&"a").then_some(false),
+    })
+}
+
+/// Whether a line says that cycles are counted in thousands or millions: `N x 1000`, `Zyklen in Tausend`; not `precracked for 50 thousand cycles`.
+pub(super) fn speaks_of_thousands(line: &str) -> bool {
+    const MANY: &str = "kilocycles kilocycle kcycles kcycle thousand thousands tausend tsd milliers migliaia miles megacycles mcycles million millions mio";
+    let (mut words, bracket) = words(line);
+    words.extend(bracket);
+    let is_count = |word: &String| word.parse::<f64>().is_ok();
+    let is_many = |i: usize| {
+        let after_count = i > 0 && is_count(&words[i - 1]);
+        let power = words[i] == "10" && words.get(i + 1).is_some_and(|next| ["3", "6"].contains(&next.as_str()));
+        let thousand = ["1000", "x1000", "1000000"].contains(&words[i].as_str()) || power;
+        let times = i > 0 && ["x", "in", "of", "mal", "times"].contains(&words[i - 1].as_str());
+        is_in(MANY, &words[i]) && !after_count || thousand && (times || words[i].starts_with('x') || line.contains('×'))
+    };
+    let is_of_cycles = words.iter().any(|word| is_in(CYCLES, word));
+    is_of_cycles && (0..words.len()).any(is_many)
+}
+
+/// Whether a name says that its lengths are measured from the notch.
+pub(super) fn says_from_notch(name: &str) -> bool {
+    const NOTCH: &str = "notch kerb kerbe kerbgrund entaille muesca entalla intaglio";
+    of_words(name, |words, _| any_in(words, NOTCH) && (any_in(words, LENGTH) || any_in(words, SIDES) || words.contains(&"from")))
+}
+
+/// Metres per unit of a column whose name speaks of a crack length by whatever method, half of it where that is tip to tip.
+pub(super) fn speaks_of_length(name: &str) -> Option<f64> {
+    const METHODS: &str = "dcpd acpd pd edc compliance cod cmod bfs visual optical optisch visuell";
+    of_words(name, |words, bracket| {
+        let is_plain = |rest: &&[&str]| {
+            (any_in(rest, LENGTH) || rest == &["visual"]) && all_in(rest, &[LENGTH, LENGTH_MORE, METHODS, SIDES])
+        };
+        let mut readings = unit_of(words, bracket, length_unit).into_iter().filter(|(rest, _)| is_plain(rest));
+        let unit = readings.find_map(|(_, unit)| if let Named::Is(unit) = unit { Some(unit.si()) } else { None })?;
+        Some(if words.contains(&"2a") { 0.5 * unit } else { unit })
+    })
+}
+
+/// Whether a name in a row of specimens is that of a statistic or of a model.
+pub(super) fn is_of_statistics(name: &str) -> bool {
+    const STATISTICS: &str = "mean average avg mittel mittelwert moyenne media std sd stdev stddev dev deviation standard standardabweichung streuung         ecart type scatter variance cov cv predicted prediction model design fit fitted regression confidence";
+    const MORE: &str = "n a 2a cycles cycle of the curve value line s d lower upper bound band zyklen lastspiele";
+    of_words(name, |words, _| {
+        let is_sd = words == ["s", "d"];
+        is_sd || any_in(words, STATISTICS) && all_in(words, &[STATISTICS, MORE]) || name.trim_start().starts_with(['+', '-', '±'])
     })
 }
 

@@ -3,16 +3,16 @@
 pub(super) const SPECIMEN: &str = "specimen specimens sample coupon probe eprouvette probeta provino panel";
 pub(super) const SPECIMEN_MORE: &str = "specimen id name no nr number nummer label";
 
-pub(super) const CYCLES: &str = "cycle cycles cyc n ncycles zyklen zyklus zykluszahl zyklenzahl lastwechsel lastwechselzahl lastspiele lastspielzahl \
+pub(super) const CYCLES: &str = "cycle cycles cyc n ncycles zyklen zyklus zykluszahl zyklenzahl gesamtzyklen lastwechsel lastwechselzahl lastspiele lastspielzahl \
     schwingspiele schwingspielzahl ciclos ciclo cicli cyclecount kilocycles kcycles megacycles mcycles kilocycle megacycle";
 pub(super) const CYCLES_MORE: &str = "elapsed total number num no nr of count counts counter cumulative cumulated cum accumulated fatigue axial load loading \
-    test the anzahl der nombre de numero di running machine applied";
+    test the anzahl der nombre de numero di running machine applied gesamt gesamtzahl nb totale totales";
 /// `Axial Count` has no other word for cycles.
 pub(super) const COUNTS: &str = "count counts";
 
 pub(super) const LENGTH: &str = "a 2a length len risslaenge risslange rissl fissure grieta cricca cracklength cracksize crack";
 pub(super) const LENGTH_MORE: &str = "crack size average avg ave av mean mittlere mittel mittelwert visual optical measured current corrected physical \
-    fatigue the of length longueur longitud lunghezza de la della moyenne media flaw a";
+    fatigue the of length longueur longitud lunghezza de la della moyenne media flaw a half halbe";
 pub(super) const SIDES: &str = "front back rear left right afront aback aleft aright vorne hinten links rechts vorderseite rueckseite vorn avant arriere gauche droite near far";
 /// Letters of sides, beside a word of length only.
 pub(super) const SIDE_LETTERS: &str = "f b l r fl fr bl br lf rf lb rb";
@@ -35,8 +35,9 @@ pub(super) const MAX_STRESS: &str = "smax sigmamax maxstress stressmax oberspann
 pub(super) const MIN_STRESS: &str = "smin sigmamin minstress stressmin unterspannung";
 
 /// Words of columns that say whether a reading counts: of those that do, of those that do not, of either, and beside them.
-pub(super) const MARKS_KEEP: &str = "valid validity use used include included accept accepted keep";
-pub(super) const MARKS_OUT: &str = "exclude excluded reject rejected outlier outliers discard discarded omit omitted invalid";
+pub(super) const MARKS_KEEP: &str = "valid valide valido valida gueltig validity use used include included accept accepted keep";
+pub(super) const MARKS_OUT: &str =
+    "exclude excluded reject rejected outlier outliers discard discarded omit omitted invalid ungueltig";
 pub(super) const MARKS: &str = "flag flags flagged";
 pub(super) const MARKS_MORE: &str =
     "data point points reading readings row rows in from for fit fitting the of is regression analysis e647 astm per";

@@ -81,6 +81,8 @@ pub(in crate::measured) struct Table {
     pub footer: Option<[usize; 2]>,
     /// What separates columns; `None` where the cells are stored, not written.
     pub separator: Option<Separator>,
+    /// Lines above the header, and comments there.
+    pub preamble: Vec<(usize, String)>,
     /// What else the user should know.
     pub notes: Vec<String>,
 }

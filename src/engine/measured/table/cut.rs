@@ -181,6 +181,9 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
     let rows = separator.cut(lines, file)?;
     let mut table = assemble(rows, file, import)?;
     table.separator = Some(separator);
+    let first = table.rows.first().map_or(usize::MAX, |row| row.line);
+    let above = comments.iter().filter(|(line, _)| *line < first).map(|(line, text)| (*line, (*text).to_owned()));
+    table.preamble.extend(above);
     if table.header_line == 0 {
         header_in_comment(&mut table, comments, separator, import);
     }
@@ -223,6 +226,9 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Resu
         Some(units) => header.iter().zip(units).map(in_units).collect::<Result<_>>()?,
     };
     let header_line = place.header.map_or(0, |header| rows[header].line);
+    let above = place.above.or(place.header).unwrap_or(0);
+    let in_words = |row: &Row| (row.line, row.cells.iter().filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" "));
+    let preamble = rows[..above].iter().map(in_words).collect();
     let end = without_footer(&rows).max(place.body);
     let footer = rows.get(end).map(|first| [first.line, rows[rows.len() - 1].line]);
     rows.truncate(end);
@@ -235,7 +241,7 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, import: &Import) -> Resu
     }
     let header = header.iter().map(|name| restored(name).to_owned()).collect();
     let notes = Vec::new();
-    Ok(Table { file: file.to_path_buf(), header, names, header_line, rows, footer, separator: None, notes })
+    Ok(Table { file: file.to_path_buf(), header, names, header_line, rows, footer, separator: None, preamble, notes })
 }
 
 /// A header behind the sign of a comment, as programs for arrays write it.

@@ -55,6 +55,7 @@ fn parquet(bytes: &[u8], file: &Path) -> Result<Table> {
             rows,
             footer: None,
             separator: None,
+            preamble: Vec::new(),
             notes: Vec::new(),
         })
     }

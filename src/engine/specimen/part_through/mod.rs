@@ -200,12 +200,16 @@ impl PartThrough {
         self.description.limits.iter().filter(|limit| !holds(limit)).collect()
     }
 
-    /// Nominal tension, Pa, under which what is left of the section yields throughout: `σ_Y A/(W B)`, with the area A of the section less hole
-    /// and cracks. The line of the force is taken to go through its middle, and bending is left out.
+    /// Nominal tension, Pa, under which what is left of the section yields throughout: without bending `σ_n = σ_Y A/(W B)`, with the area A of
+    /// the section less hole and cracks; the line of the force is taken to go through its middle. With a bending stress ρ σ at the face it is
+    /// the σ at which a rectangle is fully plastic under force and moment, `(σ/σ_n)² + ρ σ/(1.5 σ_n) = 1`.
     pub fn limit_stress(&self, [a, c]: [f64; 2], yield_strength: f64) -> f64 {
         let gross = self.width * self.thickness;
         let cracked = self.cracks as f64 * self.description.share_of_ellipse * PI * a * c;
-        yield_strength * ((gross - (2.0 * self.radius + self.other_holes) * self.thickness - cracked) / gross).max(0.0)
+        let in_tension =
+            yield_strength * ((gross - (2.0 * self.radius + self.other_holes) * self.thickness - cracked) / gross).max(0.0);
+        let half = self.bending_ratio / 3.0;
+        in_tension * ((1.0 + half * half).sqrt() - half)
     }
 }
 
