@@ -362,7 +362,7 @@ pub(super) fn says_from_notch(name: &str) -> bool {
 
 /// Metres per unit of a column whose name speaks of a crack length by whatever method, half of it where that is tip to tip.
 pub(super) fn speaks_of_length(name: &str) -> Option<f64> {
-    const METHODS: &str = "dcpd acpd pd edc compliance cod cmod bfs visual optical optisch visuell";
+    const METHODS: &str = "total dcpd acpd pd edc compliance cod cmod bfs visual optical optisch visuell";
     of_words(name, |words, bracket| {
         let is_plain = |rest: &&[&str]| {
             (any_in(rest, LENGTH) || rest == &["visual"]) && all_in(rest, &[LENGTH, LENGTH_MORE, METHODS, SIDES])
