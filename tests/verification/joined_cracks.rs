@@ -62,7 +62,13 @@ fn a_crack_may_branch() {
         plate(&half, &[("part.dxf", &dxf(4, &[upper, &stem, &up]))]),
         plate(DXF, &[("part.dxf", &dxf(4, &[RECTANGLE, &stem, &up, &down]))]),
     ];
-    for specimen in drawn {
+    // By keys, from the corner of a path or as three.
+    let by_keys =
+        ["[[-50, 0], [-40, 0], [-34, 5]] }", "[[-50, 0], [-40, 0]] }, { path_mm = [[-40, 0], [-34, 5]] }"].map(|stem| {
+            let cracks = format!("cracks = [{{ path_mm = {stem}, {{ path_mm = [[-40, 0], [-34, -5]] }}]");
+            plate(&format!("width_mm = 100\nlength_mm = 200\n{cracks}"), &[])
+        });
+    for specimen in drawn.into_iter().chain(by_keys) {
         let mut tips: Vec<[f64; 2]> =
             specimen.tips.iter().map(|tip| tip.position.map(|x| (x / MM * 1e6).round() / 1e6)).collect();
         tips.sort_by(|a, b| a[1].total_cmp(&b[1]));

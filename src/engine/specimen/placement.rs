@@ -214,7 +214,7 @@ fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
 /// Paths with their numbers; two that share an end, where no third comes, are one crack with a bend there. In a hole they do not meet.
 fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
     let is_in_hole = |at: Point| specimen.holes.iter().any(|hole| distance(at, hole.centre) < hole.radius - TOUCH);
-    let mut joined: Vec<(usize, Vec<Point>)> = paths.into_iter().enumerate().collect();
+    let mut joined: Vec<(usize, Vec<Point>)> = parted_at_branches(paths);
     let is_same = |a: Point, b: Point| distance(a, b) < TOUCH;
     let ends = |path: &[Point]| [path[0], path[path.len() - 1]];
     loop {
@@ -243,6 +243,25 @@ fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(
             first.extend(second.into_iter().skip(1));
         }
     }
+}
+
+/// Paths with their numbers, parted at corners from which others branch: a branch is the end of each that meets there.
+fn parted_at_branches(paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
+    let is_met = |own: usize, at: Point| {
+        let mut others = paths.iter().enumerate().filter(|(other, _)| *other != own);
+        others.any(|(_, path)| path.windows(2).any(|piece| distance_to_segment(at, piece[0], piece[1]) < TOUCH))
+    };
+    let mut parted = Vec::new();
+    for (own, path) in paths.iter().enumerate() {
+        let mut from = 0;
+        for corner in 1..path.len() {
+            if corner + 1 == path.len() || is_met(own, path[corner]) {
+                parted.push((own, path[from..=corner].to_vec()));
+                from = corner;
+            }
+        }
+    }
+    parted
 }
 
 /// Whether two straight cracks lie on one line over some length.
