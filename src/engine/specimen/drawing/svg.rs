@@ -160,7 +160,7 @@ impl Element<'_> {
 
     /// The value that `style` declares of a property.
     fn of_style(&self, name: &str) -> Option<String> {
-        declared(&self.attribute("style")?).filter(|(key, _)| key == name).last().map(|(_, value)| value)
+        declared(&self.attribute("style")?).rfind(|(key, _)| key == name).map(|(_, value)| value)
     }
 
     /// The value of a property, from `style` before the attribute of that name.
