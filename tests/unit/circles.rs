@@ -170,7 +170,7 @@ const LINES: &[(&str, usize)] = &[
     ("solver", 5300),
     ("element_free", 5215),
     ("verify", 5201),
-    ("measured", 4434),
+    ("measured", 4440),
     ("predict", 3299),
     ("case", 3081),
     ("commands", 3044),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 90832;
+const LINES_OF_ALL: usize = 90838;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -309,4 +309,8 @@ fn what_a_table_says_against_its_columns_is_told() {
         all_are_the_curve(name, &measured, 2);
         assert!(measured.warnings.iter().any(|line| line.contains(&format!("of a model: {name}"))), "{:?}", measured.warnings);
     }
+    for name in ["Type A", "Design A", "-40 C", "Plate model 3"] {
+        let text = table(&format!("a (mm);S1;S2;{name}"), |n, a| format!("{a};{n};{n};{n}"));
+        all_are_the_curve(name, &read(&text, &Import::default()).unwrap(), 3);
+    }
 }

@@ -373,13 +373,19 @@ pub(super) fn speaks_of_length(name: &str) -> Option<f64> {
     })
 }
 
-/// Whether a name in a row of specimens is that of a statistic or of a model.
+/// Whether a name in a row of specimens is that of a statistic or of a model; `Design A` and `-40 C` are specimens.
 pub(super) fn is_of_statistics(name: &str) -> bool {
-    const STATISTICS: &str = "mean average avg mittel mittelwert moyenne media std sd stdev stddev dev deviation standard standardabweichung streuung         ecart type scatter variance cov cv predicted prediction model design fit fitted regression confidence";
-    const MORE: &str = "n a 2a cycles cycle of the curve value line s d lower upper bound band zyklen lastspiele";
+    const STATISTICS: &str = "mean average avg mittel mittelwert moyenne media std sd stdev stddev dev deviation standardabweichung streuung ecart \
+        scatter variance cov cv";
+    const MODELS: &str = "predicted prediction model design fitted regression confidence";
+    const MORE: &str = "cycles cycle of the curve value line lower upper bound band zyklen lastspiele";
+    const SPREAD: &str = "s sd sigma 1s 2s 3s 1sd 2sd 3sd 2sigma 3sigma";
     of_words(name, |words, _| {
-        let is_sd = words == ["s", "d"];
-        is_sd || any_in(words, STATISTICS) && all_in(words, &[STATISTICS, MORE]) || name.trim_start().starts_with(['+', '-', '±'])
+        let is_statistic = any_in(words, STATISTICS) && all_in(words, &[STATISTICS, MORE, "n a 2a standard type"]);
+        let is_model = any_in(words, MODELS) && all_in(words, &[MODELS, MORE]);
+        let is_signed =
+            name.trim_start().starts_with(['+', '-', '\u{b1}']) && words.last().is_some_and(|word| is_in(SPREAD, word));
+        is_statistic || is_model || is_signed || words == ["s", "d"]
     })
 }
 
