@@ -163,7 +163,7 @@ fn imports_are_taken_apart() {
 const LINES: &[(&str, usize)] = &[
     ("report", 12000),
     ("fracture", 6938),
-    ("specimen", 6390),
+    ("specimen", 6392),
     ("growth", 6253),
     ("calibration", 6171),
     ("service", 5856),
@@ -191,7 +191,7 @@ const LINES: &[(&str, usize)] = &[
 ];
 /// Of a room that is not named.
 const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 90838;
+const LINES_OF_ALL: usize = 90840;
 
 #[test]
 fn rooms_do_not_grow() {

@@ -2,7 +2,7 @@
 
 use super::geometry::{
     along, circle_shares, direction, distance, distance_to_polygon, distance_to_segment, edges, meeting_share,
-    nearest_of_segment, point_in_polygon, segments_touch,
+    nearest_of_segment, point_in_polygon, segments_touch, turn_at,
 };
 use super::{Crack, CrackLine, Hole, Point, Slot, Specimen, TipSeed};
 use crate::error::{Result, input_missing};
@@ -218,7 +218,6 @@ fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(
     let is_same = |a: Point, b: Point| distance(a, b) < TOUCH;
     let ends = |path: &[Point]| [path[0], path[path.len() - 1]];
     loop {
-        let comes = |path: &[Point], at: Point| path.windows(2).any(|piece| distance_to_segment(at, piece[0], piece[1]) < TOUCH);
         let pair = (0..joined.len()).flat_map(|i| (i + 1..joined.len()).map(move |j| (i, j))).find_map(|(i, j)| {
             let shared: Vec<Point> =
                 ends(&joined[i].1).into_iter().filter(|&a| ends(&joined[j].1).into_iter().any(|b| is_same(a, b))).collect();
@@ -226,7 +225,7 @@ fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(
             if is_in_hole(at) {
                 return None;
             }
-            (joined.iter().filter(|(_, path)| comes(path, at)).count() == 2).then_some((i, j, at))
+            (joined.iter().filter(|(_, path)| passes(path, at)).count() == 2).then_some((i, j, at))
         });
         let Some((i, j, at)) = pair else { return joined };
         let (_, mut second) = joined.remove(j);
@@ -245,11 +244,16 @@ fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(
     }
 }
 
+/// Whether a path goes through a place, or ends there.
+fn passes(path: &[Point], at: Point) -> bool {
+    path.windows(2).any(|piece| distance_to_segment(at, piece[0], piece[1]) < TOUCH)
+}
+
 /// Paths with their numbers, parted at corners from which others branch: a branch is the end of each that meets there.
 fn parted_at_branches(paths: Vec<Vec<Point>>) -> Vec<(usize, Vec<Point>)> {
     let is_met = |own: usize, at: Point| {
         let mut others = paths.iter().enumerate().filter(|(other, _)| *other != own);
-        others.any(|(_, path)| path.windows(2).any(|piece| distance_to_segment(at, piece[0], piece[1]) < TOUCH))
+        others.any(|(_, path)| passes(path, at))
     };
     let mut parted = Vec::new();
     for (own, path) in paths.iter().enumerate() {
@@ -278,9 +282,7 @@ fn is_overlap(a: Crack, b: Crack) -> bool {
 /// No crack turns back at a corner, which is no tip and does not grow.
 fn check_corners(corners: &[Point], key: &str, notes: &mut Vec<String>) -> Result<()> {
     for corner in corners.windows(3) {
-        let [before, after] = [direction(corner[0], corner[1]), direction(corner[1], corner[2])];
-        let turn =
-            (before[0] * after[1] - before[1] * after[0]).atan2(before[0] * after[0] + before[1] * after[1]).abs().to_degrees();
+        let turn = turn_at(corner[0], corner[1], corner[2]).abs().to_degrees();
         let problem = format!("turns by {turn:.0}° at {}", words(corner[1]));
         if turn > FOLDED {
             let remedy = "end the crack at that corner, and give what lies behind it, if it is one, as a crack that does not share its end";
