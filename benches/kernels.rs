@@ -7,18 +7,18 @@ use std::sync::OnceLock;
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
-use perilife::body::Body;
-use perilife::case::Case;
-use perilife::fracture::bonds::BondState;
-use perilife::fracture::failure::Failure;
-use perilife::fracture::interaction::{Damaging, Interaction};
-use perilife::fracture::lattice_springs::LatticeSprings;
-use perilife::fracture::springs::Springs;
-use perilife::levels::Net;
-use perilife::solver::field::{Layout, dot};
-use perilife::solver::multigrid::Multigrid;
-use perilife::solver::product::{Into, Product};
-use perilife::state::Bonds;
+use perilife_growth::case::Case;
+use perilife_points::body::Body;
+use perilife_points::net::Net;
+use perilife_points::solver::field::{Layout, dot};
+use perilife_points::solver::multigrid::Multigrid;
+use perilife_points::solver::product::{Into, Product};
+use perilife_points::state::Bonds;
+use perilife_scenes::bonds::BondState;
+use perilife_scenes::failure::Failure;
+use perilife_scenes::interaction::{Damaging, Interaction};
+use perilife_scenes::lattice_springs::LatticeSprings;
+use perilife_scenes::springs::Springs;
 
 /// Points of the plate, about.
 const POINTS: f64 = 300_000.0;

@@ -5,9 +5,9 @@
 
 use std::fs;
 
-use perilife::case::Case;
-use perilife::solver::{Equilibrium, SolverKind, Symmetry};
-use perilife::state::Bonds;
+use perilife_growth::case::Case;
+use perilife_points::solver::{Equilibrium, SolverKind, Symmetry};
+use perilife_points::state::Bonds;
 
 const POINTS: [f64; 4] = [30e3, 120e3, 480e3, 1e6];
 

@@ -1,19 +1,19 @@
 //! Fatigue-life prediction of cracked plates by peridynamics.
 //!
 //! A plate is a lattice of points joined by bonds, and a crack is a line that cuts them. At the maximum load of a cycle the points are in
-//! equilibrium, `Σ μ f + b = 0` ([`solver`]). A ring around each crack tip gives K_I, K_II and T by the interaction integral
-//! ([`stress_intensity`]); the tip turns to the largest circumferential stress and grows by `da/dN` of its K, all tips over the same
-//! cycles, and the bonds that the longer lines cross are cut: that is [`predict::increment`], the main page.
+//! equilibrium, `Σ μ f + b = 0` ([`perilife_points::solver`]). A ring around each crack tip gives K_I, K_II and T by the interaction integral
+//! ([`perilife_points::stress_intensity`]); the tip turns to the largest circumferential stress and grows by `da/dN` of its K, all tips over the same
+//! cycles, and the bonds that the longer lines cross are cut: that is [`perilife_growth::predict::increment`], the main page.
 //!
 //! Fatigue of a bond is `dλ/dN = -A ε^p`: its remaining life λ decreases from 1, and at 0 it breaks. Integrated through the zone of a
-//! steady tip this is `da/dN = β A δ^(1-p/2) (K/E')^p`, a Paris law with m = p ([`fatigue::rate_constant`]). So A and p drive a tip by its K
-//! ([`growth::cracks`], the default), or every bond by its own strain ([`growth::bond_strain`]). Limits: linear elasticity, small-scale
+//! steady tip this is `da/dN = β A δ^(1-p/2) (K/E')^p`, a Paris law with m = p ([`perilife_growth::rate_constant`]). So A and p drive a tip by its K
+//! ([`perilife_growth::cracks`], the default), or every bond by its own strain ([`perilife_growth::bond_strain`]). Limits: linear elasticity, small-scale
 //! yielding, through cracks in plane stress or plane strain. `src/README.md` has the theory room by room, with symbols, limits and sources.
 //!
 //! As a library, from readings of a test to the life of another plate; lengths are metres inside, and names of what is not SI say so:
 //!
 //! ```
-//! use perilife::{predict::{Silent, predict}, runner::Draft};
+//! use perilife::{Draft, Silent, predict};
 //! use toml::toml;
 //!
 //! let csv = "cycles,crack_length_mm\n0,9\n20000,9.6\n40000,10.3\n60000,11.2\n80000,12.3\n100000,13.6\n120000,15.3\n140000,17.6\n";
@@ -40,13 +40,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Crates are compiled one on the other: `src/engine` from a case to its life, `src/analysis` with calibration, verification and
-//! reports, `src/service`, and here the command line. Rooms stand in the order in which data flows; a file uses only rooms listed above
-//! its own (kept by `tests/unit/layering.rs`).
+//! The names below are those that examples use. What computes stands in members, one folder of `src` each with what it knows at its head;
+//! `src/README.md` says which imports which.
 #![warn(missing_docs)]
 
-#[doc(inline)]
-pub use perilife_analysis::*;
+pub use perilife_base::error::{Error, InputError, Result};
+pub use perilife_calibration::calibrate::{Calibration, Fitted};
+pub use perilife_growth::case::Case;
+pub use perilife_growth::predict::{CurvePoint, Observer, Prediction, Progress, Silent, StopReason, predict, resume};
+pub use perilife_runner::Draft;
 #[cfg(feature = "service")]
 #[doc(inline)]
 pub use perilife_service as service;

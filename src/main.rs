@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use perilife::commands::CommandLine;
 use perilife::commands::console::error_words;
-use perilife::report::provenance::built_from;
+use perilife_results::provenance::built_from;
 
 fn main() -> ExitCode {
     if let Some(commit) = option_env!("PERILIFE_COMMIT") {

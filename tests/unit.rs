@@ -27,7 +27,7 @@ mod hand_case;
 mod handbook;
 mod import;
 mod laws;
-mod layering;
+mod house;
 mod length_average;
 mod limits;
 mod loading;

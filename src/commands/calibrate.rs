@@ -7,16 +7,16 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use super::console::Console;
-use crate::calibration::calibrate::{Calibration, Fitted};
-use crate::calibration::results::record;
-use crate::case::budget::Budget;
-use crate::case::{Case, remove_law};
-use crate::error::{Error, Result, input, input_missing};
-use crate::input::Document;
-use crate::predict::Prediction;
-use crate::report::output::{Finished, OutputFolder, Room, RunKind};
-use crate::report::{fit, run};
-use crate::runner::{Wanted, of_prediction};
+use perilife_base::error::{Error, Result, input, input_missing};
+use perilife_base::input::Document;
+use perilife_calibration::calibrate::{Calibration, Fitted};
+use perilife_calibration::results::record;
+use perilife_growth::case::needs;
+use perilife_growth::case::{Case, remove_law};
+use perilife_growth::predict::Prediction;
+use perilife_results::output::{Finished, OutputFolder, Room, RunKind};
+use perilife_results::{fit, run};
+use perilife_runner::{Wanted, of_prediction};
 
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.calibration, &args.set)?;
     let calibration = Calibration::from_document(&document)?;
     if let Calibration::Lives(of_lives) = &calibration {
-        Budget::of(&of_lives.case).within_machine().map_err(|error| error.in_file(&args.calibration))?;
+        needs::of_case(&of_lives.case).within_machine().map_err(|error| error.in_file(&args.calibration))?;
     }
     // Read before the fit: a slip in the last case should not cost a calibration.
     let cases = cases_to_predict(&args.predict)?;
@@ -116,7 +116,7 @@ fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finish
     let folders: Vec<OutputFolder> = cases.iter().map(claim).collect::<Result<_>>()?;
     let bars = console.progress_of_each(cases.iter().map(|case| &*case.name));
     let runs: Vec<Result<Prediction>> =
-        cases.par_iter().zip(bars).map(|(case, bar)| crate::predict::predict(case, &bar)).collect();
+        cases.par_iter().zip(bars).map(|(case, bar)| perilife_growth::predict::predict(case, &bar)).collect();
     let mut predictions = serde_json::Map::new();
     for ((case, folder), run) in cases.iter().zip(folders).zip(runs) {
         for warning in &case.warnings {

@@ -11,13 +11,13 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::signals;
-use crate::error::{Error, Result, input, input_missing};
-use crate::input::Provenance;
-use crate::report::output::{Marker, RunKind, Share, StandingFolder};
-use crate::report::speed::{self, Origin, digits, seconds};
-use crate::verify::chart::schedule::{Effort, Record, Request, measure};
-use crate::verify::chart::{Machine, Run, run, scenes};
-use crate::verify::tasks::Outcome;
+use perilife_base::error::{Error, Result, input, input_missing};
+use perilife_base::input::Provenance;
+use perilife_results::output::{Marker, RunKind, Share, StandingFolder};
+use perilife_study::chart::schedule::{Effort, Record, Request, measure};
+use perilife_study::chart::{Machine, Run, run, scenes};
+use perilife_study::speed::{self, Origin, digits, seconds};
+use perilife_study::tasks::Outcome;
 
 /// Arguments of `perilife chart`.
 #[derive(Debug, clap::Args)]

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use super::console::Console;
-use crate::check::check_file;
-use crate::error::Result;
-use crate::report::output::{OutputFile, Sort};
-use crate::report::specimen_picture::SIGN;
+use perilife_base::error::Result;
+use perilife_results::output::{OutputFile, Sort};
+use perilife_results::specimen_picture::SIGN;
+use perilife_runner::check::check_file;
 
 /// Arguments of `perilife check`.
 #[derive(clap::Args, Debug)]

@@ -7,15 +7,15 @@ use std::time::{Duration, Instant};
 
 use super::console::{Console, RunProgress};
 use super::signals;
-use crate::error::{Error, Result, input};
-use crate::fracture::checkpoint::{SIGN as SCENE_SIGN, SceneCheckpoint};
-use crate::fracture::{SceneObserver, SceneProgress};
-use crate::input::{Document, Provenance};
-use crate::predict::checkpoint::{Checkpoint, SIGN};
-use crate::predict::{Observer, Progress};
-use crate::report::output::{OutputFile, OutputFolder, Sort};
-use crate::runner::{self, Summary, Task, TaskCheckpoint, Watcher};
-use crate::watch::Watch;
+use perilife_base::error::{Error, Result, input};
+use perilife_base::input::{Document, Provenance};
+use perilife_base::watch::Watch;
+use perilife_growth::predict::checkpoint::{Checkpoint, SIGN};
+use perilife_growth::predict::{Observer, Progress};
+use perilife_results::output::{OutputFile, OutputFolder, Sort};
+use perilife_runner::scenes::checkpoint::{SIGN as SCENE_SIGN, SceneCheckpoint};
+use perilife_runner::scenes::{SceneObserver, SceneProgress};
+use perilife_runner::{Summary, Task, TaskCheckpoint, Watcher};
 
 /// Time between two checkpoints over the time that writing one takes, at least: so they cost 5 % at most.
 const OVER_COST: u32 = 20;
@@ -71,7 +71,7 @@ impl Args {
         let limit = self.time_limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
         let (name, progress) = (task.name(), console.progress_within(task.name(), limit));
         let Some(path) = &self.checkpoint else {
-            let done = runner::run(task, None, Some(folder), &progress);
+            let done = perilife_runner::run(task, None, Some(folder), &progress);
             return Ok((self.within_limit(name, &progress, done)?, None));
         };
         let from =
@@ -80,7 +80,7 @@ impl Args {
         if let Some(from) = &from {
             console.note(&format!("{name}: goes on from {}: {}", path.display(), from.words()));
         }
-        let done = runner::run(task, from, Some(folder), &keeper);
+        let done = perilife_runner::run(task, from, Some(folder), &keeper);
         Ok((self.within_limit(name, &keeper.progress, done)?, Some(keeper.file)))
     }
 

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use super::console::Console;
 use super::sweep::finish;
-use crate::error::Result;
-use crate::runner::sweep_folder::SweepFolder;
+use perilife_base::error::Result;
+use perilife_runner::sweep_folder::SweepFolder;
 
 /// Arguments of `perilife collect`.
 #[derive(Debug, clap::Args)]

@@ -7,8 +7,8 @@ use clap_complete::{Shell, generate};
 
 use super::CommandLine;
 use super::console::Console;
-use crate::error::{Error, Result};
-use crate::input::STREAM;
+use perilife_base::error::{Error, Result};
+use perilife_base::input::STREAM;
 
 /// What is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

@@ -11,15 +11,15 @@ use indicatif::{MultiProgress, ProgressBar, ProgressFinish, ProgressStyle};
 use miette::{GraphicalReportHandler, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 use serde_json::Value;
 
-use crate::error::{Error, InputError, Result};
-use crate::fracture::{SceneObserver, SceneProgress};
-use crate::predict::{Observer, Progress};
-use crate::report::output::OutputFolder;
-use crate::report::units::shown_result;
-use crate::runner::{Summary, Watcher};
-use crate::units::MM;
-use crate::units::shown::{told, told_of_file};
-use crate::watch::Watch;
+use perilife_base::error::{Error, InputError, Result};
+use perilife_base::units::MM;
+use perilife_base::units::shown::{told, told_of_file};
+use perilife_base::watch::Watch;
+use perilife_growth::predict::{Observer, Progress};
+use perilife_results::output::OutputFolder;
+use perilife_results::units::shown_result;
+use perilife_runner::scenes::{SceneObserver, SceneProgress};
+use perilife_runner::{Summary, Watcher};
 
 /// Options of every command that prints results.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::console::Console;
-use crate::error::{Error, Result, input};
-use crate::input::Opened;
-use crate::report::csv::{self, A_N_FILE, Row, parse_a_n};
-use crate::report::output::{OutputFile, Sort};
-use crate::report::resample::{ROWS_MAX, Sampling};
-use crate::report::units::shown_table;
+use perilife_base::error::{Error, Result, input};
+use perilife_base::input::Opened;
+use perilife_results::csv::{self, A_N_FILE, Row, parse_a_n};
+use perilife_results::output::{OutputFile, Sort};
+use perilife_results::resample::{ROWS_MAX, Sampling};
+use perilife_results::units::shown_table;
 
 /// First line of an export, which a run's own table has not.
 const HEADER: &str = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n";

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use super::checkpoint;
 use super::console::Console;
-use crate::error::{Error, Result};
-use crate::input::Document;
-use crate::report::output::OutputFile;
-use crate::runner::{Kind, Task};
+use perilife_base::error::{Error, Result};
+use perilife_base::input::Document;
+use perilife_results::output::OutputFile;
+use perilife_runner::{Kind, Task};
 
 /// Arguments of `perilife fracture`.
 #[derive(Debug, clap::Args)]

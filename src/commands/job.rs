@@ -1,7 +1,7 @@
 //! `perilife job`: one job of a worker, in a process of its own.
 
-use crate::error::Result;
-use crate::service::worker::child;
+use perilife_base::error::Result;
+use perilife_service::worker::child;
 
 /// Arguments of `perilife job`: none, since all comes over the socket of the worker.
 #[derive(Debug, clap::Args)]

@@ -1,8 +1,8 @@
 //! `perilife list`: every kind of every key.
 
 use super::console::Console;
-use crate::error::{Result, input};
-use crate::report::catalogue::{json, lines};
+use perilife_base::error::{Result, input};
+use perilife_runner::catalogue;
 
 /// Arguments of `perilife list`.
 #[derive(clap::Args, Debug)]
@@ -19,7 +19,8 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let what = args.what.as_deref().map(|what| what.to_lowercase().trim_end_matches('s').to_owned());
     let is_asked = |key: &str| what.as_ref().is_none_or(|what| key.contains(what.as_str()));
-    let lines: Vec<_> = lines().into_iter().filter(|(key, ..)| is_asked(key)).collect();
+    let all = [catalogue::lines(), perilife_study::catalogue::lines()].concat();
+    let lines: Vec<_> = all.iter().filter(|(key, ..)| is_asked(key)).cloned().collect();
     if let (true, Some(given)) = (lines.is_empty(), &args.what) {
         return Err(input("WHAT", given, "is part of no key", "use `perilife list` for all of them"));
     }
@@ -28,5 +29,5 @@ pub fn run(args: &Args) -> Result<()> {
     let (key_width, name_width) = (widest(|line| &line.0), widest(|line| &line.1));
     let line = |(key, name, meaning): &(String, String, String)| format!("{key:<key_width$}  {name:<name_width$}  {meaning}\n");
     args.console.result(&lines.iter().map(line).collect::<String>())?;
-    args.console.object(&json())
+    args.console.object(&catalogue::json(all))
 }

@@ -36,12 +36,12 @@ use std::path::Path;
 use clap::{Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
 
-use crate::case::Case;
-use crate::error::Result;
-use crate::input::Document;
-use crate::runner::Task;
-use crate::units::shown::show;
-use crate::units::us::System;
+use perilife_base::error::Result;
+use perilife_base::input::Document;
+use perilife_base::units::shown::show;
+use perilife_base::units::us::System;
+use perilife_growth::case::Case;
+use perilife_runner::Task;
 
 /// Specimen, material, load and model of a case or calibration file, of whose fatigue law nothing is asked: a fitted record that does not
 /// exist yet is no obstacle.
@@ -71,7 +71,7 @@ macro_rules! commands {
 
         impl Command {
             /// Runs it.
-            /// Errors: what the command reports; [`crate::Error::exit_code`] is the exit code of the process.
+            /// Errors: what the command reports; [`perilife_base::error::Error::exit_code`] is the exit code of the process.
             pub fn run(&self) -> Result<()> {
                 #[allow(unused_doc_comments, reason = "the lines about a subcommand stand at its arm too, as its condition does")]
                 match self { $($(#[$attribute])+ Command::$Name(args) => $module::run(args)),+ }

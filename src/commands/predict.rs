@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use super::checkpoint;
 use super::console::Console;
-use crate::error::Result;
-use crate::input::Document;
-use crate::report::band::{FACTOR, InspectFrom};
-use crate::report::output::OutputFile;
-use crate::runner::{Kind, Task};
+use perilife_base::error::Result;
+use perilife_base::input::Document;
+use perilife_results::band::{FACTOR, InspectFrom};
+use perilife_results::output::OutputFile;
+use perilife_runner::{Kind, Task};
 
 /// Arguments of `perilife predict`.
 #[derive(Debug, clap::Args)]

@@ -7,19 +7,21 @@ use serde_json::{Value, json};
 use super::case_without_law;
 use super::console::Console;
 use super::rates_of_materials::{self, MaterialRates};
-use crate::calibration::outliers::doubts;
-use crate::calibration::paris::doubt_of;
-use crate::calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table};
-use crate::case::Case;
-use crate::error::{Result, input};
-use crate::input::{Opened, STREAM, number};
-use crate::measured::{
-    ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Measured, MeasuredCurve, Sheet, first_of, read_into,
+use perilife_base::error::{Result, input};
+use perilife_base::input::{Opened, STREAM, number};
+use perilife_base::table::{
+    Decimal, Sheet,
+    units::{CycleUnit, LengthUnit, LoadUnit},
 };
-use crate::report::output::{OutputFile, Sort};
-use crate::report::units::shown_table;
-use crate::specimen::handbook::{HandbookFormula, handbook};
-use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_calibration::outliers::doubts;
+use perilife_calibration::paris::doubt_of;
+use perilife_calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table};
+use perilife_growth::case::Case;
+use perilife_measured::{ColumnNames, Import, Measured, MeasuredCurve, first_of, read_into};
+use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
+use perilife_results::output::{OutputFile, Sort};
+use perilife_results::units::shown_table;
 
 /// Thickness of plates where no case says it, mm: K_c of records depends on it.
 const THICKNESS_MM: f64 = 2.5;

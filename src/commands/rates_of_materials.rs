@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use crate::case::library_law;
-use crate::error::Result;
-use crate::input::Folder;
-use crate::report::chart::{Mark, Series, growth_rate};
-use crate::units::shown::per;
-use crate::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::error::Result;
+use perilife_base::input::Folder;
+use perilife_base::units::shown::per;
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_growth::case::library_law;
+use perilife_results::chart::{Mark, Series, growth_rate};
 
 /// ΔK between which a law is drawn, MPa√m, and the points over them.
 const RANGE: [f64; 2] = [1.0, 200.0];

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use super::console::Console;
-use crate::error::Result;
-use crate::report::paper::{Signed, write};
+use perilife_base::error::Result;
+use perilife_results::paper::{Signed, write};
 
 /// Arguments of `perilife report`.
 #[derive(Debug, clap::Args)]

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 
 use super::console::Console;
 use super::worker;
-use crate::error::Result;
-use crate::service::api::{Limits, Security};
-use crate::service::{Settings, serve};
+use perilife_base::error::Result;
+use perilife_service::api::{Limits, Security};
+use perilife_service::{Settings, serve};
 
 /// Arguments of `perilife serve`.
 #[derive(Debug, clap::Args)]

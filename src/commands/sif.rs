@@ -6,17 +6,17 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::console::Console;
-use crate::error::{Result, input, input_missing};
-use crate::input::{Document, STREAM};
-use crate::predict::factor_sweep::factor_sweep;
-use crate::predict::tip_factors::StressIntensityMethod;
-use crate::report::factor_sweep as tables;
-use crate::report::output::{OutputFile, OutputFolder, Sort};
-use crate::report::units::of_table;
-use crate::runner::{self, Kind, Task};
-use crate::specimen::beta::HEADER;
-use crate::units::MM;
-use crate::units::shown::shown;
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::{Document, STREAM};
+use perilife_base::units::MM;
+use perilife_base::units::shown::shown;
+use perilife_growth::predict::factor_sweep::factor_sweep;
+use perilife_growth::predict::tip_factors::StressIntensityMethod;
+use perilife_plate::specimen::beta::HEADER;
+use perilife_results::factor_sweep as tables;
+use perilife_results::output::{OutputFile, OutputFolder, Sort};
+use perilife_results::units::of_table;
+use perilife_runner::{Kind, Task};
 
 /// Arguments of `perilife sif`.
 #[derive(Debug, clap::Args)]
@@ -60,7 +60,7 @@ pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.case, &super::with_output(&args.set, [("paraview", args.paraview)]))?;
     let task = Task::read(Kind::Sif, &document, &args.method)?;
     super::within_machine(&task, &document)?;
-    let work = |folder: Option<&Path>| runner::run(&task, None, folder, console).map_err(|error| document.locate(error));
+    let work = |folder: Option<&Path>| perilife_runner::run(&task, None, folder, console).map_err(|error| document.locate(error));
     let summary = match &args.out {
         None => {
             task.warnings().iter().for_each(|warning| console.warn(warning));
@@ -84,9 +84,9 @@ pub fn run(args: &Args) -> Result<()> {
 /// Runs `perilife sif --sweep`.
 fn sweep(args: &Args, asked: &str) -> Result<()> {
     let console = &args.console;
-    let lengths = runner::factor_sweep::lengths(asked)?;
+    let lengths = perilife_runner::factor_sweep::lengths(asked)?;
     let document = Document::read(&args.case, &args.set)?;
-    let case = runner::factor_sweep::case(&document, &lengths)?;
+    let case = perilife_runner::factor_sweep::case(&document, &lengths)?;
     let out = args.out.as_deref().ok_or_else(|| input_missing("--out", "is missing", "name the table: --out FILE.csv"))?;
     let claim = |option, path: &Path, header: &'static str| {
         OutputFile::claim(path, Sort { option, sign: header.as_bytes() }, &document.folder.opened().so_far())

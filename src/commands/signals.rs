@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
-use crate::report::output::pending;
+use perilife_results::output::pending;
 
 /// Says how to go on, in the line at the end.
 type Way = Box<dyn Fn() -> String + Send>;

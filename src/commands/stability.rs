@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use super::console::Console;
-use crate::error::Result;
-use crate::report::output::{OutputFolder, RunKind, write_file};
-use crate::report::stability as tables;
-use crate::report::stability_picture;
-use crate::verify::stability::{self, Effort, SLOW, sweeps};
+use perilife_base::error::Result;
+use perilife_results::output::{OutputFolder, RunKind, write_file};
+use perilife_study::stability::{self, Effort, SLOW, sweeps};
+use perilife_study::stability_picture;
+use perilife_study::stability_table as tables;
 
 /// Arguments of `perilife stability`.
 #[derive(Debug, clap::Args)]

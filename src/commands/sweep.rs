@@ -12,15 +12,15 @@ use super::console::Console;
 use super::signals;
 #[cfg(feature = "service")]
 use super::worker::Place;
-use crate::error::Result;
-use crate::input::Document;
-use crate::report::output::Share;
-use crate::report::sweep::Plan;
-use crate::runner::Task;
-use crate::runner::sweep::{collect, run as run_here};
-use crate::runner::sweep_folder::SweepFolder;
-use crate::sweep::design::CASES_MAX;
-use crate::sweep::{DrawnCase, Sweep};
+use perilife_base::error::Result;
+use perilife_base::input::Document;
+use perilife_calibration::sweep::design::CASES_MAX;
+use perilife_calibration::sweep::{DrawnCase, Sweep};
+use perilife_results::output::Share;
+use perilife_results::sweep::Plan;
+use perilife_runner::Task;
+use perilife_runner::sweep::{collect, run as run_here};
+use perilife_runner::sweep_folder::SweepFolder;
 
 /// Arguments of `perilife sweep`.
 #[derive(Debug, clap::Args)]
@@ -134,7 +134,7 @@ pub fn run(args: &Args) -> Result<()> {
         #[cfg(feature = "service")]
         Engine::Service => {
             let url = args.place.url()?;
-            let place = crate::service::without_password(&url);
+            let place = perilife_service::without_password(&url);
             args.console
                 .note(&format!("{} jobs for the workers of {place}; they go on if this command is broken off", left.len()));
             service::run(&url, &left, &folder, !args.summary_only, &args.console.count(&sweep.name, left.len()))?;

@@ -4,10 +4,10 @@ use serde_json::json;
 
 use super::console::Console;
 use super::worker::Place;
-use crate::error::{Result, input};
-use crate::service::job::time;
-use crate::service::store::Role;
-use crate::service::{with_store, without_password};
+use perilife_base::error::{Result, input};
+use perilife_service::job::time;
+use perilife_service::store::Role;
+use perilife_service::{with_store, without_password};
 
 /// Arguments of `perilife token`.
 #[derive(Debug, clap::Args)]

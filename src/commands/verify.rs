@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use serde_json::json;
 
 use super::console::Console;
-use crate::error::{Error, Result};
-use crate::input::Provenance;
-use crate::report::output::{OutputFile, OutputFolder, RunKind, Sort, write_file};
-use crate::report::verification;
-use crate::verify::{self, topics};
+use perilife_base::error::{Error, Result};
+use perilife_base::input::Provenance;
+use perilife_results::output::{OutputFile, OutputFolder, RunKind, Sort, write_file};
+use perilife_study::topics;
+use perilife_study::verification;
 
 /// Arguments of `perilife verify`.
 #[derive(Debug, clap::Args)]
@@ -37,7 +37,7 @@ pub fn run(args: &Args) -> Result<()> {
     let sort = Sort { option: "--markdown", sign: b"Written by `perilife verify --markdown`" };
     let markdown = args.markdown.as_deref().map(|path| OutputFile::claim(path, sort, &Provenance::default())).transpose()?;
     let folder = args.out.as_deref().map(|path| OutputFolder::create(path, RunKind::Verify)).transpose()?;
-    let rows = verify::rows(&topics, &|topic, rows| {
+    let rows = perilife_study::rows(&topics, &|topic, rows| {
         let lines: Vec<String> = rows.iter().map(verification::line).collect();
         args.console.say(&format!("{}: {}\n{}", topic.name, topic.about, lines.join("\n")));
     })?;
@@ -61,6 +61,6 @@ pub fn run(args: &Args) -> Result<()> {
         missed - failed
     ));
     args.console.object(&json!({ "rows": object["rows"], "known_misses": missed - failed, "failed": failed }))?;
-    let faults = verify::faults(&topics, &rows);
+    let faults = perilife_study::faults(&topics, &rows);
     if faults.is_empty() { Ok(()) } else { Err(Error::Mechanics(faults.join("\n"))) }
 }

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::console::Console;
-use crate::error::{Error, Result, input};
-use crate::service::store::url_of_file;
-use crate::service::{self, worker};
+use perilife_base::error::{Error, Result, input};
+use perilife_service::store::url_of_file;
+use perilife_service::worker;
 
 /// The database in the folder of a service.
 const FILE: &str = "perilife.sqlite";
@@ -179,7 +179,7 @@ pub struct Args {
 /// Runs `perilife worker`, until it is asked to stop.
 pub fn run(args: &Args) -> Result<()> {
     let (url, settings) = (args.work.place.url()?, args.work.settings());
-    let place = service::without_password(&url);
+    let place = perilife_service::without_password(&url);
     let ready = || args.console.note(&format!("perilife worker: {} jobs at a time from {place}", settings.jobs));
-    service::work(&url, &settings, ready)
+    perilife_service::work(&url, &settings, ready)
 }

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use perilife_analysis::input::Document;
-use perilife_analysis::runner::{Draft, put_law};
+use perilife_base::input::Document;
+use perilife_runner::{Draft, put_law};
 use pyo3::prelude::*;
 
 use crate::errors::raised;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use perilife_analysis::Error;
+use perilife_base::error::Error;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
 

@@ -1,5 +1,5 @@
 //! What the Python package `perilife` is built on: documents from dicts and files, runs under the eyes of Python.
-#![warn(missing_docs)]
+
 
 mod document;
 mod errors;
@@ -13,16 +13,16 @@ mod _perilife {
     use std::collections::HashMap;
     use std::path::PathBuf;
 
-    use perilife_analysis::check::check as check_document;
-    use perilife_analysis::input::Folder;
-    use perilife_analysis::material::{growth_data, library};
-    use perilife_analysis::measured::{self, Import};
-    use perilife_analysis::predict::factor_sweep::factor_sweep;
-    use perilife_analysis::report::band::InspectFrom;
-    use perilife_analysis::report::paper::{self, Signed};
-    use perilife_analysis::report::{factor_sweep as tables, provenance};
-    use perilife_analysis::runner::{self, Kind, Task};
-    use perilife_analysis::units::MM;
+    use perilife_base::input::Folder;
+    use perilife_base::units::MM;
+    use perilife_growth::predict::factor_sweep::factor_sweep;
+    use perilife_measured::Import;
+    use perilife_plate::material::{growth_data, library};
+    use perilife_results::band::InspectFrom;
+    use perilife_results::paper::{self, Signed};
+    use perilife_results::{factor_sweep as tables, provenance};
+    use perilife_runner::check::check as check_document;
+    use perilife_runner::{Kind, Task};
     use pyo3::prelude::*;
 
     use crate::document::document;
@@ -108,8 +108,8 @@ mod _perilife {
     ) -> PyResult<(String, String, usize, Vec<String>)> {
         let document = document(source, name, &set, None, HashMap::new())?;
         let work = |told: &crate::watcher::Told| {
-            let lengths = runner::factor_sweep::lengths(lengths)?;
-            let case = runner::factor_sweep::case(&document, &lengths)?;
+            let lengths = perilife_runner::factor_sweep::lengths(lengths)?;
+            let case = perilife_runner::factor_sweep::case(&document, &lengths)?;
             let found = factor_sweep(&case, &lengths, true, told)?;
             let warnings = [case.warnings, found.warnings.clone()].concat();
             Ok((tables::table(&found), tables::beta_table(&found), found.lead, warnings))
@@ -138,7 +138,7 @@ mod _perilife {
     #[pyfunction]
     #[expect(clippy::type_complexity, reason = "three columns and warnings")]
     fn read_table(py: Python<'_>, file: PathBuf) -> PyResult<(Vec<String>, Vec<f64>, Vec<f64>, Vec<String>)> {
-        let measured = py.detach(|| measured::read(&[file], &Import::default())).map_err(raised)?;
+        let measured = py.detach(|| perilife_measured::read(&[file], &Import::default())).map_err(raised)?;
         let (mut specimens, mut cycles, mut lengths) = (Vec::new(), Vec::new(), Vec::new());
         for curve in measured.curves {
             specimens.extend(curve.cycles.iter().map(|_| curve.specimen.clone()));

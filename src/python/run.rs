@@ -2,18 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use perilife_analysis::calibration::calibrate::{Calibration, Fitted};
-use perilife_analysis::calibration::fit::Fit;
-use perilife_analysis::calibration::laws::LawFits;
-use perilife_analysis::error::input_missing;
-use perilife_analysis::fracture::{self, Fracture};
-use perilife_analysis::input::Provenance;
-use perilife_analysis::predict::{Prediction, predict};
-use perilife_analysis::report::output::OutputFolder;
-use perilife_analysis::report::run::{CRACK_PATH_FILE, RESIDUAL_STRENGTH_FILE};
-use perilife_analysis::report::{self, csv, factors};
-use perilife_analysis::runner::{self, Judged, Task};
-use perilife_analysis::{Error, Result};
+use perilife_base::error::input_missing;
+use perilife_base::error::{Error, Result};
+use perilife_base::input::Provenance;
+use perilife_calibration::calibrate::{Calibration, Fitted};
+use perilife_calibration::fit::Fit;
+use perilife_calibration::laws::LawFits;
+use perilife_growth::predict::{Prediction, predict};
+use perilife_results::output::OutputFolder;
+use perilife_results::run::{CRACK_PATH_FILE, RESIDUAL_STRENGTH_FILE};
+use perilife_results::{csv, factors};
+use perilife_runner::scenes::Fracture;
+use perilife_runner::{Judged, Task};
 use pyo3::prelude::*;
 
 use crate::errors::raised;
@@ -40,19 +40,19 @@ pub struct Run {
 enum Done {
     Cycles(Box<Prediction>, Box<Judged>),
     Scene(Box<Fracture>),
-    Lives(Box<Fit>, report::fit::Kept),
-    Rates(Box<LawFits>, report::fit::Kept),
+    Lives(Box<Fit>, perilife_results::fit::Kept),
+    Rates(Box<LawFits>, perilife_results::fit::Kept),
     Factors,
 }
 
 impl Run {
     /// Runs a task.
-    /// Errors: as [`runner::run`]; a run that does not count.
+    /// Errors: as [`perilife_runner::run`]; a run that does not count.
     pub fn of(task: Task, read: Provenance, told: &Told) -> Result<Self> {
         let of_input = task.warnings().to_vec();
         let (done, result, lines) = match &task {
             Task::Prediction { case, wanted } => {
-                runner::check_wanted(case, wanted)?;
+                perilife_runner::check_wanted(case, wanted)?;
                 let prediction = predict(case, told)?;
                 let mut judged = Judged::of(case, &prediction, wanted, told)?;
                 judged.take_refusal().map_or(Ok(()), Err)?;
@@ -60,16 +60,16 @@ impl Run {
                 (Done::Cycles(Box::new(prediction), Box::new(judged)), result, lines)
             }
             Task::Scene(scene) => {
-                let fracture = fracture::run(scene, told)?;
-                let summary = runner::of_scene(scene, &fracture, None, told)?.counted()?;
+                let fracture = perilife_runner::scenes::run(scene, told)?;
+                let summary = perilife_runner::of_scene(scene, &fracture, None, told)?.counted()?;
                 (Done::Scene(Box::new(fracture)), summary.result.to_string(), summary.lines)
             }
             Task::Fit(calibration) => {
                 let begun = std::time::Instant::now();
                 let fitted = calibration.fit(told)?;
                 let wall_s = begun.elapsed().as_secs_f64();
-                fitted.warnings().iter().for_each(|warning| runner::Watcher::warn(told, warning));
-                let (kept, lines) = (report::fit::Kept::of(&fitted, &fitted.report(wall_s))?, fitted.summary(wall_s));
+                fitted.warnings().iter().for_each(|warning| perilife_runner::Watcher::warn(told, warning));
+                let (kept, lines) = (perilife_results::fit::Kept::of(&fitted, &fitted.report(wall_s))?, fitted.summary(wall_s));
                 let result = kept.json.to_string();
                 let done = match fitted {
                     Fitted::Lives(_, fit) => Done::Lives(fit, kept),
@@ -78,7 +78,7 @@ impl Run {
                 (done, result, lines)
             }
             Task::Factors { .. } => {
-                let summary = runner::run(&task, None, None, told)?.counted()?;
+                let summary = perilife_runner::run(&task, None, None, told)?.counted()?;
                 let table = summary.tables.lines().map(str::to_owned);
                 (Done::Factors, summary.result.to_string(), table.chain(summary.lines).collect())
             }
@@ -100,7 +100,7 @@ impl Run {
                 tables.extend(judged.strength_table(case).map(|table| (RESIDUAL_STRENGTH_FILE, table)));
                 tables
             }
-            (Done::Scene(fracture), _) => report::fracture::tables(fracture).into(),
+            (Done::Scene(fracture), _) => perilife_runner::scene_results::tables(fracture).into(),
             (Done::Lives(_, kept) | Done::Rates(_, kept), _) => kept.tables.clone(),
             _ => Vec::new(),
         })
@@ -111,13 +111,13 @@ impl Run {
         match (&self.done, &self.task) {
             (Done::Cycles(prediction, judged), Task::Prediction { case, .. }) => judged.write(folder, case, prediction),
             (Done::Scene(fracture), Task::Scene(scene)) => {
-                runner::of_scene(scene, fracture, Some(folder), &perilife_analysis::predict::Silent).map(drop)
+                perilife_runner::of_scene(scene, fracture, Some(folder), &perilife_growth::predict::Silent).map(drop)
             }
             (Done::Lives(fit, kept), Task::Fit(Calibration::Lives(case))) => {
-                report::fit::write(folder, &Fitted::Lives(case, fit.clone()), kept)
+                perilife_results::fit::write(folder, &Fitted::Lives(case, fit.clone()), kept)
             }
             (Done::Rates(fits, kept), Task::Fit(Calibration::Rates(case))) => {
-                report::fit::write(folder, &Fitted::Rates(case, (**fits).clone()), kept)
+                perilife_results::fit::write(folder, &Fitted::Rates(case, (**fits).clone()), kept)
             }
             _ => Err(Error::Mechanics(format!("{}: factors of tips have no folder of results", self.task.name()))),
         }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use perilife_analysis::error::{input, input_missing};
+use perilife_base::error::{input, input_missing};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyFloat, PyInt, PyMapping, PyString};
 use toml::{Table, Value};

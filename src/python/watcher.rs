@@ -5,11 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use perilife_analysis::fracture::{SceneObserver, SceneProgress};
-use perilife_analysis::predict::{Observer, Progress};
-use perilife_analysis::runner::Watcher;
-use perilife_analysis::units::MM;
-use perilife_analysis::watch::{self, Watch};
+use perilife_base::units::MM;
+use perilife_base::watch::{self, Watch};
+use perilife_growth::predict::{Observer, Progress};
+use perilife_runner::Watcher;
+use perilife_runner::scenes::{SceneObserver, SceneProgress};
 use pyo3::prelude::*;
 
 use crate::errors::raised;
@@ -87,7 +87,7 @@ impl Watcher for Told {
 pub fn watched<T: Send>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
-    work: impl FnOnce(&Told) -> perilife_analysis::Result<T> + Send,
+    work: impl FnOnce(&Told) -> perilife_base::error::Result<T> + Send,
 ) -> PyResult<T> {
     let told = Told::default();
     let look = || {

@@ -9,10 +9,10 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::problem::Problem;
-use crate::case::remove_law;
-use crate::error::Result;
-use crate::input::{Document, Folder};
-pub use crate::runner::Kind as JobKind;
+use perilife_base::error::Result;
+use perilife_base::input::{Document, Folder};
+use perilife_growth::case::remove_law;
+pub use perilife_runner::Kind as JobKind;
 
 /// Where a job stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]

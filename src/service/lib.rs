@@ -1,5 +1,10 @@
 //! The service: calibrate, predict and watch from a browser or a script, losing nothing.
 //!
+//! Knows: the store, workers, HTTP, the page.
+//! Must not know: mechanics; every job runs through `runner`.
+//!
+//! Imports `runner` and what it imports.
+//!
 //! Three parts that know each other only through the [`store`]: the [`api`] takes jobs in and shows them, [`worker`]s run them by
 //! the functions that the commands call, and the store is where a job exists. One process may have both ([`serve`]), or many
 //! machines share one PostgreSQL ([`work`]).
@@ -12,8 +17,6 @@
 //!
 //! Owners of tokens take turns, so that nobody's thousand jobs keep the others waiting. Of tokens only hashes are kept; bodies, files,
 //! points, waiting jobs and requests a second are limited, and files go out in parts, so that readers who do not read cost little.
-
-use perilife_analysis::*;
 
 pub mod api;
 pub mod job;
@@ -32,8 +35,8 @@ use tokio::runtime::{Builder, Runtime};
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::Notify;
 
-use crate::error::{Error, Result, input};
 use api::{App, Audit, Limits, Security};
+use perilife_base::error::{Error, Result, input};
 use store::{Store, Upgrade};
 use worker::Workers;
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::store;
-use crate::error::{Error, InputError};
+use perilife_base::error::{Error, InputError};
 
 /// Problem details.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use perilife::Error;
-use perilife::case::Case;
-use perilife::fracture::Scene;
+use perilife_base::error::Error;
+use perilife_growth::case::Case;
+use perilife_scenes::Scene;
 use proptest::prelude::*;
 
 use crate::interface::bad_toml::any_value;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use perilife::Error;
-use perilife::case::Case;
+use perilife_base::error::Error;
+use perilife_growth::case::Case;
 use proptest::prelude::*;
 
 use crate::interface::cli::{self, perilife, texts};

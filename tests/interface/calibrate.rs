@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::case::record::FittedRecord;
-use perilife::report::csv::read_a_n;
+use perilife_growth::case::record::FittedRecord;
+use perilife_results::csv::read_a_n;
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 

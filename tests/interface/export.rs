@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::report::csv::{self, Row};
-use perilife::report::resample::cycles_over_length;
+use perilife_results::csv::{self, Row};
+use perilife_results::resample::cycles_over_length;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};

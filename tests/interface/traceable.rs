@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use perilife::input::sha256;
+use perilife_base::input::sha256;
 use serde_json::{Value, json};
 
 use crate::interface::cli::{perilife, texts};

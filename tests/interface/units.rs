@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use perilife::report::csv::read_a_n;
-use perilife::units::us::{System, renamed};
+use perilife_base::units::us::{System, renamed};
+use perilife_results::csv::read_a_n;
 use serde_json::Value;
 use tempfile::tempdir;
 

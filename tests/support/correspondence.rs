@@ -1,16 +1,16 @@
 //! Correspondence bodies without loads, their forces, and equilibria of small patches.
 
 use nalgebra::{DMatrix, DVector};
-use perilife::body::Body;
-use perilife::fracture::Scene;
-use perilife::fracture::bonds::BondState;
-use perilife::fracture::correspondence::{Correspondence, NET_LAW};
-use perilife::fracture::interaction::{Damaging, Interaction, Reaction};
-use perilife::fracture::scene::{SceneLaw, ZeroEnergyControl};
-use perilife::levels::Net;
-use perilife::material::{Material, Plane};
-use perilife::specimen::Specimen;
-use perilife::verify::uniform_tension::strip;
+use perilife_plate::material::{Material, Plane};
+use perilife_plate::specimen::Specimen;
+use perilife_points::body::Body;
+use perilife_points::net::Net;
+use perilife_scenes::Scene;
+use perilife_scenes::bonds::BondState;
+use perilife_scenes::correspondence::{Correspondence, NET_LAW};
+use perilife_scenes::interaction::{Damaging, Interaction, Reaction};
+use perilife_scenes::scene::{SceneLaw, ZeroEnergyControl};
+use perilife_study::uniform_tension::strip;
 
 /// Thickness of the patch and the disc of the source, m.
 pub const THICKNESS: f64 = 6.35e-3;

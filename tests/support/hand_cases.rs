@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use perilife::Result;
-use perilife::case::Case;
-use perilife::input::Folder;
-use perilife::predict::{Prediction, Silent, predict};
+use perilife_base::error::Result;
+use perilife_base::input::Folder;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, Silent, predict};
 
 /// Everything but `[specimen]` and `[loading]`.
 const REST: &str = "[material]\nyoungs_modulus_gpa = 73.1\npoisson_ratio = 0.33\n[model]\nmethod = \"handbook\"\n\

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use perilife::case::record::{Estimate, FittedRecord};
-use perilife::case::{Case, LawSource};
+use perilife_growth::case::record::{Estimate, FittedRecord};
+use perilife_growth::case::{Case, LawSource};
 
 /// A plate of 100 x 300 mm with the slant crack of the made-up run and an inline law; the model names the bond law and a
 /// spacing that has to move.

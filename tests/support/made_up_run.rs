@@ -3,9 +3,10 @@
 
 use std::f64::consts::PI;
 
-use perilife::predict::{CurvePoint, PointGrid, Prediction, RunFigures, Snapshot, StopReason, TipRecord};
-use perilife::solver::SolverUsed;
-use perilife::specimen::{Crack, Point};
+use perilife_base::raster::{PointGrid, Snapshot};
+use perilife_growth::predict::{CurvePoint, Prediction, RunFigures, StopReason, TipRecord};
+use perilife_plate::specimen::{Crack, Point};
+use perilife_points::solver::SolverUsed;
 
 const SPACING: f64 = 1e-3;
 
@@ -60,7 +61,7 @@ fn curve() -> Vec<CurvePoint> {
         }
         let y = y0 + 1.2e-3 * (1.0 - (-growth / 2e-3).exp());
         let tip = |sign: f64| TipRecord {
-            state: perilife::fatigue::crack_tip::TipState::Active,
+            state: perilife_points::crack_tip::TipState::Active,
             position: [sign * (x0 + growth), sign * y],
             growth,
             factors: None,

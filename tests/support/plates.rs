@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use perilife::Result;
-use perilife::case::Case;
-use perilife::verify::cases::by_name;
+use perilife_base::error::Result;
+use perilife_growth::case::Case;
+use perilife_study::cases::by_name;
 
 /// Sections that most tests do not care about.
 const REST: &str = r#"

@@ -1,14 +1,12 @@
 //! Fracture scenes built without files: a cracked square torn in time, a plate pulled at rest, plates with points of several levels.
 
-use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::fracture::Scene;
-use perilife::fracture::scene::{
-    Action, Damage, DamageLaw, Procedure, RefinedRegion, Refinement, SceneLaw, SceneLoad, SceneSolver,
-};
-use perilife::material::{Material, Plane};
-use perilife::specimen::{self, Edge, Point, Specimen};
-use perilife::verify::dual_horizon;
-use perilife::verify::uniform_tension::strip;
+use perilife_plate::material::{Material, Plane};
+use perilife_plate::specimen::{self, Edge, Point, Specimen};
+use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_scenes::Scene;
+use perilife_scenes::scene::{Action, Damage, DamageLaw, Procedure, RefinedRegion, Refinement, SceneLaw, SceneLoad, SceneSolver};
+use perilife_study::dual_horizon;
+use perilife_study::uniform_tension::strip;
 
 pub const MM: f64 = 1e-3;
 
@@ -23,7 +21,8 @@ pub const fn law(kind: BondLawKind, rotation: Rotation) -> BondLaw {
 
 /// The plate of `[specimen]` keys.
 fn specimen_of(keys: &str) -> Specimen {
-    specimen::from_value(&toml::Value::Table(keys.parse().unwrap()), &perilife::input::Folder::none(), &mut Vec::new()).unwrap()
+    specimen::from_value(&toml::Value::Table(keys.parse().unwrap()), &perilife_base::input::Folder::none(), &mut Vec::new())
+        .unwrap()
 }
 
 /// A square of 50 mm with a central crack of 10 mm, of the steel of Huang, Li, Jin, He and Wang, example 3, its ends driven apart with a velocity, m/s,
@@ -64,7 +63,7 @@ pub fn plate(keys: &str, law: BondLaw, spacing: f64, regions: &[(RefinedRegion, 
 
 /// The scene on a dual horizon with these regions.
 pub fn refined(mut scene: Scene, regions: &[(RefinedRegion, usize)]) -> Scene {
-    scene.model.arrangement = perilife::fracture::scene::Discretisation::DualHorizon;
+    scene.model.arrangement = perilife_scenes::scene::Discretisation::DualHorizon;
     scene.refinement = Some(Refinement { regions: regions.to_vec() });
     scene
 }

@@ -2,13 +2,17 @@
 
 use std::path::PathBuf;
 
-/// A file of the shared data (`$PERILIFE_SHARED/data`, else `../shared/data`), or `None` with a printed reason.
-pub fn shared(file: &str) -> Option<PathBuf> {
+/// A file of the shared folder (`$PERILIFE_SHARED`, else `../shared`), where it is there.
+pub fn shared_root(file: &str) -> Option<PathBuf> {
     let root = std::env::var_os("PERILIFE_SHARED").map_or_else(|| PathBuf::from("../shared"), PathBuf::from);
-    let path = root.join("data").join(file);
-    if path.is_file() {
-        return Some(path);
+    Some(root.join(file)).filter(|path| path.is_file())
+}
+
+/// A file of the shared data, or `None` with a printed reason.
+pub fn shared(file: &str) -> Option<PathBuf> {
+    let path = shared_root(&format!("data/{file}"));
+    if path.is_none() {
+        eprintln!("skipped: data/{file} is not there (set PERILIFE_SHARED to the folder that holds data/)");
     }
-    eprintln!("skipped: {} is not there (set PERILIFE_SHARED to the folder that holds data/)", path.display());
-    None
+    path
 }

@@ -1,14 +1,14 @@
 //! Bodies without cycles: all laws, a plate in equilibrium, stretches of its bonds.
 
-use perilife::Result;
-use perilife::body::{Body, Bond};
-use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::case::Case;
-use perilife::fatigue::ageing::stretch;
-use perilife::material::{Material, Plane};
-use perilife::solver::field::Layout;
-use perilife::solver::{Equilibrium, SolverKind, Symmetry};
-use perilife::state::Bonds;
+use perilife_base::error::Result;
+use perilife_growth::ageing::stretch;
+use perilife_growth::case::Case;
+use perilife_plate::material::{Material, Plane};
+use perilife_points::body::{Body, Bond};
+use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_points::solver::field::Layout;
+use perilife_points::solver::{Equilibrium, SolverKind, Symmetry};
+use perilife_points::state::Bonds;
 
 /// Every bond law with every kernel and rotation.
 pub fn laws() -> impl Iterator<Item = (BondLawKind, Kernel, Rotation)> {
@@ -28,7 +28,7 @@ pub fn corrected_laws() -> impl Iterator<Item = BondLaw> {
 
 /// A material that the law can represent: bond-based has one Poisson's ratio, state-based goes beyond it.
 pub fn material(kind: BondLawKind, plane: Plane) -> Material {
-    let limit = perilife::bond_law::stencil::poisson_limit(plane);
+    let limit = perilife_points::bond_law::stencil::poisson_limit(plane);
     let share = match kind {
         BondLawKind::BondBased => 1.0,
         BondLawKind::TwoParameter | BondLawKind::OneBondTwoParameter => 0.7,

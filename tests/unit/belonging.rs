@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use perilife::calibration::calibrate::calibrate;
-use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::fit::Fit;
-use perilife::calibration::lack_of_fit::EndMiss;
-use perilife::calibration::results::{record, report};
-use perilife::case::record::Estimate;
-use perilife::input::Folder;
-use perilife::predict::Silent;
+use perilife_base::input::Folder;
+use perilife_calibration::calibrate::calibrate;
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::fit::Fit;
+use perilife_calibration::lack_of_fit::EndMiss;
+use perilife_calibration::results::{record, report};
+use perilife_growth::case::record::Estimate;
+use perilife_growth::predict::Silent;
 
 use crate::support::fatigue_test::{calibration, lengths, readings};
 
@@ -25,7 +25,7 @@ fn rows(readings: &[(f64, f64)], more: impl Fn(usize) -> String) -> String {
     readings.iter().enumerate().map(|(i, (n, a))| format!("{n},{a:.4}{}\n", more(i))).collect()
 }
 
-fn case(csv: &str, keys: &str) -> perilife::Result<CalibrationCase> {
+fn case(csv: &str, keys: &str) -> perilife_base::error::Result<CalibrationCase> {
     let files = BTreeMap::from([("test.csv".to_owned(), csv.as_bytes().to_vec())]);
     CalibrationCase::from_text(&calibration("test.csv", keys), "case", Folder::at_hand(files))
 }

@@ -1,6 +1,6 @@
 //! Blended polynomials through a table: order on even points, no swing on uneven ones.
 
-use perilife::blended::Blended;
+use perilife_base::blended::Blended;
 
 /// Largest error of the table of a function at `count` even points of 0 to 2.
 fn error(count: usize, of: fn(f64) -> f64) -> f64 {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use perilife::body::Body;
-use perilife::case::Case;
+use perilife_growth::case::Case;
+use perilife_points::body::Body;
 
 /// A plate held at the bottom, with a horizontal crack at a height (mm) that decides where the rows of points lie.
 fn body(height: f64, correction: &str) -> Body {

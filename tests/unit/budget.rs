@@ -1,10 +1,11 @@
 //! What a case takes up is known before anything is laid out, and refused where it is too much.
 
-use perilife::bond_law::stencil::Stencil;
-use perilife::case::Case;
-use perilife::case::budget::{Budget, machine};
-use perilife::fracture::{self, Scene};
-use perilife::input::Folder;
+use perilife_base::input::Folder;
+use perilife_base::machine;
+use perilife_growth::case::Case;
+use perilife_points::bond_law::stencil::Stencil;
+use perilife_points::budget::Budget;
+use perilife_scenes::Scene;
 
 const PLATE: &str = r#"
 material = { name = "al2024-t3" }
@@ -43,7 +44,7 @@ fn points_and_bonds_are_those_of_the_plate() {
     }
     for (regions, most) in [(fine, 1.4), (flaws, 1.9)] {
         let levels = scene("spacing_mm = 2.0, discretisation = \"dual_horizon\"", &format!("refinement = {{ {regions} }}\n"));
-        let (budget, points) = (levels.budget(), fracture::build(&levels).unwrap().0.len());
+        let (budget, points) = (levels.budget(), perilife_scenes::build(&levels).unwrap().0.len());
         let ratio = budget.points / points as f64;
         println!("{:.0} points against {points} of {regions}", budget.points);
         assert!((0.98..=1.02 * most).contains(&ratio), "{ratio} of {regions}");

@@ -3,14 +3,14 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::criterion::Criterion;
-use perilife::calibration::fit::{Bonds, Fit, FitTask, fit};
-use perilife::calibration::power_law::PowerLaw;
-use perilife::calibration::results::{fit_curves_csv, record, report};
-use perilife::case::record::FittedRecord;
-use perilife::input::Folder;
-use perilife::units::{MM, MPA_SQRT_M};
+use perilife_base::input::Folder;
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::criterion::Criterion;
+use perilife_calibration::fit::{Bonds, Fit, FitTask, fit};
+use perilife_calibration::power_law::PowerLaw;
+use perilife_calibration::results::{fit_curves_csv, record, report};
+use perilife_growth::case::record::FittedRecord;
 use tempfile::tempdir;
 
 const GOOD: &str = r#"[measured]
@@ -36,7 +36,7 @@ parameters = ["a", "p"]
 const CURVES: &str = "specimen,cycles,crack_length_mm\nA,100,8\nA,1000,9\nA,2000,10\nA,2900,11\nA,3700,12\nA,4400,13\nA,5000,14\n\
                       B,0,8.5\nB,500,9\nB,1600,10\nB,2600,11\nB,3450,12\nB,4200,13\n";
 
-fn read(text: &str, overrides: &[&str]) -> perilife::Result<CalibrationCase> {
+fn read(text: &str, overrides: &[&str]) -> perilife_base::error::Result<CalibrationCase> {
     let folder = tempdir().unwrap();
     fs::write(folder.path().join("curves.csv"), CURVES).unwrap();
     fs::write(folder.path().join("alloy.toml"), text).unwrap();

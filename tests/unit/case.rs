@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use perilife::Error;
-use perilife::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::case::record::{Estimate, FittedRecord};
-use perilife::case::{Case, LawSource};
-use perilife::input::Folder;
-use perilife::material::library;
+use perilife_base::error::Error;
+use perilife_base::input::Folder;
+use perilife_growth::case::record::{Estimate, FittedRecord};
+use perilife_growth::case::{Case, LawSource};
+use perilife_plate::material::library;
+use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 
 const TEXT: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\ncrack_length_mm = 9\n\
                     [material]\nyoungs_modulus_gpa = 73.1\npoisson_ratio = 0.33\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n";
@@ -73,7 +73,7 @@ fn defaults_are_those_of_the_contract() {
     assert_eq!(case.fatigue.step_error_percent, 0.2);
     assert!(
         case.stop.crack_length.is_infinite()
-            && case.fatigue.critical_stretch == perilife::fatigue::OVERLOAD_STRETCH
+            && case.fatigue.critical_stretch == perilife_laws::OVERLOAD_STRETCH
             && !case.allow_extrapolation
     );
     let [warning] = &case.warnings[..] else { panic!("{:?}", case.warnings) };
@@ -223,7 +223,7 @@ fn what_is_planned_is_said_to_be_planned() {
 
 #[test]
 fn what_belongs_to_scenes_is_sent_there() {
-    for (key, names) in perilife::input::OF_SCENES {
+    for (key, names) in perilife_base::input::OF_SCENES {
         for value in *names {
             let error = read(INLINE, &[&format!("{key}={value}")]).unwrap_err().to_string();
             assert!(error.contains(key) && error.contains(value) && error.contains("perilife fracture"), "{error}");

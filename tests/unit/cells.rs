@@ -4,9 +4,9 @@ use std::io::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
-use perilife::cells::{CELLS_MAX, ROWS_MAX, UNPACKED_MAX, defused, field, restored};
-use perilife::measured::{Import, parse, survey};
-use perilife::tables::{csv, frame, parquet, read_parquet};
+use perilife_base::cells::{CELLS_MAX, ROWS_MAX, UNPACKED_MAX, defused, field, restored};
+use perilife_measured::{Import, parse, survey};
+use perilife_tables::{csv, frame, parquet, read_parquet};
 use polars::prelude::{AnyValue, Column, DataFrame, DataType, Scalar};
 
 use crate::support::workbook::workbook;

@@ -1,7 +1,7 @@
 //! Parts of the chart: fronts, machine, times in words.
 
-use perilife::report::speed::seconds;
-use perilife::verify::chart::{Machine, front};
+use perilife_study::chart::{Machine, front};
+use perilife_study::speed::seconds;
 
 #[test]
 fn the_machine_has_threads_and_an_instruction_set() {

@@ -1,10 +1,10 @@
 //! What a life rests on: verdicts, effects, sides.
 
-use perilife::case::Case;
-use perilife::input::Folder;
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::report::checks::{Check, Side, Verdict, is_bound_below, lines, of_case, of_run, verdict};
-use perilife::report::run::{refusal, refuse_beforehand};
+use perilife_base::input::Folder;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_results::checks::{Check, Side, Verdict, is_bound_below, lines, of_case, of_run, verdict};
+use perilife_results::run::{refusal, refuse_beforehand};
 
 use crate::support::hand_cases::{PANEL, hand_case, hand_run, try_hand_case_in};
 use crate::support::{made_up_case, made_up_run};
@@ -92,9 +92,9 @@ fn extrapolation_has_two_sides() {
     assert!(verdict(&of_run(&case, &run)).starts_with("not to be used: "));
     assert_eq!(of_run(&case, &run)[0].name, "extrapolation_above", "what fails comes first");
     assert_eq!(refusal(&case, &run).unwrap().exit_code(), 2);
-    let lives = perilife::report::band::Lives::of(&case, &run).unwrap();
+    let lives = perilife_results::band::Lives::of(&case, &run).unwrap();
     assert!(
-        perilife::report::run::words(&case, &run, &lives, &perilife::report::quality::Quality::default())[0]
+        perilife_results::run::words(&case, &run, &lives, &perilife_results::quality::Quality::default())[0]
             .contains(": no life that counts, 100.0 cycles were computed")
     );
     // All of it on the safe side counts, with a word.
@@ -141,7 +141,7 @@ fn a_bound_is_one_where_all_that_could_end_the_life_holds() {
 fn thickness_and_ratio_are_held_against_those_of_the_law() {
     let mut case = hand_case(PANEL, &[]);
     case.law = made_up_case::fitted(3.0, 80.0);
-    let perilife::case::LawSource::Fitted(record) = &mut case.law else { unreachable!() };
+    let perilife_growth::case::LawSource::Fitted(record) = &mut case.law else { unreachable!() };
     (record.thickness_mm, record.stress_ratio, record.lack_of_fit_percent) = (1.0, 0.2, Some(12.0));
     let checks = of_case(&case);
     assert!(find(&checks, "thickness").words.contains("2.54 mm, law of specimens of 1.00 mm"));

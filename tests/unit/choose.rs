@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use perilife::case::{Case, Method};
-use perilife::predict::tip_factors::stress_intensity;
+use perilife_growth::case::{Case, Method};
+use perilife_growth::predict::tip_factors::stress_intensity;
 
 const REST: &str = "[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\nplane = \"stress\"\n\
                     [loading]\nkind = \"constant_amplitude\"\nstress_max_mpa = 60\nstress_ratio = 0.1\n\

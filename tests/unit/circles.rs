@@ -1,13 +1,13 @@
-//! Imports between files run one way, and no room grows unseen.
+//! Imports between files run one way, within a member as between members.
 //!
 //! What a file takes from the modules within its own folder is no arrow here, what they take from it is one. Names that a file re-exports count as those of the file that defines them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
-use super::layering::modules;
+use super::house::{member_of, rust_files, source};
 
-/// A module: the segments of its path below the crate.
+/// A module: its member, and the segments of its path below it.
 type Module = Vec<String>;
 
 /// What the imports of one file say.
@@ -42,7 +42,12 @@ fn imports_run_in_no_circle() {
 /// Code of every module, without comments and text in quotes.
 fn sources() -> BTreeMap<Module, String> {
     let mut code: BTreeMap<Module, String> = BTreeMap::new();
-    for (file, module) in modules().into_iter().filter(|(file, _)| !file.ends_with("main.rs") && !file.ends_with("build.rs")) {
+    let source = source();
+    for file in rust_files(&source).into_iter().filter(|file| !file.ends_with("main.rs") && !file.ends_with("build.rs")) {
+        let path = file.strip_prefix(&source).unwrap();
+        let within = path.strip_prefix(member_of(path)).unwrap_or(path).with_extension("");
+        let parts = within.iter().map(|part| part.to_str().unwrap().to_owned()).filter(|part| part != "mod" && part != "lib");
+        let module: Module = std::iter::once(member_of(path)).chain(parts).collect();
         code.entry(module).or_default().push_str(&bare(&fs::read_to_string(&file).unwrap()));
     }
     code
@@ -103,13 +108,12 @@ fn paths_of(tree: &str) -> Vec<Module> {
 fn absolute(own: &[String], path: &[String], modules: &BTreeSet<Module>) -> Option<Module> {
     let supers = path.iter().take_while(|part| *part == "super").count();
     match path.first()?.as_str() {
-        // The service is a crate of its own: what it calls by `crate` is one of its modules or a room above it.
-        "crate" => {
-            let within =
-                own.first().filter(|room| *room == "service").map(|room| [std::slice::from_ref(room), &path[1..]].concat());
-            Some(within.filter(|within| modules.contains(&within[..2.min(within.len())])).unwrap_or_else(|| path[1..].to_vec()))
-        }
+        "crate" => Some([&own[..1], &path[1..]].concat()),
         "super" => Some([&own[..own.len().checked_sub(supers)?], &path[supers..]].concat()),
+        first if first.starts_with("perilife") => {
+            let member = first.strip_prefix("perilife_").unwrap_or("program");
+            Some([&[member.to_owned()], &path[1..]].concat())
+        }
         first => {
             let child = [own, &[first.to_owned()]].concat();
             modules.contains(&child).then(|| [own, path].concat())
@@ -153,60 +157,9 @@ fn imports_are_taken_apart() {
     assert_eq!(joined("crate::{a, b::{self, c as d}}"), ["crate::a", "crate::b", "crate::b::c"]);
     let modules: BTreeSet<Module> = [vec!["a".to_owned(), "b".to_owned()]].into();
     let own = ["a".to_owned()];
-    let found = imports_of(&own, &bare("pub use b::X; // use crate::c;\nlet y = \"crate::d::e\"; super::z::f();"), &modules);
+    let text = "pub use b::X; // use crate::c;\nlet y = \"crate::d::e\"; crate::z::f(); perilife_w::g();";
+    let found = imports_of(&own, &bare(text), &modules);
     assert_eq!(found.handed_on["X"].join("::"), "a::b::X");
-    assert_eq!(found.names, [vec!["z".to_owned(), "f".to_owned()]]);
-}
-
-/// Most lines of Rust of a room of `src`, and of all: what is built beside something that stands shares its code or replaces it. A room
-/// that grows is given its new figure here, with the reason in the message of the commit.
-const LINES: &[(&str, usize)] = &[
-    ("report", 12000),
-    ("fracture", 6938),
-    ("specimen", 6392),
-    ("growth", 6253),
-    ("calibration", 6171),
-    ("service", 5856),
-    ("solver", 5300),
-    ("element_free", 5215),
-    ("verify", 5201),
-    ("measured", 4440),
-    ("predict", 3299),
-    ("case", 3081),
-    ("commands", 3044),
-    ("body", 2557),
-    ("fatigue", 2450),
-    ("loading", 2334),
-    ("levels", 1728),
-    ("sweep", 1474),
-    ("runner", 1242),
-    ("input", 904),
-    ("stress_intensity", 688),
-    ("python", 615),
-    ("check", 607),
-    ("units", 479),
-    ("bond_law", 394),
-    ("tables", 342),
-    ("material", 322),
-];
-/// Of a room that is not named.
-const SMALL: usize = 300;
-const LINES_OF_ALL: usize = 90840;
-
-#[test]
-fn rooms_do_not_grow() {
-    let mut rooms: BTreeMap<String, usize> = BTreeMap::new();
-    for (file, module) in modules() {
-        let room = module.into_iter().next().unwrap_or_else(|| "lib".to_owned());
-        *rooms.entry(room).or_default() += fs::read_to_string(&file).unwrap().lines().count();
-    }
-    let most: BTreeMap<&str, usize> = LINES.iter().copied().collect();
-    let grown: Vec<String> = rooms
-        .iter()
-        .filter(|(room, lines)| **lines > most.get(room.as_str()).copied().unwrap_or(SMALL))
-        .map(|(room, lines)| format!("{room}: {lines} lines"))
-        .collect();
-    assert!(grown.is_empty(), "rooms that have grown: {grown:?}");
-    let all: usize = rooms.values().sum();
-    assert!(all <= LINES_OF_ALL, "{all} lines of all rooms, at most {LINES_OF_ALL}");
+    let named = |path: [&str; 3]| path.map(str::to_owned).to_vec();
+    assert_eq!(found.names, [named(["a", "z", "f"]), vec!["w".to_owned(), "g".to_owned()]]);
 }

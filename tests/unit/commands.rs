@@ -3,22 +3,22 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use perilife::case::Case;
 use perilife::commands::check;
 use perilife::commands::console::{Console, with_source_line};
-use perilife::error::InputError;
-use perilife::predict::{Prediction, StopReason};
-use perilife::report::catalogue::lines;
-use perilife::report::output::{OutputFolder, RunKind};
-use perilife::runner::{Wanted, of_prediction};
+use perilife_base::error::InputError;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, StopReason};
+use perilife_results::output::{OutputFolder, RunKind};
+use perilife_runner::catalogue::lines;
+use perilife_runner::{Wanted, of_prediction};
 use tempfile::tempdir;
 
 use crate::support::{made_up_case, made_up_run};
-use crate::unit::layering;
+use crate::unit::house;
 
 const QUIET: Console = Console { json: false, quiet: true };
 
-fn keep(case: &Case, run: Prediction, out: &Path) -> Result<(), perilife::Error> {
+fn keep(case: &Case, run: Prediction, out: &Path) -> Result<(), perilife_base::error::Error> {
     let folder = OutputFolder::create(out, RunKind::Predict)?;
     QUIET.keep(folder, &[], |path| of_prediction(case, &run, &Wanted::default(), Some(path), &QUIET))?.counted().map(drop)
 }
@@ -104,7 +104,7 @@ fn an_error_shows_its_line_where_there_is_one() {
 fn the_list_misses_no_kind() {
     let lines = lines();
     let mut keys = 0;
-    for file in layering::rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
+    for file in house::rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src")) {
         for line in fs::read_to_string(&file).unwrap().lines() {
             let declared = line.trim().strip_prefix("pub enum ").and_then(|rest| rest.split_once(" for \""));
             if let Some((_, rest)) = declared {

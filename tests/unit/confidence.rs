@@ -1,7 +1,7 @@
 //! Calibration finds what it was given: noisy curves of a known law, and whether the stated confidence is honest.
 
-use perilife::calibration::confidence::distance_squared;
-use perilife::calibration::criterion::Criterion;
+use perilife_calibration::confidence::distance_squared;
+use perilife_calibration::criterion::Criterion;
 
 use super::misfit::{exact_curve, fit_by, fit_to, paris_model};
 use crate::support::noise::Noise;

@@ -1,6 +1,6 @@
 //! K of a run against an independent one.
 
-use perilife::growth::cross_check::{EnergyBalance, ReleasedEnergy};
+use perilife_growth::cross_check::{EnergyBalance, ReleasedEnergy};
 
 const HORIZON: f64 = 3e-3;
 

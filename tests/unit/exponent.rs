@@ -3,19 +3,19 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::calibration::calibrate::calibrate;
-use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::results::{record, report};
-use perilife::case::record::FittedRecord;
-use perilife::case::{Case, fitted_record};
-use perilife::predict::{Silent, predict};
+use perilife_calibration::calibrate::calibrate;
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::results::{record, report};
+use perilife_growth::case::record::FittedRecord;
+use perilife_growth::case::{Case, fitted_record};
+use perilife_growth::predict::{Silent, predict};
 use serde_json::{Value, json};
 use tempfile::{TempDir, tempdir};
 
 use crate::support::hand_cases::{PANEL, hand_run};
 
 /// A calibration on exact readings of the panel with C = 8.95422e-8 and m = 2.874, every 2 mm between two lengths.
-fn calibration(folder: &TempDir, window_mm: [usize; 2], fit: &str) -> perilife::Result<CalibrationCase> {
+fn calibration(folder: &TempDir, window_mm: [usize; 2], fit: &str) -> perilife_base::error::Result<CalibrationCase> {
     let mut readings = "cycles,crack_length_mm\n0,9\n".to_owned();
     for length in (11..=49).step_by(2) {
         let run = hand_run(PANEL, &[&format!("stop.crack_length_mm={length}")]);
@@ -105,8 +105,8 @@ fn a_narrow_window_takes_p_from_a_record_or_says_that_it_is_not_identified() {
 /// p of peridynamic records is p, not m.
 #[test]
 fn bonds_take_p_and_hand_calculation_m_of_a_record() {
-    use perilife::calibration::exponent::Exponent;
-    use perilife::case::Method;
+    use perilife_calibration::exponent::Exponent;
+    use perilife_growth::case::Method;
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3");
     let law = fitted_record("fitted.toml", &path.as_path().into()).unwrap();
     let of = |method| Exponent::of_record("fitted.toml", &path.as_path().into(), method).unwrap().fixed;

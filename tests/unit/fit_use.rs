@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::predict::plastic_zone::{plastic_zone, warnings};
-use perilife::predict::{Silent, predict};
-use perilife::report::{fit_use, json};
+use perilife_growth::case::Case;
+use perilife_growth::predict::plastic_zone::{plastic_zone, warnings};
+use perilife_growth::predict::{Silent, predict};
+use perilife_results::{fit_use, json};
 
 use crate::support::hand_cases::{PANEL, hand_case, hand_run};
 use crate::support::{made_up_case, made_up_run};

@@ -1,13 +1,13 @@
 //! Fleets beside the band of their lot, detection, sensitivities.
 
-use perilife::case::{Case, Fleet, InitialLength};
-use perilife::predict::{Silent, StopReason, predict};
-use perilife::report::band::Lives;
-use perilife::report::sensitivities::Sensitivities;
-use perilife::sweep::detection::{Detection, Schedule};
-use perilife::sweep::distribution::quantile;
-use perilife::sweep::fleet::{FleetLives, FleetPlate, Looks, lives};
-use perilife::units::{MM, MPA_SQRT_M};
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_calibration::sweep::detection::{Detection, Schedule};
+use perilife_calibration::sweep::distribution::quantile;
+use perilife_calibration::sweep::fleet::{FleetLives, FleetPlate, Looks, lives};
+use perilife_growth::case::{Case, Fleet, InitialLength};
+use perilife_growth::predict::{Silent, StopReason, predict};
+use perilife_results::band::Lives;
+use perilife_results::sensitivities::Sensitivities;
 
 use super::plate_band::panel;
 use crate::support::hand_cases::{PANEL, hand_case};
@@ -35,7 +35,7 @@ fn a_fleet_that_differs_in_its_law_alone_has_the_quantiles_of_the_band() {
     println!("{found:?} beside {wanted:?}");
     assert!(drawn.one_law.is_none() && (0..3).all(|k| (found[k] / wanted[k] - 1.0).abs() < 0.02), "{found:?} beside {wanted:?}");
     // A faster law has the shorter life.
-    let product = |plate: &perilife::sweep::fleet::FleetPlate| plate.rate_factor * plate.life.cycles;
+    let product = |plate: &perilife_calibration::sweep::fleet::FleetPlate| plate.rate_factor * plate.life.cycles;
     assert!(drawn.plates.iter().all(|plate| (product(plate) / product(&drawn.plates[0]) - 1.0).abs() < 0.02));
 }
 
@@ -112,7 +112,7 @@ fn every_plate_of_a_fleet_has_its_own_interval() {
     assert!((missed - looked.missed).abs() < 1e-12);
     // With a toughness the plate under the higher load breaks at the shorter length.
     let tough = hand_case(PANEL, &["material.toughness_mpa_sqrt_m=40", "stop.crack_length_mm=70"]);
-    let formula = perilife::specimen::handbook::handbook(&tough.specimen).unwrap();
+    let formula = perilife_plate::specimen::handbook::handbook(&tough.specimen).unwrap();
     let (drawn, _) = fleet(&tough, &by_load, Some(looks));
     // Under a lower load than that of the run the record ends before the plate does.
     for plate in &drawn.plates {

@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use perilife::calibration::calibrate::calibrate;
-use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::results::record;
-use perilife::case::Case;
-use perilife::case::record::FittedRecord;
-use perilife::input::{Document, Folder};
-use perilife::predict::Silent;
-use perilife::report::csv::{Row, parse_a_n, table};
-use perilife::report::provenance::table_of;
-use perilife::sealed::Seal;
+use perilife_base::input::{Document, Folder};
+use perilife_base::sealed::Seal;
+use perilife_calibration::calibrate::calibrate;
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::results::record;
+use perilife_growth::case::Case;
+use perilife_growth::case::record::FittedRecord;
+use perilife_growth::predict::Silent;
+use perilife_results::csv::{Row, parse_a_n, table};
+use perilife_results::provenance::table_of;
 use serde_json::Value;
 
 /// Doubles of every size, and those that decimal readers are known to round wrongly.

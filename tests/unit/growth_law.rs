@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
-use perilife::case::{Case, LawSource};
-use perilife::fatigue::growth_law::nasgro::opening;
-use perilife::fatigue::growth_law::table::{Curve, Table};
-use perilife::fatigue::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind};
-use perilife::input::Folder;
-use perilife::measured::rates::RateFile;
-use perilife::predict::{Silent, predict};
-use perilife::quadrature::integrate;
-use perilife::units::{MM, MPA_SQRT_M};
+use perilife_base::input::Folder;
+use perilife_base::quadrature::integrate;
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_growth::case::{Case, LawSource};
+use perilife_growth::predict::{Silent, predict};
+use perilife_laws::growth_law::nasgro::opening;
+use perilife_laws::growth_law::table::{Curve, Table};
+use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind};
+use perilife_measured::rates::RateFile;
 
 fn near(a: f64, b: f64, relative: f64) {
     assert!((a / b - 1.0).abs() < relative, "{a} against {b}");
@@ -83,13 +83,13 @@ const NASGRO: &str = "nasgro_c_mm_per_cycle = 2e-7\nnasgro_n = 3\nnasgro_p = 0.5
 const TABLE: &str = "growth_table = \"rates.csv\"\n";
 const RATES: &str = "# rates of a sheet\ndelta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n20,9e-4\n40,1.2e-2\n";
 
-fn read_with(rates: &str, fatigue: &str, set: &[&str]) -> perilife::Result<Case> {
+fn read_with(rates: &str, fatigue: &str, set: &[&str]) -> perilife_base::error::Result<Case> {
     let folder = Folder::at_hand([("rates.csv".to_owned(), rates.as_bytes().to_vec())]);
     let set: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
     Case::from_toml(&format!("{PANEL}[fatigue]\n{fatigue}"), "panel", folder, &set)
 }
 
-fn read(fatigue: &str, set: &[&str]) -> perilife::Result<Case> {
+fn read(fatigue: &str, set: &[&str]) -> perilife_base::error::Result<Case> {
     read_with(RATES, fatigue, set)
 }
 
@@ -105,7 +105,7 @@ fn every_law_drives_points_and_hand_calculation() {
         let by_points = predict(&case, &Silent).unwrap();
         let by_hand = predict(&read(text, &["model.method=handbook"]).unwrap(), &Silent).unwrap();
         println!("{kind}: {:.1} by points, {:.1} by hand", by_points.life_cycles(), by_hand.life_cycles());
-        assert_eq!((by_points.stop, by_hand.stop), (by_hand.stop, perilife::predict::StopReason::CrackLengthReached));
+        assert_eq!((by_points.stop, by_hand.stop), (by_hand.stop, perilife_growth::predict::StopReason::CrackLengthReached));
         near(by_points.life_cycles(), by_hand.life_cycles(), 0.02);
         let last = by_hand.curve.last().unwrap();
         assert!(last.growth_rate > by_hand.curve[0].growth_rate && last.growth_rate.is_finite());
@@ -127,7 +127,7 @@ fn k_c_is_where_the_plate_breaks() {
         let method = format!("model.method={method}");
         let run =
             predict(&read(FORMAN, &["fatigue.k_c_mpa_sqrt_m=20", "model.spacing_mm=1.5", &method]).unwrap(), &Silent).unwrap();
-        assert_eq!(run.stop, perilife::predict::StopReason::Toughness, "{method}");
+        assert_eq!(run.stop, perilife_growth::predict::StopReason::Toughness, "{method}");
         let last = run.curve.iter().rev().find(|row| row.delta_k.is_finite()).unwrap();
         assert!(last.delta_k <= 18.0 * MPA_SQRT_M * 1.01 && run.life_cycles() > 0.0, "{method}: {}", last.delta_k);
     }

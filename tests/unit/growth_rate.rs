@@ -1,6 +1,6 @@
 //! Energy release rates from work over growth.
 
-use perilife::fatigue::growth_rate::{Sample, release_rate_at_end};
+use perilife_laws::growth_rate::{Sample, release_rate_at_end};
 
 fn samples(work: impl Fn(f64) -> f64, growths: &[f64]) -> Vec<Sample> {
     growths.iter().map(|&growth| Sample { cycles: 0.0, crack_length: growth, growth, work: work(growth) }).collect()

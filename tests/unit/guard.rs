@@ -1,9 +1,9 @@
 //! Runs that would count nonsense, or never end.
 
-use perilife::error::Error;
-use perilife::growth::GrowthStatus;
-use perilife::growth::record::{StopReason, TipRecord};
-use perilife::predict::record::{BLOCKS_WITHOUT_GROWTH, Guard};
+use perilife_base::error::Error;
+use perilife_growth::GrowthStatus;
+use perilife_growth::predict::record::{BLOCKS_WITHOUT_GROWTH, Guard};
+use perilife_growth::record::{StopReason, TipRecord};
 
 fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
     GrowthStatus { cycles, crack_length, delta_k: 1.0, limit_load: None, tips }
@@ -11,7 +11,7 @@ fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
 
 fn tip(growth: f64) -> TipRecord {
     TipRecord {
-        state: perilife::fatigue::crack_tip::TipState::Active,
+        state: perilife_points::crack_tip::TipState::Active,
         position: [growth, 0.0],
         growth,
         factors: None,

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use perilife::case::{Case, LawSource, Method};
-use perilife::specimen::SpecimenKind;
+use perilife_growth::case::{Case, LawSource, Method};
+use perilife_plate::specimen::SpecimenKind;
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case, try_hand_case};
 use crate::support::made_up_case::fitted;

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::specimen::Specimen;
-use perilife::specimen::handbook::{delta_k, handbook, handbook_tada};
+use perilife_growth::case::Case;
+use perilife_plate::specimen::Specimen;
+use perilife_plate::specimen::handbook::{delta_k, handbook, handbook_tada};
 
 /// A specimen of this kind, width 100 mm, thickness 2 mm, relative length set by `crack_mm`.
 fn specimen(kind: &str, crack_mm: f64, extra: &str) -> Specimen {

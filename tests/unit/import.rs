@@ -2,8 +2,12 @@
 
 use std::path::Path;
 
-use perilife::measured::{ColumnNames, CycleUnit, Decimal, Import, LengthUnit, LoadUnit, Sheet, parse};
-use perilife::units::MM;
+use perilife_base::table::{
+    Decimal, Sheet,
+    units::{CycleUnit, LengthUnit, LoadUnit},
+};
+use perilife_base::units::MM;
+use perilife_measured::{ColumnNames, Import, parse};
 
 use crate::support::workbook::workbook;
 

@@ -3,19 +3,19 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use perilife::calibration::laws::case::LawCase;
-use perilife::calibration::laws::fit::LawFit;
-use perilife::calibration::laws::{FitLaw, Given, LawFits, fit_laws};
-use perilife::calibration::results::{law_record, law_report, law_summary, rates_csv};
-use perilife::case::Case;
-use perilife::fatigue::growth_law::nasgro::opening;
-use perilife::fatigue::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker};
-use perilife::fatigue::paris::ParisLaw;
-use perilife::input::{Document, Folder};
-use perilife::measured::rates::read;
-use perilife::measured::{RateFileKeys, RateRow};
-use perilife::predict::{Silent, predict};
-use perilife::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::input::{Document, Folder};
+use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_calibration::laws::case::LawCase;
+use perilife_calibration::laws::fit::LawFit;
+use perilife_calibration::laws::{FitLaw, Given, LawFits, fit_laws};
+use perilife_calibration::results::{law_record, law_report, law_summary, rates_csv};
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Silent, predict};
+use perilife_laws::growth_law::nasgro::opening;
+use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker};
+use perilife_laws::paris::ParisLaw;
+use perilife_measured::rates::read;
+use perilife_measured::{RateFileKeys, RateRow};
 
 use crate::support::noise::Noise;
 use crate::support::shared::shared;
@@ -253,7 +253,7 @@ fn all_shared_constants_are_found_from_their_rates() {
     shared_constants(1, 25);
 }
 
-fn case(text: &str, tables: &[(&str, String)]) -> perilife::Result<LawCase> {
+fn case(text: &str, tables: &[(&str, String)]) -> perilife_base::error::Result<LawCase> {
     let files = tables.iter().map(|(name, text)| ((*name).to_owned(), text.clone().into_bytes()));
     LawCase::from_document(&Document::parse(text, "laws", Folder::at_hand(files), &[]).unwrap())
 }
@@ -335,7 +335,7 @@ fn predictions_read_the_fitted_law() {
         let life = |fatigue: &str, set: &[&str]| {
             let set: Vec<String> = set.iter().map(|set| (*set).to_owned()).collect();
             let case = Case::from_toml(&format!("{PANEL}[fatigue]\n{fatigue}\n"), "panel", folder.clone(), &set)?;
-            Ok::<_, perilife::Error>((predict(&case, &Silent)?.life_cycles(), case))
+            Ok::<_, perilife_base::error::Error>((predict(&case, &Silent)?.life_cycles(), case))
         };
         let inline: String = constants.iter().map(|(key, value)| format!("{key} = {value:e}\n")).collect();
         let (truth, _) = life(&format!("growth_law = \"{kind}\"\n{inline}"), &[]).unwrap();

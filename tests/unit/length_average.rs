@@ -1,6 +1,6 @@
 //! The mean length over one spacing of growth: no stairs, no shift, fixed ends.
 
-use perilife::fatigue::growth_rate::LengthAverage;
+use perilife_laws::growth_rate::LengthAverage;
 
 /// A crack that grows steadily by 0.01 a cycle, recorded as breaks of uneven size in a pattern that repeats every 0.9.
 fn staircase(breaks: usize) -> (Vec<f64>, Vec<f64>) {

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::fracture::Scene;
-use perilife::limits::{self, Limit};
-use perilife::verify::stability::SWEEPS;
+use perilife_base::limits::{self, Limit};
+use perilife_growth::case::Case;
+use perilife_scenes::Scene;
+use perilife_study::stability::SWEEPS;
 
 /// Relative distance from a boundary at which a case lies clearly on one side.
 const ASIDE: f64 = 0.01;

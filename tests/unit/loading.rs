@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::loading::Loading;
-use perilife::specimen::pin::{LOOSE_PIN, SNUG_PIN};
-use perilife::specimen::{Bearing, Load, Support};
+use perilife_growth::case::Case;
+use perilife_plate::loading::Loading;
+use perilife_plate::specimen::pin::{LOOSE_PIN, SNUG_PIN};
+use perilife_plate::specimen::{Bearing, Load, Support};
 
 const PANEL: &str = "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10";
 const PLATE: &str = "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncracks = [{ from_mm = [-5, 0], to_mm = [5, 0] }]\n\
                      holes = [{ x_mm = 0, y_mm = 80, diameter_mm = 10 }, { x_mm = 0, y_mm = -80, diameter_mm = 10 }, { x_mm = 30, y_mm = 0, diameter_mm = 10 }]";
 
-fn case(specimen: &str, loading: &str) -> Result<Case, perilife::Error> {
+fn case(specimen: &str, loading: &str) -> Result<Case, perilife_base::error::Error> {
     let text = format!(
         "[specimen]\n{specimen}\n[material]\nname = \"al2024-t3\"\n[model]\nspacing_mm = 1\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1\n[loading]\n{loading}"
     );

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use perilife::measured::{Import, parse};
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_measured::{Import, parse};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
 

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use perilife::calibration::median::{common_lengths, cycles_at, median, pointwise_median, pointwise_median_at};
-use perilife::measured::{CycleUnit, Import, LeaveOut, LengthUnit, Measured, MeasuredCurve, PROBLEMS_MAX, parse, read, survey};
-use perilife::units::MM;
+use perilife_base::table::units::{CycleUnit, LengthUnit};
+use perilife_base::units::MM;
+use perilife_calibration::median::{common_lengths, cycles_at, median, pointwise_median, pointwise_median_at};
+use perilife_measured::{Import, LeaveOut, Measured, MeasuredCurve, PROBLEMS_MAX, parse, read, survey};
 use proptest::prelude::*;
 
 use crate::support::shared::shared;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use perilife::fracture::Scene;
-use perilife::fracture::read::micro_cracks::SplitMix64;
-use perilife::specimen::Crack;
-use perilife::specimen::geometry::{distance, distance_to_polygon, distance_to_segment};
+use perilife_plate::specimen::Crack;
+use perilife_plate::specimen::geometry::{distance, distance_to_polygon, distance_to_segment};
+use perilife_scenes::Scene;
+use perilife_scenes::read::micro_cracks::SplitMix64;
 
 const TEXT: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 40\nlength_mm = 40\nthickness_mm = 2\nholes = [{ x_mm = 10, y_mm = 10, diameter_mm = 6 }]\n\
     cracks = [{ from_mm = [-20, 0], to_mm = [0, 0] }]\n[material]\nyoungs_modulus_gpa = 65\npoisson_ratio = 0.2\n\

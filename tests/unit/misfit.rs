@@ -1,12 +1,12 @@
 //! Search, misfit and Paris equivalents against models with a known answer.
 
-use perilife::Result;
-use perilife::calibration::criterion::{Criterion, inverse_a, misfit, rms_life_error};
-use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::median::cycles_since_first;
-use perilife::calibration::power_law::PowerLaw;
-use perilife::measured::MeasuredCurve;
-use perilife::units::{MM, MPA, MPA_SQRT_M};
+use perilife_base::error::Result;
+use perilife_base::units::{MM, MPA, MPA_SQRT_M};
+use perilife_calibration::criterion::{Criterion, inverse_a, misfit, rms_life_error};
+use perilife_calibration::fit::{Fit, FitTask, fit};
+use perilife_calibration::median::cycles_since_first;
+use perilife_calibration::power_law::PowerLaw;
+use perilife_measured::MeasuredCurve;
 
 /// ΔK of the Virkler panel, Pa√m.
 pub fn delta_k(a: f64) -> f64 {

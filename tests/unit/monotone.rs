@@ -1,6 +1,6 @@
 //! Cycles over crack length between rows.
 
-use perilife::monotone::Monotone;
+use perilife_base::monotone::Monotone;
 
 /// N(a) of da/dN = C ΔK³, ΔK ~ √a: rows a quarter of the first crack apart are read to 0.15 % of life, on straight lines to 0.8 %.
 #[test]

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use perilife::Result;
-use perilife::case::Case;
-use perilife::specimen::{LengthConvention, Specimen, SpecimenKind};
-use perilife::units::MM;
+use perilife_base::error::Result;
+use perilife_base::units::MM;
+use perilife_growth::case::Case;
+use perilife_plate::specimen::{LengthConvention, Specimen, SpecimenKind};
 
 const TENSION: &str = "stress_max_mpa = 50";
 const FORCE: &str = "force_max_n = 1000";

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use perilife::body::facets::Obstacles;
-use perilife::case::Case;
-use perilife::specimen::Specimen;
+use perilife_growth::case::Case;
+use perilife_plate::specimen::Specimen;
+use perilife_points::body::obstacles::Obstacles;
 
 /// Spacing and horizon of the lattice that asks, mm.
 const SPACING: f64 = 1.0;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::report::output::{MARKER, OutputFolder, RunKind, write_file};
+use perilife_results::output::{MARKER, OutputFolder, RunKind, write_file};
 use tempfile::tempdir;
 
 fn names(folder: &Path) -> Vec<String> {

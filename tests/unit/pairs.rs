@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use perilife::measured::{Import, LengthUnit, Measured, parse};
-use perilife::units::MM;
+use perilife_base::table::units::LengthUnit;
+use perilife_base::units::MM;
+use perilife_measured::{Import, Measured, parse};
 
 /// Cycles and lengths in mm of two specimens of unlike tests.
 const ONE: [(f64, f64); 6] =
@@ -18,7 +19,7 @@ fn paired(header: &str, separator: &str, decimal: &str) -> String {
     format!("{header}\n{}", (0..ONE.len()).map(row).collect::<String>())
 }
 
-fn read(text: &str, import: &Import) -> perilife::Result<Measured> {
+fn read(text: &str, import: &Import) -> perilife_base::error::Result<Measured> {
     parse(text.as_bytes(), Path::new("lab.txt"), import)
 }
 

@@ -1,13 +1,13 @@
 //! The band of lives on a plate that was run: rows, what has none and why, inspections, digits.
 
-use perilife::calibration::population::fit;
-use perilife::calibration::population::intervals::{INTERVALS_MAX, Reading, Specimen};
-use perilife::calibration::population::plate::Plate;
-use perilife::case::{Case, LawSource, Lot};
-use perilife::predict::{Prediction, Silent, predict};
-use perilife::report::band::{COLUMNS, InspectFrom, Inspection, Lives, band_words, left_of_table};
-use perilife::report::csv::{self, Row};
-use perilife::units::{MM, MPA_SQRT_M};
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_calibration::population::fit;
+use perilife_calibration::population::intervals::{INTERVALS_MAX, Reading, Specimen};
+use perilife_calibration::population::plate::Plate;
+use perilife_growth::case::{Case, LawSource, Lot};
+use perilife_growth::predict::{Prediction, Silent, predict};
+use perilife_results::band::{COLUMNS, InspectFrom, Inspection, Lives, band_words, left_of_table};
+use perilife_results::csv::{self, Row};
 use toml::Table;
 
 use crate::support::hand_cases::{PANEL, hand_case};
@@ -52,7 +52,7 @@ fn no_band(case: &Case) -> String {
     lives(case).1.band.unwrap_err()
 }
 
-fn record(case: &mut Case) -> &mut perilife::case::record::FittedRecord {
+fn record(case: &mut Case) -> &mut perilife_growth::case::record::FittedRecord {
     match &mut case.law {
         LawSource::Fitted(record) => record,
         _ => unreachable!(),
@@ -193,7 +193,7 @@ fn readings_of_the_plate_must_lie_on_its_curve() {
     let plate = Plate::of(&case, &run).unwrap().unwrap();
     let curve = |lengths: &[f64]| {
         let cycles = (0..lengths.len()).map(|i| 2e4 * i as f64).collect();
-        perilife::measured::MeasuredCurve::new("own", cycles, lengths.iter().map(|a| a * MM).collect())
+        perilife_measured::MeasuredCurve::new("own", cycles, lengths.iter().map(|a| a * MM).collect())
     };
     let own = plate.own(&curve(&[9.0, 10.1, 11.3, 12.9, 14.8])).unwrap();
     assert!((plate.read_to(&own) / (14.8 * MM) - 1.0).abs() < 1e-9);

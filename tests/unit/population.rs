@@ -1,12 +1,12 @@
 //! The model of a lot on readings that are made: exact laws, known noise, and what a life may be asked of.
 
-use perilife::calibration::population::forecast::{Basis, CELLS, Lot, tolerance_factor};
-use perilife::calibration::population::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, cells};
-use perilife::calibration::population::student::{normal_cdf, t_quantile};
-use perilife::calibration::population::{Population, fit};
-use perilife::error::Error;
-use perilife::quadrature::integrate;
-use perilife::units::{MM, MPA, MPA_SQRT_M};
+use perilife_base::error::Error;
+use perilife_base::quadrature::integrate;
+use perilife_base::units::{MM, MPA, MPA_SQRT_M};
+use perilife_calibration::population::forecast::{Basis, CELLS, Lot, tolerance_factor};
+use perilife_calibration::population::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, cells};
+use perilife_calibration::population::student::{normal_cdf, t_quantile};
+use perilife_calibration::population::{Population, fit};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 

@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use perilife::calibration::calibrate::calibrate;
-use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::fit::Fit;
-use perilife::input::{Document, Folder};
-use perilife::measured::{Decimal, Import, LengthUnit, read};
-use perilife::predict::Silent;
+use perilife_base::input::{Document, Folder};
+use perilife_base::table::{Decimal, units::LengthUnit};
+use perilife_calibration::calibrate::calibrate;
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::fit::Fit;
+use perilife_growth::predict::Silent;
+use perilife_measured::{Import, read};
 
 use crate::support::shared::shared;
 
@@ -16,7 +17,7 @@ fn practice(file: &str) -> Option<PathBuf> {
 }
 
 /// The readings of a file fitted by hand calculation on the specimen of another.
-fn fitted(readings: &str, specimen: &str) -> Option<perilife::Result<Fit>> {
+fn fitted(readings: &str, specimen: &str) -> Option<perilife_base::error::Result<Fit>> {
     let (readings, specimen) = (practice(readings)?, practice(specimen)?);
     let text = std::fs::read_to_string(specimen).unwrap();
     let name = readings.file_name().unwrap().to_str().unwrap();

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use perilife::quadrature::integrate;
+use perilife_base::quadrature::integrate;
 
 #[test]
 fn polynomials_up_to_degree_22_are_exact_on_one_panel() {

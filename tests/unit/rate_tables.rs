@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use perilife::measured::rates::read;
-use perilife::measured::{RangeKind, RateFileKeys, RateTable};
-use perilife::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_measured::rates::read;
+use perilife_measured::{RangeKind, RateFileKeys, RateTable};
 
 /// Names of ΔK and da/dN with MPa√m and mm/cycle in a unit of theirs. Inch 25.4 mm, ksi 6.894757293168 MPa, kgf 9.80665 N.
 const DELTA_K: [(&str, f64); 12] = [
@@ -131,7 +131,7 @@ fn many_tables_of_rates_by_chance_are_read_or_refused() {
     assert!(read > 1000);
 }
 
-fn table(text: &str, keys: &RateFileKeys) -> perilife::Result<RateTable> {
+fn table(text: &str, keys: &RateFileKeys) -> perilife_base::error::Result<RateTable> {
     read(text.as_bytes(), Path::new("rates.csv"), keys)
 }
 

@@ -1,12 +1,12 @@
 //! Growth rates of curves whose rate is known.
 
-use perilife::calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
-use perilife::case::Case;
-use perilife::input::Folder;
-use perilife::material::Material;
-use perilife::measured::MeasuredCurve;
-use perilife::specimen::SpecimenKind;
-use perilife::units::{MM, MPA};
+use perilife_base::input::Folder;
+use perilife_base::units::{MM, MPA};
+use perilife_calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
+use perilife_growth::case::Case;
+use perilife_measured::MeasuredCurve;
+use perilife_plate::material::Material;
+use perilife_plate::specimen::SpecimenKind;
 
 use super::misfit::{delta_k, exact_curve};
 

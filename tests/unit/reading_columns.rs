@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::calibration::case::CalibrationCase;
-use perilife::measured::{CycleUnit, Import, LengthUnit, Measured, RateFileKeys, parse, rates};
-use perilife::units::MM;
+use perilife_base::table::units::{CycleUnit, LengthUnit};
+use perilife_base::units::MM;
+use perilife_calibration::case::CalibrationCase;
+use perilife_measured::{Import, Measured, RateFileKeys, parse, rates};
 use tempfile::tempdir;
 
 use crate::support::workbook::workbook_hiding;
@@ -18,7 +19,7 @@ fn table(header: &str, row: impl Fn(f64, f64) -> String) -> String {
     CURVE.iter().fold(format!("{header}\n"), |text, &(n, a)| text + &row(n, a) + "\n")
 }
 
-fn read(text: &str, import: &Import) -> perilife::Result<Measured> {
+fn read(text: &str, import: &Import) -> perilife_base::error::Result<Measured> {
     parse(text.as_bytes(), Path::new("lab.csv"), import)
 }
 
@@ -33,7 +34,7 @@ fn all_are_the_curve(name: &str, measured: &Measured, count: usize) {
 }
 
 /// The calibration of a table, on a specimen with its crack of 5 mm.
-fn case(specimen: &str, text: &str) -> perilife::Result<CalibrationCase> {
+fn case(specimen: &str, text: &str) -> perilife_base::error::Result<CalibrationCase> {
     let folder = tempdir().unwrap();
     fs::write(folder.path().join("lab.csv"), text).unwrap();
     let case = format!(

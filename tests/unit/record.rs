@@ -1,11 +1,11 @@
 //! Rows of a run: mechanics that fail in mid-run keep those so far, and none tells a K that was not read for it.
 
-use perilife::error::{Error, Result};
-use perilife::fatigue::crack_tip::TipState;
-use perilife::growth::record::{CurvePoint, StopReason, TipRecord};
-use perilife::growth::{CrackGrowth, GrowthStatus, State};
-use perilife::predict::record::Record;
-use perilife::predict::{Prediction, Silent};
+use perilife_base::error::{Error, Result};
+use perilife_growth::predict::record::Record;
+use perilife_growth::predict::{Prediction, Silent};
+use perilife_growth::record::{CurvePoint, StopReason, TipRecord};
+use perilife_growth::{CrackGrowth, GrowthStatus, State};
+use perilife_points::crack_tip::TipState;
 
 use crate::support::hand_cases::{PANEL, hand_case};
 
@@ -85,7 +85,7 @@ fn an_error_of_mechanics_ends_the_run_with_the_rows_that_stand() {
 
 #[test]
 fn other_errors_are_the_callers() {
-    let wrong = failing(|| perilife::error::input("fatigue.growth_table", 1.0, "ends too early", "give a longer one"));
+    let wrong = failing(|| perilife_base::error::input("fatigue.growth_table", 1.0, "ends too early", "give a longer one"));
     assert!(matches!(wrong, Err(Error::Input(_))));
 }
 

@@ -1,6 +1,6 @@
 //! Tables and `result.json`.
 
-use perilife::report::{csv, factors, json};
+use perilife_results::{csv, factors, json};
 use proptest::prelude::*;
 
 use crate::support::{made_up_case, made_up_run};
@@ -89,7 +89,7 @@ fn factors_of_every_tip_stand_in_long_form() {
     assert!(pairs.len() == rows - 1 && (pairs[0][0] - 5.0).abs() < 1e-6, "{:?}", pairs[0]);
     assert!(pairs.windows(2).all(|pair| pair[1][0] > pair[0][0]) && pairs.iter().all(|pair| (pair[1] - 1.0).abs() < 1e-8));
     // A force has no stress to compare with.
-    case.specimen.load_measure = perilife::specimen::LoadMeasure::Force;
+    case.specimen.load_measure = perilife_plate::specimen::LoadMeasure::Force;
     assert_eq!(factors::beta(&case, &run), None);
 }
 

@@ -1,10 +1,10 @@
 //! Residual strength where no handbook knows K, and its table.
 
-use perilife::predict::StopReason;
-use perilife::predict::residual_strength::{check_strength, residual_strength};
-use perilife::report::run::strength_table as table;
-use perilife::specimen::handbook::handbook;
-use perilife::units::{MPA, MPA_SQRT_M};
+use perilife_base::units::{MPA, MPA_SQRT_M};
+use perilife_growth::predict::StopReason;
+use perilife_growth::predict::residual_strength::{check_strength, residual_strength};
+use perilife_plate::specimen::handbook::handbook;
+use perilife_results::run::strength_table as table;
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case, hand_run, try_hand_case};
 use crate::support::{made_up_case, made_up_run};

@@ -2,20 +2,20 @@
 
 use std::path::Path;
 
-use perilife::Error;
-use perilife::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::case::Case;
-use perilife::fracture::Scene;
-use perilife::fracture::assembly::preview;
-use perilife::fracture::failure::Failure;
-use perilife::fracture::read::is_scene;
-use perilife::fracture::scene::{
+use perilife_base::error::Error;
+use perilife_base::input::Document;
+use perilife_growth::case::Case;
+use perilife_plate::specimen::geometry::{distance, polygon_area};
+use perilife_plate::specimen::{Edge, Support};
+use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_scenes::Scene;
+use perilife_scenes::assembly::preview;
+use perilife_scenes::failure::Failure;
+use perilife_scenes::read::is_scene;
+use perilife_scenes::scene::{
     Action, DamageEntry, DamageLaw, Discretisation, LoadRamp, Procedure, RefinedRegion, Region, SceneLaw, SceneSolver,
     ZeroEnergyControl,
 };
-use perilife::input::Document;
-use perilife::specimen::geometry::{distance, polygon_area};
-use perilife::specimen::{Edge, Support};
 
 const PLATE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 40\nlength_mm = 20\nthickness_mm = 2\n\
                      cracks = [{ from_mm = [-20, 0], to_mm = [0, 0] }]\n\
@@ -52,7 +52,7 @@ fn the_calibration_sets_the_critical_stretch() {
     let of = |overrides: &[&str]| {
         let text = format!("{PLATE}{STEPS}[damage]\nlaw = \"critical_energy\"\n[model]\nspacing_mm = 1\n");
         let scene = read(&text, overrides).unwrap();
-        let (net, _) = perilife::fracture::build(&scene).unwrap();
+        let (net, _) = perilife_scenes::build(&scene).unwrap();
         let Failure::Energy(limits) = Failure::of(&scene, &net).unwrap() else { panic!("{scene:?}") };
         limits[0]
     };
@@ -176,7 +176,7 @@ fn tractions_stand_on_the_plate() {
     let scene = read(&text, &[]).unwrap();
     assert_eq!(scene.specimen.loads.len(), 2);
     for load in &scene.specimen.loads {
-        let perilife::specimen::Load::Edge { from, to, traction } = load else { panic!("{load:?}") };
+        let perilife_plate::specimen::Load::Edge { from, to, traction } = load else { panic!("{load:?}") };
         assert!((distance(*from, *to) - 15e-3).abs() < 1e-12);
         assert_eq!(traction[1].abs(), 3e6);
     }
@@ -318,7 +318,7 @@ fn scenes_and_cases_are_told_apart() {
 /// The example in the documentation of the reader can be read, and holds what it shows.
 #[test]
 fn the_documented_scene_is_right() {
-    let source = include_str!("../../src/engine/fracture/read/mod.rs");
+    let source = include_str!("../../src/scenes/read/mod.rs");
     let example: Vec<&str> =
         source.lines().skip_while(|line| *line != "//! ```toml").skip(1).take_while(|line| *line != "//! ```").collect();
     let text: String = example.iter().map(|line| format!("{}\n", line.trim_start_matches("//! "))).collect();

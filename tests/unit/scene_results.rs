@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use perilife::commands::console::Console;
-use perilife::fracture::outcome::HistoryRow;
-use perilife::fracture::{Scene, SceneEnd, run};
-use perilife::predict::Silent;
-use perilife::report::output::{OutputFolder, RunKind};
-use perilife::runner::of_scene;
+use perilife_growth::predict::Silent;
+use perilife_results::output::{OutputFolder, RunKind};
+use perilife_runner::of_scene;
+use perilife_scenes::outcome::HistoryRow;
+use perilife_scenes::{Scene, SceneEnd, run};
 use serde_json::Value;
 
 const TEXT: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 20\nlength_mm = 20\nthickness_mm = 1\n[material]\nyoungs_modulus_gpa = 65\n\

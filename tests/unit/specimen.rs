@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::specimen::geometry::{distance, point_in_polygon, segments_touch, self_intersection};
-use perilife::specimen::{Load, LoadMeasure, PART_THROUGH, Specimen, SpecimenKind, Support};
+use perilife_growth::case::Case;
+use perilife_plate::specimen::geometry::{distance, point_in_polygon, segments_touch, self_intersection};
+use perilife_plate::specimen::{Load, LoadMeasure, PART_THROUGH, Specimen, SpecimenKind, Support};
 use proptest::prelude::*;
 
 /// A plate of 100 x 200 mm with these keys besides.
-fn plate(keys: &str) -> Result<Specimen, perilife::Error> {
+fn plate(keys: &str) -> Result<Specimen, perilife_base::error::Error> {
     case(&format!("kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\n{keys}"), "stress_max_mpa = 10")
 }
 
-fn case(specimen: &str, load: &str) -> Result<Specimen, perilife::Error> {
+fn case(specimen: &str, load: &str) -> Result<Specimen, perilife_base::error::Error> {
     let text = format!(
         "[specimen]\n{specimen}\n[material]\nname = \"al2024-t3\"\n[loading]\n{load}\nstress_ratio = 0\n\
          [model]\nspacing_mm = 0.5\n[fatigue]\na = 1\np = 2\nhorizon_mm = 1"
@@ -160,7 +160,7 @@ fn an_outline_runs_counter_clockwise() {
     };
     let one = case(&keys("[[0, 0], [60, 0], [60, 100], [0, 100]]"), "stress_max_mpa = 10").unwrap();
     let other = case(&keys("[[0, 0], [0, 100], [60, 100], [60, 0], [0, 0]]"), "stress_max_mpa = 10").unwrap();
-    assert!(perilife::specimen::geometry::polygon_area(&other.outline) > 0.0);
+    assert!(perilife_plate::specimen::geometry::polygon_area(&other.outline) > 0.0);
     assert!(near(one.area(), other.area()) && near(one.width, 0.06) && other.outline.len() == 4);
     assert_eq!(one.loads.len(), 2);
 }
@@ -170,7 +170,7 @@ proptest! {
     #[test]
     fn inside_means_left_of_every_edge(x in -1.5f64..1.5, y in -1.5f64..1.5, n in 3usize..12) {
         let polygon: Vec<[f64; 2]> = (0..n).map(|i| (i as f64 / n as f64 * std::f64::consts::TAU).sin_cos()).map(|(s, c)| [c, s]).collect();
-        let left = (0..n).all(|i| perilife::specimen::geometry::turn(polygon[i], polygon[(i + 1) % n], [x, y]) > 0.0);
+        let left = (0..n).all(|i| perilife_plate::specimen::geometry::turn(polygon[i], polygon[(i + 1) % n], [x, y]) > 0.0);
         prop_assert_eq!(point_in_polygon([x, y], &polygon), left);
         prop_assert!(self_intersection(&polygon).is_none());
     }
@@ -183,8 +183,8 @@ proptest! {
         prop_assert_eq!(first, segments_touch(q(2), q(3), q(0), q(1)));
         prop_assert_eq!(first, segments_touch(q(1), q(0), q(2), q(3)));
         // Agrees with a dense search of the first segment.
-        let closest = (0..=2000).map(|i| perilife::specimen::geometry::along(q(0), q(1), f64::from(i) / 2000.0))
-            .map(|point| perilife::specimen::geometry::distance_to_segment(point, q(2), q(3))).fold(f64::INFINITY, f64::min);
+        let closest = (0..=2000).map(|i| perilife_plate::specimen::geometry::along(q(0), q(1), f64::from(i) / 2000.0))
+            .map(|point| perilife_plate::specimen::geometry::distance_to_segment(point, q(2), q(3))).fold(f64::INFINITY, f64::min);
         prop_assert!(!first || closest < 5e-3, "they touch, yet keep {closest} apart");
         prop_assert!(first || closest > 1e-9, "they keep apart, yet come within {closest}");
     }

@@ -1,15 +1,15 @@
 //! Spectra: formats, rainflow counting, what is left out, classes and the mean rate of a pass.
 
-use perilife::Error;
-use perilife::case::Case;
-use perilife::fatigue::growth_law::{GrowthLaw, Walker};
-use perilife::fatigue::paris::ParisLaw;
-use perilife::fatigue::spectrum_law::SpectrumLaw;
-use perilife::input::Folder;
-use perilife::loading::Loading;
-use perilife::loading::spectrum::rainflow::rainflow;
-use perilife::loading::spectrum::{Cycle, Spectrum, SpectrumFormat};
-use perilife::report::pictures::spectrum::spectrum_svg;
+use perilife_base::error::Error;
+use perilife_base::input::Folder;
+use perilife_growth::case::Case;
+use perilife_laws::growth_law::{GrowthLaw, Walker};
+use perilife_laws::paris::ParisLaw;
+use perilife_laws::spectrum_law::SpectrumLaw;
+use perilife_plate::loading::Loading;
+use perilife_plate::loading::spectrum::rainflow::rainflow;
+use perilife_plate::loading::spectrum::{Cycle, Spectrum, SpectrumFormat};
+use perilife_results::pictures::spectrum::spectrum_svg;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
@@ -143,6 +143,6 @@ fn compression_and_a_threshold_count_as_the_law_says() {
     assert!((mean.rate(10e6, 0.0) / (1e-10 * 125.0 / 4.0) - 1.0).abs() < 1e-12);
     assert_eq!(mean.rate(3.9e6, 0.0), 0.0);
     assert_eq!((spectrum.ratios, spectrum.smallest()), ([-10.0, 0.0], -3.0));
-    let svg = spectrum_svg(&spectrum, perilife::report::chart::LARGE);
+    let svg = spectrum_svg(&spectrum, perilife_results::chart::LARGE);
     assert!(svg.contains("Maxima of a pass") && svg.contains("Range over the largest load") && !svg.contains("NaN"), "{svg}");
 }

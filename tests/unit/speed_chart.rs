@@ -2,14 +2,14 @@
 
 use std::cell::RefCell;
 
-use perilife::Error;
-use perilife::report::speed::{COLUMNS, Origin, beaten, csv, fastest_within, markdown, never_on_front, svg};
-use perilife::verify::chart::choice::choices;
-use perilife::verify::chart::run::Model;
-use perilife::verify::chart::schedule::{Effort, Record, Request, measure};
-use perilife::verify::chart::{Chart, Family, Run, SCENES, Status, scenes};
-use perilife::verify::scene::concentration_of;
-use perilife::verify::tasks::Outcome;
+use perilife_base::error::Error;
+use perilife_study::chart::choice::choices;
+use perilife_study::chart::run::Model;
+use perilife_study::chart::schedule::{Effort, Record, Request, measure};
+use perilife_study::chart::{Chart, Family, Run, SCENES, Status, scenes};
+use perilife_study::scene::concentration_of;
+use perilife_study::speed::{COLUMNS, Origin, beaten, csv, fastest_within, markdown, never_on_front, svg};
+use perilife_study::tasks::Outcome;
 
 /// A run that took and found so much.
 fn run(wall_s: f64, error_percent: f64) -> Run {

@@ -3,14 +3,14 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::case::record::FittedRecord;
-use perilife::case::{Case, fitted_record};
-use perilife::input::{Document, Folder};
-use perilife::predict::{Silent, predict};
-use perilife::sweep::distribution::{Distribution, hypercube, normal_quantile, quantile};
-use perilife::sweep::scatter::{LawScatter, SpecimenFit, SpecimenFits, slope};
-use perilife::sweep::{DrawnCase, Sweep};
-use perilife::units::{MM, MM_PER_CYCLE};
+use perilife_base::input::{Document, Folder};
+use perilife_base::units::{MM, MM_PER_CYCLE};
+use perilife_calibration::sweep::distribution::{Distribution, hypercube, normal_quantile, quantile};
+use perilife_calibration::sweep::scatter::{LawScatter, SpecimenFit, SpecimenFits, slope};
+use perilife_calibration::sweep::{DrawnCase, Sweep};
+use perilife_growth::case::record::FittedRecord;
+use perilife_growth::case::{Case, fitted_record};
+use perilife_growth::predict::{Silent, predict};
 use tempfile::tempdir;
 
 #[test]
@@ -102,7 +102,7 @@ const CASE: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlen
     stress_ratio = 0.2\n[model]\nmethod = \"handbook\"\n[fatigue]\nparis_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\n";
 
 /// Reads the sweep of this design of [`CASE`].
-fn sweep(design: &str) -> perilife::Result<Sweep> {
+fn sweep(design: &str) -> perilife_base::error::Result<Sweep> {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("panel.toml"), CASE).unwrap();
     fs::write(dir.path().join("sweep.toml"), format!("case = \"panel.toml\"\n{design}")).unwrap();

@@ -1,11 +1,11 @@
 //! US customary units: keys of input files, names of columns and keys, quantities in words.
 
-use perilife::case::Case;
-use perilife::input::{Document, Folder};
-use perilife::predict::{Silent, predict};
-use perilife::report::units::{of_result, of_table};
-use perilife::units::us::{System, renamed};
-use perilife::units::words::{in_units, with_keys};
+use perilife_base::input::{Document, Folder};
+use perilife_base::units::us::{System, renamed};
+use perilife_base::units::words::{in_units, with_keys};
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Silent, predict};
+use perilife_results::units::{of_result, of_table};
 use serde_json::json;
 use toml::Value;
 

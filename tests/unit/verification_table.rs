@@ -1,7 +1,7 @@
 //! Verification rows as tables, and what is wrong with them.
 
-use perilife::report::verification::{csv, line, markdown, object, summary};
-use perilife::verify::{Row, Table, Topic, faults};
+use perilife_study::verification::{csv, line, markdown, object, summary};
+use perilife_study::{Row, Table, Topic, faults};
 
 /// Three topics: one with a miss beside a good row, one close to its bound, one whose only row misses.
 const TOPICS: [Topic; 3] = [

@@ -3,14 +3,14 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use perilife::case::Case;
-use perilife::fracture::{Scene, SceneObserver, SceneProgress};
-use perilife::input::Folder;
-use perilife::parallel::in_pool;
-use perilife::predict::{Observer, Progress, predict};
-use perilife::solver::SolverKind;
-use perilife::state::Bonds;
-use perilife::watch::{self, Stage, Watch};
+use perilife_base::input::Folder;
+use perilife_base::parallel::in_pool;
+use perilife_base::watch::{self, Stage, Watch};
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Observer, Progress, predict};
+use perilife_points::solver::SolverKind;
+use perilife_points::state::Bonds;
+use perilife_scenes::{Scene, SceneObserver, SceneProgress};
 
 use crate::support::statics::{body, loaded_with};
 
@@ -69,7 +69,7 @@ fn a_run_that_is_asked_to_end_ends_before_its_first_row() {
         }
         // Nobody's eyes change a digit.
         // As text: what a hand calculation does not know is no number.
-        let unwatched = predict(&case, &perilife::predict::Silent).unwrap();
+        let unwatched = predict(&case, &perilife_growth::predict::Silent).unwrap();
         assert!(format!("{:?}", unwatched.curve) == format!("{:?}", whole.curve), "{law}");
         let eyes = Eyes::default();
         eyes.watch.cancel();
@@ -79,10 +79,10 @@ fn a_run_that_is_asked_to_end_ends_before_its_first_row() {
     }
     let scene = Scene::from_toml(SCENE, "scene", Folder::none(), &[]).unwrap();
     let eyes = Eyes::default();
-    perilife::fracture::run(&scene, &eyes).unwrap();
+    perilife_scenes::run(&scene, &eyes).unwrap();
     assert!(eyes.watch.now().is_some());
     eyes.watch.cancel();
-    assert_eq!(perilife::fracture::run(&scene, &eyes).unwrap_err().to_string(), "scene: the run was cancelled");
+    assert_eq!(perilife_scenes::run(&scene, &eyes).unwrap_err().to_string(), "scene: the run was cancelled");
 }
 
 /// An equilibrium that was asked to end is none, whatever solver it is sought by: what an iteration has not solved for that is not factorised.

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use perilife::calibration::median::cycles_of_run;
-use perilife::case::Case;
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::quadrature::integrate;
-use perilife::specimen::Point;
-use perilife::specimen::handbook::delta_k;
-use perilife::units::MM;
+use perilife_base::quadrature::integrate;
+use perilife_base::units::MM;
+use perilife_calibration::median::cycles_of_run;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_plate::specimen::Point;
+use perilife_plate::specimen::handbook::delta_k;
 
 fn example(name: &str, set: &[&str]) -> (Case, Prediction) {
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();

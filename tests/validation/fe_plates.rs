@@ -9,10 +9,10 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::input::Document;
-use perilife::predict::{Prediction, Silent, predict};
-use perilife::verify::references::{Compared, REFERENCES, compare, tips_of_table};
+use perilife_base::input::Document;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, Silent, predict};
+use perilife_study::references::{Compared, REFERENCES, compare, tips_of_table};
 
 use crate::support::shared::shared;
 

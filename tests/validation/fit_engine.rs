@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use perilife::calibration::calibrate::calibrate;
-use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::fit::Fit;
-use perilife::measured::MeasuredCurve;
-use perilife::predict::Silent;
+use perilife_calibration::calibrate::calibrate;
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::fit::Fit;
+use perilife_growth::predict::Silent;
+use perilife_measured::MeasuredCurve;
 
 pub fn calibration(set: &[String]) -> CalibrationCase {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("calibration/al2024-t3/case.toml");

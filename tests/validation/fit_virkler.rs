@@ -1,11 +1,11 @@
 //! The calibration on real curves, with hand calculation (Paris growth, handbook K) in the place of the peridynamic model:
 //! what the search, the specimens and the confidence do on real scatter, in a second.
 
-use perilife::calibration::criterion::Criterion;
-use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::power_law::PowerLaw;
-use perilife::measured::{Import, Measured, read};
-use perilife::units::{MM, MPA};
+use perilife_base::units::{MM, MPA};
+use perilife_calibration::criterion::Criterion;
+use perilife_calibration::fit::{Fit, FitTask, fit};
+use perilife_calibration::power_law::PowerLaw;
+use perilife_measured::{Import, Measured, read};
 
 use crate::support::shared::shared;
 

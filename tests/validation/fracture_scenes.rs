@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use perilife::fracture::fronts::CRACKED;
-use perilife::fracture::outcome::PathPoint;
-use perilife::fracture::{self, Fracture, Scene};
-use perilife::predict::Silent;
+use perilife_growth::predict::Silent;
+use perilife_scenes::fronts::CRACKED;
+use perilife_scenes::outcome::PathPoint;
+use perilife_scenes::{Fracture, Scene};
 
 /// Runs a scene of `data/cases/fracture`.
 pub fn run(name: &str, overrides: &[&str]) -> Fracture {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases/fracture").join(format!("{name}.toml"));
     let overrides: Vec<String> = overrides.iter().map(|&text| text.to_owned()).collect();
     let scene = Scene::from_file(&file, &overrides).unwrap_or_else(|error| panic!("{name}: {error}"));
-    fracture::run(&scene, &Silent).unwrap_or_else(|error| panic!("{name}: {error}"))
+    perilife_scenes::run(&scene, &Silent).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// Places of an initial tip's front, in mm.
@@ -33,7 +33,7 @@ fn spread(run: &Fracture, x: f64) -> f64 {
 
 /// Heights of the points in the column x that are cracked at the end, mm, from below.
 fn cracked_rows(run: &Fracture, x: f64) -> Vec<f64> {
-    perilife::verify::scene_strength::cracked_rows(run, 1e-3 * x).into_iter().map(|y| 1e3 * y).collect()
+    perilife_study::scene_strength::cracked_rows(run, 1e-3 * x).into_iter().map(|y| 1e3 * y).collect()
 }
 
 /// Two cracks at a distance in mm, which end farther apart than they began.

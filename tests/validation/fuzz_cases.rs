@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::error::Error;
-use perilife::predict::{Prediction, predict};
-use perilife::verify::stability::{Budget, within};
-use perilife::verify::tasks::Outcome;
+use perilife_base::error::Error;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, predict};
+use perilife_study::stability::{Budget, within};
+use perilife_study::tasks::Outcome;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 

@@ -4,13 +4,13 @@
 //! some length: nothing that agrees with one of them to 2 % can agree with the other. Fitted once to each half, the
 //! difference of the halves cancels in the mean, and what is left is what the model has to answer for.
 
-use perilife::calibration::criterion::Criterion;
-use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::median::{cycles_at, pointwise_median};
-use perilife::calibration::power_law::PowerLaw;
-use perilife::calibration::search::FittedCurve;
-use perilife::measured::{Import, MeasuredCurve, read};
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_calibration::criterion::Criterion;
+use perilife_calibration::fit::{Fit, FitTask, fit};
+use perilife_calibration::median::{cycles_at, pointwise_median};
+use perilife_calibration::power_law::PowerLaw;
+use perilife_calibration::search::FittedCurve;
+use perilife_measured::{Import, MeasuredCurve, read};
 
 use super::fit_engine;
 use super::fit_virkler::delta_k;

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use perilife::calibration::median::{pointwise_median, pointwise_median_at};
-use perilife::measured::{Import, MeasuredCurve, read};
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_calibration::median::{pointwise_median, pointwise_median_at};
+use perilife_measured::{Import, MeasuredCurve, read};
 
 use crate::support::shared::shared;
 

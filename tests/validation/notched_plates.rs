@@ -5,8 +5,8 @@
 //! 10 mm apart in height its cracks link at 45°; here they bend towards each other, pass, and run to the far sides.
 
 use super::fracture_scenes::{run, way};
-use perilife::fracture::outcome::HistoryRow;
-use perilife::fracture::{Fracture, SceneEnd};
+use perilife_scenes::outcome::HistoryRow;
+use perilife_scenes::{Fracture, SceneEnd};
 
 /// Load step of the first broken bond, against the source's in percent.
 fn onset(run: &Fracture, name: &str, source: f64, percent: f64) -> usize {

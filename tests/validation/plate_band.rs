@@ -1,15 +1,15 @@
 //! The lot of Virkler et al. (1979) on other plates, against draws and against the numbers of an independent trial of the method.
 
-use perilife::calibration::population::forecast::{CELLS, Lot};
-use perilife::calibration::population::intervals::{Specimen, cells};
-use perilife::calibration::population::plate::{Plate, PlateBand};
-use perilife::calibration::population::student::t_quantile;
-use perilife::calibration::population::{Population, fit};
-use perilife::case::{Case, LawSource};
-use perilife::measured::MeasuredCurve;
-use perilife::predict::{Prediction, Silent, predict};
-use perilife::specimen::handbook::handbook;
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_calibration::population::forecast::{CELLS, Lot};
+use perilife_calibration::population::intervals::{Specimen, cells};
+use perilife_calibration::population::plate::{Plate, PlateBand};
+use perilife_calibration::population::student::t_quantile;
+use perilife_calibration::population::{Population, fit};
+use perilife_growth::case::{Case, LawSource};
+use perilife_growth::predict::{Prediction, Silent, predict};
+use perilife_measured::MeasuredCurve;
+use perilife_plate::specimen::handbook::handbook;
 use toml::Table;
 
 use super::population::{panels, specimens};

@@ -6,12 +6,12 @@
 use std::collections::HashMap;
 use std::sync::Mutex;
 
-use perilife::calibration::population::forecast::{CELLS, Lot};
-use perilife::calibration::population::intervals::{Interval, Reading, Specimen, cells};
-use perilife::calibration::population::student::t_quantile;
-use perilife::calibration::population::{Population, fit};
-use perilife::measured::{Import, MeasuredCurve, read};
-use perilife::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_calibration::population::forecast::{CELLS, Lot};
+use perilife_calibration::population::intervals::{Interval, Reading, Specimen, cells};
+use perilife_calibration::population::student::t_quantile;
+use perilife_calibration::population::{Population, fit};
+use perilife_measured::{Import, MeasuredCurve, read};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 

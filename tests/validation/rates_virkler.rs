@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use perilife::calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
-use perilife::case::Case;
-use perilife::input::Folder;
-use perilife::measured::{Import, MeasuredCurve, read};
-use perilife::units::{MM, MM_PER_CYCLE, MPA};
+use perilife_base::input::Folder;
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA};
+use perilife_calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
+use perilife_growth::case::Case;
+use perilife_measured::{Import, MeasuredCurve, read};
 
 use crate::support::shared::shared;
 

@@ -3,8 +3,8 @@
 use std::process::Command;
 use std::time::Instant;
 
-use perilife::predict::Silent;
-use perilife::verify::chart::scenes;
+use perilife_growth::predict::Silent;
+use perilife_study::chart::scenes;
 use serde_json::Value;
 
 /// Plates of the reference, and their scenes in the chart.

@@ -1,7 +1,7 @@
 //! The committed boundaries are those of this program: a fresh quick run finds them again.
 
-use perilife::limits;
-use perilife::verify::stability::{Effort, run, sweeps};
+use perilife_base::limits;
+use perilife_study::stability::{Effort, run, sweeps};
 
 /// Sweeps that take seconds, of several methods each: of which ends, all of them together at least.
 const QUICK: ([&str; 1], usize) = (["crack_length"], 1);

@@ -1,11 +1,11 @@
 //! β(a) out of a sweep and back in by `specimen.beta_file`; compliance of a compact specimen.
 
-use perilife::case::Case;
-use perilife::input::Folder;
-use perilife::predict::factor_sweep::{FactorSweep, factor_sweep};
-use perilife::predict::{Silent, predict};
-use perilife::report::factor_sweep::{COLUMNS, beta_table, table};
-use perilife::units::MM;
+use perilife_base::input::Folder;
+use perilife_base::units::MM;
+use perilife_growth::case::Case;
+use perilife_growth::predict::factor_sweep::{FactorSweep, factor_sweep};
+use perilife_growth::predict::{Silent, predict};
+use perilife_results::factor_sweep::{COLUMNS, beta_table, table};
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case, try_hand_case_in};
 use crate::support::plates::try_case;

@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::sync::Mutex;
 
-use perilife::Result;
-use perilife::case::Case;
-use perilife::predict::checkpoint::Checkpoint;
-use perilife::predict::{Observer, Prediction, Progress, Silent, predict, resume};
+use perilife_base::error::Result;
+use perilife_growth::case::Case;
+use perilife_growth::predict::checkpoint::Checkpoint;
+use perilife_growth::predict::{Observer, Prediction, Progress, Silent, predict, resume};
 
 use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
 

@@ -3,15 +3,15 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use perilife::body::pre_crack::cutting_line;
-use perilife::fracture::bonds::BondState;
-use perilife::fracture::contact::Contact;
-use perilife::fracture::quasi_static::equilibrium::{Equilibrium, Shape};
-use perilife::fracture::{self, Fracture, Scene, boundary::Boundary};
-use perilife::levels::equilibrium::FullLoad;
-use perilife::predict::Silent;
-use perilife::specimen::Point;
-use perilife::specimen::geometry::segments_touch;
+use perilife_growth::predict::Silent;
+use perilife_plate::specimen::Point;
+use perilife_plate::specimen::geometry::segments_touch;
+use perilife_points::body::pre_crack::cutting_line;
+use perilife_scenes::bonds::BondState;
+use perilife_scenes::contact::Contact;
+use perilife_scenes::levels::equilibrium::FullLoad;
+use perilife_scenes::quasi_static::equilibrium::{Equilibrium, Shape};
+use perilife_scenes::{Fracture, Scene, boundary::Boundary};
 
 use crate::support::shared::shared;
 
@@ -37,7 +37,7 @@ fn scene(text: &str, set: &[&str]) -> Scene {
 }
 
 fn run(text: &str, set: &[&str]) -> Fracture {
-    fracture::run(&scene(text, set), &Silent).unwrap()
+    perilife_scenes::run(&scene(text, set), &Silent).unwrap()
 }
 
 fn without(set: &[&str]) -> f64 {
@@ -48,11 +48,11 @@ fn without(set: &[&str]) -> f64 {
 #[test]
 fn a_plate_pressed_across_a_slit_is_as_stiff_as_one_without() {
     let Some(path) = shared("field/mechanics/closed_crack/scene_pressed_slit.toml") else { return };
-    let run = fracture::run(&Scene::from_file(&path, &[]).unwrap(), &Silent).unwrap();
+    let run = perilife_scenes::run(&Scene::from_file(&path, &[]).unwrap(), &Silent).unwrap();
     let flanks = run.figures.touching.unwrap();
     println!("load {} N, {} of {} columns pressed", run.peak_load(), flanks.pressed, flanks.columns);
     let cracks = "specimen.cracks=[]".to_owned();
-    let whole = fracture::run(&Scene::from_file(&path, &[cracks]).unwrap(), &Silent).unwrap().peak_load();
+    let whole = perilife_scenes::run(&Scene::from_file(&path, &[cracks]).unwrap(), &Silent).unwrap().peak_load();
     assert!((run.peak_load() / whole - 1.0).abs() < 0.002, "{} N, {whole} N without slit", run.peak_load());
     // Driven and held rows of points lie half a spacing inside the plate, which is so much shorter: 1.8 % with and without slit.
     assert!((run.peak_load() / 2940.0 - 1.0).abs() < 0.02, "{} N", run.peak_load());
@@ -127,7 +127,7 @@ fn contact_is_free_under_turning_and_sliding() {
             let key = format!("model.discretisation={discretisation}");
             let set = [key.as_str(), "refinement.regions=[{box_mm=[[-20,-20],[20,20]],levels=1}]"];
             let scene = scene(&PRESSED.replace("CRACKS", &long), if discretisation == "lattice" { &[] } else { &set });
-            let (net, _) = fracture::build(&scene).unwrap();
+            let (net, _) = perilife_scenes::build(&scene).unwrap();
             let bonds = BondState::new(&net, &vec![false; net.len()]);
             let mut contact = Contact::new(&net, &scene.specimen.cracks);
             contact.press_all(&bonds);
@@ -165,7 +165,7 @@ fn contact_is_free_under_turning_and_sliding() {
 fn closes_alike(angles: &[f64]) {
     for degrees in angles.iter().copied() {
         let load = |scene: &Scene, broken: &dyn Fn(Point, Point) -> bool| {
-            let (net, _) = fracture::build(scene).unwrap();
+            let (net, _) = perilife_scenes::build(scene).unwrap();
             let boundary = Boundary::of(scene, &net).unwrap();
             let full = FullLoad::of(&net, &boundary).unwrap();
             let mut bonds = BondState::new(&net, &boundary.no_fail);

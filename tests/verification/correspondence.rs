@@ -2,12 +2,12 @@
 //! energy, momentum.
 
 use nalgebra::Matrix2;
-use perilife::fracture::correspondence::elasticity::Elasticity;
-use perilife::fracture::scene::DamageEntry;
-use perilife::fracture::scene::ZeroEnergyControl::{self, Silling, Spring};
-use perilife::fracture::{Scene, interaction::Interaction};
-use perilife::material::Plane;
-use perilife::specimen::Hole;
+use perilife_plate::material::Plane;
+use perilife_plate::specimen::Hole;
+use perilife_scenes::correspondence::elasticity::Elasticity;
+use perilife_scenes::scene::DamageEntry;
+use perilife_scenes::scene::ZeroEnergyControl::{self, Silling, Spring};
+use perilife_scenes::{Scene, interaction::Interaction};
 
 use crate::support::correspondence::{bonds, field, forces, law, net, patch, rectangle, scene};
 use crate::support::noise::Noise;
@@ -100,7 +100,7 @@ fn a_checkerboard_costs_nothing_without_control() {
 }
 
 /// A plate with a random displacement and broken bonds, some points with one bond or none left.
-fn torn(scene: &Scene, net: &perilife::levels::Net) -> (Vec<f64>, perilife::fracture::bonds::BondState) {
+fn torn(scene: &Scene, net: &perilife_points::net::Net) -> (Vec<f64>, perilife_scenes::bonds::BondState) {
     let mut noise = Noise::new(3);
     let u: Vec<f64> = (0..2 * net.len()).map(|_| 0.03 * scene.model.spacing * noise.normal()).collect();
     let mut bonds = bonds(net);
@@ -268,7 +268,7 @@ fn the_critical_stretch_of_the_plane_is_the_bond_based_one_at_a_third() {
     let mut material = crate::support::correspondence::material(Plane::Stress);
     material.poisson_ratio = 1.0 / 3.0;
     let bond_based = (4.0 * std::f64::consts::PI * 100.0 / (9.0 * 1e9 * 0.75e-3)).sqrt();
-    let stretch = perilife::fracture::correspondence::criterion::critical_stretch(&material, 100.0, 0.75e-3);
+    let stretch = perilife_scenes::correspondence::criterion::critical_stretch(&material, 100.0, 0.75e-3);
     assert!((stretch / bond_based - 1.0).abs() < 1e-12, "{stretch} against {bond_based}");
 }
 

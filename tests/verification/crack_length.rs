@@ -1,8 +1,8 @@
 //! The crack length of a crack that bonds grew is the one a laboratory would find from the compliance of the same body.
 
-use perilife::predict::{Silent, predict};
-use perilife::solver::SolverKind;
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_growth::predict::{Silent, predict};
+use perilife_points::solver::SolverKind;
 
 use crate::support::plates::{BOND_STRAIN, case};
 use crate::support::statics::loaded;

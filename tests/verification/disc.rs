@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use perilife::fracture::outcome::Fracture;
-use perilife::fracture::scene::ZeroEnergyControl;
-use perilife::fracture::{Scene, SceneEnd, run};
-use perilife::predict::Silent;
-use perilife::verify::disc::{
+use perilife_growth::predict::Silent;
+use perilife_scenes::outcome::Fracture;
+use perilife_scenes::scene::ZeroEnergyControl;
+use perilife_scenes::{Scene, SceneEnd, run};
+use perilife_study::disc::{
     CONTROL, DIAMETER, ElasticDisc, SPACING, TENSILE_STRENGTH, THICKNESS, TRAVEL, elastic, hondros, hondros_displacement, scene,
 };
 
@@ -88,7 +88,8 @@ fn hondros_field_carries_its_load() {
         assert!((along / nominal - 1.0).abs() < 1.5 * half_angle * half_angle, "{along} {nominal}");
         assert!((across / nominal + 3.0).abs() < 1.5 * half_angle * half_angle, "{across} {nominal}");
         let half = 0.5 * DIAMETER;
-        let load = -perilife::quadrature::integrate(|x| hondros(x, 100.0, half_angle)[1], -half, half, 1e-10).value * THICKNESS;
+        let load =
+            -perilife_base::quadrature::integrate(|x| hondros(x, 100.0, half_angle)[1], -half, half, 1e-10).value * THICKNESS;
         let expected = 100.0 * half_angle.sin() / half_angle;
         assert!((load / expected - 1.0).abs() < 1e-8, "{load} N at {half_angle}, {expected} N");
     }

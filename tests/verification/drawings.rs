@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 
-use perilife::Result;
-use perilife::case::Case;
-use perilife::input::Folder;
-use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
-use perilife::specimen::{Edge, Specimen};
-use perilife::stress_concentration::stressed;
-use perilife::units::MM;
+use perilife_base::error::Result;
+use perilife_base::input::Folder;
+use perilife_base::units::MM;
+use perilife_growth::case::Case;
+use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intensity};
+use perilife_growth::stress_concentration::stressed;
+use perilife_plate::specimen::{Edge, Specimen};
 
 const REST: &str = "thickness_mm = 2.0\n[material]\nyoungs_modulus_gpa = 72\npoisson_ratio = 0.3\n[loading]\nstress_max_mpa = 70\n\
                     stress_ratio = 0.1\n[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3.0\n";
@@ -174,7 +174,7 @@ fn a_drawn_fillet_concentrates_stress_as_in_the_charts() {
         .replace("stress_ratio", "edges = [\"top\"]\nstress_ratio")
         + "[supports]\nbottom = { fix = [\"y\"] }\n";
     let folder = Folder::at_hand([("part.dxf".to_owned(), text.into_bytes())]);
-    let document = perilife::input::Document::parse(&text_of_case, "fillet", folder, &[]).unwrap();
+    let document = perilife_base::input::Document::parse(&text_of_case, "fillet", folder, &[]).unwrap();
     let case = Case::plate_on_nodes(&document).unwrap();
     let found = stressed(&case).unwrap();
     let peak = found.rims.iter().map(|rim| rim.largest).max_by(|a, b| a.stress.total_cmp(&b.stress)).unwrap();

@@ -1,16 +1,16 @@
 //! Calibration on plates that no handbook has: K along the crack's own path, and the constants that curves were made with found again.
 
-use perilife::calibration::calibrate::calibrate;
-use perilife::calibration::case::CalibrationCase;
-use perilife::calibration::fit::Fit;
-use perilife::calibration::results::{record, report};
-use perilife::calibration::search::Constants;
-use perilife::case::Case;
-use perilife::fatigue::FatigueLaw;
-use perilife::fatigue::paris::ParisLaw;
-use perilife::input::Folder;
-use perilife::predict::{Silent, predict};
-use perilife::units::{GPA, MM, MPA_SQRT_M};
+use perilife_base::input::Folder;
+use perilife_base::units::{GPA, MM, MPA_SQRT_M};
+use perilife_calibration::calibrate::calibrate;
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::fit::Fit;
+use perilife_calibration::results::{record, report};
+use perilife_calibration::search::Constants;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Silent, predict};
+use perilife_laws::FatigueLaw;
+use perilife_laws::paris::ParisLaw;
 
 const C: f64 = 4e-9;
 const M: f64 = 3.4;

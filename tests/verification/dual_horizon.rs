@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use perilife::bond_law::stencil::{Stencil, plane_stiffness};
-use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::fracture::failure::critical_stretch;
-use perilife::fracture::fronts::CRACKED;
-use perilife::fracture::scene::{Action, DamageLaw, Discretisation, RefinedRegion, Scene};
-use perilife::fracture::{self, Fracture, SceneEnd};
-use perilife::levels::Net;
-use perilife::predict::Silent;
-use perilife::specimen::Point;
-use perilife::verify::dual_horizon::{PUBLISHED, Patch, forces, laws, material, patch};
+use perilife_growth::predict::Silent;
+use perilife_plate::specimen::Point;
+use perilife_points::bond_law::stencil::{Stencil, plane_stiffness};
+use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_points::net::Net;
+use perilife_scenes::failure::critical_stretch;
+use perilife_scenes::fronts::CRACKED;
+use perilife_scenes::scene::{Action, DamageLaw, Discretisation, RefinedRegion, Scene};
+use perilife_scenes::{Fracture, SceneEnd};
+use perilife_study::dual_horizon::{PUBLISHED, Patch, forces, laws, material, patch};
 
 use crate::support::noise::Noise;
 use crate::support::scenes::{a_box, law, plate, refined, torn};
@@ -49,9 +49,9 @@ fn equal_horizons_give_the_ordinary_net() {
         for angle in [0.0, 0.3].into_iter().filter(|&angle| !balanced || angle > 0.0) {
             let mut scene = plate(FLAWED, law, 2e-3, &[]);
             scene.model.lattice_angle = angle;
-            let dual = fracture::build(&scene).unwrap().0;
+            let dual = perilife_scenes::build(&scene).unwrap().0;
             scene.model.arrangement = Discretisation::Lattice;
-            let lattice = fracture::build(&scene).unwrap().0;
+            let lattice = perilife_scenes::build(&scene).unwrap().0;
             assert_eq!(dual.positions, lattice.positions);
             assert_eq!((dual.bonds.len(), &dual.pre_cut), (lattice.bonds.len(), &lattice.pre_cut));
             let u = disorder(&lattice);
@@ -98,7 +98,8 @@ fn a_plate_is_torn_on_two_levels() {
         (BondLawKind::OneBondTwoParameter, Rotation::Free, DamageLaw::CriticalEnergy),
     ] {
         let band = RefinedRegion::Band { from: [-25e-3, 0.0], to: [25e-3, 0.0], width: 16e-3 };
-        let run = fracture::run(&refined(torn(law(kind, rotation), damage, 2.5e-3, 8.0, 100e-6), &[(band, 1)]), &Silent).unwrap();
+        let run = perilife_scenes::run(&refined(torn(law(kind, rotation), damage, 2.5e-3, 8.0, 100e-6), &[(band, 1)]), &Silent)
+            .unwrap();
         assert_eq!(run.end, SceneEnd::Done, "{kind}");
         assert!(run.separated_step.is_some(), "{kind}: onset {:?}", run.onset_step);
         let largest = run.history.iter().fold(0.0, |m: f64, row| m.max(row.work));
@@ -135,19 +136,19 @@ fn wrong_refinements_are_refused() {
     ] {
         let mut scene = plate(PLAIN, PUBLISHED, 2e-3, &regions);
         scene.model.horizon_ratio = ratio;
-        let error = fracture::build(&scene).unwrap_err();
+        let error = perilife_scenes::build(&scene).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{error}");
         assert!(error.to_string().contains(words), "{error}");
     }
     let scene =
         plate(PLAIN, BondLaw { surface_correction: SurfaceCorrection::Balanced, ..PUBLISHED }, 2e-3, &[(around(5e-3), 1)]);
-    assert!(fracture::build(&scene).is_ok());
+    assert!(perilife_scenes::build(&scene).is_ok());
 }
 
 /// Regions two levels deep get a ring between, so that no horizon reaches over more than one level; it is said.
 #[test]
 fn levels_are_graded() {
-    let net = fracture::build(&plate(PLAIN, PUBLISHED, 4e-3, &[(a_box([-4e-3, -4e-3], [4e-3, 4e-3]), 3)])).unwrap().0;
+    let net = perilife_scenes::build(&plate(PLAIN, PUBLISHED, 4e-3, &[(a_box([-4e-3, -4e-3], [4e-3, 4e-3]), 3)])).unwrap().0;
     assert!(net.warnings.iter().any(|line| line.contains("beside")), "{:?}", net.warnings);
     let finest = net.spacings.iter().filter(|&&s| s < 0.6e-3).count();
     assert_eq!(finest, 256);
@@ -196,7 +197,7 @@ fn mixed_mode_cracks_bend_away_from_the_ligament() {
             *velocity *= 6.0;
         }
     }
-    let run = fracture::run(&scene, &Silent).unwrap();
+    let run = perilife_scenes::run(&scene, &Silent).unwrap();
     let cracks = cracked(&run);
     let turned: Vec<Point> = cracks.iter().map(|p| [-p[0], -p[1]]).collect();
     println!("{} points, half a turn {:.2e}, steps {}", cracks.len(), apart(&cracks, &turned), run.figures.evaluations);
@@ -217,7 +218,8 @@ fn mixed_mode_cracks_bend_away_from_the_ligament() {
 #[test]
 #[ignore = "long: three runs of about a minute"]
 fn mixed_mode_crack_paths_agree() {
-    let runs = ["uniform", "two_levels", "three_levels"].map(|name| fracture::run(&mixed_mode(name, &[]), &Silent).unwrap());
+    let runs =
+        ["uniform", "two_levels", "three_levels"].map(|name| perilife_scenes::run(&mixed_mode(name, &[]), &Silent).unwrap());
     let [uniform, refined @ ..] = &runs;
     let reference = cracked(uniform);
     for run in refined {

@@ -1,18 +1,18 @@
 //! Motion in time: the fast kernel against the list, energy, symmetry, waves.
 
-use perilife::body::Body;
-use perilife::bond_law::stencil::{plane_stiffness, spring_material};
-use perilife::bond_law::{BondLaw, BondLawKind, Rotation, SurfaceCorrection};
-use perilife::fracture::bonds::BondState;
-use perilife::fracture::boundary::Boundary;
-use perilife::fracture::failure::{Failure, critical_stretch};
-use perilife::fracture::interaction::{Damaging, Interaction};
-use perilife::fracture::lattice_springs::LatticeSprings;
-use perilife::fracture::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
-use perilife::fracture::springs::Springs;
-use perilife::fracture::{self, SceneEnd};
-use perilife::levels::Net;
-use perilife::predict::Silent;
+use perilife_growth::predict::Silent;
+use perilife_points::body::Body;
+use perilife_points::bond_law::stencil::{plane_stiffness, spring_material};
+use perilife_points::bond_law::{BondLaw, BondLawKind, Rotation, SurfaceCorrection};
+use perilife_points::net::Net;
+use perilife_scenes::SceneEnd;
+use perilife_scenes::bonds::BondState;
+use perilife_scenes::boundary::Boundary;
+use perilife_scenes::failure::{Failure, critical_stretch};
+use perilife_scenes::interaction::{Damaging, Interaction};
+use perilife_scenes::lattice_springs::LatticeSprings;
+use perilife_scenes::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
+use perilife_scenes::springs::Springs;
 
 use crate::support::noise::Noise;
 use crate::support::scenes::{law, torn};
@@ -81,7 +81,7 @@ fn energy_is_kept_while_a_plate_is_torn() {
     ] {
         let mut scene = torn(law(kind, rotation), damage, 1e-3, 8.0, 80e-6);
         scene.model.finite = finite;
-        let run = fracture::run(&scene, &Silent).unwrap();
+        let run = perilife_scenes::run(&scene, &Silent).unwrap();
         assert_eq!(run.end, SceneEnd::Done, "{kind}");
         assert!(
             run.separated_step.is_some(),
@@ -110,11 +110,11 @@ fn energy_is_kept_while_a_plate_is_torn() {
 #[test]
 fn stable_step_is_the_bound() {
     let mut scene = torn(law(BondLawKind::BondBased, Rotation::Resisted), DamageLaw::None, 1e-3, 1.0, 20e-6);
-    let own = fracture::run(&scene, &Silent).unwrap();
+    let own = perilife_scenes::run(&scene, &Silent).unwrap();
     let stable = own.figures.time_step / 0.7;
     for (share, fine) in [(0.999, true), (1.001, false)] {
         scene.procedure = Procedure::Dynamic { duration: 20e-6, time_step: Some(share * stable) };
-        let run = fracture::run(&scene, &Silent);
+        let run = perilife_scenes::run(&scene, &Silent);
         assert_eq!(run.is_ok(), fine, "{share} of the stable step");
         if let Err(error) = run {
             assert!(error.to_string().contains("stable"), "{error}");
@@ -130,7 +130,7 @@ fn cut_bonds_take_the_fracture_energy() {
         for &surface_correction in SurfaceCorrection::ALL {
             let bond_law = BondLaw { surface_correction, ..law(kind, Rotation::Resisted) };
             let scene = torn(bond_law, DamageLaw::CriticalStretch, 1e-3, 20.0, 1e-6);
-            let (net, body) = fracture::build(&scene).unwrap();
+            let (net, body) = perilife_scenes::build(&scene).unwrap();
             let (energy, thickness) = (scene.material.fracture_energy.unwrap(), scene.specimen.thickness);
             let stiffness = plane_stiffness(&spring_material(&bond_law, &scene.material))[0];
             let limit = critical_stretch(&body.unwrap().stencil, stiffness, energy, thickness);
@@ -163,7 +163,7 @@ fn a_slow_traction_is_no_blow_up() {
             f64::max(ramp, 1e-12)
         ));
         scene.procedure = Procedure::Dynamic { duration: 1e-5, time_step: Some(step) };
-        assert_eq!(fracture::run(&scene, &Silent).unwrap().end, SceneEnd::Done, "ramp {ramp} s, steps of {step} s");
+        assert_eq!(perilife_scenes::run(&scene, &Silent).unwrap().end, SceneEnd::Done, "ramp {ramp} s, steps of {step} s");
     }
 }
 
@@ -178,7 +178,7 @@ fn loads_that_rise_one_after_another_add_up() {
     let second = part("\"left\", \"right\"", -3.0, "ramp_s = 2e-6, from_s = 1e-5");
     let run = |parts: &str| {
         let scene = moved(&format!("parts = [{parts}]"));
-        fracture::run(&scene, &Silent).unwrap().snapshots.last().unwrap().displacement.clone()
+        perilife_scenes::run(&scene, &Silent).unwrap().snapshots.last().unwrap().displacement.clone()
     };
     let [both, a, b] = [format!("{first}, {second}"), first.clone(), second.clone()].map(|parts| run(&parts));
     let largest = both.iter().flatten().fold(0.0, |m: f64, u| m.max(u.abs()));
@@ -190,7 +190,7 @@ fn loads_that_rise_one_after_another_add_up() {
     assert!(b.iter().flatten().any(|u| u.abs() > 0.1 * largest), "the second load counts");
 
     let scene = moved(&format!("parts = [{first}, {second}]"));
-    let net = fracture::build(&scene).unwrap().0;
+    let net = perilife_scenes::build(&scene).unwrap().0;
     let boundary = Boundary::of(&scene, &net).unwrap();
     assert_eq!(boundary.pushes.len(), 2);
     let mut sum = vec![[0.0; 2]; net.len()];
@@ -217,7 +217,7 @@ fn a_velocity_follows_a_traction() {
         "parts = [{ kind = \"traction\", stress_mpa = 5, edges = [\"left\", \"right\"], ramp_s = 4e-6 }, \
          { kind = \"velocity\", velocity_mm_s = 500, edges = [\"top\", \"bottom\"], from_s = 1e-5, ramp_s = 5e-6 }]",
     );
-    let run = fracture::run(&scene, &Silent).unwrap();
+    let run = perilife_scenes::run(&scene, &Silent).unwrap();
     assert_eq!(run.end, SceneEnd::Done);
     let largest = run.history.iter().fold(0.0, |m: f64, row| m.max(row.work.abs()));
     let mut worst = 0.0_f64;
@@ -244,7 +244,7 @@ fn platens_press_in_time() {
     };
     let mut scene = moved(&platens("ramp_s = 1e-4, from_s = 1e-5"));
     scene.procedure = Procedure::Dynamic { duration: 1.5e-4, time_step: Some(4e-8) };
-    let run = fracture::run(&scene, &Silent).unwrap();
+    let run = perilife_scenes::run(&scene, &Silent).unwrap();
     let last = run.history.last().unwrap();
     assert!((last.displacement / 0.03e-3 - 1.0).abs() < 1e-12, "{}", last.displacement);
     let largest = run.history.iter().fold(0.0, |m: f64, row| m.max(row.work.abs()));
@@ -252,7 +252,7 @@ fn platens_press_in_time() {
     let mut still = scene.clone();
     still.procedure = Procedure::Static;
     still.model.solver = SceneSolver::AdaptiveDynamicRelaxation;
-    let rest = fracture::run(&still, &Silent).unwrap().history.last().unwrap().load;
+    let rest = perilife_scenes::run(&still, &Silent).unwrap().history.last().unwrap().load;
     // Mean over the time after the way is done, over the waves that are left.
     let after: Vec<f64> = run.history.iter().filter(|row| row.time > 1.1e-4).map(|row| row.load).collect();
     let mean = after.iter().sum::<f64>() / after.len() as f64;

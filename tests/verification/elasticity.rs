@@ -1,14 +1,14 @@
 //! Uniform strain stores the energy of the continuum, rigid motion none: for every bond law, kernel, rotation, plane state
 //! and horizon.
 
-use perilife::body::Body;
-use perilife::bond_law::stencil::{Stencil, plane_stiffness, poisson_limit};
-use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::material::{Material, Plane};
-use perilife::solver::field::{Layout, dot};
-use perilife::solver::product::{Into, Product};
-use perilife::specimen::Specimen;
-use perilife::state::Bonds;
+use perilife_plate::material::{Material, Plane};
+use perilife_plate::specimen::Specimen;
+use perilife_points::body::Body;
+use perilife_points::bond_law::stencil::{Stencil, plane_stiffness, poisson_limit};
+use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_points::solver::field::{Layout, dot};
+use perilife_points::solver::product::{Into, Product};
+use perilife_points::state::Bonds;
 
 use crate::support::plates::{case, try_case};
 use crate::support::statics::{corrected_laws, laws, material};

@@ -2,22 +2,22 @@
 
 use std::f64::consts::PI;
 
-use perilife::case::Case;
-use perilife::element_free::basis::{BasisKind, Enrichment, Value};
-use perilife::element_free::crack::{Tip, TipAxes};
-use perilife::element_free::factors::integral;
-use perilife::element_free::field::{Discretisation, Local};
-use perilife::element_free::resolution::{IN_RADIUS, RIM_REACH, Resolution};
-use perilife::element_free::solve::solve;
-use perilife::growth::cracks::initial_tips;
-use perilife::growth::nodes::NodePlate;
-use perilife::input::Folder;
-use perilife::material::{Material, Plane};
-use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
-use perilife::predict::{Prediction, Silent, predict};
-use perilife::specimen::{CrackLine, Specimen};
-use perilife::verify::cases::{NODES as METHOD, case, cracked_plate, cracks, pulled_plate};
-use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use perilife_base::input::Folder;
+use perilife_growth::case::Case;
+use perilife_growth::cracks::initial_tips;
+use perilife_growth::nodes::NodePlate;
+use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intensity};
+use perilife_growth::predict::{Prediction, Silent, predict};
+use perilife_nodes::basis::{BasisKind, Enrichment, Value};
+use perilife_nodes::crack::{Tip, TipAxes};
+use perilife_nodes::factors::integral;
+use perilife_nodes::field::{Discretisation, Local};
+use perilife_nodes::resolution::{IN_RADIUS, RIM_REACH, Resolution};
+use perilife_nodes::solve::solve;
+use perilife_plate::material::{Material, Plane};
+use perilife_plate::specimen::{CrackLine, Specimen};
+use perilife_plate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use perilife_study::cases::{NODES as METHOD, case, cracked_plate, cracks, pulled_plate};
 
 const BASES: [(BasisKind, Enrichment, f64); 4] = [
     (BasisKind::Linear, Enrichment::Tip, 2.5),

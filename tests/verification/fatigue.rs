@@ -1,9 +1,9 @@
 //! What a run must obey whatever its numbers: scaling with A and with load, symmetry, order, named ends, straight paths.
 
-use perilife::bond_law::BondLawKind;
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::solver::SolverKind;
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_points::bond_law::BondLawKind;
+use perilife_points::solver::SolverKind;
 
 use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
 
@@ -230,7 +230,7 @@ fn a_centre_crack_grows_by_the_power_law() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=152\nlength_mm=300\nthickness_mm=2.54\ncrack_length_mm=18\n";
     let p = 2.0;
     let run = grow(panel, &["stop.crack_length_mm=51", "stop.cycles_max=1e12", &format!("fatigue.p={p}")]);
-    let formula = perilife::specimen::handbook::handbook(&case(panel, &[]).specimen).unwrap();
+    let formula = perilife_plate::specimen::handbook::handbook(&case(panel, &[]).specimen).unwrap();
     let cycles_at = |length: f64| {
         let pair = run.curve.windows(2).find(|pair| pair[1].crack_length >= length).unwrap();
         let share = (length - pair[0].crack_length) / (pair[1].crack_length - pair[0].crack_length);

@@ -1,15 +1,15 @@
 //! Damped motion to rest, of any interaction.
 
-use perilife::body::Body;
-use perilife::bond_law::{BondLaw, BondLawKind, Rotation};
-use perilife::fracture::bonds::BondState;
-use perilife::fracture::boundary::{Boundary, Motion};
-use perilife::fracture::failure::Failure;
-use perilife::fracture::interaction::{Damaging, Interaction, Memory, Reaction};
-use perilife::fracture::quasi_static::relaxation::{Breaking, Loads, Relaxation, RestEnd, Rested};
-use perilife::fracture::scene::{Scene, SceneLaw};
-use perilife::fracture::springs::Springs;
-use perilife::levels::Net;
+use perilife_points::body::Body;
+use perilife_points::bond_law::{BondLaw, BondLawKind, Rotation};
+use perilife_points::net::Net;
+use perilife_scenes::bonds::BondState;
+use perilife_scenes::boundary::{Boundary, Motion};
+use perilife_scenes::failure::Failure;
+use perilife_scenes::interaction::{Damaging, Interaction, Memory, Reaction};
+use perilife_scenes::quasi_static::relaxation::{Breaking, Loads, Relaxation, RestEnd, Rested};
+use perilife_scenes::scene::{Scene, SceneLaw};
+use perilife_scenes::springs::Springs;
 
 use crate::support::scenes::{MM, law, pulled};
 
@@ -62,7 +62,7 @@ fn a_swing_breaks_no_bond_that_equilibrium_spares() {
     let (_, _, u) = relax(Relaxation::default(), Failure::Never, SOURCE_LAW);
     let scene = pulled(20.0 * MM, 40.0 * MM, 1.0 * MM, 0.02 * MM, SOURCE_LAW);
     let (net, ..) = setting(&scene);
-    let stretch = |b: &perilife::levels::NetBond| {
+    let stretch = |b: &perilife_points::net::NetBond| {
         let (i, j) = (2 * b.from as usize, 2 * b.to as usize);
         ((u[j] - u[i]) * b.normal[0] + (u[j + 1] - u[i + 1]) * b.normal[1]) / b.length
     };

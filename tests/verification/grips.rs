@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::predict::{Prediction, Silent, predict};
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, Silent, predict};
 
 /// Points by default, then nodes.
 const ENGINES: [&str; 2] = ["model.method=peridynamics", "model.method=element_free_galerkin"];

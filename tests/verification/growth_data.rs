@@ -1,11 +1,11 @@
 //! Growth data of the library against values computed from the published constants by themselves.
 
-use perilife::case::{Case, library_law};
-use perilife::fatigue::growth_law::nasgro::keys_of;
-use perilife::input::Folder;
-use perilife::material::growth_data::{record, records};
-use perilife::predict::{Silent, predict};
-use perilife::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::input::Folder;
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_growth::case::{Case, library_law};
+use perilife_growth::predict::{Silent, predict};
+use perilife_laws::growth_law::nasgro::keys_of;
+use perilife_plate::material::growth_data::{record, records};
 
 /// Thickness of the check values, 0.1 in.
 const THICKNESS: f64 = 2.54 * MM;
@@ -62,7 +62,7 @@ stress_ratio = 0.1
 [fatigue]
 "#;
 
-fn case(fatigue: &str) -> perilife::Result<Case> {
+fn case(fatigue: &str) -> perilife_base::error::Result<Case> {
     Case::from_toml(&format!("{PANEL}{fatigue}"), "panel", Folder::none(), &[])
 }
 

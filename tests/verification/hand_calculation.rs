@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use perilife::predict::residual_strength::residual_strength;
-use perilife::predict::{Silent, StopReason, predict};
-use perilife::specimen::handbook::handbook;
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_growth::predict::residual_strength::residual_strength;
+use perilife_growth::predict::{Silent, StopReason, predict};
+use perilife_plate::specimen::handbook::handbook;
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case, hand_run};
 use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
@@ -49,7 +49,7 @@ fn lives_scale_and_add_up() {
         let curve = hand_run(specimen, &["stop.crack_length_mm=20"]).curve;
         for at in [0.3_f64, 7.5, 100.5, 250.7] {
             let (i, share) = (at as usize, at.fract());
-            let between = |pick: fn(&perilife::predict::CurvePoint) -> f64| {
+            let between = |pick: fn(&perilife_growth::predict::CurvePoint) -> f64| {
                 pick(&curve[i]) + share * (pick(&curve[i + 1]) - pick(&curve[i]))
             };
             let length = format!("stop.crack_length_mm={}", between(|p| p.crack_length) / MM);

@@ -4,10 +4,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::predict::{Silent, predict};
-use perilife::specimen::Point;
-use perilife::specimen::geometry::{distance, distance_to_segment};
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Silent, predict};
+use perilife_plate::specimen::Point;
+use perilife_plate::specimen::geometry::{distance, distance_to_segment};
 
 use crate::support::shared::shared;
 
@@ -73,7 +73,7 @@ fn check(plates: &[Plate], overrides: &dyn Fn(&Case) -> Vec<String>) {
         let run = predict(&case(&path, overrides), &Silent).unwrap();
         let leading = right.iter().max_by(|a, b| a.1.last().unwrap().1.total_cmp(&b.1.last().unwrap().1)).unwrap().0;
         let tip = &right[leading];
-        let row = |row: &perilife::predict::CurvePoint| {
+        let row = |row: &perilife_growth::predict::CurvePoint| {
             let record = &row.tips[*leading];
             (row.cycles, 1e3 * record.growth, record.position.map(|metres| 1e3 * metres))
         };

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::growth::cracks::initial_tips;
-use perilife::growth::points::PointPlate;
-use perilife::predict::{Prediction, Silent, predict};
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_growth::case::Case;
+use perilife_growth::cracks::initial_tips;
+use perilife_growth::points::PointPlate;
+use perilife_growth::predict::{Prediction, Silent, predict};
 
 use super::drawings::{DXF, RECTANGLE, dxf, line, plate};
 use crate::support::shared::shared;

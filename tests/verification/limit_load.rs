@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::specimen::limit_load::weakest_section;
-use perilife::specimen::{Bearing, CrackLine, Load, Point, Specimen, SpecimenKind};
-use perilife::units::{MM, MPA};
+use perilife_base::units::{MM, MPA};
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_plate::specimen::limit_load::weakest_section;
+use perilife_plate::specimen::{Bearing, CrackLine, Load, Point, Specimen, SpecimenKind};
 
 use crate::support::hand_cases::{ALL, hand_case};
 
@@ -229,8 +229,11 @@ fn a_turned_plate_has_the_same_limit_load() {
     let mut lying = lying.specimen;
     // Pulled at its left and right side.
     let [low, high] = [-50.0 * MM, 50.0 * MM];
-    let side =
-        |x: f64, sign: f64| perilife::specimen::Load::Edge { from: [x, -30.0 * MM], to: [x, 30.0 * MM], traction: [sign, 0.0] };
+    let side = |x: f64, sign: f64| perilife_plate::specimen::Load::Edge {
+        from: [x, -30.0 * MM],
+        to: [x, 30.0 * MM],
+        traction: [sign, 0.0],
+    };
     lying.loads = vec![side(low, -1.0), side(high, 1.0)];
     assert!((limit(&upright.specimen) / limit(&lying) - 1.0).abs() < 1e-6);
 }

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::growth::cracks::initial_tips;
-use perilife::growth::points::PointPlate;
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::verify::cases::by_name;
+use perilife_growth::case::Case;
+use perilife_growth::cracks::initial_tips;
+use perilife_growth::points::PointPlate;
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_study::cases::by_name;
 
 use crate::support::shared::shared;
 

@@ -1,14 +1,14 @@
 //! Problems of mechanics as users brought them, on points and on nodes: the right K, or the cause by name (shared data, `mechanics4`).
 //! Right values: finite elements and closed forms of the README beside the data; slots of nodes are refused by name.
 
-use perilife::case::Case;
-use perilife::growth::cracks::initial_tips;
-use perilife::growth::nodes::NodePlate;
-use perilife::growth::points::PointPlate;
-use perilife::growth::record::CurvePoint;
-use perilife::input::Document;
-use perilife::predict::{Silent, predict};
-use perilife::units::{MM, MPA_SQRT_M};
+use perilife_base::input::Document;
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_growth::case::Case;
+use perilife_growth::cracks::initial_tips;
+use perilife_growth::nodes::NodePlate;
+use perilife_growth::points::PointPlate;
+use perilife_growth::predict::{Silent, predict};
+use perilife_growth::record::CurvePoint;
 
 use crate::support::shared::shared;
 

@@ -1,9 +1,9 @@
 //! A plate and its mirror image have the same life, and a plate that is its own has no K_II, wherever its rims lie between points.
 
-use perilife::case::Case;
-use perilife::growth::cracks::initial_tips;
-use perilife::growth::points::PointPlate;
-use perilife::predict::{Silent, predict};
+use perilife_growth::case::Case;
+use perilife_growth::cracks::initial_tips;
+use perilife_growth::points::PointPlate;
+use perilife_growth::predict::{Silent, predict};
 
 use crate::support::plates::case;
 use crate::support::shared::shared;

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::growth::cracks::initial_tips;
-use perilife::growth::nodes::NodePlate;
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::units::{MPA, MPA_SQRT_M};
+use perilife_base::units::{MPA, MPA_SQRT_M};
+use perilife_growth::case::Case;
+use perilife_growth::cracks::initial_tips;
+use perilife_growth::nodes::NodePlate;
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 
 /// The law of the finite elements.
 const LAW: &str = "paris_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874";

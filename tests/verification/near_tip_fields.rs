@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use perilife::body::severed::represented_excess;
-use perilife::material::{Material, Plane};
-use perilife::specimen::CrackLine;
-use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use perilife_plate::material::{Material, Plane};
+use perilife_plate::specimen::CrackLine;
+use perilife_plate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use perilife_points::body::severed::represented_excess;
 
 use crate::support::plates::{PANEL, case};
 use crate::support::statics::body;

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
-use perilife::case::Case;
-use perilife::predict::part_through::PartThroughLife;
-use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
-use perilife::predict::{CurvePoint, Prediction, Silent, StopReason, predict};
-use perilife::quadrature::integrate;
-use perilife::specimen::{FrontTip, PartThrough, SpecimenKind};
-use perilife::units::MM;
+use perilife_base::quadrature::integrate;
+use perilife_base::units::MM;
+use perilife_growth::case::Case;
+use perilife_growth::predict::part_through::PartThroughLife;
+use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intensity};
+use perilife_growth::predict::{CurvePoint, Prediction, Silent, StopReason, predict};
+use perilife_plate::specimen::{FrontTip, PartThrough, SpecimenKind};
 
 use crate::support::hand_cases::{hand_case, hand_run};
 
@@ -291,8 +291,8 @@ fn bending_lowers_the_limit_load() {
 /// A run that is stopped after break-through and taken up again is the same run.
 #[test]
 fn a_checkpoint_behind_break_through_goes_on() {
-    use perilife::predict::checkpoint::Checkpoint;
-    use perilife::predict::{Observer, Progress, resume};
+    use perilife_growth::predict::checkpoint::Checkpoint;
+    use perilife_growth::predict::{Observer, Progress, resume};
     use std::sync::Mutex;
     struct Keeper(Mutex<Vec<Vec<u8>>>);
     impl Observer for Keeper {

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use perilife::case::{Case, Model};
-use perilife::growth::cracks::initial_tips;
-use perilife::growth::nodes::NodePlate;
-use perilife::growth::points::PointPlate;
-use perilife::specimen::{Bearing, Load};
+use perilife_growth::case::{Case, Model};
+use perilife_growth::cracks::initial_tips;
+use perilife_growth::nodes::NodePlate;
+use perilife_growth::points::PointPlate;
+use perilife_plate::specimen::{Bearing, Load};
 
 /// C(T) of 50 x 10 mm under 10 kN with pins of 0.998 of its holes.
 fn compact(friction: f64) -> Case {

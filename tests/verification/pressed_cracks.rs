@@ -4,16 +4,16 @@
 
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::fatigue::crack_tip::TipState;
-use perilife::growth::cracks::initial_tips;
-use perilife::growth::points::PointPlate;
-use perilife::growth::record::CurvePoint;
-use perilife::predict::tip_factors::{StressIntensityMethod, stress_intensity};
-use perilife::predict::{Prediction, Silent, predict};
-use perilife::solver::{SolverKind, Symmetry};
+use perilife_growth::case::Case;
+use perilife_growth::cracks::initial_tips;
+use perilife_growth::points::PointPlate;
+use perilife_growth::predict::tip_factors::{StressIntensityMethod, stress_intensity};
+use perilife_growth::predict::{Prediction, Silent, predict};
+use perilife_growth::record::CurvePoint;
+use perilife_points::crack_tip::TipState;
+use perilife_points::solver::{SolverKind, Symmetry};
 
-use perilife::verify::cases::POINTS;
+use perilife_study::cases::POINTS;
 
 use crate::support::shared::shared;
 

@@ -1,12 +1,12 @@
 //! The matrix-free product K x against a matrix assembled bond by bond from its definition.
 
 use nalgebra::{DMatrix, DVector};
-use perilife::body::Body;
-use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::solver::field::{Layout, dot};
-use perilife::solver::product::{Into, Product};
-use perilife::solver::{Equilibrium, SolverKind, Symmetry};
-use perilife::state::Bonds;
+use perilife_points::body::Body;
+use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_points::solver::field::{Layout, dot};
+use perilife_points::solver::product::{Into, Product};
+use perilife_points::solver::{Equilibrium, SolverKind, Symmetry};
+use perilife_points::state::Bonds;
 
 use crate::support::noise::Noise;
 use crate::support::plates::{PANEL, case};
@@ -215,7 +215,7 @@ fn threads_do_not_change_a_digit() {
                 // And once more with the hierarchy kept while bonds break.
                 let mut equilibrium = Equilibrium::new(SolverKind::Multigrid, Symmetry::Off, &body, &bonds, case.loading.maximum);
                 equilibrium.solve(&body, &bonds, &mut displacement).unwrap();
-                let ahead = perilife::body::pre_crack::bonds_across(&body, [0.02, 0.0], [0.023, 0.0]);
+                let ahead = perilife_points::body::pre_crack::bonds_across(&body, [0.02, 0.0], [0.023, 0.0]);
                 ahead.iter().for_each(|&bond| bonds.cut(&body, bond));
                 equilibrium.bonds_changed(&body, &bonds, &ahead);
                 let more = equilibrium.solve(&body, &bonds, &mut displacement).unwrap();

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use perilife::fracture::scene::{Procedure, SceneSolver, Softening};
-use perilife::fracture::{self, Fracture, Scene, SceneEnd};
-use perilife::predict::Silent;
+use perilife_growth::predict::Silent;
+use perilife_scenes::scene::{Procedure, SceneSolver, Softening};
+use perilife_scenes::{Fracture, Scene, SceneEnd};
 
 /// Law of Q345 with a final stretch of so many times the one of the largest force.
 fn q345(ratio: f64) -> Softening {
@@ -69,8 +69,8 @@ fn notched([width, length]: [f64; 2], pull: f64, more: &str) -> Scene {
 }
 
 fn run(scene: &Scene, solver: SceneSolver) -> Fracture {
-    let scene = Scene { model: perilife::fracture::scene::SceneModel { solver, ..scene.model.clone() }, ..scene.clone() };
-    fracture::run(&scene, &Silent).unwrap()
+    let scene = Scene { model: perilife_scenes::scene::SceneModel { solver, ..scene.model.clone() }, ..scene.clone() };
+    perilife_scenes::run(&scene, &Silent).unwrap()
 }
 
 /// Load of a history at a displacement on its way up to the peak.
@@ -148,7 +148,7 @@ fn pulled_on_beyond_severing_the_plate_is_severed() {
              [loading]\nkind = \"displacement\"\nedges = [\"top\", \"bottom\"]\ndisplacement_mm = {displacement}\nsteps = 16\n\
              [damage]\nlaw = \"critical_stretch\"\n"
         );
-        fracture::run(&Scene::from_toml(&text, "pulled", Path::new("."), &[]).unwrap(), &Silent).unwrap()
+        perilife_scenes::run(&Scene::from_toml(&text, "pulled", Path::new("."), &[]).unwrap(), &Silent).unwrap()
     };
     let [short, long] = [0.1, 0.15].map(pulled);
     println!("{} at {:.2} N, {} at {:.2} N", short.end, short.peak_load(), long.end, long.peak_load());
@@ -167,9 +167,9 @@ fn loads_out_of_balance_are_refused() {
                 [\"top\", \"bottom\"]\nstress_mpa = 10.0\n";
     let mut scene = Scene::from_toml(text, "pulled", Path::new("."), &[]).unwrap();
     assert_eq!(scene.procedure, Procedure::Static);
-    fracture::run(&scene, &Silent).unwrap();
+    perilife_scenes::run(&scene, &Silent).unwrap();
     // The reader sees to balance; a scene made otherwise may lack it.
     scene.specimen.loads.pop();
-    let refusal = fracture::run(&scene, &Silent).unwrap_err().to_string();
+    let refusal = perilife_scenes::run(&scene, &Silent).unwrap_err().to_string();
     assert!(refusal.contains("balance"), "{refusal}");
 }

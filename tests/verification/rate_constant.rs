@@ -3,14 +3,15 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use perilife::bond_law::Kernel;
-use perilife::case::{Case, HORIZON_RATIO};
-use perilife::fatigue::STEADY_EXPONENTS;
-use perilife::fatigue::rate_constant::{OFF_THE_ROWS, rate_constant};
-use perilife::predict::factor_curve::FactorCurve;
-use perilife::predict::{Silent, StopReason, predict};
-use perilife::quadrature::integrate;
-use perilife::units::MM;
+use perilife_base::quadrature::integrate;
+use perilife_base::units::MM;
+use perilife_growth::case::Case;
+use perilife_growth::predict::factor_curve::FactorCurve;
+use perilife_growth::predict::{Silent, StopReason, predict};
+use perilife_growth::rate_constant::{OFF_THE_ROWS, rate_constant};
+use perilife_laws::STEADY_EXPONENTS;
+use perilife_points::bond_law::Kernel;
+use perilife_points::spacing::HORIZON_RATIO;
 
 /// Size of the reference plate, crack length (half) before and after, in horizons.
 const WIDTH: f64 = 60.0;

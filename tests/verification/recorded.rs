@@ -1,11 +1,11 @@
 //! Lives on recorded K(a) beside runs of their own: no figure here comes from anywhere but the program's quadrature over K of a handbook.
 
-use perilife::case::{Case, LawSource};
-use perilife::fatigue::paris::ParisLaw;
-use perilife::predict::laws::growth_law;
-use perilife::predict::recorded::{Change, Recorded};
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::units::{MM, MPA_SQRT_M};
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_growth::case::{Case, LawSource};
+use perilife_growth::predict::laws::growth_law;
+use perilife_growth::predict::recorded::{Change, Recorded};
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_laws::paris::ParisLaw;
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case};
 

@@ -3,14 +3,14 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
 
-use perilife::case::Case;
-use perilife::growth::cracks::{CrackedPlate, initial_tips};
-use perilife::growth::nodes::NodePlate;
-use perilife::growth::points::PointPlate;
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::quadrature::integrate;
-use perilife::specimen::green::centre_crack;
-use perilife::verify::cases::by_name;
+use perilife_base::quadrature::integrate;
+use perilife_growth::case::Case;
+use perilife_growth::cracks::{CrackedPlate, initial_tips};
+use perilife_growth::nodes::NodePlate;
+use perilife_growth::points::PointPlate;
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_plate::specimen::green::centre_crack;
+use perilife_study::cases::by_name;
 
 const WELD: &str = "residual_stress = \"80 * (1 - (x/15)^2) * exp(-(x/15)^2 / 2)\"";
 const NODES: &str = "model.method=element_free_galerkin";

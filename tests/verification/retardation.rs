@@ -5,17 +5,17 @@
 
 use std::f64::consts::PI;
 
-use perilife::case::Case;
-use perilife::fatigue::growth_law::{GrowthLaw, Walker};
-use perilife::fatigue::paris::ParisLaw;
-use perilife::fatigue::retardation::{Laws, March, Marched, Retardation, RetardationKind, Underway};
-use perilife::fatigue::spectrum_law::SpectrumLaw;
-use perilife::input::Folder;
-use perilife::loading::spectrum::{Cycle, Spectrum};
-use perilife::material::Plane;
-use perilife::predict::{Silent, StopReason, predict};
-use perilife::specimen::FrontTip;
-use perilife::units::{INCH, KSI, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
+use perilife_base::input::Folder;
+use perilife_base::units::{INCH, KSI, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Silent, StopReason, predict};
+use perilife_laws::growth_law::{GrowthLaw, Walker};
+use perilife_laws::paris::ParisLaw;
+use perilife_laws::retardation::{Laws, March, Marched, Retardation, RetardationKind, Underway};
+use perilife_laws::spectrum_law::SpectrumLaw;
+use perilife_plate::loading::spectrum::{Cycle, Spectrum};
+use perilife_plate::material::Plane;
+use perilife_plate::specimen::FrontTip;
 
 /// Blocks of a sequence, ksi and cycles.
 type Blocks = [[f64; 3]; 3];

@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use perilife::bond_law::{BondLawKind, Rotation, SurfaceCorrection};
-use perilife::fracture::assembly::Assembly;
-use perilife::fracture::scene::PointLaw;
-use perilife::fracture::{Scene, run};
-use perilife::growth::plate;
-use perilife::predict::Silent;
+use perilife_growth::plate;
+use perilife_growth::predict::Silent;
+use perilife_points::bond_law::{BondLawKind, Rotation, SurfaceCorrection};
+use perilife_scenes::assembly::Assembly;
+use perilife_scenes::scene::PointLaw;
+use perilife_scenes::{Scene, run};
 
 use crate::support::plates::try_case;
 

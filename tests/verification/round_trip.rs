@@ -1,20 +1,20 @@
 //! The calibration finds the constants of curves that the engine itself computed.
 
-use perilife::calibration::calibrate::in_terms_of_bonds;
-use perilife::calibration::confidence::distance_squared;
-use perilife::calibration::criterion::Criterion;
-use perilife::calibration::fit::{Fit, FitTask, fit};
-use perilife::calibration::power_law::PowerLaw;
-use perilife::calibration::search::Constants;
-use perilife::case::Case;
-use perilife::fatigue::FatigueLaw;
-use perilife::fatigue::paris::ParisLaw;
-use perilife::fatigue::rate_constant::rate_constant;
-use perilife::measured::MeasuredCurve;
-use perilife::predict::factor_curve::FactorCurve;
-use perilife::predict::{RunFigures, Silent, predict};
-use perilife::specimen::handbook::handbook;
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_calibration::calibrate::in_terms_of_bonds;
+use perilife_calibration::confidence::distance_squared;
+use perilife_calibration::criterion::Criterion;
+use perilife_calibration::fit::{Fit, FitTask, fit};
+use perilife_calibration::power_law::PowerLaw;
+use perilife_calibration::search::Constants;
+use perilife_growth::case::Case;
+use perilife_growth::predict::factor_curve::FactorCurve;
+use perilife_growth::predict::{RunFigures, Silent, predict};
+use perilife_growth::rate_constant::rate_constant;
+use perilife_laws::FatigueLaw;
+use perilife_laws::paris::ParisLaw;
+use perilife_measured::MeasuredCurve;
+use perilife_plate::specimen::handbook::handbook;
 
 use crate::support::noise::Noise;
 use crate::support::plates::case;

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::sync::Mutex;
 
-use perilife::fracture::checkpoint::SceneCheckpoint;
-use perilife::fracture::outcome::SceneFigures;
-use perilife::fracture::{self, Fracture, Scene, SceneObserver, SceneProgress};
-use perilife::predict::Silent;
+use perilife_growth::predict::Silent;
+use perilife_scenes::checkpoint::SceneCheckpoint;
+use perilife_scenes::outcome::SceneFigures;
+use perilife_scenes::{Fracture, Scene, SceneObserver, SceneProgress};
 
 /// Keeps every checkpoint as the bytes of its file.
 #[derive(Default)]
@@ -138,7 +138,7 @@ fn a_scene_taken_up_is_the_undisturbed_one() {
     for (number, setting) in SETTINGS.into_iter().enumerate() {
         let (name, scene) = (setting.0, scene(setting, &[]));
         let keeping = Keeping::default();
-        let whole = fracture::run(&scene, &keeping).unwrap();
+        let whole = perilife_scenes::run(&scene, &keeping).unwrap();
         let kept = keeping.kept();
         let (last, size) = (*whole.history.last().unwrap(), kept.last().map_or(0, Vec::len) / 1000);
         println!(
@@ -152,7 +152,7 @@ fn a_scene_taken_up_is_the_undisturbed_one() {
         assert!(kept.len() >= 3 && last.broken_bonds > 0, "{name}: nothing to take up, so this scene tests nothing");
         // One that keeps nothing goes the same way.
         if number % 3 == 0 {
-            assert!(text(&fracture::run(&scene, &Silent).unwrap()) == text(&whole), "{name}: it matters who watches");
+            assert!(text(&perilife_scenes::run(&scene, &Silent).unwrap()) == text(&whole), "{name}: it matters who watches");
         }
         // Also where bonds break in the very next row: what was looked back at shows only there.
         let rows = &whole.history;
@@ -163,7 +163,7 @@ fn a_scene_taken_up_is_the_undisturbed_one() {
         let breaking = (kept.len() / 4..kept.len()).find(breaks_next);
         for at in [2 * kept.len() / 3].into_iter().chain(breaking) {
             let again = Keeping::default();
-            let run = fracture::resume(&scene, read(&kept[at]), &again).unwrap();
+            let run = perilife_scenes::resume(&scene, read(&kept[at]), &again).unwrap();
             assert_eq!(run.history.len(), whole.history.len(), "{name}, checkpoint {at}: rows");
             for (row, other) in run.history.iter().zip(&whole.history) {
                 assert_eq!(row, other, "{name}, checkpoint {at}");
@@ -180,7 +180,7 @@ fn damaged_and_foreign_checkpoints_of_scenes_are_refused() {
     let setting = SETTINGS[4];
     let own = scene(setting, &[]);
     let keeping = Keeping::default();
-    fracture::run(&own, &keeping).unwrap();
+    perilife_scenes::run(&own, &keeping).unwrap();
     let bytes = keeping.kept().swap_remove(1);
     assert_eq!(read(&bytes).to_bytes(), bytes);
     let places = || (0..200).chain((200..bytes.len()).step_by(4999));
@@ -208,7 +208,7 @@ fn damaged_and_foreign_checkpoints_of_scenes_are_refused() {
     for other in others {
         let other_scene = scene(setting, &[other]);
         assert!(!read(&bytes).belongs_to(&other_scene), "{other}");
-        let error = fracture::resume(&other_scene, read(&bytes), &Silent).expect_err(other);
+        let error = perilife_scenes::resume(&other_scene, read(&bytes), &Silent).expect_err(other);
         assert_eq!(error.exit_code(), 2, "{other}: {error}");
         assert!(error.to_string().contains("another scene"), "{other}: {error}");
     }

@@ -1,8 +1,8 @@
 //! Scenes by their default law where material turns: bending, shear, flanks of a crack. References are finite elements of the same
 //! plates (`mechanics/scene_default_law` of the shared data).
 
-use perilife::fracture::{self, Fracture, Scene};
-use perilife::predict::Silent;
+use perilife_growth::predict::Silent;
+use perilife_scenes::{Fracture, Scene};
 
 use crate::support::shared::shared;
 
@@ -13,7 +13,7 @@ fn scene(file: &str, set: &[&str]) -> Option<Scene> {
 }
 
 fn run(file: &str, set: &[&str]) -> Option<Fracture> {
-    scene(file, set).map(|scene| fracture::run(&scene, &Silent).unwrap())
+    scene(file, set).map(|scene| perilife_scenes::run(&scene, &Silent).unwrap())
 }
 
 fn assert_within(what: &str, found: f64, reference: f64, percent: f64) {

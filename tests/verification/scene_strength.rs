@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use perilife::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
-use perilife::fracture::assembly::preview;
-use perilife::fracture::trapping::trapping;
-use perilife::fracture::{self, Scene};
-use perilife::predict::Silent;
-use perilife::verify::scene_strength::{GRIFFITH, SQUARE, growth_load};
+use perilife_growth::predict::Silent;
+use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_scenes::Scene;
+use perilife_scenes::assembly::preview;
+use perilife_scenes::trapping::trapping;
+use perilife_study::scene_strength::{GRIFFITH, SQUARE, growth_load};
 
 use crate::support::shared::shared;
 
@@ -52,7 +52,7 @@ fn trapping_is_that_of_the_lattice_at_fifty_spacings() {
 fn field_load(set: &[&str]) -> Option<f64> {
     let path = shared("field/mechanics4/scene_strength/sent_tension.toml")?;
     let overrides: Vec<String> = set.iter().map(|key| (*key).to_owned()).collect();
-    let run = fracture::run(&Scene::from_file(&path, &overrides).unwrap(), &Silent).unwrap();
+    let run = perilife_scenes::run(&Scene::from_file(&path, &overrides).unwrap(), &Silent).unwrap();
     println!("{set:?}: {:.1} N", run.peak_load());
     Some(run.peak_load())
 }
@@ -70,8 +70,8 @@ fn a_notched_square_bears_what_its_fracture_energy_says() {
 #[test]
 fn a_plate_under_1_mpa_branches() {
     let Some(path) = shared("field/mechanics4/scene_strength/branching_1mpa.toml") else { return };
-    let run = fracture::run(&Scene::from_file(&path, &[]).unwrap(), &Silent).unwrap();
-    let rows = perilife::verify::scene_strength::cracked_rows(&run, 0.04);
+    let run = perilife_scenes::run(&Scene::from_file(&path, &[]).unwrap(), &Silent).unwrap();
+    let rows = perilife_study::scene_strength::cracked_rows(&run, 0.04);
     assert!(rows.iter().any(|y| *y > 5e-3) && rows.iter().any(|y| *y < -5e-3), "cracked rows {rows:?}");
     assert!(rows.iter().all(|y| y.abs() > 2e-3), "nothing between the branches: {rows:?}");
 }

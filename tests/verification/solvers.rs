@@ -1,15 +1,15 @@
 //! Every iteration against sparse Cholesky, and what all do with pieces that hang loose.
 
 use nalgebra::{DMatrix, DVector};
-use perilife::Error;
-use perilife::body::pre_crack::bonds_across;
-use perilife::bond_law::Rotation;
-use perilife::case::Case;
-use perilife::fatigue::pieces::{Connectivity, remove_fragments};
-use perilife::predict::{Silent, predict};
-use perilife::solver::field::Layout;
-use perilife::solver::{Equilibrium, SolverKind, Symmetry};
-use perilife::state::Bonds;
+use perilife_base::error::Error;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Silent, predict};
+use perilife_points::body::pre_crack::bonds_across;
+use perilife_points::bond_law::Rotation;
+use perilife_points::pieces::{Connectivity, remove_fragments};
+use perilife_points::solver::field::Layout;
+use perilife_points::solver::{Equilibrium, SolverKind, Symmetry};
+use perilife_points::state::Bonds;
 
 use crate::support::plates::case;
 use crate::support::statics::{Loaded, body, loaded, loaded_with};

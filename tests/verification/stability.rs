@@ -15,8 +15,8 @@
 //! | horizon ratio 1.5 and 2 | `horizon_ratios_agree_or_say_how_wrong_they_are` |
 //! | spacing that does not divide the width | `a_spacing_is_moved_to_one_that_fits` |
 
-use perilife::predict::{Prediction, Silent, StopReason, predict};
-use perilife::units::MM;
+use perilife_base::units::MM;
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 
 use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
 

@@ -1,11 +1,11 @@
 //! Stress over a plate in pieces: they tile it, its loaded edges carry the load, flanks carry nothing and are open.
 
-use perilife::element_free::stress_field::Corner;
-use perilife::predict::moment::stress_field;
-use perilife::predict::{Silent, predict};
-use perilife::specimen::Point;
-use perilife::specimen::geometry::{distance, polygon_area};
-use perilife::units::{MM, MPA};
+use perilife_base::units::{MM, MPA};
+use perilife_growth::predict::moment::stress_field;
+use perilife_growth::predict::{Silent, predict};
+use perilife_nodes::stress_field::Corner;
+use perilife_plate::specimen::Point;
+use perilife_plate::specimen::geometry::{distance, polygon_area};
 
 use crate::support::plates;
 

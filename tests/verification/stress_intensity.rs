@@ -1,6 +1,6 @@
 //! K_I and K_II where `perilife verify stress_intensity` has no row: pins, clamped ends, places between columns, signs.
 
-use perilife::predict::tip_factors::{StressIntensityMethod, TipResult, stress_intensity};
+use perilife_growth::predict::tip_factors::{StressIntensityMethod, TipResult, stress_intensity};
 
 use crate::support::plates::{PANEL, case};
 

@@ -1,9 +1,9 @@
 //! A symmetric plate solved on its half or quarter against the whole.
 
-use perilife::body::pre_crack::bonds_across;
-use perilife::predict::{Silent, predict};
-use perilife::solver::{Equilibrium, SolverKind, Symmetry};
-use perilife::state::Bonds;
+use perilife_growth::predict::{Silent, predict};
+use perilife_points::body::pre_crack::bonds_across;
+use perilife_points::solver::{Equilibrium, SolverKind, Symmetry};
+use perilife_points::state::Bonds;
 
 use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case, try_case};
 use crate::support::statics::{Loaded, body, loaded, loaded_with};

@@ -1,9 +1,9 @@
 //! A plate in uniform tension where `perilife verify tension_plate` has no row: every horizon, and the classical correction beside
 //! the balanced one.
 
-use perilife::bond_law::{BondLaw, Kernel, SurfaceCorrection};
-use perilife::verify::tension_plate::BALANCED;
-use perilife::verify::uniform_tension::{Shape, shapes, strip, uniform_tension};
+use perilife_points::bond_law::{BondLaw, Kernel, SurfaceCorrection};
+use perilife_study::tension_plate::BALANCED;
+use perilife_study::uniform_tension::{Shape, shapes, strip, uniform_tension};
 
 /// A small plate, 20 x 36 points. Asked for are 0.5 %, 0.1 % is the aim; twelve neighbours (horizon ratio below 2.2) are too few for
 /// all equations at once.

@@ -4,22 +4,22 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
-use perilife::body::Bond;
-use perilife::body::pre_crack::bonds_across;
-use perilife::case::{Case, RESIDUAL};
-use perilife::fatigue::growth_law::Walker;
-use perilife::growth::CrackGrowth;
-use perilife::growth::cracks::kink::coefficients;
-use perilife::growth::cracks::steering::{equivalent_factor, kink_angle};
-use perilife::growth::points::TipField;
-use perilife::predict::{Prediction, Silent, StopReason, increment, predict};
-use perilife::solver::field::Layout;
-use perilife::specimen::{CrackLine, LineEnd, Point};
-use perilife::state::Bonds;
-use perilife::stress_intensity::TipFrame;
-use perilife::stress_intensity::ring::{Balanced, RingGeometry};
-use perilife::verify::cases::by_name;
-use perilife::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use perilife_growth::CrackGrowth;
+use perilife_growth::case::{Case, RESIDUAL};
+use perilife_growth::cracks::kink::coefficients;
+use perilife_growth::cracks::steering::{equivalent_factor, kink_angle};
+use perilife_growth::points::TipField;
+use perilife_growth::predict::{Prediction, Silent, StopReason, increment, predict};
+use perilife_laws::growth_law::Walker;
+use perilife_plate::specimen::{CrackLine, LineEnd, Point};
+use perilife_plate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
+use perilife_points::body::Bond;
+use perilife_points::body::pre_crack::bonds_across;
+use perilife_points::solver::field::Layout;
+use perilife_points::state::Bonds;
+use perilife_points::stress_intensity::TipFrame;
+use perilife_points::stress_intensity::ring::{Balanced, RingGeometry};
+use perilife_study::cases::by_name;
 
 const REST: &str = r#"
 [material]

@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use perilife::bond_law::BondLawKind;
-use perilife::case::Case;
-use perilife::predict::{Prediction, Silent, predict};
-use perilife::solver::SolverKind;
-use perilife::specimen::geometry::distance;
-use perilife::verify::cases::by_name;
+use perilife_growth::case::Case;
+use perilife_growth::predict::{Prediction, Silent, predict};
+use perilife_plate::specimen::geometry::distance;
+use perilife_points::bond_law::BondLawKind;
+use perilife_points::solver::SolverKind;
+use perilife_study::cases::by_name;
 
 const REST: &str = "
 [material]

@@ -1,7 +1,7 @@
 //! The topics of `perilife verify`: cheap ones with every run of the tests, all of them where that is asked for.
 
-use perilife::report::verification::{line, markdown};
-use perilife::verify::{Row, Topic, faults, rows, topics};
+use perilife_study::verification::{line, markdown};
+use perilife_study::{Row, Topic, faults, rows, topics};
 
 /// Topics of a few seconds each.
 const CHEAP: [&str; 7] = ["golden", "static_scenes", "dual_horizon", "golden_peridynamics", "same_plate", "named_plates", "pins"];

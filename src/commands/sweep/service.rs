@@ -11,17 +11,17 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 
-use crate::error::{Error, Result};
-use crate::report::csv::{A_N_FILE, parse_a_n};
-use crate::report::output::write_file;
-use crate::report::provenance::INPUTS;
-use crate::report::sweep::Outcome;
-use crate::report::vtk::PARAVIEW;
-use crate::runner::sweep_folder::SweepFolder;
-use crate::service::job::{Job, JobKind, State, Submission};
-use crate::service::store::{self, FileEntry, NewJob, Origin, Room, Store, Submitted, is_gone};
-use crate::service::with_store;
-use crate::sweep::DrawnCase;
+use perilife_base::error::{Error, Result};
+use perilife_calibration::sweep::DrawnCase;
+use perilife_results::csv::{A_N_FILE, parse_a_n};
+use perilife_results::output::write_file;
+use perilife_results::provenance::INPUTS;
+use perilife_results::sweep::Outcome;
+use perilife_results::vtk::PARAVIEW;
+use perilife_runner::sweep_folder::SweepFolder;
+use perilife_service::job::{Job, JobKind, State, Submission};
+use perilife_service::store::{self, FileEntry, NewJob, Origin, Room, Store, Submitted, is_gone};
+use perilife_service::with_store;
 
 /// Who submits, as listings of jobs show it.
 const OWNER: &str = "sweep";

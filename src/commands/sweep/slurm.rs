@@ -7,10 +7,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::Shard;
-use crate::error::{Error, Result, input};
-use crate::report::output::write_file;
-use crate::runner::sweep_folder::{LOGS, SCRIPT_FILE, SweepFolder, TASKS_FILE};
-use crate::sweep::DrawnCase;
+use perilife_base::error::{Error, Result, input};
+use perilife_calibration::sweep::DrawnCase;
+use perilife_results::output::write_file;
+use perilife_runner::sweep_folder::{LOGS, SCRIPT_FILE, SweepFolder, TASKS_FILE};
 
 /// Most tasks of an array unless the user asks for smaller ones: Slurm's own default limit is 1001.
 const TASKS_MAX: usize = 1000;
@@ -137,7 +137,8 @@ fn ranges(numbers: &[usize]) -> String {
 fn list(tasks: &[Shard], cases: usize) -> String {
     let mut text = String::new();
     for task in tasks {
-        let own: Vec<String> = (1..=cases).filter(|number| task.has(*number)).map(crate::sweep::draw::label).collect();
+        let own: Vec<String> =
+            (1..=cases).filter(|number| task.has(*number)).map(perilife_calibration::sweep::draw::label).collect();
         // Writing to a String cannot fail.
         let _ = writeln!(text, "{} {}", task.number, own.join(" "));
     }

@@ -11,9 +11,9 @@ use std::time::SystemTime;
 use axum::http::{Method, StatusCode};
 use serde_json::json;
 
-use crate::error::{Error, Result};
 use crate::problem::{Answer, Problem};
 use crate::store::Role;
+use perilife_base::error::{Error, Result};
 
 /// Who asks.
 #[derive(Debug, Clone, PartialEq)]

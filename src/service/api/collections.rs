@@ -15,10 +15,10 @@ use utoipa::{IntoParams, ToSchema};
 use super::App;
 use super::caller::Caller;
 use super::documents::{self, JobRequest, submission};
-use crate::error::input;
 use crate::job::{Job, JobKind, State, is_id};
 use crate::problem::{Answer, Problem};
 use crate::store::{Change, FileEntry, NewJob, Origin, Role, Room, Submitted, Wanted};
+use perilife_base::error::input;
 
 /// Most jobs of one part of a list.
 const LIST_MAX: u32 = 200;

@@ -17,13 +17,13 @@ use utoipa::ToSchema;
 use super::app::BodyPlace;
 use super::caller::Caller;
 use super::{App, Limits};
-use crate::error::input;
-use crate::input::Document;
 use crate::job::{FITTED, JobKind, State, Submission, is_id};
 use crate::problem::{Answer, Problem};
-use crate::runner::Task;
 use crate::store::{Origin, hex};
-use crate::watch::{self, Watch};
+use perilife_base::error::input;
+use perilife_base::input::Document;
+use perilife_base::watch::{self, Watch};
+use perilife_runner::Task;
 
 /// Longest input, bytes; files beside it may be as large as bodies are.
 const INPUT_MAX: usize = 1 << 20;

@@ -13,17 +13,21 @@ use super::App;
 use super::caller::Caller;
 use super::documents::{self, JobRequest, submission, while_asked};
 
-use crate::check;
-use crate::error::{Error, input};
 use crate::job::JobKind;
-use crate::measured::{
-    Column, ColumnNames, CycleUnit, Decimal, Import, Layout, LengthUnit, LoadUnit, Loads, MeasuredCurve, Named, SAME_LOAD, Shape,
-    Sheet, Survey, round_off, survey,
-};
 use crate::problem::{Answer, Place, Problem};
-use crate::specimen::LoadMeasure;
-use crate::units::{KN, MM, MPA};
-use crate::watch;
+use perilife_base::error::{Error, input};
+use perilife_base::units::{KN, MM, MPA};
+use perilife_base::watch;
+use perilife_base::{
+    table::{
+        Decimal, Sheet,
+        units::{CycleUnit, LengthUnit, LoadUnit},
+    },
+    units::round_off,
+};
+use perilife_measured::{Column, ColumnNames, Import, Layout, Loads, MeasuredCurve, Named, SAME_LOAD, Shape, Survey, survey};
+use perilife_plate::specimen::LoadMeasure;
+use perilife_runner::check;
 
 /// What was found in files of readings.
 #[derive(Serialize, ToSchema)]

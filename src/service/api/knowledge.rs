@@ -11,12 +11,12 @@ use utoipa::ToSchema;
 
 use super::App;
 use super::caller::Caller;
-use crate::input::Folder;
-use crate::material::growth_data;
-use crate::material::library::{self, Property};
 use crate::problem::{Answer, Problem};
-use crate::report::catalogue;
 use crate::store::{Role, hex};
+use perilife_base::input::Folder;
+use perilife_plate::material::growth_data;
+use perilife_plate::material::library::{self, Property};
+use perilife_runner::catalogue;
 
 /// The service and what it allows.
 #[derive(Serialize, ToSchema)]
@@ -58,7 +58,7 @@ pub async fn service(State(app): State<App>, caller: Option<Extension<Caller>>) 
 /// Every kind of every key of the input files.
 #[utoipa::path(get, path = "/v1/kinds", tag = "knowledge", responses((status = 200, body = Value)))]
 pub async fn kinds() -> Json<Value> {
-    Json(catalogue::json())
+    Json(catalogue::json(catalogue::lines()))
 }
 
 /// Materials by name, every number with its source.

@@ -14,13 +14,13 @@ use utoipa::IntoParams;
 use super::App;
 use super::collections::job_of;
 use super::sending::Stored;
-use crate::error::input;
 use crate::job::{Job, State, is_id};
 use crate::problem::{Answer, Problem};
-use crate::report::band::{self, Inspection};
-use crate::report::csv::{self, A_N_FILE};
-use crate::report::resample::Sampling;
 use crate::store::{Origin, media_type};
+use perilife_base::error::input;
+use perilife_results::band::{self, Inspection};
+use perilife_results::csv::{self, A_N_FILE};
+use perilife_results::resample::Sampling;
 
 /// Rows of a resampled curve: as many as a table can show.
 const POINTS: std::ops::RangeInclusive<u64> = 2..=100_000;

@@ -36,7 +36,7 @@ enum Asked {
 impl Stored {
     /// Never another for the same file: neither inputs nor results of a job change.
     fn tag(&self) -> String {
-        let name = crate::input::sha256(self.entry.name.as_bytes());
+        let name = perilife_base::input::sha256(self.entry.name.as_bytes());
         format!("\"{}-{}-{}\"", self.job, self.entry.bytes, &name[..12])
     }
 

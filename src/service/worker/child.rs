@@ -16,15 +16,15 @@ use serde_json::Value;
 use super::process::{News, Order, read_frame, write_frame};
 use super::telling::Teller;
 use super::{bytes, free_bytes, packed};
-use crate::calibration::calibrate::Calibration;
-use crate::error::{Error, Result};
-use crate::input::Opened;
 use crate::problem::Problem;
-use crate::report::json::RESULT_FILE;
-use crate::report::output::{Room, write_file};
-use crate::report::paper::{self, Signed};
-use crate::runner::{self, Task, TaskCheckpoint};
 use crate::store::Growth;
+use perilife_base::error::{Error, Result};
+use perilife_base::input::Opened;
+use perilife_calibration::calibrate::Calibration;
+use perilife_results::json::RESULT_FILE;
+use perilife_results::output::{Room, write_file};
+use perilife_results::paper::{self, Signed};
+use perilife_runner::{Task, TaskCheckpoint};
 
 /// The report of a run or a fit among its files.
 const REPORT_FILE: &str = "report.html";
@@ -135,7 +135,7 @@ fn shown_until(pieces: &[Growth], until: Option<f64>) -> Growth {
 fn run_task(folder: &Path, task: &Task, from: Option<TaskCheckpoint>, teller: &Teller<'_>) -> Result<Value> {
     // The stresses that go with factors are for a folder that was asked for.
     let is_of_factors = matches!(task, Task::Factors { .. });
-    let summary = runner::run(task, from, (!is_of_factors).then_some(folder), teller)?;
+    let summary = perilife_runner::run(task, from, (!is_of_factors).then_some(folder), teller)?;
     if is_of_factors {
         write_file(&folder.join(RESULT_FILE), format!("{:#}\n", summary.result).as_bytes())?;
     }

@@ -9,10 +9,10 @@ use tempfile::TempDir;
 
 use super::process::{Death, JobProcess, News, Order};
 use super::{Shared, TRY_EVERY, files, milliseconds};
-use crate::error::{Error, Result};
 use crate::job::{JobKind, State, Submission};
 use crate::problem::Problem;
 use crate::store::{Claim, Growth, Heartbeat, Outcome, Told, is_gone};
+use perilife_base::error::{Error, Result};
 
 /// Time between two signs of life, in which a wish to cancel comes back as well.
 const BEAT: Duration = Duration::from_millis(400);

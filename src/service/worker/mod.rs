@@ -23,7 +23,7 @@ use tokio::sync::Notify;
 use zip::write::SimpleFileOptions;
 
 use super::store::{ResultFile, Store};
-use crate::error::{Error, Result};
+use perilife_base::error::{Error, Result};
 
 /// How workers work.
 #[derive(Debug, Clone)]

@@ -4,16 +4,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use super::process::News;
-use crate::fracture::{SceneObserver, SceneProgress};
 use crate::job::JobProgress;
-use crate::predict::checkpoint::Checkpoint;
-use crate::predict::{Observer, PointGrid, Progress, Snapshot, TipRecord};
-use crate::report::damage::{DamagePicture, cycles_and_length};
-use crate::runner::Watcher;
-use crate::specimen::{Crack, Point};
 use crate::store::Growth;
-use crate::units::MM;
-use crate::watch::{Stage, Watch};
+use perilife_base::raster::{PointGrid, Snapshot};
+use perilife_base::units::MM;
+use perilife_base::watch::{Stage, Watch};
+use perilife_growth::predict::checkpoint::Checkpoint;
+use perilife_growth::predict::{Observer, Progress, TipRecord};
+use perilife_plate::specimen::{Crack, Point};
+use perilife_results::damage::{DamagePicture, cycles_and_length};
+use perilife_runner::Watcher;
+use perilife_runner::scenes::{SceneObserver, SceneProgress};
 
 /// Entries of a growing curve from its start to its end: as many as a picture of it can show.
 const ENTRIES: f64 = 800.0;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 #[cfg(feature = "tables")]
-use perilife::tables::{DataFrame, parquet};
+use perilife_tables::{DataFrame, parquet};
 #[cfg(feature = "tables")]
 use polars::prelude::Column;
 use tempfile::tempdir;

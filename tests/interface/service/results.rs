@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use perilife::monotone::Monotone;
+use perilife_base::monotone::Monotone;
 use serde_json::{Value, json};
 use tempfile::tempdir;
 

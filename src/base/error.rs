@@ -1,0 +1,129 @@
+//! The three troubles a caller can act on: wrong input, mechanics that gave no result, file or network.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Everything a public function of this crate can fail with.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// Wrong input: the caller changes the input and tries again (exit code 2).
+    #[error(transparent)]
+    Input(#[from] Box<InputError>),
+    /// No convergence, or the mechanics stopped the run before there was a result (exit code 3).
+    #[error("{0}")]
+    Mechanics(String),
+    /// What is left of a plate is a mechanism, or nearly one: it carries no load (exit code 3).
+    #[error("what is left of the plate cannot carry its load")]
+    LossOfStiffness,
+    /// A file could not be read or written (exit code 4).
+    #[error("{}: {action}: {source}", path.display())]
+    File {
+        /// The file or folder in question.
+        path: PathBuf,
+        /// What was tried, for example "cannot read" (reads well after the path and a colon).
+        action: &'static str,
+        /// What the operating system answered.
+        #[source]
+        source: std::io::Error,
+    },
+}
+
+/// Result of the crate's fallible functions.
+pub type Result<T> = std::result::Result<T, Error>;
+
+impl Error {
+    /// Process exit code of this trouble: 2 wrong input, 3 mechanics, 4 file.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Error::Input(_) => 2,
+            Error::Mechanics(_) | Error::LossOfStiffness => 3,
+            Error::File { .. } => 4,
+        }
+    }
+
+    /// A file that could not be read or written.
+    pub fn file(path: &Path, action: &'static str, source: std::io::Error) -> Self {
+        Error::File { path: path.to_path_buf(), action, source }
+    }
+
+    /// Names the file an input error came from, where it is not named yet.
+    pub fn in_file(self, path: &Path) -> Self {
+        match self {
+            Error::Input(mut input) => {
+                input.file.get_or_insert_with(|| path.to_path_buf());
+                Error::Input(input)
+            }
+            other => other,
+        }
+    }
+}
+
+/// Wrong input: where it stands, which value, what is wrong with it and what would be right.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct InputError {
+    /// File the value stands in.
+    pub file: Option<PathBuf>,
+    /// Line of the file, counted from 1.
+    pub line: Option<usize>,
+    /// Key (`specimen.crack_length_mm`) or column (`cycles`).
+    pub key: Option<String>,
+    /// The value as given.
+    pub value: Option<String>,
+    /// What is wrong, said so that it reads on after "key = value:".
+    pub problem: String,
+    /// What would be right.
+    pub remedy: String,
+}
+
+impl std::error::Error for InputError {}
+
+impl fmt::Display for InputError {
+    /// `file:line: key = value: problem; remedy`, leaving out what is not known.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.file {
+            write!(f, "{}", file.display())?;
+            if let Some(line) = self.line {
+                write!(f, ":{line}")?;
+            }
+            write!(f, ": ")?;
+        }
+        match (&self.key, &self.value) {
+            (Some(key), Some(value)) => write!(f, "{key} = {value}: ")?,
+            (Some(key), None) => write!(f, "{key}: ")?,
+            (None, Some(value)) => write!(f, "{value}: ")?,
+            (None, None) => {}
+        }
+        write!(f, "{}", self.problem)?;
+        if !self.remedy.is_empty() {
+            write!(f, "; {}", self.remedy)?;
+        }
+        Ok(())
+    }
+}
+
+/// Input error about a key and its value.
+///
+/// ```
+/// let error = crate::error::input("specimen.crack_length_mm", 90.0, "is beyond the half width 76.2 mm", "give a shorter crack");
+/// assert_eq!(error.to_string(), "specimen.crack_length_mm = 90: is beyond the half width 76.2 mm; give a shorter crack");
+/// assert_eq!(error.exit_code(), 2);
+/// ```
+pub fn input(key: &str, value: impl fmt::Display, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
+    Error::Input(Box::new(InputError {
+        key: Some(key.to_owned()),
+        value: Some(value.to_string()),
+        problem: problem.into(),
+        remedy: remedy.into(),
+        ..InputError::default()
+    }))
+}
+
+/// Input error about a key that is missing or a combination of keys.
+pub fn input_missing(key: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
+    Error::Input(Box::new(InputError {
+        key: Some(key.to_owned()),
+        problem: problem.into(),
+        remedy: remedy.into(),
+        ..InputError::default()
+    }))
+}

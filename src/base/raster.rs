@@ -1,0 +1,45 @@
+//! Pictures of a plate: the raster on which its points lie, and what they were at one moment.
+
+use serde::{Deserialize, Serialize};
+
+/// Picture of the damaged plate at one moment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length, m.
+    pub crack_length: f64,
+    /// Displacement (x, y) of every point at maximum load, m.
+    pub displacement: Vec<[f64; 2]>,
+    /// Damage φ of every point: fraction of its bonds that are broken, 0 to 1.
+    pub damage: Vec<f64>,
+    /// Least remaining life λ of the intact bonds of every point, 0 to 1; empty where no bonds have one.
+    pub remaining_life: Vec<f64>,
+    /// Von Mises stress of every point at maximum load, Pa; empty where it is not known.
+    pub stress: Vec<f64>,
+}
+
+/// Lattice of a picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointGrid {
+    /// Lattice spacing, m; the finest one where there are several.
+    pub spacing: f64,
+    /// Columns and rows of the lattice that holds the body.
+    pub columns: usize,
+    /// Rows of the lattice.
+    pub rows: usize,
+    /// Position of lattice place (0, 0), m.
+    pub origin: [f64; 2],
+    /// Angle of the lattice rows against x, radians.
+    pub angle: f64,
+    /// For every lattice place (row by row), the index of its point or `None` outside the material. A point of a coarser level
+    /// covers all places of its cell.
+    pub point_at: Vec<Option<u32>>,
+}
+
+impl PointGrid {
+    /// That of a run without points.
+    pub fn none() -> PointGrid {
+        PointGrid { spacing: f64::NAN, columns: 0, rows: 0, origin: [0.0; 2], angle: 0.0, point_at: Vec::new() }
+    }
+}

@@ -1,0 +1,79 @@
+//! Tables of text as cells, each row with its line: from CSV in any usual dress, or a workbook.
+//!
+//! Only the form is judged here: the encoding and which character separates columns ([`lines`]), which row is the header ([`cut`]), which
+//! sign is the decimal one ([`decimal`]). What a column means is said by the [`Vocabulary`] of whoever reads.
+
+pub mod cells;
+mod cut;
+pub mod decimal;
+mod hidden;
+mod lines;
+pub mod numerals;
+pub mod units;
+pub mod words;
+mod workbook;
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+pub use cells::{Fault, Row, Separator, Table, whole_file};
+pub use decimal::Decimal;
+
+use crate::error::Result;
+
+/// What the reader of a table knows of it before it is cut.
+pub trait Vocabulary {
+    /// Whether these names are the header of a table of the kind that is looked for.
+    fn is_header(&self, names: &[String]) -> bool;
+    /// Whether a cell of a row below the header is a unit, or blank.
+    fn is_unit(&self, cell: &str) -> bool;
+    /// A name with the unit of the row below it, unless it has one itself.
+    /// Errors: its own unit, where the row says another one.
+    fn with_unit(&self, name: &str, unit: &str) -> std::result::Result<String, &'static str>;
+    /// The sheet of a workbook that is asked for.
+    fn sheet(&self) -> Option<&Sheet>;
+}
+
+/// Cuts the bytes of a file into cells: a workbook by its content, everything else as text.
+/// Errors: no table of the kind that is looked for, or a sheet of what is no workbook.
+pub fn read(bytes: &[u8], file: &Path, words: &dyn Vocabulary) -> Result<Table> {
+    if workbook::is_workbook(bytes, file) {
+        return workbook::table(bytes, file, words);
+    }
+    if let Some(sheet) = words.sheet() {
+        let fault = Fault { key: Some("measured.sheet"), value: Some(&sheet.0), ..whole_file(file) };
+        return Err(fault.error("is given for a file that is no workbook", "leave sheet out, or give the .xlsx file"));
+    }
+    cut::text(&lines::decoded(bytes, file)?, file, words)
+}
+
+/// A sheet by name, or by number from 1.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(from = "TextOrNumber")]
+pub struct Sheet(pub String);
+
+/// Text, or the number that a name may be.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged, expecting = "a name, expected the name of a sheet or its number")]
+pub enum TextOrNumber {
+    /// Text.
+    Text(String),
+    /// A number.
+    Number(u32),
+}
+
+impl From<TextOrNumber> for String {
+    fn from(value: TextOrNumber) -> Self {
+        match value {
+            TextOrNumber::Text(text) => text,
+            TextOrNumber::Number(number) => number.to_string(),
+        }
+    }
+}
+
+impl From<TextOrNumber> for Sheet {
+    fn from(value: TextOrNumber) -> Self {
+        Sheet(value.into())
+    }
+}

@@ -1,0 +1,295 @@
+//! A calibration file: `[measured]` and `[fit]` beside the sections of a case.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use crate::criterion::Criterion;
+use crate::exponent::{Exponent, FitSlice, delta_k_ratio, exponent};
+use perilife_base::error::{input, input_missing};
+use perilife_base::input::{Document, Folder, LENGTH, sha256, slice};
+use perilife_base::units::MM;
+use perilife_base::{
+    table::{
+        Decimal, Sheet,
+        units::{CycleUnit, LengthUnit, LoadUnit},
+    },
+    units::round_off,
+};
+use perilife_growth::case::record::SourceFile;
+use perilife_growth::case::{Case, LawSource};
+use perilife_measured::{ColumnNames, Import, LeaveOut, Measured, MeasuredCurve, parse};
+use perilife_plate::specimen::Specimen;
+use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
+
+/// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
+const LENGTH_SLACK: f64 = 1e-9;
+
+/// Share by which the specimen's crack may be longer than the first reading: 12 mm are 0.4724 in of four decimals, or 11.999 mm.
+const ROUNDING: f64 = 1e-4;
+
+/// A checked calibration, SI inside.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CalibrationCase {
+    /// The test as a case without fatigue law. It runs to the longest reading and stops for nothing else on the way:
+    /// toughness and yield strength are taken out, since the measured specimens are known to have got there.
+    pub case: Case,
+    /// Measured curves inside the fit window, cycles counted from its first reading.
+    pub curves: Vec<MeasuredCurve>,
+    /// Measured curves as they were read, whole.
+    pub read: Vec<MeasuredCurve>,
+    /// Ends of the fit window, m.
+    pub window: [f64; 2],
+    /// Yield strength of the material, Pa, by which readings are judged.
+    pub yield_strength: Option<f64>,
+    /// The exponent: fitted, given, or of a record.
+    pub exponent: Exponent,
+    /// Which lives count.
+    pub criterion: Criterion,
+    /// Measured files with their hashes.
+    pub sources: Vec<SourceFile>,
+    /// Readings that do not count, with the reasons.
+    pub left_out: Vec<LeaveOut>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// The whole file, overrides applied.
+    pub input: Table,
+    formula: Option<HandbookFormula>,
+}
+
+/// `[measured]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MeasuredSlice {
+    files: Vec<String>,
+    from_crack_length_mm: Option<f64>,
+    to_crack_length_mm: Option<f64>,
+    length_unit: Option<LengthUnit>,
+    cycle_unit: Option<CycleUnit>,
+    load_unit: Option<LoadUnit>,
+    #[serde(default)]
+    columns: ColumnNames,
+    decimal: Option<Decimal>,
+    sheet: Option<Sheet>,
+    #[serde(default)]
+    leave_out: Vec<LeaveOut>,
+}
+
+impl MeasuredSlice {
+    fn import(&self) -> Import {
+        Import {
+            length: self.length_unit,
+            cycles: self.cycle_unit,
+            load: self.load_unit,
+            columns: self.columns.clone(),
+            decimal: self.decimal,
+            sheet: self.sheet.clone(),
+            ..Import::default()
+        }
+    }
+}
+
+impl CalibrationCase {
+    /// Reads a calibration file and the measured files it names; `overrides` are `section.key=value`.
+    pub fn from_file(path: &Path, overrides: &[String]) -> perilife_base::error::Result<Self> {
+        Self::from_document(Document::read(path, overrides)?)
+    }
+
+    /// The same for text; the files it names lie in `folder`.
+    pub fn from_text(text: &str, name: &str, folder: impl Into<Folder>) -> perilife_base::error::Result<Self> {
+        Self::from_document(Document::parse(text, name, folder, &[])?)
+    }
+
+    /// The same for a parsed document, which gives errors their line.
+    pub fn from_document(mut document: Document) -> perilife_base::error::Result<Self> {
+        let input = document.table.clone();
+        // Taken out of the table, but not of the text: errors still find their line.
+        let measured = document.table.remove("measured");
+        let fit = document.table.remove("fit").unwrap_or_else(|| Value::Table(Table::new()));
+        let build = || {
+            let measured = measured
+                .as_ref()
+                .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
+            let case = Case::from_table(document.table.clone(), &document.name, &document.folder)?;
+            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.folder, input)
+        };
+        build().map_err(|error| document.locate(error))
+    }
+
+    fn build(
+        mut case: Case,
+        keys: MeasuredSlice,
+        fit: FitSlice,
+        folder: &Folder,
+        input: Table,
+    ) -> perilife_base::error::Result<Self> {
+        if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
+            let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
+            return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
+        }
+        check_walker(&case)?;
+        refuse_spectrum(&case)?;
+        check_growth_rate(&case)?;
+        check_through(&case.specimen)?;
+        let formula = handbook(&case.specimen);
+        let (mut measured, sources) = readings(&keys, folder)?;
+        measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        let read = measured.curves.clone();
+        measured.leave_out(&keys.leave_out)?;
+        let window_ends = window_ends(&keys)?;
+        let Measured { mut curves, mut warnings } = window(&measured, &keys)?;
+        check_start(&case.specimen, &mut curves)?;
+        let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
+        if let Some(formula) =
+            formula.as_ref().filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
+        {
+            warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
+        }
+        let delta_k_ratio =
+            formula.as_ref().map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
+        let exponent = exponent(&fit, folder, case.model.method(), delta_k_ratio)?;
+        warnings.extend(exponent.warning.clone());
+        let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
+        case.stop.crack_length = longest;
+        case.stop.required = None;
+        case.material.toughness = None;
+        let yield_strength = case.material.yield_strength.take();
+        warnings.extend(unrecorded(&case));
+        warnings.extend(case.warnings.iter().cloned());
+        case.provenance = folder.opened().so_far();
+        let left_out = keys.leave_out;
+        Ok(CalibrationCase {
+            case,
+            curves,
+            read,
+            window: window_ends,
+            yield_strength,
+            exponent,
+            criterion,
+            sources,
+            left_out,
+            warnings,
+            input,
+            formula,
+        })
+    }
+
+    /// ΔK of the handbook (Pa√m) at a crack length (m); `None` where no handbook has the specimen, as a drawn plate.
+    pub fn delta_k(&self, crack_length: f64) -> Option<f64> {
+        let loading = &self.case.loading;
+        self.formula.as_ref().map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
+    }
+}
+
+/// Readings under a spectrum have no one ΔK.
+fn refuse_spectrum(case: &Case) -> perilife_base::error::Result<()> {
+    if let Some(residual) = &case.loading.residual {
+        let problem = "does not go with a calibration, which takes ΔK and rate of one stress ratio";
+        return Err(input(residual.key(), residual.words(), problem, "leave it out"));
+    }
+    if case.loading.spectrum.is_none() {
+        return Ok(());
+    }
+    let problem = "does not go with a calibration, which takes ΔK and rate of cycles of one size";
+    let remedy = "fit a law to curves of constant amplitude, and give the spectrum in the case that uses it";
+    Err(input("loading.kind", "\"spectrum\"", problem, remedy))
+}
+
+/// Curves of one stress ratio say nothing about its influence, and a record means ε = s_max (1-R): another Walker exponent
+/// belongs to the case that uses the record at another ratio.
+fn check_walker(case: &Case) -> perilife_base::error::Result<()> {
+    let gamma = case.fatigue.walker_gamma;
+    if gamma == 1.0 {
+        return Ok(());
+    }
+    let problem = "cannot be given to a calibration, whose curves have one stress ratio and tell nothing about its influence";
+    Err(input(
+        "fatigue.walker_gamma",
+        gamma,
+        problem,
+        "remove it here and give it in the case that uses the fit at another stress ratio",
+    ))
+}
+
+/// A and p stand for C and m of the rate over K; bonds left to their own strains grow a crack at another one, which depends on lattice
+/// and horizon.
+fn check_growth_rate(case: &Case) -> perilife_base::error::Result<()> {
+    if !case.spends_bond_life() {
+        return Ok(());
+    }
+    let problem = "cannot be given to a calibration: A and p are constants of the growth rate over K";
+    Err(input("fatigue.driver", "\"bond_strain\"", problem, "use driver = \"tip_field\", and leave out keys of fatigue bonds"))
+}
+
+/// A threshold shapes no fit, since cracks grew in all of it, and stands in no record.
+fn unrecorded(case: &Case) -> Option<String> {
+    let line =
+        "fatigue.delta_k_threshold_mpa_sqrt_m does not shape the fit and stands in no record: give it in cases that use the fit";
+    (case.fatigue.threshold > 0.0).then(|| line.to_owned())
+}
+
+/// Curves of the measured files, and what the record says about the files.
+fn readings(keys: &MeasuredSlice, folder: &Folder) -> perilife_base::error::Result<(Measured, Vec<SourceFile>)> {
+    if keys.files.is_empty() {
+        return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
+    }
+    let import = keys.import();
+    let mut measured = Measured::default();
+    let mut sources = Vec::with_capacity(keys.files.len());
+    for file in &keys.files {
+        let bytes = folder.read(file)?;
+        measured.add(parse(&bytes, &folder.path(file), &import)?)?;
+        sources.push(source(file, &bytes));
+    }
+    Ok((measured, sources))
+}
+
+/// What the record says about a measured file.
+pub fn source(file: &str, bytes: &[u8]) -> SourceFile {
+    SourceFile { file: file.to_owned(), sha256: sha256(bytes) }
+}
+
+/// Ends of the fit window with their slack, m.
+fn window_ends(keys: &MeasuredSlice) -> perilife_base::error::Result<[f64; 2]> {
+    let from = LENGTH.read_optional("measured.from_crack_length_mm", keys.from_crack_length_mm)?;
+    let to = LENGTH.read_optional("measured.to_crack_length_mm", keys.to_crack_length_mm)?;
+    Ok([from.unwrap_or(0.0) - LENGTH_SLACK, to.unwrap_or(f64::INFINITY) + LENGTH_SLACK])
+}
+
+fn window(measured: &Measured, keys: &MeasuredSlice) -> perilife_base::error::Result<Measured> {
+    let from = LENGTH.read_optional("measured.from_crack_length_mm", keys.from_crack_length_mm)?;
+    let to = LENGTH.read_optional("measured.to_crack_length_mm", keys.to_crack_length_mm)?;
+    if let (Some(from), Some(to)) = (from, to)
+        && from >= to
+    {
+        let problem = format!("is not above from_crack_length_mm = {}", from / MM);
+        return Err(input("measured.to_crack_length_mm", to / MM, problem, "give a window that holds at least 5 readings"));
+    }
+    measured.window(from, to)
+}
+
+/// Refuses a crack that does not go through: its K depends on its shape, and that on the law which is asked for.
+fn check_through(specimen: &Specimen) -> perilife_base::error::Result<()> {
+    let Some(flaw) = &specimen.part_through else { return Ok(()) };
+    let problem = "does not go through: its shape, and so its K, depends on the law that is to be fitted";
+    Err(input("specimen.kind", format!("\"{}\"", flaw.kind()), problem, "fit the law to cracks that go through"))
+}
+
+/// The model starts at the specimen's crack length, so no reading may come before it; one that its rounding puts there is at the start.
+fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> perilife_base::error::Result<()> {
+    for curve in curves {
+        let first = curve.crack_length[0]; // a window keeps at least five readings
+        if specimen.crack_length > first * (1.0 + ROUNDING) {
+            let mm = |length: f64| round_off(length / MM).to_string();
+            return Err(input(
+                "specimen.crack_length_mm",
+                mm(specimen.crack_length),
+                format!("is longer than the first reading of specimen {}, {} mm", curve.specimen, mm(first)),
+                "start the model at the first reading, or the window (measured.from_crack_length_mm) at the model",
+            ));
+        }
+        curve.crack_length.iter_mut().for_each(|length| *length = length.max(specimen.crack_length));
+    }
+    Ok(())
+}

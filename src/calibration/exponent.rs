@@ -1,0 +1,124 @@
+//! `[fit]` of a calibration file, and where the exponent comes from: fitted, given, or of a record because the window does not identify it.
+
+use serde::Deserialize;
+
+use super::criterion::Criterion;
+use super::laws::FitLaw;
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::Folder;
+use perilife_growth::case::{Method, fitted_record};
+use perilife_measured::MeasuredCurve;
+
+/// Below this ratio of the largest to the smallest ΔK a curve does not say what p is.
+pub const DELTA_K_RATIO_MIN: f64 = 2.0;
+
+perilife_base::kinds! {
+    /// Constants a calibration can fit.
+    pub enum Parameter for "fit.parameters" {
+        A = "a": "the constant A",
+        P = "p": "the exponent p",
+    }
+}
+
+/// `[fit]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FitSlice {
+    pub parameters: Option<Vec<Parameter>>,
+    pub p: Option<f64>,
+    pub record: Option<String>,
+    pub criterion: Option<Criterion>,
+    /// Looked at before ([`crate::laws::case::is_law_fit`]): no other law comes here.
+    #[serde(rename = "law")]
+    _law: Option<FitLaw>,
+}
+
+/// The exponent of `[fit]` for a window with this ratio of the largest to the smallest ΔK; `None` where a run has to tell it.
+pub(super) fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_ratio: Option<f64>) -> Result<Exponent> {
+    let parameters = fit.parameters.clone().unwrap_or_else(|| vec![Parameter::A, Parameter::P]);
+    let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
+    if !parameters.contains(&Parameter::A) {
+        let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
+        return Err(input("fit.parameters", format!("[{}]", names.join(", ")), "leaves a out, which is always fitted", remedy));
+    }
+    match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
+        (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
+        (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
+        (true, None, None) => Ok(Exponent::default()),
+        (true, None, Some(file)) => match delta_k_ratio {
+            Some(ratio) => Exponent::record_if_needed(file, folder, method, ratio),
+            None => {
+                let problem = "stands in for p where ΔK varies too little, which on this plate only a run shows";
+                let remedy = "leave it out, or take its p by parameters = [\"a\"]";
+                Err(input("fit.record", format!("\"{file}\""), problem, remedy))
+            }
+        },
+        (false, Some(p), None) => Ok(Exponent { fixed: Some(p), source: "given".to_owned(), ..Exponent::default() }),
+        (false, None, Some(file)) => Exponent::of_record(file, folder, method),
+        (false, None, None) => Err(input_missing(
+            "fit.p",
+            "is missing",
+            "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]",
+        )),
+    }
+}
+
+/// Largest over smallest ΔK of all readings.
+pub(super) fn delta_k_ratio(curves: &[MeasuredCurve], k_i: &dyn Fn(f64) -> f64) -> f64 {
+    let of_curve = |curve: &MeasuredCurve| -> Vec<f64> {
+        let factor = |i: usize| curve.load_factor.get(i).copied().unwrap_or(1.0);
+        curve.crack_length.iter().enumerate().map(|(i, &length)| k_i(length) * factor(i)).collect()
+    };
+    let all = curves.iter().flat_map(of_curve);
+    let (low, high) = all.fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(k), high.max(k)));
+    high / low
+}
+
+/// The exponent of a calibration before its fit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Exponent {
+    /// Its value; `None` where it is fitted.
+    pub fixed: Option<f64>,
+    /// Standard error of a value from a record, else 0.
+    pub error: f64,
+    /// `given`, or the file of the record; empty where it is fitted.
+    source: String,
+    /// What the user should know about it.
+    pub warning: Option<String>,
+}
+
+impl Exponent {
+    /// Where it comes from over a window with this ratio of ΔK, which on a drawn plate only a fit shows: `fitted`, `not_identified`, `given`
+    /// or the file of a record.
+    pub fn source_over(&self, delta_k_ratio: f64) -> &str {
+        match self.fixed {
+            Some(_) => &self.source,
+            None if delta_k_ratio < DELTA_K_RATIO_MIN => "not_identified",
+            None => "fitted",
+        }
+    }
+
+    /// Of a record: p, or m for hand calculation.
+    pub fn of_record(file: &str, folder: &Folder, method: Method) -> Result<Self> {
+        let record = fitted_record(file, folder)?;
+        let is_of_bonds = method == Method::Peridynamics;
+        let (p, error) = if is_of_bonds { (record.p, record.p_error) } else { (record.paris_m, record.paris_m_error) };
+        Ok(Exponent { fixed: Some(p), error, source: file.to_owned(), warning: None })
+    }
+
+    /// The exponent of a record where the window does not identify it, else the fitted one.
+    fn record_if_needed(file: &str, folder: &Folder, method: Method, delta_k_ratio: f64) -> Result<Self> {
+        let of_record = Self::of_record(file, folder, method)?;
+        if delta_k_ratio >= DELTA_K_RATIO_MIN {
+            let warning = format!("the fit window spans a factor {delta_k_ratio:.2} in ΔK and tells p: {file} is not used");
+            return Ok(Exponent { warning: Some(warning), ..Self::default() });
+        }
+        let warning = format!(
+            "the fit window spans only a factor {delta_k_ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} tells p): \
+             p = {:.4} ± {:.4} is taken from {file}",
+            of_record.fixed.unwrap_or(f64::NAN),
+            of_record.error
+        );
+        Ok(Exponent { warning: Some(warning), ..of_record })
+    }
+}

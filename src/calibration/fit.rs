@@ -1,0 +1,326 @@
+//! The fit of lives on one page: from measured curves and K of a growing crack to C and m of `da/dN = C ΔK^m` and how sure they are.
+//!
+//! Least squares predict lives best as long as all readings belong. Where some do not, both estimates are given, and the robust one is
+//! written, since its error does not grow with theirs.
+
+use super::case::CalibrationCase;
+use super::confidence::{Confidence, check_identified, confidence, end_of_range};
+use super::criterion::Criterion;
+use super::exponent::DELTA_K_RATIO_MIN;
+use super::lack_of_fit::{LackOfFit, MisfitAtEnds, lack_of_fit, misfit_at_ends};
+use super::outliers::{RobustLine, Run, StepRate, doubts, readings_apart, robust_line_of_all, runs, step_rates, without};
+use super::paris::{self, Paris};
+use super::population::intervals::Specimen;
+use super::population::{Population, fit as fit_population};
+use super::power_law::PowerLaw;
+use super::rates::STEP_MIN;
+use super::search::{Constants, FittedCurve, as_fitted, fit_all, fit_one, fitted_curve, is_at_end, own_law, picture};
+use perilife_base::error::{Error, Result, input};
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_growth::case::record::Estimate;
+use perilife_laws::STEADY_EXPONENTS;
+use perilife_measured::{MeasuredCurve, first_of};
+
+/// Most remarks on readings that a fit repeats.
+const DOUBTS_SHOWN: usize = 6;
+
+/// Standard errors by which two estimates differ in earnest.
+const ERRORS_APART: f64 = 2.0;
+
+/// Smallest difference of exponents worth a word: computed curves have hardly any error.
+const APART_MIN: f64 = 0.05;
+
+/// What is fitted to what.
+#[derive(Clone, Copy)]
+pub struct FitTask<'a> {
+    /// Curves inside the fit window ([`perilife_measured::Measured::window`]).
+    pub curves: &'a [MeasuredCurve],
+    /// p given by the user; `None` fits it.
+    pub fixed_p: Option<f64>,
+    /// Which lives count.
+    pub criterion: Criterion,
+    /// ΔK of the handbook (Pa√m) at a crack length (m).
+    pub delta_k: &'a dyn Fn(f64) -> f64,
+}
+
+/// Result of a calibration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// The curve that the constants are shown beside: the pointwise median of several specimens, or the only one.
+    pub record: FittedCurve,
+    /// Each specimen with its own fit.
+    pub specimens: Vec<FittedCurve>,
+    /// Covariance of the record's (ln A, p).
+    pub confidence: Confidence,
+    /// Paris equivalents of the record.
+    pub paris: Paris,
+    /// Which estimate the record holds.
+    pub estimate: Estimate,
+    /// C and m by the repeated median of the rates of the record's curve, where p was fitted.
+    pub robust: Option<RobustLine>,
+    /// By how much the law misses the curve that it was fitted to at its first and last readings.
+    pub misfit_at_ends: MisfitAtEnds,
+    /// Ends of its range at which the law misses measured rates by more than they scatter.
+    pub lack_of_fit: Option<LackOfFit>,
+    /// The bonds that A and p of the record are of; without them they are C (m/cycle, MPa√m) and m.
+    pub bonds: Option<Bonds>,
+    /// K along the crack's own path, where no handbook has it.
+    pub own_path: Option<OwnPath>,
+    /// Scatter of the specimens; `None` where their readings do not tell it.
+    pub population: Option<Population>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+/// Bonds that A belongs to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bonds {
+    /// β of the record's exponent ([`perilife_growth::rate_constant`]).
+    pub rate_constant: f64,
+    /// Horizon, m.
+    pub horizon: f64,
+    /// Actual lattice spacing, m.
+    pub spacing: f64,
+}
+
+/// K along the path of a crack that no handbook has.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnPath {
+    /// ΔK over crack length.
+    pub factors: PowerLaw,
+    /// How often it was computed: again where several tips share the growth by an exponent that is not known before.
+    pub runs: usize,
+}
+
+/// Fits A and p to all readings of all specimens, and again to each specimen.
+/// Errors: readings outside the table of ΔK; [`Error::Mechanics`] where the smallest misfit lies at an end of the exponents searched, or
+/// the readings do not tell p.
+pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
+    let fixed_p = task.fixed_p.map(checked_p).transpose()?;
+    let is_fitted = fixed_p.is_none();
+    let constants = fit_all(task.curves, task.criterion, fixed_p, law)?;
+    let mut specimens: Vec<FittedCurve> =
+        task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?;
+    let picture = match task.curves {
+        [only] => only.clone(),
+        curves => picture(curves, &specimens, constants, law)?,
+    };
+    let mut record = fitted_curve(&picture, constants, law)?;
+    let mut warnings = remarks(task);
+    if is_fitted && is_at_end(record.constants.p) {
+        return Err(Error::Mechanics(format!(
+            "{}: {}; check the units of the readings and the load, narrow the window (measured.from_crack_length_mm and \
+             to_crack_length_mm), or fix p by [fit] parameters = [\"a\"] and p = ...{}",
+            record.name,
+            end_of_range(record.constants.p),
+            warnings.iter().map(|line| format!("\n  {line}")).collect::<String>()
+        )));
+    }
+    if task.curves.len() > 1 {
+        let at_ends = specimens.iter().filter(|curve| is_fitted && is_at_end(curve.constants.p));
+        let lines = at_ends.map(|curve| format!("specimen {}: {}", curve.name, end_of_range(curve.constants.p)));
+        warnings.extend(first_of(lines.collect()));
+    }
+    warnings.extend(task.curves.iter().find_map(|curve| short_steps_warning(&curve.crack_length)));
+
+    // The scatter of several specimens says how sure their constants are; that of one is assumed, and has no part in its fit.
+    let several = task.curves.len() > 1;
+    let population = several.then(|| population(task, law, constants.p, &mut warnings)).flatten();
+    let (mut confidence, mut paris) = assess(task, law, &picture, &record, population.as_ref())?;
+    if is_fitted {
+        check_identified(&record.name, &confidence, &paris)?;
+    }
+    let mut estimate = Estimate::LeastSquares;
+    let step_rates: Vec<Vec<StepRate>> = task.curves.iter().map(|curve| step_rates(curve, task.delta_k)).collect();
+    let robust = robust_line_of_all(&step_rates).filter(|_| is_fitted);
+    let strange: Vec<Vec<Run>> =
+        step_rates.iter().map(|rates| robust.map_or_else(Vec::new, |line| runs(rates, line.at_level_of(rates)))).collect();
+    let is_strange = strange.iter().any(|runs| !runs.is_empty());
+    if let Some(line) = robust.filter(|_| is_strange || task.curves.len() == 1) {
+        // Readings that do not belong must not widen the error by which they are judged.
+        let belonging: Vec<MeasuredCurve> = task.curves.iter().zip(&strange).map(|(curve, runs)| without(curve, runs)).collect();
+        let of_belonging = FitTask { curves: &belonging, ..*task };
+        let their = fit_all(&belonging, task.criterion, fixed_p, law)?;
+        let population_of = several.then(|| self::population(&of_belonging, law, their.p, &mut Vec::new())).flatten();
+        let their_picture = if belonging.len() == 1 { belonging[0].clone() } else { picture.clone() };
+        let without = fitted_curve(&their_picture, their, law)?;
+        let error = assess(&of_belonging, law, &their_picture, &without, population_of.as_ref())?.1.m_error;
+        let least_squares = paris;
+        if (line.m - least_squares.m).abs() > (ERRORS_APART * error).max(APART_MIN) {
+            if let Some(constants) = robust_constants(task, law, record.constants.p).filter(|_| is_strange) {
+                estimate = Estimate::Robust;
+                record = fitted_curve(&picture, constants, law)?;
+                (confidence, paris) = assess(&of_belonging, law, &their_picture, &record, population_of.as_ref())?;
+            }
+            warnings.push(apart(&least_squares, error, line, estimate));
+        }
+    }
+    if task.curves.len() == 1 {
+        specimens = vec![record.clone()];
+    }
+    let ratio = paris.delta_k_max / paris.delta_k_min;
+    if is_fitted && ratio < DELTA_K_RATIO_MIN {
+        warnings.push(format!(
+            "p is not identified: the readings span only a factor {ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} is needed); \
+             widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
+        ));
+    }
+    let fitted: Vec<MeasuredCurve> =
+        task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
+    let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
+    let misfit_at_ends = misfit_at_ends(&picture, &as_fitted(&picture, record.constants, law)?, task.delta_k);
+    let (bonds, own_path) = (None, None);
+    Ok(Fit {
+        record,
+        specimens,
+        confidence,
+        paris,
+        estimate,
+        robust,
+        misfit_at_ends,
+        lack_of_fit,
+        bonds,
+        own_path,
+        population,
+        warnings,
+    })
+}
+
+/// Scatter of the specimens about a common law; `None`, with a warning, where their readings do not tell it.
+pub(super) fn population(task: &FitTask<'_>, law: &PowerLaw, p: f64, warnings: &mut Vec<String>) -> Option<Population> {
+    let delta_k = |length: f64| law.delta_k(length, p) * MPA_SQRT_M;
+    let specimens = task.curves.iter().map(|curve| Specimen::of_curve(curve, &delta_k)).collect::<Result<Vec<_>>>();
+    match specimens.and_then(|specimens| fit_population(&specimens, task.fixed_p)) {
+        Ok(population) => Some(population),
+        Err(error) => {
+            warnings.push(format!("no scatter of lives is given: {error}"));
+            None
+        }
+    }
+}
+
+/// C and m by the repeated median over ΔK of the law that is fitted; `None` where the law has no such m. `p` is the exponent of least
+/// squares, which several tips count together by.
+fn robust_constants(task: &FitTask<'_>, law: &PowerLaw, p: f64) -> Option<Constants> {
+    let rates = |curve| step_rates(curve, &|length| law.delta_k(length, p) * MPA_SQRT_M);
+    let line = robust_line_of_all(&task.curves.iter().map(rates).collect::<Vec<_>>())?;
+    STEADY_EXPONENTS.contains(&line.m).then(|| Constants { a: line.intercept.exp(), p: line.m })
+}
+
+/// Both estimates in words, and which is written; `error` is that of m without the readings that do not belong.
+fn apart(least_squares: &Paris, error: f64, robust: RobustLine, written: Estimate) -> String {
+    format!(
+        "least squares give m = {:.3}, C = {:.3e}, the repeated median of the rates m = {:.3}, C = {:.3e} (mm/cycle, MPa√m): they differ by \
+         more than two standard errors of {error:.3}; written are the {} constants",
+        least_squares.m,
+        least_squares.c,
+        robust.m,
+        robust.c(),
+        match written {
+            Estimate::LeastSquares => "least-squares",
+            Estimate::Robust => "robust",
+        }
+    )
+}
+
+/// How sure A and p are, and what they mean as C and m along a curve. Of several specimens their scatter says it.
+fn assess(
+    task: &FitTask<'_>,
+    law: &PowerLaw,
+    curve: &MeasuredCurve,
+    record: &FittedCurve,
+    population: Option<&Population>,
+) -> Result<(Confidence, Paris)> {
+    let is_fitted = task.fixed_p.is_none();
+    let Constants { a, p } = record.constants;
+    let own = own_law(law, curve);
+    let per_p = |lengths: &[f64]| is_fitted.then(|| own.cycles_per_p(p, lengths)).transpose();
+    let apart = readings_apart(&curve.crack_length);
+    let lengths: Vec<f64> = apart.iter().map(|&i| curve.crack_length[i]).collect();
+    let counted = curve.cycles_counted();
+    let measured: Vec<f64> = apart.iter().map(|&i| counted[i]).collect();
+    let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
+    let mut confidence = confidence(task.criterion, &model, model_per_p.as_deref(), &measured, 1.0 / a);
+    if let Some(population) = population.filter(|_| task.curves.len() > 1) {
+        confidence.covariance = population.covariance_of_constants(is_fitted);
+    }
+    // Under changing loads an interval must not reach over two of them.
+    let loads = curve.load_history();
+    let lengths = match curve.is_plain() {
+        true => paris::lengths(curve.crack_length[0], longest(curve)),
+        false => loads.lengths.clone(),
+    };
+    let delta_k = |length: f64| (task.delta_k)(length) * loads.at(length);
+    let (model, model_per_p) = (own.cycles(p, &lengths)?, per_p(&lengths)?);
+    let mut paris = paris::equivalents(&lengths, &model, model_per_p.as_deref(), a, confidence.covariance, &delta_k)?;
+    // Of several specimens each has been where its own load took it.
+    if task.curves.len() > 1 {
+        [paris.delta_k_min, paris.delta_k_max] = delta_k_range(task);
+    }
+    Ok((confidence, paris))
+}
+
+/// Smallest and largest ΔK, MPa√m, of the readings, each under its own load.
+fn delta_k_range(task: &FitTask<'_>) -> [f64; 2] {
+    let of_curve = |curve: &MeasuredCurve| -> Vec<f64> {
+        let loads = curve.load_history();
+        loads.lengths.iter().map(|&length| (task.delta_k)(length) * loads.at(length) / MPA_SQRT_M).collect()
+    };
+    let all = task.curves.iter().flat_map(of_curve);
+    all.fold([f64::INFINITY, 0.0], |[low, high], k| [k.min(low), k.max(high)])
+}
+
+/// What speaks against the readings of the specimens.
+fn remarks(task: &FitTask<'_>) -> Vec<String> {
+    let mut lines: Vec<String> = task.curves.iter().flat_map(|curve| doubts(curve, task.delta_k)).collect();
+    if lines.len() > DOUBTS_SHOWN {
+        let more = lines.len() - DOUBTS_SHOWN;
+        lines.truncate(DOUBTS_SHOWN);
+        lines.push(format!("{more} more remarks of this kind on other readings: `perilife rates` names all"));
+    }
+    lines
+}
+
+fn checked_p(p: f64) -> Result<f64> {
+    if STEADY_EXPONENTS.contains(&p) {
+        return Ok(p);
+    }
+    let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
+    Err(input("fit.p", p, format!("is outside {low} to {high}"), "give the exponent of the growth law, usually 2 to 4"))
+}
+
+/// Readings nearer together than a laboratory reads.
+fn short_steps_warning(lengths: &[f64]) -> Option<String> {
+    let short = lengths.windows(2).filter(|pair| pair[1] - pair[0] < STEP_MIN * (1.0 - 1e-9)).count();
+    (short > 0).then(|| {
+        format!(
+            "{short} of {} steps between readings are under {} mm (ASTM E647, 8.6.2): errors of the fit count such readings together \
+             with the next; read less often",
+            lengths.len() - 1,
+            STEP_MIN / MM
+        )
+    })
+}
+
+fn longest(curve: &MeasuredCurve) -> f64 {
+    curve.crack_length.iter().copied().fold(0.0, f64::max)
+}
+
+impl Fit {
+    /// ΔK, Pa√m, at a crack length, m: of the handbook, or of the crack's own path.
+    pub fn delta_k(&self, calibration: &CalibrationCase, length: f64) -> f64 {
+        let own = || Some(self.own_path.as_ref()?.factors.delta_k(length, self.record.constants.p) * MPA_SQRT_M);
+        calibration.delta_k(length).or_else(own).unwrap_or(f64::NAN)
+    }
+
+    /// Standard error of p; 0 where it was given.
+    pub fn p_error(&self) -> f64 {
+        self.confidence.covariance[1][1].max(0.0).sqrt()
+    }
+
+    /// The fit whose constants are C and m of the K that was fitted to: no line has to be drawn through rates.
+    pub(super) fn of_power_law(mut self) -> Fit {
+        self.paris = self.paris.of_power_law(self.record.constants, self.p_error());
+        self
+    }
+}

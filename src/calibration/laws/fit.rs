@@ -1,0 +1,179 @@
+//! One law fitted to rates: its constants with their errors, or why these rates do not tell them.
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use super::candidate::{Candidate, Given};
+use super::least_squares::{Minimum, minimise, without_level};
+use perilife_laws::growth_law::GrowthLawKind;
+use perilife_laws::growth_law::description::{Constant as Parameter, Role};
+use perilife_measured::RateRow;
+
+/// Share of the range of a variable within which an optimum lies at its end.
+const AT_END: f64 = 1e-3;
+/// Smallest over largest eigenvalue of scaled normal equations below which constants trade against each other without end.
+const SINGULAR: f64 = 1e-13;
+
+/// A constant of a fitted law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constant {
+    /// Its key in `[fatigue]`.
+    pub key: &'static str,
+    /// Value in the unit of the key.
+    pub value: f64,
+    /// Standard error; `None` where it was given.
+    pub error: Option<f64>,
+}
+
+/// A law fitted to rates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawFit {
+    /// Which law.
+    pub kind: GrowthLawKind,
+    /// Its constants, C first; empty where there is no fit.
+    pub constants: Vec<Constant>,
+    /// How many of them were fitted, C among them.
+    pub fitted: usize,
+    /// Measured less fitted ln da/dN, row by row.
+    pub residuals: Vec<f64>,
+    /// Akaike's information criterion for small samples; NaN where there is no fit.
+    pub aicc: f64,
+    /// Why it is out of question.
+    pub left_out: Option<String>,
+}
+
+impl LawFit {
+    fn none(kind: GrowthLawKind, why: String) -> Self {
+        LawFit { kind, constants: Vec::new(), fitted: 0, residuals: Vec::new(), aicc: f64::NAN, left_out: Some(why) }
+    }
+
+    /// Root mean square of the residuals.
+    pub fn rms(&self) -> f64 {
+        (self.residuals.iter().map(|residual| residual * residual).sum::<f64>() / self.residuals.len() as f64).sqrt()
+    }
+
+    /// Widens the errors by a factor, for residuals that follow each other.
+    pub(super) fn widen(&mut self, factor: f64) {
+        self.constants.iter_mut().filter_map(|constant| constant.error.as_mut()).for_each(|error| *error *= factor);
+    }
+
+    /// A constant that is fitted and whose error is larger than it may be.
+    pub(super) fn judge_errors(&mut self) {
+        let unknown = self.constants.iter().find_map(|constant| {
+            let parameter = self.kind.0.constants[1..].iter().find(|parameter| parameter.key == constant.key)?;
+            let size = if parameter.is_told_by_ratios() { 1.0 } else { constant.value.abs() };
+            let error = constant.error.filter(|error| *error > parameter.error_max * size)?;
+            Some(unidentified(parameter, &format!("{:.3e} ± {error:.1e}", constant.value)))
+        });
+        self.left_out = self.left_out.take().or(unknown);
+    }
+}
+
+/// Fits a law by least squares on ln da/dN.
+pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFit {
+    let candidate = match Candidate::new(kind, given, rows) {
+        Ok(candidate) => candidate,
+        Err(why) => return LawFit::none(kind, why),
+    };
+    let free: Vec<Parameter> = candidate.free().copied().collect();
+    // C, the others and the scatter.
+    if rows.len() < free.len() + 3 {
+        return LawFit::none(kind, format!("{} rates are too few for its {} constants", rows.len(), free.len() + 1));
+    }
+    let measured: Vec<f64> = rows.iter().map(RateRow::log_rate).collect();
+    let bounds: Vec<[f64; 2]> = free.iter().map(|parameter| parameter.bounds).collect();
+    let shape = |variables: &[f64]| candidate.shape(variables);
+    if candidate.shape(&free.iter().map(|parameter| parameter.starts[0]).collect::<Vec<_>>()).is_none() {
+        return LawFit::none(kind, "its given constants let a crack of the table stand still, or break".to_owned());
+    }
+    let minima = starts(&free).into_par_iter().filter_map(|start| minimise(&shape, &measured, &start, &bounds));
+    let Some(best) = minima.min_by(|a, b| a.sum().total_cmp(&b.sum())) else {
+        return LawFit::none(kind, "no least sum of squares was found".to_owned());
+    };
+    let scatter = best.sum() / (rows.len() - free.len() - 1) as f64;
+    let trouble = at_end(&free, &best).or_else(|| trade(&free, &best.slopes));
+    let errors = errors(&candidate, &best, scatter);
+    let c = Constant { key: kind.0.constants[0].key, value: best.level.exp(), error: Some(best.level.exp() * errors[0]) };
+    let is_free = |key: &str| free.iter().any(|parameter| parameter.key == key);
+    let others = candidate.constants(&best.at).into_iter().enumerate();
+    let others = others.map(|(i, (key, value))| Constant { key, value, error: is_free(key).then(|| errors[i + 1]) });
+    LawFit {
+        kind,
+        constants: std::iter::once(c).chain(others).collect(),
+        fitted: free.len() + 1,
+        residuals: best.residuals,
+        aicc: f64::NAN,
+        left_out: trouble,
+    }
+}
+
+/// Every combination of the starts of the variables.
+fn starts(free: &[Parameter]) -> Vec<Vec<f64>> {
+    free.iter().fold(vec![Vec::new()], |all, parameter| {
+        let [first, second] = parameter.starts;
+        let values = if first == second { vec![first] } else { vec![first, second] };
+        all.iter().flat_map(|start| values.iter().map(|value| [&start[..], &[*value]].concat())).collect()
+    })
+}
+
+/// A constant whose best value is an end of its range.
+fn at_end(free: &[Parameter], best: &Minimum) -> Option<String> {
+    let (parameter, low) = free.iter().zip(&best.at).find_map(|(parameter, &value)| {
+        let [low, high] = parameter.bounds;
+        let near = AT_END * (high - low);
+        (value - low < near || high - value < near).then_some((parameter, value - low < near))
+    })?;
+    let end = match (parameter.role, low) {
+        (Role::Toughness, true) => "the largest K_max of the rates".to_owned(),
+        (Role::Toughness, false) => "19 times the largest K_max of the rates".to_owned(),
+        (Role::Threshold, true) => "a twentieth of the smallest ΔK of the rates".to_owned(),
+        (Role::Threshold, false) => "the smallest ΔK of the rates".to_owned(),
+        (Role::Plain, low) => format!("{}", parameter.bounds[usize::from(!low)]),
+    };
+    Some(unidentified(parameter, &format!("the optimum lies at an end of its range, {end}")))
+}
+
+fn unidentified(parameter: &Parameter, why: &str) -> String {
+    format!("{} not identified: {why}; {}, or give it by fit.given", parameter.key, parameter.told_by)
+}
+
+/// A constant that others can make up for.
+fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<String> {
+    let mut scaled = without_level(slopes);
+    for (i, parameter) in free.iter().enumerate() {
+        let size = scaled.column(i).norm();
+        if size <= f64::EPSILON {
+            return Some(unidentified(parameter, "no rate depends on it"));
+        }
+        scaled.column_mut(i).scale_mut(1.0 / size);
+    }
+    if free.is_empty() {
+        return None;
+    }
+    let eigen = (scaled.transpose() * scaled).symmetric_eigen();
+    let (least, most) = (eigen.eigenvalues.imin(), eigen.eigenvalues.max());
+    let parameter = &free[eigen.eigenvectors.column(least).icamax()];
+    (eigen.eigenvalues[least] < SINGULAR * most).then(|| unidentified(parameter, "other constants make up for it"))
+}
+
+/// Standard errors of ln C and of all constants behind it, from `s² (JᵀJ)⁻¹`, taken from the variables to the constants by their slopes.
+fn errors(candidate: &Candidate<'_>, best: &Minimum, scatter: f64) -> Vec<f64> {
+    let projected = without_level(&best.slopes);
+    let own = candidate.constants(&best.at);
+    let Some(covariance) = (projected.transpose() * &projected).try_inverse().map(|inverse| inverse * scatter) else {
+        return vec![f64::INFINITY; own.len() + 1];
+    };
+    let means = best.slopes.row_mean();
+    let level = scatter / best.residuals.len() as f64 + (&means * &covariance * means.transpose())[(0, 0)];
+    let mut turn = DMatrix::zeros(own.len(), best.at.len());
+    for variable in 0..best.at.len() {
+        let size = 1e-6 * best.at[variable].abs().max(1.0);
+        let mut moved = best.at.clone();
+        moved[variable] += size;
+        for (i, (_, value)) in candidate.constants(&moved).into_iter().enumerate() {
+            turn[(i, variable)] = (value - own[i].1) / size;
+        }
+    }
+    let of_constants = &turn * covariance * turn.transpose();
+    std::iter::once(level).chain(of_constants.diagonal().iter().copied()).map(|square| square.max(0.0).sqrt()).collect()
+}

@@ -1,0 +1,278 @@
+//! Lives by the model of a lot: of a new specimen, of one with readings of its own, on the plate of the tests or any other.
+//!
+//! A path is divided into cells of `n_j` cycles, ln rates of which have the covariance `S = Z T Zᵀ + X V Xᵀ + cov(e)`. A life is the sum of
+//! correlated lognormals, taken as lognormal itself with their mean and variance: `u_j = n_j e^(S_jj/2)`, `M = Σ u_j`,
+//! `s² = ln(1 + uᵀ(e^S - 1)u / M²)`, median `M e^(-s²/2)`, quantiles `median · exp(t_ν s)`.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::Population;
+use super::intervals::{Interval, Specimen};
+use super::law::{EFFECTS, Row};
+use super::noise::{cholesky, whiten};
+use super::student::{noncentral_t_quantile, t_quantile};
+use perilife_base::error::{Error, Result, input};
+use perilife_base::units::MPA_SQRT_M;
+pub use perilife_growth::case::Lot;
+
+/// Cells of a path: from 12 on lives change by less than 0.2 %.
+pub const CELLS: usize = 24;
+/// Standard deviation of ln rate between lots of one material.
+pub const BETWEEN_LOTS: f64 = 0.25;
+/// Smallest standard deviation of the slope outside the calibrated range.
+const SLOPE_DEVIATION_MIN: f64 = 0.5;
+/// Factor of ΔK beyond the calibrated range up to which the chord is continued.
+pub(super) const BEYOND_MAX: f64 = 2.0;
+/// Confidence of a basis value.
+const BASIS_CONFIDENCE: f64 = 0.95;
+/// Fewest specimens of a basis value.
+const BASIS_SPECIMENS_MIN: usize = 3;
+
+/// Lower bound of lives with a confidence of 95 %.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// Reached by 99 of 100.
+    A,
+    /// Reached by 90 of 100.
+    B,
+}
+
+/// ln cycles of the cells of a path and their covariance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forecast {
+    /// Median cycles of every cell.
+    cycles: Vec<f64>,
+    /// Covariance of their logarithms, by rows.
+    covariance: Vec<f64>,
+    /// ν of Student's t.
+    freedom: f64,
+    /// Specimens that it rests on.
+    specimens: usize,
+    /// Whether it is of a specimen with readings of its own, or of another lot.
+    is_special: bool,
+    /// Share of the life outside the calibrated range of ΔK.
+    pub share_outside: f64,
+}
+
+/// A life and its scatter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Life {
+    /// Median, cycles.
+    pub median: f64,
+    /// Standard deviation of ln life where ν is large.
+    pub deviation: f64,
+    /// ν of Student's t.
+    pub freedom: f64,
+}
+
+impl Life {
+    /// Cycles that a specimen does not reach with a probability.
+    pub fn quantile(&self, probability: f64) -> f64 {
+        self.median * (t_quantile(probability, self.freedom) * self.deviation).exp()
+    }
+
+    /// Ends of the band that holds a share of specimens.
+    pub fn band(&self, share: f64) -> [f64; 2] {
+        [0.5 * (1.0 - share), 0.5 * (1.0 + share)].map(|probability| self.quantile(probability))
+    }
+}
+
+impl Population {
+    /// Lives along a path of cells ([`super::intervals::cells`]), `own` being the specimen's readings up to its start.
+    /// Errors: ΔK further outside the calibrated range than the law is continued.
+    pub fn forecast(&self, path: &[Interval], own: Option<&Specimen>, lot: Lot) -> Result<Forecast> {
+        self.check_range(path)?;
+        let own: &[Interval] = own.map_or(&[], |own| &own.intervals);
+        let mut rows = self.law.rows(own);
+        let observed = rows.len();
+        let reached = rows.last().map_or(0.0, |row| row.zone[1]);
+        let of_path = self.law.rows(path);
+        // No error of a reading is left in a life.
+        rows.extend(of_path.iter().map(|row| Row { density: [0.0; 2], zone: row.zone.map(|zone| zone + reached), ..*row }));
+        let n = rows.len();
+        let covariance = self.of_rows(&rows, lot);
+
+        // cov(future) - C_fo C_oo⁻¹ C_of and the mean with it, by the factor of the observed part.
+        let cells = n - observed;
+        let mut factor: Vec<f64> = (0..observed).flat_map(|i| covariance[i * n..i * n + observed].to_vec()).collect();
+        let not_definite = || Error::Mechanics("the covariance of the readings is not positive definite".to_owned());
+        cholesky(&mut factor, observed).ok_or_else(not_definite)?;
+        let columns = cells + 1;
+        let right = |i: usize| {
+            let residual = rows[i].log_cycles - own[i].cycles.ln();
+            covariance[i * n + observed..(i + 1) * n].iter().copied().chain([residual])
+        };
+        let mut white: Vec<f64> = (0..observed).flat_map(right).collect();
+        whiten(&factor, observed, &mut white, columns);
+        let known = |j: usize, l: usize| (0..observed).map(|i| white[i * columns + j] * white[i * columns + l]).sum::<f64>();
+        let mut conditional = vec![0.0; cells * cells];
+        for j in 0..cells {
+            for l in 0..cells {
+                conditional[j * cells + l] = covariance[(observed + j) * n + observed + l] - known(j, l);
+            }
+        }
+        let cycles: Vec<f64> = (0..cells)
+            .map(|j| {
+                let row = &rows[observed + j];
+                let of_size = 0.5 * (self.interval_variance - self.noise.variance(row));
+                (row.log_cycles + of_size - known(j, cells)).exp()
+            })
+            .collect();
+        let outside: f64 = cycles.iter().zip(&of_path).map(|(n, row)| n * row.outside).sum();
+        Ok(Forecast {
+            share_outside: outside / cycles.iter().sum::<f64>(),
+            cycles,
+            covariance: conditional,
+            freedom: self.freedom,
+            specimens: self.specimens.len(),
+            is_special: observed > 0 || lot == Lot::Other,
+        })
+    }
+
+    /// Standard deviation of the slope of the law outside the calibrated range.
+    pub fn slope_deviation_outside(&self) -> f64 {
+        self.law.slope_deviation().max(SLOPE_DEVIATION_MIN)
+    }
+
+    /// `Z T Zᵀ + X V Xᵀ + cov(e)`, whole, by rows.
+    fn of_rows(&self, rows: &[Row], lot: Lot) -> Vec<f64> {
+        let n = rows.len();
+        let mut whole = self.noise.covariance(rows);
+        let t = self.between.matrix();
+        let between_lots = if lot == Lot::Other { BETWEEN_LOTS * BETWEEN_LOTS } else { 0.0 };
+        let outside = self.slope_deviation_outside().powi(2);
+        for j in 0..n {
+            let x = &rows[j].design;
+            // Rows of X V + Z T, so that the product with the other row is all.
+            let mut left: [f64; EFFECTS] =
+                std::array::from_fn(|k| x.iter().zip(&self.covariance).map(|(x, of_row)| x * of_row[k]).sum());
+            left[0] += t[(0, 0)] * x[0] + t[(1, 0)] * x[1] + between_lots;
+            left[1] += t[(0, 1)] * x[0] + t[(1, 1)] * x[1];
+            for l in 0..=j {
+                let shared: f64 = left.iter().zip(&rows[l].design).map(|(a, b)| a * b).sum();
+                let (near, far) = (rows[j].beyond, rows[l].beyond);
+                let value = whole[j * n + l] + shared + outside * (near[0] * far[0] + near[1] * far[1]);
+                (whole[j * n + l], whole[l * n + j]) = (value, value);
+            }
+        }
+        whole
+    }
+
+    fn check_range(&self, path: &[Interval]) -> Result<()> {
+        let [low, high] = self.law.range;
+        let ends = || path.iter().flat_map(|cell| cell.ends).map(f64::exp);
+        let (least, most) = ends().fold((f64::INFINITY, 0.0_f64), |(least, most), k| (least.min(k), most.max(k)));
+        if least * BEYOND_MAX >= low && most <= high * BEYOND_MAX {
+            return Ok(());
+        }
+        let in_mpa = |k: f64| k / MPA_SQRT_M;
+        Err(input(
+            "loading",
+            format!("ΔK {:.2} to {:.2} MPa√m", in_mpa(least), in_mpa(most)),
+            format!("is more than a factor {BEYOND_MAX} outside the calibrated {:.2} to {:.2} MPa√m", in_mpa(low), in_mpa(high)),
+            "calibrate by specimens of such ΔK, or ask for a shorter growth",
+        ))
+    }
+}
+
+impl Forecast {
+    /// Median and scatter in closed form: within 0.5 % of draws.
+    pub fn life(&self) -> Life {
+        let n = self.cycles.len();
+        let u: Vec<f64> = (0..n).map(|j| self.cycles[j] * (0.5 * self.covariance[j * n + j]).exp()).collect();
+        let mean: f64 = u.iter().sum();
+        let mut square = 0.0;
+        for j in 0..n {
+            let row = &self.covariance[j * n..(j + 1) * n];
+            square += u[j] * row.iter().zip(&u).map(|(c, u)| c.exp_m1() * u).sum::<f64>();
+        }
+        let variance = (square / (mean * mean)).ln_1p();
+        Life { median: mean * (-0.5 * variance).exp(), deviation: variance.sqrt(), freedom: self.freedom }
+    }
+
+    /// Median cycles of every cell.
+    pub fn cells(&self) -> &[f64] {
+        &self.cycles
+    }
+
+    /// Lives drawn at random, the same for the same seed.
+    /// Errors: as [`Forecast::draw`].
+    pub fn draws(&self, count: usize, seed: u64) -> Result<Vec<f64>> {
+        self.draw(count, seed, |factors| self.cycles.iter().zip(factors).map(|(cycles, factor)| cycles * factor).sum())
+    }
+
+    /// Specimens drawn at random, the same for the same seed: `each` has the cycles of the cells over their medians.
+    /// Errors: a covariance that is not positive definite.
+    pub fn draw<T>(&self, count: usize, seed: u64, mut each: impl FnMut(&[f64]) -> T) -> Result<Vec<T>> {
+        let n = self.cycles.len();
+        let mut factor = self.covariance.clone();
+        let not_definite = || Error::Mechanics("the covariance of the cells is not positive definite".to_owned());
+        cholesky(&mut factor, n).ok_or_else(not_definite)?;
+        let mut normal = Normal::new(seed);
+        let (mut z, mut factors) = (vec![0.0; n], vec![0.0; n]);
+        let specimen = |_| {
+            z.iter_mut().for_each(|z| *z = normal.next());
+            let chi_square: f64 = (0..self.freedom.round() as usize).map(|_| normal.next().powi(2)).sum();
+            let scale = (self.freedom.round() / chi_square).sqrt();
+            let log = |j: usize| factor[j * n..=j * n + j].iter().zip(&z).map(|(l, z)| l * z).sum::<f64>();
+            factors.iter_mut().enumerate().for_each(|(j, of_cell)| *of_cell = (scale * log(j)).exp());
+            each(&factors)
+        };
+        Ok((0..count).map(specimen).collect())
+    }
+
+    /// Lower bound of lives with a confidence of 95 %, by the noncentral t distribution. Handbooks ask for about 100 values of ten lots for A
+    /// and 30 of five for B: from one lot it is no material basis value.
+    /// Errors: fewer than three specimens; a path outside the calibrated range; a specimen with readings of its own.
+    pub fn basis(&self, basis: Basis) -> Result<f64> {
+        let refuse = |value: String, problem: &str, remedy: &str| Err(input("basis", value, problem, remedy));
+        if self.specimens < BASIS_SPECIMENS_MIN {
+            return refuse(format!("{} specimens", self.specimens), "are too few for a basis value", "test at least three");
+        }
+        if self.share_outside > 0.0 {
+            let share = format!("{:.1} % of the life", 100.0 * self.share_outside);
+            return refuse(share, "is outside the calibrated range of ΔK", "calibrate by specimens of such ΔK");
+        }
+        if self.is_special {
+            return refuse("one specimen or another lot".to_owned(), "has no basis value", "ask it of the lot of the specimens");
+        }
+        let life = self.life();
+        Ok(life.median * (-tolerance_factor(basis, self.specimens) * life.deviation).exp())
+    }
+}
+
+/// k of the one-sided tolerance bound `mean - k s` of n normal values.
+pub fn tolerance_factor(basis: Basis, specimens: usize) -> f64 {
+    // Quantiles of the normal distribution at 0.99 and 0.90.
+    let z = match basis {
+        Basis::A => 2.326_347_874_040_841,
+        Basis::B => 1.281_551_565_544_600_4,
+    };
+    let root = (specimens as f64).sqrt();
+    noncentral_t_quantile(BASIS_CONFIDENCE, specimens as f64 - 1.0, z * root) / root
+}
+
+/// Standard normal numbers (Box and Muller 1958).
+struct Normal {
+    random: ChaCha8Rng,
+    second: Option<f64>,
+}
+
+impl Normal {
+    fn new(seed: u64) -> Normal {
+        Normal { random: ChaCha8Rng::seed_from_u64(seed), second: None }
+    }
+
+    fn next(&mut self) -> f64 {
+        if let Some(second) = self.second.take() {
+            return second;
+        }
+        // Above 0, so that it has a logarithm.
+        let uniform = |word: u64| ((word >> 11) as f64 + 0.5) * (-53.0_f64).exp2();
+        let radius = (-2.0 * uniform(self.random.next_u64()).ln()).sqrt();
+        let (sine, cosine) = (2.0 * std::f64::consts::PI * uniform(self.random.next_u64())).sin_cos();
+        self.second = Some(radius * sine);
+        radius * cosine
+    }
+}

@@ -1,0 +1,412 @@
+//! Lives of a lot on a plate that was run: the closed form of [`super::forecast`] over the ΔK that the run took down.
+//!
+//! A specimen of the lot takes the path of the run. Where its crack stands is told by the way of the fastest tip since N = 0, the length of
+//! a standard specimen, so that the cycles of a piece are `∫ ds / (da/dN)` with the ΔK of the rows, between them as
+//! [`TipFactors`] has it. Lives are those of the law of the lot, which has a shape; the run went by a power law, constants of the
+//! same readings. So the median here and the cycles of the run differ, by what a power law misses of the readings and by the mean over
+//! specimens, and more the farther ΔK is from that of the tests.
+//!
+//! Quantiles are computed at [`PLACES`] rows and read between them over the cycles of the run, both in logarithms.
+
+use super::Population;
+use super::forecast::{BEYOND_MAX, CELLS, Forecast, Life, Lot};
+use super::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, Zones};
+use super::student::t_quantile;
+use perilife_base::error::{Error, InputError, Result, input};
+use perilife_base::monotone::Monotone;
+use perilife_base::units::round_off;
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_growth::case::record::FittedRecord;
+use perilife_growth::case::{Case, LawSource};
+use perilife_growth::predict::Prediction;
+use perilife_growth::predict::factor_curve::TipFactors;
+use perilife_growth::predict::recorded::way;
+use perilife_measured::{MeasuredCurve, Source};
+use perilife_plate::specimen::LengthConvention;
+
+/// Share of specimens below the ends of a band and its middle.
+pub const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
+/// Rows at which quantiles are computed.
+pub const PLACES: usize = 24;
+/// Cells from one such row to an end of the path.
+const CELLS_OF_PIECE: usize = CELLS / 2;
+/// Share of the life, at its ends, over which ΔK may be unknown or too far outside the calibrated range.
+const REST_MAX: f64 = 0.02;
+/// Share of a length by which two of it may differ.
+const SAME_LENGTH: f64 = 1e-9;
+
+/// Cycles that 5, 50 and 95 % of specimens do not reach.
+pub type Quantiles = [f64; 3];
+
+/// Why a plate has no band, in words.
+pub type NoBand = String;
+
+/// A plate that was run, seen by the lot that its law was fitted to.
+#[derive(Debug, Clone)]
+pub struct Plate {
+    /// The lot.
+    pub lot: Population,
+    /// Lot of the plate.
+    pub of: Lot,
+    /// Cycles of every row of the run.
+    cycles: Vec<f64>,
+    /// Way of the fastest tip at every row, the crack length at N = 0 counted, m.
+    way: Vec<f64>,
+    /// Crack length in the specimen's convention at every row, m.
+    lengths: Vec<f64>,
+    /// ΔK over that way.
+    factors: TipFactors,
+    zones: Zones,
+    /// t of [`SHARES`].
+    t: [f64; 3],
+    /// First and last row between which ΔK is known and in range.
+    known: [usize; 2],
+    /// Share of the life behind the last of them whose ΔK is too high.
+    beyond: f64,
+}
+
+/// Band of the lives of a lot on a plate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlateBand {
+    /// Cycles at which the crack is as long as in every row.
+    pub reached: Vec<Quantiles>,
+    /// Cycles from there to the end of the run; NaN where ΔK is not known.
+    pub left: Vec<Quantiles>,
+    /// Share of the life outside the calibrated range of ΔK.
+    pub share_outside: f64,
+}
+
+/// What a plate has left, from a crack length on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Left {
+    /// Crack length, m.
+    pub crack_length: f64,
+    /// Cycles to the end of the run by its own constants.
+    pub cycles: f64,
+    /// Cycles of the lot.
+    pub quantiles: Quantiles,
+}
+
+impl Population {
+    /// That of a record; `None` where it has none.
+    /// Errors: a table `[population]` that is none of a calibration.
+    pub fn of_record(record: &FittedRecord) -> Result<Option<Population>> {
+        let Some(table) = &record.population else { return Ok(None) };
+        let wrong = |value: String, problem: &str| {
+            input("fatigue.fitted", value, format!("has a [population] {problem}"), "calibrate again, which writes it anew")
+        };
+        let lot: Population = match table.clone().try_into() {
+            Ok(lot) => lot,
+            Err(error) => return Err(wrong(record.material.clone(), &format!("that cannot be read: {}", error.message()))),
+        };
+        let positive = [
+            ("law.pivot", lot.law.pivot),
+            ("law.range", lot.law.range[0]),
+            ("law.range", lot.law.range[1] - lot.law.range[0]),
+            ("noise.length", lot.noise.length),
+            ("noise.scatter", lot.noise.scatter),
+            ("freedom", lot.freedom),
+            ("specimens", lot.specimens.len() as f64),
+        ];
+        let finite = [lot.law.level, lot.law.slope, lot.interval_variance, lot.between.level, lot.between.slope, lot.noise.white];
+        let mut problem =
+            positive.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)).map(|(key, value)| (*key, *value));
+        problem = problem.or(finite
+            .into_iter()
+            .chain(lot.covariance.as_flattened().iter().copied())
+            .find(|v| !v.is_finite())
+            .map(|v| ("numbers", v)));
+        problem.map_or(Ok(Some(lot)), |(key, value)| Err(wrong(format!("{key} = {value}"), "of no lot")))
+    }
+}
+
+/// Why lives of a case can have no band, whatever its run gives; the lot where they can.
+/// Errors: as [`Population::of_record`].
+pub fn lot_of(case: &Case) -> Result<std::result::Result<Population, NoBand>> {
+    if case.fatigue.initiation.is_some() {
+        return Ok(Err("phase I is of an S-N law, whose scatter is not known".to_owned()));
+    }
+    let LawSource::Fitted(record) = &case.law else {
+        return Ok(Err("the law of the case is no fitted record of measured lives".to_owned()));
+    };
+    let Some(lot) = Population::of_record(record)? else {
+        return Ok(Err("the fitted record has no [population]: calibrate again".to_owned()));
+    };
+    if case.loading.residual.is_some() {
+        return Ok(Err("the plate has residual stress, and the specimens had none".to_owned()));
+    }
+    if case.loading.spectrum.is_some() {
+        return Ok(Err("the loads are a spectrum, and the specimens had cycles of one size".to_owned()));
+    }
+    if (case.loading.ratio - record.stress_ratio).abs() > 1e-9 {
+        let (given, recorded) = (case.loading.ratio, record.stress_ratio);
+        return Ok(Err(format!("the stress ratio {given} is not that of the calibration, {recorded}")));
+    }
+    if !case.specimen.is_through() {
+        return Ok(Err("how two ends of a front scatter that grow apart is not known".to_owned()));
+    }
+    if case.specimen.convention == LengthConvention::SumOfTips && case.spends_bond_life() {
+        return Ok(Err("bonds that spend their own life do not tell K of every tip of a drawn plate".to_owned()));
+    }
+    Ok(Ok(lot))
+}
+
+impl Plate {
+    /// Of a run of a case.
+    /// Errors: as [`lot_of`].
+    pub fn of(case: &Case, prediction: &Prediction) -> Result<std::result::Result<Self, NoBand>> {
+        let lot = lot_of(case)?;
+        Ok(lot.and_then(|lot| Plate::new(lot, case, prediction)))
+    }
+
+    fn new(lot: Population, case: &Case, prediction: &Prediction) -> std::result::Result<Self, NoBand> {
+        let (Some(life), rows) = (prediction.life(), &prediction.curve) else { return Err("the life is unlimited".to_owned()) };
+        if life <= 0.0 {
+            return Err("no crack grew".to_owned());
+        }
+        let way = way(case, prediction);
+        let known: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].delta_k.is_finite() && rows[i].delta_k > 0.0).collect();
+        let [low, high] = [lot.law.range[0] / BEYOND_MAX, lot.law.range[1] * BEYOND_MAX];
+        let is_inside = |i: &usize| (low..=high).contains(&rows[*i].delta_k);
+        let (Some(&first), Some(&last)) = (known.first(), known.iter().rev().find(|i| is_inside(i))) else {
+            return Err(if known.is_empty() { "no ΔK is known".to_owned() } else { out_of_range(&lot, rows[known[0]].delta_k) });
+        };
+        if let Some(&row) = known.iter().take_while(|i| **i < last).find(|i| !is_inside(i)) {
+            return Err(out_of_range(&lot, rows[row].delta_k));
+        }
+        let rest = (rows[first].cycles + life - rows[last].cycles) / life;
+        let too_high = known.iter().find(|i| **i > last);
+        if rest > REST_MAX {
+            let why = too_high.map_or_else(|| "ΔK is not known".to_owned(), |&row| out_of_range(&lot, rows[row].delta_k));
+            return Err(format!("{why}, over {:.1} % of the life", 100.0 * rest));
+        }
+        let mut reached = f64::NEG_INFINITY;
+        let rising = known.iter().filter(|i| **i <= last).filter_map(|&i| {
+            let is_longer = way[i] > reached * (1.0 + SAME_LENGTH);
+            reached = reached.max(way[i]);
+            is_longer.then(|| (way[i], rows[i].delta_k))
+        });
+        let rising: Vec<(f64, f64)> = rising.collect();
+        if rising.len() < 2 || rows[last].cycles <= rows[first].cycles {
+            return Err("no crack grew".to_owned());
+        }
+        let factors = TipFactors::new(rising.iter().copied());
+        let zones = Zones::new(way[first], way[last], &|way| factors.at(way)).map_err(words)?;
+        let t = t_quantile(SHARES[2], lot.freedom);
+        Ok(Plate {
+            of: case.lot,
+            cycles: rows.iter().map(|row| row.cycles).collect(),
+            lengths: rows.iter().map(|row| row.crack_length).collect(),
+            way,
+            factors,
+            zones,
+            t: [-t, 0.0, t],
+            known: [first, last],
+            beyond: too_high.map_or(0.0, |_| (life - rows[last].cycles) / life),
+            lot,
+        })
+    }
+
+    /// Band of every row.
+    /// Errors: ΔK between rows that is too far outside the calibrated range.
+    pub fn band(&self) -> std::result::Result<PlateBand, NoBand> {
+        let ([first, last], count) = (self.known, self.cycles.len());
+        let (start, end, life) = (self.cycles[first], self.cycles[last], self.cycles[count - 1]);
+        let whole = self.forecast(self.way[first], self.way[last], None).map_err(words)?;
+        let to_row: Vec<f64> = self.cycles.iter().map(|n| n - start).collect();
+        let from_row: Vec<f64> = self.cycles.iter().map(|n| end - n).collect();
+        let reached = self.along(&to_row, &|i| self.forecast(self.way[first], self.way[i], None))?;
+        let left = self.along(&from_row, &|i| self.forecast(self.way[i], self.way[last], None))?;
+        // Where ΔK is not known, the cycles of the run are taken with the scatter of the rest.
+        let mut so_far = [0.0; 3];
+        let reached_at = |i: usize| {
+            let (inside, own) = (i.clamp(first, last), self.cycles[i]);
+            let here = if to_row[inside] > 0.0 { scaled(reached[inside], own, to_row[inside]) } else { [own; 3] };
+            so_far = [0, 1, 2].map(|k| here[k].max(so_far[k]));
+            so_far
+        };
+        let left_at = |i: usize| {
+            let (inside, own) = (i.max(first), life - self.cycles[i]);
+            match inside {
+                _ if own <= 0.0 => [0.0; 3],
+                _ if from_row[inside] > 0.0 => scaled(left[inside], own, from_row[inside]),
+                _ => [f64::NAN; 3],
+            }
+        };
+        Ok(PlateBand {
+            reached: (0..count).map(reached_at).collect(),
+            left: (0..count).map(left_at).collect(),
+            share_outside: (whole.share_outside * (1.0 - self.beyond) + self.beyond).min(1.0),
+        })
+    }
+
+    /// Quantiles of a piece of the path for every row, `run` being its cycles in the run: at some rows by the closed form of `piece`, at the
+    /// others between them.
+    fn along(&self, run: &[f64], piece: &dyn Fn(usize) -> Result<Forecast>) -> std::result::Result<Vec<Quantiles>, NoBand> {
+        let mut places = self.places(run);
+        places.sort_by(|a, b| run[*a].total_cmp(&run[*b]));
+        let mut logarithms: Vec<[f64; 4]> = Vec::with_capacity(places.len());
+        for place in places {
+            let Life { median, deviation, .. } = piece(place).map_err(words)?.life();
+            let mut y = self.t.map(|t| median.ln() + t * deviation);
+            if let Some(before) = logarithms.last() {
+                y = [0, 1, 2].map(|k| y[k].max(before[k + 1]));
+            }
+            logarithms.push([run[place].ln(), y[0], y[1], y[2]]);
+        }
+        let [Some(least), Some(most)] = [logarithms.first(), logarithms.last()].map(|row| row.map(|row| row[0])) else {
+            return Err("no crack grew".to_owned());
+        };
+        let curves = [0, 1, 2].map(|k| Monotone::new(logarithms.iter().map(move |row| [row[0], row[k + 1]])));
+        let of_row = |run: &f64| {
+            let x = run.max(0.0).ln();
+            let inside = x.clamp(least, most);
+            [0, 1, 2].map(|k| (curves[k].at(inside) + x - inside).exp())
+        };
+        Ok(run.iter().map(of_row).collect())
+    }
+
+    /// Rows at which quantiles are computed, half of them even in the logarithm of the cycles of their pieces, half along the way.
+    fn places(&self, run: &[f64]) -> Vec<usize> {
+        let [first, last] = self.known;
+        let is_rest = run[first] > run[last];
+        // Pieces without growth have no cells.
+        let grows = |i: &usize| {
+            let (from, to) = if is_rest { (self.way[*i], self.way[last]) } else { (self.way[first], self.way[*i]) };
+            run[*i] > 0.0 && to > from * (1.0 + SAME_LENGTH)
+        };
+        let rows: Vec<usize> = (first..=last).filter(grows).collect();
+        if rows.len() <= PLACES {
+            return rows;
+        }
+        let spread = |of: &dyn Fn(usize) -> f64| -> Vec<usize> {
+            let [from, to] = [of(rows[0]), of(rows[rows.len() - 1])];
+            let distance = |i: usize, wanted: f64| (of(i) - wanted).abs();
+            let nearest = |wanted: f64| {
+                rows.iter().copied().min_by(|a, b| distance(*a, wanted).total_cmp(&distance(*b, wanted))).unwrap_or(rows[0])
+            };
+            let half = PLACES / 2;
+            (0..half).map(|i| nearest(from + (to - from) * i as f64 / (half - 1) as f64)).collect()
+        };
+        let mut places = spread(&|i| run[i].ln());
+        places.extend(spread(&|i| self.way[i]));
+        places.sort_unstable();
+        places.dedup();
+        places
+    }
+
+    /// Readings of this very plate as a specimen; `curve` has been set against the case.
+    /// Errors: a reading that is not on the curve of the run; no growth.
+    pub fn own(&self, curve: &MeasuredCurve) -> Result<Specimen> {
+        let (shortest, longest) = (self.lengths[self.known[0]], self.lengths[self.known[1]]);
+        for (i, &length) in curve.crack_length.iter().enumerate() {
+            if length < shortest * (1.0 - SAME_LENGTH) || length > longest * (1.0 + SAME_LENGTH) {
+                let Source { file, length_column, length_unit, .. } = &curve.source;
+                return Err(Error::Input(Box::new(InputError {
+                    file: Some(file.clone()),
+                    line: Some(curve.line(i)),
+                    key: Some(length_column.clone()),
+                    value: Some(round_off(length / length_unit).to_string()),
+                    problem: format!(
+                        "is not on the predicted curve, which goes from {} to {} mm",
+                        round_off(shortest / MM),
+                        round_off(longest / MM)
+                    ),
+                    remedy:
+                        "give readings of this plate within it, or the crack length of the first one as specimen.crack_length_mm"
+                            .to_owned(),
+                })));
+            }
+        }
+        let loads = curve.load_history();
+        let [over_length, over_way] = [self.way_over_length(), Monotone::new(self.pairs().map(|[length, way]| [way, length]))];
+        let reading = |i: usize| Reading {
+            length: over_length.at(curve.crack_length[i]),
+            cycles: curve.cycles[i],
+            counts: curve.counts(i),
+        };
+        let readings: Vec<Reading> = (0..curve.cycles.len()).map(reading).collect();
+        Specimen::new(&curve.specimen, &readings, &|way| self.factors.at(way) * loads.at(over_way.at(way)), INTERVALS_MAX)
+    }
+
+    /// What is left from a crack length on (m), of a plate of the lot or of the one that `own` was read of, which had no longer one then.
+    /// Errors: a length beyond the rows with ΔK; one that is shorter than the last of the readings.
+    pub fn left(&self, length: f64, own: Option<&Specimen>) -> Result<Left> {
+        let [first, last] = self.known;
+        let way = self.way_over_length().at(length);
+        let refuse =
+            |problem: String| Err(input("crack length, mm", round_off(length / MM), problem, "give a length between them"));
+        if length < self.lengths[first] * (1.0 - SAME_LENGTH) || way >= self.way[last] {
+            let [from, to] = [first, last].map(|i| round_off(self.lengths[i] / MM));
+            return refuse(format!("is not on the part of the curve whose ΔK is known, from {from} to {to} mm"));
+        }
+        let read = own.and_then(|own| own.intervals.last()).map_or(f64::NEG_INFINITY, |interval| interval.to);
+        if way < read * (1.0 - SAME_LENGTH) {
+            let read = self.length_over_way().at(read);
+            return refuse(format!("is shorter than the last reading, {} mm", round_off(read / MM)));
+        }
+        let life = self.forecast(way, self.way[last], own)?.life();
+        let at = Monotone::new(self.lengths.iter().zip(&self.cycles).map(|(a, n)| [*a, *n])).at(length);
+        let (run, whole) = (self.cycles[last] - at, self.cycles[self.cycles.len() - 1] - at);
+        let quantiles = self.t.map(|t| life.median * (t * life.deviation).exp());
+        Ok(Left { crack_length: length, cycles: whole, quantiles: scaled(quantiles, whole, run) })
+    }
+
+    /// Crack length at the last reading of a specimen, m.
+    pub fn read_to(&self, own: &Specimen) -> f64 {
+        own.intervals.last().map_or(f64::NAN, |interval| self.length_over_way().at(interval.to))
+    }
+
+    /// The whole life in cells: where they end along the way of the fastest tip, m, and what the lot says of their cycles.
+    /// Errors: as [`Plate::band`].
+    pub fn whole(&self) -> Result<(Vec<f64>, Forecast)> {
+        let [from, to] = self.known.map(|row| self.way[row]);
+        let cells = self.zones.cells(from, to, CELLS_OF_PIECE, &|way| self.factors.at(way))?;
+        Ok((cells.iter().map(|cell| cell.to).collect(), self.forecast(from, to, None)?))
+    }
+
+    /// Life over a piece of the way of the fastest tip, m.
+    fn forecast(&self, from: f64, to: f64, own: Option<&Specimen>) -> Result<Forecast> {
+        let delta_k = |way: f64| self.factors.at(way);
+        let mut path = self.zones.cells(from, to, CELLS_OF_PIECE, &delta_k)?;
+        // The noise goes on where the readings end, and a piece without readings lies between.
+        if let Some(read) = own.and_then(|own| own.intervals.last()).filter(|read| from > read.to * (1.0 + SAME_LENGTH)) {
+            let gap = self.zones.cells(read.to, from, 1, &delta_k)?[0].zone[1];
+            path.iter_mut().for_each(|Interval { zone, .. }| *zone = zone.map(|zone| zone + gap));
+        }
+        self.lot.forecast(&path, own, self.of)
+    }
+
+    fn pairs(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.lengths.iter().zip(&self.way).map(|(length, way)| [*length, *way])
+    }
+
+    fn way_over_length(&self) -> Monotone {
+        Monotone::new(self.pairs())
+    }
+
+    fn length_over_way(&self) -> Monotone {
+        Monotone::new(self.pairs().map(|[length, way]| [way, length]))
+    }
+}
+
+/// Quantiles of a piece of so many cycles of the run as those of a somewhat larger one.
+fn scaled(quantiles: Quantiles, run: f64, of: f64) -> Quantiles {
+    quantiles.map(|cycles| cycles * run / of)
+}
+
+fn out_of_range(lot: &Population, delta_k: f64) -> NoBand {
+    let [low, high] = lot.law.range.map(|k| k / MPA_SQRT_M);
+    format!(
+        "ΔK = {:.2} MPa√m is more than a factor {BEYOND_MAX} outside the calibrated {low:.2} to {high:.2} MPa√m",
+        delta_k / MPA_SQRT_M
+    )
+}
+
+/// An error as the reason for which there is no band.
+fn words(error: Error) -> NoBand {
+    match error {
+        Error::Input(error) => format!("{} {}", error.value.unwrap_or_default(), error.problem),
+        other => other.to_string(),
+    }
+}

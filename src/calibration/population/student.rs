@@ -1,0 +1,65 @@
+//! Student's t distribution and the noncentral one, by quadrature over the scatter that is estimated.
+
+use perilife_base::quadrature::integrate;
+
+/// Halvings of an interval of quantiles.
+const HALVINGS: usize = 80;
+
+/// Standard normal distribution (Marsaglia 2004, J. Stat. Softw. 11(4)).
+pub fn normal_cdf(x: f64) -> f64 {
+    // Terms of the series grow as e^(x²/2) before they fall.
+    if x.abs() > 8.0 {
+        return if x > 0.0 { 1.0 } else { 0.0 };
+    }
+    let (mut sum, mut term, mut i) = (x, x, 1.0);
+    loop {
+        i += 2.0;
+        term *= x * x / i;
+        let next = sum + term;
+        if next == sum {
+            break;
+        }
+        sum = next;
+    }
+    0.5 + sum * (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt()
+}
+
+/// Probability that `(z + shift) / √(χ²_ν / ν)` stays below t.
+pub fn noncentral_t_cdf(t: f64, nu: f64, shift: f64) -> f64 {
+    let mode = ((nu - 1.0).max(0.0) / nu).sqrt();
+    let log_density = |w: f64| (nu - 1.0) * w.ln() - 0.5 * nu * w * w;
+    let top = if mode > 0.0 { log_density(mode) } else { 0.0 };
+    let density = |w: f64| (log_density(w) - top).exp();
+    let reach = 12.0 / (2.0 * nu).sqrt();
+    let (from, to) = ((mode - reach).max(0.0), mode + reach);
+    let below = |w: f64| density(w) * normal_cdf(t * w - shift);
+    integrate(below, from, to, 1e-13).value / integrate(density, from, to, 1e-13).value
+}
+
+/// Quantile of the noncentral t distribution.
+pub fn noncentral_t_quantile(probability: f64, nu: f64, shift: f64) -> f64 {
+    let (mut low, mut high) = (shift - 1.0, shift + 1.0);
+    while noncentral_t_cdf(low, nu, shift) > probability {
+        low = shift + 2.0 * (low - shift);
+    }
+    while noncentral_t_cdf(high, nu, shift) < probability {
+        high = shift + 2.0 * (high - shift);
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        if noncentral_t_cdf(middle, nu, shift) < probability {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Quantile of Student's t.
+pub fn t_quantile(probability: f64, nu: f64) -> f64 {
+    noncentral_t_quantile(probability, nu, 0.0)
+}

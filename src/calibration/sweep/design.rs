@@ -1,0 +1,161 @@
+//! `SWEEP.toml`: the base case and the design of a sweep.
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::vary::{DesignKind, Spread, Vary};
+use perilife_base::error::{Error, Result, input, input_missing};
+use perilife_base::input::{Document, slice};
+
+perilife_base::kinds! {
+    /// Where the scatter of a fatigue law comes from.
+    pub enum Scatter for "design.scatter" {
+        Specimens = "specimens": "from specimen to specimen: mean and covariance of their own fits in fit.json",
+        Constants = "constants": "of the fit to all of them: standard errors of the rate at the pivot and of the exponent",
+    }
+}
+
+/// Cases that a sweep may have unless more are asked for.
+pub const CASES_MAX: usize = 10_000;
+/// Seed where the file gives none.
+const SEED: u64 = 1;
+
+/// What is to be run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Design {
+    /// How cases are chosen.
+    pub kind: DesignKind,
+    /// Number of cases.
+    pub cases: usize,
+    /// Seed of random designs.
+    pub seed: u64,
+    /// Which scatter of the law, where it scatters.
+    pub scatter: Scatter,
+    /// Keys that vary.
+    pub vary: Vec<Vary>,
+}
+
+/// A sweep file with its base case.
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    /// Name: the file stem.
+    pub name: String,
+    /// The sweep file.
+    pub document: Document,
+    /// The base case.
+    pub base: Document,
+    /// The design.
+    pub design: Design,
+}
+
+/// Whether these are the sections of a sweep.
+pub fn is_sweep(table: &Table) -> bool {
+    table.contains_key("design")
+}
+
+/// The sweep file as a whole.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    case: String,
+    design: Value,
+    #[serde(default)]
+    vary: Vec<Value>,
+}
+
+/// Keys of `[design]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct DesignInput {
+    kind: DesignKind,
+    samples: Option<usize>,
+    seed: Option<u64>,
+    scatter: Option<Scatter>,
+}
+
+impl Sweep {
+    /// Reads a sweep from its file, which was read without overrides. Those of `design` and `vary` are of the file, all others of the base
+    /// case; there may be at most `most` cases.
+    pub fn with_overrides(mut document: Document, overrides: &[String], most: usize) -> Result<Self> {
+        let section = |text: &str| text.split(['.', '[', '=']).next().unwrap_or_default().trim().to_owned();
+        let of_sweep = |text: &String| ["design", "vary"].contains(&section(text).as_str());
+        let (own, of_case): (Vec<String>, Vec<String>) = overrides.iter().cloned().partition(of_sweep);
+        document.set_all(&own)?;
+        let read = || -> Result<(String, Design)> {
+            let input: Input = slice(&Value::Table(document.table.clone()), "file").map_err(at_top)?;
+            Ok((input.case, read_design(&input.design, &input.vary, most)?))
+        };
+        let (case, design) = read().map_err(|error| document.locate(error))?;
+        let base = Document::in_folder(&document.folder, &case, &of_case)?;
+        Ok(Sweep { name: document.name.clone(), document, base, design })
+    }
+}
+
+/// Keys of the file itself have nothing above them.
+fn at_top(error: Error) -> Error {
+    match error {
+        Error::Input(mut trouble) => {
+            trouble.key = trouble.key.map(|key| key.trim_start_matches("file.").to_owned());
+            Error::Input(trouble)
+        }
+        other => other,
+    }
+}
+
+fn read_design(design: &Value, vary: &[Value], most: usize) -> Result<Design> {
+    let keys: DesignInput = slice(design, "design")?;
+    let kind = keys.kind;
+    let vary: Vec<Vary> =
+        vary.iter().enumerate().map(|(i, value)| Vary::read(value, &format!("vary[{i}]"), kind, most)).collect::<Result<_>>()?;
+    for (i, one) in vary.iter().enumerate() {
+        if vary[..i].iter().any(|earlier| earlier.key == one.key) {
+            let place = format!("vary[{i}].key");
+            return Err(input(&place, format!("\"{}\"", one.key), "varies already", "give each key once"));
+        }
+    }
+    if vary.is_empty() && kind != DesignKind::FittedScatter {
+        return Err(input_missing("vary", "is missing: nothing varies", "write a section [[vary]] with a key and its values"));
+    }
+    if let Some(scatter) = keys.scatter.filter(|_| kind != DesignKind::FittedScatter) {
+        let remedy = format!("leave it out, or use kind = \"{}\"", DesignKind::FittedScatter);
+        return Err(input("design.scatter", format!("\"{scatter}\""), format!("does not go with kind = \"{kind}\""), remedy));
+    }
+    let cases = match kind {
+        DesignKind::Grid => grid_size(&keys, &vary, most)?,
+        DesignKind::LatinHypercube | DesignKind::FittedScatter => {
+            let samples = keys.samples.ok_or_else(|| {
+                input_missing("design.samples", format!("is missing, and kind is \"{kind}\""), "give the number of cases")
+            })?;
+            check_size("design.samples", samples, most)?
+        }
+    };
+    Ok(Design { kind, cases, seed: keys.seed.unwrap_or(SEED), scatter: keys.scatter.unwrap_or(Scatter::Specimens), vary })
+}
+
+/// Number of combinations.
+fn grid_size(keys: &DesignInput, vary: &[Vary], most: usize) -> Result<usize> {
+    let stranger = keys.samples.map(|n| ("design.samples", n as u64)).or(keys.seed.map(|seed| ("design.seed", seed)));
+    if let Some((key, value)) = stranger {
+        let remedy = "leave it out: the values of the keys say what a grid has";
+        return Err(input(key, value, format!("does not go with kind = \"{}\"", DesignKind::Grid), remedy));
+    }
+    let sizes = vary.iter().map(|one| if let Spread::Values(values) = &one.spread { values.len() } else { 1 });
+    check_size("vary", sizes.fold(1, usize::saturating_mul), most)
+}
+
+fn check_size(key: &str, cases: usize, most: usize) -> Result<usize> {
+    if cases == 0 {
+        return Err(input(key, cases, "is no case at all", "give at least 1"));
+    }
+    if cases > most {
+        let problem = format!("makes {cases} cases, more than the {most} that there may be");
+        return Err(input(key, format!("{cases} cases"), problem, "make it smaller, or allow more by --most"));
+    }
+    Ok(cases)
+}
+
+/// The design as results repeat it: the sweep file as it was read.
+pub fn echo(table: &Table) -> serde_json::Value {
+    // A table that was read from TOML has a JSON form; dates, of which a sweep has none, become text.
+    serde_json::to_value(table).unwrap_or_default()
+}

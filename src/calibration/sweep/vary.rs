@@ -1,0 +1,282 @@
+//! One key that varies: `[[vary]]` of a sweep file.
+
+use serde::Deserialize;
+use toml::Value;
+
+use super::distribution::Distribution;
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::slice;
+use perilife_growth::case::SECTIONS;
+use perilife_laws::growth_law::description::law_keys;
+
+perilife_base::kinds! {
+    /// How the cases of a sweep are chosen.
+    pub enum DesignKind for "design.kind" {
+        Grid = "grid": "every combination of the values of all keys, the last key fastest",
+        LatinHypercube = "latin_hypercube": "random: of every key one value from each of as many strata as there are samples",
+        FittedScatter = "fitted_scatter": "the fatigue law scatters as a calibration found it; other keys may vary beside",
+    }
+}
+
+perilife_base::kinds! {
+    /// Shape of a distribution.
+    pub enum DistributionKind for "vary.distribution" {
+        Uniform = "uniform": "every value between from and to is equally likely",
+        LogUniform = "log_uniform": "the logarithm is uniform between those of from and to",
+        Normal = "normal": "normal, with mean and standard_deviation",
+        LogNormal = "log_normal": "the logarithm is normal, with median and standard_deviation_ln, or factor = exp of it",
+    }
+}
+
+perilife_base::kinds! {
+    /// How the values of a grid lie between two.
+    pub enum Scale for "vary.scale" {
+        Linear = "linear": "equal differences from from to to",
+        Log = "log": "equal ratios from from to to",
+    }
+}
+
+/// A key that varies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vary {
+    /// Key of the case.
+    pub key: String,
+    /// Its values.
+    pub spread: Spread,
+}
+
+/// Values of a key.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Spread {
+    /// Of a grid.
+    Values(Vec<Value>),
+    /// Of a random design.
+    Random(Distribution),
+}
+
+/// Keys of `[[vary]]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    key: String,
+    values: Option<Vec<Value>>,
+    from: Option<f64>,
+    to: Option<f64>,
+    count: Option<usize>,
+    scale: Option<Scale>,
+    distribution: Option<DistributionKind>,
+    mean: Option<f64>,
+    standard_deviation: Option<f64>,
+    median: Option<f64>,
+    factor: Option<f64>,
+    standard_deviation_ln: Option<f64>,
+}
+
+impl Vary {
+    /// Reads one of a design of this kind; `path` is its place in the file, `most` the number of cases that there may be.
+    pub(super) fn read(value: &Value, path: &str, kind: DesignKind, most: usize) -> Result<Self> {
+        let input: Input = slice(value, path)?;
+        check_key(&input.key, path, kind)?;
+        let reader = Reader { input: &input, path };
+        let spread = match kind {
+            DesignKind::Grid => reader.grid(most)?,
+            DesignKind::LatinHypercube | DesignKind::FittedScatter => reader.random(kind)?,
+        };
+        Ok(Vary { key: input.key, spread })
+    }
+}
+
+/// A key of a case, and not one that the design itself gives.
+fn check_key(key: &str, path: &str, kind: DesignKind) -> Result<()> {
+    let place = format!("{path}.key");
+    let (section, rest) = key.split_once('.').unwrap_or((key, ""));
+    if !SECTIONS.contains(&section) || rest.is_empty() {
+        let remedy = format!("write section.key, for example specimen.crack_length_mm; sections: {}", SECTIONS.join(", "));
+        return Err(input(&place, format!("\"{key}\""), "is not a key of a case", remedy));
+    }
+    if kind == DesignKind::FittedScatter && section == "fatigue" && law_keys().any(|key| key == rest) {
+        let remedy = format!("leave it out, or use design.kind = \"{}\"", DesignKind::LatinHypercube);
+        return Err(input(&place, format!("\"{key}\""), format!("is drawn by design.kind = \"{kind}\" already"), remedy));
+    }
+    Ok(())
+}
+
+/// A `[[vary]]` with its place in the file.
+struct Reader<'a> {
+    input: &'a Input,
+    path: &'a str,
+}
+
+impl Reader<'_> {
+    fn grid(&self, most: usize) -> Result<Spread> {
+        let input = self.input;
+        self.refuse(
+            &self.of_distributions(),
+            "belongs to a random design, and this is a grid",
+            "give values, or from, to and count",
+        )?;
+        let Some(values) = &input.values else { return self.spaced(most) };
+        self.refuse(&self.of_spacing(), "stands beside values", "give values, or from, to and count")?;
+        if values.is_empty() {
+            return Err(perilife_base::error::input(&self.key("values"), "[]", "is empty", "give at least one value"));
+        }
+        for value in values {
+            if value.as_float().is_some_and(|number| !number.is_finite()) {
+                return Err(perilife_base::error::input(
+                    &self.key("values"),
+                    value,
+                    "is not a finite number",
+                    "give finite numbers",
+                ));
+            }
+        }
+        Ok(Spread::Values(values.clone()))
+    }
+
+    /// `count` values between two, both among them.
+    fn spaced(&self, most: usize) -> Result<Spread> {
+        let (from, to) = (self.number("from", self.input.from)?, self.number("to", self.input.to)?);
+        let count = self.input.count.ok_or_else(|| self.missing("count"))?;
+        if !(2..=most.max(2)).contains(&count) {
+            let remedy = format!("give 2 to {}", most.max(2));
+            return Err(input(&self.key("count"), count, "is no number of values between two", remedy));
+        }
+        let scale = self.input.scale.unwrap_or(Scale::Linear);
+        if scale == Scale::Log {
+            self.above_zero("from", from)?;
+            self.above_zero("to", to)?;
+        }
+        let value = |i: usize| {
+            let share = i as f64 / (count - 1) as f64;
+            match scale {
+                // The ends are those that were given, to the last bit.
+                _ if i == 0 => from,
+                _ if i + 1 == count => to,
+                Scale::Linear => from + share * (to - from),
+                Scale::Log => from * (to / from).powf(share),
+            }
+        };
+        Ok(Spread::Values((0..count).map(|i| Value::Float(value(i))).collect()))
+    }
+
+    fn random(&self, kind: DesignKind) -> Result<Spread> {
+        let input = self.input;
+        let of_grids = [("values", input.values.is_some()), ("count", input.count.is_some()), ("scale", input.scale.is_some())];
+        self.refuse(&of_grids, &format!("belongs to a grid, and this is a design of kind \"{kind}\""), "give a distribution")?;
+        let shape = input.distribution.ok_or_else(|| self.missing("distribution"))?;
+        let own: &[&str] = match shape {
+            DistributionKind::Uniform | DistributionKind::LogUniform => &["from", "to"],
+            DistributionKind::Normal => &["mean", "standard_deviation"],
+            DistributionKind::LogNormal => &["median", "factor", "standard_deviation_ln"],
+        };
+        let all = [&self.of_distributions()[1..], &self.of_spacing()].concat();
+        let strangers: Vec<(&str, bool)> = all.into_iter().filter(|(key, _)| !own.contains(key)).collect();
+        self.refuse(&strangers, &format!("does not go with distribution = \"{shape}\""), &format!("give {}", own.join(" and ")))?;
+        Ok(Spread::Random(match shape {
+            DistributionKind::Uniform => {
+                let [from, to] = self.rising()?;
+                Distribution::Uniform { from, to }
+            }
+            DistributionKind::LogUniform => {
+                let [from, to] = self.rising()?;
+                self.above_zero("from", from)?;
+                Distribution::LogUniform { from, to }
+            }
+            DistributionKind::Normal => {
+                let mean = self.number("mean", input.mean)?;
+                let deviation = self.number("standard_deviation", input.standard_deviation)?;
+                Distribution::Normal { mean, deviation: self.above_zero("standard_deviation", deviation)? }
+            }
+            DistributionKind::LogNormal => {
+                let median = self.number("median", input.median)?;
+                Distribution::LogNormal { median: self.above_zero("median", median)?, deviation_ln: self.deviation_ln()? }
+            }
+        }))
+    }
+
+    fn deviation_ln(&self) -> Result<f64> {
+        match (self.input.factor, self.input.standard_deviation_ln) {
+            (Some(factor), None) => {
+                if factor.is_finite() && factor > 1.0 {
+                    return Ok(factor.ln());
+                }
+                let remedy = "give exp of the standard deviation of ln: 68 % lie between median / factor and median x factor";
+                Err(input(&self.key("factor"), factor, "must be above 1", remedy))
+            }
+            (None, given) => {
+                let deviation = self.number("standard_deviation_ln", given)?;
+                self.above_zero("standard_deviation_ln", deviation)
+            }
+            (Some(factor), Some(_)) => {
+                let problem = "stands beside standard_deviation_ln: the width is given twice";
+                Err(input(&self.key("factor"), factor, problem, "give one of the two"))
+            }
+        }
+    }
+
+    fn rising(&self) -> Result<[f64; 2]> {
+        let (from, to) = (self.number("from", self.input.from)?, self.number("to", self.input.to)?);
+        if from >= to {
+            return Err(input(&self.key("to"), to, format!("is not above from = {from}"), "give from < to"));
+        }
+        Ok([from, to])
+    }
+
+    fn number(&self, key: &str, value: Option<f64>) -> Result<f64> {
+        let value = value.ok_or_else(|| self.missing(key))?;
+        if !value.is_finite() {
+            return Err(input(&self.key(key), value, "is not a finite number", "give a finite number"));
+        }
+        Ok(value)
+    }
+
+    fn above_zero(&self, key: &str, value: f64) -> Result<f64> {
+        if value <= 0.0 {
+            return Err(input(&self.key(key), value, "must be above zero", "give a number above zero"));
+        }
+        Ok(value)
+    }
+
+    fn key(&self, key: &str) -> String {
+        format!("{}.{key}", self.path)
+    }
+
+    fn missing(&self, key: &str) -> perilife_base::error::Error {
+        let remedy = match key {
+            "from" | "to" | "count" if self.input.distribution.is_none() => "give values, or from, to and count",
+            "distribution" => "give uniform, log_uniform, normal or log_normal",
+            _ => "give the parameters of the distribution; `perilife list` names them",
+        };
+        input_missing(&self.key(key), "is missing", remedy)
+    }
+
+    /// Refuses the first of these keys that is given.
+    fn refuse(&self, keys: &[(&str, bool)], problem: &str, remedy: &str) -> Result<()> {
+        match keys.iter().find(|(_, given)| *given) {
+            Some((key, _)) => Err(input_missing(&self.key(key), problem, remedy)),
+            None => Ok(()),
+        }
+    }
+
+    fn of_distributions(&self) -> [(&'static str, bool); 6] {
+        let input = self.input;
+        [
+            ("distribution", input.distribution.is_some()),
+            ("mean", input.mean.is_some()),
+            ("standard_deviation", input.standard_deviation.is_some()),
+            ("median", input.median.is_some()),
+            ("factor", input.factor.is_some()),
+            ("standard_deviation_ln", input.standard_deviation_ln.is_some()),
+        ]
+    }
+
+    fn of_spacing(&self) -> [(&'static str, bool); 4] {
+        let input = self.input;
+        [
+            ("from", input.from.is_some()),
+            ("to", input.to.is_some()),
+            ("count", input.count.is_some()),
+            ("scale", input.scale.is_some()),
+        ]
+    }
+}

@@ -1,0 +1,309 @@
+//! What a run carries from block to block, its growing a-N curve first. The displacement is not among it: the solver makes it of the
+//! bonds.
+
+use serde::{Deserialize, Serialize};
+
+use crate::ageing::BondLife;
+use crate::case::{Case, Engine};
+use crate::end_of_life::End;
+use crate::record::{CurvePoint, TipRecord};
+use perilife_laws::growth_rate::{LengthAverage, Rate, Sample, rates, release_rate_at_end};
+use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
+use perilife_plate::specimen::{LengthConvention, Specimen};
+use perilife_points::body::{Body, Bond};
+use perilife_points::crack_tip::CrackTip;
+use perilife_points::state::Bonds;
+
+/// Growth, in horizons, over which rates are taken.
+const RATE_SPAN_HORIZONS: f64 = 1.0;
+/// Growth of all tips together, in horizons, from which the energy release rate at the end of it is taken: K within 2 % where
+/// the crack is four horizons long, within 7 % where it is two.
+const RELEASE_SPAN_HORIZONS: f64 = 3.0;
+/// Growth before which that says nothing: the first bonds to break turn the cut end of a crack into a grown one.
+const RELEASE_KNOWN_HORIZONS: f64 = 2.0;
+/// Initial crack length, in horizons, below which the finite horizon matters by more than some percent in rate.
+const SHORT_CRACK_HORIZONS: f64 = 5.0;
+
+/// The plate after a block.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Cycles.
+    pub cycles: f64,
+    /// Crack length, m.
+    pub crack_length: f64,
+    work: f64,
+    broken_bonds: usize,
+    tips: Vec<TipRecord>,
+}
+
+impl Row {
+    /// Where the tips are.
+    pub fn tips(&self) -> &[TipRecord] {
+        &self.tips
+    }
+
+    /// Growth of all tips together, m.
+    fn growth(&self) -> f64 {
+        self.tips.iter().map(|tip| tip.growth).sum()
+    }
+}
+
+/// All rows of a run so far.
+pub struct GrowthHistory {
+    past: History,
+    formula: Option<HandbookFormula>,
+    specimen: Specimen,
+    /// Cycles at which the run was ended without a break.
+    run_out: Option<f64>,
+    /// Largest crack length the plate has room for, m.
+    limit: f64,
+}
+
+/// What a track has taken down.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct History {
+    rows: Vec<Row>,
+    cycles: f64,
+    /// Longest crack so far as the ways of its tips have it, m.
+    longest: f64,
+}
+
+impl History {
+    /// Whether it can be that of a run with `tips` tips.
+    pub(super) fn fits(&self, tips: usize) -> bool {
+        !self.rows.is_empty() && self.rows.iter().all(|row| row.tips.len() == tips)
+    }
+}
+
+impl GrowthHistory {
+    /// Nothing is taken down yet.
+    pub(super) fn new(case: &Case) -> Self {
+        GrowthHistory {
+            past: History::default(),
+            formula: handbook(&case.specimen),
+            specimen: case.specimen.clone(),
+            run_out: None,
+            limit: match case.specimen.convention {
+                LengthConvention::MeanOfTips => case.specimen.length_limit().0,
+                LengthConvention::SumOfTips => f64::INFINITY,
+            },
+        }
+    }
+
+    /// Goes on from what was taken down before.
+    pub(super) fn go_on_from(&mut self, past: History) {
+        self.past = past;
+    }
+
+    /// What was taken down so far.
+    pub(super) fn past(&self) -> &History {
+        &self.past
+    }
+
+    /// The latest row.
+    pub(super) fn last(&self) -> &Row {
+        // The first row is recorded before the first block.
+        &self.past.rows[self.past.rows.len() - 1]
+    }
+
+    /// Lets cycles pass.
+    pub(super) fn spend(&mut self, cycles: f64) {
+        self.past.cycles += cycles;
+    }
+
+    /// Cycles so far.
+    pub(super) fn cycles(&self) -> f64 {
+        self.past.cycles
+    }
+
+    /// Records the plate at its start or after a block.
+    ///
+    /// Where bonds break all around, the way of a tip goes to and fro: a crack is never recorded longer than its plate.
+    pub(super) fn record(&mut self, tips: Vec<TipRecord>, broken_bonds: usize, work: f64) {
+        let growth: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
+        let crack_length = self.specimen.crack_length_after(&growth);
+        self.past.longest = self.past.longest.max(crack_length);
+        let crack_length = crack_length.min(self.limit);
+        self.past.rows.push(Row { cycles: self.past.cycles, crack_length, work, broken_bonds, tips });
+    }
+
+    /// Ends the curve at a run-out: the crack stands where it is.
+    pub(super) fn run_out(&mut self, cycles_max: f64) {
+        self.run_out = Some(cycles_max);
+    }
+
+    /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` where a handbook
+    /// knows it, or before the crack has grown by two horizons.
+    pub(super) fn k_max_released(&self, case: &Case, horizon: f64) -> Option<f64> {
+        if self.formula.is_some() || self.last().growth() < RELEASE_KNOWN_HORIZONS * horizon {
+            return None;
+        }
+        let span = RELEASE_SPAN_HORIZONS * horizon;
+        let recent = self.past.rows.iter().rposition(|row| row.growth() < self.last().growth() - span).unwrap_or(0);
+        let released = release_rate_at_end(&self.samples(&self.past.rows[recent..]), case.specimen.thickness)?;
+        Some((released * case.material.plane_modulus()).sqrt())
+    }
+
+    pub(super) fn warnings(&self, case: &Case, body: &Body) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let flaw = case.specimen.smallest_flaw();
+        if case.engine() == Engine::Bonds && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
+            warnings.push(format!(
+                "the initial crack is only {:.1} horizons long: its bonds are strained more than those of a long crack at equal K, and it \
+                 grows too fast at first (not a short-crack effect; fatigue.driver = \"tip_field\" is free of it)",
+                flaw / body.horizon()
+            ));
+        }
+        if self.past.longest > self.limit + body.horizon() {
+            let words = "bonds broke all around the tips, so that their way says nothing about the crack near its end: read the \
+                         life, not the length (fatigue.ageing = \"crack_tip\" keeps breaks at the tips)";
+            warnings.push(words.to_owned());
+        }
+        let stopped_in_grip = self.past.rows.last().is_some_and(|row| {
+            row.tips.iter().any(|tip| {
+                let [column, line] = body.lattice.locate(tip.position).map(f64::round);
+                (0.0..body.lattice.columns as f64).contains(&column)
+                    && (0.0..body.lattice.rows as f64).contains(&line)
+                    && body.no_fail[body.lattice.place(column as usize, line as usize)]
+            })
+        });
+        if stopped_in_grip {
+            warnings.push("a crack tip stands in the zone around a load or support, where bonds do not fail".to_owned());
+        }
+        warnings
+    }
+
+    fn samples(&self, rows: &[Row]) -> Vec<Sample> {
+        rows.iter()
+            .map(|row| Sample { cycles: row.cycles, crack_length: row.crack_length, growth: row.growth(), work: row.work })
+            .collect()
+    }
+
+    /// The rows with lengths averaged over one spacing of growth.
+    fn averaged(&self, spacing: f64) -> Vec<Row> {
+        let cycles: Vec<f64> = self.past.rows.iter().map(|row| row.cycles).collect();
+        let lengths: Vec<f64> = self.past.rows.iter().map(|row| row.crack_length).collect();
+        // A spacing of growth at every tip.
+        let growth = vec![spacing; self.past.rows[0].tips.len()];
+        let average =
+            LengthAverage::new(&cycles, &lengths, self.specimen.crack_length_after(&growth) - self.specimen.crack_length);
+        let mut rows = self.past.rows.clone();
+        let work: Vec<f64> = self.past.rows.iter().map(|row| row.work).collect();
+        rows.iter_mut().zip(average.of(&work)).for_each(|(row, work)| row.work = work);
+        rows.iter_mut().zip(average.of_rising(&lengths)).for_each(|(row, length)| row.crack_length = length);
+        for tip in 0..self.past.rows[0].tips.len() {
+            let growth: Vec<f64> = self.past.rows.iter().map(|row| row.tips[tip].growth).collect();
+            rows.iter_mut().zip(average.of_rising(&growth)).for_each(|(row, growth)| row.tips[tip].growth = growth);
+        }
+        rows
+    }
+
+    /// The curve to a known end.
+    pub(super) fn curve(&self, case: &Case, body: &Body, end: Option<End>) -> Vec<CurvePoint> {
+        let mut rows = self.averaged(body.lattice.spacing);
+        if let Some(cycles_max) = self.run_out {
+            // The crack stands where it is until then.
+            rows.extend(rows.last().cloned().map(|row| Row { cycles: cycles_max, ..row }));
+        }
+        if let Some(end) = end {
+            end_at(&mut rows, end.crack_length);
+        }
+        let (span, thickness) = (RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
+        let rate = rates(&self.samples(&rows), span, thickness);
+        // Where crack length sums the growth of all tips, da/dN is still that of one: the fastest.
+        let of_tip = |tip: usize| {
+            let samples = self.samples(&rows).into_iter().zip(&rows);
+            let growth: Vec<Sample> = samples.map(|(s, row)| Sample { crack_length: row.tips[tip].growth, ..s }).collect();
+            rates(&growth, span, thickness)
+        };
+        let tips = if case.specimen.convention == LengthConvention::SumOfTips { rows[0].tips.len() } else { 0 };
+        let of_tips: Vec<Vec<Rate>> = (0..tips).map(of_tip).collect();
+        let fastest = |i: usize| of_tips.iter().map(|tip| tip[i].growth_rate).reduce(f64::max).unwrap_or(rate[i].growth_rate);
+        let share = case.loading.range_share();
+        let cracks = case.specimen.crack_lines();
+        let limit_load = |tips: &[TipRecord], crack_length: f64| {
+            let mut cracks = cracks.clone();
+            for (tip, record) in tips.iter().enumerate() {
+                if let Some(end) = case.specimen.line_end(tip).filter(|_| record.growth > 0.0) {
+                    cracks[end.line].grow(end.at_last, record.position);
+                }
+            }
+            case.limit_load(crack_length, &cracks)
+        };
+        let point = |(i, row): (usize, &Row)| CurvePoint {
+            is_solved: true,
+            limit_load: limit_load(&row.tips, row.crack_length),
+            cycles: row.cycles,
+            crack_length: row.crack_length,
+            delta_k: match &self.formula {
+                Some(_) if row.crack_length >= self.limit * (1.0 - 1e-9) => f64::NAN,
+                Some(formula) => formula.delta_k(row.crack_length, case.loading.maximum, share),
+                None => share * (rate[i].energy_release_rate * case.material.plane_modulus()).sqrt(),
+            },
+            growth_rate: fastest(i),
+            work: row.work,
+            broken_bonds: row.broken_bonds,
+            tips: row.tips.clone(),
+            depth: None,
+            residual: None,
+        };
+        rows.iter().enumerate().map(point).collect()
+    }
+}
+
+/// Ends the rows at a crack length that they pass.
+fn end_at(rows: &mut Vec<Row>, crack_length: f64) {
+    let Some(past) = rows.iter().position(|row| row.crack_length >= crack_length).filter(|&past| past > 0) else { return };
+    rows.truncate(past + 1);
+    let before = rows[past - 1].clone();
+    let row = &mut rows[past];
+    let share = (crack_length - before.crack_length) / (row.crack_length - before.crack_length);
+    let between = |a: f64, b: f64| a + share * (b - a);
+    row.cycles = between(before.cycles, row.cycles);
+    row.crack_length = crack_length;
+    row.work = between(before.work, row.work);
+    for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
+        tip.growth = between(old.growth, tip.growth);
+        tip.position = [0, 1].map(|i| between(old.position[i], tip.position[i]));
+    }
+}
+
+/// Where a run stands.
+pub(super) struct RunState {
+    /// Which bonds carry.
+    pub bonds: Bonds,
+    /// What life is left to them.
+    pub life: BondLife,
+    /// Tips of the cracks.
+    pub tips: Vec<CrackTip>,
+    /// Bonds that come near the critical stretch, also away from the tips.
+    pub near_limit: Vec<Bond>,
+    /// The curve so far.
+    pub track: GrowthHistory,
+    /// Bonds broken since the start, those set aside not counted.
+    pub broken_bonds: usize,
+    /// Equilibrium solves.
+    pub solves: usize,
+    /// Solver iterations.
+    pub iterations: usize,
+    /// Whether a window was condensed; a solver that is built anew has none at first.
+    pub had_window: bool,
+}
+
+impl RunState {
+    /// The start of a run with these tips, all bonds but those of the initial cracks whole.
+    pub(super) fn start(case: &Case, body: &Body, tips: Vec<CrackTip>) -> Self {
+        let bonds = Bonds::new(body);
+        RunState {
+            life: BondLife::whole(bonds.multiplier.len()),
+            track: GrowthHistory::new(case),
+            near_limit: Vec::new(),
+            broken_bonds: 0,
+            solves: 0,
+            iterations: 0,
+            had_window: false,
+            bonds,
+            tips,
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! `model.method = "auto"`: no more of a model than a scene needs.
+
+use toml::Value;
+
+use super::Method;
+use super::model_keys::{KEYS_OF_BONDS, telling_key};
+use perilife_base::input::value_at;
+use perilife_laws::growth_law::GrowthLawKind;
+use perilife_plate::loading::Loading;
+use perilife_plate::specimen::beta::KEY;
+use perilife_plate::specimen::handbook::{HandbookFormula, handbook, handbook_beside};
+use perilife_plate::specimen::part_through::SOURCE;
+use perilife_plate::specimen::{Bearing, Load, Specimen};
+
+/// Error of a life over that of K where the case does not say its exponent: that of most metals.
+const EXPONENT_USUAL: f64 = 3.0;
+
+/// Sections of a case that say what it needs.
+pub(super) struct Sections<'a> {
+    pub model: &'a Value,
+    pub fatigue: &'a Value,
+    pub output: &'a Value,
+}
+
+/// The method for a case that leaves it open, and why, for an error of life asked for in percent.
+pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loading, percent: f64) -> (Method, String) {
+    if let Some(flaw) = &specimen.part_through {
+        return (Method::Handbook, format!("the crack does not go through: K of {SOURCE} ({})", flaw.kind()));
+    }
+    if specimen.beta.is_some() {
+        return (Method::Handbook, format!("K(a) is given ({KEY})"));
+    }
+    match telling_key(asked.model) {
+        Some((key, Method::Peridynamics)) => return (Method::Peridynamics, format!("model.{key} asks for points and bonds")),
+        Some((key, method)) => return (method, format!("model.{key} asks for nodes")),
+        None => {}
+    }
+    let is_given = |key: &&&str| value_at(asked.fatigue, key).is_some();
+    if let Some(key) = KEYS_OF_BONDS.iter().find(is_given) {
+        return (Method::Peridynamics, format!("fatigue.{key} asks for fatigue bonds"));
+    }
+    if value_at(asked.fatigue, "driver").and_then(Value::as_str) == Some("bond_strain") {
+        return (Method::Peridynamics, "fatigue.driver = \"bond_strain\" asks for fatigue bonds".to_owned());
+    }
+    if !specimen.has_sharp_tips() || !specimen.slots.is_empty() {
+        return (Method::Peridynamics, "cracks start from a slot or notch".to_owned());
+    }
+    let has_own_pins =
+        specimen.loads.iter().any(|load| matches!(load, Load::Pin { contact: Bearing::Cosine(_) | Bearing::Elastic(_), .. }));
+    if has_own_pins && handbook(specimen).is_some() {
+        return (Method::ElementFreeGalerkin, "the formula of the specimen is for pins of its standard".to_owned());
+    }
+    if specimen.crack_pressure != 0.0 {
+        return (Method::ElementFreeGalerkin, "no handbook formula knows pressure in cracks".to_owned());
+    }
+    let Some(formula) = handbook_beside(specimen) else {
+        return (Method::ElementFreeGalerkin, "no handbook formula covers the plate".to_owned());
+    };
+    match beyond_formula(&formula, asked, specimen, loading, percent) {
+        None => (Method::Handbook, format!("standard specimen within the range of its formula ({})", formula.name)),
+        Some(why) => (Method::ElementFreeGalerkin, format!("the formula of the specimen ({}) {why}", formula.name)),
+    }
+}
+
+/// Why a formula does not do for a case; `None` where it does.
+fn beyond_formula(
+    formula: &HandbookFormula,
+    asked: &Sections<'_>,
+    specimen: &Specimen,
+    loading: &Loading,
+    percent: f64,
+) -> Option<String> {
+    let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
+    let unknown = [
+        (loading.displacement().is_some(), "knows no cycles of a displacement"),
+        (loading.residual.is_some(), "does not say how well it holds with residual stress"),
+        (has_fields, "has no fields, for which output.paraview asks"),
+    ];
+    if let Some((_, why)) = unknown.iter().find(|(is_so, _)| *is_so) {
+        return Some((*why).to_owned());
+    }
+    if !formula.holds_at(specimen.crack_length) {
+        return Some(format!("does not hold at this crack length: {}", formula.range));
+    }
+    let error = 100.0 * formula.error_at(specimen.crack_length);
+    let exponent = exponent(asked.fatigue).unwrap_or(EXPONENT_USUAL);
+    // 0.5 % of K at m = 4 are 2 %, whatever round-off makes of it.
+    let of_life = exponent * error * (1.0 - 1e-9);
+    let is_good = of_life <= percent && handbook(specimen).is_some();
+    (!is_good).then(|| {
+        format!("may be {error:.1} % off in K, which is {of_life:.1} % of life at m = {exponent}; asked for are {percent} %")
+    })
+}
+
+/// The exponent of ΔK that `[fatigue]` gives.
+fn exponent(fatigue: &Value) -> Option<f64> {
+    let constants = GrowthLawKind::all().flat_map(|kind| kind.0.constants).filter(|constant| constant.is_exponent);
+    constants
+        .filter_map(|constant| value_at(fatigue, constant.key))
+        .find_map(|value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)))
+}

@@ -1,0 +1,231 @@
+//! Keys of `[model]`, and what those of the element-free Galerkin method say.
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::{Case, Method, Model};
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::{LENGTH, Quantity, number};
+use perilife_nodes::basis::{BasisKind, Enrichment};
+use perilife_nodes::resolution::{ElementFreeSettings, IN_RADIUS, RIM_REACH, Resolution};
+use perilife_plate::specimen::Specimen;
+use perilife_plate::specimen::geometry::bounding_box;
+use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_points::solver::{SolverKind, Symmetry};
+
+/// By the error asked for, in percent of life: far spacings across the smaller side of the plate, largest step of a tip over its crack
+/// and room, reach of a tip in spacings, radius of influence on linear polynomials. Of the nine plates of `data/reference` the worst errs by 1.6 % of
+/// life where 5 are asked for, by 1.2 where 2 are, and by 0.7 where 0.5 are, the others by 0.8, 0.7 and 0.2 (`perilife verify estimates`).
+const RUNGS: [(f64, [f64; 4]); 4] = [
+    (0.5, [20.0, 0.25, 4.0, 2.5]),
+    (1.0, [14.0, 0.4, 3.0, 2.5]),
+    (2.0, [10.0, 0.4, 3.0, 2.2]),
+    (f64::INFINITY, [10.0, 0.4, 3.0, 2.0]),
+];
+/// Far spacings of a plate without crack over those of one with cracks: it is asked for stress along rims, which needs more than K.
+const WITHOUT_CRACK: f64 = 2.0;
+/// Error that is asked for where the case does not say.
+const TOLERANCE_PERCENT: f64 = 2.0;
+/// Least error that can be asked for.
+const TOLERANCE_LEAST: f64 = 0.5;
+/// Nodes over those of a run that asks for nearly that error, by which it is judged.
+const FINER: f64 = 1.5;
+/// Share of the error of a life that K may have: its cube or fourth power makes the life.
+const FACTOR_SHARE: f64 = 0.3;
+/// Nodes far from cracks beyond which a spacing was hardly meant for nodes.
+const NODES_USUAL: f64 = 5e3;
+/// Spacings in the room of a tip.
+const HOLD: f64 = 3.0;
+/// Radius of influence of a node in its spacings, of quadratic polynomials.
+const INFLUENCE_OF_QUADRATIC: f64 = 3.5;
+
+/// Keys of `[model]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelKeys {
+    pub method: Option<Method>,
+    pub symmetry: Option<Symmetry>,
+    pub bond_law: Option<BondLawKind>,
+    pub kernel: Option<Kernel>,
+    pub rotation: Option<Rotation>,
+    pub surface_correction: Option<SurfaceCorrection>,
+    pub spacing_mm: Option<f64>,
+    pub horizon_ratio: Option<f64>,
+    pub lattice_angle_deg: Option<f64>,
+    pub solver: Option<SolverKind>,
+    pub nodes: Option<f64>,
+    pub tolerance_percent: Option<f64>,
+    pub basis: Option<BasisKind>,
+    pub enrichment: Option<Enrichment>,
+    pub influence_radius: Option<f64>,
+}
+
+/// A key of a case: whose it is, and what kind of number.
+struct Key {
+    name: &'static str,
+    owners: &'static [Method],
+    quantity: Option<Quantity>,
+}
+
+const POINTS: &[Method] = &[Method::Peridynamics, Method::Handbook];
+const NODES: &[Method] = &[Method::ElementFreeGalerkin];
+/// Of handbook, too, which the program takes where its formula is good enough.
+const CHOSEN: &[Method] = &[Method::ElementFreeGalerkin, Method::Handbook];
+
+const fn key(name: &'static str, owners: &'static [Method], quantity: Option<Quantity>) -> Key {
+    Key { name, owners, quantity }
+}
+
+/// Keys of `[model]` beside `method`.
+const KEYS: [Key; 14] = [
+    // That of points, or of nodes far from cracks.
+    key("spacing_mm", Method::ALL, Some(LENGTH)),
+    key("symmetry", POINTS, None),
+    key("bond_law", POINTS, None),
+    key("kernel", POINTS, None),
+    key("rotation", POINTS, None),
+    key("surface_correction", POINTS, None),
+    key("horizon_ratio", POINTS, Some(number("a horizon ratio", 1.5, 12.0))),
+    key("lattice_angle_deg", POINTS, Some(number("an angle in degrees", -90.0, 90.0))),
+    key("solver", POINTS, None),
+    key("nodes", NODES, Some(number("a number of nodes", 50.0, 1e5))),
+    key("tolerance_percent", CHOSEN, Some(number("an error in percent", TOLERANCE_LEAST, 20.0))),
+    key("basis", NODES, None),
+    key("enrichment", NODES, None),
+    key("influence_radius", NODES, Some(number("a radius of influence in spacings", 1.5, 6.0))),
+];
+
+/// Keys of `[fatigue]` that belong to fatigue bonds.
+pub(super) const KEYS_OF_BONDS: &[&str] = &["ageing", "zone_radius_horizons", "critical_stretch"];
+
+/// A key of `[model]` that asks for its first owner where the method is left open; `spacing_mm` asks for points.
+pub(super) fn telling_key(model: &Value) -> Option<(&'static str, Method)> {
+    let tells = |key: &&Key| key.owners.contains(&Method::Peridynamics) || key.owners == NODES;
+    let key = KEYS.iter().filter(tells).find(|key| model.get(key.name).is_some())?;
+    let of_points = key.owners.contains(&Method::Peridynamics);
+    Some((key.name, if of_points { Method::Peridynamics } else { Method::ElementFreeGalerkin }))
+}
+
+/// Error asked for, percent of life.
+pub(super) fn tolerance(keys: &ModelKeys) -> Result<f64> {
+    Ok(read("tolerance_percent", keys.tolerance_percent)?.unwrap_or(TOLERANCE_PERCENT))
+}
+
+/// A number of `[model]` in SI units, within its range.
+pub(super) fn read(name: &str, value: Option<f64>) -> Result<Option<f64>> {
+    let quantity = KEYS.iter().find(|key| key.name == name).and_then(|key| key.quantity);
+    quantity.map_or(Ok(value), |quantity| quantity.read_optional(&format!("model.{name}"), value))
+}
+
+/// Refuses a key of `[model]` that does not go with the method.
+pub(super) fn refuse_strangers(model: &Value, method: Method, chosen: Option<&str>) -> Result<()> {
+    let strange = KEYS.iter().find(|key| !key.owners.contains(&method) && model.get(key.name).is_some());
+    let Some(&Key { name, owners: &[owner, ..], .. }) = strange else { return Ok(()) };
+    let problem = format!(
+        "belongs to model.method = \"{owner}\", and the method is \"{method}\"{}",
+        chosen.map_or_else(String::new, |why| format!(" ({why})"))
+    );
+    Err(input_missing(&format!("model.{name}"), &problem, format!("leave it out, or use model.method = \"{owner}\"")))
+}
+
+/// Makes `[model]` one of nodes: what it says of points goes, but for keys that were `asked` for beside the file.
+pub(super) fn on_nodes(table: &mut Table, asked: impl Fn(&str) -> bool) {
+    let model = table.entry("model").or_insert_with(|| Value::Table(Table::new()));
+    let (Some(model), name) = (model.as_table_mut(), Method::ElementFreeGalerkin.name()) else { return };
+    if model.get("method").and_then(Value::as_str) == Some(name) {
+        return;
+    }
+    let of_points = |name: &str| KEYS.iter().any(|key| key.name == name && key.owners.contains(&Method::Peridynamics));
+    model.retain(|name, _| !of_points(name) || asked(&format!("model.{name}")));
+    model.insert("method".to_owned(), Value::String(name.to_owned()));
+}
+
+/// What is to be said of a spacing that was meant for points: nodes are refined by themselves.
+pub(super) fn too_fine(spacing_mm: f64, specimen: &Specimen, settings: &ElementFreeSettings) -> Option<String> {
+    let nodes = specimen.area() / settings.resolution.far.powi(2);
+    (nodes > NODES_USUAL).then(|| {
+        format!(
+            "model.spacing_mm = {spacing_mm} makes some {nodes:.0} nodes far from cracks: nodes are refined by themselves where tips, rims and \
+             ligaments ask for it; leave the key out"
+        )
+    })
+}
+
+/// Nodes where a case says nothing of them.
+pub fn usual_nodes(specimen: &Specimen) -> ElementFreeSettings {
+    let basis = if specimen.tips.is_empty() { BasisKind::Quadratic } else { BasisKind::Linear };
+    nodes_for(specimen, TOLERANCE_PERCENT, basis)
+}
+
+/// Nodes by which K of a case on points or nodes is judged: those for the least error that can be asked for, finer still beside a run that
+/// asks for nearly that.
+pub fn finer_nodes(case: &Case) -> ElementFreeSettings {
+    let mut nodes = nodes_for(&case.specimen, TOLERANCE_LEAST, BasisKind::Linear);
+    let is_as_fine = matches!(case.model, Model::Nodes(own) if own.is_given || own.tolerance < 2.0 * nodes.tolerance);
+    let times = if is_as_fine { FINER } else { 1.0 };
+    let far =
+        if let Model::Nodes(own) = case.model { nodes.resolution.far.min(own.resolution.far) } else { nodes.resolution.far };
+    nodes.resolution.far = far / times;
+    nodes.resolution.hold *= times;
+    nodes
+}
+
+/// Smaller side of the plate, m.
+fn smaller_side(specimen: &Specimen) -> f64 {
+    let [low, high] = bounding_box(&specimen.outline);
+    (high[0] - low[0]).min(high[1] - low[1])
+}
+
+/// Nodes for an error asked for, percent of life.
+fn nodes_for(specimen: &Specimen, percent: f64, basis: BasisKind) -> ElementFreeSettings {
+    let (_, [across, step_share, reach, of_linear]) =
+        RUNGS.into_iter().find(|(most, _)| percent <= *most).unwrap_or(RUNGS[RUNGS.len() - 1]);
+    let across = if specimen.tips.is_empty() { WITHOUT_CRACK * across } else { across };
+    ElementFreeSettings {
+        resolution: Resolution {
+            far: smaller_side(specimen) / across,
+            hold: HOLD,
+            reach,
+            in_radius: IN_RADIUS,
+            rim_reach: RIM_REACH,
+            fineness: 1.0,
+            support: if basis == BasisKind::Quadratic { INFLUENCE_OF_QUADRATIC } else { of_linear },
+            basis,
+            enrichment: Enrichment::Tip,
+        },
+        step_share,
+        tolerance: percent / 100.0 * FACTOR_SHARE,
+        is_given: false,
+    }
+}
+
+impl ModelKeys {
+    /// What the keys of nodes say, and the choice of the program where they say nothing; `spacing_mm` is that far from cracks.
+    pub(super) fn nodes(&self, specimen: &Specimen) -> Result<ElementFreeSettings> {
+        let percent = tolerance(self)?;
+        let usual = usual_nodes(specimen);
+        let mut settings = nodes_for(specimen, percent, self.basis.unwrap_or(usual.resolution.basis));
+        let resolution = &mut settings.resolution;
+        let (spacing, nodes) = (read("spacing_mm", self.spacing_mm)?, read("nodes", self.nodes)?);
+        match (spacing, self.nodes) {
+            (Some(_), Some(nodes)) => {
+                let problem = "stands beside model.spacing_mm, which says the same in other words";
+                return Err(input("model.nodes", nodes, problem, "leave one of them out"));
+            }
+            (Some(spacing), None) => {
+                let side = smaller_side(specimen);
+                let most = side / 4.0;
+                if spacing > most {
+                    let problem = format!("leaves fewer than four spacings across the plate ({} mm)", 1e3 * side);
+                    return Err(input("model.spacing_mm", 1e3 * spacing, problem, format!("give {:.4} mm or less", 1e3 * most)));
+                }
+                resolution.far = spacing;
+            }
+            (None, _) => resolution.far = nodes.map_or(resolution.far, |nodes| (specimen.area() / nodes).sqrt()),
+        }
+        resolution.support = read("influence_radius", self.influence_radius)?.unwrap_or(resolution.support);
+        resolution.enrichment = self.enrichment.unwrap_or(resolution.enrichment);
+        settings.is_given = spacing.is_some() || nodes.is_some();
+        Ok(settings)
+    }
+}

@@ -1,0 +1,50 @@
+//! Where elastic pins touch their holes when a case begins.
+
+use super::{Case, Model};
+use perilife_base::error::{Error, Result, input};
+use perilife_base::units::MM;
+use perilife_nodes::crack::initial_cracks;
+use perilife_nodes::field::Discretisation;
+use perilife_nodes::solve::solve;
+use perilife_plate::specimen::{Bearing, Load, SpecimenKind};
+use perilife_plate::williams::Elasticity;
+
+/// Finds where the elastic pins of a case touch at maximum load, on nodes with the initial cracks, and puts that on its loads. Points keep
+/// it as the cracks grow; nodes find contact anew in every equilibrium.
+/// Errors: what does not go with such pins; those of the equilibrium.
+pub(super) fn settle(case: &mut Case) -> Result<()> {
+    let Some((hole, radius)) = case.specimen.loads.iter().find_map(|load| match load {
+        Load::Pin { hole, contact: Bearing::Elastic(pin), .. } => Some((*hole, pin.radius)),
+        _ => None,
+    }) else {
+        return Ok(());
+    };
+    let (key, value) = match case.specimen.kind {
+        SpecimenKind::Plate => ("loading.pins", format!("pin of hole {hole}")),
+        _ => ("specimen.pin_diameter_mm", ((2e6 * radius / MM).round() / 1e6).to_string()),
+    };
+    let refused = |problem: &str, remedy: &str| Err(input(key, value.clone(), problem, remedy));
+    if case.loading.displacement().is_some() {
+        let problem = "touches as its force says, which cycles of a displacement do not know beforehand";
+        return refused(problem, "give its contact half angle");
+    }
+    if matches!(case.model, Model::Handbook(_)) {
+        return refused(
+            "is not known to the handbook, whose K is that of its own pins",
+            "use another model.method, or leave the pin out",
+        );
+    }
+    let (lines, tips) = initial_cracks(&case.specimen);
+    let resolution = case.nodes().resolution;
+    let plate = Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &resolution)?;
+    let solution = solve(&case.specimen, &plate, resolution.far, case.loading.maximum).map_err(|error| match error {
+        Error::LossOfStiffness => Error::Mechanics("what is left of the plate cannot carry the load of its pins".to_owned()),
+        other => other,
+    })?;
+    for (load, contact) in solution.contacts {
+        if let Load::Pin { contact: Bearing::Elastic(pin), .. } = &mut case.specimen.loads[load] {
+            pin.found = Some(contact.into());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,157 @@
+//! `fitted.toml`: the calibrated law with all it depends on. One record is one whole: constants are meaningless
+//! without horizon, law, kernel, corrections and zone they were fitted with. Of a law over K: its constants under the keys of `[fatigue]`,
+//! and what they were fitted to.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+use perilife_measured::LeaveOut;
+
+perilife_base::kinds! {
+    /// Estimates of the constants of a law.
+    pub enum Estimate for "estimate" {
+        LeastSquares = "least_squares": "least squares on lives",
+        Robust = "robust": "repeated median of rates (Siegel 1982), where readings do not belong",
+    }
+}
+
+/// A calibrated fatigue law with its provenance; keys and units as in `fitted.toml`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FittedRecord {
+    /// A at `horizon_mm`, 1/cycle.
+    pub a: f64,
+    /// Exponent p.
+    pub p: f64,
+    /// Horizon that A belongs to.
+    pub horizon_mm: f64,
+    /// Lattice spacing of the calibration.
+    pub spacing_mm: f64,
+    /// Horizon over spacing.
+    pub horizon_ratio: f64,
+    /// How A moves to another horizon, in words.
+    pub scaling: String,
+    /// β of da/dN = β A δ^(1-p/2) (ΔK/E')^p, K by the field of the tip: what the crack that was fitted to grew by. Absent in a record of
+    /// `handbook`, which has no A.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate_constant: Option<f64>,
+    /// Paris constant of the same material: da/dN = C ΔK^m in mm/cycle and MPa√m.
+    pub paris_c_mm_per_cycle: f64,
+    /// Paris exponent m (not the same as p).
+    pub paris_m: f64,
+    /// Standard error of m.
+    pub paris_m_error: f64,
+    /// ΔK at which the fit is best determined.
+    pub pivot_delta_k_mpa_sqrt_m: f64,
+    /// da/dN there.
+    pub rate_at_pivot_mm_per_cycle: f64,
+    /// Relative standard error of the rate at the pivot.
+    pub rate_at_pivot_relative_error: f64,
+    /// Standard error of p.
+    pub p_error: f64,
+    /// Smallest ΔK of the fit window.
+    pub delta_k_min_mpa_sqrt_m: f64,
+    /// Largest ΔK of the fit window.
+    pub delta_k_max_mpa_sqrt_m: f64,
+    /// Measured rate over that of the law at an end of its range, less one, in percent, whichever end misses more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lack_of_fit_percent: Option<f64>,
+    /// Stress ratio of the tests.
+    pub stress_ratio: f64,
+    /// `model.method` of the fit. A record of `handbook` holds C and m; its a, horizon_mm and spacing_mm are nan.
+    pub method: String,
+    /// `model.bond_law`.
+    pub bond_law: String,
+    /// `model.kernel`.
+    pub kernel: String,
+    /// `model.rotation`.
+    pub rotation: String,
+    /// `model.surface_correction`.
+    pub surface_correction: String,
+    /// `fatigue.ageing`.
+    pub ageing: String,
+    /// `fatigue.zone_radius_horizons`.
+    pub zone_radius_horizons: f64,
+    /// Young's modulus of the calibration.
+    pub youngs_modulus_gpa: f64,
+    /// Poisson's ratio of the calibration.
+    pub poisson_ratio: f64,
+    /// `material.plane`.
+    pub plane: String,
+    /// Thickness of the tested specimens.
+    pub thickness_mm: f64,
+    /// Material name.
+    pub material: String,
+    /// Program version.
+    pub version: String,
+    /// Which estimate of the constants it holds.
+    #[serde(default = "least_squares")]
+    pub estimate: Estimate,
+    /// Measured files with their hashes.
+    pub sources: Vec<SourceFile>,
+    /// Readings that were left out, with the reasons.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeaveOut>,
+    /// Scatter of the specimens about a common law; what it holds is the calibration's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub population: Option<Table>,
+}
+
+fn least_squares() -> Estimate {
+    Estimate::LeastSquares
+}
+
+/// A measured file a record was fitted to.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SourceFile {
+    /// Path as given in the calibration file.
+    pub file: String,
+    /// SHA-256 of its bytes, hexadecimal.
+    pub sha256: String,
+}
+
+/// A fitted law; keys and units as in the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LawRecord {
+    /// Material name; empty where the calibration had none.
+    pub material: String,
+    /// Smallest ΔK of the rates.
+    pub delta_k_min_mpa_sqrt_m: f64,
+    /// Largest ΔK of the rates.
+    pub delta_k_max_mpa_sqrt_m: f64,
+    /// Smallest stress ratio of the rates.
+    pub stress_ratio_min: f64,
+    /// Largest stress ratio of the rates.
+    pub stress_ratio_max: f64,
+    /// How many rates.
+    pub rates: usize,
+    /// Root mean square of ln da/dN about the law.
+    pub rms_log_rate: f64,
+    /// Criterion of the next best law less that of this one; absent where there is no other.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub aicc_margin: Option<f64>,
+    /// Program version.
+    pub version: String,
+    /// `growth_law` and its constants, as a case has them.
+    pub fatigue: Table,
+    /// Standard errors of the constants that were fitted, by the same keys.
+    pub errors: BTreeMap<String, f64>,
+    /// Files with their hashes.
+    pub sources: Vec<SourceFile>,
+}
+
+impl LawRecord {
+    /// Whether the content of a `fitted.toml` is such a record.
+    pub fn is_of(table: &Table) -> bool {
+        table.contains_key("fatigue")
+    }
+
+    /// `growth_law`.
+    pub fn kind(&self) -> &str {
+        self.fatigue.get("growth_law").and_then(Value::as_str).unwrap_or_default()
+    }
+}

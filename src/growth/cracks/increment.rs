@@ -1,0 +1,327 @@
+//! One increment of all cracks, call by call ([`crate::predict::increment`]).
+
+use super::meeting::Segment;
+use super::steering::equivalent_factor;
+use super::step::{Counted, Course, FactorCourse};
+use super::tip::{Reading, Tip, pair_twins};
+use super::{CrackedPlate, Cracks, Parted, kink, step};
+use crate::cross_check::ReleasedEnergy;
+use crate::end_of_life::{self, gone};
+use crate::record::{CurvePoint, StopReason};
+use perilife_base::error::Error;
+use perilife_base::units::MM;
+use perilife_plate::specimen::Load;
+use perilife_points::crack_tip::TipState;
+
+/// Compliance over that at the start from which a plate without equilibrium is as good as severed: what one side of it has let go turns
+/// about what is left of the other.
+const MECHANISM: f64 = 20.0;
+/// The same where an equilibrium was found: what K such a ligament has is round-off.
+const SEVERED: f64 = 1e6;
+/// Spacings on a ligament that resolve it.
+const LIGAMENT_SPACINGS: f64 = 4.0;
+
+/// An increment in the making.
+pub struct Increment {
+    /// The tip whose cycles count: the fastest.
+    lead: usize,
+    /// Growth that every tip is to make, m.
+    lengths: Vec<f64>,
+    segments: Vec<Option<Segment>>,
+    /// Rate of the lead at the start, m/cycle, and K that drives it, Pa√m.
+    rate: f64,
+    factor: f64,
+    /// Whether the lead begins a kink, else its rate at the start of the increment before and its growth in that, where they are known.
+    is_kink: bool,
+    past: Option<[f64; 2]>,
+    /// Root of the length of crack of the lead at the start, m^½.
+    root: f64,
+    /// Of every tip `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its line, m; work of the loads, J.
+    before: (Vec<[f64; 2]>, f64),
+    parted: Parted,
+    readings: Vec<Option<Reading>>,
+}
+
+impl Increment {
+    /// Whether a tip has met a rim or another crack.
+    fn has_ended_tips(&self) -> bool {
+        self.segments.iter().flatten().any(|segment| segment.state != TipState::Active)
+    }
+
+    /// Growth of every tip, m.
+    fn growths(&self) -> Vec<f64> {
+        self.segments.iter().map(|segment| segment.as_ref().map_or(0.0, Segment::length)).collect()
+    }
+}
+
+impl<P: CrackedPlate> Cracks<'_, P> {
+    /// Why there is no increment from the last row: a known end is reached, K_max of a tip is the toughness, no tip is left or grows.
+    pub(crate) fn reason_to_stop(&self) -> Option<StopReason> {
+        let states: Vec<TipState> = self.state.tips.iter().map(|tip| tip.state).collect();
+        end_of_life::reason_to_stop(self.case, self.end, self.last(), &states, self.fastest().is_some())
+    }
+
+    /// Growth of every tip over the same cycles, the fastest by one step. To be asked while a tip grows ([`Self::reason_to_stop`]).
+    pub(crate) fn increments(&self) -> Increment {
+        let lead = self.fastest().unwrap_or(0);
+        let until = self.end.map_or(f64::INFINITY, |end| end.crack_length);
+        let tip = &self.state.tips[lead];
+        Increment {
+            lead,
+            lengths: self.next_lengths(lead, until),
+            segments: Vec::new(),
+            rate: tip.rate,
+            factor: tip.driving_factor(),
+            is_kink: tip.begins_kink(),
+            past: tip.past(),
+            root: tip.root(tip.growth),
+            before: self.energies(),
+            parted: Parted::default(),
+            readings: Vec::new(),
+        }
+    }
+
+    /// Extends the lines of the cracks by a straight segment each, up to a rim or another crack; cracks that meet are joined.
+    pub(crate) fn extend_lines(&mut self, step: &mut Increment) {
+        step.segments = self.segments(&step.lengths);
+        let growths = step.growths();
+        for ((tip, segment), growth) in self.state.tips.iter_mut().zip(&step.segments).zip(&growths) {
+            if let Some(segment) = segment.filter(|_| *growth > 0.0) {
+                self.state.lines[tip.end.line].grow(tip.end.at_last, segment.to);
+            }
+            let state = segment.map_or(tip.state, |segment| segment.state);
+            tip.has_grown([*growth, growths[step.lead]], state, self.scales.by_root);
+        }
+        if step.has_ended_tips() {
+            self.join(&step.segments);
+        }
+    }
+
+    /// Parts the plate along the new segments: bonds that cross them are cut, or nodes placed anew.
+    pub(crate) fn part_plate(&mut self, step: &mut Increment) {
+        step.parted = self.plate.part(self.case, &self.state, &step.segments, step.has_ended_tips());
+    }
+
+    /// Finds the displacement in equilibrium with the maximum load; else why the run ends.
+    pub(crate) fn solve_equilibrium(&mut self, step: &Increment) -> Result<(), StopReason> {
+        if step.parted.is_severed {
+            return Err(StopReason::Severed);
+        }
+        let Err(error) = self.plate.solve(self.case, &self.state) else {
+            return if self.compliance_rise(self.work()) < SEVERED { Ok(()) } else { Err(StopReason::Severed) };
+        };
+        if matches!(error, Error::LossOfStiffness) {
+            return Err(StopReason::Severed);
+        }
+        let rise = self.compliance_rise(self.last().work);
+        if rise > MECHANISM {
+            self.warnings.push(format!(
+                "the run ends here: the plate is {rise:.0} times as compliant as at the start, and what is left of it moves almost freely \
+                 ({error})"
+            ));
+            return Err(StopReason::Severed);
+        }
+        self.warnings.push(format!("the run ends here: {error}"));
+        Err(StopReason::NoConvergence)
+    }
+
+    /// Reads K_I, K_II and T of every active tip at the place where its field stands.
+    pub(crate) fn read_factors(&mut self, step: &mut Increment) -> Result<(), StopReason> {
+        step.readings = self.read().map_err(|error| {
+            self.warnings.push(format!("the run ends here: {error}"));
+            StopReason::NoConvergence
+        })?;
+        let is_unread = |reading: &Reading| !reading.factors.iter().all(|factor| factor.is_finite());
+        if step.readings.iter().flatten().any(is_unread) { Err(StopReason::NoConvergence) } else { Ok(()) }
+    }
+
+    /// What is read at every active tip, the same of mirror twins, so that they stay twins.
+    pub(super) fn read(&mut self) -> Result<Vec<Option<Reading>>, Error> {
+        let mut readings = self.plate.read(self.case, &self.state)?;
+        let mut factors: Vec<Option<[f64; 2]>> = readings.iter().map(|reading| reading.map(|reading| reading.factors)).collect();
+        pair_twins(&mut factors);
+        let pairs = readings.iter_mut().zip(factors).filter_map(|(reading, factors)| reading.as_mut().zip(factors));
+        pairs.for_each(|(reading, factors)| reading.factors = factors);
+        Ok(readings)
+    }
+
+    /// Turns every active tip by what was read.
+    pub(crate) fn turn(&mut self, step: &Increment) {
+        self.turn_by(&step.readings);
+    }
+
+    pub(super) fn turn_by(&mut self, readings: &[Option<Reading>]) {
+        let tips = self.state.tips.iter_mut().zip(readings);
+        tips.filter_map(|(tip, reading)| Some((tip, reading.as_ref()?))).for_each(|(tip, reading)| {
+            tip.turn(reading, &self.scales.steering);
+        });
+    }
+
+    /// Takes da/dN of the K of every active tip.
+    pub(crate) fn set_rates(&mut self, step: &Increment) {
+        self.set_rates_by(&step.readings);
+    }
+
+    pub(super) fn set_rates_by(&mut self, readings: &[Option<Reading>]) {
+        let gaps: Vec<Option<f64>> = (0..readings.len()).map(|tip| self.faced(tip).map(|(_, gap)| gap)).collect();
+        for (index, reading) in readings.iter().enumerate() {
+            let Some(reading) = reading else { continue };
+            let (mut factors, mut of_residual) = (reading.factors, reading.of_residual);
+            if !self.state.tips[index].is_closed {
+                factors = self.plate.factors_at_line(self.case, &self.state, index, reading, gaps[index]);
+                // What brings K to the end of the line brings its parts there.
+                let way = equivalent_factor(factors) / equivalent_factor(reading.factors);
+                of_residual = of_residual.map(|factor| if way.is_finite() { way * factor } else { factor });
+            }
+            let (law, loading) = (&self.law, &self.case.loading);
+            self.state.tips[index].take(factors, of_residual, |factor, share| law.rate(factor, loading.ratio_at(share)));
+        }
+    }
+
+    /// Adds the row after an increment, and says why there is no next one: `end`, or what the row itself says.
+    pub(crate) fn add_row(&mut self, step: &Increment, mut end: Option<StopReason>) -> Option<StopReason> {
+        let (growths, has_ended, is_over) = (step.growths(), step.has_ended_tips(), end.is_some());
+        let (growth, lead) = (growths[step.lead], &self.state.tips[step.lead]);
+        // Where a tip is gone, K of the others is that of another crack at the end of the step, not of this one grown longer. Of a tip that
+        // turns a corner the rate is that of its new kink, not that with which it has ended its step.
+        let is_smooth = lead.is_growing() && !is_over && !has_ended;
+        let (factor, rate) = if is_smooth { (lead.equivalent(), self.rate(lead)) } else { (step.factor, step.rate) };
+        let Counted { cycles, curvature_share, bend } = if step.is_kink {
+            let cycles = kink::cycles(growth, [step.rate, rate], [step.factor, factor]);
+            Counted { cycles, curvature_share: 0.0, bend: 0.0 }
+        } else if self.scales.by_root && growth > 0.0 && rate.is_finite() {
+            step::cycles_by_root(step.past, [step.rate, rate], step.root, growth)
+        } else {
+            step::cycles(step.past, step.rate, rate, growth)
+        };
+        let way = (is_smooth && growth > 0.0).then(|| {
+            let is_by_root = self.scales.by_root || step.is_kink;
+            let rise = (step.root * step.root + growth).sqrt() - step.root;
+            let weight = if is_by_root { [step.root, rise] } else { [1.0, 0.0] };
+            FactorCourse::new(Course { weight, gain: (rate / step.rate).ln(), bend }, [step.factor, factor])
+        });
+        for (index, tip) in self.state.tips.iter_mut().enumerate().filter(|_| self.scales.by_root) {
+            let growth = if is_smooth && index != step.lead { growths[index] } else { 0.0 };
+            tip.count_arrears(growth, (step.rate, rate), growths[step.lead]);
+        }
+        let fastest = self.fastest().map_or(0.0, |tip| self.state.tips[tip].rate);
+        let kinks = |tip: &Tip| tip.begins_kink() && !tip.is_at_rest(fastest);
+        let is_kinking = self.scales.step.first_of_kink.is_finite() && self.state.tips.iter().any(kinks);
+        if has_ended || is_kinking {
+            self.state.step = self.first_step();
+        } else if growth > 0.0 && !is_over {
+            let all = self.last().cycles + cycles;
+            self.state.step = self.next_step(growth, curvature_share, cycles / all);
+        }
+        let is_closing = |(index, _): (usize, &Tip)| self.is_closing(index);
+        if has_ended || is_over || self.state.active().any(is_closing) {
+            self.state.balance.forget();
+        } else {
+            let way = way.as_ref().filter(|_| !step.is_kink);
+            self.compare_energies(step, &growths, way.map_or(1.0, FactorCourse::square_beside_chord), cycles);
+        }
+        self.plate.update(&self.state);
+        let work = if is_over { f64::NAN } else { self.work() };
+        // What the last tip has met is known, whatever is left of the plate.
+        if !step.parted.is_severed && self.state.active().next().is_none() {
+            let last: Vec<TipState> = step.segments.iter().flatten().map(|segment| segment.state).collect();
+            end = Some(gone(&last));
+        }
+        if end.is_none()
+            && let Some((tip, ligament)) = self.unresolved_ligament()
+        {
+            self.warnings.push(format!(
+                "tip {tip} passes a rim at {:.3} mm, less than the spacing of {:.3} mm: the run ends there; model.spacing_mm = {:.4} would \
+                 resolve what is between them",
+                ligament / MM,
+                self.scales.meeting.passing / MM,
+                ligament / LIGAMENT_SPACINGS / MM
+            ));
+            end = Some(StopReason::LigamentUnresolved);
+        }
+        let (all, broken) = (self.last().cycles + cycles, self.last().broken_bonds + step.parted.bonds);
+        let next = self.row(all, work, broken);
+        if step.parted.bonds == 0 && cycles <= 0.0 {
+            return end_of_life::row_after(self.case, self.last(), next, end).1;
+        }
+        let between = way.as_ref().map_or_else(Vec::new, |way| self.rows_between(step, &next, way, cycles / all));
+        for row in between {
+            let (row, reason) = end_of_life::row_after(self.case, self.last(), row, None);
+            self.curve.push(row);
+            if reason.is_some() {
+                return reason;
+            }
+        }
+        let (row, reason) = end_of_life::row_after(self.case, self.last(), next, end);
+        self.curve.push(row);
+        reason
+    }
+
+    /// Rows between the last one and the `next`, so that straight lines between rows are the curve by which cycles were counted; the lead
+    /// goes `way`.
+    fn rows_between(&self, step: &Increment, next: &CurvePoint, way: &FactorCourse, of_all: f64) -> Vec<CurvePoint> {
+        let (course, last) = (&way.course, self.last());
+        let (rate, factor) = (step.rate * course.gain.exp(), way.at(1.0));
+        let row_at = |t: f64| {
+            let mut row = next.clone().between(last, t);
+            let of_lead = course.growth(t);
+            // The same of all tips.
+            let beside_chord = way.beside_chord(t);
+            for (index, tip) in row.tips.iter_mut().enumerate() {
+                let own = &self.state.tips[index];
+                let share = if index == step.lead { of_lead } else { own.share_at(of_lead, (step.rate, rate)) };
+                let [from, to] = [&last.tips[index], &next.tips[index]];
+                tip.factors = tip.factors.map(|factors| factors.map(|k| beside_chord * k));
+                if own.has_begun_kink() {
+                    // K at a corner is that of the crack before it.
+                    let of_end = (step.factor / factor).powf(1.0 - t);
+                    tip.factors = to.factors.map(|factors| factors.map(|k| of_end * k));
+                    tip.t_stress = to.t_stress;
+                }
+                let mix = |from: f64, to: f64| from + share * (to - from);
+                (tip.growth, tip.state) = (mix(from.growth, to.growth), from.state);
+                tip.position = [0, 1].map(|i| mix(from.position[i], to.position[i]));
+            }
+            let grown: Vec<f64> = row.tips.iter().map(|tip| tip.growth).collect();
+            let (k_max, loading) = (way.at(t), &self.case.loading);
+            let residual = row.residual.map(|residual| residual.beside(k_max, loading));
+            CurvePoint {
+                cycles: last.cycles + course.cycles(t) * (next.cycles - last.cycles),
+                crack_length: self.case.specimen.crack_length_after(&grown),
+                delta_k: residual.map_or(loading.range_share(), |residual| residual.range_share()) * k_max,
+                residual,
+                growth_rate: step.rate * course.rise(t).exp(),
+                ..row
+            }
+        };
+        let parts = course.parts(of_all);
+        (1..parts).map(|part| row_at(part as f64 / parts as f64)).collect()
+    }
+
+    /// Compliance of an equilibrium by the work of its loads, J, over that at the start.
+    fn compliance_rise(&self, work: f64) -> f64 {
+        let rise = work / self.curve[0].work;
+        // Of a kept displacement the work falls as the compliance rises.
+        if self.case.loading.displacement().is_some() { 1.0 / rise } else { rise }
+    }
+
+    /// Of every tip `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its line, m; work of the loads, J.
+    fn energies(&self) -> (Vec<[f64; 2]>, f64) {
+        let modulus = self.case.material.plane_modulus();
+        let of_tip = |tip: &Tip| [tip.driving_factor().powi(2) / modulus, tip.length_offset];
+        (self.state.tips.iter().map(of_tip).collect(), self.work())
+    }
+
+    /// Compares the energy that the new segments released by their K with what the plate did.
+    /// `beside_chord` is what K² of the lead is on its way over its chord.
+    fn compare_energies(&mut self, step: &Increment, growths: &[f64], beside_chord: f64, cycles: f64) {
+        if self.case.specimen.loads.iter().any(Load::has_friction) {
+            return;
+        }
+        let ((now, work_now), (before, work)) = (self.energies(), &step.before);
+        let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
+        let (block, length) = ReleasedEnergy::of_block(self.case, [before, &now], growths, &grown, [*work, work_now], cycles);
+        let block = ReleasedEnergy { of_tips: beside_chord * block.of_tips, ..block };
+        self.state.balance.take(block, length, self.scales.energy_interval);
+    }
+}

@@ -1,0 +1,166 @@
+//! The rows of a run by K of its tips, and from where it can be resumed.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::tip::{CracksState, Tip};
+use super::{CrackedPlate, Cracks};
+use crate::cross_check::CrossCheck;
+use crate::record::{CurvePoint, TipRecord};
+use crate::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
+use perilife_base::error::{Error, Result};
+use perilife_base::raster::PointGrid;
+use perilife_base::units::place_mm;
+use perilife_laws::growth_law::GrowthLaw;
+use perilife_points::body::Body;
+use perilife_points::crack_tip::TipState;
+
+/// All that the next increments depend on, with what the engine carries of its plate.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CracksRun<S> {
+    cracks: CracksState,
+    plate: S,
+    curve: Vec<CurvePoint>,
+    warnings: Vec<String>,
+}
+
+impl<P: CrackedPlate> Cracks<'_, P> {
+    pub(super) fn last(&self) -> &CurvePoint {
+        // `open` or `restore` makes the first row, before the first increment.
+        &self.curve[self.curve.len() - 1]
+    }
+
+    /// Rows with an equilibrium of their own.
+    fn rows_solved(&self) -> usize {
+        self.curve.iter().filter(|row| row.is_solved).count()
+    }
+
+    /// The plate as it stands, as a row; ΔK and da/dN are those of the fastest tip.
+    pub(super) fn row(&self, cycles: f64, work: f64, broken_bonds: usize) -> CurvePoint {
+        let has_residual = self.case.loading.residual.is_some();
+        let now = |tip: &Tip| TipRecord {
+            state: if tip.is_active() && tip.is_closed { TipState::Closed } else { tip.state },
+            position: self.state.position(tip),
+            growth: tip.growth,
+            factors: Some(tip.factors),
+            t_stress: Some(tip.t_stress),
+            of_residual: has_residual.then(|| tip.equivalent_of_residual()),
+        };
+        let tips = self.state.tips.iter().map(now).collect();
+        let lead = self.fastest().map(|tip| &self.state.tips[tip]);
+        let of_residual = lead.filter(|_| has_residual && !work.is_nan()).map(Tip::equivalent_of_residual);
+        let (tips, lead) = ((tips, &self.state.lines[..]), lead.map(|tip| (tip.equivalent(), tip.rate)));
+        let row = CurvePoint::of_tips(self.case, [cycles, work], broken_bonds, tips, lead);
+        match (of_residual, lead) {
+            (Some(of_residual), Some((k_max, _))) => row.with_residual(k_max, of_residual, &self.case.loading),
+            _ => row,
+        }
+    }
+
+    /// What the user should know of tips that the load presses shut.
+    fn contact_warning(&self) -> Option<String> {
+        let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.was_closed);
+        let tips = closed.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
+        let [ratio, _] = self.case.loading.ratios();
+        (!tips.is_empty()).then(|| {
+            let reversed = if ratio < 0.0 {
+                "; the minimum load opens it, and what it grows then is not counted, which is unsafe: turn the load round (its maximum times the \
+                 stress ratio, and one over that ratio) for the life of this tip"
+            } else {
+                ""
+            };
+            format!(
+                "the load presses the crack shut at tip {tips}, which does not grow while it does: flanks carry pressure, and slide without \
+                 friction{reversed}"
+            )
+        })
+    }
+}
+
+impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
+    fn open(&mut self) -> Result<()> {
+        let name = &self.case.name;
+        self.plate.open(self.case, &self.state).map_err(|error| match error {
+            Error::LossOfStiffness => Error::Mechanics(format!("{name}: the initial cracks cut the plate in two")),
+            other => other,
+        })?;
+        let readings = self.read()?;
+        self.turn_by(&readings);
+        self.set_rates_by(&readings);
+        if let Some(tip) = self.state.tips.iter().find(|tip| !tip.equivalent().is_finite()) {
+            let place = place_mm(self.state.position(tip));
+            let problem = format!("{name}: no stress intensity can be read at the crack tip at {place}");
+            return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm")));
+        }
+        self.state.step = self.first_step();
+        self.plate.update(&self.state);
+        self.curve = vec![self.row(0.0, self.work(), 0)];
+        self.rows_at_rebuild = 1;
+        Ok(())
+    }
+
+    fn now(&self) -> GrowthStatus<'_> {
+        let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.last();
+        GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
+    }
+
+    fn body(&self) -> Option<Arc<Body>> {
+        self.plate.body()
+    }
+
+    fn grid(&self) -> Option<PointGrid> {
+        self.plate.grid(self.case)
+    }
+
+    fn fields(&mut self) -> Result<Option<Fields>> {
+        self.plate.fields(self.case, &self.state)
+    }
+
+    fn law(&self) -> Option<&dyn GrowthLaw> {
+        Some(&*self.law)
+    }
+
+    fn should_rebuild_solver(&self) -> bool {
+        self.rows_solved() >= self.rows_at_rebuild + self.scales.rows_per_checkpoint
+    }
+
+    fn rebuild_solver(&mut self) -> Result<()> {
+        self.rows_at_rebuild = self.rows_solved();
+        self.plate.rebuild(self.case, &self.state)
+    }
+
+    fn state(&self) -> State {
+        P::state(CracksRun {
+            cracks: self.state.clone(),
+            plate: self.plate.save(),
+            curve: self.curve.clone(),
+            warnings: self.warnings.clone(),
+        })
+    }
+
+    fn restore(&mut self, state: State) -> Result<bool> {
+        let Some(CracksRun { cracks, plate, curve, warnings }) = P::of_state(state) else { return Ok(false) };
+        if curve.is_empty() || !cracks.fits(&self.state) || !self.plate.restore(plate) {
+            return Ok(false);
+        }
+        (self.state, self.curve, self.warnings) = (cracks, curve, warnings);
+        Ok(self.rebuild_solver().is_ok())
+    }
+
+    fn curve(&mut self) -> Vec<CurvePoint> {
+        std::mem::take(&mut self.curve)
+    }
+
+    fn statistics(&self) -> SolverStatistics {
+        self.plate.statistics()
+    }
+
+    fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
+        self.state.balance.check(cycles)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.plate.warnings().into_iter().chain(self.warnings.iter().cloned()).chain(self.contact_warning()).collect()
+    }
+}

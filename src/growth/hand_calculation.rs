@@ -1,0 +1,254 @@
+//! Life by hand calculation: handbook K(a) of a standard specimen, or that of a table of β, growth law, quadrature.
+//!
+//! `N(a) = ∫ da / (da/dN)` from the initial crack length, by the law over K of the case; no growth at or below the threshold. Costs less than a millisecond.
+//! The crack length of a `plate` is that of all cracks, whose n tips grow alike: `da = n × growth of a tip`.
+
+use super::end_of_life::{self, End, first_end};
+use super::record::{CurvePoint, StopReason, TipRecord};
+use super::{CrackGrowth, GrowthStatus, State};
+use crate::case::Case;
+use perilife_base::error::{Error, Result, input_missing};
+use perilife_base::quadrature::integrate;
+use perilife_base::units::MM;
+use perilife_laws::growth_law::GrowthLaw;
+use perilife_plate::loading::residual::ResidualStress;
+use perilife_plate::specimen::LengthConvention;
+use perilife_plate::specimen::geometry::along;
+use perilife_plate::specimen::green::centre_crack;
+use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
+use perilife_points::crack_tip::TipState;
+
+/// Intervals of the a-N curve, their lengths in constant ratio: what is taken linear between two rows is then off by less than
+/// 1e-4 of life.
+const INTERVALS: usize = 256;
+/// Relative error of the cycles of each interval.
+const TOLERANCE: f64 = 1e-10;
+
+/// [`CrackGrowth`] by the K of a handbook, one interval a block.
+pub struct HandCalculation<'a> {
+    case: &'a Case,
+    formula: HandbookFormula,
+    law: Box<dyn GrowthLaw>,
+    /// Where growth ends at the latest: the given ends, or the plate in two.
+    end: End,
+    /// Tips whose growth adds up to that of the crack length.
+    sharing: f64,
+    /// K of residual stress over crack length, where there is one.
+    residual: Option<FactorOfResidual>,
+    curve: Vec<CurvePoint>,
+}
+
+/// K_res of a centre crack at equally spaced lengths, by a cubic through four neighbours in between: the cycles are integrated far closer
+/// than a kink in K would bear.
+struct FactorOfResidual {
+    from: f64,
+    step: f64,
+    factors: Vec<f64>,
+}
+
+impl FactorOfResidual {
+    fn new(case: &Case, residual: &ResidualStress, to: f64) -> Self {
+        let (from, width) = (case.specimen.crack_length, case.specimen.width);
+        let step = (to - from) / INTERVALS as f64;
+        let factor = |i: usize| {
+            // Half of both sides: what is not symmetric was refused.
+            let stress = |x: f64| 0.5 * (residual.at([x, 0.0])[1] + residual.at([-x, 0.0])[1]);
+            let length = (from + step * (i as f64 - 1.0)).clamp(0.5 * from, 0.5 * width * (1.0 - 1e-9));
+            centre_crack(length, width, stress)
+        };
+        FactorOfResidual { from: from - step, step, factors: (0..INTERVALS + 4).map(factor).collect() }
+    }
+
+    /// K_res, Pa√m, at a crack length, m (Catmull and Rom 1974).
+    fn at(&self, crack_length: f64) -> f64 {
+        let at = (crack_length - self.from) / self.step;
+        let place = (at.floor().max(1.0) as usize).min(self.factors.len() - 3);
+        let (t, of) = (at - place as f64, |i: usize| self.factors[place + i - 1]);
+        let slopes = [0.5 * (of(2) - of(0)), 0.5 * (of(3) - of(1))];
+        let (rise, u) = (of(2) - of(1), 1.0 - t);
+        of(1) + t * rise + t * u * (u * (slopes[0] - rise) - t * (slopes[1] - rise))
+    }
+}
+
+impl<'a> HandCalculation<'a> {
+    /// Growth of the crack of a case of method `handbook`.
+    /// Errors: no handbook formula.
+    pub fn start(case: &'a Case, law: Box<dyn GrowthLaw>) -> Result<Self> {
+        let formula = handbook(&case.specimen)
+            .ok_or_else(|| input_missing("model.method", "\"handbook\" has no K(a) for this specimen", "use \"peridynamics\""))?;
+        let severed = End { crack_length: case.specimen.length_limit().0, reason: StopReason::Severed };
+        let end = first_end(case).unwrap_or(severed);
+        case.specimen.beta.as_ref().map_or(Ok(()), |table| table.check_end(end.crack_length))?;
+        let sharing = if case.specimen.convention == LengthConvention::SumOfTips { case.specimen.tips.len() as f64 } else { 1.0 };
+        let of = |residual: &std::sync::Arc<ResidualStress>| FactorOfResidual::new(case, residual, end.crack_length);
+        let residual = case.loading.residual.as_ref().filter(|_| end.crack_length > case.specimen.crack_length).map(of);
+        Ok(HandCalculation { case, formula, law, end, sharing, residual, curve: Vec::new() })
+    }
+
+    fn last(&self) -> &CurvePoint {
+        // `open` makes the first row, before the first block.
+        &self.curve[self.curve.len() - 1]
+    }
+
+    /// K at maximum load and what residual stress makes of it, Pa√m.
+    fn factors(&self, crack_length: f64) -> (f64, Option<f64>) {
+        let of_load = self.formula.k_i(crack_length, self.case.loading.maximum);
+        let of_residual = self.residual.as_ref().map(|residual| residual.at(crack_length));
+        (of_load + of_residual.unwrap_or(0.0), of_residual)
+    }
+
+    /// da/dN, m/cycle.
+    fn rate(&self, crack_length: f64) -> f64 {
+        let (k_max, of_residual) = self.factors(crack_length);
+        if k_max <= 0.0 {
+            return 0.0;
+        }
+        self.law.rate(k_max, self.case.loading.ratio_at(of_residual.map_or(0.0, |of_residual| of_residual / k_max)))
+    }
+
+    /// Cycles between two crack lengths.
+    fn cycles(&self, from: f64, to: f64) -> f64 {
+        integrate(|a| 1.0 / (self.sharing * self.rate(a)), from, to, TOLERANCE).value
+    }
+
+    /// Crack length `cycles` after `from`, which lies below `to`: halved until no double is left between.
+    fn length_after(&self, cycles: f64, from: f64, to: f64) -> f64 {
+        let (mut below, mut above) = (from, to);
+        loop {
+            let middle = 0.5 * (below + above);
+            if middle <= below || middle >= above {
+                return below;
+            }
+            if self.cycles(from, middle) > cycles { above = middle } else { below = middle }
+        }
+    }
+
+    /// Row of the curve; K and rate are unknown (NaN) where the plate ends.
+    fn point(&self, cycles: f64, crack_length: f64) -> CurvePoint {
+        let (specimen, loading) = (&self.case.specimen, &self.case.loading);
+        let (k_max, of_residual) = self.factors(crack_length);
+        // Pressed shut.
+        let k_max = if k_max < 0.0 { 0.0 } else { k_max };
+        let growth = (crack_length - specimen.crack_length) / self.sharing;
+        let ahead = |seed: &perilife_plate::specimen::TipSeed| {
+            along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth)
+        };
+        let row = CurvePoint {
+            is_solved: true,
+            cycles,
+            crack_length,
+            delta_k: k_max * loading.range_share(),
+            growth_rate: self.rate(crack_length),
+            work: f64::NAN,
+            limit_load: self.case.limit_load_at(crack_length),
+            broken_bonds: 0,
+            tips: specimen
+                .tips
+                .iter()
+                .map(|seed| TipRecord {
+                    state: TipState::Active,
+                    position: ahead(seed),
+                    growth,
+                    factors: Some([k_max, 0.0]),
+                    t_stress: None,
+                    of_residual,
+                })
+                .collect(),
+            depth: None,
+            residual: None,
+        };
+        match of_residual {
+            Some(of_residual) => row.with_residual(k_max, of_residual, loading),
+            None => row,
+        }
+    }
+
+    /// The next interval of the curve; the reason why there is none after it.
+    /// Errors: a growth rate that is no number.
+    pub fn next_interval(&mut self) -> Result<Option<StopReason>> {
+        let (start, End { crack_length: end, reason }) = (self.case.specimen.crack_length, self.end);
+        let (done, last) = (self.curve.len(), self.last());
+        if done > INTERVALS || end <= start {
+            return Ok(Some(reason));
+        }
+        let is_broken = |row: &CurvePoint| end_of_life::reason_to_stop(self.case, None, row, &[TipState::Active], true);
+        if let Some(reason) = self.residual.as_ref().and_then(|_| is_broken(last)) {
+            return Ok(Some(reason));
+        }
+        let to = if done == INTERVALS { end } else { start * (end / start).powf(done as f64 / INTERVALS as f64) };
+        // K of a formula rises with crack length, that of a table or of a residual stress may fall.
+        if last.growth_rate == 0.0 || self.rate(to) == 0.0 {
+            return Ok(Some(StopReason::NothingAges));
+        }
+        let (from, before, cycles_max) = (last.crack_length, last.cycles, self.case.stop.cycles_max);
+        let more = self.cycles(from, to);
+        if more.is_nan() {
+            return Err(Error::Mechanics(format!(
+                "{}: the growth rate between {:.4} mm and {:.4} mm is no number",
+                self.case.name,
+                from / MM,
+                to / MM
+            )));
+        }
+        if more.is_infinite() && cycles_max.is_infinite() {
+            return Ok(Some(StopReason::NothingAges));
+        }
+        if before + more > cycles_max {
+            let reached = self.length_after(cycles_max - before, from, to);
+            self.curve.push(self.point(cycles_max, reached));
+            return Ok(Some(StopReason::RunOut));
+        }
+        let (next, reason) = (self.point(before + more, to), (done == INTERVALS).then_some(reason));
+        // The sections of a plate are not known as a formula before the run, nor K of a residual stress.
+        let is_open = self.case.specimen.ligament(to).is_none() || self.residual.is_some();
+        let (next, reason) = if is_open { end_of_life::row_after(self.case, last, next, reason) } else { (next, reason) };
+        self.curve.push(next);
+        Ok(reason)
+    }
+}
+
+impl CrackGrowth for HandCalculation<'_> {
+    fn open(&mut self) -> Result<()> {
+        self.curve = vec![self.point(0.0, self.case.specimen.crack_length)];
+        Ok(())
+    }
+
+    fn now(&self) -> GrowthStatus<'_> {
+        let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.last();
+        GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
+    }
+
+    fn law(&self) -> Option<&dyn GrowthLaw> {
+        Some(&*self.law)
+    }
+
+    fn state(&self) -> State {
+        State::Rows(self.curve.clone())
+    }
+
+    fn restore(&mut self, state: State) -> Result<bool> {
+        let State::Rows(curve) = state else { return Ok(false) };
+        let fits = !curve.is_empty();
+        self.curve = curve;
+        Ok(fits)
+    }
+
+    fn curve(&mut self) -> Vec<CurvePoint> {
+        std::mem::take(&mut self.curve)
+    }
+
+    /// How much of the life the formula is not made for.
+    fn warnings(&self) -> Vec<String> {
+        let life = self.curve.last().map_or(0.0, |point| point.cycles);
+        let outside: f64 = self
+            .curve
+            .windows(2)
+            .filter(|pair| !pair.iter().all(|point| self.formula.holds_at(point.crack_length)))
+            .map(|pair| pair[1].cycles - pair[0].cycles)
+            .sum();
+        let HandbookFormula { name, range, .. } = &self.formula;
+        let words = || format!("{:.2} % of the life lies outside the range of {name} ({range})", 100.0 * outside / life);
+        // A share that shows in no life is not worth a word.
+        (outside > 1e-3 * life).then(words).into_iter().collect()
+    }
+}

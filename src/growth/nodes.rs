@@ -1,0 +1,261 @@
+//! A plate of nodes with cracks ([`perilife_nodes`]): nodes are placed anew for every equilibrium, as fine as the room of every tip
+//! asks for, so that a tip is read where it stands, kinks are resolved whatever their length, and nothing is extrapolated.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::cracks::scales::Scales;
+use super::cracks::tip::{CracksState, Reading};
+use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment};
+use super::{Fields, SolverStatistics, State};
+use crate::case::Case;
+use crate::cross_check::largest_difference;
+use perilife_base::error::Result;
+use perilife_base::raster::PointGrid;
+use perilife_nodes::crack::{Tip, initial_cracks};
+use perilife_nodes::factors;
+use perilife_nodes::field::{Discretisation, Local};
+use perilife_nodes::resolution::{ElementFreeSettings, Resolution, room};
+use perilife_nodes::solve::{Solution, raster, raster_fields, solve_with};
+use perilife_plate::loading::residual::across;
+use perilife_plate::specimen::{CrackLine, Point};
+use perilife_plate::williams::Elasticity;
+use perilife_points::solver::SolverUsed;
+
+/// Factor by which nodes get finer where K asks for it.
+const FINER: f64 = 1.5;
+/// Times that they do at the most: of few nodes, and of many.
+const REFINEMENTS_MOST: [usize; 2] = [4, 2];
+/// Nodes from which they are many.
+const MANY: usize = 2000;
+/// Nodes beyond which they do not.
+const NODES_MOST: f64 = 2e4;
+
+/// Way along a crack from its tip, over the room of the tip, within which corners and kinks are not seen: of a tip that hardly grows they
+/// would ask for ever finer nodes.
+const UNSEEN: f64 = 1e-3;
+
+/// A plate of nodes.
+pub struct NodePlate {
+    settings: ElementFreeSettings,
+    elasticity: Elasticity,
+    /// The nodes of the last equilibrium, and that.
+    solved: Option<(Discretisation, Solution)>,
+    state: NodeState,
+}
+
+/// What a run carries of its plate of nodes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NodeState {
+    /// How much finer nodes are than usual, as K of the initial tips asks.
+    fineness: f64,
+    /// Work of the loads of the last equilibrium at the nominal load, J.
+    work: f64,
+    solves: usize,
+    /// Nodes at the most.
+    nodes: usize,
+    warnings: Vec<String>,
+}
+
+/// Growth by the field of every tip on nodes.
+pub type ElementFree<'a> = Cracks<'a, NodePlate>;
+
+impl NodePlate {
+    /// How fine the nodes are.
+    fn resolution(&self) -> Resolution {
+        self.settings.resolution.finer(self.state.fineness)
+    }
+
+    /// The cracks and their active tips as nodes see them: without corners that are next to a tip.
+    fn cracks(case: &Case, cracks: &CracksState) -> (Vec<CrackLine>, Vec<Tip>) {
+        let mut lines = cracks.lines.clone();
+        let of_tip = |(_, tip): (usize, &super::cracks::tip::Tip)| {
+            let least = UNSEEN * cracks.room(&case.specimen, tip).min(tip.length + tip.growth);
+            lines[tip.end.line] = lines[tip.end.line].blunted(tip.end.at_last, least);
+            Tip { end: tip.end, length: tip.own_length(least) }
+        };
+        let tips = cracks.active().map(of_tip).collect();
+        (lines, tips)
+    }
+
+    /// Displacement at a place under the maximum load, m, of the last equilibrium; `None` before one, and where nodes do not reach.
+    pub fn displacement(&self, case: &Case, at: Point) -> Option<Point> {
+        let (plate, solution) = self.solved.as_ref()?;
+        let (displacement, _) = plate.displacement(&solution.u, at, &mut Local::default())?;
+        Some(displacement.map(|u| case.loading.share(self.state.work) * u))
+    }
+
+    fn factors(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<[f64; 2]>> {
+        self.solve(case, cracks)?;
+        // A tip that is shut has none, and K_II of its last places in contact is noise.
+        let of = |reading: Reading| if reading.is_closed { [0.0; 2] } else { reading.factors };
+        Ok(self.read(case, cracks)?.into_iter().map(|reading| reading.map_or([f64::NAN; 2], of)).collect())
+    }
+}
+
+impl CrackedPlate for NodePlate {
+    type Saved = NodeState;
+
+    fn build(case: &Case, _cracks: &CracksState) -> Result<Self> {
+        let state = NodeState { fineness: 1.0, work: 0.0, solves: 0, nodes: 0, warnings: Vec::new() };
+        let settings = case.nodes();
+        Ok(NodePlate { settings, elasticity: Elasticity::of(&case.material), solved: None, state })
+    }
+
+    fn scales(&self, case: &Case) -> Scales {
+        Scales::of_nodes(case, self.settings.resolution.far)
+    }
+
+    /// Makes the nodes as fine as K of the initial tips asks for: until it changes by no more than the tolerance when they get finer by
+    /// half of themselves. What is then still open is said in a warning.
+    fn open(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
+        self.state.fineness = 1.0 / FINER;
+        // Where they are too coarse to tell anything, the next ones say so.
+        let mut before = self.factors(case, cracks).unwrap_or_else(|_| vec![[f64::NAN; 2]; cracks.tips.len()]);
+        for refinement in 0..=REFINEMENTS_MOST[0] {
+            self.state.fineness *= FINER;
+            let now = self.factors(case, cracks)?;
+            let (tip, change) = largest_difference(&before, &now);
+            let nodes = self.state.nodes;
+            let most = REFINEMENTS_MOST[usize::from(nodes >= MANY)];
+            let is_last = refinement >= most || self.settings.is_given || nodes as f64 * FINER * FINER > NODES_MOST;
+            if change <= self.settings.tolerance || is_last && change.is_nan() {
+                break;
+            }
+            if is_last {
+                self.state.warnings.push(format!(
+                    "K of tip {tip} changes by {:.1} % when nodes get {FINER} times finer, to {nodes} nodes: it may err by as much; \
+                     model.method = \"peridynamics\" is another look at it",
+                    100.0 * change,
+                ));
+                break;
+            }
+            before = now;
+        }
+        Ok(())
+    }
+
+    fn part(&mut self, _case: &Case, _cracks: &CracksState, _segments: &[Option<Segment>], _has_met: bool) -> Parted {
+        // Nodes are placed by `solve`, which needs the cracks alone.
+        Parted::default()
+    }
+
+    fn solve(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
+        self.solved = None;
+        let specimen = &case.specimen;
+        let (lines, tips) = NodePlate::cracks(case, cracks);
+        let resolution = self.resolution();
+        let plate = Discretisation::new(specimen, self.elasticity, &lines, &tips, &resolution)?;
+        let residual = case.loading.residual.as_deref();
+        let solution = solve_with(specimen, &plate, resolution.far, case.loading.maximum, residual)?;
+        self.state.solves += 1;
+        self.state.nodes = self.state.nodes.max(plate.nodes.at.len());
+        self.state.work = solution.work;
+        self.solved = Some((plate, solution));
+        Ok(())
+    }
+
+    fn read(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<Option<Reading>>> {
+        let Some((plate, solution)) = &self.solved else { return Ok(vec![None; cracks.tips.len()]) };
+        let share = case.loading.share(self.state.work);
+        let pressure = case.specimen.crack_pressure * case.loading.maximum;
+        let (lines, tips) = NodePlate::cracks(case, cracks);
+        let reading = |index: usize| {
+            let axes = &plate.axes[index];
+            let room = room(&case.specimen, &lines, &tips[index]);
+            let released = |at| case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
+            let stress = |at| {
+                let ([xx, yy, xy], pressure) = (released(at), pressure + solution.pressure_at(at));
+                [xx + pressure, yy + pressure, xy]
+            };
+            let read = factors::read(plate, &solution.u, index, room, &stress)?;
+            let of_residual = match &case.loading.residual {
+                Some(_) => factors::read(plate, &solution.of_residual, index, room, &released)?.factors,
+                None => [0.0; 2],
+            };
+            // The stress along the crack that the plate had before it.
+            let along = across(released(axes.at), axes.ahead);
+            let along = along[0] * axes.ahead[0] + along[1] * axes.ahead[1];
+            let is_closed = solution.is_closed(axes.at);
+            let [k_i, k_ii] = read.factors.map(|factor| share * factor);
+            Ok(Reading {
+                factors: [if is_closed { 0.0 } else { k_i }, k_ii],
+                t_stress: share * read.t_stress + along,
+                // K_II is that of the axes in which it was read: the crack without corners that nodes do not see.
+                ahead: axes.ahead,
+                spacing: axes.spacing,
+                length_offset: 0.0,
+                is_closed,
+                of_pressure: share * read.of_faces,
+                of_residual,
+            })
+        };
+        let read = (0..tips.len()).into_par_iter().map(reading).collect::<Result<Vec<Reading>>>()?;
+        let mut readings = vec![None; cracks.tips.len()];
+        cracks.active().zip(read).for_each(|((tip, _), read)| readings[tip] = Some(read));
+        Ok(readings)
+    }
+
+    fn work(&self) -> f64 {
+        self.state.work
+    }
+
+    fn is_in_contact(&self) -> bool {
+        self.solved.as_ref().is_some_and(|(_, solution)| !solution.pressed.is_empty())
+    }
+
+    fn save(&self) -> NodeState {
+        self.state.clone()
+    }
+
+    fn restore(&mut self, saved: NodeState) -> bool {
+        self.state = saved;
+        true
+    }
+
+    fn state(run: CracksRun<NodeState>) -> State {
+        State::Nodes(run)
+    }
+
+    fn of_state(state: State) -> Option<CracksRun<NodeState>> {
+        if let State::Nodes(run) = state { Some(run) } else { None }
+    }
+
+    fn grid(&self, case: &Case) -> Option<PointGrid> {
+        case.output.paraview.then(|| raster(&case.specimen, self.resolution().far))
+    }
+
+    fn fields(&mut self, case: &Case, cracks: &CracksState) -> Result<Option<Fields>> {
+        if !case.output.paraview {
+            return Ok(None);
+        }
+        if self.solved.is_none() {
+            // Of a resumed run: no solve of its increments.
+            let state = self.state.clone();
+            self.solve(case, cracks)?;
+            self.state = state;
+        }
+        let (share, far) = (case.loading.share(self.state.work), self.resolution().far);
+        let of_plate = |(plate, solution): &(Discretisation, Solution)| {
+            raster_fields(&case.specimen, plate, &solution.u, far, case.material.plane, share)
+        };
+        let (displacement, stress) = self.solved.as_ref().map(of_plate).unwrap_or_default();
+        Ok(Some(Fields { damage: vec![0.0; displacement.len()], remaining_life: Vec::new(), displacement, stress }))
+    }
+
+    fn statistics(&self) -> SolverStatistics {
+        let NodeState { solves, nodes, .. } = self.state;
+        SolverStatistics { points_solved: nodes, solves, iterations: 0, solver: Some(SolverUsed::Direct) }
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.state.warnings.clone()
+    }
+}
+
+/// The nodes of a case with its initial cracks.
+/// Errors: too many cells.
+pub fn initial_plate(case: &Case) -> Result<Discretisation> {
+    let (lines, tips) = initial_cracks(&case.specimen);
+    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &case.nodes().resolution)
+}

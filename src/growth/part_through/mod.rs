@@ -1,0 +1,382 @@
+//! A crack that does not go through, by hand calculation until it does, and then on as a through crack by the K of its tips on nodes.
+//!
+//! Both semi-axes grow apart by the law over K (`fronts`; K: [`perilife_plate::specimen::part_through`]), under a spectrum whose order counts each with the zones of
+//! its own overloads (`overloads`). Rule of break-through: the crack is through where its
+//! deepest point reaches the far face, a/t = 1 (both faces of an embedded crack), up to which the equations of Newman and Raju (1984) are made
+//! ("a/t < 1", their accuracy is stated to 0.8). From there on it is a straight through crack of length c, the one on the face at which it began: the
+//! other face catches up within few cycles, so that the life that is left is rather too short.
+
+mod fronts;
+mod neighbours;
+mod overloads;
+
+pub use neighbours::Neighbours;
+pub use overloads::Order;
+
+use std::cell::OnceCell;
+
+use super::cross_check::CrossCheck;
+use super::end_of_life::strength_reason;
+use super::later::{HandedOver, Later};
+use super::nodes::ElementFree;
+use super::record::{CurvePoint, DepthRecord, StopReason, TipRecord};
+use super::{CrackGrowth, GrowthStatus, SolverStatistics, State};
+use crate::case::Case;
+use fronts::{Fronts, Grown, STEP_MOST};
+use overloads::Overloads;
+use perilife_base::error::{Error, Result, input_missing};
+use perilife_base::units::MM;
+use perilife_laws::growth_law::GrowthLaw;
+use perilife_laws::retardation::Underway;
+use perilife_plate::specimen::geometry::along;
+use perilife_points::crack_tip::TipState;
+
+/// [`CrackGrowth`] of a crack that does not go through, and of what it becomes.
+pub struct PartThroughGrowth<'a> {
+    fronts: Fronts<'a>,
+    /// The case once the crack is through.
+    later: &'a OnceCell<Case>,
+    /// The law that drives its tips then.
+    law_of_tips: Option<Box<dyn GrowthLaw>>,
+    /// Step to try next.
+    step: f64,
+    /// What is known of the order of its loads, where that counts.
+    overloads: Option<Overloads<'a>>,
+    curve: Vec<CurvePoint>,
+    through: Option<Later<ElementFree<'a>>>,
+}
+
+/// What ends growth by hand calculation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Ending {
+    Through,
+    Stop(StopReason),
+}
+
+impl<'a> PartThroughGrowth<'a> {
+    /// Growth of the crack of a case; `later` gets the case once it is through. The law is given twice, for both parts of the run, and what the
+    /// order of its loads needs.
+    /// Errors: a specimen whose crack goes through.
+    pub fn start(
+        case: &'a Case,
+        later: &'a OnceCell<Case>,
+        [law, law_of_tips]: [Box<dyn GrowthLaw>; 2],
+        order: Option<Order>,
+    ) -> Result<Self> {
+        let flaw = case.specimen.part_through.ok_or_else(|| {
+            input_missing("specimen.kind", "is one of a through crack", "give one whose crack does not go through")
+        })?;
+        let neighbours = Neighbours::of(case, &flaw)?;
+        let (fronts, law_of_tips) = (Fronts { case, flaw, neighbours, law }, Some(law_of_tips));
+        let spectrum = case.loading.spectrum.as_deref();
+        let overloads = spectrum.zip(order).map(|(spectrum, order)| Overloads::start(&fronts, spectrum, order));
+        Ok(PartThroughGrowth { fronts, later, law_of_tips, step: STEP_MOST, overloads, curve: Vec::new(), through: None })
+    }
+
+    fn last(&self) -> &CurvePoint {
+        // `open` or `restore` makes the first row, before the first step.
+        &self.curve[self.curve.len() - 1]
+    }
+
+    /// The next step of the front, or the next `increment` of the tips; the reason why there is no next one.
+    /// Errors: a growth rate that is no number, or no K of the through crack.
+    pub fn advance(&mut self, increment: impl FnOnce(&mut ElementFree<'a>) -> Option<StopReason>) -> Result<Option<StopReason>> {
+        if let Some(through) = &mut self.through {
+            let reason = increment(&mut through.growth);
+            through.look();
+            return Ok(reason);
+        }
+        match self.next_step()? {
+            Some(Ending::Through) => self.break_through().map(|()| None),
+            Some(Ending::Stop(reason)) => Ok(Some(reason)),
+            None => Ok(None),
+        }
+    }
+
+    /// Adds the next row; what ends the growth of the front there.
+    fn next_step(&mut self) -> Result<Option<Ending>> {
+        let from = self.place(self.last());
+        if let Some(ending) = self.ending(from) {
+            return Ok(Some(ending));
+        }
+        let Some((mut to, mut taken)) = self.place_after(from) else { return self.standstill(from).map(Some) };
+        let mut ending = self.ending(to);
+        if ending.is_some() {
+            (to, ending, taken) = self.first_ending(from, taken);
+        }
+        let row = match &mut self.overloads {
+            Some(overloads) => {
+                overloads.take(&self.fronts, from, taken);
+                self.counted(from, to)
+            }
+            None => self.row(to),
+        };
+        self.curve.push(row);
+        Ok(ending)
+    }
+
+    /// The next place, and the step to it.
+    fn place_after(&mut self, from: Grown) -> Option<(Grown, f64)> {
+        match &mut self.overloads {
+            Some(overloads) => overloads.next(&self.fronts, from),
+            None => self.fronts.next(from, &mut self.step),
+        }
+    }
+
+    /// The place after a step.
+    fn after(&self, from: Grown, step: f64) -> Grown {
+        match &self.overloads {
+            Some(overloads) => overloads.after(&self.fronts, from, step),
+            None => self.fronts.after(from, step).0,
+        }
+    }
+
+    /// The row of a place whose rates are those of the cycles from the last one.
+    fn counted(&self, from: Grown, to: Grown) -> CurvePoint {
+        let mut row = self.row(to);
+        let rates = [0, 1].map(|end| (to.axes[end] - from.axes[end]) / (to.cycles - from.cycles));
+        row.growth_rate = rates[0].max(rates[1]);
+        row.depth = row.depth.map(|depth| DepthRecord { growth_rate: Some(rates[0]), ..depth });
+        row
+    }
+
+    /// Why there is no next place.
+    fn standstill(&self, from: Grown) -> Result<Ending> {
+        let rates = self.fronts.rates(from.axes);
+        if rates.iter().any(|rate| rate.is_nan()) {
+            let ([a, c], name) = (from.axes.map(|length| length / MM), &self.fronts.case.name);
+            return Err(Error::Mechanics(format!("{name}: the growth rate at a = {a:.4} mm, c = {c:.4} mm is no number")));
+        }
+        // What grows and cannot go on is at the end of the width, where K is infinite.
+        let grows = rates.iter().any(|rate| *rate > 0.0) && self.fronts.is_at_end(from.axes);
+        Ok(Ending::Stop(if grows { StopReason::Severed } else { StopReason::NothingAges }))
+    }
+
+    /// Where within a step its ending is reached: halved until no double is left between.
+    fn first_ending(&self, from: Grown, step: f64) -> (Grown, Option<Ending>, f64) {
+        let (mut below, mut above) = (0.0, step);
+        loop {
+            let middle = 0.5 * (below + above);
+            if middle <= below || middle >= above {
+                let at = self.after(from, above);
+                let ending = self.ending(at);
+                return (self.settled(at, ending), ending, above);
+            }
+            if self.ending(self.after(from, middle)).is_some() { above = middle } else { below = middle }
+        }
+    }
+
+    /// The place of an ending without its last rounding.
+    fn settled(&self, Grown { axes: [a, c], cycles }: Grown, ending: Option<Ending>) -> Grown {
+        let (stop, flaw) = (&self.fronts.case.stop, &self.fronts.flaw);
+        match ending {
+            Some(Ending::Through | Ending::Stop(StopReason::BrokenThrough)) => Grown { axes: [flaw.through_depth(), c], cycles },
+            Some(Ending::Stop(StopReason::CrackDepthReached)) => Grown { axes: [stop.crack_depth, c], cycles },
+            Some(Ending::Stop(StopReason::CrackLengthReached)) => Grown { axes: [a, stop.crack_length], cycles },
+            Some(Ending::Stop(StopReason::RunOut)) => Grown { axes: [a, c], cycles: stop.cycles_max },
+            _ => Grown { axes: [a, c], cycles },
+        }
+    }
+
+    /// What ends growth at a place: what was asked for, what breaks under the load, the plate, break-through.
+    fn ending(&self, Grown { axes, cycles }: Grown) -> Option<Ending> {
+        let Fronts { case, flaw, .. } = &self.fronts;
+        let required = case.stop.required.unwrap_or(1.0);
+        let load = required * case.loading.maximum;
+        let factor = required * self.fronts.factors(axes).into_iter().fold(0.0, f64::max);
+        let breaks = |reason| Some(Ending::Stop(strength_reason(case, reason)));
+        match axes {
+            [a, _] if a >= case.stop.crack_depth => Some(Ending::Stop(StopReason::CrackDepthReached)),
+            [_, c] if c >= case.stop.crack_length => Some(Ending::Stop(StopReason::CrackLengthReached)),
+            _ if case.toughness_at_end().is_some_and(|toughness| factor >= toughness) => breaks(StopReason::Toughness),
+            _ if case.yield_strength_at_end().is_some_and(|strength| flaw.limit_stress(axes, strength) <= load) => {
+                breaks(StopReason::NetSectionYield)
+            }
+            [a, _] if a >= flaw.through_depth() => Some(self.through_or_end()),
+            [_, c] if c >= flaw.to_hole => Some(Ending::Stop(StopReason::EnteredHole)),
+            // K of most formulas is infinite where the crack takes the whole width.
+            [_, c] if c >= flaw.room() || factor.is_infinite() => Some(Ending::Stop(StopReason::Severed)),
+            _ if cycles >= case.stop.cycles_max => Some(Ending::Stop(StopReason::RunOut)),
+            _ => None,
+        }
+    }
+
+    /// What comes after break-through: nothing where that is asked for, and under bending, which a plate in its plane does not know.
+    fn through_or_end(&self) -> Ending {
+        let Fronts { case, flaw, .. } = &self.fronts;
+        let goes_on = !case.stop.at_break_through && flaw.bending_ratio == 0.0;
+        if goes_on { Ending::Through } else { Ending::Stop(StopReason::BrokenThrough) }
+    }
+
+    fn place(&self, row: &CurvePoint) -> Grown {
+        let depth = row.depth.map_or(self.fronts.flaw.depth, |record| record.depth);
+        Grown { axes: [depth, row.crack_length], cycles: row.cycles }
+    }
+
+    /// Row of the curve.
+    fn row(&self, Grown { axes, cycles }: Grown) -> CurvePoint {
+        let Fronts { case, flaw, .. } = &self.fronts;
+        let (factors, rates) = (self.fronts.factors(axes), self.fronts.rates(axes));
+        let growth = axes[1] - flaw.half_length;
+        let ahead = |at: [f64; 2], way: [f64; 2]| along(at, [0, 1].map(|i| at[i] + way[i]), growth);
+        let tip = |seed: &perilife_plate::specimen::TipSeed| TipRecord {
+            state: TipState::Active,
+            position: ahead(seed.position, seed.direction),
+            growth,
+            factors: Some([factors[1], 0.0]),
+            t_stress: None,
+            of_residual: None,
+        };
+        CurvePoint {
+            is_solved: true,
+            cycles,
+            crack_length: axes[1],
+            delta_k: case.loading.range_share() * factors[0].max(factors[1]),
+            growth_rate: rates[0].max(rates[1]),
+            work: f64::NAN,
+            limit_load: case.material.yield_strength.map(|strength| flaw.limit_stress(axes, strength)),
+            broken_bonds: 0,
+            tips: case.specimen.tips.iter().map(tip).collect(),
+            depth: Some(DepthRecord { depth: axes[0], k_i: Some(factors[0]), growth_rate: Some(rates[0]) }),
+            residual: None,
+        }
+    }
+
+    /// Lets the through crack go on from the last row.
+    fn break_through(&mut self) -> Result<()> {
+        if let Some(mut through) = self.through_after(self.curve.clone(), SolverStatistics::default())? {
+            through.open()?;
+            self.curve.clear();
+            self.through = Some(through);
+        }
+        Ok(())
+    }
+
+    /// The run from the last of some rows on, before its first equilibrium; `None` where it was begun before, or there are no rows.
+    fn through_after(&mut self, before: Vec<CurvePoint>, took: SolverStatistics) -> Result<Option<Later<ElementFree<'a>>>> {
+        let (Some(last), Some(law)) = (before.last(), self.law_of_tips.take()) else { return Ok(None) };
+        let Fronts { case, flaw, .. } = &self.fronts;
+        let plate = flaw.through(&case.specimen, last.crack_length)?;
+        let later = self.later.get_or_init(|| case.with_through_crack(plate, last.cycles));
+        Ok(Later::new(ElementFree::start(later, law)?, before, took))
+    }
+
+    /// Takes the rows of the front of an earlier run; where the order of loads counts, step by step, since every zone depends on all steps before.
+    fn replay(&mut self, rows: Vec<CurvePoint>) -> Result<bool> {
+        let Some(last) = rows.last().map(|row| (row.cycles, row.crack_length)) else { return Ok(false) };
+        if self.overloads.is_some() {
+            self.open()?;
+            for _ in 1..rows.len() {
+                self.next_step()?;
+            }
+            let now = self.last();
+            return Ok((now.cycles, now.crack_length) == last);
+        }
+        self.curve = rows;
+        Ok(true)
+    }
+
+    /// Depth of rows of the through crack.
+    fn as_through(&self, row: CurvePoint) -> CurvePoint {
+        let depth = DepthRecord { depth: self.fronts.flaw.through_depth(), k_i: None, growth_rate: None };
+        CurvePoint { depth: row.depth.or(Some(depth)), ..row }
+    }
+}
+
+impl CrackGrowth for PartThroughGrowth<'_> {
+    fn open(&mut self) -> Result<()> {
+        let [a, c] = self.fronts.flaw.start();
+        self.curve = vec![self.row(Grown { axes: [a, c], cycles: 0.0 })];
+        Ok(())
+    }
+
+    fn now(&self) -> GrowthStatus<'_> {
+        let of_front = || {
+            let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.last();
+            GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
+        };
+        self.through.as_ref().map_or_else(of_front, Later::now)
+    }
+
+    fn law(&self) -> Option<&dyn GrowthLaw> {
+        Some(&*self.fronts.law)
+    }
+
+    fn curve(&mut self) -> Vec<CurvePoint> {
+        let Some(through) = &mut self.through else { return std::mem::take(&mut self.curve) };
+        let rows = through.curve();
+        rows.into_iter().map(|row| self.as_through(row)).collect()
+    }
+
+    fn state(&self) -> State {
+        self.through.as_ref().map_or_else(|| State::Rows(self.curve.clone()), Later::state)
+    }
+
+    fn restore(&mut self, state: State) -> Result<bool> {
+        let HandedOver { before, took, tips } = match state {
+            State::HandedOver(handed_over) => handed_over,
+            State::Rows(curve) => {
+                return self.replay(curve);
+            }
+            _ => return Ok(false),
+        };
+        let of_front = before.iter().take_while(|row| row.is_of_front()).cloned().collect();
+        if !self.replay(of_front)? {
+            return Ok(false);
+        }
+        self.curve.clear();
+        let Some(mut through) = self.through_after(before, took)? else { return Ok(false) };
+        let fits = through.restore(*tips)?;
+        if fits {
+            self.through = Some(through);
+        }
+        Ok(fits)
+    }
+
+    fn should_rebuild_solver(&self) -> bool {
+        self.through.as_ref().is_some_and(|through| through.growth.should_rebuild_solver())
+    }
+
+    fn rebuild_solver(&mut self) -> Result<()> {
+        self.through.as_mut().map_or(Ok(()), |through| through.growth.rebuild_solver())
+    }
+
+    fn close(&mut self, stop: StopReason) -> Result<StopReason> {
+        self.through.as_mut().map_or(Ok(stop), |through| through.growth.close(stop))
+    }
+
+    fn statistics(&self) -> SolverStatistics {
+        self.through.as_ref().map(Later::statistics).unwrap_or_default()
+    }
+
+    fn overload(&self) -> Option<Underway> {
+        self.overloads.as_ref().map(Overloads::at_face)
+    }
+
+    fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
+        let through = self.through.as_ref()?;
+        through.growth.cross_check(cycles - through.start().cycles)
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let Some(through) = &self.through else { return self.why_no_through_crack().into_iter().collect() };
+        let (cycles, length) = (through.start().cycles, through.start().crack_length / MM);
+        let note = format!(
+            "the crack was through after {cycles:.0} cycles (a/t = 1), with a length of {length:.3} mm on the face; from there on it grew as a straight \
+             through crack of that length, by the K of its tips on nodes"
+        );
+        through.growth.warnings().into_iter().chain([note]).collect()
+    }
+}
+
+impl PartThroughGrowth<'_> {
+    /// Why a run that was not asked to ends at break-through.
+    fn why_no_through_crack(&self) -> Option<String> {
+        let Fronts { case, flaw, .. } = &self.fronts;
+        let is_through = self.curve.last().is_some_and(|row| self.place(row).axes[0] >= flaw.through_depth());
+        (is_through && flaw.bending_ratio != 0.0 && !case.stop.at_break_through).then(|| {
+            "the run ends at break-through: K of a through crack under bending out of the plane of the plate is not computed"
+                .to_owned()
+        })
+    }
+}

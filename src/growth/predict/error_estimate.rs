@@ -1,0 +1,223 @@
+//! How wrong a life may be: rates of a run against those by K on finer nodes at the same cracks.
+//!
+//! A life is `N = ∫ da / r(K)`, so that an error of K at the crack of a row, `δ = ln[r(K of finer nodes) / r(K of the run)]`, makes it wrong
+//! by `δN = -∫ δ dN`. That is asked at some rows, their shares of the cycles as weights. What two rungs of nodes share, K of the finer ones and
+//! the lengths of steps, is added as a bound. The same for the way of a crack: the angles by which directions differ, over its growth.
+
+use super::Prediction;
+use super::laws::growth_law;
+use super::moment::{grown, rows_before_meeting};
+use crate::case::{Case, Engine, Model, finer_nodes};
+use crate::cracks::initial_tips;
+use crate::cracks::steering::{equivalent_factor, kink_angle};
+use crate::nodes::NodePlate;
+use crate::record::{CurvePoint, StopReason, TipRecord};
+use perilife_base::units::MM;
+use perilife_laws::growth_law::GrowthLaw;
+use perilife_plate::loading::Loading;
+use perilife_plate::specimen::handbook::handbook;
+use perilife_points::crack_tip::TipState;
+
+/// Shares of the cycles at which nodes are asked again, of a run on nodes: as many as take half of its time at the most.
+const SHARES_OF_NODES: [f64; 3] = [0.0, 0.4, 0.8];
+/// Of a run on points, beside which nodes cost little.
+const SHARES_OF_POINTS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 0.95];
+/// Factor on what was found: between the rows asked it may be more, as where a crack passes between two holes.
+const BETWEEN: f64 = 2.0;
+/// Error of K on the finer nodes: 0.36 % of life at m = 3. With such nodes lives of eight of nine plates err by up to 0.22 %; that of the ninth, by
+/// 0.7 %, stays below the sum of all terms (`perilife verify estimates`).
+const FINER: f64 = 1.2e-3;
+/// What a way is off by in any case, over the growth: straight pieces between turns of up to 5°.
+const WAY: f64 = 2e-3;
+/// Error of a life at m = 3 over the part of it in which tips have met rims or other cracks, which no row is asked of.
+const AFTER_MEETING: f64 = 0.015;
+/// Difference of K from the energy released from which nothing is said of the error of a life.
+const CROSS_CHECK_MOST: f64 = 0.02;
+/// Error of a path over the gap between a rim and a crack that passes it, from which nothing is said: K behind a rim falls with the gap.
+const GAP_SHARE: f64 = 0.3;
+/// Share of a life that must be looked at.
+const LOOKED_AT_LEAST: f64 = 0.3;
+
+/// Upper bounds of what a run is wrong by, as a solution of the problem that its case sets: plane linear elasticity and the law given.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorEstimate {
+    /// Of its cycles, percent.
+    pub life_percent: f64,
+    /// Of the way of its cracks, m.
+    pub path: f64,
+    /// What it rests on.
+    pub basis: String,
+}
+
+/// Bounds of the error of a run; in words why there are none.
+pub fn error_estimate(case: &Case, prediction: &Prediction) -> Result<ErrorEstimate, String> {
+    if prediction.stop == StopReason::NoConvergence {
+        return Err("the solver did not converge".to_owned());
+    }
+    if let Some(check) = prediction.cross_check.filter(|check| check.difference.abs() > CROSS_CHECK_MOST) {
+        return Err(format!("K and the energy released differ by {:.1} %", 100.0 * check.difference));
+    }
+    match case.engine() {
+        Engine::Bonds | Engine::BondsThenPoints => {
+            Err("bonds that fail by their own strain have no limit that a finer lattice would tend to".to_owned())
+        }
+        Engine::PartThrough => {
+            Err("K of a crack that does not go through is known to ±5 % from its source, see the checks".to_owned())
+        }
+        engine => {
+            let law = growth_law(case).map_err(|error| error.to_string())?;
+            match engine {
+                Engine::Handbook => of_formula(case, prediction, &*law),
+                Engine::Nodes => by_finer_nodes(case, prediction, &*law, &SHARES_OF_NODES),
+                _ => by_finer_nodes(case, prediction, &*law, &SHARES_OF_POINTS),
+            }
+        }
+    }
+}
+
+/// A growth law at one stress ratio.
+struct Rates<'a> {
+    law: &'a dyn GrowthLaw,
+    ratio: f64,
+}
+
+impl Rates<'_> {
+    fn at(&self, factor: f64) -> f64 {
+        self.law.rate(factor, self.ratio)
+    }
+
+    /// With what residual stress makes of K, Pa√m.
+    fn of(&self, factor: f64, of_residual: Option<f64>, loading: &Loading) -> f64 {
+        let share = of_residual.filter(|_| factor > 0.0).map_or(0.0, |of_residual| of_residual / factor);
+        self.law.rate(factor, loading.ratio_at(share))
+    }
+
+    /// d ln r / d ln K.
+    fn exponent(&self, factor: f64) -> f64 {
+        const STEP: f64 = 1e-3;
+        (self.at(factor * (1.0 + STEP)) / self.at(factor * (1.0 - STEP))).ln() / (2.0 * STEP)
+    }
+}
+
+/// The error of the formula, by the exponent of the law.
+fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Result<ErrorEstimate, String> {
+    let Some(formula) = handbook(&case.specimen) else { return Err("no handbook formula".to_owned()) };
+    if case.specimen.beta.is_some() {
+        return Err(format!("a {} states no error of K", formula.name));
+    }
+    if !formula.holds_at(prediction.crack_length_final()) {
+        return Err(format!("the crack grew beyond the range of the formula ({})", formula.range));
+    }
+    if case.loading.residual.is_some() {
+        return Err("the error of K_res by a Green function is not stated in full".to_owned());
+    }
+    let rates = Rates { law, ratio: case.loading.ratio };
+    let (life, mut sum) = (prediction.life_cycles(), 0.0);
+    for pair in prediction.curve.windows(2) {
+        let middle = 0.5 * (pair[0].crack_length + pair[1].crack_length);
+        let exponent = rates.exponent(formula.k_i(middle, case.loading.maximum));
+        let error = formula.error_at(middle) * exponent.abs();
+        sum += if error.is_finite() { error } else { 1.0 } * (pair[1].cycles - pair[0].cycles);
+    }
+    if life <= 0.0 {
+        return Err("nothing grew".to_owned());
+    }
+    Ok(ErrorEstimate {
+        life_percent: 100.0 * sum / life,
+        path: 0.0,
+        basis: format!("formula {}: {}", formula.name, formula.range),
+    })
+}
+
+fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, shares: &[f64]) -> Result<ErrorEstimate, String> {
+    let (life, rows) = (prediction.life_cycles(), rows_before_meeting(&prediction.curve));
+    let end = rows.last().map_or(0.0, |row| row.cycles);
+    if life <= 0.0 || end < LOOKED_AT_LEAST * life {
+        return Err("most of the life is spent after tips have met rims, holes or cracks".to_owned());
+    }
+    let rates = Rates { law, ratio: case.loading.ratio };
+    let nearest = |share: f64| {
+        let gap = |row: &usize| (rows[*row].cycles - share * life).abs();
+        (0..rows.len()).filter(|row| rows[*row].is_solved).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap_or(0)
+    };
+    let mut asked: Vec<usize> = shares.iter().map(|share| nearest(*share)).collect();
+    asked.dedup();
+    let mut found = Vec::with_capacity(asked.len());
+    for &row in &asked {
+        found.push((rows[row].cycles, Difference::at(case, rows, row, &rates)?));
+    }
+    // Every row stands for the cycles nearest to it.
+    let mut largest_exponent: f64 = 0.0;
+    let [mut of_life, mut of_angle] = [0.0; 2];
+    for (i, (cycles, difference)) in found.iter().enumerate() {
+        let from = if i == 0 { 0.0 } else { 0.5 * (found[i - 1].0 + cycles) };
+        let to = found.get(i + 1).map_or(end, |next| 0.5 * (next.0 + cycles));
+        let share = (to - from) / life;
+        of_life += share * difference.rate.abs();
+        of_angle += difference.angle.abs() / found.len() as f64;
+        largest_exponent = largest_exponent.max(difference.exponent.abs());
+    }
+    let after = AFTER_MEETING * largest_exponent / 3.0 * (1.0 - end / life);
+    let steps = 0.02 * case.fatigue.step_error_percent;
+    let growth = prediction.curve.last().map_or(0.0, |row| row.tips.iter().map(|tip| tip.growth).fold(0.0, f64::max));
+    let path = growth * (of_angle + WAY);
+    if let Some(gap) = rim_passed(case, &prediction.curve).filter(|gap| path > GAP_SHARE * gap) {
+        return Err(format!(
+            "the crack passes a rim at {:.2} mm, and its path is known to {:.2} mm: small causes decide its K there",
+            gap / MM,
+            path / MM
+        ));
+    }
+    Ok(ErrorEstimate {
+        life_percent: 100.0 * (BETWEEN * of_life + FINER * largest_exponent + after + steps),
+        path,
+        basis: format!("K at {} moments on finer nodes", found.len()),
+    })
+}
+
+/// The least distance at which a tip passes a rim, m: from where the way to the rim gets longer again.
+fn rim_passed(case: &Case, curve: &[CurvePoint]) -> Option<f64> {
+    let tips = curve.first().map_or(0, |row| row.tips.len());
+    let passed = |tip: usize| {
+        let gaps: Vec<f64> = curve.iter().map(|row| case.specimen.rim_distance(row.tips[tip].position)).collect();
+        let least = gaps.windows(3).filter(|gap| gap[1] < gap[0] && gap[1] < gap[2]).map(|gap| gap[1]);
+        least.fold(f64::INFINITY, f64::min)
+    };
+    Some((0..tips).map(passed).fold(f64::INFINITY, f64::min)).filter(|gap| gap.is_finite())
+}
+
+/// What finer nodes say at the cracks of a row.
+struct Difference {
+    /// ln of the rate of the leading tip by them over that of the run.
+    rate: f64,
+    /// Direction of growth of that tip by them less that of the run, rad.
+    angle: f64,
+    /// Exponent of the law there.
+    exponent: f64,
+}
+
+impl Difference {
+    fn at(case: &Case, rows: &[CurvePoint], row: usize, rates: &Rates<'_>) -> Result<Difference, String> {
+        let finer =
+            Case { specimen: grown(&case.specimen, &rows[..=row]), model: Model::Nodes(finer_nodes(case)), ..case.clone() };
+        let tips = initial_tips::<NodePlate>(&finer).map_err(|error| format!("finer nodes: {error}"))?.tips;
+        let rate = |tip: &TipRecord| {
+            tip.factors.map_or(0.0, |factors| rates.of(equivalent_factor(factors), tip.of_residual, &case.loading))
+        };
+        let own = &rows[row].tips;
+        let active = |tip: &usize| own[*tip].state == TipState::Active;
+        let leads = (0..own.len()).filter(active).max_by(|a, b| rate(&own[*a]).total_cmp(&rate(&own[*b])));
+        let lead = leads.ok_or("no tip is open")?;
+        let (Some(before), Some(now)) = (own[lead].factors, tips[lead].factors) else {
+            return Err("K of the leading tip is not known on finer nodes".to_owned());
+        };
+        let difference = Difference {
+            rate: (rate(&tips[lead]) / rate(&own[lead])).ln(),
+            angle: kink_angle(now) - kink_angle(before),
+            exponent: rates.exponent(equivalent_factor(before)),
+        };
+        let is_known = [difference.rate, difference.angle, difference.exponent].iter().all(|value| value.is_finite());
+        let at = rows[row].crack_length / MM;
+        is_known.then_some(difference).ok_or_else(|| format!("at {at:.3} mm the leading tip is at the threshold of its law"))
+    }
+}

@@ -1,0 +1,146 @@
+//! K of a growing crack against its length, by the field of its tip: what a calibration integrates laws over, and what the
+//! constant of a law of bonds is measured against.
+//!
+//! The path of a crack does not depend on C, and that of a single tip not on m either, so one run serves every pair of C and m. Of several
+//! tips the faster ones grow the farther ahead of the others the larger m is.
+
+use super::{CurvePoint, Observer, Prediction, RunFigures, StopReason, predict};
+use crate::case::{Case, LawSource};
+use crate::cracks::steering::equivalent_factor;
+use perilife_base::blended::Blended;
+use perilife_base::error::{Error, Result};
+use perilife_base::units::MM;
+use perilife_laws::Driver;
+use perilife_laws::paris::ParisLaw;
+use perilife_plate::specimen::LengthConvention;
+use perilife_points::crack_tip::TipState;
+
+/// Exponent of a run whose tips share its growth, where nothing better is known.
+pub const EXPONENT_USUAL: f64 = 3.0;
+/// Difference of ln K between tips that grow alike.
+const ALIKE: f64 = 0.01;
+
+/// K_eq at maximum load over crack length.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FactorCurve {
+    /// Of every tip whose growth adds to the length; of a standard specimen the fastest stands for all.
+    tips: Vec<TipFactors>,
+    /// Figures of the run that it comes from.
+    pub figures: RunFigures,
+    /// What the user should know about that run.
+    pub warnings: Vec<String>,
+}
+
+/// K of a tip while it grows, between the rows of a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TipFactors {
+    /// ln of K_eq, K in Pa√m, over crack length, m.
+    logarithms: Blended,
+}
+
+impl FactorCurve {
+    /// Of a case, whatever its driver, law, threshold and limit of cycles, up to `stop.crack_length`.
+    /// Errors: as [`super::predict`]; a run that ends before that length.
+    pub fn of(case: &Case, observer: &dyn Observer) -> Result<Self> {
+        Self::at_exponent(case, EXPONENT_USUAL, observer)
+    }
+
+    /// The same, several tips growing by this exponent.
+    pub fn at_exponent(case: &Case, m: f64, observer: &dyn Observer) -> Result<Self> {
+        let done = unit_growth(case, m, observer)?;
+        let tips = match case.specimen.convention {
+            LengthConvention::MeanOfTips => {
+                vec![TipFactors::new(solved(&done.curve).map(|row| (row.crack_length, row.k_max(&case.loading))))]
+            }
+            LengthConvention::SumOfTips => of_every_tip(&done.curve),
+        };
+        Ok(FactorCurve { tips, figures: done.figures, warnings: done.warnings })
+    }
+
+    /// K_eq at maximum load, Pa√m, at a crack length, m, of the fastest tip.
+    pub fn at(&self, length: f64) -> f64 {
+        self.of_tips(length).into_iter().fold(f64::NAN, f64::max)
+    }
+
+    /// K_eq at maximum load, Pa√m, at a crack length, m, of every tip that grows there.
+    pub fn of_tips(&self, length: f64) -> Vec<f64> {
+        let last = self.tips.iter().filter_map(|tip| tip.lengths().last()).copied().fold(0.0, f64::max);
+        // Beyond the last row by a rounding, K goes on.
+        let grows = |tip: &&TipFactors| tip.grows_at(length.min(last));
+        self.tips.iter().filter(grows).map(|tip| tip.at(length)).collect()
+    }
+
+    /// Whether tips of unlike K share the growth, so that the path depends on the exponent.
+    pub fn depends_on_exponent(&self) -> bool {
+        let rows = self.tips.iter().flat_map(|tip| tip.lengths());
+        rows.map(|&length| self.of_tips(length)).any(|tips| {
+            let (low, high) = tips.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(*k), high.max(*k)));
+            tips.len() > 1 && (high / low).ln() > ALIKE
+        })
+    }
+}
+
+/// The run of a case up to `stop.crack_length` in which every tip grows by K^m, whatever its driver, law, threshold and limit of cycles.
+/// Errors: as [`predict`]; a run that ends before that length.
+pub(super) fn unit_growth(case: &Case, m: f64, observer: &dyn Observer) -> Result<Prediction> {
+    let mut case = case.clone();
+    // A crack that goes straight takes the same steps with all laws.
+    let m = if case.specimen.convention == LengthConvention::SumOfTips { m } else { 1.0 };
+    case.law = LawSource::Paris(ParisLaw { c: 1.0, m });
+    case.fatigue.driver = Driver::TipField;
+    (case.fatigue.threshold, case.fatigue.walker_gamma) = (0.0, 1.0);
+    case.stop.cycles_max = f64::INFINITY;
+    let done = predict(&case, observer)?;
+    if done.stop != StopReason::CrackLengthReached {
+        return Err(Error::Mechanics(format!(
+            "{}: the crack ended as {} at a length of {:.3} mm, before {:.3} mm, to which its K is needed",
+            case.name,
+            done.stop,
+            done.crack_length_final() / MM,
+            case.stop.crack_length / MM
+        )));
+    }
+    Ok(done)
+}
+
+/// Rows whose K was solved for, and the last one: between them the curve is smooth, and rows there are what a run made of it on its way.
+pub(super) fn solved(curve: &[CurvePoint]) -> impl Iterator<Item = &CurvePoint> {
+    let last = curve.len().saturating_sub(1);
+    curve.iter().enumerate().filter(move |(index, row)| row.is_solved || *index == last).map(|(_, row)| row)
+}
+
+/// K of every tip over the rows in which it grows.
+fn of_every_tip(curve: &[CurvePoint]) -> Vec<TipFactors> {
+    let count = curve.first().map_or(0, |row| row.tips.len());
+    let of_tip = |tip: usize| {
+        let factor = |row: &CurvePoint| {
+            let record = &row.tips[tip];
+            let factor = equivalent_factor(record.factors.filter(|_| record.state == TipState::Active)?);
+            (factor > 0.0).then_some((row.crack_length, factor))
+        };
+        TipFactors::new(solved(curve).filter_map(factor))
+    };
+    (0..count).map(of_tip).filter(|tip| tip.lengths().len() > 1).collect()
+}
+
+impl TipFactors {
+    /// Of its rows, at least two: lengths that rise, m, and K, Pa√m.
+    pub fn new(rows: impl Iterator<Item = (f64, f64)>) -> Self {
+        TipFactors { logarithms: Blended::new(rows.map(|(length, k)| (length, k.ln()))) }
+    }
+
+    fn lengths(&self) -> &[f64] {
+        self.logarithms.x()
+    }
+
+    fn grows_at(&self, length: f64) -> bool {
+        let lengths = self.lengths();
+        let [first, last] = [lengths[0], lengths[lengths.len() - 1]];
+        (first * (1.0 - 1e-9)..=last * (1.0 + 1e-9)).contains(&length)
+    }
+
+    /// K at a length: its logarithm is smooth between rows ([`Blended`]).
+    pub fn at(&self, length: f64) -> f64 {
+        self.logarithms.at(length).exp()
+    }
+}

@@ -1,0 +1,118 @@
+//! The law of a case in the form that its driver needs: of bonds, or over K.
+
+use super::CurvePoint;
+use crate::CrackGrowth;
+use crate::case::{Case, LawSource};
+use crate::part_through::Order;
+use crate::rate_constant::rate_constant;
+use perilife_base::error::{Result, input_missing};
+use perilife_base::units::MM;
+use perilife_laws::FatigueLaw;
+use perilife_laws::growth_law::{GrowthLaw, Walker};
+use perilife_laws::paris::ParisLaw;
+use perilife_laws::spectrum_law::SpectrumLaw;
+
+/// The law over K of a case, for driver `tip_field` and method `handbook`: of a spectrum the mean of its cycles.
+/// Errors: a case without law; as [`rate_constant`] where it is one of bonds.
+pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
+    Ok(match &case.loading.spectrum {
+        Some(spectrum) => Box::new(SpectrumLaw::new(law_of_cycle(case)?, spectrum, least_ratio(case))),
+        None if case.loading.residual.is_some() => Box::new(ShiftedRatios { law: law_of_cycle(case)?, least: least_ratio(case) }),
+        None => law_of_cycle(case)?,
+    })
+}
+
+/// A law under the stress ratios that residual stress gives its cycles: below the least ratio that it knows it is held there, and where the
+/// load closes the crack, R ≥ 1, nothing grows.
+#[derive(Debug)]
+struct ShiftedRatios {
+    law: Box<dyn GrowthLaw>,
+    least: f64,
+}
+
+impl GrowthLaw for ShiftedRatios {
+    fn rate(&self, k_max: f64, ratio: f64) -> f64 {
+        if ratio >= 1.0 { 0.0 } else { self.law.rate(k_max, ratio.max(self.least)) }
+    }
+}
+
+/// Least stress ratio that the law of a case knows; where compression counts as nothing there is none.
+pub fn least_ratio(case: &Case) -> f64 {
+    let least = match &case.law {
+        LawSource::Factor(law) => law.least_ratio(),
+        _ => None,
+    };
+    least.unwrap_or(f64::NEG_INFINITY)
+}
+
+/// The law over K of a case for one cycle.
+/// Errors: as [`growth_law`].
+pub fn law_of_cycle(case: &Case) -> Result<Box<dyn GrowthLaw>> {
+    Ok(match &case.law {
+        LawSource::Factor(law) => Box::new(law.clone()),
+        _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold }),
+    })
+}
+
+/// What the order of the cycles of a case needs, where that counts.
+/// Errors: as [`growth_law`].
+pub fn order(case: &Case) -> Result<Option<Order>> {
+    let model = case.retardation.clone();
+    model.map(|model| Ok(Order { law: law_of_cycle(case)?, least: least_ratio(case), model })).transpose()
+}
+
+/// Refuses growth from a K that lies beyond what the law says, where the law wants that.
+/// So is growth to where a residual stress is not known.
+pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
+    if let Some(residual) = &case.loading.residual {
+        growth.now().tips.iter().try_for_each(|tip| residual.check(tip.position))?;
+    }
+    let Some(law) = growth.law().filter(|law| law.is_refused_beyond()) else { return Ok(()) };
+    let now = growth.now();
+    let Some(problem) = beyond(case, law, now.delta_k) else { return Ok(()) };
+    let at = format!("{problem}, at a crack length of {:.3} mm", now.crack_length / MM);
+    Err(input_missing(
+        "fatigue.growth_table",
+        at,
+        "give a longer table, or growth_table_ends = \"held\" to hold the rate of its end",
+    ))
+}
+
+fn beyond(case: &Case, law: &dyn GrowthLaw, delta_k: f64) -> Option<String> {
+    law.beyond(delta_k / case.loading.range_share(), case.loading.ratio)
+}
+
+/// What the user should know: how much of a life was spent where the law holds the rate of its end.
+pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) -> Option<String> {
+    let life = curve.last()?.cycles;
+    let outside = |pair: &&[CurvePoint]| pair.iter().any(|row| beyond(case, law, row.delta_k).is_some());
+    let cycles: f64 = curve.windows(2).filter(outside).map(|pair| pair[1].cycles - pair[0].cycles).sum();
+    (cycles > 0.0).then(|| {
+        let share = 100.0 * cycles / life;
+        format!("{share:.2} % of the life is spent at ΔK beyond the table of rates, where the rate of its end is held")
+    })
+}
+
+/// C and m of a case; a law of bonds stands for those that [`ParisLaw::of_bonds`] gives.
+pub fn paris_law(case: &Case) -> Result<ParisLaw> {
+    match &case.law {
+        LawSource::Inline(law) => {
+            let beta = rate_constant(case.points().bond_law.kernel, law.p)?;
+            Ok(ParisLaw::of_bonds(law, beta, case.material.plane_modulus()))
+        }
+        _ => case.paris_law(),
+    }
+}
+
+/// A and p of a case at the body's actual horizon, m, for driver `bond_strain`; C and m stand for those that [`ParisLaw::to_bonds`]
+/// gives.
+/// Errors: a case without law; as [`rate_constant`] where it is one over K.
+pub fn bond_law(case: &Case, horizon: f64) -> Result<FatigueLaw> {
+    match &case.law {
+        LawSource::Paris(law) => {
+            let beta = rate_constant(case.points().bond_law.kernel, law.m)?;
+            Ok(law.to_bonds(beta, case.material.plane_modulus(), horizon))
+        }
+        _ => case.fatigue_law(horizon),
+    }
+}

@@ -1,0 +1,134 @@
+//! What a run gives and how it reports while it goes on.
+
+use super::initiation::PhaseOne;
+use crate::CrackGrowth;
+pub use crate::cross_check::CrossCheck;
+pub use crate::record::{CurvePoint, StopReason, TipRecord};
+use perilife_base::machine;
+pub use perilife_base::raster::{PointGrid, Snapshot};
+use perilife_base::units::MM;
+use perilife_plate::specimen::Specimen;
+use perilife_points::body::Body;
+use perilife_points::solver::SolverUsed;
+
+/// Figures of a run that users ask for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunFigures {
+    /// Points of the whole body.
+    pub points: usize,
+    /// Points that were solved for.
+    pub points_solved: usize,
+    /// Bonds of the uncracked body.
+    pub bonds: usize,
+    /// Cycle blocks.
+    pub blocks: usize,
+    /// Equilibrium solves.
+    pub solves: usize,
+    /// Solver iterations in all (0 for a direct solver).
+    pub iterations: usize,
+    /// What solved; `None` of a hand calculation.
+    pub solver: Option<SolverUsed>,
+    /// Actual lattice spacing, m.
+    pub spacing: f64,
+    /// Horizon, m.
+    pub horizon: f64,
+    /// Wall time, s.
+    pub wall_s: f64,
+    /// Peak memory of the process, MB.
+    pub memory_mb: f64,
+}
+
+impl RunFigures {
+    /// Of a run that is over, after so many blocks and seconds.
+    pub(super) fn of(growth: &dyn CrackGrowth, blocks: usize, wall_s: f64) -> Self {
+        let (body, statistics) = (growth.body(), growth.statistics());
+        let body = body.as_deref();
+        RunFigures {
+            points: body.map_or(statistics.points_solved, |body| body.points.len()),
+            points_solved: statistics.points_solved,
+            bonds: body.map_or(0, |body| body.bond_count),
+            blocks,
+            solves: statistics.solves,
+            iterations: statistics.iterations,
+            solver: statistics.solver,
+            spacing: body.map_or(f64::NAN, |body| body.lattice.spacing),
+            horizon: body.map_or(f64::NAN, Body::horizon),
+            wall_s,
+            memory_mb: machine::peak_mb(),
+        }
+    }
+}
+
+/// What a run gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// The a-N curve: first row N = 0, or the end of phase I, at the initial crack length; cycles and length never fall.
+    pub curve: Vec<CurvePoint>,
+    /// Why it ended.
+    pub stop: StopReason,
+    /// Snapshots: first, some between, last.
+    pub snapshots: Vec<Snapshot>,
+    /// Lattice of the snapshots.
+    pub grid: PointGrid,
+    /// Figures.
+    pub figures: RunFigures,
+    /// Phase I, before the cracks of the case had formed: the rows of the curve begin after it.
+    pub phase_one: Option<PhaseOne>,
+    /// K against an independent one, where there is one.
+    pub cross_check: Option<CrossCheck>,
+    /// Cycles of the same curve by the mean rate of a pass, where retardation has counted them anew.
+    pub unretarded_cycles: Option<f64>,
+    /// What the user should know: warnings in plain words.
+    pub warnings: Vec<String>,
+}
+
+impl Prediction {
+    /// The life, cycles; `None` where the cracks stand still under these loads, so that it has no end.
+    pub fn life(&self) -> Option<f64> {
+        (self.stop != StopReason::NothingAges).then(|| self.life_cycles())
+    }
+
+    /// Cycles from N = 0 to the end of the run.
+    pub fn life_cycles(&self) -> f64 {
+        self.curve.last().map_or(0.0, |point| point.cycles)
+    }
+
+    /// The tip that ends the life of a plate, which grew fastest at the end, and the length of its crack at the start and there, m; `None` of
+    /// standard specimens, whose crack length is that of their standard, and of ends of slots.
+    pub fn leading_tip(&self, specimen: &Specimen) -> Option<(usize, [f64; 2])> {
+        let (first, [.., before, last]) = (self.curve.first()?, &self.curve[..]) else { return None };
+        let grown = |tip: &usize| last.tips[*tip].growth - before.tips[*tip].growth;
+        let tip = (0..last.tips.len()).max_by(|a, b| grown(a).total_cmp(&grown(b)))?;
+        let lengths = [first, last].map(|row| row.crack_length_of(specimen, tip));
+        (specimen.kind.is_plate()).then_some((tip, [lengths[0]?, lengths[1]?]))
+    }
+
+    /// Cycles at which the crack has a length, m, linear between rows; `None` where it never has.
+    pub fn cycles_at(&self, crack_length: f64) -> Option<f64> {
+        let rows = self.curve.windows(2).find(|rows| (rows[0].crack_length..=rows[1].crack_length).contains(&crack_length))?;
+        let [from, to] = [rows[0].crack_length, rows[1].crack_length];
+        let share = if to > from { (crack_length - from) / (to - from) } else { 0.0 };
+        Some(rows[0].cycles + share * (rows[1].cycles - rows[0].cycles))
+    }
+
+    /// Crack length at the end, mm.
+    pub fn crack_length_final_mm(&self) -> f64 {
+        self.crack_length_final() / MM
+    }
+
+    /// Crack length at the end, m.
+    pub fn crack_length_final(&self) -> f64 {
+        self.curve.last().map_or(f64::NAN, |point| point.crack_length)
+    }
+}
+
+/// What a run reports while it goes on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length, m.
+    pub crack_length: f64,
+    /// Share of the way to the nearest end that is in sight, 0 to 1.
+    pub share: f64,
+}

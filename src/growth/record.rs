@@ -1,0 +1,215 @@
+//! What a run takes down block by block, whatever drives its cracks.
+
+use serde::{Deserialize, Serialize};
+
+use crate::case::Case;
+use perilife_plate::loading::Loading;
+use perilife_plate::specimen::{CrackLine, Point, Specimen};
+use perilife_points::crack_tip::TipState;
+
+perilife_base::kinds! {
+    /// Why a run ended.
+    pub enum StopReason for "stop_reason" {
+        CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
+        CrackDepthReached = "crack_depth_reached": "the crack reached stop.crack_depth_mm",
+        BrokenThrough = "broken_through": "the crack has grown through the thickness: what the through crack does is not computed",
+        Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
+        NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
+        Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
+        LeftPlate = "left_plate": "every crack tip has left the plate",
+        EnteredHole = "entered_hole": "the last crack tip ran into a hole: what the crack does behind it is not computed",
+        CracksJoined = "cracks_joined": "the last crack tips have met, and no other grows: what the joined crack does is not computed",
+        LigamentUnresolved = "ligament_unresolved": "a crack tip passes a rim within a spacing: points do not resolve what is between them",
+        NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
+        NoGrowth = "no_growth": "bonds went on breaking, but no crack tip grew",
+        RequiredStrength = "required_strength": "the plate no longer bears the load that it has to (stop.required_strength_mpa or limit_load_factor)",
+        RunOut = "run_out": "stop.cycles_max was reached, and the plate lives on",
+        NoConvergence = "no_convergence": "the equilibrium solver did not converge",
+    }
+}
+
+impl StopReason {
+    /// Whether a plate that has ended so lives on: what a crack does behind a hole, or one that has joined others or has just grown
+    /// through, is not computed, nor what comes after the cycles that were asked for.
+    pub fn is_lower_bound(self) -> bool {
+        use StopReason::{BrokenThrough, CracksJoined, EnteredHole, LigamentUnresolved, RunOut};
+        matches!(self, BrokenThrough | EnteredHole | CracksJoined | LigamentUnresolved | RunOut)
+    }
+
+    /// Whether the load breaks a plate that has ended so.
+    pub fn is_strength(self) -> bool {
+        matches!(self, StopReason::Toughness | StopReason::NetSectionYield | StopReason::RequiredStrength)
+    }
+}
+
+/// State of one tip at a recorded step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct TipRecord {
+    /// What has become of it.
+    pub state: TipState,
+    /// Position, m.
+    pub position: Point,
+    /// Growth since N = 0, m.
+    pub growth: f64,
+    /// K_I and K_II at maximum load, Pa√m; `None` where nobody reads them, as of a tip that has ended.
+    pub factors: Option<[f64; 2]>,
+    /// Stress along the crack T at maximum load, Pa; `None` where `factors` is.
+    pub t_stress: Option<f64>,
+    /// What residual stress makes of K_eq, Pa√m; `None` where there is no such stress.
+    pub of_residual: Option<f64>,
+}
+
+/// What residual stress does to the tip that leads.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Residual {
+    /// K_res, Pa√m: what it makes of K_eq.
+    pub factor: f64,
+    /// Stress ratio K_min/K_max with it.
+    pub ratio: f64,
+}
+
+impl Residual {
+    /// The same K_res in another K at maximum load, Pa√m; there is no ratio where that is 0.
+    pub fn beside(self, k_max: f64, loading: &Loading) -> Residual {
+        let share = self.factor / k_max;
+        Residual { ratio: if share.is_finite() { loading.ratio_at(share) } else { f64::NAN }, ..self }
+    }
+
+    /// Share of K_max that counts as range, as [`Loading::range_share`].
+    pub fn range_share(self) -> f64 {
+        (1.0 - self.ratio.max(0.0)).max(0.0)
+    }
+}
+
+/// The end in the thickness of the front of a crack that did not go through at the start, at a recorded step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct DepthRecord {
+    /// Semi-axis a, m; where the crack is through, that at which it was.
+    pub depth: f64,
+    /// K_I there at maximum load, Pa√m; `None` once the crack is through.
+    pub k_i: Option<f64>,
+    /// Growth rate there, m/cycle; `None` once the crack is through.
+    pub growth_rate: Option<f64>,
+}
+
+/// One cycle block of a finished run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CurvePoint {
+    /// Whether an equilibrium (or a formula) was solved here; else the row lies between two that were.
+    pub is_solved: bool,
+    /// Cycles since N = 0.
+    pub cycles: f64,
+    /// Crack length in the specimen's convention, m.
+    pub crack_length: f64,
+    /// Range of the stress intensity factor, Pa√m (handbook where there is one, else from the energy release rate); NaN where unknown.
+    pub delta_k: f64,
+    /// Growth rate da/dN, m/cycle.
+    pub growth_rate: f64,
+    /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
+    /// compliance; NaN where the plate is severed and in hand calculation.
+    pub work: f64,
+    /// Nominal load at which the weakest section is fully plastic, Pa or N; `None` without yield strength, or where the loads determine what
+    /// no section bears.
+    pub limit_load: Option<f64>,
+    /// Bonds broken since the start, initial cracks not counted.
+    pub broken_bonds: usize,
+    /// Tips, in the order of `Specimen::tips`.
+    pub tips: Vec<TipRecord>,
+    /// What a crack that did not go through at the start does in the thickness; `None` of through cracks.
+    pub depth: Option<DepthRecord>,
+    /// What residual stress does to the tip that leads; `None` without.
+    pub residual: Option<Residual>,
+}
+
+impl CurvePoint {
+    /// Whether it is of the front of a crack that does not go through.
+    pub fn is_of_front(&self) -> bool {
+        self.depth.is_some_and(|depth| depth.k_i.is_some())
+    }
+
+    /// The row of tips that are driven by their K; `lead` is K_eq, Pa√m, and da/dN, m/cycle, of the fastest, and `cracks` what the tips end.
+    ///
+    /// What the tips carry of K was read in the last equilibrium. Without one for this row (`work` is NaN), and of a tip that has ended
+    /// with it, that is K of the row before, and not told again.
+    pub fn of_tips(
+        case: &Case,
+        [cycles, work]: [f64; 2],
+        broken_bonds: usize,
+        (mut tips, cracks): (Vec<TipRecord>, &[CrackLine]),
+        lead: Option<(f64, f64)>,
+    ) -> CurvePoint {
+        let is_read = |tip: &TipRecord| !work.is_nan() && matches!(tip.state, TipState::Active | TipState::Closed);
+        tips.iter_mut().filter(|tip| !is_read(tip)).for_each(|tip| (tip.factors, tip.t_stress) = (None, None));
+        let lead = lead.filter(|_| !work.is_nan());
+        let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
+        let (k_max, growth_rate) = lead.unwrap_or((f64::NAN, f64::NAN));
+        let crack_length = case.specimen.crack_length_after(&growths);
+        CurvePoint {
+            is_solved: true,
+            cycles,
+            crack_length,
+            limit_load: case.limit_load(crack_length, cracks),
+            delta_k: case.loading.range_share() * k_max,
+            growth_rate,
+            work,
+            broken_bonds,
+            tips,
+            depth: None,
+            residual: None,
+        }
+    }
+
+    /// The row with a residual stress that makes `of_residual` of the K at maximum load that leads, Pa√m.
+    pub fn with_residual(self, k_max: f64, of_residual: f64, loading: &Loading) -> CurvePoint {
+        let residual = Residual { factor: of_residual, ratio: f64::NAN }.beside(k_max, loading);
+        CurvePoint { delta_k: residual.range_share() * k_max, residual: Some(residual), ..self }
+    }
+
+    /// K at maximum load that leads, Pa√m; NaN where unknown.
+    pub fn k_max(&self, loading: &Loading) -> f64 {
+        self.delta_k / self.residual.map_or(loading.range_share(), Residual::range_share)
+    }
+
+    /// That at another load, over that of the cycles, which residual stress does not follow.
+    pub fn k_max_at(&self, load: f64, loading: &Loading) -> f64 {
+        let of_residual = self.residual.map_or(0.0, |residual| residual.factor);
+        load * (self.k_max(loading) - of_residual) + of_residual
+    }
+
+    /// Length of the crack that a tip ends, with the growth of all its tips, m; `None` of the end of a slot.
+    pub fn crack_length_of(&self, specimen: &Specimen, tip: usize) -> Option<f64> {
+        let line = specimen.line_end(tip)?.line;
+        let is_of_line = |other: &usize| specimen.line_end(*other).is_some_and(|end| end.line == line);
+        let growth: f64 = (0..self.tips.len()).filter(is_of_line).map(|other| self.tips[other].growth).sum();
+        Some(specimen.crack_lines()[line].length() + growth)
+    }
+
+    /// The row at a share of the way from another to this one; bonds broken are those of this one.
+    pub fn between(self, before: &CurvePoint, share: f64) -> CurvePoint {
+        let mix = |a: f64, b: f64| a + share * (b - a);
+        let tip = |(a, b): (&TipRecord, &TipRecord)| TipRecord {
+            state: b.state,
+            position: [0, 1].map(|i| mix(a.position[i], b.position[i])),
+            growth: mix(a.growth, b.growth),
+            factors: a.factors.zip(b.factors).map(|(a, b)| [0, 1].map(|i| mix(a[i], b[i]))),
+            t_stress: a.t_stress.zip(b.t_stress).map(|(a, b)| mix(a, b)),
+            of_residual: a.of_residual.zip(b.of_residual).map(|(a, b)| mix(a, b)),
+        };
+        CurvePoint {
+            is_solved: false,
+            cycles: mix(before.cycles, self.cycles),
+            crack_length: mix(before.crack_length, self.crack_length),
+            delta_k: mix(before.delta_k, self.delta_k),
+            growth_rate: mix(before.growth_rate, self.growth_rate),
+            work: mix(before.work, self.work),
+            limit_load: before.limit_load.zip(self.limit_load).map(|(before, now)| mix(before, now)),
+            broken_bonds: self.broken_bonds,
+            tips: before.tips.iter().zip(&self.tips).map(tip).collect(),
+            depth: self.depth,
+            residual: before
+                .residual
+                .zip(self.residual)
+                .map(|(before, now)| Residual { factor: mix(before.factor, now.factor), ratio: mix(before.ratio, now.ratio) }),
+        }
+    }
+}

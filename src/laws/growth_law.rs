@@ -1,0 +1,142 @@
+//! Growth laws over K: da/dN of a cycle between R K_max and K_max.
+
+pub mod bonds;
+pub mod description;
+pub mod forman;
+pub mod nasgro;
+pub mod paris;
+pub mod table;
+pub mod walker;
+
+use serde_json::Value;
+
+use description::{Description, Role};
+use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use table::Table;
+pub use walker::Walker;
+
+/// Every law, in the order of `perilife list`; those that rates are fitted by stand in the order of their number of constants. A new one is
+/// a line here and its file.
+const LAWS: &[&Description] = &[&bonds::LAW, &paris::LAW, &walker::LAW, &forman::LAW, &nasgro::LAW, &table::LAW];
+
+perilife_base::kinds! {
+    /// Which law of growth a case has.
+    pub struct GrowthLawKind of Description in LAWS for "fatigue.growth_law"
+}
+
+/// ΔK at which metals are compared, Pa√m, and the rates that they have there, mm/cycle, with room on both sides.
+const METALS: (f64, [f64; 2]) = (10.0 * MPA_SQRT_M, [1e-6, 1e-2]);
+/// Exponent by which these rates are taken to another ΔK.
+const METALS_EXPONENT: f64 = 3.0;
+/// ΔK over that of [`METALS`] that are tried where a law has no rate there: below its threshold, above its K_c, beyond its table.
+const ELSEWHERE: [f64; 7] = [1.0, 2.0, 0.5, 4.0, 0.25, 8.0, 0.125];
+
+/// What is wrong with the rates of a law for a metal: a unit that slipped shows here. Asked at ΔK = 10 MPa√m and the stress ratio, or where
+/// the law has rates nearest to it.
+pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
+    let k_max = |delta_k: f64| delta_k / (1.0 - ratio.max(0.0));
+    let rate_at = |delta_k: f64| {
+        let rate = law.rate(k_max(delta_k), ratio) / MM_PER_CYCLE;
+        (rate > 0.0 && rate.is_finite() && law.beyond(k_max(delta_k), ratio).is_none()).then_some((delta_k, rate))
+    };
+    let (delta_k, rate) = ELSEWHERE.iter().find_map(|factor| rate_at(factor * METALS.0))?;
+    let [low, high] = METALS.1.map(|rate| rate * (delta_k / METALS.0).powf(METALS_EXPONENT));
+    (!(low..=high).contains(&rate)).then(|| {
+        format!(
+            "the rate at ΔK = {:.0} MPa√m is {rate:.2e} mm/cycle, outside {low:.0e} to {high:.0e} mm/cycle, where metals lie: check the units of rate, \
+             crack length, cycles, load and stress intensity (m/cycle is 1000 mm/cycle; C for ksi√in and in/cycle is to be multiplied by \
+             25.4 / 1.0988^m)",
+            delta_k / MPA_SQRT_M
+        )
+    })
+}
+
+/// How fast a crack grows at the stress intensity of its tip.
+pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
+    /// da/dN, m/cycle, at K_max, Pa√m, and stress ratio R; 0 where the crack does not grow.
+    fn rate(&self, k_max: f64, ratio: f64) -> f64;
+
+    /// In words, why the law says nothing about this K; its rate is then that at the end of what it knows.
+    fn beyond(&self, _k_max: f64, _ratio: f64) -> Option<String> {
+        None
+    }
+
+    /// Whether a run ends in an error there.
+    fn is_refused_beyond(&self) -> bool {
+        false
+    }
+}
+
+/// A law with its constants, or rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FactorLaw {
+    /// Which one it is.
+    pub kind: GrowthLawKind,
+    /// Its constants, SI, in the order of their description.
+    pub constants: Vec<f64>,
+    /// Its rows, where it is no formula.
+    pub table: Option<Table>,
+    /// ΔK below which nothing grows whatever the law says, Pa√m.
+    pub threshold: f64,
+}
+
+impl FactorLaw {
+    /// The law of these constants, SI.
+    pub fn new(of: &'static Description, constants: Vec<f64>) -> Self {
+        FactorLaw { kind: GrowthLawKind(of), constants, table: None, threshold: 0.0 }
+    }
+
+    /// K_max at which it lets a crack grow without limit, Pa√m.
+    pub fn toughness(&self) -> Option<f64> {
+        self.kind.0.place(Role::Toughness).map(|place| self.constants[place])
+    }
+
+    /// ΔK at which its own rate is 0 at a stress ratio, Pa√m, where it has such a constant.
+    pub fn own_threshold(&self, ratio: f64) -> Option<f64> {
+        self.kind.0.place(Role::Threshold).map(|_| (self.kind.0.threshold)(&self.constants, ratio))
+    }
+
+    /// Least stress ratio whose compression it knows; `None` where compression counts as nothing.
+    pub fn least_ratio(&self) -> Option<f64> {
+        self.kind.0.compression.map(|(_, least)| least)
+    }
+
+    /// In words, with its constants.
+    pub fn in_words(&self) -> String {
+        let k_c = self.toughness().map(|k_c| format!(", K_c = {:.4} MPa√m", k_c / MPA_SQRT_M)).unwrap_or_default();
+        let of_formula = || format!("{} = {}{k_c}", self.kind.0.constants[1].name, self.constants[1]);
+        self.table.as_ref().map_or_else(of_formula, Table::in_words)
+    }
+
+    /// `growth_law` and the constants as a result has them, SI.
+    pub fn constants_si(&self) -> Value {
+        let mut all = serde_json::json!({ "growth_law": self.kind });
+        for (constant, &value) in self.kind.0.constants.iter().zip(&self.constants) {
+            let before = all[constant.name].take();
+            all[constant.name] = if before.is_null() { value.into() } else { serde_json::json!([value, before]) };
+        }
+        if let (Some(all), Ok(Value::Object(table))) = (all.as_object_mut(), serde_json::to_value(&self.table)) {
+            all.extend(table);
+        }
+        all
+    }
+}
+
+impl GrowthLaw for FactorLaw {
+    fn rate(&self, k_max: f64, ratio: f64) -> f64 {
+        match &self.table {
+            _ if k_max * (1.0 - ratio.max(0.0)) <= self.threshold => 0.0,
+            Some(table) => table.rate(k_max, ratio),
+            None => (self.kind.0.rate)(&self.constants, k_max, ratio),
+        }
+    }
+
+    fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
+        let grows = k_max * (1.0 - ratio.max(0.0)) > self.threshold;
+        self.table.as_ref().filter(|_| grows).and_then(|table| table.beyond(k_max, ratio))
+    }
+
+    fn is_refused_beyond(&self) -> bool {
+        self.table.as_ref().is_some_and(|table| !table.holds_ends)
+    }
+}

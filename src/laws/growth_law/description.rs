@@ -1,0 +1,257 @@
+//! What a law of growth says of itself: its name, its constants with their keys and bounds, and how rates are fitted by it.
+
+use std::collections::BTreeMap;
+
+use serde::de::DeserializeOwned;
+use toml::{Table, Value};
+
+use super::table::Rates;
+use super::{FactorLaw, GrowthLawKind};
+use perilife_base::error::{Result, input_missing};
+use perilife_base::input::{Folder, INTENSITY, Quantity, number, slice, value_at};
+use perilife_base::units::MM_PER_CYCLE;
+use perilife_plate::material::Material;
+
+/// A law of growth: its formula, and it in the words and numbers of input files. Formulas take the constants in SI units, in their order.
+pub struct Description {
+    /// Name in input and result files.
+    pub name: &'static str,
+    /// Meaning in one line.
+    pub meaning: &'static str,
+    /// Its constants: the level C, by which all rates are in proportion, first; then the exponent of ΔK.
+    pub constants: &'static [Constant],
+    /// da/dN, m/cycle, at K_max, Pa√m, and R; infinite where the crack grows without limit.
+    pub rate: fn(&[f64], f64, f64) -> f64,
+    /// ΔK, Pa√m, up to which that is 0, at R; asked for of laws with a constant of [`Role::Threshold`].
+    pub threshold: fn(&[f64], f64) -> f64,
+    /// Reads it from a case; `None` for bonds and powers of ΔK, either of which can stand for the other.
+    pub read: Option<fn(&Given<'_>, &'static Description) -> Result<FactorLaw>>,
+    /// Keys of its own that are no constants.
+    pub others: &'static [&'static str],
+    /// What to give where constants are missing.
+    pub complete: &'static str,
+    /// Meaning as one of the laws that rates are fitted by.
+    pub fit: Option<&'static str>,
+    /// Whether it holds at other stress ratios than those of its rates.
+    pub takes_ratio: bool,
+    /// What of it takes the compression of a cycle into account, and the stress ratio down to which that is known.
+    pub compression: Option<(&'static str, f64)>,
+}
+
+/// What a law is where its file says nothing: a formula of its constants.
+pub(super) const UNSAID: Description = Description {
+    name: "",
+    meaning: "",
+    constants: &[],
+    rate: |_, _, _| f64::NAN,
+    threshold: |_, _| 0.0,
+    read: Some(|given, law| Ok(FactorLaw::new(law, given.constants(law)?))),
+    others: &[],
+    complete: "give all constants of the law",
+    fit: None,
+    takes_ratio: true,
+    compression: None,
+};
+
+/// What a constant is to the rates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Role {
+    /// Nothing else.
+    Plain,
+    /// K_max at which a crack grows without limit; a case without it takes the toughness of the material. A search has the variable u of
+    /// `K_max (1 + e^u)`, above every K_max of the rates.
+    Toughness,
+    /// Proportional to the threshold. A search has the variable u of `ΔK_max / (1 + e^-u)`, ΔK_max being the one at which the first of the
+    /// rates would stand still.
+    Threshold,
+}
+
+/// A constant of a law.
+#[derive(Debug, Clone, Copy)]
+pub struct Constant {
+    /// Key in `[fatigue]`.
+    pub key: &'static str,
+    /// Name among the constants in SI units of a result; constants of one name are a list there, the last one first.
+    pub name: &'static str,
+    /// Unit and bounds of reason.
+    pub quantity: Quantity,
+    /// What it is to the rates.
+    pub role: Role,
+    /// Whether it is the exponent of ΔK.
+    pub is_exponent: bool,
+    /// Value in a case that does not give it; `None`: it is refused.
+    pub default: Option<f64>,
+    /// Value in a fit where it is not given; `None`: it is searched.
+    pub held: Option<f64>,
+    /// Ends of the search, of its variable.
+    pub bounds: [f64; 2],
+    /// Where searches start, of its variable.
+    pub starts: [f64; 2],
+    /// Which rates tell it.
+    pub told_by: &'static str,
+    /// Standard error above which it is not known: a share of its value, or an absolute one where ratios tell it.
+    pub error_max: f64,
+}
+
+pub(super) const NEAR_FRACTURE: &str = "rates near fracture tell it";
+pub(super) const NEAR_THRESHOLD: &str = "rates near the threshold tell it";
+pub(super) const RATIOS: &str = "rates at several stress ratios tell it";
+const POWER: &str = "rates over a wide range of ΔK tell it";
+
+const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
+/// Level C of a law.
+pub(super) const RATE: Quantity = Quantity { si: MM_PER_CYCLE, ..number("a rate in mm/cycle", 1e-60, 1e3) };
+/// K_c, which several laws have.
+pub const K_C: Constant = Constant {
+    role: Role::Toughness,
+    ..Constant::new("k_c_mpa_sqrt_m", "k_c", INTENSITY).searched([-6.9, 2.9], [-2.0, 0.5], NEAR_FRACTURE, 1.0)
+};
+/// Walker's exponent, which several laws have.
+pub const GAMMA: Constant =
+    Constant::new("walker_gamma", "gamma", OF_WALKER).searched([0.0, 2.0], [0.5; 2], RATIOS, f64::INFINITY);
+const OF_WALKER: Quantity = number("a Walker exponent", 0.0, 2.0);
+
+impl Constant {
+    /// A constant that a case has to give and no search looks for.
+    pub const fn new(key: &'static str, name: &'static str, quantity: Quantity) -> Self {
+        let (role, none, told_by) = (Role::Plain, [f64::NAN; 2], POWER);
+        Constant {
+            key,
+            name,
+            quantity,
+            role,
+            is_exponent: false,
+            default: None,
+            held: None,
+            bounds: none,
+            starts: none,
+            told_by,
+            error_max: 0.0,
+        }
+    }
+
+    /// The exponent of ΔK.
+    pub const fn exponent(key: &'static str, name: &'static str) -> Self {
+        let constant = Constant::new(key, name, number("an exponent", 0.5, 20.0)).searched([0.5, 20.0], [3.0; 2], POWER, 1.0);
+        Constant { is_exponent: true, ..constant }
+    }
+
+    /// The same, searched between ends from starts.
+    pub const fn searched(self, bounds: [f64; 2], starts: [f64; 2], told_by: &'static str, error_max: f64) -> Self {
+        Constant { bounds, starts, told_by, error_max, ..self }
+    }
+
+    /// Whether only rates at several stress ratios tell it.
+    pub fn is_told_by_ratios(&self) -> bool {
+        self.told_by.contains("several stress ratios")
+    }
+
+    /// Whether several laws have it.
+    pub fn is_shared(&self) -> bool {
+        [K_C.key, GAMMA.key].contains(&self.key)
+    }
+}
+
+impl Description {
+    /// Keys that no law of other constants has.
+    fn own_keys(&self) -> Vec<&'static str> {
+        let constants = self.constants.iter().filter(|constant| !constant.is_shared());
+        constants.map(|constant| constant.key).chain(self.others.iter().copied()).collect()
+    }
+
+    /// The law with constants in the units of their keys.
+    pub fn of(&'static self, constants: impl Iterator<Item = f64>) -> FactorLaw {
+        FactorLaw::new(self, constants.zip(self.constants).map(|(value, constant)| value * constant.quantity.si).collect())
+    }
+
+    /// Place of the constant that is this to the rates.
+    pub fn place(&self, role: Role) -> Option<usize> {
+        self.constants.iter().position(|constant| constant.role == role)
+    }
+
+    /// Refuses constants of other laws, which no reader looks for; `is_given` is whether `[fatigue]` has a key.
+    pub fn refuse_foreign(&self, is_given: &dyn Fn(&str) -> bool) -> Result<()> {
+        let is_foreign = |key: &str| is_given(key) && self.constants.iter().all(|constant| constant.key != key);
+        let own_threshold = self.place(Role::Threshold).filter(|_| is_given(THRESHOLD)).map(|place| self.constants[place].key);
+        let (key, problem, remedy) = match own_threshold {
+            _ if is_foreign(GAMMA.key) => (GAMMA.key, "does not go with", "or use growth_law = \"walker\"".to_owned()),
+            Some(own) => (THRESHOLD, "does not go with", format!("and give {own}")),
+            None if is_foreign(K_C.key) => (K_C.key, "is no constant of", "or give material.toughness_mpa_sqrt_m".to_owned()),
+            None => return Ok(()),
+        };
+        let why = if key == THRESHOLD { ", which has its own threshold" } else { "" };
+        let problem = format!("{problem} growth_law \"{}\"{why}", self.name);
+        Err(input_missing(&format!("fatigue.{key}"), problem, format!("leave it out, {remedy}")))
+    }
+}
+
+/// `[fatigue]` and what its law needs to know about the rest of the case.
+pub struct Given<'a> {
+    /// The section.
+    pub section: &'a Value,
+    /// Material of the plate.
+    pub material: &'a Material,
+    /// Smallest and largest stress ratio of the cycles of the case.
+    pub ratios: [f64; 2],
+    /// Folder of the files it names.
+    pub folder: &'a Folder,
+    /// Reads the table of rates that a key names; `None` where the case does not give it.
+    pub rates: fn(&Given<'_>, &str) -> Result<Option<Rates>>,
+}
+
+impl Given<'_> {
+    /// The value of a key.
+    /// Errors: another kind of value.
+    pub fn get<T: DeserializeOwned>(&self, key: &str) -> Result<Option<T>> {
+        let own = value_at(self.section, key).map(|value| (key.to_owned(), value.clone()));
+        slice::<BTreeMap<String, T>>(&Value::Table(Table::from_iter(own)), "fatigue").map(|mut own| own.remove(key))
+    }
+
+    /// The constants of a law in SI units, in their order.
+    /// Errors: one that is missing, or beyond its bounds.
+    pub fn constants(&self, law: &Description) -> Result<Vec<f64>> {
+        let value = |constant: &Constant| {
+            let path = format!("fatigue.{}", constant.key);
+            match (self.get(constant.key)?, constant.default) {
+                (Some(value), _) => constant.quantity.read(&path, value),
+                (None, Some(value)) => Ok(value * constant.quantity.si),
+                (None, None) if constant.role == Role::Toughness => self.material.toughness.ok_or_else(|| {
+                    let problem = "is missing, and the material has no toughness";
+                    input_missing(&path, problem, "give the K at which growth becomes unstable")
+                }),
+                (None, None) => {
+                    let why =
+                        if constant.name == "horizon" { ": A is meaningless without the horizon it belongs to" } else { "" };
+                    Err(input_missing(&path, format!("is missing{why}"), law.complete))
+                }
+            }
+        };
+        law.constants.iter().map(value).collect()
+    }
+
+    /// The same; `None` where the case gives none of them.
+    pub fn all_or_none(&self, law: &Description) -> Result<Option<Vec<f64>>> {
+        let is_given = law.own_keys().into_iter().any(|key| value_at(self.section, key).is_some());
+        is_given.then(|| self.constants(law)).transpose()
+    }
+}
+
+/// Keys that give a law, those of laws with the same ones together, and the laws of the keys: of two only `growth_law` tells, or a key that
+/// they share with others. A record holds constants of bonds and of powers of ΔK.
+pub fn keys_of_laws() -> Vec<(Vec<&'static str>, Vec<GrowthLawKind>)> {
+    let mut groups: Vec<(_, Vec<_>)> =
+        vec![(vec!["fitted"], GrowthLawKind::all().filter(|kind| kind.0.read.is_none()).collect())];
+    for kind in GrowthLawKind::all() {
+        let keys = kind.0.own_keys();
+        match groups.iter_mut().find(|(known, _)| *known == keys) {
+            Some((_, kinds)) => kinds.push(kind),
+            None => groups.push((keys, vec![kind])),
+        }
+    }
+    groups
+}
+
+/// Every key that gives a law, those that several laws have last.
+pub fn law_keys() -> impl Iterator<Item = &'static str> {
+    keys_of_laws().into_iter().flat_map(|(keys, _)| keys).chain(["growth_law", K_C.key])
+}

@@ -1,0 +1,78 @@
+//! What a model of retardation says of itself: its name, its constants with their keys and bounds, and its rate within a zone.
+
+use crate::growth_law::GrowthLaw;
+use perilife_base::input::Quantity;
+use perilife_plate::material::Plane;
+
+/// da/dN, m/cycle, by the constants of a model, the law of a cycle alone, the cycle, and the zone that it lies in.
+pub type Rate = fn(&[f64], &dyn GrowthLaw, &Now, &Zone) -> f64;
+
+/// A model of retardation.
+pub struct Description {
+    /// Name in input and result files.
+    pub name: &'static str,
+    /// Meaning in one line.
+    pub meaning: &'static str,
+    /// Its constants.
+    pub constants: &'static [Constant],
+    /// da/dN, m/cycle, of a cycle whose plastic zone stays within that of an overload, by the constants in SI units; `None` where nothing is
+    /// retarded.
+    pub rate: Option<Rate>,
+    /// What the model says of underloads.
+    pub underload: &'static str,
+}
+
+/// A constant of a model.
+#[derive(Clone, Copy)]
+pub struct Constant {
+    /// Key in `[loading]`.
+    pub key: &'static str,
+    /// Unit and bounds of reason.
+    pub quantity: Quantity,
+    /// Value, SI, in a case that does not give it, by its plane state and the threshold ΔK_th of its law; `None`: it is refused.
+    pub default: fn(Plane, Option<f64>) -> Option<f64>,
+    /// What to give where it is missing.
+    pub remedy: &'static str,
+}
+
+/// A cycle at a tip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Now {
+    /// Way of the tip, m.
+    pub a: f64,
+    /// K at maximum load, Pa√m.
+    pub k_max: f64,
+    /// Stress ratio.
+    pub ratio: f64,
+    /// Its plastic zone, m.
+    pub size: f64,
+}
+
+/// The plastic zone of the last overload, which is the state of a tip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Zone {
+    /// Way of the tip after the overload, m.
+    pub from: f64,
+    /// Its size, m.
+    pub size: f64,
+    /// K at the maximum of the overload, Pa√m.
+    pub k_max: f64,
+    /// Least K since then, that of the overload included, Pa√m.
+    pub k_min: f64,
+}
+
+impl Zone {
+    /// Way at which it ends, m.
+    pub fn end(&self) -> f64 {
+        self.from + self.size
+    }
+}
+
+/// No retardation.
+pub static NONE: Description = Description {
+    name: "none",
+    meaning: "every cycle grows as if it were alone: no effect of the order of cycles",
+    constants: &[],
+    rate: None,
+    underload: "none",
+};

@@ -1,0 +1,130 @@
+//! How large cycles of a spectrum slow down those after them.
+//!
+//! An overload leaves a plastic zone ahead of the tip. Cycles whose own zone stays within it grow by a lower rate, by the model of
+//! `loading.retardation`; the first one whose zone reaches its end makes a zone of its own. Zones are `(K_max/σ_Y)²/2π` in plane stress and a third of
+//! it in plane strain (Irwin 1960).
+
+mod closure;
+mod description;
+mod march;
+mod newman;
+mod wheeler;
+mod willenborg;
+
+pub use description::{Constant, Description, Now, Zone};
+pub use march::{Laws, March, Marched, Underway, between};
+
+use std::f64::consts::PI;
+
+use serde_json::{Map, Value, json};
+
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::{refuse_given, value_at};
+use perilife_plate::loading::Loading;
+use perilife_plate::material::{Material, Plane};
+
+/// Every model, in the order of `perilife list`. A new one is a line here and its file.
+const MODELS: &[&Description] = &[&description::NONE, &wheeler::MODEL, &willenborg::MODEL, &closure::MODEL, &newman::MODEL];
+
+perilife_base::kinds! {
+    /// Which model of retardation a case has.
+    pub struct RetardationKind of Description in MODELS for "loading.retardation"
+}
+
+/// Key of the model.
+const KEY: &str = "retardation";
+
+/// All keys of `[loading]` that belong to models of retardation.
+pub fn retardation_keys() -> Vec<&'static str> {
+    let of_models = RetardationKind::all().flat_map(|kind| kind.0.constants).map(|constant| constant.key);
+    std::iter::once(KEY).chain(of_models).collect()
+}
+
+/// A model with its constants.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Retardation {
+    /// Which one it is.
+    pub kind: RetardationKind,
+    /// Its constants, SI, in the order of their description.
+    pub constants: Vec<f64>,
+    /// Yield strength, Pa.
+    pub strength: f64,
+    /// Which plastic zone a tip has.
+    pub plane: Plane,
+}
+
+impl Retardation {
+    /// A model of constants in the units of their keys.
+    pub fn of(kind: RetardationKind, constants: &[f64], (strength, plane): (f64, Plane)) -> Self {
+        let constants = constants.iter().zip(kind.0.constants).map(|(value, constant)| value * constant.quantity.si).collect();
+        Retardation { kind, constants, strength, plane }
+    }
+
+    /// The model that `[loading]` asks for; `threshold` is ΔK_th of the law of the case, Pa√m.
+    /// Errors: no spectrum, no yield strength, constants that are missing, beyond reason or of another model.
+    pub fn read(section: &toml::Value, loading: &Loading, material: &Material, threshold: Option<f64>) -> Result<Option<Self>> {
+        let given = |key: &str| value_at(section, key);
+        if loading.spectrum.is_none() {
+            let keys: Vec<(&str, bool)> = retardation_keys().into_iter().map(|key| (key, given(key).is_some())).collect();
+            let problem = "says how cycles of a spectrum act on later ones, and the kind of loading is another";
+            return refuse_given("loading", &keys, problem, "give kind = \"spectrum\", or leave it out").map(|()| None);
+        }
+        let kind: RetardationKind = match given(KEY) {
+            None => RetardationKind(&description::NONE),
+            Some(toml::Value::String(name)) => name.parse()?,
+            Some(other) => return Err(input(RetardationKind::KEY, other, "is not text in quotes", "give the name of a model")),
+        };
+        if kind.0.rate.is_none() {
+            // Constants stay where a model is turned off.
+            return Ok(None);
+        }
+        let is_own = |key: &str| key == KEY || kind.0.constants.iter().any(|constant| constant.key == key);
+        if let Some(key) = retardation_keys().into_iter().find(|key| given(key).is_some() && !is_own(key)) {
+            let problem = format!("is no key of retardation = \"{kind}\"");
+            return Err(input_missing(
+                &format!("loading.{key}"),
+                problem,
+                "leave it out, or choose its model by loading.retardation",
+            ));
+        }
+        let strength = material.yield_strength.ok_or_else(|| {
+            let problem = "needs the plastic zone of a tip, and the material has no yield strength";
+            input(RetardationKind::KEY, format!("\"{kind}\""), problem, "give material.yield_strength_mpa")
+        })?;
+        let constant = |constant: &description::Constant| {
+            let path = format!("loading.{}", constant.key);
+            let value = match given(constant.key) {
+                Some(toml::Value::Integer(whole)) => Some(*whole as f64),
+                Some(toml::Value::Float(value)) => Some(*value),
+                Some(other) => return Err(input(&path, other, "is not a number", "give a number")),
+                None => None,
+            };
+            let otherwise = (constant.default)(material.plane, threshold);
+            match (value, otherwise) {
+                (Some(value), _) => constant.quantity.read(&path, value),
+                (None, Some(value)) => Ok(value),
+                (None, None) => {
+                    let problem = format!("is missing, and retardation is \"{kind}\"");
+                    Err(input_missing(&path, problem, constant.remedy))
+                }
+            }
+        };
+        let constants = kind.0.constants.iter().map(constant).collect::<Result<_>>()?;
+        Ok(Some(Retardation { kind, constants, strength, plane: material.plane }))
+    }
+
+    /// Plastic zone of a tip, m, at K_max, Pa√m.
+    pub fn zone_size(&self, k_max: f64) -> f64 {
+        let constraint = if self.plane == Plane::Strain { 3.0 } else { 1.0 };
+        (k_max / self.strength).powi(2) / (2.0 * PI * constraint)
+    }
+
+    /// Name and constants, by the keys of `[loading]`.
+    pub fn json(&self) -> Value {
+        let constants = self.kind.0.constants.iter().zip(&self.constants);
+        let mut all: Map<String, Value> =
+            constants.map(|(constant, value)| (constant.key.to_owned(), json!(value / constant.quantity.si))).collect();
+        all.insert("model".to_owned(), json!(self.kind));
+        all.into()
+    }
+}

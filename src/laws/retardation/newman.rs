@@ -1,0 +1,50 @@
+//! Opening load of Newman 1984 (Int. J. Fract. 24:R131), kept from the overload on.
+
+use super::description::{Constant, Description};
+use crate::growth_law::nasgro::opening;
+use perilife_base::input::number;
+use perilife_plate::material::Plane;
+
+/// Least stress ratio for which the opening is known.
+const LEAST: f64 = -2.0;
+
+/// Within the zone of an overload the crack opens at `K_op = f(K_min/K_OL) K_OL`, f being S_open/S_max of constant amplitude and K_min the least
+/// K since the overload; a cycle grows as one of constant amplitude that opens at the same load: `da/dN = v(K_max, R*)`, `f(R*) = K_op/K_max`.
+pub static MODEL: Description = Description {
+    name: "newman",
+    meaning: "crack opening load of the overload, by Newman's S_open of R, kept within its zone (Newman 1984)",
+    constants: &[
+        Constant {
+            key: "newman_alpha",
+            quantity: number("a constraint factor, 1 to 3", 1.0, 3.0),
+            default: |plane, _| Some(if plane == Plane::Strain { 3.0 } else { 1.0 }),
+            remedy: "",
+        },
+        Constant {
+            key: "newman_smax_over_flow",
+            quantity: number("a share of the flow stress", 0.0, 0.99),
+            default: |_, _| Some(0.3),
+            remedy: "",
+        },
+    ],
+    rate: Some(|constants, law, now, zone| {
+        let open = |ratio: f64| opening(constants[0], constants[1], ratio.max(LEAST)).0;
+        let wanted = open(zone.k_min / zone.k_max) * zone.k_max / now.k_max;
+        match wanted {
+            _ if wanted <= open(now.ratio) => law.rate(now.k_max, now.ratio),
+            _ if wanted >= 1.0 => 0.0,
+            _ => law.rate(now.k_max, ratio_of(wanted, open, now.ratio)),
+        }
+    }),
+    underload: "an underload within the zone lowers the opening load from then on",
+};
+
+/// Stress ratio above `low` at which cracks open at the share `wanted` of the maximum, which rises with the ratio: halved 40 times.
+fn ratio_of(wanted: f64, open: impl Fn(f64) -> f64, low: f64) -> f64 {
+    let (mut low, mut high) = (low, 1.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if open(middle) < wanted { low = middle } else { high = middle }
+    }
+    low
+}

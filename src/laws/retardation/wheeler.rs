@@ -1,0 +1,19 @@
+//! Wheeler 1972 (J. Basic Eng. 94:181).
+
+use super::description::{Constant, Description};
+use perilife_base::input::number;
+
+/// `da/dN = φ v(K_max, R)`, `φ = [r_p / (a_OL + r_OL - a)]^m` while a + r_p lies within the zone of the overload. φ counts on the rate, so that
+/// nothing is ever arrested.
+pub static MODEL: Description = Description {
+    name: "wheeler",
+    meaning: "rate times (own zone over what is left of that of the overload)^wheeler_exponent (Wheeler 1972)",
+    constants: &[Constant {
+        key: "wheeler_exponent",
+        quantity: number("an exponent", 0.0, 10.0),
+        default: |_, _| None,
+        remedy: "give that of tests with overloads, 1 to 2 for many aluminium alloys",
+    }],
+    rate: Some(|constants, law, now, zone| (now.size / (zone.end() - now.a)).powf(constants[0]) * law.rate(now.k_max, now.ratio)),
+    underload: "does not know underloads",
+};

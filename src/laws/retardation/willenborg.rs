@@ -1,0 +1,34 @@
+//! Willenborg, Engle and Wood 1971 (AFFDL-TM-71-1-FBR), generalised by Gallagher and Hughes 1974 (AFFDL-TR-74-27).
+
+use super::description::{Constant, Description};
+use perilife_base::input::{INTENSITY, number};
+
+/// `da/dN = v(K_max - K_red, R)`, `K_red = φ [K_OL √(1 - Δa/r_OL) - K_max]`, `φ = (1 - K_th/K_max)/(S - 1)`, Δa being the growth since the
+/// overload. At K_OL √… = S K_max, the shut-off ratio, K_max - K_red is K_th and the crack is arrested. R of the cycle is kept: both ends of the cycle
+/// are reduced in proportion.
+pub static MODEL: Description = Description {
+    name: "willenborg",
+    meaning: "K reduced by residual stress, no growth from the shut-off ratio on (Willenborg 1971, Gallagher and Hughes 1974)",
+    constants: &[
+        Constant {
+            key: "shutoff_ratio",
+            quantity: number("a ratio of overload to cycle", 1.01, 100.0),
+            default: |_, _| None,
+            remedy: "give the ratio of overload to cycle that arrests a crack, 2 to 3 for many aluminium and titanium alloys",
+        },
+        Constant {
+            key: "willenborg_k_th_mpa_sqrt_m",
+            quantity: INTENSITY,
+            default: |_, threshold| threshold,
+            remedy: "give K_max at the threshold of R = 0, or fatigue.delta_k_threshold_mpa_sqrt_m",
+        },
+    ],
+    rate: Some(|constants, law, now, zone| {
+        let [shutoff, threshold] = [constants[0], constants[1]];
+        let asked = zone.k_max * (1.0 - (now.a - zone.from) / zone.size).max(0.0).sqrt();
+        let reduction = (1.0 - threshold / now.k_max) / (shutoff - 1.0) * (asked - now.k_max);
+        let effective = now.k_max - reduction.max(0.0);
+        if now.k_max <= threshold || asked >= shutoff * now.k_max { 0.0 } else { law.rate(effective, now.ratio) }
+    }),
+    underload: "does not know underloads",
+};

@@ -1,0 +1,91 @@
+//! A spectrum as one law: the mean of da/dN over the cycles of a pass.
+//!
+//! `da/dN = Σ n_i v(f_i K_max, R_i) / Σ n_i`, K_max being that of the largest load, f_i the maximum of a cycle over the largest and R_i its
+//! ratio. A crack that grows little in a pass grows by this mean in every cycle, so that whoever grows it needs no loop over cycles.
+
+use std::sync::OnceLock;
+
+use super::growth_law::GrowthLaw;
+use perilife_plate::loading::spectrum::{Class, Spectrum};
+
+/// Classes up to which they are summed at every K; of more, sums are tabulated.
+const SUMMED: usize = 24;
+/// Distance of the tabulated K, of ln K.
+const STEP: f64 = 0.02;
+/// ln of the smallest and the largest K that are tabulated, Pa√m: 1e-3 and 1e5 MPa√m.
+const ENDS: [f64; 2] = [6.907_755_278_982_137, 25.328_436_022_934_5];
+/// Exponent of the rate over K from which the table is not trusted: at a threshold, or at K_c.
+const STEEP: f64 = 30.0;
+/// Share of the mean rate that a class beyond what the law knows may have without a word.
+const BEYOND: f64 = 0.01;
+
+/// A law with a spectrum.
+#[derive(Debug)]
+pub struct SpectrumLaw {
+    law: Box<dyn GrowthLaw>,
+    classes: Vec<Class>,
+    /// ln of mean rates at K in equal steps of ln K, computed when they are asked for; empty where sums are short.
+    table: Vec<OnceLock<f64>>,
+}
+
+impl SpectrumLaw {
+    /// The law of the cycles of a spectrum; ratios below `least` count as that, where the law knows none lower.
+    pub fn new(law: Box<dyn GrowthLaw>, spectrum: &Spectrum, least: f64) -> Self {
+        let clamp = |class: Class| Class { ratio: class.ratio.max(least), ..class };
+        let classes: Vec<Class> = spectrum.classes.iter().copied().map(clamp).collect();
+        let nodes = if classes.len() > SUMMED { ((ENDS[1] - ENDS[0]) / STEP) as usize } else { 0 };
+        SpectrumLaw { law, classes, table: (0..nodes).map(|_| OnceLock::new()).collect() }
+    }
+
+    /// The mean itself.
+    fn mean(&self, k_max: f64) -> f64 {
+        self.classes.iter().map(|class| class.share * self.law.rate(k_max * class.max, class.ratio)).sum()
+    }
+
+    fn node(&self, place: usize) -> f64 {
+        *self.table[place].get_or_init(|| self.mean((ENDS[0] + STEP * place as f64).exp()).ln())
+    }
+
+    /// The mean by a monotone cubic through four neighbours of the table (slopes after Fritsch and Butland 1984); `None` where that is no
+    /// smooth curve.
+    fn tabulated(&self, k_max: f64) -> Option<f64> {
+        let at = (k_max.ln() - ENDS[0]) / STEP;
+        let place = at.floor();
+        if !(place >= 1.0 && place + 2.0 < self.table.len() as f64) {
+            return None;
+        }
+        let (place, t) = (place as usize, at - place);
+        let nodes = [place - 1, place, place + 1, place + 2].map(|place| self.node(place));
+        let rises = [nodes[1] - nodes[0], nodes[2] - nodes[1], nodes[3] - nodes[2]];
+        if !rises.iter().all(|rise| rise.is_finite() && rise.abs() < STEEP * STEP) {
+            return None;
+        }
+        let slope = |a: f64, b: f64| if a * b > 0.0 { 2.0 * a * b / (a + b) } else { 0.0 };
+        let [from, to] = [slope(rises[0], rises[1]), slope(rises[1], rises[2])];
+        let bend = [rises[1] - from, to - rises[1]];
+        let u = 1.0 - t;
+        // Cubic with these values and slopes at its ends.
+        Some((nodes[1] + t * rises[1] - t * u * (t * bend[1] - u * bend[0])).exp())
+    }
+}
+
+impl GrowthLaw for SpectrumLaw {
+    fn rate(&self, k_max: f64, _: f64) -> f64 {
+        self.tabulated(k_max).unwrap_or_else(|| self.mean(k_max))
+    }
+
+    /// Of the first class, by size, that counts and of which the law says nothing.
+    fn beyond(&self, k_max: f64, _: f64) -> Option<String> {
+        if !self.law.is_refused_beyond() && self.classes.len() > SUMMED {
+            return None;
+        }
+        let all = self.mean(k_max);
+        let counts = |class: &&Class| class.share * self.law.rate(k_max * class.max, class.ratio) > BEYOND * all;
+        let told = |class: &Class| self.law.beyond(k_max * class.max, class.ratio);
+        self.classes.iter().filter(counts).find_map(told)
+    }
+
+    fn is_refused_beyond(&self) -> bool {
+        self.law.is_refused_beyond()
+    }
+}

@@ -1,0 +1,427 @@
+//! What the columns of a measured file are: one row a reading, or columns of every specimen; and in which units.
+
+use super::doubts::{check_cycles, check_names, not_specimens, other_lengths, rejected, statistics};
+use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
+use super::import::{ColumnNames, Import};
+use super::names::{Column, Named, Role, says_tip_to_tip, unit_at_end};
+use perilife_base::error::{Error, Result};
+use perilife_base::table::decimal::decide;
+use perilife_base::table::numerals::number;
+use perilife_base::table::{
+    Decimal,
+    units::{CycleUnit, LoadUnit, Unit},
+};
+use perilife_base::table::{Fault, Table};
+
+/// How the specimens of a table are laid out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shape {
+    /// One row a reading.
+    Long,
+    /// First column crack length, then one column of cycles per specimen.
+    WideCycles,
+    /// First column cycles, then one column of crack length per specimen.
+    WideLengths,
+    /// Two columns per specimen.
+    Paired,
+}
+
+/// Columns of the readings of one specimen, or of those that a column names.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name of the specimen, where no column has it.
+    pub name: String,
+    /// Column of the specimen's name.
+    pub specimen: Option<Column>,
+    /// Cycles.
+    pub cycles: Column,
+    /// Crack length; of several the mean counts.
+    pub lengths: Vec<Column>,
+    /// Readings of the same crack on several sides.
+    pub sides: Vec<Column>,
+    /// Loads, of every role one at the most.
+    pub loads: Vec<Column>,
+    /// Columns of quantities that the case says too: ΔK, sizes, the smallest load where no other says how large a cycle is.
+    pub compared: Vec<Column>,
+    /// Columns that no other specimen has: a row in which all of them are empty is none of its readings. Empty where rows belong to all.
+    pub own: Vec<usize>,
+}
+
+/// What the columns of one file are.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// How specimens are laid out.
+    pub shape: Shape,
+    /// Columns of the specimens: one series where all rows have the same columns.
+    pub series: Vec<Series>,
+    /// The decimal sign.
+    pub decimal: Decimal,
+    /// What separates columns; empty where cells are stored, not written.
+    pub separator: &'static str,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+}
+
+const KNOWN: &str = "known are specimen, cycles (N, kilocycles, megacycles), crack_length_mm (a [mm], crack_length_inch, crack_length_m), \
+                     front and back, force_max_kn and force_min_kn; a wide table starts with cycles or crack length and has at least two \
+                     more columns, all of them specimens";
+
+/// Recognises the layout of a table by its header and by what the user says.
+/// Errors: columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
+pub(super) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
+    check_given(table, import)?;
+    check_names(table, import)?;
+    let mut warnings = table.warnings();
+    let given = import.columns != ColumnNames::default();
+    let (shape, series) = match if given { None } else { pairs_of(&table.names) } {
+        Some(pairs) => (Shape::Paired, pairs.into_iter().map(|pair| paired(table, pair, import)).collect::<Result<_>>()?),
+        None => by_roles(table, import, &mut warnings)?,
+    };
+    let separator = table.separator.map_or("", |separator| separator.name());
+    let read = numbers(shape, &series);
+    let decimal = decide(table, &read.iter().map(Column::numbers).collect::<Vec<_>>(), import.decimal)?;
+    let of_specimens = series.iter().filter_map(|series| series.specimen);
+    let known: Vec<usize> = read.iter().copied().chain(of_specimens).map(|column| column.index).collect();
+    if let [only] = series.as_slice() {
+        warnings.extend(other_lengths(table, &only.lengths, &known, decimal));
+    }
+    warnings.extend(rejected(table, &known));
+    Ok(Layout { shape, series, decimal, separator, warnings })
+}
+
+/// Refuses columns that the user names and the file does not have.
+fn check_given(table: &Table, import: &Import) -> Result<()> {
+    for (key, name) in import.columns.given() {
+        if place_of(name, &table.header, &table.names).is_none() {
+            let key = format!("measured.columns.{key}");
+            let fault = Fault { file: &table.file, line: None, key: Some(&key), value: Some(name) };
+            return Err(fault.error("names no column of this file", format!("its columns are {}", table.header.join(" | "))));
+        }
+    }
+    Ok(())
+}
+
+fn paired(table: &Table, (name, [cycles, length]): (String, [Column; 2]), import: &Import) -> Result<Series> {
+    let (cycles, length) = (cycle_column(table, cycles, import)?, length_column(table, length, import)?);
+    Ok(Series::of_one(name, cycles, length, vec![cycles.index, length.index]))
+}
+
+fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Result<(Shape, Vec<Series>)> {
+    let columns = columns_of(&table.header, &table.names, import);
+    let of = |wanted: fn(&Column) -> bool| columns.iter().copied().filter(wanted).collect::<Vec<Column>>();
+    let (cycles, lengths) = (of(|column| column.role == Role::Cycles), of(is_length));
+    let wide = is_wide(&columns);
+    let of_several = Some(statistics(table)).filter(|found| wide && found.len() + 1 < columns.len()).unwrap_or_default();
+    warnings.extend(not_specimens(table, &of_several));
+    let specimens =
+        || (1..columns.len()).filter(|index| !of_several.contains(index)).map(|index| (table.header[index].clone(), index));
+    match (cycles.as_slice(), lengths.as_slice()) {
+        ([cycles], [_, ..]) => {
+            let specimen = of(|column| column.role == Role::Specimen);
+            let (lengths, sides) = lengths_and_sides(table, &columns, import)?;
+            let cycles = cycle_column(table, *cycles, import)?;
+            let (loads, mut compared) = loads(table, &columns, import, warnings)?;
+            compared.extend(of(|column| matches!(column.role, Role::DeltaK | Role::Width | Role::Thickness)));
+            compared.retain(|column| matches!(column.unit, Named::Is(_)));
+            if let Some(second) = specimen.get(1) {
+                return Err(says_the_same(table, second.index, "specimen"));
+            }
+            warnings.extend(not_read(table, &columns));
+            let stem = table.file.file_stem().map_or_else(|| "specimen".to_owned(), |stem| stem.to_string_lossy().into_owned());
+            let specimen = specimen.first().copied();
+            Ok((Shape::Long, vec![Series { name: stem, specimen, cycles, lengths, sides, loads, compared, own: Vec::new() }]))
+        }
+        ([_, second, ..], _) => Err(says_the_same(table, second.index, "cycles")),
+        ([], [length]) if wide && length.index == 0 => {
+            let length = length_column(table, *length, import)?;
+            let series = specimens().map(|(name, i)| {
+                let cycles = Column::new(i, Role::Cycles, unit_at_end(&table.names[i], Role::Cycles));
+                Ok(Series::of_one(name, cycle_column(table, cycles, import)?, length, vec![i]))
+            });
+            Ok((Shape::WideCycles, series.collect::<Result<_>>()?))
+        }
+        ([_], []) if wide && are_places_of_one_crack(&table.header[1..]) => Err(table.header_fault(1).error(
+            "begins a row of numbered crack lengths, which are places on the front of one crack or cracks of several specimens",
+            format!(
+                "for one crack give measured.columns = {{ length = [\"{}\"] }} (--column length=... for each), whose mean counts; name columns \
+                 of specimens S1, S2, ...",
+                table.header[1..].join("\", \"")
+            ),
+        )),
+        ([cycles], []) if wide && cycles.index == 0 => {
+            let cycles = cycle_column(table, *cycles, import)?;
+            // Where `2a` stands in names of some specimens alone it is part of their names.
+            let are_whole: Option<Vec<bool>> = table.names[1..].iter().map(|name| says_tip_to_tip(name)).collect();
+            let series = specimens().map(|(name, i)| {
+                let length = wide_length(table, i, import)?;
+                let is_whole = are_whole.as_ref().is_some_and(|are_whole| are_whole[i - 1]);
+                Ok(Series::of_one(name, cycles, if is_whole { length.tip_to_tip() } else { length }, vec![i]))
+            });
+            Ok((Shape::WideLengths, series.collect::<Result<_>>()?))
+        }
+        _ => Err(unknown_shape(table, &columns)),
+    }
+}
+
+impl Series {
+    fn of_one(name: String, cycles: Column, length: Column, own: Vec<usize>) -> Series {
+        Series {
+            name,
+            specimen: None,
+            cycles,
+            lengths: vec![length],
+            sides: Vec::new(),
+            loads: Vec::new(),
+            compared: Vec::new(),
+            own,
+        }
+    }
+
+    /// The load of a role.
+    pub fn load(&self, role: Role) -> Option<Column> {
+        self.loads.iter().copied().find(|column| column.role == role)
+    }
+}
+
+impl Layout {
+    /// The key of `measured.columns` that each of some columns has; empty for one that is not read or is a specimen of a wide table.
+    pub fn keys(&self, columns: usize) -> Vec<&'static str> {
+        let mut keys = vec![""; columns];
+        for series in &self.series {
+            let read = series.loads.iter().chain(&series.specimen).chain(&series.lengths).chain([&series.cycles]);
+            for column in read.filter(|column| self.shape == Shape::Paired || !series.own.contains(&column.index)) {
+                keys[column.index] = match column.role {
+                    Role::Specimen => "specimen",
+                    Role::Cycles => "cycles",
+                    Role::Max => "force_max",
+                    Role::Min => "force_min",
+                    Role::Range => "force_range",
+                    Role::Ratio => "stress_ratio",
+                    _ => "length",
+                };
+            }
+        }
+        keys
+    }
+
+    /// What the cells of a row are taken for: cycles, and crack lengths in metres; `None` for all that is neither, or no number.
+    pub fn taken(&self, cells: &[String]) -> Vec<Option<f64>> {
+        let mut taken = vec![None; cells.len()];
+        for column in self.series.iter().flat_map(|series| series.lengths.iter().chain([&series.cycles])) {
+            let Some(cell) = cells.get(column.index) else { continue };
+            let value = number(cell, self.decimal).map(|value| if column.is_log { 10f64.powf(value) } else { value });
+            taken[column.index] = value.map(|value| value * column.factor);
+        }
+        taken
+    }
+}
+
+/// Columns of numbers.
+fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
+    let of = |series: &Series| -> Vec<Column> {
+        let read = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides);
+        let all = read.chain(&series.loads).chain(&series.compared);
+        all.copied().collect()
+    };
+    let mut numbers: Vec<Column> = series.iter().flat_map(of).collect();
+    if shape != Shape::Long {
+        // The column that all specimens share stands first.
+        numbers.sort_by_key(|column| column.index);
+        numbers.dedup_by_key(|column| column.index);
+    }
+    numbers
+}
+
+/// Columns of crack length, and those of single sides beside them: where no column has the mean, the sides have it.
+fn lengths_and_sides(table: &Table, columns: &[Column], import: &Import) -> Result<(Vec<Column>, Vec<Column>)> {
+    let of = |role: Role| columns.iter().filter(move |column| column.role == role);
+    if let Some(second) = of(Role::Length).nth(1) {
+        return Err(says_the_same(table, second.index, "length"));
+    }
+    let read = |role: Role| of(role).map(|column| length_column(table, *column, import)).collect::<Result<Vec<Column>>>();
+    let (sides, lengths) = (read(Role::Side)?, read(Role::Length)?);
+    Ok(if lengths.is_empty() { (sides.clone(), sides) } else { (lengths, sides) })
+}
+
+/// The unit of a column: as its name says, or as the user does, and never two of them.
+pub(super) fn stated_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Option<Unit>> {
+    match (column.unit, given) {
+        (Named::Is(named), Some(given)) if named != given => Err(table.header_fault(column.index).error(
+            format!("is in {}, but measured.{key} says {}", named.name(), given.name()),
+            "name the unit in one place, or the same in both",
+        )),
+        (Named::Is(unit), _) | (Named::No, Some(unit)) => Ok(Some(unit)),
+        _ => Ok(None),
+    }
+}
+
+/// The column of a crack length.
+fn length_column(table: &Table, column: Column, import: &Import) -> Result<Column> {
+    let fault = || table.header_fault(column.index);
+    match stated_unit(table, column, "length_unit", import.length.map(Unit::Length))? {
+        Some(unit) => Ok(column.in_unit(unit)),
+        None if column.unit == Named::Strange => Err(fault().error(
+            "has a unit that is not known",
+            "known are mm, inch and m; convert the column, or name another by measured.columns.length (--column length=...)",
+        )),
+        None => Err(fault().error(
+            "does not say its unit",
+            "name it crack_length_mm, crack_length_inch or crack_length_m, or set measured.length_unit (--length-unit)",
+        )),
+    }
+}
+
+/// Whether the names of columns are `a1`, `a2`, ...: one letter or word of crack length, numbered.
+fn are_places_of_one_crack(names: &[String]) -> bool {
+    let is_numbered = |(place, name): (usize, &String)| {
+        let (base, number) = cut(name);
+        number == Some((place + 1).to_string().as_str()) && is_length(&Column::named(0, &base))
+    };
+    names.len() > 1 && names.iter().enumerate().all(is_numbered)
+}
+
+/// A specimen's column in a wide table: in the unit of its name, or as the user says.
+fn wide_length(table: &Table, index: usize, import: &Import) -> Result<Column> {
+    let column = Column::new(index, Role::Length, unit_at_end(&table.names[index], Role::Length));
+    match (column.unit, import.length) {
+        (Named::No, None) => Err(table.header_fault(index).error(
+            "does not say the unit of its crack lengths",
+            "set measured.length_unit = \"mm\", \"inch\" or \"m\" (--length-unit)",
+        )),
+        // What stands in brackets may be part of a specimen's name.
+        (Named::Strange, Some(unit)) => Ok(column.in_unit(Unit::Length(unit))),
+        _ => length_column(table, column, import),
+    }
+}
+
+fn cycle_column(table: &Table, column: Column, import: &Import) -> Result<Column> {
+    let given = import.cycles.map(Unit::Cycles);
+    let unit = match (stated_unit(table, column, "cycle_unit", given)?.or(given), column.unit) {
+        (Some(unit), _) => unit,
+        (None, Named::Strange) => {
+            return Err(table.header_fault(column.index).error(
+                "counts cycles in a unit that is not known",
+                "known are cycles, kilocycles (x1000) and megacycles; set measured.cycle_unit (--cycle-unit)",
+            ));
+        }
+        (None, _) => {
+            check_cycles(table)?;
+            Unit::Cycles(CycleUnit::Cycles)
+        }
+    };
+    Ok(column.in_unit(unit))
+}
+
+/// The column of a load; `None` where its unit is not said and the loads do not change, so that those of the case hold for all.
+fn load_column(table: &Table, column: Column, import: &Import, warnings: &mut Vec<String>) -> Result<Option<Column>> {
+    if let Some(unit) = stated_unit(table, column, "load_unit", import.load.map(Unit::Load))? {
+        return Ok(Some(column.in_unit(unit)));
+    }
+    let known: Vec<&str> = LoadUnit::ALL.iter().map(|unit| unit.name()).collect();
+    let remedy = format!("name one of {} in the header, or set measured.load_unit (--load-unit)", known.join(", "));
+    let first = table.rows.first().map_or("", |row| row.cell(column.index));
+    if let Some(row) = table.rows.iter().find(|row| row.cell(column.index) != first) {
+        let problem = format!("is a load that changes (from {first}), in a unit that is not known");
+        return Err(table.cell_fault(row, column.index).error(problem, remedy));
+    }
+    warnings.push(format!(
+        "{}: {} is a load in a unit that is not known: not read, the load of the case holds for all readings; {remedy}",
+        table.file.display(),
+        table.header[column.index]
+    ));
+    Ok(None)
+}
+
+/// Columns of loads whose unit is known; for the others a warning, or an error where the loads change. Second, a smallest load alone, which
+/// says no cycle, and is held against that of the case.
+fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<String>) -> Result<(Vec<Column>, Vec<Column>)> {
+    let mut found: Vec<Column> = Vec::new();
+    for (role, key) in
+        [(Role::Max, "force_max"), (Role::Min, "force_min"), (Role::Range, "force_range"), (Role::Ratio, "stress_ratio")]
+    {
+        let mut own = columns.iter().copied().filter(|column| column.role == role);
+        let Some(column) = own.next() else { continue };
+        if let Some(second) = own.next() {
+            return Err(says_the_same(table, second.index, key));
+        }
+        if role == Role::Ratio {
+            found.push(column);
+            continue;
+        }
+        let Some(column) = load_column(table, column, import, warnings)? else { continue };
+        if let Some(earlier) = found.last().filter(|earlier| is_stress(earlier) != is_stress(&column)) {
+            let problem = format!("is not of the quantity of {}", table.header[earlier.index]);
+            return Err(table.header_fault(column.index).error(problem, "give both as forces or both as stresses"));
+        }
+        found.push(column);
+    }
+    // R alone with numbers from 1 on is no stress ratio, but the right side of a specimen, perhaps; without any it says nothing.
+    if let [column] = found.as_slice()
+        && column.role == Role::Ratio
+    {
+        let numbers = table.rows.iter().filter_map(|row| row.cell(column.index).replace(',', ".").parse::<f64>().ok());
+        let largest = numbers.reduce(f64::max);
+        warnings.extend(largest.filter(|largest| *largest >= 1.0).map(|_| {
+            let name = &table.header[column.index];
+            format!("{}: {name} is no stress ratio below 1: not read, that of the case holds", table.file.display())
+        }));
+        if largest.is_none_or(|largest| largest >= 1.0) {
+            found.clear();
+        }
+    }
+    // A minimum alone does not say how large a cycle is; a ratio goes with the largest load of the case.
+    let says_cycle = found.iter().any(|column| matches!(column.role, Role::Max | Role::Range | Role::Ratio));
+    Ok(if says_cycle { (found, Vec::new()) } else { (Vec::new(), found) })
+}
+
+/// Whether a column holds stresses.
+pub(super) fn is_stress(column: &Column) -> bool {
+    matches!(column.unit, Named::Is(unit) if unit.is_stress())
+}
+
+/// A line about columns that nobody asked for and whose names say nothing, or a load that is not read.
+fn not_read(table: &Table, columns: &[Column]) -> Option<String> {
+    let strange = columns.iter().filter(|column| {
+        matches!(column.role, Role::Unknown | Role::Load)
+            || matches!((column.role, column.unit), (Role::Other, Named::Is(Unit::Load(_))))
+    });
+    let names: Vec<&str> = strange.map(|column| table.header[column.index].as_str()).filter(|name| !name.is_empty()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{}: not read, since the name does not say what it is: {}; where one is the load of every reading, say so by \
+             measured.columns = {{ force_max = \"...\" }} (--column force_max=...)",
+            table.file.display(),
+            names.join(", ")
+        )
+    })
+}
+
+fn says_the_same(table: &Table, column: usize, key: &str) -> Error {
+    let name = &table.header[column];
+    let fault = table.header_fault(column);
+    if table.header[..column].iter().any(|earlier| earlier.eq_ignore_ascii_case(name)) {
+        return fault.error("names two columns", "give every column its own name");
+    }
+    let remedy = format!("say which one counts by measured.columns = {{ {key} = \"{name}\" }} (--column {key}=\"{name}\")");
+    fault.error("says the same as an earlier column", remedy)
+}
+
+/// A header that does not make up a test: what is missing, the first rows, and the key that settles it.
+fn unknown_shape(table: &Table, columns: &[Column]) -> Error {
+    let first = |wanted: fn(&Column) -> bool| columns.iter().position(wanted);
+    let unknown = first(|column| column.role == Role::Unknown);
+    let (column, problem) = match (first(|column| column.role == Role::Cycles), first(is_length), unknown) {
+        (None, None, Some(column)) => (column, "is not a known column"),
+        (Some(column), None, None) => (column, "stands in a header without a column of crack length"),
+        (None, Some(column), None) => (column, "stands in a header without a column of cycles"),
+        (Some(_), None, Some(column)) => (column, "is not a known column, and none is crack length"),
+        (None, Some(_), Some(column)) => (column, "is not a known column, and none is cycles"),
+        _ => (0, "stands in a header without cycles and crack length"),
+    };
+    let remedy = format!(
+        "{KNOWN}; or say which is which by measured.columns = {{ cycles = \"...\", length = \"...\" }} (--column cycles=... --column \
+         length=...); {}",
+        table.first_rows()
+    );
+    table.header_fault(column).error(problem, remedy)
+}

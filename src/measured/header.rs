@@ -1,0 +1,144 @@
+//! Which column of a header is which: as the user says, else by its name; and headers of pairs, cycles and crack length of every specimen
+//! beside each other, `N1, a1, N2, a2`, or `N, a, N, a`.
+
+use super::import::Import;
+use super::names::{Column, Named, Role, is_length_of, is_unit_or_blank, with_unit};
+use perilife_base::table::units::Unit;
+use perilife_base::table::{Sheet, Vocabulary};
+
+/// The role of a key of `measured.columns`.
+fn role_of(key: &str) -> Role {
+    match key {
+        "cycles" => Role::Cycles,
+        "length" => Role::Length,
+        "specimen" => Role::Specimen,
+        "force_max" | "stress_max" => Role::Max,
+        "force_min" | "stress_min" => Role::Min,
+        "force_range" => Role::Range,
+        "delta_k" => Role::DeltaK,
+        "rate" => Role::Rate,
+        _ => Role::Ratio,
+    }
+}
+
+/// Whether a column holds a crack length, or that on one side.
+pub(super) fn is_length(column: &Column) -> bool {
+    matches!(column.role, Role::Length | Role::Side)
+}
+
+/// Columns of a header as it stands in the file, and with the units of the row below.
+pub(super) fn columns_of(header: &[String], names: &[String], import: &Import) -> Vec<Column> {
+    let mut columns: Vec<Column> = names.iter().enumerate().map(|(index, name)| Column::named(index, name)).collect();
+    // `aL` and `aR` beside each other are sides of one specimen; one alone may be its name.
+    for pair in [["al", "ar"], ["af", "ab"]] {
+        let place = |side: &str| {
+            let is_side = |name: &String| name.starts_with('a') && is_length_of(name, side);
+            names.iter().position(is_side).filter(|index| columns[*index].role == Role::Unknown)
+        };
+        if let [Some(one), Some(other)] = pair.map(place) {
+            [one, other].into_iter().for_each(|index| columns[index] = Column::given(index, Role::Side, &names[index]));
+        }
+    }
+    for role in import.columns.given().map(|(key, _)| role_of(key)) {
+        let same = |column: &&mut Column| column.role == role || (role == Role::Length && column.role == Role::Side);
+        columns.iter_mut().filter(same).for_each(|column| *column = Column::new(column.index, Role::Other, Named::No));
+    }
+    for (key, name) in import.columns.given() {
+        if let Some(index) = place_of(name, header, names) {
+            let is_side = key == "length" && import.columns.has_sides();
+            columns[index] = Column::given(index, if is_side { Role::Side } else { role_of(key) }, &names[index]);
+        }
+    }
+    columns
+}
+
+/// Whether all columns behind the first are of no known quantity: names of specimens.
+pub(super) fn is_wide(columns: &[Column]) -> bool {
+    columns.len() >= 3 && columns[1..].iter().all(|column| column.role == Role::Unknown)
+}
+
+/// Whether a row of names, with what the user says, names cycles and crack length, starts a wide table or is one of pairs; of a table of
+/// rates, ΔK and da/dN.
+fn names_a_test(names: &[String], import: &Import) -> bool {
+    let import = &Import { columns: import.columns.by_name(), ..import.clone() };
+    if import.of_rates {
+        let columns = columns_of(names, names, import);
+        return [Role::DeltaK, Role::Rate].into_iter().all(|role| columns.iter().any(|column| column.role == role));
+    }
+    if pairs_of(names).is_some() {
+        return true;
+    }
+    let columns = columns_of(names, names, import);
+    let first = |wanted: fn(&Column) -> bool| columns.iter().position(wanted);
+    match (first(|column| column.role == Role::Cycles), first(is_length)) {
+        (Some(_), Some(_)) => true,
+        (Some(0), None) | (None, Some(0)) => is_wide(&columns) && names.iter().all(|name| !name.is_empty()),
+        _ => false,
+    }
+}
+
+impl Vocabulary for Import {
+    fn is_header(&self, names: &[String]) -> bool {
+        names_a_test(names, self)
+    }
+
+    fn is_unit(&self, cell: &str) -> bool {
+        is_unit_or_blank(cell)
+    }
+
+    fn with_unit(&self, name: &str, unit: &str) -> Result<String, &'static str> {
+        with_unit(name, unit).map_err(Unit::name)
+    }
+
+    fn sheet(&self) -> Option<&Sheet> {
+        self.sheet.as_ref()
+    }
+}
+
+/// Place of a column that the user names: as written, else whatever its case and blanks, else by number.
+pub(super) fn place_of(wanted: &str, header: &[String], names: &[String]) -> Option<usize> {
+    let plain = |name: &str| name.to_lowercase().split_whitespace().collect::<Vec<_>>().join(" ");
+    let exact = header.iter().position(|name| name == wanted);
+    let alike = || [header, names].iter().find_map(|list| list.iter().position(|name| plain(name) == plain(wanted)));
+    exact.or_else(alike).or_else(|| {
+        let number = wanted.parse::<usize>().ok()?;
+        (1..=names.len()).contains(&number).then(|| number - 1)
+    })
+}
+
+/// A name without its number, and the number: `a1 (mm)` is `a (mm)` and 1.
+pub(super) fn cut(name: &str) -> (String, Option<&str>) {
+    let end = name.find(['(', '[', '{']).unwrap_or(name.len());
+    let (words, unit) = (name[..end].trim_end(), &name[end..]);
+    let base = words.trim_end_matches(|c: char| c.is_ascii_digit());
+    let number = &words[base.len()..];
+    match base.trim_end_matches([' ', '_', '-', '#', '.']) {
+        base if !base.is_empty() && !number.is_empty() => (format!("{base} {unit}"), Some(number)),
+        _ => (name.to_owned(), None),
+    }
+}
+
+/// Names that are cycles and length in turn: the number of each pair, or its place, with its columns. All have a number and no other the
+/// same, or none has.
+pub(super) fn pairs_of(names: &[String]) -> Option<Vec<(String, [Column; 2])>> {
+    // Tables beside each other have an empty column between them.
+    let (places, names): (Vec<usize>, Vec<(String, Option<&str>)>) =
+        names.iter().enumerate().filter(|(_, name)| !name.is_empty()).map(|(place, name)| (place, cut(name))).unzip();
+    let columns: Vec<Column> = places.iter().zip(&names).map(|(&index, (base, _))| Column::named(index, base)).collect();
+    let count = names.len() / 2;
+    let is_pair = |pair: usize| {
+        let [cycles, length] = [2 * pair, 2 * pair + 1];
+        (columns[cycles].role, columns[length].role) == (Role::Cycles, Role::Length) && names[cycles].1 == names[length].1
+    };
+    let numbers: Vec<Option<&str>> = (0..count).map(|pair| names[2 * pair].1).collect();
+    let is_own = |i: usize| numbers[i].is_some() && !numbers[..i].contains(&numbers[i]);
+    let have_names = numbers.iter().all(Option::is_none) || (0..count).all(is_own);
+    if count < 2 || !names.len().is_multiple_of(2) || !have_names || !(0..count).all(is_pair) {
+        return None;
+    }
+    let pair = |pair: usize| {
+        let name = numbers[pair].map_or_else(|| (pair + 1).to_string(), str::to_owned);
+        (name, [columns[2 * pair], columns[2 * pair + 1]])
+    };
+    Some((0..count).map(pair).collect())
+}

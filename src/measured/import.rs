@@ -1,0 +1,119 @@
+//! What a user says about measured files: units, columns by name, the decimal sign, the sheet. Keys of `[measured]`, options of `rates`
+//! and fields of the service's form are all read into this.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
+use perilife_base::error::{Result, input};
+use perilife_base::table::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
+use perilife_base::table::{Decimal, Sheet, TextOrNumber};
+
+/// What the user says about files of readings; a header that names its own unit must agree.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Import {
+    /// Unit of crack length.
+    pub length: Option<LengthUnit>,
+    /// Unit of cycles.
+    pub cycles: Option<CycleUnit>,
+    /// Unit of loads.
+    pub load: Option<LoadUnit>,
+    /// Which column is which.
+    pub columns: ColumnNames,
+    /// The decimal sign.
+    pub decimal: Option<Decimal>,
+    /// Sheet of a workbook.
+    pub sheet: Option<Sheet>,
+    /// Unit of stress intensity, in tables of rates.
+    pub intensity: Option<IntensityUnit>,
+    /// Unit of da/dN.
+    pub rate: Option<RateUnit>,
+    /// Whether the file is a table of rates over ΔK.
+    pub of_rates: bool,
+}
+
+/// Which column is which, by a key and the name in the header, or the number from 1; what is left out is found by the names that
+/// laboratories use. Several columns of crack length are readings of one crack on several sides.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
+#[serde(try_from = "BTreeMap<String, OneOrMany>")]
+pub struct ColumnNames(Vec<(&'static str, String)>);
+
+impl ColumnNames {
+    /// Known keys.
+    pub const KEYS: [&'static str; 11] = [
+        "cycles",
+        "length",
+        "specimen",
+        "force_max",
+        "force_min",
+        "force_range",
+        "stress_max",
+        "stress_min",
+        "stress_ratio",
+        "delta_k",
+        "rate",
+    ];
+
+    /// Names a column as `key=name` of the option `--column` does.
+    /// Errors: a text without `=`, an unknown key, or a key given twice (crack length may be).
+    pub fn put(&mut self, text: &str) -> Result<()> {
+        let refuse = |problem: &str| {
+            let remedy =
+                format!("write --column key=name with one of {}, e.g. --column length=\"a [in]\"", Self::KEYS.join(", "));
+            input("--column", format!("\"{text}\""), problem, remedy)
+        };
+        let (key, name) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
+        let name = name.trim().trim_matches('"');
+        if name.is_empty() {
+            return Err(refuse("names no column"));
+        }
+        let key = Self::KEYS.into_iter().find(|known| *known == key.trim());
+        let key = key.ok_or_else(|| refuse("has a key that is not known"))?;
+        if key != "length" && self.0.iter().any(|(given, _)| *given == key) {
+            return Err(refuse("names a column twice"));
+        }
+        self.0.push((key, name.to_owned()));
+        Ok(())
+    }
+
+    /// Columns that are named, with their keys; crack lengths last.
+    pub(super) fn given(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let keys = Self::KEYS.into_iter().filter(|key| *key != "length").chain(["length"]);
+        keys.flat_map(|key| self.0.iter().filter(move |(own, _)| *own == key).map(|(own, name)| (*own, name.as_str())))
+    }
+
+    /// Those that are named, without those given by number: a number is there in every table.
+    pub(super) fn by_name(&self) -> ColumnNames {
+        ColumnNames(self.0.iter().filter(|(_, name)| name.parse::<usize>().is_err()).cloned().collect())
+    }
+
+    /// Whether several columns are crack lengths.
+    pub(super) fn has_sides(&self) -> bool {
+        self.given().filter(|(key, _)| *key == "length").count() > 1
+    }
+}
+
+impl TryFrom<BTreeMap<String, OneOrMany>> for ColumnNames {
+    type Error = String;
+
+    fn try_from(table: BTreeMap<String, OneOrMany>) -> std::result::Result<Self, String> {
+        let mut names = Vec::new();
+        for (key, columns) in table {
+            let known = Self::KEYS.into_iter().find(|known| *known == key);
+            let known = known.ok_or_else(|| format!("unknown field `{key}`, expected one of `{}`", Self::KEYS.join("`, `")))?;
+            match columns {
+                OneOrMany::One(name) => names.push((known, name.into())),
+                OneOrMany::Many(several) if key == "length" => names.extend(several.into_iter().map(|name| (known, name.into()))),
+                OneOrMany::Many(_) => return Err("a column, expected the name of a column or its number".to_owned()),
+            }
+        }
+        Ok(ColumnNames(names))
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "columns, expected the name of a column or its number, or a list of them")]
+enum OneOrMany {
+    One(TextOrNumber),
+    Many(Vec<TextOrNumber>),
+}

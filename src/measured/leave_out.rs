@@ -1,0 +1,103 @@
+//! `[measured] leave_out`: growth over some cycles that does not count, with the reason, which stands in every result.
+
+use std::collections::HashMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::curve::{Measured, READINGS_MIN};
+use perilife_base::error::{Result, input, input_missing};
+
+/// Cycles of a specimen that do not count.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeaveOut {
+    /// Name of the specimen; may be left out where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specimen: Option<String>,
+    /// First cycles, as the file counts them.
+    pub from_cycles: f64,
+    /// Last cycles.
+    pub to_cycles: f64,
+    /// Why.
+    pub reason: String,
+}
+
+impl LeaveOut {
+    /// Whether it covers or cuts the growth between two readings, by their cycles.
+    pub fn covers(&self, before: f64, after: f64) -> bool {
+        let slack = 1e-9 * self.to_cycles.abs();
+        before < self.to_cycles - slack && after > self.from_cycles + slack
+    }
+}
+
+/// Most names of specimens in a message.
+const NAMES_MAX: usize = 20;
+
+impl Measured {
+    /// Leaves out the growth between all readings that a window of cycles covers or cuts. At the start and the end of a curve the
+    /// readings go with it.
+    /// Errors: a window without specimen, reason or readings, or one that leaves fewer than [`READINGS_MIN`] readings.
+    pub fn leave_out(&mut self, windows: &[LeaveOut]) -> Result<()> {
+        let key = |index: usize| format!("measured.leave_out[{index}]");
+        let names: HashMap<String, usize> =
+            self.curves.iter().enumerate().rev().map(|(place, curve)| (curve.specimen.clone(), place)).collect();
+        let mark = |(index, window)| self.mark(&key(index), window, &names);
+        let places: Vec<usize> = windows.iter().enumerate().map(mark).collect::<Result<_>>()?;
+        for (index, place) in places.into_iter().enumerate() {
+            let curve = &mut self.curves[place];
+            let counted: Vec<usize> = (1..curve.cycles.len()).filter(|&step| curve.counts(step)).collect();
+            if counted.len() + 1 < READINGS_MIN {
+                let kept = if counted.is_empty() { 0 } else { counted.len() + 1 };
+                let remedy = format!("leave out less: at least {READINGS_MIN} readings are needed");
+                return Err(input_missing(&key(index), format!("leaves {kept} readings"), remedy));
+            }
+            let kept: Vec<usize> = (counted[0] - 1..=counted[counted.len() - 1]).collect();
+            if kept.len() < curve.cycles.len() {
+                *curve = curve.of_readings(&kept);
+                // The first reading of a curve ends no step.
+                curve.left_out[0] = false;
+            }
+        }
+        Ok(())
+    }
+
+    /// Marks the growth of a window; gives the place of its curve.
+    fn mark(&mut self, key: &str, window: &LeaveOut, places: &HashMap<String, usize>) -> Result<usize> {
+        let LeaveOut { specimen, from_cycles, to_cycles, reason } = window;
+        let known = || {
+            let names = self.curves.iter().take(NAMES_MAX).map(|curve| format!("\"{}\"", curve.specimen));
+            let more = self.curves.len().saturating_sub(NAMES_MAX);
+            names.chain((more > 0).then(|| format!("{more} more"))).collect::<Vec<_>>().join(", ")
+        };
+        let place = match specimen {
+            Some(name) => places.get(name).copied().ok_or_else(|| {
+                let remedy = format!("use one of {}", known());
+                input(&format!("{key}.specimen"), format!("\"{name}\""), "is no specimen of the files", remedy)
+            })?,
+            None if self.curves.len() == 1 => 0,
+            None => {
+                let remedy = format!("name one of {}", known());
+                return Err(input_missing(&format!("{key}.specimen"), "is missing, and there are several", remedy));
+            }
+        };
+        if reason.trim().is_empty() {
+            return Err(input(&format!("{key}.reason"), "\"\"", "says nothing", "say why the readings do not count"));
+        }
+        if !(from_cycles.is_finite() && to_cycles.is_finite() && from_cycles < to_cycles) {
+            let problem = format!("is not above from_cycles = {from_cycles}");
+            return Err(input(&format!("{key}.to_cycles"), to_cycles, problem, "give the window of cycles that does not count"));
+        }
+        let curve = &mut self.curves[place];
+        let count = curve.cycles.len();
+        let covered = |step: usize| window.covers(curve.cycles[step - 1], curve.cycles[step]);
+        let steps: Vec<usize> = (1..count).filter(|&step| covered(step)).collect();
+        if steps.is_empty() {
+            let problem = format!("covers no growth of specimen {}", curve.specimen);
+            let remedy = format!("its readings go from {} to {} cycles", curve.cycles[0], curve.cycles[count - 1]);
+            return Err(input(&format!("{key}.from_cycles"), from_cycles, problem, remedy));
+        }
+        curve.left_out.resize(count, false);
+        steps.into_iter().for_each(|step| curve.left_out[step] = true);
+        Ok(place)
+    }
+}

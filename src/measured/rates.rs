@@ -1,0 +1,277 @@
+//! Tables of da/dN over ΔK and R, as laboratories, handbooks and `perilife rates` write them.
+//!
+//! ΔK is that of ASTM E647 in this program: the tensile part of the range, ΔK = (1 - max(R, 0)) K_max. Many tables have the full range
+//! (1 - R) K_max, which at R < 0 is another number: which of them is meant has to be said there.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::columns::stated_unit;
+use super::doubts::rejected;
+use super::header::columns_of;
+use super::import::{ColumnNames, Import};
+use super::marks::counts;
+use super::names::{Column, Named, Role};
+use super::readings::value;
+use super::table;
+use super::wide_rates;
+use perilife_base::error::{Result, input_missing};
+use perilife_base::input::{Folder, number};
+use perilife_base::table::decimal::decide;
+use perilife_base::table::{
+    Decimal, Sheet,
+    units::{IntensityUnit, RateUnit, Unit},
+};
+use perilife_base::table::{Fault, Table, whole_file};
+use perilife_base::units::MM_PER_CYCLE;
+
+perilife_base::kinds! {
+    /// What of a cycle from R K_max to K_max is ΔK in a table of rates where R is negative; at R >= 0 both are (1-R) K_max. Laws take its
+    /// tensile part.
+    pub enum RangeKind for "measured.delta_k" {
+        Tensile = "tensile": "K_max: compression does not count (ASTM E647)",
+        Full = "full": "(1-R) K_max, as many laboratories and NASGRO have it",
+    }
+}
+
+/// A flag of `perilife rates` that speaks against nothing.
+const HARMLESS: &str = "load_changes";
+
+/// One rate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RateRow {
+    /// Test it belongs to: its file, and the specimen where the file names one. Rows of a test follow each other.
+    pub series: String,
+    /// Where it stands, for messages.
+    pub place: String,
+    /// Line in its file.
+    pub line: usize,
+    /// Tensile ΔK, Pa√m.
+    pub delta_k: f64,
+    /// da/dN, m/cycle.
+    pub rate: f64,
+    /// Stress ratio R.
+    pub ratio: f64,
+}
+
+impl RateRow {
+    /// K_max, Pa√m.
+    pub fn k_max(&self) -> f64 {
+        self.delta_k / (1.0 - self.ratio.max(0.0))
+    }
+
+    /// ln of the rate in mm/cycle.
+    pub fn log_rate(&self) -> f64 {
+        (self.rate / MM_PER_CYCLE).ln()
+    }
+}
+
+/// Rates of a table, and how many of its rows something speaks against, which are left out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RateTable {
+    /// Good rows.
+    pub rows: Vec<RateRow>,
+    /// Rows that carry a flag of `perilife rates`.
+    pub flagged: usize,
+    /// What else the user should know.
+    pub warnings: Vec<String>,
+    /// Names of the columns of ΔK and da/dN.
+    pub columns: [String; 2],
+    /// Whether the table, or the user, says its stress ratio.
+    pub says_ratio: bool,
+    /// Units of ΔK and da/dN, for those who read a result.
+    pub units: [&'static str; 2],
+    /// Which ΔK the rows at negative R were said to have; `None` where there are none.
+    pub range: Option<RangeKind>,
+}
+
+/// A table of rates in an input file: its name, or with what it does not say itself.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged, expecting = "a table of rates, expected the name of a file or { file = \"...\", stress_ratio = ..., ... }")]
+pub enum RateFile {
+    /// Name of the file.
+    Name(String),
+    /// With more.
+    Keys(Box<RateFileKeys>),
+}
+
+/// What a user says of a table of rates.
+#[derive(Debug, Clone, Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub struct RateFileKeys {
+    /// Name of the file.
+    pub file: String,
+    /// R of all rows.
+    pub stress_ratio: Option<f64>,
+    /// Unit of ΔK.
+    pub intensity_unit: Option<IntensityUnit>,
+    /// Unit of da/dN.
+    pub rate_unit: Option<RateUnit>,
+    /// Which range ΔK is at negative R.
+    pub delta_k: Option<RangeKind>,
+    /// Columns by name.
+    #[serde(default)]
+    pub columns: ColumnNames,
+    /// The decimal sign.
+    pub decimal: Option<Decimal>,
+    /// Sheet of a workbook.
+    pub sheet: Option<Sheet>,
+}
+
+impl RateFile {
+    /// All that is said.
+    pub fn keys(&self) -> RateFileKeys {
+        match self {
+            RateFile::Name(file) => RateFileKeys { file: file.clone(), ..RateFileKeys::default() },
+            RateFile::Keys(keys) => (**keys).clone(),
+        }
+    }
+}
+
+impl RateFileKeys {
+    /// Reads the table of a folder; `key` names it in messages.
+    pub fn read(&self, folder: &Folder, key: &str) -> Result<(RateTable, Vec<u8>)> {
+        if let Some(ratio) = self.stress_ratio {
+            number("a stress ratio below 1", -100.0, 0.999).read(key, ratio)?;
+        }
+        let bytes = folder.read(&self.file)?;
+        let table = read(&bytes, &folder.path(&self.file), self)?;
+        Ok((table, bytes))
+    }
+}
+
+/// Reads a table.
+/// Errors: a table without the columns or their units, cells that are no numbers or none of growth, a stress ratio given twice, rows at
+/// R < 0 of which the range is not said.
+pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable> {
+    let import = Import {
+        columns: keys.columns.clone(),
+        decimal: keys.decimal,
+        sheet: keys.sheet.clone(),
+        intensity: keys.intensity_unit,
+        rate: keys.rate_unit,
+        of_rates: true,
+        ..Import::default()
+    };
+    let wide = wide_rates::as_table(bytes, file).transpose()?;
+    let cells = table::read(wide.as_ref().map_or(bytes, |text| text.as_bytes()), file, &import)?;
+    let columns = columns_of(&cells.header, &cells.names, &import);
+    let of = |role: Role| {
+        let mut own = columns.iter().copied().filter(move |column| column.role == role);
+        let first = own.next();
+        match own.next() {
+            Some(second) => Err(cells.header_fault(second.index).error(
+                "says the same as an earlier column",
+                "say which one counts by { file = \"...\", columns = { delta_k = \"...\", rate = \"...\" } }",
+            )),
+            None => Ok(first),
+        }
+    };
+    let (Some(delta_k), Some(rate)) = (of(Role::DeltaK)?, of(Role::Rate)?) else { return Err(without_columns(&cells)) };
+    let delta_k = with_unit(&cells, delta_k, "intensity_unit", keys.intensity_unit.map(Unit::Intensity))?;
+    let rate = with_unit(&cells, rate, "rate_unit", keys.rate_unit.map(Unit::Rate))?;
+    let (ratio, specimen) = (of(Role::Ratio)?, of(Role::Specimen)?);
+    if let (Some(column), Some(given)) = (ratio, keys.stress_ratio) {
+        let problem = format!("is a column, and stress_ratio = {given} is given for the file");
+        return Err(cells.header_fault(column.index).error(problem, "leave one of them out"));
+    }
+    let flags = cells.header.iter().position(|name| name == "flags");
+    let read: Vec<Column> = [delta_k, rate].into_iter().chain(ratio).collect();
+    let decimal = decide(&cells, &read.iter().map(Column::numbers).collect::<Vec<_>>(), keys.decimal)?;
+
+    let known = read.iter().chain(&specimen).map(|column| column.index).chain(flags);
+    let remarks = rejected(&cells, &known.collect::<Vec<_>>());
+    let unit = |column: Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
+    let mut table = RateTable {
+        columns: [delta_k, rate].map(|column| cells.header[column.index].clone()),
+        warnings: cells.warnings().into_iter().chain(remarks).collect(),
+        says_ratio: ratio.is_some() || keys.stress_ratio.is_some(),
+        units: [unit(delta_k), unit(rate)],
+        ..RateTable::default()
+    };
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    for row in &cells.rows {
+        let speaks_against = |word: &str| word != HARMLESS && counts(word, true) != Some(true);
+        if flags.is_some_and(|flags| row.cell(flags).split_whitespace().any(speaks_against)) {
+            table.flagged += 1;
+            continue;
+        }
+        let above_zero = |column: Column| {
+            if column.role == Role::DeltaK && row.cell(column.index).is_empty() {
+                let remedy = "give ΔK in every row: `perilife rates --specimen CASE.toml` knows it";
+                return Err(cells.cell_fault(row, column.index).error("is empty", remedy));
+            }
+            let size = value(&cells, row, column, decimal)?;
+            let fault = cells.cell_fault(row, column.index);
+            match size > 0.0 {
+                true => Ok(size),
+                false => Err(fault.error(
+                    "is not above zero",
+                    "leave rows without growth out; logarithms need a name that says so, as log10 da/dN (mm/cycle)",
+                )),
+            }
+        };
+        let of_row = ratio.map_or(Ok(keys.stress_ratio.unwrap_or(0.0)), |column| value(&cells, row, column, decimal))?;
+        if of_row >= 1.0 {
+            let fault = cells.cell_fault(row, ratio.map_or(0, |column| column.index));
+            return Err(fault.error("is no stress ratio below 1", "give K_min over K_max"));
+        }
+        let full = above_zero(delta_k)?;
+        table.rows.push(RateRow {
+            series: specimen
+                .map_or_else(|| format!("{name}, R {of_row}"), |column| format!("{name}, {}", row.cell(column.index))),
+            place: format!("{}: line {}", file.display(), row.line),
+            line: row.line,
+            delta_k: if of_row < 0.0 && keys.delta_k == Some(RangeKind::Full) { full / (1.0 - of_row) } else { full },
+            rate: above_zero(rate)?,
+            ratio: of_row,
+        });
+    }
+    if let Some(row) = table.rows.iter().find(|row| row.ratio < 0.0) {
+        let Some(range) = keys.delta_k else {
+            let fault = Fault { line: Some(row.line), key: Some("delta_k"), ..whole_file(file) };
+            return Err(fault.error(
+                format!("has rates at R = {}, where ΔK may be the full range (1 - R) K_max or its tensile part K_max", row.ratio),
+                "say which: delta_k = \"full\" (NASGRO and many laboratories) or \"tensile\" (ASTM E647, `perilife rates`)",
+            ));
+        };
+        table.range = Some(range);
+    }
+    Ok(table)
+}
+
+fn with_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Column> {
+    let fault = || table.header_fault(column.index);
+    match stated_unit(table, column, key, given)? {
+        Some(unit) => Ok(column.in_unit(unit)),
+        None if column.unit == Named::Strange => {
+            Err(fault().error("has a unit that is not known", format!("convert the column, or give {key} = {}", units(key))))
+        }
+        None => Err(fault().error("does not say its unit", format!("name it in the header, or give {key} = {}", units(key)))),
+    }
+}
+
+fn units(key: &str) -> String {
+    let names: Vec<&str> = match key {
+        "rate_unit" => RateUnit::ALL.iter().map(|unit| unit.name()).collect(),
+        _ => IntensityUnit::ALL.iter().map(|unit| unit.name()).collect(),
+    };
+    format!("\"{}\"", names.join("\" or \""))
+}
+
+fn without_columns(table: &Table) -> perilife_base::error::Error {
+    let names = table.header.join(",");
+    let fault = Fault { file: &table.file, line: Some(table.header_line.max(1)), key: Some("header"), value: Some(&names) };
+    fault.error(
+        "lacks the columns delta_k_mpa_sqrt_m and da_dn_mm_per_cycle",
+        "name them so, or as ΔK (MPa√m) and da/dN (mm/cycle), and stress_ratio; or say which is which by { file = \"...\", columns = \
+         { delta_k = \"...\", rate = \"...\" } }; `perilife rates` writes such a table from a-N readings",
+    )
+}
+
+/// The error of rates without a stress ratio.
+pub fn lacks_ratio(file: &str, key: &str) -> perilife_base::error::Error {
+    let remedy = format!("add a column stress_ratio, or write {{ file = \"{file}\", stress_ratio = ... }}");
+    input_missing(key, "is no column, and no stress_ratio is given for the file", remedy)
+}

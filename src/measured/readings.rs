@@ -1,0 +1,203 @@
+//! From the cells of a table to the readings of every specimen, each checked by itself and against the one before.
+
+use std::collections::HashMap;
+
+use super::columns::{Layout, Series, Shape, is_stress};
+use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
+use super::names::{Column, Role};
+use perilife_base::error::{Error, Result};
+use perilife_base::table::Decimal;
+use perilife_base::table::numerals::{is_number, number};
+use perilife_base::table::{Fault, Row, Table, whole_file};
+use perilife_plate::specimen::LoadMeasure;
+
+/// More cycles than any test has run: beyond it the unit is wrong.
+const CYCLES_MAX: f64 = 1e15;
+
+/// Longer than any specimen, m: beyond it the unit is wrong.
+const LENGTH_MAX: f64 = 100.0;
+
+/// What is done about a bad row: an error ends the reading.
+type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
+
+/// Curves of a table of cells.
+pub(super) fn curves_of(table: &Table, layout: &Layout, fate: Fate<'_>) -> Result<Measured> {
+    let mut measured = Measured { curves: Vec::new(), warnings: layout.warnings.clone() };
+    for series in &layout.series {
+        measured.curves.extend(curves(table, layout.decimal, series, fate)?);
+    }
+    let mut falling = Vec::new();
+    for curve in &measured.curves {
+        let specimen = || Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
+        if curve.cycles.len() < READINGS_MIN {
+            fate(specimen().error(
+                format!("has {} readings", curve.cycles.len()),
+                format!("give at least {READINGS_MIN} readings for every specimen"),
+            ))?;
+        } else if layout.shape == Shape::WideLengths && curve.crack_length.last() <= curve.crack_length.first() {
+            fate(specimen().error(
+                "is a column that does not grow, so it is no crack length",
+                "leave columns of other quantities out of a wide table, or name one of crack length by measured.columns.length",
+            ))?;
+        }
+        let falls = curve.crack_length.windows(2).filter(|pair| pair[1] < pair[0]).count();
+        if falls > 0 {
+            falling.push(format!(
+                "{}: specimen {}: crack length falls at {falls} of {} readings (taken as reading noise)",
+                table.file.display(),
+                curve.specimen,
+                curve.cycles.len()
+            ));
+        }
+    }
+    measured.warnings.extend(first_of(falling));
+    Ok(measured)
+}
+
+/// Curves of a series, specimens in the order of their first rows.
+fn curves(table: &Table, decimal: Decimal, series: &Series, fate: Fate<'_>) -> Result<Vec<MeasuredCurve>> {
+    let empty = |name: &str| {
+        let length = &series.lengths[0];
+        let (file, length_column) = (table.file.clone(), table.header[length.index].clone());
+        let is_named_by_file = series.specimen.is_none() && series.own.is_empty();
+        let is_tip_to_tip = series.lengths.iter().all(Column::is_tip_to_tip);
+        let length_unit = length.factor;
+        let source = Source { file, length_column, length_unit, is_tip_to_tip, is_named_by_file, ..Source::default() };
+        MeasuredCurve { specimen: name.to_owned(), source, ..MeasuredCurve::default() }
+    };
+    // A specimen that has columns is one, even if nothing stands in them.
+    let mut curves: Vec<MeasuredCurve> = if series.own.is_empty() { Vec::new() } else { vec![empty(&series.name)] };
+    let mut places: HashMap<&str, usize> = curves.iter().map(|_| (series.name.as_str(), 0)).collect();
+    let is_reading = |row: &&Row| series.own.is_empty() || series.own.iter().any(|&column| !row.cell(column).is_empty());
+    for row in table.rows.iter().filter(is_reading) {
+        let name = series.specimen.map_or(series.name.as_str(), |column| row.cell(column.index));
+        if name.is_empty() {
+            let fault = Fault { line: Some(row.line), key: Some("specimen"), value: Some("\"\""), ..whole_file(&table.file) };
+            fate(fault.error("is empty", "name the specimen in every row, or leave the column out"))?;
+            continue;
+        }
+        let place = *places.entry(name).or_insert(curves.len());
+        if place == curves.len() {
+            curves.push(empty(name));
+        }
+        add_reading(&mut curves[place], table, row, decimal, series).or_else(&mut *fate)?;
+    }
+    Ok(curves)
+}
+
+/// Adds the reading of a row after checking it by itself and against the reading before.
+fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Decimal, series: &Series) -> Result<()> {
+    let fault = |column: Column| table.cell_fault(row, column.index);
+    let number = |column: Column| value(table, row, column, decimal);
+    let cycles = series.cycles;
+    let n = number(cycles)?;
+    let mut a = 0.0;
+    for &column in &series.lengths {
+        let on_side = number(column)?;
+        if on_side <= 0.0 {
+            let remedy = "give the crack length as the test standard of the specimen defines it";
+            return Err(fault(column).error("is not above 0", remedy));
+        }
+        a += on_side / series.lengths.len() as f64;
+    }
+    if n < 0.0 {
+        return Err(fault(cycles).error("is negative", "count cycles from 0 upwards"));
+    }
+    if n > CYCLES_MAX {
+        return Err(fault(cycles).error("is more than 1e15 cycles", "check the number and its unit"));
+    }
+    match curve.cycles.last() {
+        Some(&before) if n == before => {
+            let remedy = "keep one reading for each number of cycles";
+            return Err(fault(cycles).error("repeats the cycles of the reading before", remedy));
+        }
+        Some(&before) if n < before => {
+            let problem = format!("is below the reading before ({})", before / cycles.factor);
+            let remedy = "sort the readings of each specimen by cycles, or correct the number";
+            return Err(fault(cycles).error(problem, remedy));
+        }
+        _ => {}
+    }
+    if a > LENGTH_MAX {
+        return Err(fault(series.lengths[0]).error("is more than 100 m", "check the number and its unit"));
+    }
+    let sides = series.sides.iter().map(|side| number(*side)).collect::<Result<Vec<f64>>>()?;
+    let load = load(table, row, decimal, series)?;
+    if sides.len() > 1 {
+        let [low, high] = [f64::min, f64::max].map(|of| sides.iter().copied().reduce(of).unwrap_or(a));
+        curve.side_difference.push(high - low);
+    }
+    if let Some((maximum, ratio)) = load {
+        let measure = if series.loads.iter().any(is_stress) { LoadMeasure::Stress } else { LoadMeasure::Force };
+        let is_range = series.load(Role::Max).is_none() && series.load(Role::Range).is_some();
+        let none = || Loads { measure, is_range, maximum: Vec::new(), ratio: Vec::new() };
+        let loads = curve.loads.get_or_insert_with(none);
+        loads.maximum.push(maximum);
+        loads.ratio.push(ratio);
+    }
+    if curve.stated.is_empty() {
+        curve.stated = series.compared.iter().map(|column| Stated::new(table, *column)).collect();
+    }
+    for (stated, column) in curve.stated.iter_mut().zip(&series.compared) {
+        // A cell without a number says nothing.
+        stated.values.push(value(table, row, *column, decimal).unwrap_or(f64::NAN));
+    }
+    curve.cycles.push(n);
+    curve.crack_length.push(a);
+    curve.source.lines.push(row.line);
+    Ok(())
+}
+
+/// The number in a cell in SI units.
+pub(super) fn value(table: &Table, row: &Row, column: Column, decimal: Decimal) -> Result<f64> {
+    let cell = row.cell(column.index);
+    let refused = |problem: &str, remedy: &str| Err(table.cell_fault(row, column.index).error(problem, remedy));
+    match number(cell, decimal) {
+        Some(number) if number.is_finite() => Ok(column.factor * if column.is_log { 10_f64.powf(number) } else { number }),
+        None if cell.is_empty() => refused("is empty", "give a number or leave the whole row out"),
+        None if is_number(cell) => refused(
+            &format!("is not a number whose decimal sign is the {} of this file", decimal.words()),
+            "give a plain number such as 1234.5 or 1.2345e3, the same decimal sign in the whole file, thousands in groups of three",
+        ),
+        None if !cell.parse::<f64>().is_ok_and(|number| !number.is_finite()) => {
+            refused("is not a number", "give a plain number such as 1234.5 or 1.2345e3, thousands in groups of three")
+        }
+        _ => refused("is not a finite number", "give the reading, or leave the whole row out"),
+    }
+}
+
+/// Largest load and stress ratio of a reading, either NaN where the file does not say it; of a file that has ranges alone, the range
+/// in the place of the largest load.
+fn load(table: &Table, row: &Row, decimal: Decimal, series: &Series) -> Result<Option<(f64, f64)>> {
+    let [maximum, minimum, range, ratio] = [Role::Max, Role::Min, Role::Range, Role::Ratio].map(|role| series.load(role));
+    let Some(column) = maximum.or(range).or(ratio) else { return Ok(None) };
+    let of = |column: Option<Column>| column.map(|column| value(table, row, column, decimal)).transpose();
+    // A ratio alone goes with the largest load of the case, and with a smallest load says the largest.
+    let largest = match (maximum.or(range), of(minimum)?, of(ratio)?) {
+        (Some(column), ..) => value(table, row, column, decimal)?,
+        (None, Some(smallest), Some(ratio)) if smallest / ratio > 0.0 => smallest / ratio,
+        _ => f64::NAN,
+    };
+    if largest <= 0.0 {
+        return Err(table
+            .cell_fault(row, column.index)
+            .error("is not above 0", "give the largest load of a cycle, tension positive"));
+    }
+    let range_beside = if maximum.is_some() { of(range)? } else { None };
+    let r = match (of(minimum)?, of(ratio)?, range_beside) {
+        (Some(smallest), ..) if maximum.is_some() => smallest / largest,
+        // The largest is the smallest and the range.
+        (Some(smallest), ..) if range.is_some() => smallest / (smallest + largest),
+        (Some(_), None, _) => f64::NAN,
+        (_, Some(ratio), _) => ratio,
+        (None, None, Some(range)) => 1.0 - range / largest,
+        (None, None, None) => f64::NAN,
+    };
+    if r >= 1.0 {
+        let column = minimum.or(ratio).or(range).unwrap_or(column);
+        return Err(table
+            .cell_fault(row, column.index)
+            .error("leaves no range of load", "give the smallest load below the largest"));
+    }
+    Ok(Some((largest, r)))
+}

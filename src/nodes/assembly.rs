@@ -1,0 +1,227 @@
+//! Stiffness matrices of cells.
+//!
+//! `K_ab = h ∫ e_aᵀ D e_b dA` with e the strain of an unknown. The matrix of a cell is one of all unknowns in reach, and goes straight
+//! to the dense matrix of the part of the plate that the cell lies in ([`super::dissection`]).
+
+use super::basis::Value;
+use super::cells::QuadraturePoint;
+use super::field::{Discretisation, Local, TipFields, singular};
+use super::front::{Front, lower_product, whole_product};
+use perilife_base::error::Result;
+
+/// Area of points that may be left out where nodes in reach do not span the basis, over that of a cell: in the wedge between a slant
+/// crack and the edge that it starts from, which carries nothing.
+const LEFT_OUT: f64 = 0.25;
+
+/// What is reused from cell to cell.
+#[derive(Debug, Default)]
+pub struct Scratch {
+    local: Local,
+    /// Values at all points of a cell, and where those of each end, with its area.
+    values: Vec<Value>,
+    ends: Vec<(usize, f64)>,
+    /// Near-tip fields at the points, all tips of a point together.
+    fields: Vec<Option<TipFields>>,
+    /// Number in the cell of every node of the plate, none of those that it does not hold.
+    numbers: Vec<u32>,
+    /// Nodes of the cell in the order of their unknowns in the front, with the number of the first enriched unknown of each.
+    nodes: Vec<(u32, u32)>,
+    /// Places in the front of the enriched unknowns.
+    enriched: Vec<u32>,
+    /// Gradients of shape functions, a row a point, and the same times the area.
+    gradients: [Vec<f64>; 2],
+    /// Strains of the unknowns without and with fields, three rows a point, and stresses of the latter times the area.
+    strains: [Vec<f64>; 2],
+    stresses: Vec<f64>,
+    product: Vec<f64>,
+    /// First unknown in the front of every node of the cell.
+    in_front: Vec<usize>,
+}
+
+impl Scratch {
+    /// For a plate of so many nodes.
+    pub fn of(nodes: usize) -> Self {
+        Scratch { numbers: vec![u32::MAX; nodes], ..Scratch::default() }
+    }
+
+    /// Takes the shape functions at all points.
+    fn read(&mut self, plate: &Discretisation, leaf: usize, points: &[QuadraturePoint]) -> Result<()> {
+        let (mut left_out, size) = (0.0, plate.grid.spacing(leaf));
+        self.values.clear();
+        self.ends.clear();
+        self.fields.clear();
+        plate.load(leaf, &mut self.local);
+        for point in points {
+            if !plate.at_loaded(leaf, point.at, &mut self.local) {
+                left_out += point.area;
+                if left_out > LEFT_OUT * size * size {
+                    return Err(singular(point.at, plate.reach(leaf)));
+                }
+                continue;
+            }
+            self.values.extend_from_slice(&self.local.values);
+            self.ends.push((self.values.len(), point.area));
+            self.fields.extend_from_slice(&self.local.fields);
+        }
+        Ok(())
+    }
+
+    /// Numbers the nodes in reach of any point, and their enriched unknowns.
+    fn number(&mut self, plate: &Discretisation, places: &[u32]) {
+        self.nodes.clear();
+        for value in &self.values {
+            let number = &mut self.numbers[value.node as usize];
+            if *number == u32::MAX {
+                *number = 0;
+                self.nodes.push((value.node, 0));
+            }
+        }
+        self.nodes.sort_unstable_by_key(|node| places[node.0 as usize]);
+        self.enriched.clear();
+        for (number, (node, first)) in (0..).zip(&mut self.nodes) {
+            self.numbers[*node as usize] = number;
+            *first = self.enriched.len() as u32;
+            let place = places[*node as usize] + 2;
+            self.enriched.extend(place..place + 2 * plate.enriched[*node as usize].len() as u32);
+        }
+    }
+
+    /// Gradients and strains at all points.
+    fn fill(&mut self, plate: &Discretisation, thickness: f64) {
+        let Scratch { values, ends, fields, numbers, nodes, enriched, gradients, strains, stresses, .. } = self;
+        let (n, m, points, tips) = (2 * nodes.len(), enriched.len(), ends.len(), plate.axes.len());
+        let is_enriched = usize::from(m > 0);
+        let [of_points, weighted] = gradients;
+        let [of_nodes, of_fields] = strains;
+        let sizes = [points * n, points * n, 3 * points * n * is_enriched, 3 * points * m, 3 * points * m];
+        for (rows, size) in [of_points, weighted, of_nodes, of_fields, stresses].into_iter().zip(sizes) {
+            rows.clear();
+            rows.resize(size, 0.0);
+        }
+        let [of_points, weighted] = gradients;
+        let [of_nodes, of_fields] = strains;
+        let elasticity = plate.elasticity();
+        let mut first_value = 0;
+        for (index, &(end, area)) in ends.iter().enumerate() {
+            let factor = thickness * area;
+            for value in &values[first_value..end] {
+                let number = numbers[value.node as usize] as usize;
+                let ([x, y], column) = (value.gradient, 2 * number);
+                let place = index * n + column;
+                (of_points[place], of_points[place + 1]) = (x, y);
+                (weighted[place], weighted[place + 1]) = (factor * x, factor * y);
+                if m == 0 {
+                    continue;
+                }
+                let row = 3 * index * n + column;
+                (of_nodes[row], of_nodes[row + 2 * n]) = (x, y);
+                (of_nodes[row + n + 1], of_nodes[row + 2 * n + 1]) = (y, x);
+                let first = nodes[number].1 as usize;
+                for (k, &tip) in plate.enriched[value.node as usize].iter().enumerate() {
+                    let Some(fields) = &fields[index * tips + tip as usize] else { continue };
+                    for (mode, (field, slope)) in fields.iter().enumerate() {
+                        let part = |i: usize, j: usize| field[i] * value.gradient[j] + value.value * slope[i][j];
+                        let gradient = [[part(0, 0), part(0, 1)], [part(1, 0), part(1, 1)]];
+                        let strain = [gradient[0][0], gradient[1][1], gradient[0][1] + gradient[1][0]];
+                        let column = 3 * index * m + first + 2 * k + mode;
+                        for (row, (strain, stress)) in strain.into_iter().zip(elasticity.stress(&gradient)).enumerate() {
+                            of_fields[column + row * m] = strain;
+                            stresses[column + row * m] = factor * stress;
+                        }
+                    }
+                }
+            }
+            first_value = end;
+        }
+    }
+}
+
+/// Adds the matrix of a cell to a front in which the unknowns of a node begin at `places[node]`.
+///
+/// With `P = Σ ∇Φ ∇Φᵀ dA` of all pairs of gradients that of unknowns without fields is made of its entries; those with fields take all
+/// of `∫ e_aᵀ D e_b dA`.
+/// Errors: nodes in reach of a point do not span the basis.
+pub fn add_cell(
+    plate: &Discretisation,
+    thickness: f64,
+    (leaf, points): (usize, &[QuadraturePoint]),
+    scratch: &mut Scratch,
+    places: &[u32],
+    front: &mut Front,
+) -> Result<()> {
+    scratch.read(plate, leaf, points)?;
+    scratch.number(plate, places);
+    scratch.fill(plate, thickness);
+    let Scratch {
+        ends,
+        numbers,
+        nodes,
+        enriched,
+        gradients: [of_points, weighted],
+        strains: [of_nodes, of_fields],
+        stresses,
+        product,
+        in_front,
+        ..
+    } = scratch;
+    let (n, m, points) = (2 * nodes.len(), enriched.len(), ends.len());
+    if points == 0 {
+        return Ok(());
+    }
+    lower_product(of_points, weighted, [points, n], product);
+    in_front.clear();
+    in_front.extend(nodes.iter().map(|&(node, _)| places[node as usize] as usize));
+    add_nodes(plate, in_front, product, front);
+    if m > 0 {
+        let place = |number: usize| in_front[number / 2] + number % 2;
+        whole_product(stresses, of_nodes, [3 * points, m, n], product);
+        for column in 0..n {
+            let from = enriched.partition_point(|&row| (row as usize) < place(column));
+            let (sums, first) = front.column(place(column));
+            let values = &product[column * m + from..(column + 1) * m];
+            enriched[from..].iter().zip(values).for_each(|(&row, value)| sums[row as usize - first] += value);
+        }
+        for (index, &column) in enriched.iter().enumerate() {
+            let from = 2 * in_front.partition_point(|&row| row < column as usize);
+            let (sums, first) = front.column(column as usize);
+            (from..n).for_each(|row| sums[place(row) - first] += product[row * m + index]);
+        }
+        lower_product(of_fields, stresses, [3 * points, m], product);
+        for (index, &column) in enriched.iter().enumerate() {
+            let (sums, first) = front.column(column as usize);
+            let values = &product[index * m + index..(index + 1) * m];
+            enriched[index..].iter().zip(values).for_each(|(&row, value)| sums[row as usize - first] += value);
+        }
+    }
+    nodes.iter().for_each(|&(node, _)| numbers[node as usize] = u32::MAX);
+    Ok(())
+}
+
+/// Adds the matrix of the unknowns without fields, of which those of each node begin at one of the ascending `places`.
+fn add_nodes(plate: &Discretisation, places: &[usize], product: &[f64], front: &mut Front) {
+    let elasticity = plate.elasticity();
+    // Stress of unit strains.
+    let [direct, lateral, _] = elasticity.stress(&[[1.0, 0.0], [0.0, 0.0]]);
+    let shear = elasticity.shear_modulus;
+    let n = 2 * places.len();
+    for (j, &column) in places.iter().enumerate() {
+        let (of_x, of_y) = (&product[2 * j * n..(2 * j + 1) * n], &product[(2 * j + 1) * n..(2 * j + 2) * n]);
+        let [xx, xy, yy] = [of_x[2 * j], of_x[2 * j + 1], of_y[2 * j + 1]];
+        let below = || of_x.chunks_exact(2).zip(of_y.chunks_exact(2)).zip(places).skip(j + 1);
+        let (sums, first) = front.column(column);
+        sums[column - first] += direct * xx + shear * yy;
+        sums[column + 1 - first] += (lateral + shear) * xy;
+        for ((x, y), &row) in below() {
+            let sums = &mut sums[row - first..row - first + 2];
+            sums[0] += direct * x[0] + shear * y[1];
+            sums[1] += lateral * x[1] + shear * y[0];
+        }
+        let (sums, first) = front.column(column + 1);
+        sums[column + 1 - first] += direct * yy + shear * xx;
+        for ((x, y), &row) in below() {
+            let sums = &mut sums[row - first..row - first + 2];
+            sums[0] += lateral * y[0] + shear * x[1];
+            sums[1] += direct * y[1] + shear * x[0];
+        }
+    }
+}

@@ -1,0 +1,265 @@
+//! Cholesky factor of the sum of the matrices of cells and supports, part by part of the plate.
+//!
+//! The plate is bisected again and again (nested dissection: George 1973, SIAM J. Numer. Anal. 10:345). A node is eliminated in the
+//! smallest part that has all matrices that it occurs in; what the elimination leaves to the other nodes of the part goes to the part that
+//! holds both halves (multifrontal method: Duff and Reid 1983, ACM Trans. Math. Softw. 9:302). So nothing sparse is stored, ordered or
+//! searched. Halves are worked on at the same time, and the order of sums does not depend on the number of threads.
+
+use std::ops::Range;
+
+use super::front::Front;
+use perilife_base::error::{Error, Result};
+use perilife_plate::specimen::Point;
+
+/// Matrices of a part that is not divided, at the most.
+const UNDIVIDED: usize = 40;
+/// Distance of a cut from the middle at the most, in shares of the members: around a tip the middle would pass right through fine nodes.
+const OFF_MIDDLE: f64 = 0.4;
+
+/// A matrix to be summed: where it acts, and the nodes whose unknowns it may couple, ascending.
+#[derive(Debug, Clone)]
+pub struct Member {
+    /// Where it lies, m.
+    pub at: Point,
+    /// Nodes.
+    pub nodes: Vec<u32>,
+}
+
+/// Adds members, by their index, to a front, in which the unknowns of a node of theirs begin at `places[node]`.
+pub trait Matrices: Sync {
+    /// Adds the members.
+    /// Errors: a matrix cannot be computed.
+    fn add(&self, members: &[u32], places: &[u32], front: &mut Front) -> Result<()>;
+}
+
+/// A part of the plate before anything is computed.
+#[derive(Debug)]
+struct Plan {
+    /// Where its members stand in the order of all.
+    members: Range<usize>,
+    /// Nodes that are eliminated in it.
+    own: Vec<u32>,
+    halves: Option<Box<[Plan; 2]>>,
+}
+
+/// A part of the plate with its factor.
+#[derive(Debug)]
+struct Part {
+    front: Front,
+    /// Unknowns of the front, those that are eliminated first.
+    unknowns: Vec<u32>,
+    halves: Option<Box<[Part; 2]>>,
+}
+
+/// Factor L of a positive definite matrix `A = L Lᵀ`.
+#[derive(Debug)]
+pub struct Factor(Part);
+
+struct Dissection<'a, M> {
+    members: &'a [Member],
+    /// Members part by part.
+    order: Vec<u32>,
+    first: &'a [u32],
+    /// When nodes are eliminated.
+    ranks: Vec<u32>,
+    matrices: &'a M,
+}
+
+impl Factor {
+    /// Of the sum of all members; the unknowns of node i are those from `first[i]` to `first[i + 1]`.
+    /// Errors: [`Error::LossOfStiffness`] where the sum is not positive definite; those of the matrices.
+    pub fn of(members: &[Member], first: &[u32], matrices: &impl Matrices) -> Result<Self> {
+        let nodes = first.len() - 1;
+        let mut order: Vec<u32> = (0..members.len() as u32).collect();
+        let mut plan = Bisection { members, first }.plan(&mut order, 0);
+        // Where the members of a node stand, from the first to the last; an end of 0 has none.
+        let mut spans = vec![0..0; nodes];
+        for (place, &member) in order.iter().enumerate() {
+            for &node in &members[member as usize].nodes {
+                let span = &mut spans[node as usize];
+                let start = if span.end == 0 { place } else { span.start };
+                *span = start..place + 1;
+            }
+        }
+        for (node, span) in (0..).zip(spans) {
+            if span.end == 0 {
+                return Err(Error::LossOfStiffness);
+            }
+            plan.give(node, &span);
+        }
+        let mut ranks = vec![0; nodes];
+        plan.rank(&mut ranks, &mut 0);
+        Dissection { members, order, first, ranks, matrices }.part(&plan).map(|(part, _)| Factor(part))
+    }
+
+    /// Solves `A x = b` in place of b.
+    pub fn solve(&self, b: &mut [f64]) {
+        self.forward(b);
+        self.backward(b);
+    }
+
+    /// `L⁻¹ b` in place of b.
+    pub fn forward(&self, b: &mut [f64]) {
+        self.0.solve_forward(b);
+    }
+
+    /// The same of several right sides that each load few unknowns.
+    pub fn forward_together(&self, sides: &mut [Vec<f64>]) {
+        self.0.solve_forward_together(sides);
+    }
+
+    /// `L⁻ᵀ b` in place of b.
+    pub fn backward(&self, b: &mut [f64]) {
+        self.0.solve_backward(b);
+    }
+}
+
+impl Plan {
+    /// Gives a node to the smallest part that holds its members.
+    fn give(&mut self, node: u32, span: &Range<usize>) {
+        let holds = |half: &&mut Plan| half.members.start <= span.start && span.end <= half.members.end;
+        match self.halves.iter_mut().flat_map(|halves| halves.iter_mut()).find(holds) {
+            Some(half) => half.give(node, span),
+            None => self.own.push(node),
+        }
+    }
+
+    /// Numbers the nodes in the order of their elimination: those of both halves before those of the whole.
+    fn rank(&self, ranks: &mut [u32], next: &mut u32) {
+        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.rank(ranks, next));
+        for &node in &self.own {
+            ranks[node as usize] = *next;
+            *next += 1;
+        }
+    }
+}
+
+/// How a plate is divided.
+struct Bisection<'a> {
+    members: &'a [Member],
+    first: &'a [u32],
+}
+
+impl Bisection<'_> {
+    /// Orders the members part by part, the first of them being number `start` of all.
+    fn plan(&self, members: &mut [u32], start: usize) -> Plan {
+        let range = start..start + members.len();
+        if members.len() <= UNDIVIDED {
+            return Plan { members: range, own: Vec::new(), halves: None };
+        }
+        let (left, right) = self.halves(members);
+        let middle = start + left.len();
+        let (left, right) = rayon::join(|| self.plan(left, start), || self.plan(right, middle));
+        Plan { members: range, own: Vec::new(), halves: Some(Box::new([left, right])) }
+    }
+
+    /// Divides a part across x or y where its two parts have the fewest unknowns in common, times 1 and how far that is from the middle.
+    fn halves<'a>(&self, members: &'a mut [u32]) -> (&'a mut [u32], &'a mut [u32]) {
+        let half = members.len() / 2;
+        let sort = |members: &mut [u32], axis: usize| {
+            let place = |member: u32| self.members[member as usize].at[axis];
+            members.sort_unstable_by(|a, b| place(*a).total_cmp(&place(*b)).then(a.cmp(b)));
+        };
+        let mut best = [(f64::INFINITY, half); 2];
+        let mut spans = vec![[u32::MAX, 0]; self.first.len() - 1];
+        for (axis, best) in best.iter_mut().enumerate() {
+            sort(members, axis);
+            for (k, &member) in (0..).zip(&*members) {
+                for &node in &self.members[member as usize].nodes {
+                    let span = &mut spans[node as usize];
+                    *span = [span[0].min(k), k];
+                }
+            }
+            // Unknowns that a cut before a place divides: of nodes that begin before it and end there or later.
+            let mut change = vec![0_i64; members.len() + 1];
+            for &member in &*members {
+                for &node in &self.members[member as usize].nodes {
+                    let [from, to] = std::mem::replace(&mut spans[node as usize], [u32::MAX, 0]);
+                    if from < to {
+                        let unknowns = i64::from(self.first[node as usize + 1] - self.first[node as usize]);
+                        change[from as usize + 1] += unknowns;
+                        change[to as usize + 1] -= unknowns;
+                    }
+                }
+            }
+            let mut common = 0;
+            for (place, change) in change.iter().enumerate() {
+                common += change;
+                let off = (place as f64 / members.len() as f64 - 0.5).abs();
+                let cost = common as f64 * (1.0 + off);
+                if off <= OFF_MIDDLE && cost < best.0 {
+                    *best = (cost, place);
+                }
+            }
+        }
+        let axis = usize::from(best[1].0 < best[0].0);
+        if axis == 0 {
+            sort(members, 0);
+        }
+        members.split_at_mut(best[axis].1)
+    }
+}
+
+impl Part {
+    fn solve_forward(&self, b: &mut [f64]) {
+        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.solve_forward(b));
+        self.front.solve_forward(&self.unknowns, b);
+    }
+
+    fn solve_forward_together(&self, sides: &mut [Vec<f64>]) {
+        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.solve_forward_together(sides));
+        self.front.solve_forward_together(&self.unknowns, sides);
+    }
+
+    fn solve_backward(&self, b: &mut [f64]) {
+        self.front.solve_backward(&self.unknowns, b);
+        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.solve_backward(b));
+    }
+}
+
+impl<M: Matrices> Dissection<'_, M> {
+    /// Sums the matrices of a part and eliminates its nodes; gives the nodes that are left as well, by rank.
+    fn part(&self, plan: &Plan) -> Result<(Part, Vec<u32>)> {
+        let (mut nodes, mut halves) = (Vec::new(), None);
+        let members = &self.order[plan.members.clone()];
+        if let Some(plans) = &plan.halves {
+            let (left, right) = rayon::join(|| self.part(&plans[0]), || self.part(&plans[1]));
+            let both = [left?, right?];
+            both.iter().for_each(|(_, open)| nodes.extend(open));
+            halves = Some(both);
+        } else {
+            members.iter().for_each(|&member| nodes.extend(&self.members[member as usize].nodes));
+        }
+        nodes.sort_unstable_by_key(|&node| self.ranks[node as usize]);
+        nodes.dedup();
+        let mut places = vec![u32::MAX; self.ranks.len()];
+        let mut unknowns = Vec::new();
+        for &node in &nodes {
+            places[node as usize] = unknowns.len() as u32;
+            unknowns.extend(self.unknowns(node));
+        }
+        // Nodes of the part have lower ranks than those that are left.
+        let open = nodes.split_off(plan.own.len());
+        let own = open.first().map_or(unknowns.len(), |&node| places[node as usize] as usize);
+        let mut front = Front::new(own, unknowns.len() - own);
+        let halves = match halves {
+            None => {
+                self.matrices.add(members, &places, &mut front)?;
+                None
+            }
+            Some(both) => Some(Box::new(both.map(|(mut half, open)| {
+                let of_node = |&node: &u32| {
+                    let place = places[node as usize];
+                    place..place + self.unknowns(node).len() as u32
+                };
+                front.take(&mut half.front, &open.iter().flat_map(of_node).collect::<Vec<u32>>());
+                half
+            }))),
+        };
+        if front.eliminate() { Ok((Part { front, unknowns, halves }, open)) } else { Err(Error::LossOfStiffness) }
+    }
+
+    fn unknowns(&self, node: u32) -> Range<u32> {
+        self.first[node as usize]..self.first[node as usize + 1]
+    }
+}

@@ -1,0 +1,300 @@
+//! `[loading]` of an input file: how large the cycles are.
+
+use std::sync::Arc;
+
+use serde::Deserialize;
+use toml::Value;
+
+use super::residual::ResidualStress;
+use super::spectrum::{self, Spectrum};
+use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
+use super::{boundary, grips};
+use crate::specimen::{LoadMeasure, Specimen};
+use perilife_base::error::{self, Result, input, input_missing};
+use perilife_base::input::{
+    FORCE, FORCE_KN, Folder, Quantity, STRESS, number, refuse_given, shorten, slice, slice_beside, table_of,
+};
+use perilife_base::units::MM;
+
+/// Keys that ask for a load history.
+const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "history", "rainflow", "overloads"];
+
+/// Keys that do not say whether they mean maximum or range.
+const BARE: &[&str] = &[
+    "stress",
+    "stress_mpa",
+    "stress_amplitude_mpa",
+    "stress_mean_mpa",
+    "stress_min_mpa",
+    "force",
+    "force_n",
+    "force_kn",
+    "load",
+    "load_n",
+    "load_kn",
+];
+
+const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";
+
+const DISPLACEMENT: Quantity = Quantity { what: "a displacement", unit: "mm", low: 1e-9, high: 1e4, si: MM };
+const SCALES: &str = "spectrum_scale_mpa, spectrum_scale_n";
+const DISPLACEMENTS: &str = "displacement_max_mm, displacement_range_mm";
+
+/// The kind alone.
+#[derive(Deserialize)]
+struct KindInput {
+    #[serde(rename = "kind")]
+    _kind: LoadingKind,
+}
+
+/// Reads `[loading]` and `[supports]`, puts loads and supports of a `plate` on `specimen`, and gives the cycles. A spectrum lies in `folder`;
+/// keys `beside` those of the loads are read by others.
+pub fn from_values(
+    loading: &Value,
+    supports: Option<&Value>,
+    (folder, beside): (&Folder, &[&str]),
+    specimen: &mut Specimen,
+) -> Result<Loading> {
+    if let Some(kind) = table_of(loading, "loading")?.get("kind") {
+        // First, so that a load of a fracture scene is told where it belongs.
+        let only = toml::Table::from_iter([("kind".to_owned(), kind.clone())]);
+        slice::<KindInput>(&Value::Table(only), "loading")?;
+    }
+    refuse_by_name(loading)?;
+    let input: Input = slice_beside(loading, "loading", beside)?;
+    grips::refuse(&input)?;
+    let spectrum = if input.kind == Some(LoadingKind::Spectrum) {
+        // What is missing in the case is told before what is wrong in the file.
+        Magnitude::read(&input)?;
+        Some(Spectrum::read(&input, folder)?)
+    } else {
+        spectrum::refuse(&input)?;
+        None
+    };
+    let ratio = match &spectrum {
+        Some(spectrum) => ratio_of(spectrum, input.stress_ratio)?,
+        None => read_ratio(input.stress_ratio)?,
+    };
+    let residual = ResidualStress::read(&input, folder)?;
+    if input.is_of_cracks_alone() {
+        return Ok(Loading { residual, ..pressure_alone(&input, supports, specimen, ratio)? });
+    }
+    let magnitude = Magnitude::read(&input)?;
+    let parallel_ratio =
+        number("a ratio", -10.0, 10.0).read("loading.stress_parallel_ratio", input.stress_parallel_ratio.unwrap_or(0.0))?;
+    let area = boundary::apply(&input, supports, specimen, parallel_ratio)?;
+    read_bending(&input, specimen)?;
+    if let Some(flaw) = specimen.part_through.as_ref().filter(|flaw| parallel_ratio != 0.0 && flaw.radius > 0.0) {
+        let problem = format!("changes the stress at the hole, by which K of a {} is not known", flaw.kind());
+        let remedy = "leave it out, or describe the crack as one that goes through (crack_at_hole)";
+        return Err(error::input("loading.stress_parallel_ratio", parallel_ratio, problem, remedy));
+    }
+    // A range is maximum - minimum, hence maximum (1 - R), also where R is negative.
+    let largest = match &spectrum {
+        Some(spectrum) => magnitude.value * spectrum.largest[1],
+        None if magnitude.is_range => magnitude.value / (1.0 - ratio),
+        None => magnitude.value,
+    };
+    let (maximum, control) = match (specimen.load_measure, magnitude.of) {
+        (LoadMeasure::Stress, Of::Stress) | (LoadMeasure::Force, Of::Force) => (largest, LoadControl::Load),
+        (LoadMeasure::Stress, Of::Force) => (largest / area, LoadControl::Load),
+        (LoadMeasure::Force, Of::Stress) => {
+            let is_plate = specimen.kind.is_plate();
+            let who = if is_plate { "a plate loaded by pins or rollers" } else { specimen.kind.name() };
+            let problem = format!("is a stress, but {who} takes a force");
+            return Err(input_error(&magnitude, problem, "give force_max_n or force_range_n (or _kn)"));
+        }
+        (measure, Of::Displacement) => {
+            for (key, given) in
+                [("stress_parallel_ratio", input.stress_parallel_ratio), ("crack_pressure_mpa", input.crack_pressure_mpa)]
+            {
+                if let Some(given) = given.filter(|given| *given != 0.0) {
+                    let problem = "does not go with cycles of a displacement, which one load follows";
+                    return Err(error::input(&format!("loading.{key}"), given, problem, "leave it out"));
+                }
+            }
+            let (unit, section) = match measure {
+                LoadMeasure::Stress => {
+                    grips::apply(&input, specimen)?;
+                    (UNIT_STRESS, specimen.moved_section().unwrap_or(area))
+                }
+                LoadMeasure::Force => (UNIT_FORCE, 1.0),
+            };
+            (unit, LoadControl::Displacement { maximum: largest, section })
+        }
+    };
+    if let Some(pressure) = read_crack_pressure(&input, specimen)? {
+        specimen.crack_pressure = pressure / maximum;
+    }
+    Ok(Loading { maximum, control, ratio, spectrum: spectrum.map(Arc::new), parallel_ratio, residual })
+}
+
+/// Pressure on the cracks and no other load: the nominal load is the pressure.
+fn pressure_alone(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, ratio: f64) -> Result<Loading> {
+    let problem = "says where a load acts, and none is given beside crack_pressure_mpa";
+    let beside = [
+        ("stress_parallel_ratio", input.stress_parallel_ratio.is_some()),
+        ("edge_bending_ratio", input.edge_bending_ratio.is_some()),
+    ];
+    let given = [&input.places()[..], &beside].concat();
+    refuse_given("loading", &given, problem, &format!("leave it out, or give one of {MAGNITUDES}"))?;
+    boundary::read_supports(supports, specimen)?;
+    let maximum = read_crack_pressure(input, specimen)?.unwrap_or_default();
+    specimen.loads.clear();
+    specimen.load_measure = LoadMeasure::Stress;
+    specimen.crack_pressure = 1.0;
+    Ok(Loading { maximum, control: LoadControl::Load, ratio, spectrum: None, parallel_ratio: 0.0, residual: None })
+}
+
+/// Largest pressure on the faces of the cracks, Pa, with a plate that has cracks to press on.
+fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>> {
+    const KEY: &str = "loading.crack_pressure_mpa";
+    let Some(given) = input.crack_pressure_mpa else { return Ok(None) };
+    let pressure = STRESS.read(KEY, given)?;
+    if !specimen.kind.is_plate() {
+        let problem = format!("does not go with {}, whose handbook K knows its own load alone", specimen.kind);
+        return Err(error::input(KEY, given, problem, "describe the specimen as kind = \"plate\""));
+    }
+    if specimen.cracks.is_empty() {
+        return Err(error::input(KEY, given, "presses on nothing: the plate has no crack", "give specimen.cracks"));
+    }
+    Ok(Some(pressure))
+}
+
+/// Puts the bending that goes with the tension on a crack that does not go through.
+fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
+    const KEY: &str = "loading.bending_ratio";
+    let Some(given) = input.bending_ratio else { return Ok(()) };
+    let ratio = number("a ratio of stresses", 0.0, 1000.0).read(KEY, given)?;
+    let (kind, all_holes) = (specimen.kind, specimen.holes.len());
+    match specimen.part_through.as_mut() {
+        Some(flaw) if ratio > 0.0 && all_holes > flaw.own_holes() => {
+            let problem = "stands beside specimen.holes, whose effect on a crack under bending is not known";
+            return Err(error::input(KEY, given, problem, "leave out the holes or the bending"));
+        }
+        Some(flaw) if flaw.knows_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
+        Some(_) => {
+            let problem = format!("does not go with {kind}, whose K is known under tension alone");
+            return Err(error::input(KEY, given, problem, "leave it out"));
+        }
+        None => {
+            let problem = format!("is bending out of the plane of the plate, which {kind}, a through crack, does not know");
+            return Err(error::input(KEY, given, problem, "leave it out"));
+        }
+    }
+    Ok(())
+}
+
+fn input_error(magnitude: &Magnitude, problem: String, remedy: &str) -> perilife_base::error::Error {
+    input(&magnitude.key, magnitude.given, problem, remedy)
+}
+
+/// Keys that are refused before anything else, since "unknown key" would not tell the user what to do.
+fn refuse_by_name(loading: &Value) -> Result<()> {
+    let table = table_of(loading, "loading")?;
+    for (key, value) in table {
+        let path = format!("loading.{key}");
+        if SEQUENCES.contains(&key.as_str()) {
+            let problem = "is no key of a load sequence";
+            let remedy = "write it into a file: kind = \"spectrum\", spectrum_file = \"...\" and spectrum_scale_mpa, or give constant \
+                          amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
+            return Err(input(&path, shorten(value), problem, remedy));
+        }
+        if BARE.contains(&key.as_str()) {
+            let problem = "does not say whether the maximum or the range is meant";
+            return Err(input(&path, shorten(value), problem, format!("give exactly one of {MAGNITUDES}")));
+        }
+    }
+    Ok(())
+}
+
+/// R of the largest cycle of a spectrum, beside which none is given.
+fn ratio_of(spectrum: &Spectrum, given: Option<f64>) -> Result<f64> {
+    let of_largest = spectrum.ratio_of_largest();
+    given.map_or(Ok(of_largest), |given| {
+        let problem = "stands beside a spectrum, whose cycles have their own";
+        Err(input("loading.stress_ratio", given, problem, "leave it out"))
+    })
+}
+
+fn read_ratio(ratio: Option<f64>) -> Result<f64> {
+    const KEY: &str = "loading.stress_ratio";
+    let ratio = ratio.ok_or_else(|| input_missing(KEY, "is missing", "give R = minimum / maximum, 0 for pulsating load"))?;
+    if ratio >= 1.0 {
+        return Err(input(KEY, ratio, "must be below 1: at R = 1 nothing changes in a cycle", "give R = minimum / maximum"));
+    }
+    number("a ratio", -100.0, 0.999).read(KEY, ratio)
+}
+
+impl Input {
+    /// Whether the pressure on the cracks is the only load.
+    fn is_of_cracks_alone(&self) -> bool {
+        let is_of_load = self.kind.is_none_or(|kind| kind == LoadingKind::ConstantAmplitude);
+        is_of_load && self.crack_pressure_mpa.is_some() && self.magnitudes().all(|(_, given, ..)| given.is_none())
+    }
+
+    /// Keys of a load with what is given.
+    fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<f64>, Quantity, Of)> {
+        [
+            ("stress_max_mpa", self.stress_max_mpa, STRESS, Of::Stress),
+            ("stress_range_mpa", self.stress_range_mpa, STRESS, Of::Stress),
+            ("force_max_n", self.force_max_n, FORCE, Of::Force),
+            ("force_range_n", self.force_range_n, FORCE, Of::Force),
+            ("force_max_kn", self.force_max_kn, FORCE_KN, Of::Force),
+            ("force_range_kn", self.force_range_kn, FORCE_KN, Of::Force),
+            ("spectrum_scale_mpa", self.spectrum_scale_mpa, STRESS, Of::Stress),
+            ("spectrum_scale_n", self.spectrum_scale_n, FORCE, Of::Force),
+            ("displacement_max_mm", self.displacement_max_mm, DISPLACEMENT, Of::Displacement),
+            ("displacement_range_mm", self.displacement_range_mm, DISPLACEMENT, Of::Displacement),
+        ]
+        .into_iter()
+    }
+}
+
+/// What a magnitude is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Of {
+    Stress,
+    Force,
+    Displacement,
+}
+
+/// The one load magnitude of the file.
+struct Magnitude {
+    key: String,
+    /// As given, in the unit of its key.
+    given: f64,
+    /// Pa, N or m.
+    value: f64,
+    is_range: bool,
+    of: Of,
+}
+
+impl Magnitude {
+    fn read(slice: &Input) -> Result<Self> {
+        let kind = slice.kind.unwrap_or(LoadingKind::ConstantAmplitude);
+        let (wanted, example) = match kind {
+            LoadingKind::ConstantAmplitude => (MAGNITUDES, "loading.stress_max_mpa"),
+            LoadingKind::Displacement => (DISPLACEMENTS, "loading.displacement_max_mm"),
+            LoadingKind::Spectrum => (SCALES, "loading.spectrum_scale_mpa"),
+        };
+        let given: Vec<_> =
+            slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of))).collect();
+        match given[..] {
+            [(key, given, quantity, of)] => {
+                let path = format!("loading.{key}");
+                if !wanted.split(", ").any(|known| known == key) {
+                    let remedy = format!("give exactly one of {wanted}");
+                    return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
+                }
+                let value = quantity.read(&path, given)?;
+                Ok(Magnitude { key: path, given, value, is_range: key.contains("range"), of })
+            }
+            [] => Err(input_missing(example, "is missing: there is no load", format!("give exactly one of {wanted}"))),
+            [(first, ..), (second, value, ..), ..] => {
+                let problem = format!("stands beside {first}: one load is given twice");
+                Err(input(&format!("loading.{second}"), value, problem, format!("give exactly one of {wanted}")))
+            }
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! Residual stress of a plate without its cracks, by which K is shifted (superposition: Bueckner 1958, Trans. ASME 80:1225).
+//!
+//! A crack releases the tractions that the residual stress σ_res had across its line: on a face with outward normal m the plate gets
+//! `t = -σ_res m`, as under a pressure σ_res·I. K of these is K_res; a cycle then runs from `R K + K_res` to `K + K_res`.
+//!
+//! The stress is that in the axes of the plate: σ_y, and σ_x and τ_xy where they are given, else 0. From a file it is linear between its
+//! points: in the triangles of Delaunay, or along a line where all points lie on one, and alike across that.
+
+use std::sync::Arc;
+
+use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation};
+use toml::Value;
+
+use super::Input;
+use super::formula::{Formula, KNOWN};
+use super::spectrum::rows::{cells, fault, number, rows};
+use crate::specimen::geometry::{along, distance};
+use crate::specimen::{CrackLine, Point};
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::{Folder, shorten};
+use perilife_base::units::{MM, MPA, place_mm};
+
+const FILE: &str = "loading.residual_stress_file";
+const FORMULA: &str = "loading.residual_stress";
+/// Columns of a file: place and σ_y, then what may follow.
+const COLUMNS: [&str; 5] = ["x_mm", "y_mm", "stress_mpa", "stress_x_mpa", "shear_xy_mpa"];
+/// Distance from a line over its length within which points lie on it, and beyond its ends within which they are at its end.
+const ROUND_OFF: f64 = 1e-6;
+/// Pieces of the initial cracks whose ends are looked at.
+const LOOKED_AT: usize = 40;
+/// Largest stress, MPa.
+const MOST: f64 = 1e5;
+
+/// σ_x, σ_y, τ_xy, Pa.
+pub type Components = [f64; 3];
+
+/// Traction over the force that a stress has across a facet of some unit normal.
+pub fn across([xx, yy, xy]: Components, [x, y]: Point) -> Point {
+    [xx * x + xy * y, xy * x + yy * y]
+}
+
+/// Residual stress over a plate.
+#[derive(Debug, Clone)]
+pub struct ResidualStress {
+    field: Field,
+    /// Formulas, or the file.
+    words: String,
+    /// Hash of the file.
+    sha256: String,
+    key: &'static str,
+}
+
+impl PartialEq for ResidualStress {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.words, &self.sha256) == (&other.words, &other.sha256)
+    }
+}
+
+#[derive(Debug, Clone)]
+enum Field {
+    /// Of x and y in mm, giving MPa.
+    Formulas([Option<Formula>; 3]),
+    /// Along a straight line: its ends, then ways from the first one, m, ascending.
+    Line([Point; 2], Vec<(f64, Components)>),
+    Plane(Box<DelaunayTriangulation<Sample>>),
+}
+
+/// A point of a file.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    at: Point,
+    stress: Components,
+}
+
+impl HasPosition for Sample {
+    type Scalar = f64;
+    fn position(&self) -> Point2<f64> {
+        Point2::new(self.at[0], self.at[1])
+    }
+}
+
+impl ResidualStress {
+    /// What `[loading]` says of it, if anything.
+    /// Errors: both keys; a formula or file that cannot be read, by character or line.
+    pub(super) fn read(given: &Input, folder: &Folder) -> Result<Option<Arc<ResidualStress>>> {
+        match (&given.residual_stress, &given.residual_stress_file) {
+            (None, None) => Ok(None),
+            (Some(_), Some(file)) => {
+                Err(input(FILE, file, "stands beside residual_stress: one field is given twice", "leave one of them out"))
+            }
+            (Some(formulas), None) => of_formulas(formulas).map(|field| Some(Arc::new(field))),
+            (None, Some(file)) => {
+                let bytes = folder.read(file)?;
+                let read = || of_table(String::from_utf8_lossy(&bytes).trim_start_matches('\u{feff}'));
+                let field = read().map_err(|error| error.in_file(&folder.path(file)))?;
+                let sha256 = perilife_base::input::sha256(&bytes);
+                Ok(Some(Arc::new(ResidualStress { field, words: file.clone(), sha256, key: FILE })))
+            }
+        }
+    }
+
+    /// The key that gave it.
+    pub fn key(&self) -> &'static str {
+        self.key
+    }
+
+    /// Formula or file in words.
+    pub fn words(&self) -> &str {
+        &self.words
+    }
+
+    /// The stress at a place, m; `None` where it is not known.
+    fn known(&self, at: Point) -> Option<Components> {
+        let stress = match &self.field {
+            Field::Formulas(formulas) => {
+                let place = at.map(|x| x / MM);
+                formulas.each_ref().map(|formula| formula.as_ref().map_or(0.0, |formula| MPA * formula.at(place)))
+            }
+            Field::Line([from, to], samples) => {
+                let length = distance(*from, *to);
+                let way = [0, 1].map(|i| (at[i] - from[i]) * (to[i] - from[i]) / length).iter().sum::<f64>();
+                if !(-ROUND_OFF * length..=(1.0 + ROUND_OFF) * length).contains(&way) {
+                    return None;
+                }
+                let next = samples.partition_point(|(sample, _)| *sample < way).clamp(1, samples.len() - 1);
+                let [(a, before), (b, after)] = [samples[next - 1], samples[next]];
+                let share = ((way - a) / (b - a)).clamp(0.0, 1.0);
+                [0, 1, 2].map(|i| before[i] + share * (after[i] - before[i]))
+            }
+            Field::Plane(triangles) => {
+                let mut weights = Vec::with_capacity(3);
+                triangles.barycentric().get_weights(Point2::new(at[0], at[1]), &mut weights);
+                if weights.is_empty() {
+                    return None;
+                }
+                weights.iter().fold([0.0; 3], |sum, (vertex, weight)| {
+                    let of_vertex = triangles.vertex(*vertex).data().stress;
+                    [0, 1, 2].map(|i| sum[i] + weight * of_vertex[i])
+                })
+            }
+        };
+        stress.iter().all(|component| component.is_finite()).then_some(stress)
+    }
+
+    /// The stress at a place, m; none where it is not known, which [`ResidualStress::check`] refuses.
+    pub fn at(&self, at: Point) -> Components {
+        self.known(at).unwrap_or_default()
+    }
+
+    /// Whether the stress is known at a place of a crack, m.
+    /// Errors: it is not, with the place and how far the field goes.
+    pub fn check(&self, at: Point) -> Result<()> {
+        // A tip that has met a rim may lie beside it by a rounding.
+        let is_near = |[x, y]: Point| self.known([at[0] + 1e-9 * x, at[1] + 1e-9 * y]).is_some();
+        if [[0.0; 2], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]].into_iter().any(is_near) {
+            return Ok(());
+        }
+        let (problem, remedy) = match &self.field {
+            Field::Formulas(_) => ("is no number".to_owned(), "give a formula that has a value all along the crack"),
+            Field::Line([from, to], _) => {
+                (format!("ends at {} and {}", place_mm(*from), place_mm(*to)), "give the stress all along the path of the crack")
+            }
+            Field::Plane(triangles) => {
+                let ends = |of: fn(f64, f64) -> f64, from: f64| {
+                    let at = |axis: usize| triangles.vertices().map(|vertex| vertex.data().at[axis]).fold(from, of);
+                    place_mm([at(0), at(1)])
+                };
+                let [low, high] = [ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY)];
+                (format!("ends within {low} to {high}"), "give the stress all along the path of the crack")
+            }
+        };
+        let problem = format!("{problem}, and the crack is at {}", place_mm(at));
+        Err(input(self.key, self.words(), problem, remedy))
+    }
+
+    /// Whether it is known all along cracks.
+    pub fn check_cracks(&self, cracks: &[CrackLine]) -> Result<()> {
+        let places = |[a, b]: [Point; 2]| (0..=LOOKED_AT).map(move |i| along(a, b, i as f64 / LOOKED_AT as f64));
+        cracks.iter().flat_map(CrackLine::pieces).flat_map(places).try_for_each(|at| self.check(at))
+    }
+}
+
+/// σ_y as a text, or a table of `x`, `y`, `xy`.
+fn of_formulas(given: &Value) -> Result<ResidualStress> {
+    const REMEDY: &str = "give \"formula of x, y in mm\" of σ_y in MPa, or { x = \"...\", y = \"...\", xy = \"...\" }";
+    let parse = |key: String, text: &str| {
+        Formula::parse(text)
+            .map_err(|problem| input(&key, shorten(&Value::from(text)), problem, format!("a formula has {KNOWN}")))
+    };
+    let field = match given {
+        Value::String(text) => [None, Some(parse(FORMULA.to_owned(), text)?), None],
+        Value::Table(table) => {
+            let mut formulas = [None, None, None];
+            for (name, value) in table {
+                let key = format!("{FORMULA}.{name}");
+                let place = ["x", "y", "xy"].iter().position(|known| known == name);
+                let (Some(place), Some(text)) = (place, value.as_str()) else {
+                    return Err(input(&key, shorten(value), "is no formula of a component", REMEDY));
+                };
+                formulas[place] = Some(parse(key, text)?);
+            }
+            formulas
+        }
+        other => return Err(input(FORMULA, shorten(other), "is no formula", REMEDY)),
+    };
+    if field.iter().all(Option::is_none) {
+        return Err(input_missing(FORMULA, "gives no component", REMEDY));
+    }
+    Ok(ResidualStress { field: Field::Formulas(field), words: given.to_string(), sha256: String::new(), key: FORMULA })
+}
+
+/// Rows of places and stresses below a title.
+fn of_table(text: &str) -> Result<Field> {
+    const REMEDY: &str = "name the columns x_mm, y_mm, stress_mpa, and stress_x_mpa, shear_xy_mpa where they are known";
+    let mut lines = rows(text);
+    let (line, title) = lines.next().ok_or_else(|| fault(None, "row", "", "holds no row", REMEDY))?;
+    let names: Vec<String> = cells(title).map(str::to_lowercase).collect();
+    if let Some(strange) = names.iter().find(|name| !COLUMNS.contains(&name.as_str())) {
+        return Err(fault(Some(line), "column", strange, "is no column of a residual stress", REMEDY));
+    }
+    let places = COLUMNS.map(|column| names.iter().position(|name| name == column));
+    if let Some(missing) = (0..3).find(|column| places[*column].is_none()) {
+        return Err(fault(Some(line), COLUMNS[missing], title, "is missing: the title does not name it", REMEDY));
+    }
+    let mut samples = Vec::new();
+    for (line, text) in lines {
+        let given: Vec<&str> = cells(text).collect();
+        if given.len() != names.len() {
+            return Err(fault(
+                Some(line),
+                "row",
+                text,
+                &format!("has {} values for {} columns", given.len(), names.len()),
+                REMEDY,
+            ));
+        }
+        let value = |column: usize| places[column].map_or(Ok(0.0), |place| number(line, COLUMNS[column], given[place]));
+        let [x, y, yy, xx, xy] = [value(0)?, value(1)?, value(2)?, value(3)?, value(4)?];
+        if let Some(large) = [yy, xx, xy].iter().find(|stress| stress.abs() > MOST) {
+            return Err(fault(Some(line), "stress", &large.to_string(), "is beyond any stress in MPa", "give it in MPa"));
+        }
+        samples.push((line, Sample { at: [x * MM, y * MM], stress: [xx, yy, xy].map(|stress| stress * MPA) }));
+    }
+    let (first, last) = match samples.as_slice() {
+        [(_, first), .., (_, last)] => (*first, *last),
+        _ => return Err(fault(None, "row", "", "has less than two points", "give the stress all along the path of the crack")),
+    };
+    let farthest = |from: Point| {
+        let away = |sample: &&(usize, Sample)| distance(from, sample.1.at);
+        samples.iter().max_by(|a, b| away(a).total_cmp(&away(b))).map_or(last.at, |(_, sample)| sample.at)
+    };
+    let from = farthest(first.at);
+    let to = farthest(from);
+    let length = distance(from, to);
+    if length <= 0.0 {
+        return Err(fault(Some(samples[1].0), "x_mm", "", "is the place of the point before", "give each place once"));
+    }
+    let beside = |at: Point| ((to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])).abs() / length;
+    let same = |line: usize| fault(Some(line), "x_mm", "", "is the place of another row", "give each place once");
+    if samples.iter().all(|(_, sample)| beside(sample.at) < ROUND_OFF * length) {
+        let mut ways: Vec<(usize, f64, Components)> =
+            samples.iter().map(|(line, sample)| (*line, distance(from, sample.at), sample.stress)).collect();
+        ways.sort_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some(pair) = ways.windows(2).find(|pair| pair[1].1 - pair[0].1 < ROUND_OFF * ROUND_OFF * length) {
+            return Err(same(pair[1].0.max(pair[0].0)));
+        }
+        return Ok(Field::Line([from, to], ways.into_iter().map(|(_, way, stress)| (way, stress)).collect()));
+    }
+    let mut triangles = DelaunayTriangulation::new();
+    for (line, sample) in samples {
+        let before = triangles.num_vertices();
+        triangles
+            .insert(sample)
+            .map_err(|error| fault(Some(line), "x_mm", "", &format!("is no place: {error}"), "give it in mm"))?;
+        if triangles.num_vertices() == before {
+            return Err(same(line));
+        }
+    }
+    Ok(Field::Plane(Box::new(triangles)))
+}

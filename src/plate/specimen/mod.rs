@@ -1,0 +1,469 @@
+//! What is tested: a flat plate with an outline, holes, slots, cracks, loads and supports.
+//!
+//! Lengths in metres, the load direction of the standard specimens is y. A [`Specimen`] is fixed once built:
+//! nothing in a run changes it. Cracks go through the thickness but for those of [`part_through`].
+
+pub mod beta;
+mod crack_line;
+pub mod drawing;
+pub mod facets;
+pub mod geometry;
+pub mod green;
+pub mod handbook;
+pub mod limit_load;
+pub mod named;
+pub mod net_section;
+pub mod part_through;
+pub mod pin;
+mod placement;
+mod plate;
+mod read;
+mod standard;
+
+pub use beta::BetaTable;
+pub use crack_line::{CrackLine, LineEnd};
+pub use geometry::{Component, Edge};
+pub use part_through::{FrontTip, PartThrough};
+pub use pin::Bearing;
+pub use read::{PART_THROUGH, from_value};
+
+/// A point of the plate, metres.
+pub type Point = [f64; 2];
+
+perilife_base::kinds! {
+    /// Shapes a case can name.
+    pub enum SpecimenKind for "specimen.kind" {
+        MiddleTension = "middle_tension": "plate with a central crack, M(T) of ASTM E647; crack length = half length a",
+        SingleEdgeTension = "single_edge_tension": "plate with one edge crack; needs ends = pinned, clamped or uniform_stress",
+        DoubleEdgeTension = "double_edge_tension": "plate with two equal edge cracks; crack length = length of each",
+        CompactTension = "compact_tension": "C(T) of ASTM E647, loaded by pins; crack length from the load line",
+        Plate = "plate": "any outline with round holes, slots and straight through cracks at any angle",
+        SurfaceCrack = "surface_crack": "half of an ellipse on the face of a plate; crack length = half length c, by hand calculation until it is through",
+        CornerCrack = "corner_crack": "quarter of an ellipse on an edge of a plate; crack length = c from the edge, by hand calculation until it is through",
+        EmbeddedCrack = "embedded_crack": "ellipse in the middle of a plate; crack length = half length c, by hand calculation until it is through",
+        CornerCrackAtHole = "corner_crack_at_hole": "quarter of an ellipse at a round hole, on one side or both; crack length = c from the hole, by hand calculation until it is through",
+        CrackAtHole = "crack_at_hole": "plate with a round hole and a through crack on one side of it or both; crack length from the rim",
+        RowOfHoles = "row_of_holes": "plate with a row of equal holes across the load, cracked at their sides, such as a joint whose cracks link up; crack lengths from the rims",
+        Lug = "lug": "lug loaded by a pin, cracked at the sides of its hole, with a straight or round head; crack length from the rim",
+        EdgeNotch = "edge_notch": "plate with a U-shaped notch in one edge and a crack in its root; crack length from the root",
+        StopHole = "stop_hole": "plate with a central crack that was stopped by a drilled hole at each end; needs [fatigue.initiation]; crack length = half length from the centre to the tips beyond the holes",
+        SingleEdgeBend = "single_edge_bend": "SE(B) of ASTM E399 and E1820 on three rollers, or four where inner_span_mm is given; crack length from the edge",
+        EccentricSingleEdgeTension = "eccentric_single_edge_tension": "ESE(T) of ASTM E647 annex A3, loaded by pins; crack length from the edge",
+        WedgeOpening = "wedge_opening": "modified WOL of Novak and Rolfe, half height 0.486 W, loaded by pins; crack length from the load line",
+        Cruciform = "cruciform": "cross with rounded inner corners and a central crack, pulled at two arms or four; crack length = half length",
+    }
+}
+
+perilife_base::kinds! {
+    /// Heads of a lug.
+    pub enum Head for "specimen.head" {
+        Straight = "straight": "square end, edge_distance_mm from the centre of the hole",
+        Round = "round": "half circle about the centre of the hole",
+    }
+}
+
+perilife_base::kinds! {
+    /// How the ends of a single edge tension specimen are held.
+    pub enum Ends for "specimen.ends" {
+        Pinned = "pinned": "rigid grips free to rotate about a pin on the centre line",
+        Clamped = "clamped": "rigid grips that cannot rotate",
+        UniformStress = "uniform_stress": "uniform stress over both ends, the condition of the handbook formula",
+    }
+}
+
+/// A circle cut out of the plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hole {
+    /// Centre, m.
+    pub centre: Point,
+    /// Radius, m.
+    pub radius: f64,
+}
+
+/// A straight slot of constant width with square ends, cut out of the plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slot {
+    /// Middle of one end, m.
+    pub from: Point,
+    /// Middle of the other end, m.
+    pub to: Point,
+    /// Width across, m.
+    pub width: f64,
+}
+
+/// A straight through crack, or a straight piece of one with bends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crack {
+    /// One end, m.
+    pub from: Point,
+    /// Other end, m.
+    pub to: Point,
+    /// Whether it goes on from the end of the crack before it in the list, as the next piece of the same line.
+    pub continues: bool,
+}
+
+impl Crack {
+    /// A straight crack.
+    pub fn straight(from: Point, to: Point) -> Self {
+        Crack { from, to, continues: false }
+    }
+}
+
+/// Where growth can start: a crack end inside the plate, or the middle of a slot's end face that lies in the material
+/// (unless a crack starts from that face).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TipSeed {
+    /// Position, m.
+    pub position: Point,
+    /// Unit vector in which the crack or slot points, out of itself into the material.
+    pub direction: Point,
+    /// Whether this is the end face of a slot rather than the end of a sharp crack.
+    pub from_slot: bool,
+}
+
+/// A load on part of the boundary, per unit of the case's load magnitude.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Load {
+    /// Uniform traction on a straight stretch of the outline.
+    /// `traction` is in Pa per Pa of the case's nominal stress (so 1.0 normal to the edge for plain tension).
+    Edge {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Traction on the plate, Pa per Pa.
+        traction: Point,
+    },
+    /// Traction on a straight stretch of the outline that varies linearly from one end to the other: bending in the plane.
+    Bent {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Traction on the plate at both ends, Pa per Pa.
+        tractions: [Point; 2],
+    },
+    /// A pin, which bears on the rim of its hole. `force` is in N per unit of the case's nominal load (N per N, or N per Pa beside loaded edges), along
+    /// the unit vector `direction`.
+    Pin {
+        /// Index into `Specimen::holes`.
+        hole: usize,
+        /// Unit vector of the force on the plate.
+        direction: Point,
+        /// Force on the plate, N per N or N per Pa.
+        force: f64,
+        /// Where it touches the hole.
+        contact: Bearing,
+    },
+}
+
+/// Abscissas of the Gauss rule of two points on 0 to 1: force and moment of a traction that varies linearly are those of half of it there.
+const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
+impl Load {
+    /// Whether it is a pin whose contact follows from the load.
+    pub fn is_elastic_pin(&self) -> bool {
+        matches!(self, Load::Pin { contact: Bearing::Elastic(_), .. })
+    }
+
+    /// Whether it is a pin with friction, which takes a part of the energy that cracks release.
+    pub fn has_friction(&self) -> bool {
+        matches!(self, Load::Pin { contact: Bearing::Elastic(pin), .. } if pin.friction > 0.0)
+    }
+
+    /// The stretch of the outline that it loads, with the tractions at both ends; `None` of a pin.
+    pub fn on_edge(&self) -> Option<(Point, Point, [Point; 2])> {
+        match *self {
+            Load::Edge { from, to, traction } => Some((from, to, [traction; 2])),
+            Load::Bent { from, to, tractions } => Some((from, to, tractions)),
+            Load::Pin { .. } => None,
+        }
+    }
+
+    /// Two places with forces, N per m of thickness, that have force and moment of what acts on an edge from one share of its way to
+    /// another; none of a pin.
+    pub fn forces_between(&self, [start, end]: [f64; 2]) -> Vec<(Point, Point)> {
+        let Some((from, to, tractions)) = self.on_edge() else { return Vec::new() };
+        let half = 0.5 * (end - start) * geometry::distance(from, to);
+        let at = |share: f64| {
+            let share = start + share * (end - start);
+            (geometry::along(from, to, share), geometry::along(tractions[0], tractions[1], share).map(|t| half * t))
+        };
+        GAUSS.map(at).to_vec()
+    }
+}
+
+/// What is held.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Support {
+    /// Points within `depth` of the straight outline stretch `from`-`to` (at least one row) keep the named components at zero.
+    Fixed {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// How deep into the plate the hold reaches, m.
+        depth: f64,
+        /// Whether the x component is held.
+        x: bool,
+        /// Whether the y component is held.
+        y: bool,
+    },
+    /// Both ends move as rigid blocks that do not rotate (clamped grips); the relative displacement along y is what the load asks.
+    ClampedEnds,
+    /// The straight stretch `from`-`to` is moved as it is: every place of it by `way` of the displacement of the load along the unit
+    /// vector `direction`, so that it neither bends nor turns.
+    Moved {
+        /// One end of the stretch, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Unit vector of the displacement.
+        direction: Point,
+        /// Displacement of the stretch over that of the load.
+        way: f64,
+        /// Whether the component across the displacement is held at zero; else the stretch slides in its grip.
+        held: bool,
+    },
+    /// Both ends move as rigid blocks that may rotate (pinned grips): end rows are made stiff, load is uniform over them.
+    RigidEnds,
+    /// What the body does not know of takes up the loads, so that they need not balance: supports and driven points of a fracture
+    /// scene, or inertia.
+    Elsewhere,
+}
+
+/// How crack length is read, see [`Specimen::crack_length`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LengthConvention {
+    /// Initial length plus the mean growth of all tips (half length of a central crack, each of two edge cracks, C(T)).
+    MeanOfTips,
+    /// Initial length of all cracks plus the growth of all tips.
+    SumOfTips,
+}
+
+/// What the nominal load of a case means for this specimen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LoadMeasure {
+    /// `stress_*_mpa`: gross stress; the force is stress x gross width x thickness.
+    Stress,
+    /// `force_*_n`: force on the pins.
+    Force,
+}
+
+/// A plate as it is tested: geometry, loads, supports, where cracks start. All lengths in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Specimen {
+    /// Which shape it is.
+    pub kind: SpecimenKind,
+    /// Outline, counter-clockwise, not closed (last point differs from first).
+    pub outline: Vec<Point>,
+    /// Round holes.
+    pub holes: Vec<Hole>,
+    /// Slots.
+    pub slots: Vec<Slot>,
+    /// Through cracks at the start.
+    pub cracks: Vec<Crack>,
+    /// Crack ends that can grow, in the order of result columns.
+    pub tips: Vec<TipSeed>,
+    /// Thickness, m.
+    pub thickness: f64,
+    /// Characteristic width of the specimen's standard: W, m (C(T): from the load line).
+    pub width: f64,
+    /// Width that the lattice spacing has to divide, m (C(T): 1.25 W).
+    pub gross_width: f64,
+    /// A line y = const through a horizontal crack that must fall between two rows of points; None = free.
+    pub crack_plane_y: Option<f64>,
+    /// A line x = const through a vertical crack that must fall between two columns of points; None = free.
+    pub crack_plane_x: Option<f64>,
+    /// Crack length at the start in the specimen's convention, m.
+    pub crack_length: f64,
+    /// How growth of tips adds up to crack length.
+    pub convention: LengthConvention,
+    /// Loads per unit of nominal load.
+    pub loads: Vec<Load>,
+    /// Pressure on the faces of all cracks, also where they grow, per unit of nominal load: Pa per Pa, or Pa per N.
+    pub crack_pressure: f64,
+    /// Whether the nominal load is a stress or a force.
+    pub load_measure: LoadMeasure,
+    /// Supports; empty means the loads are in equilibrium by themselves and the plate floats.
+    pub supports: Vec<Support>,
+    /// Handbook K of a named plate under the loads that it brings along ([`named`]); `None` under others.
+    pub own_formula: Option<handbook::HandbookFormula>,
+    /// What of its crack does not go through the thickness; `cracks` and `tips` are then those that are seen from the front.
+    pub part_through: Option<PartThrough>,
+    /// β(a) of a table of the case, in place of a handbook's K.
+    pub beta: Option<BetaTable>,
+}
+
+impl Specimen {
+    /// A plate of a standard kind under uniform stress over its ends y = ±length/2, before cracks are put in.
+    pub fn strip(kind: SpecimenKind, width: f64, length: f64, thickness: f64) -> Self {
+        let (x, y) = (width / 2.0, length / 2.0);
+        Specimen {
+            kind,
+            outline: vec![[-x, -y], [x, -y], [x, y], [-x, y]],
+            holes: Vec::new(),
+            slots: Vec::new(),
+            cracks: Vec::new(),
+            tips: Vec::new(),
+            thickness,
+            width,
+            gross_width: width,
+            crack_plane_y: Some(0.0),
+            crack_plane_x: None,
+            crack_length: 0.0,
+            convention: LengthConvention::MeanOfTips,
+            loads: vec![
+                Load::Edge { from: [-x, y], to: [x, y], traction: [0.0, 1.0] },
+                Load::Edge { from: [-x, -y], to: [x, -y], traction: [0.0, -1.0] },
+            ],
+            load_measure: LoadMeasure::Stress,
+            crack_pressure: 0.0,
+            supports: Vec::new(),
+            own_formula: None,
+            part_through: None,
+            beta: None,
+        }
+    }
+
+    /// Whether its ends are clamped or sides of it moved straight, so that they do not turn.
+    pub fn has_straight_grips(&self) -> bool {
+        self.supports.iter().any(|support| matches!(support, Support::ClampedEnds | Support::Moved { .. }))
+    }
+
+    /// Section over which the nominal stress makes the force `P` of the sides that are moved straight, m²: `P δ = Σ F_i u_i` with
+    /// `u_i = way_i δ`.
+    pub fn moved_section(&self) -> Option<f64> {
+        let area = |support: &Support| match *support {
+            Support::Moved { from, to, way, .. } => Some(way * geometry::distance(from, to) * self.thickness),
+            _ => None,
+        };
+        self.supports.iter().filter_map(area).reduce(|sum, area| sum + area)
+    }
+
+    /// Size of the plate along y, m.
+    pub fn length(&self) -> f64 {
+        let [low, high] = geometry::bounding_box(&self.outline);
+        high[1] - low[1]
+    }
+
+    /// Sizes of the flaws that spacing and horizon have to resolve, m: half length of a crack with two tips, whole length of one with
+    /// one tip, length of a slot; C(T) from the load line.
+    pub fn flaw_sizes(&self) -> Vec<f64> {
+        if !self.kind.is_plate() {
+            return vec![self.crack_length];
+        }
+        let cracks = self.crack_lines().into_iter().map(|line| line.length() / self.tips_of(&line).max(1) as f64);
+        let slots = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to));
+        cracks.chain(slots).collect()
+    }
+
+    /// Number of tips of a crack.
+    pub fn tips_of(&self, line: &CrackLine) -> usize {
+        let ends = |tip: &&TipSeed| !tip.from_slot && [true, false].iter().any(|&at_last| line.end(at_last) == tip.position);
+        self.tips.iter().filter(ends).count()
+    }
+
+    /// The smallest of the [`Specimen::flaw_sizes`], m.
+    pub fn smallest_flaw(&self) -> f64 {
+        self.flaw_sizes().into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Distance of a place from the nearest rim, m: outline, holes, slots.
+    pub fn rim_distance(&self, at: Point) -> f64 {
+        let holes = self.holes.iter().map(|hole| (geometry::distance(at, hole.centre) - hole.radius).abs());
+        let slots = self.slots.iter().map(|slot| geometry::distance_to_polygon(at, &slot.corners()));
+        holes.chain(slots).fold(geometry::distance_to_polygon(at, &self.outline), f64::min)
+    }
+
+    /// Least distance of the tip of a crack from a rim or from a crack that it does not end, m; infinite without such a tip.
+    pub fn least_gap(&self) -> f64 {
+        let lines = self.crack_lines();
+        let gap = |tip: usize| {
+            let end = self.line_end(tip)?;
+            let at = self.tips[tip].position;
+            let others = lines.iter().enumerate().filter(|(line, _)| *line != end.line).map(|(_, line)| line.distance(at));
+            Some(others.fold(self.rim_distance(at), f64::min))
+        };
+        (0..self.tips.len()).filter_map(gap).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Least way from the tip of a crack over which that is straight, m ([`CrackLine::straight_way`]).
+    pub fn least_straight_way(&self) -> f64 {
+        let lines = self.crack_lines();
+        let ends = (0..self.tips.len()).filter_map(|tip| self.line_end(tip));
+        ends.map(|end| lines[end.line].straight_way(end.at_last, f64::INFINITY)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Area of the material, m²: outline less holes and slots.
+    pub fn area(&self) -> f64 {
+        let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();
+        let slots: f64 = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to) * slot.width).sum();
+        geometry::polygon_area(&self.outline) - holes - slots
+    }
+
+    /// Crack length in the convention of the specimen for given growths of its tips, m.
+    pub fn crack_length_after(&self, growth_of_tips: &[f64]) -> f64 {
+        let sum: f64 = growth_of_tips.iter().sum();
+        match self.convention {
+            LengthConvention::MeanOfTips => self.crack_length + sum / growth_of_tips.len().max(1) as f64,
+            LengthConvention::SumOfTips => self.crack_length + sum,
+        }
+    }
+
+    /// Key that its cracks were given by.
+    pub fn crack_key(&self) -> &'static str {
+        self.kind.crack_key(self.convention)
+    }
+
+    /// The cracks as lines, in their order.
+    pub fn crack_lines(&self) -> Vec<CrackLine> {
+        let mut lines: Vec<CrackLine> = Vec::with_capacity(self.cracks.len());
+        for crack in &self.cracks {
+            match lines.last_mut().filter(|_| crack.continues) {
+                Some(line) => line.grow(true, crack.to),
+                None => lines.push(CrackLine::straight(crack.from, crack.to)),
+            }
+        }
+        lines
+    }
+
+    /// Takes these lines for its cracks.
+    pub fn set_crack_lines(&mut self, lines: &[CrackLine]) {
+        let pieces = |line: &CrackLine| {
+            line.pieces().enumerate().map(|(piece, [from, to])| Crack { from, to, continues: piece > 0 }).collect::<Vec<_>>()
+        };
+        self.cracks = lines.iter().flat_map(pieces).collect();
+    }
+
+    /// Which end of which of the [`Specimen::crack_lines`] a tip is; `None` for the end face of a slot.
+    pub fn line_end(&self, tip: usize) -> Option<LineEnd> {
+        let seed = self.tips.get(tip).filter(|seed| !seed.from_slot)?;
+        let mut lines = self.crack_lines().into_iter().enumerate();
+        lines.find_map(|(line, crack)| {
+            [true, false]
+                .into_iter()
+                .find(|&at_last| crack.end(at_last) == seed.position)
+                .map(|at_last| LineEnd { line, at_last })
+        })
+    }
+
+    /// Whether it has tips, and all of them are those of sharp cracks.
+    pub fn has_sharp_tips(&self) -> bool {
+        !self.tips.is_empty() && (0..self.tips.len()).all(|tip| self.line_end(tip).is_some())
+    }
+
+    /// Moves every tip, and the end of its crack with it, by its growth, m; negative growth makes a crack shorter. The
+    /// crack length stays the one that was read.
+    pub fn move_tips(&mut self, growth_of_tips: &[f64]) {
+        for (tip, &growth) in self.tips.iter_mut().zip(growth_of_tips).filter(|(_, growth)| **growth != 0.0) {
+            let moved = [0, 1].map(|i| tip.position[i] + growth * tip.direction[i]);
+            for end in self.cracks.iter_mut().flat_map(|crack| [&mut crack.from, &mut crack.to]) {
+                if *end == tip.position {
+                    *end = moved;
+                }
+            }
+            tip.position = moved;
+        }
+    }
+}

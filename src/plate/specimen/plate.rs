@@ -1,0 +1,327 @@
+//! A plate of any outline with round holes, slots and through cracks.
+//!
+//! ```toml
+//! [specimen]
+//! kind = "plate"
+//! width_mm = 100.0              # with length_mm: a rectangle centred on 0; or outline_mm = [[x, y], ...]; or diameter_mm: a disc about 0;
+//!                               # or outline_file = "part.dxf" (.svg), with its holes and cracks before those of the keys
+//! length_mm = 300.0
+//! thickness_mm = 2.0
+//! holes = [{ x_mm = 20.0, y_mm = 0.0, diameter_mm = 8.0 }]
+//! cracks = [{ from_mm = [-5.0, 0.0], to_mm = [5.0, 0.0] }]   # or { path_mm = [[x, y], [x, y], ...] }: a crack with bends
+//! notches = [{ from_mm = [-50.0, 20.0], to_mm = [-40.0, 20.0], width_mm = 2.0 }]
+//! ```
+//! Cracks that share a point or cross are joined; an end that lies on another crack is no tip. A crack may start on an edge, in a hole or in a slot: what lies outside the material is cut off and only the inner end
+//! is a tip; an end nearer to one of them than a hundredth of the crack starts there, too. The tip seed of a slot is the middle of each end face that lies in the material. Crack length is the sum of
+//! all cracks and slots inside the plate plus all growth. The load is chosen in `[loading]`.
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use toml::Value;
+
+use super::drawing::{self, DrawingUnit, Shape, SymmetryPlane};
+use super::geometry::{bounding_box, distance, polygon_area, segments_touch, self_intersection, turn};
+use super::placement::{check_holes, place_cracks, place_slots};
+use super::{Crack, Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::{Folder, LENGTH, point, refuse_given, slice};
+use perilife_base::units::place_mm;
+
+/// More than this is a slip, and the checks compare every item with every other.
+const ITEMS_MAX: usize = 500;
+/// Corners of a drawing, whose arcs have many.
+const CORNERS_MAX: usize = 4000;
+
+/// Keys of `[specimen]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    #[serde(rename = "kind")]
+    _kind: SpecimenKind,
+    outline_mm: Option<Vec<Value>>,
+    outline_file: Option<String>,
+    outline_unit: Option<DrawingUnit>,
+    outline_symmetry: Option<SymmetryPlane>,
+    width_mm: Option<f64>,
+    length_mm: Option<f64>,
+    diameter_mm: Option<f64>,
+    thickness_mm: f64,
+    #[serde(rename = "beta_file")]
+    _beta_file: Option<String>,
+    #[serde(default)]
+    holes: Vec<Value>,
+    #[serde(default)]
+    cracks: Vec<Value>,
+    #[serde(default)]
+    notches: Vec<Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HoleInput {
+    x_mm: f64,
+    y_mm: f64,
+    diameter_mm: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CrackInput {
+    from_mm: Option<[f64; 2]>,
+    to_mm: Option<[f64; 2]>,
+    path_mm: Option<Vec<[f64; 2]>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct NotchInput {
+    from_mm: [f64; 2],
+    to_mm: [f64; 2],
+    width_mm: f64,
+}
+
+/// What a plate is drawn from, m.
+#[derive(Debug, Default)]
+pub(super) struct Drawing {
+    /// Outline, counter-clockwise and simple.
+    pub outline: Vec<Point>,
+    pub holes: Vec<Hole>,
+    pub slots: Vec<Slot>,
+    /// All corners of every crack.
+    pub cracks: Vec<Vec<Point>>,
+    pub thickness: f64,
+}
+
+pub(super) fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Result<Specimen> {
+    let input: Input = slice(value, "specimen")?;
+    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
+    let drawn = drawn(&input, folder)?;
+    let outline = match &drawn {
+        Some(shape) => simple(shape.outline.clone(), drawing::KEY)?,
+        None => outline(&input)?,
+    };
+    let (mut holes, mut cracks) = drawn.map(|shape| (shape.holes, shape.cracks)).unwrap_or_default();
+    holes.extend(read_holes(&input.holes)?);
+    let slots = items("specimen.notches", &input.notches, |item: NotchInput, path| {
+        let (from, to) = ends(path, item.from_mm, item.to_mm)?;
+        Ok(Slot { from, to, width: LENGTH.read(&format!("{path}.width_mm"), item.width_mm)? })
+    })?;
+    cracks.extend(items("specimen.cracks", &input.cracks, |item: CrackInput, path| crack_path(path, item))?);
+    Drawing { outline, holes, slots, cracks, thickness }.specimen(SpecimenKind::Plate, notes)
+}
+
+impl Drawing {
+    /// The plate, not yet loaded. What was done to ends of cracks goes into `notes`.
+    /// Errors: holes, slots or cracks that do not fit into it or beside each other.
+    pub(super) fn specimen(self, kind: SpecimenKind, notes: &mut Vec<String>) -> Result<Specimen> {
+        let [low, high] = bounding_box(&self.outline);
+        let (width, length) = (high[0] - low[0], high[1] - low[1]);
+        let mut specimen = Specimen {
+            outline: self.outline,
+            holes: self.holes,
+            loads: vec![],
+            crack_plane_y: None,
+            convention: LengthConvention::SumOfTips,
+            ..Specimen::strip(kind, width, length, self.thickness)
+        };
+        check_holes(&specimen)?;
+        let slot_tips = place_slots(&mut specimen, self.slots)?;
+        place_cracks(&mut specimen, self.cracks, slot_tips, notes)?;
+        [specimen.crack_plane_x, specimen.crack_plane_y] = [0, 1].map(|axis| common_line(&specimen.cracks, axis));
+        Ok(specimen)
+    }
+}
+
+/// The rectangle centred on 0, m.
+pub(super) fn rectangle(width: f64, length: f64) -> Vec<Point> {
+    let (x, y) = (width / 2.0, length / 2.0);
+    vec![[-x, -y], [x, -y], [x, y], [-x, y]]
+}
+
+/// `holes = [{ x_mm, y_mm, diameter_mm }]`.
+pub(super) fn read_holes(list: &[Value]) -> Result<Vec<Hole>> {
+    items("specimen.holes", list, |item: HoleInput, path| {
+        let centre = point(path, [item.x_mm, item.y_mm])?;
+        Ok(Hole { centre, radius: LENGTH.read(&format!("{path}.diameter_mm"), item.diameter_mm)? / 2.0 })
+    })
+}
+
+/// x (axis 0) or y of the cracks if all lie on one line along the other axis: it must fall between two columns or rows of points.
+fn common_line(cracks: &[Crack], axis: usize) -> Option<f64> {
+    let first = cracks.first()?.from[axis];
+    cracks.iter().all(|crack| crack.from[axis] == first && crack.to[axis] == first).then_some(first)
+}
+
+/// What the drawing of a plate says, where it has one.
+fn drawn(input: &Input, folder: &Folder) -> Result<Option<Shape>> {
+    let Some(file) = &input.outline_file else {
+        let keys = [("outline_unit", input.outline_unit.is_some()), ("outline_symmetry", input.outline_symmetry.is_some())];
+        refuse_given(
+            "specimen",
+            &keys,
+            "belongs to a drawing, and outline_file is missing",
+            "give outline_file, or leave it out",
+        )?;
+        return Ok(None);
+    };
+    let keys = [
+        ("outline_mm", input.outline_mm.is_some()),
+        ("width_mm", input.width_mm.is_some()),
+        ("length_mm", input.length_mm.is_some()),
+        ("diameter_mm", input.diameter_mm.is_some()),
+    ];
+    refuse_given("specimen", &keys, "stands beside outline_file", "leave one of both out")?;
+    drawing::read(file, folder, input.outline_unit, input.outline_symmetry).map(Some)
+}
+
+/// Outline, counter-clockwise and simple.
+fn outline(input: &Input) -> Result<Vec<Point>> {
+    if let Some(diameter) = input.diameter_mm {
+        if input.outline_mm.is_some() || input.width_mm.is_some() || input.length_mm.is_some() {
+            let problem = "stands beside outline_mm, width_mm or length_mm";
+            let remedy = "give one of outline, rectangle and diameter";
+            return Err(perilife_base::error::input("specimen.diameter_mm", diameter, problem, remedy));
+        }
+        return Ok(disc(LENGTH.read("specimen.diameter_mm", diameter)? / 2.0));
+    }
+    let Some(corners) = &input.outline_mm else {
+        let need = |key: &str, value: Option<f64>| {
+            let value = value.ok_or_else(|| {
+                input_missing(key, "is missing", "give width_mm and length_mm, or outline_mm, or diameter_mm, or outline_file")
+            })?;
+            LENGTH.read(key, value)
+        };
+        let width = need("specimen.width_mm", input.width_mm)?;
+        return Ok(rectangle(width, need("specimen.length_mm", input.length_mm)?));
+    };
+    if input.width_mm.is_some() || input.length_mm.is_some() {
+        let remedy = "give either the outline or the rectangle";
+        return Err(input_missing("specimen.outline_mm", "stands beside width_mm or length_mm", remedy));
+    }
+    polygon(corners)
+}
+
+/// Sides of the polygon that stands for a circle: its area is 5e-5 too small.
+const DISC_SIDES: usize = 360;
+
+/// A disc about the origin as a polygon with its corners on the circle, counter-clockwise, with a flat side at top, bottom, left
+/// and right. Built from one eighth, so that it is its own mirror image to the last bit.
+fn disc(radius: f64) -> Vec<Point> {
+    let quarter = DISC_SIDES / 4;
+    let corner = |k: usize| {
+        let (first, swapped) = if 2 * k < quarter { (k, false) } else { (quarter - 1 - k, true) };
+        let (sin, cos) = (std::f64::consts::TAU * (first as f64 + 0.5) / DISC_SIDES as f64).sin_cos();
+        if swapped { [radius * sin, radius * cos] } else { [radius * cos, radius * sin] }
+    };
+    let turned = |[x, y]: Point, quarters: usize| match quarters {
+        0 => [x, y],
+        1 => [-y, x],
+        2 => [-x, -y],
+        _ => [y, -x],
+    };
+    (0..4).flat_map(|quarters| (0..quarter).map(move |k| turned(corner(k), quarters))).collect()
+}
+
+fn polygon(corners: &[Value]) -> Result<Vec<Point>> {
+    const KEY: &str = "specimen.outline_mm";
+    let mut outline = Vec::with_capacity(corners.len());
+    for (i, corner) in corners.iter().enumerate().take(ITEMS_MAX + 1) {
+        let key = format!("{KEY}[{i}]");
+        let pair: [f64; 2] = corner.clone().try_into().map_err(|_| input(&key, corner, "is not a point", "give [x, y]"))?;
+        outline.push(point(&key, pair)?);
+    }
+    if outline.len() > 1 && outline.first() == outline.last() {
+        outline.pop();
+    }
+    if outline.len() > ITEMS_MAX {
+        let remedy = format!("give 3 to {ITEMS_MAX} corners in order");
+        return Err(input(KEY, format!("{} points", corners.len()), "is no outline", remedy));
+    }
+    simple(outline, KEY)
+}
+
+/// The outline of a key counter-clockwise, if it is one.
+/// Errors: corners that enclose no area, or whose sides meet.
+fn simple(mut outline: Vec<Point>, key: &str) -> Result<Vec<Point>> {
+    let count = format!("{} points", outline.len());
+    if outline.len() < 3 || outline.len() > CORNERS_MAX {
+        return Err(input(key, count, "is no outline", format!("give 3 to {CORNERS_MAX} corners in order")));
+    }
+    if let Some(i) = (0..outline.len()).find(|&i| distance(outline[i], outline[(i + 1) % outline.len()]) < 1e-9) {
+        return Err(input(key, format!("corner {i}"), "stands twice in a row", "leave one of them out"));
+    }
+    if let Some((i, j)) = self_intersection(&outline) {
+        let [from, to] = [i, j].map(|corner| place_mm(outline[corner]));
+        let problem =
+            format!("crosses or touches itself: the edge after corner {i}, {from}, meets the edge after corner {j}, {to}");
+        return Err(input(key, count, problem, "give the corners in order around the plate"));
+    }
+    let area = polygon_area(&outline);
+    let [low, high] = bounding_box(&outline);
+    if area.abs() < 1e-6 * (high[0] - low[0]).max(high[1] - low[1]).powi(2) {
+        let remedy = "give the corners in order around the plate";
+        return Err(input(key, count, "encloses no area", remedy));
+    }
+    if area < 0.0 {
+        outline.reverse();
+    }
+    Ok(outline)
+}
+
+/// Reads a list of tables, each at its own path, so that messages name `specimen.holes[2].x_mm`.
+fn items<I: DeserializeOwned, T>(key: &str, list: &[Value], read: impl Fn(I, &str) -> Result<T>) -> Result<Vec<T>> {
+    if list.len() > ITEMS_MAX {
+        return Err(input(key, format!("{} entries", list.len()), "is too long", format!("give at most {ITEMS_MAX}")));
+    }
+    let one = |(i, item): (usize, &Value)| {
+        let path = format!("{key}[{i}]");
+        read(slice(item, &path)?, &path)
+    };
+    list.iter().enumerate().map(one).collect()
+}
+
+/// Corners of a crack, both ends included.
+fn crack_path(path: &str, item: CrackInput) -> Result<Vec<Point>> {
+    const REMEDY: &str = "give from_mm and to_mm, or path_mm = [[x, y], [x, y], ...]";
+    let corners = match (item.from_mm, item.to_mm, item.path_mm) {
+        (Some(from), Some(to), None) => {
+            let (from, to) = ends(path, from, to)?;
+            return Ok(vec![from, to]);
+        }
+        (None, None, Some(corners)) => corners,
+        (None, None, None) => return Err(input_missing(path, "has no ends", REMEDY)),
+        (from, _, None) => {
+            let key = format!("{path}.{}", if from.is_none() { "from_mm" } else { "to_mm" });
+            return Err(input_missing(&key, "is missing", REMEDY));
+        }
+        (_, _, Some(_)) => return Err(input_missing(&format!("{path}.path_mm"), "stands beside from_mm or to_mm", REMEDY)),
+    };
+    let key = format!("{path}.path_mm");
+    if corners.len() < 2 || corners.len() > ITEMS_MAX {
+        return Err(input(&key, format!("{} points", corners.len()), "is no path", format!("give 2 to {ITEMS_MAX} points")));
+    }
+    let line: Vec<Point> =
+        corners.iter().enumerate().map(|(i, &corner)| point(&format!("{key}[{i}]"), corner)).collect::<Result<_>>()?;
+    if let Some(i) = (1..line.len()).find(|&i| distance(line[i - 1], line[i]) < 1e-6) {
+        return Err(input_missing(&format!("{key}[{i}]"), "coincides with the point before it", "leave one of them out"));
+    }
+    let pieces: Vec<[Point; 2]> = line.windows(2).map(|piece| [piece[0], piece[1]]).collect();
+    for (j, [c, d]) in pieces.iter().enumerate() {
+        let folds =
+            j > 0 && turn(pieces[j - 1][0], *c, *d) == 0.0 && distance(pieces[j - 1][0], *d) < distance(pieces[j - 1][0], *c);
+        if folds || pieces[..j.saturating_sub(1)].iter().any(|[a, b]| segments_touch(*a, *b, *c, *d)) {
+            let problem = format!("crosses, touches or folds back on itself after point {j}");
+            return Err(input_missing(&key, problem, "give branches as cracks of their own that share a point with this one"));
+        }
+    }
+    Ok(line)
+}
+
+/// Two different end points.
+fn ends(path: &str, from: [f64; 2], to: [f64; 2]) -> Result<(Point, Point)> {
+    let (from, to) = (point(&format!("{path}.from_mm"), from)?, point(&format!("{path}.to_mm"), to)?);
+    if distance(from, to) < 1e-6 {
+        return Err(input_missing(path, "has no length: from_mm and to_mm coincide", "give two different points"));
+    }
+    Ok((from, to))
+}

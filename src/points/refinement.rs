@@ -1,0 +1,174 @@
+//! `[refinement]` of a scene: where finer points lie, and how points of several levels reach each other.
+
+use serde::Deserialize;
+use toml::Value;
+
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::{LENGTH, point, slice};
+use perilife_base::units::MM;
+use perilife_plate::specimen::geometry::{bounding_box, distance};
+use perilife_plate::specimen::{Point, Specimen};
+
+/// Times that a point may be split in four.
+const LEVELS_MAX: usize = 4;
+/// More than this is a slip.
+const REGIONS_MAX: usize = 50;
+
+perilife_base::kinds! {
+    /// How points lie and reach each other.
+    pub enum Discretisation for "model.discretisation" {
+        Lattice = "lattice": "square lattice of one spacing",
+        DualHorizon = "dual_horizon": "points of several levels, each split in four where refinement.regions say, with horizon and dual horizon (Ren et al. 2016); fracture scenes",
+    }
+}
+
+/// Where finer points lie.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refinement {
+    /// Regions with the number of times their points are split in four.
+    pub regions: Vec<(RefinedRegion, usize)>,
+}
+
+/// A region of finer points.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RefinedRegion {
+    /// An upright box, m.
+    Box {
+        /// Lower left corner, m.
+        low: Point,
+        /// Upper right corner, m.
+        high: Point,
+    },
+    /// Points within half a width of a line, m.
+    Band {
+        /// One end, m.
+        from: Point,
+        /// Other end, m.
+        to: Point,
+        /// Whole width, m.
+        width: f64,
+    },
+    /// Points within so many metres of every crack and notch, levels graded outwards.
+    AroundFlaws {
+        /// Distance, m.
+        distance: f64,
+    },
+}
+
+impl Refinement {
+    /// Times that the points of the finest level were split in four.
+    pub fn deepest(&self) -> usize {
+        self.regions.iter().map(|(_, levels)| *levels).max().unwrap_or(0)
+    }
+
+    /// The same in words.
+    pub fn words(&self) -> String {
+        format!("{} regions, up to {} levels", self.regions.len(), self.deepest())
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    regions: Vec<Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RegionInput {
+    box_mm: Option<[[f64; 2]; 2]>,
+    band_mm: Option<[[f64; 2]; 2]>,
+    width_mm: Option<f64>,
+    around_flaws_mm: Option<f64>,
+    levels: usize,
+}
+
+/// Reads `[refinement]`.
+pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Refinement> {
+    let input: Input = slice(value, "refinement")?;
+    const KEY: &str = "refinement.regions";
+    if input.regions.is_empty() || input.regions.len() > REGIONS_MAX {
+        let remedy = format!("give 1 to {REGIONS_MAX} regions {{ box_mm = [[x, y], [x, y]], levels = 1 }}");
+        return Err(perilife_base::error::input(KEY, format!("{} regions", input.regions.len()), "is no refinement", remedy));
+    }
+    let of = |(i, value): (usize, &Value)| one(value, &format!("{KEY}[{i}]"), specimen);
+    Ok(Refinement { regions: input.regions.iter().enumerate().map(of).collect::<Result<_>>()? })
+}
+
+fn one(value: &Value, path: &str, specimen: &Specimen) -> Result<(RefinedRegion, usize)> {
+    let given: RegionInput = slice(value, path)?;
+    let levels = given.levels;
+    if levels == 0 || levels > LEVELS_MAX {
+        let problem = "is no number of times that points are split in four";
+        return Err(input(&format!("{path}.levels"), levels, problem, format!("give 1 to {LEVELS_MAX}")));
+    }
+    if let Some(width) = given.width_mm.filter(|_| given.band_mm.is_none()) {
+        return Err(input(&format!("{path}.width_mm"), width, "is the width of a band, and there is none", "leave it out"));
+    }
+    let region = match (given.box_mm, given.band_mm, given.around_flaws_mm) {
+        (Some(ends), None, None) => {
+            let (low, high) = corners(&format!("{path}.box_mm"), ends, specimen)?;
+            RefinedRegion::Box { low, high }
+        }
+        (None, Some(ends), None) => band(ends, given.width_mm, path, specimen)?,
+        (None, None, Some(distance)) => {
+            let key = format!("{path}.around_flaws_mm");
+            if specimen.cracks.is_empty() && specimen.slots.is_empty() {
+                return Err(input(&key, distance, "has nothing to lie around", "give cracks or notches, or a box"));
+            }
+            RefinedRegion::AroundFlaws { distance: LENGTH.read(&key, distance)? }
+        }
+        _ => {
+            let problem = "is not one of box_mm, band_mm with width_mm, and around_flaws_mm";
+            return Err(input_missing(path, problem, "give one of them, with levels"));
+        }
+    };
+    Ok((region, levels))
+}
+
+fn band(ends: [[f64; 2]; 2], width: Option<f64>, path: &str, specimen: &Specimen) -> Result<RefinedRegion> {
+    let key = format!("{path}.band_mm");
+    let (from, to) = (point(&key, ends[0])?, point(&key, ends[1])?);
+    if distance(from, to) < 1e-6 {
+        return Err(input_missing(&key, "has no length: its ends coincide", "give two different points"));
+    }
+    let width_key = format!("{path}.width_mm");
+    let width = width.ok_or_else(|| input_missing(&width_key, "is missing", "give the whole width of the band"))?;
+    let width = LENGTH.read(&width_key, width)?;
+    let half = width / 2.0;
+    let low = [from[0].min(to[0]) - half, from[1].min(to[1]) - half];
+    let high = [from[0].max(to[0]) + half, from[1].max(to[1]) + half];
+    let [plate_low, plate_high] = bounding_box(&specimen.outline);
+    if !overlap(low, high, plate_low, plate_high) {
+        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
+        return Err(input_missing(&key, problem, "move it onto the plate"));
+    }
+    Ok(RefinedRegion::Band { from, to, width })
+}
+
+/// Lower left and upper right corner of a box given by two opposite corners in mm, which meets the plate.
+pub fn corners(path: &str, [from, to]: [[f64; 2]; 2], specimen: &Specimen) -> Result<(Point, Point)> {
+    let (from, to) = (point(path, from)?, point(path, to)?);
+    let low = [from[0].min(to[0]), from[1].min(to[1])];
+    let high = [from[0].max(to[0]), from[1].max(to[1])];
+    if low[0] == high[0] || low[1] == high[1] {
+        return Err(input_missing(path, "encloses no area", "give two opposite corners of a box"));
+    }
+    let [plate_low, plate_high] = bounding_box(&specimen.outline);
+    if !overlap(low, high, plate_low, plate_high) {
+        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
+        return Err(input_missing(path, problem, "move it onto the plate"));
+    }
+    Ok((low, high))
+}
+
+/// A point in words.
+pub fn words(p: Point) -> String {
+    let round = |metres: f64| (metres / MM * 1e6).round() / 1e6;
+    format!("({}, {}) mm", round(p[0]), round(p[1]))
+}
+
+/// Whether two boxes share an area.
+pub fn overlap(low: Point, high: Point, other_low: Point, other_high: Point) -> bool {
+    (0..2).all(|i| low[i] < other_high[i] && other_low[i] < high[i])
+}

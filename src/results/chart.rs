@@ -1,0 +1,365 @@
+//! Charts as SVG: crack length against cycles, growth rate against ΔK, K against crack length.
+//!
+//! A chart says along its axes what it shows; numbers stand on thin lines across, without a box.
+
+use std::path::Path;
+
+use super::axis::Axis;
+use super::output::write_file;
+use super::specimen_picture::sketch::Sketch;
+use perilife_base::error::Result;
+use perilife_plate::specimen::Point;
+
+/// Computed.
+pub const COMPUTED: &str = "#0b5fa5";
+/// A second quantity beside the computed one.
+pub const SECOND: &str = "#a8480a";
+/// Limits and what is not known.
+pub const NOTE: &str = "#7a5300";
+/// Measured values, ends, words that count.
+pub const INK: &str = "#12171d";
+const QUIET: &str = "#55606d";
+const AXIS: &str = "#7b8794";
+const GRID: &str = "#e3e7ec";
+/// Colours of several series, which differ in lightness too.
+pub const COLOURS: [&str; 6] = [COMPUTED, SECOND, "#1b8a6b", "#8a4fa3", NOTE, "#4fa3d1"];
+/// Size of a chart in a file of its own, px, and of its numbers.
+pub const LARGE: Size = Size { width: 900.0, height: 560.0, text: 14.0 };
+
+/// Size of a chart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Size {
+    /// Width, px.
+    pub width: f64,
+    /// Height, px.
+    pub height: f64,
+    /// Height of numbers and words, px.
+    pub text: f64,
+}
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// Computed: a line through the points.
+    Line,
+    /// Straight relation or bound: a dashed line.
+    Dashes,
+    /// Measured: open circles.
+    Circles,
+    /// Many computed values that scatter: small dots.
+    Dots,
+}
+
+/// Named points of a chart, in the units of its axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Name in the legend.
+    pub name: String,
+    /// (x, y); points that are not finite (or not positive on a logarithmic axis) are left out.
+    pub points: Vec<(f64, f64)>,
+    /// How it is drawn.
+    pub mark: Mark,
+}
+
+/// Crack length in mm against cycles, both linear.
+pub fn crack_length(path: &Path, title: &str, series: &[Series]) -> Result<()> {
+    linear(path, title, ["Cycles N", "Crack length a, mm"], series)
+}
+
+/// Loads against crack length in mm, both linear; `y_name` says which load in which unit.
+pub fn over_crack_length(path: &Path, title: &str, y_name: &str, series: &[Series]) -> Result<()> {
+    linear(path, title, ["Crack length a, mm", y_name], series)
+}
+
+/// Any quantities, both linear; `names` says what stands along x and y in which units.
+pub fn linear(path: &Path, title: &str, names: [&str; 2], series: &[Series]) -> Result<()> {
+    let axes = [Axis::linear(values(series, |p| p.0)), Axis::linear(values(series, |p| p.1))];
+    draw(path, title, axes, names, series)
+}
+
+/// Names of the axes of growth rates.
+pub const OF_RATES: [&str; 2] = ["Range of the stress intensity factor ΔK, MPa√m", "Growth rate da/dN, mm/cycle"];
+
+/// Growth rate in mm/cycle against ΔK in MPa√m, both logarithmic.
+pub fn growth_rate(path: &Path, title: &str, series: &[Series]) -> Result<()> {
+    let positive: Vec<Series> = series
+        .iter()
+        .map(|s| {
+            let points = s.points.iter().copied().filter(|(x, y)| *x > 0.0 && *y > 0.0).collect();
+            Series { points, ..s.clone() }
+        })
+        .collect();
+    let axes = [Axis::logarithmic(values(&positive, |p| p.0)), Axis::logarithmic(values(&positive, |p| p.1))];
+    draw(path, title, axes, OF_RATES, &positive)
+}
+
+fn values(series: &[Series], pick: impl Fn(&(f64, f64)) -> f64) -> impl Iterator<Item = f64> {
+    series
+        .iter()
+        .flat_map(|s| &s.points)
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .map(pick)
+        .collect::<Vec<_>>()
+        .into_iter()
+}
+
+/// A chart with the names of its series in rows above it.
+fn draw(path: &Path, title: &str, axes: [Axis; 2], names: [&str; 2], series: &[Series]) -> Result<()> {
+    let mut colours = COLOURS.iter().cycle();
+    let colours: Vec<&str> = series
+        .iter()
+        .map(|series| if series.mark == Mark::Circles { INK } else { colours.next().copied().unwrap_or(INK) })
+        .collect();
+    let legend: Vec<(Mark, &str, &str)> =
+        series.iter().zip(&colours).map(|(series, colour)| (series.mark, *colour, &*series.name)).collect();
+    let mut frame = Frame::new(LARGE, title, axes, names, &legend);
+    for (series, colour) in series.iter().zip(colours) {
+        let points: Vec<Point> = series.points.iter().map(|(x, y)| [*x, *y]).collect();
+        match series.mark {
+            Mark::Line => frame.line(&points, colour, 2.0, ""),
+            Mark::Dashes => frame.line(&points, colour, 2.0, "8 5"),
+            Mark::Circles => frame.circles(&points),
+            Mark::Dots => frame.dots(&points, colour),
+        }
+    }
+    write_file(path, frame.finish(&format!("{title}: {} over {}", names[1], names[0])).as_bytes())
+}
+
+/// A chart in the making: two axes with their names and numbers, to which lines, areas and marks are added.
+pub struct Frame {
+    sketch: Sketch,
+    axes: [Axis; 2],
+    /// Left, top, right and bottom of the plot, px.
+    room: [f64; 4],
+    size: Size,
+    /// Places at which names stand beside curves.
+    named: Vec<Point>,
+}
+
+/// Width of words, px, about.
+pub fn width_of(words: &str, text: f64) -> f64 {
+    0.56 * text * words.chars().count() as f64
+}
+
+impl Frame {
+    /// An empty chart. `title` may be empty; `legend` are marks with their colours and names, in rows below the title.
+    pub fn new(size: Size, title: &str, axes: [Axis; 2], names: [&str; 2], legend: &[(Mark, &str, &str)]) -> Self {
+        let text = size.text;
+        let [of_x, of_y] = axes;
+        let [x, y] = [of_x.named(names[0]), of_y.named(names[1])];
+        let widest = y.ticks().iter().map(|(_, words)| width_of(words, text)).fold(0.0, f64::max);
+        let mut sketch = Sketch::new(1.0, [0.0; 2]);
+        let mut top = 0.5 * text;
+        if !title.is_empty() {
+            top += 1.5 * text;
+            sketch.name([0.5 * text, top], title, "start", 1.15 * text, INK);
+            top += 0.7 * text;
+        }
+        top = Self::legend(&mut sketch, legend, size, top);
+        let room = [widest + 1.4 * text, top + 2.5 * text, size.width - 1.2 * text, size.height - 3.8 * text];
+        let mut frame = Frame { sketch, axes: [x, y], room, size, named: Vec::new() };
+        frame.draw_axes(names);
+        frame
+    }
+
+    /// Room is left beside the plot for names of so many letters.
+    pub fn with_names(mut size: Size, axes: [Axis; 2], names: [&str; 2], letters: usize) -> Self {
+        let beside = width_of(&"n".repeat(letters), size.text);
+        let whole = size.width;
+        size.width -= beside;
+        let mut frame = Frame::new(size, "", axes, names, &[]);
+        frame.size.width = whole;
+        frame
+    }
+
+    fn legend(sketch: &mut Sketch, legend: &[(Mark, &str, &str)], size: Size, mut top: f64) -> f64 {
+        let text = size.text;
+        let mut left = 0.5 * text;
+        for (place, (mark, colour, name)) in legend.iter().enumerate() {
+            let width = 3.2 * text + width_of(name, text) + 1.5 * text;
+            if place == 0 || left + width > size.width {
+                (left, top) = (0.5 * text, top + 1.5 * text);
+            }
+            let (from, to, middle) = (left, left + 2.4 * text, left + 1.2 * text);
+            let height = top - 0.35 * text;
+            match mark {
+                Mark::Line => sketch.path(&[[from, height], [to, height]], colour, 2.0, ""),
+                Mark::Dashes => sketch.path(&[[from, height], [to, height]], colour, 2.0, "8 5"),
+                Mark::Circles => sketch.ring([middle, height], 3.0, colour, 1.1),
+                Mark::Dots => sketch.dot([middle, height], 2.5, colour),
+            }
+            sketch.name([left + 3.0 * text, top], name, "start", text, INK);
+            left += width;
+        }
+        top
+    }
+
+    fn draw_axes(&mut self, [x_name, y_name]: [&str; 2]) {
+        let ([left, top, right, bottom], text) = (self.room, self.size.text);
+        for (value, words) in self.axes[1].ticks() {
+            let y = self.at([self.axes[0].ends()[0], value])[1];
+            self.sketch.path(&[[left, y], [right, y]], GRID, 1.0, "");
+            self.sketch.name([left - 0.6 * text, y + 0.35 * text], &words, "end", text, QUIET);
+        }
+        for value in self.axes[0].faint() {
+            let x = self.at([*value, self.axes[1].ends()[0]])[0];
+            self.sketch.path(&[[x, top], [x, bottom]], GRID, 1.0, "");
+        }
+        self.sketch.path(&[[left, bottom], [right, bottom]], AXIS, 1.0, "");
+        let mut free = f64::NEG_INFINITY;
+        for (value, words) in self.axes[0].ticks() {
+            let x = self.at([value, self.axes[1].ends()[0]])[0];
+            let half = 0.5 * width_of(&words, text);
+            // A number that would touch the one before is left out, and so is its tick.
+            if x - half < free {
+                continue;
+            }
+            free = x + half + 0.4 * text;
+            self.sketch.path(&[[x, bottom], [x, bottom + 4.0]], AXIS, 1.0, "");
+            let place = x.min(self.size.width - half - 1.0);
+            self.sketch.name([place, bottom + 4.0 + 1.1 * text], &words, "middle", text, QUIET);
+        }
+        self.sketch.name([0.5 * text, top - 1.0 * text], y_name, "start", text, INK);
+        self.sketch.name([right, bottom + 2.9 * text], x_name, "end", text, INK);
+    }
+
+    /// Pixel of values.
+    pub fn at(&self, [x, y]: Point) -> Point {
+        let [left, top, right, bottom] = self.room;
+        [left + self.axes[0].share(x) * (right - left), bottom - self.axes[1].share(y) * (bottom - top)]
+    }
+
+    fn pixels(&self, points: &[Point]) -> Vec<Point> {
+        let known = points.iter().filter(|point| point.iter().all(|value| value.is_finite()));
+        known.map(|point| self.at(*point)).filter(|place| place.iter().all(|value| value.is_finite())).collect()
+    }
+
+    /// A line through points; one that is alone is a dot. Points that are not finite are passed over.
+    pub fn line(&mut self, points: &[Point], colour: &str, width: f64, dash: &str) {
+        let places = self.pixels(points);
+        match places.as_slice() {
+            [] => {}
+            [alone] => self.sketch.dot(*alone, width, colour),
+            _ => self.sketch.path(&places, colour, width, dash),
+        }
+    }
+
+    /// The same, broken where a point is not finite: nothing is drawn where nothing is known.
+    pub fn pieces(&mut self, points: &[Point], colour: &str, width: f64, dash: &str) {
+        for piece in points.split(|point| !point.iter().all(|value| value.is_finite())) {
+            self.line(piece, colour, width, dash);
+        }
+    }
+
+    /// Left, top, right and bottom of the plot, px.
+    pub fn room(&self) -> [f64; 4] {
+        self.room
+    }
+
+    /// What else is drawn over the plot, in pixels.
+    pub fn sketch(&mut self) -> &mut Sketch {
+        &mut self.sketch
+    }
+
+    /// The drawing, to be put into a larger one.
+    pub fn into_sketch(self) -> Sketch {
+        self.sketch
+    }
+
+    /// Fills what lies below a value along y, from one x to another.
+    pub fn below(&mut self, y: f64, [from, to]: [f64; 2], colour: &str, opacity: f64) {
+        let bottom = self.room[3];
+        let [[left, top], [right, _]] = [from, to].map(|x| self.at([x, y]));
+        self.sketch.area(&[[left, bottom], [left, top], [right, top], [right, bottom]], colour, opacity);
+    }
+
+    /// The area between two lines.
+    pub fn band(&mut self, low: &[Point], high: &[Point], opacity: f64) {
+        let mut corners = self.pixels(low);
+        corners.extend(self.pixels(high).into_iter().rev());
+        self.sketch.area(&corners, COMPUTED, opacity);
+    }
+
+    /// Measured values.
+    pub fn circles(&mut self, points: &[Point]) {
+        let radius = if self.size.text > 12.0 { 3.2 } else { 2.2 };
+        self.pixels(points).into_iter().for_each(|place| self.sketch.ring(place, radius, INK, 1.1));
+    }
+
+    /// Small dots, darker where many lie.
+    pub fn dots(&mut self, points: &[Point], colour: &str) {
+        let fill = format!("{colour}8c");
+        self.pixels(points).into_iter().for_each(|place| self.sketch.dot(place, 2.0, &fill));
+    }
+
+    /// A ring around a point that is spoken of.
+    pub fn ring(&mut self, point: Point, colour: &str) {
+        self.pixels(&[point]).into_iter().for_each(|place| self.sketch.ring(place, 4.5, colour, 1.8));
+    }
+
+    /// A cross where a curve ends, and why.
+    pub fn end(&mut self, point: Point, why: &str) {
+        for [x, y] in self.pixels(&[point]) {
+            self.sketch.path(&[[x - 5.0, y - 5.0], [x + 5.0, y + 5.0]], INK, 2.0, "");
+            self.sketch.path(&[[x - 5.0, y + 5.0], [x + 5.0, y - 5.0]], INK, 2.0, "");
+            self.sketch.name([x - 9.0, y - 3.0], why, "end", self.size.text, INK);
+        }
+    }
+
+    /// A dashed limit across the plot, named at its left.
+    pub fn limit(&mut self, y: f64, name: &str) {
+        let ([left, _, right, _], text) = (self.room, self.size.text);
+        let height = self.at([self.axes[0].ends()[0], y])[1];
+        if self.holds(y) {
+            self.sketch.path(&[[left, height], [right, height]], NOTE, 1.0, "3 3");
+            self.sketch.name([left + 6.0, height - 4.0], name, "start", text, NOTE);
+        }
+    }
+
+    /// Whether a value lies on the axis along y.
+    fn holds(&self, y: f64) -> bool {
+        (0.0..=1.0).contains(&self.axes[1].share(y))
+    }
+
+    /// Hatches what lies beyond a value along y, above or below it.
+    pub fn unknown(&mut self, y: f64, is_above: bool, name: &str) {
+        let ([left, top, right, bottom], text) = (self.room, self.size.text);
+        if !self.holds(y) {
+            return;
+        }
+        let edge = self.at([self.axes[0].ends()[0], y])[1];
+        let (from, to) = if is_above { (top, edge) } else { (edge, bottom) };
+        self.sketch.hatch([left, from], [right, to], NOTE);
+        if to - from > 1.6 * text {
+            self.sketch.name([left + 6.0, from + 1.2 * text], name, "start", text, NOTE);
+        }
+    }
+
+    /// A remark in the lower left corner of the plot.
+    pub fn remark(&mut self, words: &str) {
+        let ([left, _, _, bottom], text) = (self.room, self.size.text);
+        self.sketch.name([left + 6.0, bottom - 0.5 * text], words, "start", text, NOTE);
+    }
+
+    /// The name of a curve right of its last point, moved down where another one stands.
+    pub fn name(&mut self, point: Point, words: &str, colour: &str) {
+        let text = self.size.text;
+        for [x, mut y] in self.pixels(&[point]) {
+            while self.named.iter().any(|other| (other[1] - y).abs() < 1.05 * text && (other[0] - x).abs() < 5.0 * text) {
+                y += 0.3 * text;
+            }
+            self.named.push([x, y]);
+            self.sketch.name([x + 6.0, y + 0.35 * text], words, "start", text, colour);
+        }
+    }
+
+    /// Puts what was drawn beside other charts into a picture, at a pixel.
+    pub fn beside(self, picture: &mut Sketch, place: Point) {
+        picture.within(place, [self.size.width, self.size.height], self.sketch);
+    }
+
+    /// The whole picture, with a sentence for those who do not see it.
+    pub fn finish(self, sentence: &str) -> String {
+        self.sketch.picture([self.size.width, self.size.height], sentence)
+    }
+}

@@ -1,0 +1,433 @@
+//! What stands behind a life: every condition that it rests on, whether that holds, what it may do to the life, and what to do about it.
+
+mod part_through;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::fit_use;
+use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_growth::case::record::FittedRecord;
+use perilife_growth::case::{Case, LawSource};
+use perilife_growth::predict::plastic_zone::plastic_zone;
+use perilife_growth::predict::{CurvePoint, Prediction, StopReason};
+use perilife_plate::loading::LoadControl;
+use perilife_plate::material::growth_data::BATCH_FACTOR;
+use perilife_plate::specimen::SpecimenKind;
+use perilife_plate::specimen::handbook::handbook;
+use perilife_points::crack_tip::TipState;
+
+/// Lines that are printed below a verdict at the most.
+const LINES_MOST: usize = 5;
+/// Letters of a line at the most, so that it is one of 80 with what stands before it.
+const LETTERS_MOST: usize = 71;
+/// Effect on life, percent, from which a condition is doubtful; none has an effect that is known better.
+const DOUBTFUL_PERCENT: f64 = 1.0;
+/// Share of life outside the fitted ΔK range from which the law is doubtful.
+const OUTSIDE_DOUBTFUL: f64 = 0.05;
+/// Thickness of the plate over that of the specimens, or the other way, up to which both have the same constraint at the tip.
+const THICKNESS_ALIKE: f64 = 1.25;
+/// Exponent where the law has none: what an error of K does to the rate.
+const EXPONENT_USUAL: f64 = 3.0;
+
+/// Whether a condition holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// It does not, and the life is none.
+    Fails,
+    /// It does not hold all along; the effect says what that may do.
+    Doubtful,
+    /// It cannot be told.
+    NotChecked,
+    /// It holds.
+    Holds,
+}
+
+/// On which side of the true life a life is where a condition does not hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Too short.
+    Safe,
+    /// Too long.
+    Unsafe,
+    /// Either.
+    Either,
+}
+
+/// One condition.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// Name, the same in every run.
+    pub name: &'static str,
+    /// Whether it holds.
+    pub verdict: Verdict,
+    /// What it may do to the life, or the share of the life that it concerns, percent; `None` where nobody knows.
+    pub effect_percent: Option<f64>,
+    /// On which side of the true life the life is by that.
+    pub side: Option<Side>,
+    /// In words, a line.
+    pub words: String,
+    /// What to do about it.
+    pub remedy: Option<String>,
+}
+
+impl Check {
+    fn new(name: &'static str, verdict: Verdict, words: String) -> Self {
+        Check { name, verdict, effect_percent: None, side: None, words, remedy: None }
+    }
+
+    fn not_checked(name: &'static str, words: &str, remedy: &str) -> Self {
+        Check {
+            side: Some(Side::Unsafe),
+            remedy: Some(remedy.to_owned()),
+            ..Check::new(name, Verdict::NotChecked, words.to_owned())
+        }
+    }
+
+    /// A condition that holds but for an effect, percent, on one side.
+    fn sized(name: &'static str, percent: f64, doubtful: bool, side: Side, words: String, remedy: &str) -> Self {
+        let verdict = if doubtful { Verdict::Doubtful } else { Verdict::Holds };
+        let remedy = doubtful.then(|| remedy.to_owned());
+        Check { effect_percent: Some(percent), side: Some(side), remedy, ..Check::new(name, verdict, words) }
+    }
+}
+
+/// What can be told of a case before it is run.
+pub fn of_case(case: &Case) -> Vec<Check> {
+    let mut checks = vec![strength(case, "toughness"), strength(case, "ligament")];
+    checks.extend(first_extrapolation(case));
+    checks.extend(stress_ratio(case));
+    checks.extend(thickness(case));
+    checks.extend(size(case));
+    checks.extend(lack_of_fit(case));
+    checks.extend(growth_data(case));
+    sorted(checks)
+}
+
+/// All conditions of a life, those that matter most first: what fails, what is doubtful by its effect, what was not checked, what holds.
+pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
+    let mut checks = vec![toughness(case, prediction), ligament(case, prediction)];
+    checks.extend(small_scale_yielding(case, prediction));
+    checks.extend(extrapolation(case, prediction));
+    checks.extend(cross_check(case, prediction));
+    checks.extend(part_through::checks(case, prediction));
+    checks.extend(reversal(case, prediction));
+    checks.extend(stress_ratio(case));
+    checks.extend(thickness(case));
+    checks.extend(size(case));
+    checks.extend(lack_of_fit(case));
+    checks.extend(growth_data(case));
+    sorted(checks)
+}
+
+/// Growth data of the library are those of one batch.
+fn growth_data(case: &Case) -> Option<Check> {
+    case.growth_data.as_ref()?;
+    let percent = 100.0 * (1.0 - 1.0 / BATCH_FACTOR);
+    let words = format!("growth data of the library: a batch may differ by a factor of {BATCH_FACTOR} in rate");
+    Some(Check::sized("growth_data", percent, true, Side::Either, words, "calibrate the law to tests of this batch"))
+}
+
+fn sorted(mut checks: Vec<Check>) -> Vec<Check> {
+    let rank = |check: &Check| check.verdict as usize;
+    let effect = |check: &Check| check.effect_percent.unwrap_or(0.0).abs();
+    checks.sort_by(|a, b| rank(a).cmp(&rank(b)).then(effect(b).total_cmp(&effect(a))));
+    checks
+}
+
+/// Whether life may be said to be reached at the least: what would end it sooner was checked and holds.
+pub fn is_bound_below(case: &Case, prediction: &Prediction) -> bool {
+    let holds = |check: &Check| check.verdict == Verdict::Holds;
+    let is_checked = || {
+        let yielding = small_scale_yielding(case, prediction);
+        holds(&toughness(case, prediction)) && holds(&ligament(case, prediction)) && yielding.iter().all(holds)
+    };
+    // A run that was cut off has lived so long already.
+    prediction.stop == StopReason::RunOut || prediction.stop.is_lower_bound() && is_checked()
+}
+
+/// One line that says how the life stands.
+pub fn verdict(checks: &[Check]) -> String {
+    let count = |verdict: Verdict| checks.iter().filter(|check| check.verdict == verdict).count();
+    let some =
+        [(count(Verdict::Fails), "failed"), (count(Verdict::Doubtful), "doubtful"), (count(Verdict::NotChecked), "not checked")];
+    let open: Vec<String> = some.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+    match (some[0].0, open.len()) {
+        (0, 0) => format!("stands: all {} checks hold", checks.len()),
+        (0, _) => format!("stands on conditions: of {} checks {}", checks.len(), open.join(", ")),
+        _ => format!("not to be used: of {} checks {}", checks.len(), open.join(", ")),
+    }
+}
+
+/// The lines below it: conditions that do not hold, at most five.
+pub fn lines(checks: &[Check]) -> Vec<String> {
+    let open = checks.iter().filter(|check| check.verdict != Verdict::Holds);
+    open.take(LINES_MOST).map(|check| check.words.chars().take(LETTERS_MOST).collect()).collect()
+}
+
+/// The array of `result.json`.
+pub fn json(checks: &[Check]) -> Value {
+    serde_json::to_value(checks).unwrap_or(Value::Null)
+}
+
+/// Whether a strength is there to be checked.
+fn strength(case: &Case, name: &'static str) -> Check {
+    let (is_given, is_asked, what, key, off) = match name {
+        "toughness" => (
+            case.material.toughness.is_some(),
+            case.stop.by_toughness,
+            "fracture: not checked, no toughness given",
+            "material.toughness_mpa_sqrt_m",
+            "fracture: not checked, turned off by stop.toughness",
+        ),
+        _ => (
+            case.material.yield_strength.is_some(),
+            case.stop.by_net_section,
+            "yielding: not checked, no yield strength given",
+            "material.yield_strength_mpa",
+            "yielding: not checked, turned off by stop.net_section",
+        ),
+    };
+    match (is_given, is_asked) {
+        (false, _) => Check::not_checked(name, what, &format!("give {key}")),
+        (true, false) => Check::not_checked(name, off, "leave the key out"),
+        (true, true) => Check::new(name, Verdict::Holds, format!("{name}: the life ends where it is reached")),
+    }
+}
+
+fn toughness(case: &Case, prediction: &Prediction) -> Check {
+    let given = strength(case, "toughness");
+    let most = prediction.curve.iter().map(|row| row.k_max(&case.loading)).filter(|k| k.is_finite()).fold(f64::NAN, f64::max);
+    match case.toughness_at_end() {
+        Some(_) if most.is_nan() => Check::not_checked("toughness", "fracture: not checked, K of the tips is not known", ""),
+        Some(toughness) => {
+            let words = format!("fracture: K_max is {:.1} % of the toughness at the most", 100.0 * most / toughness);
+            let required = case.stop.required.unwrap_or(1.0);
+            Check { words, verdict: of_first_load(prediction, required * most / toughness), ..given }
+        }
+        None => Check {
+            words: given.words.clone()
+                + &if most.is_nan() { String::new() } else { format!("; K_max to {:.0} MPa√m", most / MPA_SQRT_M) },
+            ..given
+        },
+    }
+}
+
+fn ligament(case: &Case, prediction: &Prediction) -> Check {
+    const NAME: &str = "ligament";
+    let given = strength(case, NAME);
+    if case.yield_strength_at_end().is_none() {
+        return given;
+    }
+    let load = |row: &CurvePoint| Some(case.loading.maximum * case.loading.share(row.work) / row.limit_load?);
+    let most = prediction.curve.iter().filter_map(load).filter(|used| used.is_finite()).fold(f64::NAN, f64::max);
+    if most.is_nan() {
+        let words = "yielding: not checked, supports on both sides of every section";
+        return Check::not_checked(NAME, words, "give the loads of both ends instead of a support");
+    }
+    let required = case.stop.required.unwrap_or(1.0);
+    let words = format!("section: the load is {:.1} % of its limit load at the most", 100.0 * most);
+    Check { words, verdict: of_first_load(prediction, required * most), ..given }
+}
+
+/// A strength holds while a plate lives; one that the first load exceeds leaves no life.
+fn of_first_load(prediction: &Prediction, used: f64) -> Verdict {
+    if prediction.stop.is_strength() && prediction.curve.len() == 1 && used >= 1.0 { Verdict::Fails } else { Verdict::Holds }
+}
+
+fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
+    const NAME: &str = "small_scale_yielding";
+    let zone = plastic_zone(case, &prediction.curve)?;
+    let percent = 100.0 * zone.life_share_too_large;
+    let words = match zone.too_large_from {
+        None => "small-scale yielding: holds to the end".to_owned(),
+        Some(from) => {
+            let until = zone.too_large_to.map_or_else(|| "on".to_owned(), |to| format!("to {} mm", two_digits(to / MM)));
+            format!("small-scale yielding: not from {} mm {until}, {percent:.1} % of life", two_digits(from / MM))
+        }
+    };
+    let remedy = match zone.too_small {
+        "ligament" => "end the life there by stop.crack_length_mm: beyond it cracks grow faster than K says",
+        _ => "begin with a longer crack: shorter ones grow faster than K says",
+    };
+    Some(Check::sized(NAME, percent, percent > DOUBTFUL_PERCENT, Side::Unsafe, words, remedy))
+}
+
+/// A length as the criterion deserves: two digits, and the third of a length of more than ten.
+fn two_digits(length: f64) -> String {
+    if length < 10.0 { format!("{length:.1}") } else { format!("{length:.0}") }
+}
+
+/// Life outside the fitted range, below and above.
+fn extrapolation(case: &Case, prediction: &Prediction) -> Vec<Check> {
+    let (Some([low, high]), Some(shares)) = (fit_use::fitted_range(case), fit_use::life_shares_outside(case, prediction)) else {
+        return fit_use::fitted_range(case).is_none().then(unknown_range).into_iter().collect();
+    };
+    let of_side = |name, share: f64, side, words: String| {
+        let is_refused = side == Side::Unsafe && share > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation;
+        let remedy = match side {
+            Side::Unsafe => "calibrate on longer cracks, or end the life sooner by stop.crack_length_mm",
+            _ => "calibrate on slower growth, or give fatigue.delta_k_threshold_mpa_sqrt_m",
+        };
+        let check = Check::sized(name, 100.0 * share, share > OUTSIDE_DOUBTFUL, side, words, remedy);
+        if is_refused { Check { verdict: Verdict::Fails, ..check } } else { check }
+    };
+    let [below, above] = shares;
+    vec![
+        of_side(
+            "extrapolation_below",
+            below,
+            Side::Safe,
+            format!("law: {:.1} % of life below ΔK {low:.2}, the lowest fitted (safe side)", 100.0 * below),
+        ),
+        of_side(
+            "extrapolation_above",
+            above,
+            Side::Unsafe,
+            format!("law: {:.1} % of life above ΔK {high:.2}, the highest fitted (unsafe side)", 100.0 * above),
+        ),
+    ]
+}
+
+fn unknown_range() -> Check {
+    Check::not_checked(
+        "extrapolation_above",
+        "law: its range of ΔK is not known, constants given by hand",
+        "calibrate on measured curves, or compare with the range of the source of the constants",
+    )
+}
+
+/// What the handbook says of the first ΔK.
+fn first_extrapolation(case: &Case) -> Option<Check> {
+    let Some([low, high]) = fit_use::fitted_range(case) else { return Some(unknown_range()) };
+    let first = first_delta_k(case)? / MPA_SQRT_M;
+    if first > high * (1.0 + 1e-6) {
+        let words = format!("law: ΔK {first:.2} at the start is above the highest fitted, {high:.2}");
+        let check = Check::sized(
+            "extrapolation_above",
+            100.0,
+            true,
+            Side::Unsafe,
+            words,
+            "lower the load, or calibrate on longer cracks",
+        );
+        return Some(if case.allow_extrapolation { check } else { Check { verdict: Verdict::Fails, ..check } });
+    }
+    (first < low * (1.0 - 1e-6)).then(|| {
+        let words = format!("law: ΔK {first:.2} at the start is below the lowest fitted, {low:.2} MPa√m (safe)");
+        Check { side: Some(Side::Safe), ..Check::new("extrapolation_below", Verdict::Doubtful, words) }
+    })
+}
+
+/// ΔK of the initial crack, Pa√m, where a handbook has it and it only rises from there.
+pub(super) fn first_delta_k(case: &Case) -> Option<f64> {
+    let formula = handbook(&case.specimen).filter(|_| case.loading.control == LoadControl::Load)?;
+    Some(formula.delta_k(case.specimen.crack_length, case.loading.maximum, case.loading.range_share()))
+}
+
+fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
+    let check = prediction.cross_check?;
+    let exponent = match &case.law {
+        LawSource::Fitted(record) => record.paris_m,
+        LawSource::Paris(law) => law.m,
+        LawSource::Inline(law) => law.p,
+        LawSource::Factor(_) | LawSource::Missing(_) => EXPONENT_USUAL,
+    };
+    let percent = 100.0 * exponent * check.difference;
+    let words = format!(
+        "K: {:+.1} % from the energy of the plate at {} mm, {:+.0} % of da/dN there",
+        100.0 * check.difference,
+        two_digits(check.crack_length / MM),
+        percent
+    );
+    // A K that is too large makes lives too short.
+    let side = if check.difference > 0.0 { Side::Safe } else { Side::Unsafe };
+    let remedy = "give a smaller model.spacing_mm";
+    Some(Check::sized("cross_check", percent.abs(), check.warning().is_some(), side, words, remedy))
+}
+
+/// Tips that maximum load presses shut grow while minimum load, of the other sign, opens them, which is not counted.
+fn reversal(case: &Case, prediction: &Prediction) -> Option<Check> {
+    let [ratio, _] = case.loading.ratios();
+    let is_closed = |row: &CurvePoint| row.tips.iter().position(|tip| tip.state == TipState::Closed);
+    let tip = prediction.curve.iter().find_map(is_closed).filter(|_| ratio < 0.0)?;
+    let words = format!("reversal: minimum load opens tip {tip}, its growth is not counted");
+    let remedy = Some("turn the load round: maximum times R, ratio 1/R".to_owned());
+    Some(Check { side: Some(Side::Unsafe), remedy, ..Check::new("reversal", Verdict::Fails, words) })
+}
+
+/// Stress ratio of the law against that of the cycles.
+fn stress_ratio(case: &Case) -> Option<Check> {
+    const NAME: &str = "stress_ratio";
+    let [least, most] = case.loading.ratios();
+    let [low, high] = match (&case.law, &case.law_record) {
+        (LawSource::Fitted(record), _) => [record.stress_ratio; 2],
+        (_, Some(record)) => [record.stress_ratio_min, record.stress_ratio_max],
+        _ => return None,
+    };
+    // Of what is refused no life comes about, so any other ratio is bridged by γ.
+    let is_within = [least, most].iter().all(|ratio| (low - 0.02..=high + 0.02).contains(ratio));
+    let ratio = if least == most { least.to_string() } else { format!("{least:.3} to {most:.3}") };
+    let words = if is_within {
+        format!("stress ratio: {ratio} is that of the law")
+    } else {
+        format!("stress ratio: {ratio}, law of {low}, by γ = {} (Walker)", case.fatigue.walker_gamma)
+    };
+    let verdict = if is_within { Verdict::Holds } else { Verdict::Doubtful };
+    let remedy = (!is_within).then(|| format!("calibrate at R = {ratio}"));
+    Some(Check { side: Some(Side::Either), remedy, ..Check::new(NAME, verdict, words) })
+}
+
+fn fitted(case: &Case) -> Option<&FittedRecord> {
+    match &case.law {
+        LawSource::Fitted(record) => Some(record),
+        _ => None,
+    }
+}
+
+/// Thickness of the specimens of the law against that of the plate: thicker ones grow faster, by more constraint and less closure.
+fn thickness(case: &Case) -> Option<Check> {
+    const NAME: &str = "thickness";
+    let (of_law, of_plate) = (fitted(case)?.thickness_mm, case.specimen.thickness / MM);
+    let ratio = of_plate / of_law;
+    let is_alike = (1.0 / THICKNESS_ALIKE..=THICKNESS_ALIKE).contains(&ratio);
+    let words = format!("thickness: {of_plate:.2} mm, law of specimens of {of_law:.2} mm");
+    let verdict = if is_alike { Verdict::Holds } else { Verdict::Doubtful };
+    let side = if ratio > 1.0 { Side::Unsafe } else { Side::Safe };
+    let remedy = (!is_alike).then(|| "calibrate on specimens of the thickness of the plate".to_owned());
+    Some(Check { side: Some(side), remedy, ..Check::new(NAME, verdict, words) })
+}
+
+/// Sizes of a test specimen after ASTM E647, 7.1 and A1.3: C(T) W/20 ≤ B ≤ W/4 and a ≥ 0.2 W; M(T) B ≤ W/8.
+fn size(case: &Case) -> Option<Check> {
+    const NAME: &str = "e647_size";
+    let specimen = &case.specimen;
+    let (thickness, width, crack) = (specimen.thickness, specimen.width, specimen.crack_length);
+    let wrong = match specimen.kind {
+        SpecimenKind::CompactTension if thickness < width / 20.0 || thickness > width / 4.0 => {
+            Some(format!("thickness {:.2} mm is not W/20 to W/4", thickness / MM))
+        }
+        SpecimenKind::CompactTension if crack < 0.2 * width => Some(format!("crack {:.2} mm is below 0.2 W", crack / MM)),
+        SpecimenKind::MiddleTension if thickness > width / 8.0 => {
+            Some(format!("thickness {:.2} mm is above W/8", thickness / MM))
+        }
+        SpecimenKind::CompactTension | SpecimenKind::MiddleTension => None,
+        _ => return None,
+    };
+    let verdict = if wrong.is_some() { Verdict::Doubtful } else { Verdict::Holds };
+    let words =
+        wrong.map_or_else(|| "E647: sizes of the specimen are within its limits".to_owned(), |wrong| format!("E647: {wrong}"));
+    Some(Check { side: Some(Side::Either), ..Check::new(NAME, verdict, words) })
+}
+
+/// What the law misses at the ends of its range.
+fn lack_of_fit(case: &Case) -> Option<Check> {
+    let percent = fitted(case)?.lack_of_fit_percent?;
+    let sense = if percent > 0.0 { "faster" } else { "slower" };
+    let words = format!("law: cracks grow {:.0} % {sense} than it at an end of its range", percent.abs());
+    let side = if percent > 0.0 { Side::Unsafe } else { Side::Safe };
+    let remedy = "calibrate with another fatigue.growth_law, or a table";
+    Some(Check::sized("lack_of_fit", percent, percent.abs() > OUTSIDE_DOUBTFUL * 100.0, side, words, remedy))
+}

@@ -1,0 +1,69 @@
+//! Inspections of the plate of a run, and the probability that all of them miss its crack.
+
+use serde_json::{Value, json};
+
+use super::band::Inspection;
+use super::model_words::clean;
+use perilife_base::units::MM;
+use perilife_calibration::sweep::detection::{Detection, Schedule};
+use perilife_growth::case::Case;
+use perilife_growth::predict::{CurvePoint, Prediction};
+
+/// Inspections of a run from a crack length on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inspections {
+    /// When they are, and how they find cracks.
+    pub schedule: Schedule,
+    rows: Vec<Row>,
+}
+
+/// One inspection.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Row {
+    cycles: f64,
+    /// Of the tip whose crack is inspected, m.
+    crack_length: f64,
+    /// Probability that it is found now.
+    found: f64,
+    /// Probability that it has been missed so far.
+    missed: f64,
+}
+
+impl Inspections {
+    /// Of a run: the first at the length from which on the plate is inspected, the others by the interval, before the end of the run.
+    pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, detection: Detection) -> Self {
+        let schedule = Schedule { detection, cycles: [inspection.cycles_at, inspection.inspection_interval_cycles] };
+        let of_tip = |row: &CurvePoint| inspection.tip.and_then(|tip| row.crack_length_of(&case.specimen, tip));
+        let length = |row: &CurvePoint| of_tip(row).unwrap_or(row.crack_length);
+        let (mut inspected, mut rows) = (schedule.begin(), Vec::new());
+        for pair in prediction.curve.windows(2) {
+            let told = |cycles, crack_length, found, missed| rows.push(Row { cycles, crack_length, found, missed });
+            inspected.grow([pair[0].cycles, pair[1].cycles], [length(&pair[0]), length(&pair[1])], told);
+        }
+        Inspections { schedule, rows }
+    }
+
+    /// Probability that all of them miss the crack.
+    pub fn missed(&self) -> f64 {
+        self.rows.last().map_or(1.0, |row| row.missed)
+    }
+
+    /// The object of `result.json`.
+    pub fn json(&self) -> Value {
+        let Detection { a50, a90 } = self.schedule.detection;
+        let row = |row: &Row| json!({ "cycles": row.cycles, "crack_length_mm": clean(row.crack_length / MM), "pod": row.found, "missed": row.missed });
+        json!({
+            "a50_mm": clean(a50 / MM),
+            "a90_mm": clean(a90 / MM),
+            "interval_cycles": self.schedule.cycles[1],
+            "missed": self.missed(),
+            "rows": self.rows.iter().map(row).collect::<Vec<_>>(),
+        })
+    }
+
+    /// A line of a summary.
+    pub fn words(&self) -> String {
+        let (count, missed) = (self.rows.len(), self.missed());
+        format!("  detection      {count} inspections miss the crack with a probability of {missed:.2e}")
+    }
+}

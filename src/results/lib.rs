@@ -1,0 +1,46 @@
+//! Results to files: tables, `result.json`, charts, pictures and ParaView files.
+//!
+//! Knows: tables, pictures, words, checks, the report, provenance, folders that are whole or absent, US units in what is written.
+//! Must not know: scenes, studies, terminals, networks.
+//!
+//! Imports `calibration` and what it imports, and `tables` for Parquet.
+//!
+//! A run writes into an [`output::OutputFolder`], which appears under its name only once it is whole.
+
+pub mod answers;
+pub mod band;
+pub mod chart;
+pub mod checks;
+pub mod csv;
+pub mod damage;
+pub mod digits;
+pub mod factor_sweep;
+pub mod factors;
+pub mod fit;
+#[cfg(feature = "tables")]
+pub mod frames;
+pub mod fleet;
+pub mod fit_use;
+pub mod inspections;
+pub mod json;
+pub mod model_words;
+pub mod output;
+pub mod paper;
+pub mod pictures;
+pub mod provenance;
+pub mod resample;
+pub mod quality;
+pub mod run;
+pub mod sensitivities;
+pub mod spectrum;
+pub mod specimen_picture;
+pub mod stresses;
+pub mod sweep;
+pub mod test_record;
+pub mod time;
+pub mod units;
+pub mod vtk;
+
+pub mod axis;
+pub mod labels;
+mod raster;

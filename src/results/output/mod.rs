@@ -1,0 +1,37 @@
+//! Output that is whole or absent, and touches nothing of anybody else: the one guard of whatever a command writes.
+//!
+//! A folder of results ([`OutputFolder`]) is made under a temporary name and put in its place at the end. Its marker ([`Marker`], file
+//! `.perilife`) says of which kind the run is and which files are its own; a later run of the same kind replaces those and refuses
+//! to begin where there is anything else, an input of its own above all. The same is asked again at the end, of the folder as it is
+//! then. A single file ([`OutputFile`]) replaces only one that bears the sign of the same command, and never one that was read. Who
+//! writes holds a lock ([`lock`]), so that two never write one place, and what a killed process left behind is known as such.
+//! [`pending`] lists what has to go when the process is asked to end.
+
+mod file;
+mod folder;
+pub mod lock;
+mod marker;
+pub mod pending;
+mod place;
+
+pub use file::{OutputFile, Sort, write_file};
+pub use folder::{Finished, OutputFolder, StandingFolder};
+pub use lock::Share;
+pub use marker::{MARKER, Marker, RunKind, is_temporary};
+pub use place::Room;
+
+use perilife_base::error::Error;
+
+/// An error with something more to say at its end.
+fn said(error: Error, more: &str) -> Error {
+    match error {
+        Error::Input(mut trouble) => {
+            trouble.remedy = format!("{}; {more}", trouble.remedy);
+            Error::Input(trouble)
+        }
+        Error::File { path, action, source } => {
+            Error::File { path, action, source: std::io::Error::new(source.kind(), format!("{source}; {more}")) }
+        }
+        other => Error::Mechanics(format!("{other}; {more}")),
+    }
+}

@@ -1,0 +1,240 @@
+//! Pictures of a fit to readings: `fit.svg`, crack length over cycles of every specimen, and `da_dn.svg`.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+use super::curves::smooth;
+use crate::axis::Axis;
+use crate::chart::{COMPUTED, Frame, INK, OF_RATES, Size};
+use crate::units::of_table;
+use perilife_base::error::{Error, InputError, Result};
+use perilife_base::units::us::System;
+use perilife_plate::specimen::Point;
+
+/// The figures of a fit.
+pub const FIT_FILE: &str = "fit.json";
+/// Measured and fitted cycles of every specimen.
+pub const CURVES_FILE: &str = "fit_curves.csv";
+/// The fitted curve with the band of its constants.
+pub const BAND_FILE: &str = "fit_band.csv";
+/// Every reading.
+pub const READINGS_FILE: &str = "readings.csv";
+/// Rates that a law over K was fitted to.
+pub const RATES_FITTED_FILE: &str = "fit_rates.csv";
+/// Stress ratios that count as one.
+const RATIO_ALIKE: f64 = 0.0051;
+/// Most stress ratios that a picture tells apart.
+const RATIOS_DRAWN: usize = 6;
+/// Most circles of a picture; of more readings every second, third and so on is drawn.
+const CIRCLES_MAX: usize = 160;
+/// Rates from which circles would hide the law and each other: dots then.
+const CIRCLES_OF_RATES_MAX: usize = 400;
+/// Share of an area that the band of the fit covers with its colour.
+const BAND: f64 = 0.3;
+
+/// Readings and fitted curve of one specimen: cycles and crack length, mm.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Lives {
+    /// Name.
+    pub name: String,
+    /// `[cycles, length]` as measured.
+    pub measured: Vec<Point>,
+    /// The same of the fit.
+    pub fitted: Vec<Point>,
+}
+
+/// Crack length over cycles: readings of the curve that was fitted as circles, other specimens as thin lines, the law as a line with
+/// its band, `[length, low, high]`.
+pub fn lives_svg(curves: &[Lives], fitted_to: &str, band: &[[f64; 3]], size: Size) -> String {
+    let all = || curves.iter().flat_map(|curve| curve.measured.iter().chain(&curve.fitted));
+    let cycles = all().map(|point| point[0]).chain(band.iter().map(|row| row[2]));
+    let axes = [
+        Axis::linear_in(cycles, (size.width / 95.0).clamp(2.0, 6.0)),
+        Axis::linear_in(all().map(|point| point[1]), (size.height / 45.0).clamp(2.0, 6.0)),
+    ];
+    let mut frame = Frame::with_names(size, axes, ["Cycles N", "Crack length a, mm"], 0);
+    let of_end = |end: usize| band.iter().map(|row| [row[end], row[0]]).collect::<Vec<Point>>();
+    frame.band(&of_end(1), &of_end(2), BAND);
+    for other in curves.iter().filter(|curve| curve.name != fitted_to) {
+        frame.line(&other.measured, &format!("{INK}38"), 1.0, "");
+    }
+    if let Some(curve) = curves.iter().find(|curve| curve.name == fitted_to).or(curves.last()) {
+        let [cycles, lengths]: [Vec<f64>; 2] = [0, 1].map(|axis| curve.fitted.iter().map(|point| point[axis]).collect());
+        frame.line(&smooth(&cycles, &lengths), COMPUTED, 2.0, "");
+        let every = curve.measured.len().div_ceil(CIRCLES_MAX).max(1);
+        frame.circles(&curve.measured.iter().copied().step_by(every).collect::<Vec<_>>());
+    }
+    frame.finish(&format!("Crack length over cycles of {} curves with the fitted law", curves.len()))
+}
+
+/// A law over the range of ΔK that was measured: its curve, `[ΔK, da/dN]`, and the pivot.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LawCurve {
+    /// Name at its end; may be empty.
+    pub name: String,
+    /// In order of ΔK.
+    pub points: Vec<Point>,
+    /// Where the errors of rate and exponent have no correlation.
+    pub pivot: Option<Point>,
+}
+
+/// `da_dn.svg`: readings as open circles, laws over their measured range only. ΔK in MPa√m, rates in mm/cycle.
+pub fn rates_svg(readings: &[Point], laws: &[LawCurve], size: Size) -> String {
+    let is_positive = |point: &&Point| point.iter().all(|value| value.is_finite() && *value > 0.0);
+    let readings: Vec<Point> = readings.iter().filter(is_positive).copied().collect();
+    let all: Vec<Point> = readings.iter().chain(laws.iter().flat_map(|law| &law.points)).filter(is_positive).copied().collect();
+    let axes = [0, 1].map(|axis| Axis::logarithmic(all.iter().map(|point| point[axis])));
+    let names = if size.width < 500.0 { ["ΔK, MPa√m", "da/dN, mm/cycle"] } else { OF_RATES };
+    let letters = laws.iter().map(|law| law.name.chars().count()).max().unwrap_or(0);
+    let mut frame = Frame::with_names(size, axes, names, letters);
+    match readings.len() {
+        0..=CIRCLES_OF_RATES_MAX => frame.circles(&readings),
+        _ => frame.dots(&readings, INK),
+    }
+    for law in laws {
+        frame.line(&law.points, COMPUTED, 2.0, "");
+        if let Some(last) = law.points.last().filter(|_| !law.name.is_empty()) {
+            frame.name(*last, &law.name, COMPUTED);
+        }
+        law.pivot.into_iter().for_each(|pivot| frame.ring(pivot, COMPUTED));
+    }
+    frame.finish(&format!("Growth rate over the range of K: {} readings and the law over their range", readings.len()))
+}
+
+/// A row of `readings.csv`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Reading {
+    /// Specimen.
+    pub specimen: String,
+    /// Cycles as read.
+    pub cycles: f64,
+    /// Crack length as read, mm.
+    pub crack_length_mm: f64,
+    /// ΔK, MPa√m: in the middle of the readings that the rate was taken from; `None` where no formula gives it.
+    pub delta_k_mpa_sqrt_m: Option<f64>,
+    /// Growth rate, mm/cycle; `None` at the ends of a record.
+    pub da_dn_mm_per_cycle: Option<f64>,
+    /// How the rate was taken.
+    pub method: String,
+    /// What speaks against it.
+    pub marks: String,
+    /// Why it does not count; empty where it does.
+    pub left_out: String,
+}
+
+#[derive(Deserialize)]
+struct CurveRow {
+    specimen: String,
+    crack_length_mm: f64,
+    cycles_measured: f64,
+    cycles_fitted: f64,
+}
+
+/// What the tables of a fit to readings say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitTables {
+    /// Every reading.
+    pub readings: Vec<Reading>,
+    curves: Vec<Lives>,
+    band: Vec<[f64; 3]>,
+    law: LawCurve,
+    fitted_to: String,
+}
+
+impl FitTables {
+    /// Of `fit.json` and the texts of `fit_curves.csv`, `fit_band.csv` and `readings.csv`.
+    /// Errors: a line that is not as the fit wrote it, by file, line and what is wrong with it.
+    pub fn read(fit: &Value, [curves, band, readings]: [&str; 3]) -> Result<Self> {
+        let mut all: Vec<Lives> = Vec::new();
+        for row in rows::<CurveRow>(curves, CURVES_FILE)? {
+            if all.last().is_none_or(|curve| curve.name != row.specimen) {
+                all.push(Lives { name: row.specimen, ..Lives::default() });
+            }
+            if let Some(curve) = all.last_mut() {
+                curve.measured.push([row.cycles_measured, row.crack_length_mm]);
+                curve.fitted.push([row.cycles_fitted, row.crack_length_mm]);
+            }
+        }
+        let band = rows::<[f64; 4]>(band, BAND_FILE)?.into_iter().map(|[length, _, low, high]| [length, low, high]).collect();
+        let figure = |key: &str| fit[key].as_f64();
+        let point = |delta_k: f64, rate: Option<f64>| Some([delta_k, rate?]);
+        let rate = |delta_k: f64| Some(figure("paris_c_mm_per_cycle")? * delta_k.powf(figure("paris_m")?));
+        let ends = ["delta_k_min_mpa_sqrt_m", "delta_k_max_mpa_sqrt_m"].map(figure);
+        let law = LawCurve {
+            name: String::new(),
+            points: ends.into_iter().flatten().filter_map(|delta_k| point(delta_k, rate(delta_k))).collect(),
+            pivot: figure("pivot_delta_k_mpa_sqrt_m").and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
+        };
+        let fitted_to = fit["fitted_to"].as_str().unwrap_or("").to_owned();
+        Ok(FitTables { readings: rows(readings, READINGS_FILE)?, curves: all, band, law, fitted_to })
+    }
+
+    /// Crack length over cycles.
+    pub fn lives_svg(&self, size: Size) -> String {
+        lives_svg(&self.curves, &self.fitted_to, &self.band, size)
+    }
+
+    /// Rates of the readings that count, and the law.
+    pub fn rates_svg(&self, size: Size) -> String {
+        let counted = self.readings.iter().filter(|reading| reading.left_out.is_empty());
+        let points: Vec<Point> = counted.filter_map(|r| Some([r.delta_k_mpa_sqrt_m?, r.da_dn_mm_per_cycle?])).collect();
+        rates_svg(&points, std::slice::from_ref(&self.law), size)
+    }
+}
+
+/// A row of `fit_rates.csv`: a rate that a law was fitted to, and that of the law.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct RateFitted {
+    /// Test that it is from.
+    pub series: String,
+    /// R.
+    pub stress_ratio: f64,
+    /// ΔK, MPa√m.
+    pub delta_k_mpa_sqrt_m: f64,
+    /// Measured rate, mm/cycle.
+    pub da_dn_mm_per_cycle: f64,
+    /// Rate of the law there, mm/cycle.
+    pub da_dn_fitted_mm_per_cycle: f64,
+}
+
+/// Rates of a fit of laws over K, by the text of `fit_rates.csv`.
+/// Errors: a line that is not as the fit wrote it.
+pub fn rates_fitted(text: &str) -> Result<Vec<RateFitted>> {
+    rows(text, RATES_FITTED_FILE)
+}
+
+/// `da_dn.svg` of a fit of laws over K: rates as circles, the law over the rates of every stress ratio.
+pub fn law_svg(rates: &[RateFitted], size: Size) -> String {
+    let mut ratios: Vec<f64> = rates.iter().map(|rate| rate.stress_ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios.dedup_by(|a, b| (*a - *b).abs() < RATIO_ALIKE);
+    let of_ratio = |ratio: &f64| {
+        let own = rates.iter().filter(|rate| (rate.stress_ratio - ratio).abs() < RATIO_ALIKE);
+        let mut points: Vec<Point> = own.map(|rate| [rate.delta_k_mpa_sqrt_m, rate.da_dn_fitted_mm_per_cycle]).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        LawCurve { name: format!("R = {ratio}"), points, pivot: None }
+    };
+    // More of them than a picture can tell apart have no lines.
+    let laws: Vec<LawCurve> = if ratios.len() > RATIOS_DRAWN { Vec::new() } else { ratios.iter().map(of_ratio).collect() };
+    let measured: Vec<Point> = rates.iter().map(|rate| [rate.delta_k_mpa_sqrt_m, rate.da_dn_mm_per_cycle]).collect();
+    rates_svg(&measured, &laws, size)
+}
+
+/// Rows of a table with a header.
+fn rows<R: DeserializeOwned>(text: &str, name: &str) -> Result<Vec<R>> {
+    let bad = |error: csv::Error| {
+        let line = error.position().and_then(|position| usize::try_from(position.line()).ok());
+        Error::Input(Box::new(InputError {
+            file: Some(Path::new(name).to_path_buf()),
+            line,
+            problem: format!("is not as `perilife calibrate` wrote it: {error}"),
+            remedy: "run `perilife calibrate` again to write the table anew".to_owned(),
+            ..InputError::default()
+        }))
+    };
+    let text = of_table(text, System::Si);
+    csv::Reader::from_reader(text.as_bytes()).deserialize().map(|row| row.map_err(bad)).collect()
+}

@@ -1,0 +1,152 @@
+//! The plate of a run as it is drawn: outline, holes, first cracks, loads, and what is said of it.
+
+mod drawing;
+
+pub(super) use drawing::colour;
+pub(crate) use drawing::scale_bar;
+pub use drawing::{MOVING, SIZE, growth_svg, plate_svg};
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::model_words::{clean, loading, short};
+use perilife_base::units::{GPA, MM, MPA, MPA_SQRT_M};
+use perilife_growth::case::Case;
+use perilife_plate::specimen::geometry::bounding_box;
+use perilife_plate::specimen::{Load, Point, Specimen, Support};
+
+/// The plate of a case as it is drawn: `plate` of `result.json`. Lengths in mm.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plate {
+    /// Outline, not closed.
+    pub outline_mm: Vec<Point>,
+    /// Round holes.
+    pub holes: Vec<HoleDrawn>,
+    /// Corners of slots.
+    pub slots_mm: Vec<Vec<Point>>,
+    /// Ends of the pieces of cracks at the start.
+    pub cracks_mm: Vec<[Point; 2]>,
+    /// What pulls or pushes.
+    pub loads: Vec<LoadDrawn>,
+    /// Ends of stretches that are held.
+    pub held_mm: Vec<[Point; 2]>,
+    /// The load in words.
+    pub load: String,
+    /// The specimen in words: kind and sizes.
+    #[serde(default)]
+    pub specimen: String,
+    /// The material in words.
+    #[serde(default)]
+    pub material: String,
+}
+
+/// A hole.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HoleDrawn {
+    /// Middle, mm.
+    pub x_mm: f64,
+    /// Middle, mm.
+    pub y_mm: f64,
+    /// Diameter, mm.
+    pub diameter_mm: f64,
+}
+
+/// A load: on a stretch of the outline, or, where both of its ends are one place, of a pin in a hole there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LoadDrawn {
+    /// One end, mm.
+    pub from_mm: Point,
+    /// Other end, mm.
+    pub to_mm: Point,
+    /// Unit vector of the load on the plate.
+    pub direction: Point,
+}
+
+impl Plate {
+    /// Of a case.
+    pub fn of(case: &Case) -> Self {
+        let specimen = &case.specimen;
+        let hole = |hole: &perilife_plate::specimen::Hole| HoleDrawn {
+            x_mm: clean(hole.centre[0] / MM),
+            y_mm: clean(hole.centre[1] / MM),
+            diameter_mm: clean(2.0 * hole.radius / MM),
+        };
+        Plate {
+            outline_mm: specimen.outline.iter().map(mm).collect(),
+            holes: specimen.holes.iter().map(hole).collect(),
+            slots_mm: specimen.slots.iter().map(|slot| slot.corners().iter().map(mm).collect()).collect(),
+            cracks_mm: specimen.cracks.iter().map(|crack| [mm(&crack.from), mm(&crack.to)]).collect(),
+            loads: loads(specimen),
+            held_mm: held(specimen),
+            load: loading(case),
+            specimen: specimen_words(case),
+            material: material_words(case),
+        }
+    }
+}
+
+fn specimen_words(case: &Case) -> String {
+    let specimen = &case.specimen;
+    let [low, high] = bounding_box(&specimen.outline);
+    let [width, length, thickness] = [high[0] - low[0], high[1] - low[1], specimen.thickness].map(|size| short(size / MM));
+    let of = [(specimen.holes.len(), "hole"), (specimen.slots.len(), "slot"), (specimen.crack_lines().len(), "crack")];
+    let words = |(count, name): &(usize, &str)| format!(", {count} {name}{}", if *count == 1 { "" } else { "s" });
+    let more: String = of.iter().filter(|(count, _)| *count > 0).map(words).collect();
+    format!("{}, {width} × {length} × {thickness} mm{more}", specimen.kind.name().replace('_', " "))
+}
+
+fn material_words(case: &Case) -> String {
+    let material = &case.material;
+    let yields =
+        material.yield_strength.map_or("no yield strength".to_owned(), |strength| format!("σ_Y {} MPa", short(strength / MPA)));
+    let tough = material.toughness.map_or("no toughness".to_owned(), |k| format!("K_c {} MPa√m", short(k / MPA_SQRT_M)));
+    let modulus = short(material.youngs_modulus / GPA);
+    let (name, ratio) = (&material.name, short(material.poisson_ratio));
+    // Of a file its stem: where it lay is no part of what it says.
+    let stem = Path::new(name).file_stem().filter(|_| name.ends_with(".toml")).map(|stem| stem.to_string_lossy());
+    let name = stem.unwrap_or_else(|| if name.is_empty() { "given by constants".into() } else { name.into() });
+    format!("{name}: E {modulus} GPa, ν {ratio}, {yields}, {tough}, plane {}", material.plane.name())
+}
+
+fn mm(point: &Point) -> Point {
+    point.map(|metres| clean(metres / MM))
+}
+
+fn loads(specimen: &Specimen) -> Vec<LoadDrawn> {
+    let unit = |[x, y]: Point| [x / x.hypot(y), y / x.hypot(y)];
+    let of_load = |load: &Load| match load {
+        Load::Edge { from, to, traction } if traction[0].hypot(traction[1]) > 0.0 => {
+            Some(LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction: unit(*traction) })
+        }
+        Load::Edge { .. } => None,
+        Load::Bent { from, to, tractions: [a, b] } => {
+            // Of the end with the larger traction.
+            let largest = if a[0].hypot(a[1]) > b[0].hypot(b[1]) { a } else { b };
+            Some(LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction: unit(*largest) })
+        }
+        Load::Pin { hole, direction, .. } => {
+            let centre = mm(&specimen.holes.get(*hole)?.centre);
+            Some(LoadDrawn { from_mm: centre, to_mm: centre, direction: *direction })
+        }
+    };
+    let of_support = |support: &Support| match support {
+        Support::Moved { from, to, direction, way, .. } if *way > 0.0 => {
+            Some(LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction: *direction })
+        }
+        _ => None,
+    };
+    specimen.loads.iter().filter_map(of_load).chain(specimen.supports.iter().filter_map(of_support)).collect()
+}
+
+fn held(specimen: &Specimen) -> Vec<[Point; 2]> {
+    let [low, high] = bounding_box(&specimen.outline).map(|corner| mm(&corner));
+    let of_support = |support: &Support| match support {
+        Support::Fixed { from, to, .. } => vec![[mm(from), mm(to)]],
+        Support::ClampedEnds | Support::RigidEnds => {
+            vec![[low, [high[0], low[1]]], [[low[0], high[1]], high]]
+        }
+        Support::Moved { .. } | Support::Elsewhere => Vec::new(),
+    };
+    specimen.supports.iter().flat_map(of_support).collect()
+}

@@ -1,0 +1,372 @@
+//! `plate.svg`: the plate to scale with its loads, the first crack and the way of every tip, coloured by cycles.
+
+use serde_json::Value;
+
+use super::Plate;
+use crate::chart::{COMPUTED, INK, Size};
+use crate::pictures::curves::a_n_moving;
+use crate::pictures::tables::RunTables;
+use crate::specimen_picture::sketch::Sketch;
+use perilife_base::monotone::Monotone;
+use perilife_base::units::shown::{name_of, per};
+use perilife_plate::specimen::Point;
+use perilife_plate::specimen::geometry::{along, distance};
+
+/// Size of the picture in a file of its own.
+pub const SIZE: Size = Size { width: 760.0, height: 520.0, text: 13.0 };
+/// Size of the one that moves, with its curve.
+pub const MOVING: Size = Size { width: 1120.0, height: 520.0, text: 13.0 };
+const PLATE: &str = "#e3e8ee";
+const EDGE: &str = "#44505d";
+const QUIET: &str = "#55606d";
+/// From the first to the last cycle: lightness falls all the way, so that it reads in grey too.
+const RAMP: [[f64; 3]; 5] =
+    [[90.0, 169.0, 230.0], [79.0, 127.0, 209.0], [106.0, 82.0, 179.0], [122.0, 42.0, 130.0], [90.0, 11.0, 69.0]];
+/// Shares of the life that are marked along the path, percent.
+const MARKS: [f64; 4] = [25.0, 50.0, 75.0, 90.0];
+/// Share of the plate below which cracks and their ways get a picture of their own.
+const SMALL: f64 = 0.7;
+/// Places of a tip between which an animation moves it evenly.
+const FRAMES: usize = 40;
+/// Room around the plate for loads, and below it for the scale, px.
+const AROUND: f64 = 44.0;
+const BELOW: f64 = 26.0;
+
+/// The way of a tip from its start on.
+struct Way {
+    /// Places, mm.
+    places: Vec<Point>,
+    /// Cycles over the way, mm.
+    cycles: Monotone,
+    /// Way up to every place.
+    lengths: Vec<f64>,
+}
+
+impl Way {
+    fn of(path: &[[f64; 3]]) -> Self {
+        // The initial crack is drawn by itself: its far end stands first, at N = 0 as the tip.
+        let start = path.iter().rposition(|row| row[0] <= 0.0).unwrap_or(0);
+        let places: Vec<Point> = path[start..].iter().map(|row| [row[1], row[2]]).collect();
+        let mut lengths = vec![0.0];
+        for pair in places.windows(2) {
+            lengths.push(lengths[lengths.len() - 1] + distance(pair[0], pair[1]));
+        }
+        let table = lengths.iter().zip(&path[start..]).map(|(length, row)| [*length, row[0]]);
+        Way { cycles: Monotone::new(table), places, lengths }
+    }
+
+    /// Place at a way from the start, mm.
+    fn at(&self, length: f64) -> Point {
+        let after = self.lengths.partition_point(|known| *known <= length).min(self.places.len() - 1);
+        let before = after.saturating_sub(1);
+        let width = self.lengths[after] - self.lengths[before];
+        let share = if width > 0.0 { ((length - self.lengths[before]) / width).clamp(0.0, 1.0) } else { 0.0 };
+        along(self.places[before], self.places[after], share)
+    }
+
+    fn whole(&self) -> f64 {
+        self.lengths.last().copied().unwrap_or(0.0)
+    }
+
+    /// Way at cycles; `None` beyond the last.
+    fn length_at(&self, cycles: f64) -> Option<f64> {
+        let (mut low, mut high) = (0.0, self.whole());
+        if self.cycles.at(high) < cycles {
+            return None;
+        }
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            if self.cycles.at(middle) < cycles { low = middle } else { high = middle }
+        }
+        Some(high)
+    }
+}
+
+/// SVG text: the whole plate, and beside it the cracks where they are small in it.
+pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
+    let ways: Vec<Way> = tables.paths.iter().filter(|path| !path.is_empty()).map(|path| Way::of(path)).collect();
+    let [low, high] = bounds(plate.outline_mm.iter());
+    let of_cracks = bounds(plate.cracks_mm.iter().flatten().chain(ways.iter().flat_map(|way| &way.places)));
+    let largest = |[low, high]: [Point; 2]| (high[0] - low[0]).max(high[1] - low[1]);
+    let is_small = largest(of_cracks) < SMALL * largest([low, high]);
+    let width = if is_small { 0.45 * size.width } else { size.width };
+    // Beside the plate there is room for loads only where some act there.
+    let beside = if plate.loads.iter().any(|load| load.direction[0].abs() > 0.5) { AROUND } else { 14.0 };
+    let room = [width - 2.0 * beside, size.height - 2.0 * AROUND - BELOW];
+    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
+    let middle = along(low, high, 0.5);
+    let origin = [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale];
+    let mut sketch = Sketch::new(scale, origin);
+    let drawing = Drawing { plate, ways: &ways, life: tables.life(), text: size.text, width: size.width };
+    drawing.body(&mut sketch);
+    drawing.loads(&mut sketch);
+    drawing.cracks(&mut sketch, !is_small);
+    scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
+    if is_small {
+        drawing.detail(&mut sketch, of_cracks, size);
+    }
+    if !ways.is_empty() {
+        ramp(&mut sketch, size);
+    }
+    let sentence = format!("Plate, {}; the ways of {} crack tips, coloured by cycles", plate.load, ways.len());
+    sketch.picture([size.width, size.height], &sentence)
+}
+
+/// The plate at the left with cracks that grow as cycles go by, and at the right the curve with a dot that follows; SVG that moves by itself.
+pub fn growth_svg(plate: &Plate, result: &Value, tables: &RunTables, size: Size) -> String {
+    let ways: Vec<Way> = tables.paths.iter().filter(|path| !path.is_empty()).map(|path| Way::of(path)).collect();
+    let [low, high] = bounds(plate.outline_mm.iter());
+    let (width, life) = (0.5 * size.width, tables.life());
+    let room = [width - 2.0 * AROUND, size.height - 2.0 * AROUND - BELOW];
+    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
+    let middle = along(low, high, 0.5);
+    let mut sketch = Sketch::new(scale, [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale]);
+    let drawing = Drawing { plate, ways: &[], life, text: size.text, width: size.width };
+    drawing.body(&mut sketch);
+    drawing.loads(&mut sketch);
+    drawing.cracks(&mut sketch, true);
+    for way in &ways {
+        let lengths = || (0..=FRAMES).map(|frame| way.whole() * frame as f64 / FRAMES as f64);
+        let places: Vec<Point> = lengths().map(|length| sketch.place(way.at(length))).collect();
+        let times: Vec<f64> = lengths().map(|length| way.cycles.at(length) / life).collect();
+        sketch.growing(&places, &times, COMPUTED, 3.5);
+    }
+    scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
+    sketch.within([width, 0.0], [width, size.height], a_n_moving(result, tables, Size { width, ..size }));
+    sketch.picture([size.width, size.height], &format!("Cracks as they grow over {life:.0} cycles, {}", plate.load))
+}
+
+fn bounds<'p>(points: impl Iterator<Item = &'p Point>) -> [Point; 2] {
+    let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.fold(start, |[low, high], p| [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]])
+}
+
+struct Drawing<'a> {
+    plate: &'a Plate,
+    ways: &'a [Way],
+    life: f64,
+    text: f64,
+    /// Width of the picture, px.
+    width: f64,
+}
+
+impl Drawing<'_> {
+    /// Outline, holes and slots.
+    fn body(&self, sketch: &mut Sketch) {
+        sketch.polygon(&self.plate.outline_mm, PLATE, EDGE);
+        for hole in &self.plate.holes {
+            sketch.circle([hole.x_mm, hole.y_mm], 0.5 * hole.diameter_mm, "white", EDGE);
+        }
+        for slot in &self.plate.slots_mm {
+            sketch.polygon(slot, "white", "none");
+            for side in 0..slot.len() {
+                let (from, to) = (slot[side], slot[(side + 1) % slot.len()]);
+                // Walls are drawn inside the plate only: the mouth is open.
+                let inside = |share: f64| contains(&self.plate.outline_mm, along(from, to, share));
+                let parts: Vec<f64> = (0..64).map(|part| (f64::from(part) + 0.5) / 64.0).filter(|share| inside(*share)).collect();
+                if let [first, .., last] = parts.as_slice() {
+                    sketch.path(&[sketch.place(along(from, to, *first)), sketch.place(along(from, to, *last))], EDGE, 1.4, "");
+                }
+            }
+        }
+    }
+
+    /// First cracks in ink, ways in the colours of cycles, tips; with the marks of the life where they are asked for.
+    fn cracks(&self, sketch: &mut Sketch, is_large: bool) {
+        let width = if is_large { 4.0 } else { 2.4 };
+        for way in self.ways {
+            // Steps of three pixels, each in the colour of its middle.
+            let steps = (way.whole() * sketch.scale / 3.0).ceil().clamp(1.0, 400.0);
+            for step in 0..steps as usize {
+                let [from, to] = [step as f64, step as f64 + 1.08].map(|part| way.whole() * (part / steps).min(1.0));
+                let colour = colour(way.cycles.at(0.5 * (from + to)) / self.life);
+                sketch.path(&[sketch.place(way.at(from)), sketch.place(way.at(to))], &colour, width, "");
+            }
+        }
+        for [from, to] in &self.plate.cracks_mm {
+            sketch.path(&[sketch.place(*from), sketch.place(*to)], INK, if is_large { 5.0 } else { 3.2 }, "");
+        }
+        let mut taken = Vec::new();
+        for (number, way) in self.ways.iter().enumerate() {
+            if is_large {
+                self.marks(sketch, way, &mut taken);
+            }
+            let end = sketch.place(way.at(way.whole()));
+            sketch.ring(end, if is_large { 4.5 } else { 3.0 }, INK, 1.8);
+            if is_large && self.ways.len() > 1 {
+                let [x, y] = [0, 1].map(|i| way.at(way.whole())[i] - way.at(0.0)[i]);
+                let size = x.hypot(y).max(1e-12);
+                let place = [end[0] + 16.0 * x / size, end[1] - 16.0 * y / size + 0.35 * self.text];
+                sketch.name(place, &number.to_string(), "middle", self.text, INK);
+            }
+        }
+    }
+
+    /// Where the tip was at shares of the life; `taken` are the middles of words that stand already.
+    fn marks(&self, sketch: &mut Sketch, way: &Way, taken: &mut Vec<Point>) {
+        for share in MARKS {
+            let Some(length) = way.length_at(share / 100.0 * self.life) else { continue };
+            let at = sketch.place(way.at(length));
+            let step = 0.02 * way.whole();
+            let (from, to) = (sketch.place(way.at((length - step).max(0.0))), sketch.place(way.at(length + step)));
+            let reach = distance(from, to).max(1e-9);
+            // Across the way: its upper side first, or the right of one that runs up.
+            let across = [(to[1] - from[1]) / reach, -(to[0] - from[0]) / reach];
+            let is_lower = across[1] > 0.2 || across[1].abs() <= 0.2 && across[0] < 0.0;
+            let upper = if is_lower { across.map(|part| -part) } else { across };
+            let half = [1.4 * self.text, 0.6 * self.text];
+            let place = |side: f64, out: f64| [0, 1].map(|i| at[i] + side * upper[i] * (out + half[i]));
+            let is_free =
+                |middle: &Point| !taken.iter().any(|other| (0..2).all(|i| (other[i] - middle[i]).abs() < 2.0 * half[i]));
+            let places = [(1.0, 10.0), (-1.0, 10.0), (1.0, 24.0), (-1.0, 24.0)];
+            // Where all is taken the mark has no words.
+            if let Some((side, out)) = places.into_iter().find(|(side, out)| is_free(&place(*side, *out))) {
+                let middle = place(side, out);
+                sketch.path(&[at, [0, 1].map(|i| at[i] + side * out * upper[i])], INK, 1.0, "");
+                sketch.name([middle[0], middle[1] + 0.35 * self.text], &format!("{share:.0} %"), "middle", self.text, INK);
+                taken.push(middle);
+            }
+            sketch.ring(at, 3.0, INK, 1.3);
+        }
+    }
+
+    /// Arrows, what is held, and the load in words once.
+    fn loads(&self, sketch: &mut Sketch) {
+        for [from, to] in &self.plate.held_mm {
+            self.hold(sketch, *from, *to);
+        }
+        let mut is_named = false;
+        // Words wider than the picture are written smaller.
+        let letters = self.plate.load.chars().count() as f64;
+        let text = self.text.min((self.width - 8.0) / (0.54 * letters.max(1.0)));
+        for load in &self.plate.loads {
+            let way = [load.direction[0], -load.direction[1]];
+            let (from, to) = (sketch.place(load.from_mm), sketch.place(load.to_mm));
+            let reach = distance(from, to);
+            let is_pin = reach < 1e-9;
+            let held = self.plate.held_mm.iter().any(|[one, other]| *one == load.from_mm || *other == load.from_mm);
+            let hole = self.plate.holes.iter().find(|hole| is_pin && [hole.x_mm, hole.y_mm] == load.from_mm);
+            let radius = hole.map_or(0.0, |hole| 0.5 * hole.diameter_mm * sketch.scale);
+            let start = if is_pin {
+                radius + 3.0
+            } else if held {
+                11.0
+            } else {
+                3.0
+            };
+            let count = if is_pin { 1 } else { (reach / 28.0).round().clamp(1.0, 9.0) as usize };
+            if is_pin {
+                sketch.dot(from, (radius - 2.0).max(2.0), "#7b8794");
+            }
+            for arrow in 0..count {
+                let foot = along(from, to, (arrow as f64 + 0.5) / count as f64);
+                let [near, far] = [start, start + 18.0].map(|out| [foot[0] + out * way[0], foot[1] + out * way[1]]);
+                sketch.arrow(near, far, QUIET, 1.3);
+            }
+            // The upper of two that pull against each other comes first where it has room for words.
+            if !is_named && (way[1] < -0.5 || self.plate.loads.iter().all(|load| load.direction[1] < 0.5)) {
+                is_named = true;
+                let middle = along(from, to, 0.5);
+                let place = [middle[0] + (start + 22.0) * way[0], middle[1] + (start + 22.0) * way[1] - 3.0];
+                let (place, anchor) = if is_pin {
+                    ([middle[0] + 12.0, place[1] + 14.0], "start")
+                } else {
+                    // Words wider than the plate stay within the picture.
+                    ([place[0].max(4.0 + 0.27 * text * letters), place[1]], "middle")
+                };
+                sketch.name(place, &self.plate.load, anchor, text, INK);
+            }
+        }
+        if !is_named {
+            let place = [8.0, 1.2 * self.text];
+            sketch.name(place, &self.plate.load, "start", text, INK);
+        }
+    }
+
+    /// Hatching outside a stretch of the outline that is held.
+    fn hold(&self, sketch: &mut Sketch, from: Point, to: Point) {
+        let [low, high] = bounds(self.plate.outline_mm.iter());
+        let middle = sketch.place(along(low, high, 0.5));
+        let (from, to) = (sketch.place(from), sketch.place(to));
+        let reach = distance(from, to).max(1e-9);
+        let mut out = [(to[1] - from[1]) / reach, -(to[0] - from[0]) / reach];
+        let foot = along(from, to, 0.5);
+        if (foot[0] - middle[0]) * out[0] + (foot[1] - middle[1]) * out[1] < 0.0 {
+            out = out.map(|part| -part);
+        }
+        sketch.path(&[from, to], EDGE, 2.5, "");
+        let count = (reach / 8.0).ceil().clamp(1.0, 200.0);
+        for line in 0..count as usize {
+            let start = along(from, to, (line as f64 + 1.0) / count);
+            let end = along(from, to, line as f64 / count);
+            sketch.path(&[start, [end[0] + 8.0 * out[0], end[1] + 8.0 * out[1]]], EDGE, 1.0, "");
+        }
+    }
+
+    /// A frame with the cracks and their ways, enlarged.
+    fn detail(&self, sketch: &mut Sketch, [low, high]: [Point; 2], size: Size) {
+        let whole = [0.53 * size.width - 8.0, size.height - 24.0 - 2.0 * BELOW];
+        let room = 0.22 * (high[0] - low[0]).max(high[1] - low[1]).max(1e-6);
+        let spans = [high[0] - low[0] + 2.0 * room, high[1] - low[1] + 2.0 * room];
+        let scale = (whole[0] / spans[0]).min(whole[1] / spans[1]);
+        let frame = [whole[0], (spans[1] * scale).max(0.55 * whole[0]).min(whole[1])];
+        let place = [0.47 * size.width, 24.0 + 0.5 * (whole[1] - frame[1])];
+        scale_bar(sketch, [place[0] + 1.0, place[1] + frame[1] + 1.5 * self.text], [scale, whole[0] / scale], self.text);
+        let middle = along(low, high, 0.5);
+        let mut inner = Sketch::new(scale, [0.5 * frame[0] - middle[0] * scale, 0.5 * frame[1] + middle[1] * scale]);
+        self.body(&mut inner);
+        self.cracks(&mut inner, true);
+        sketch.within(place, frame, inner);
+        let corner = |x: f64, y: f64| [place[0] + x * frame[0], place[1] + y * frame[1]];
+        sketch.path(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0), corner(0.0, 0.0)], EDGE, 1.0, "");
+        // What the frame shows, in the whole plate.
+        let half = [0, 1].map(|i| 0.5 * frame[i] / scale);
+        let of_plate = |x: f64, y: f64| sketch.place([middle[0] + x * half[0], middle[1] + y * half[1]]);
+        let box_of = [of_plate(-1.0, -1.0), of_plate(1.0, -1.0), of_plate(1.0, 1.0), of_plate(-1.0, 1.0), of_plate(-1.0, -1.0)];
+        sketch.path(&box_of, "#7b8794", 1.0, "3 3");
+    }
+}
+
+/// Whether a point lies within an outline.
+fn contains(outline: &[Point], [x, y]: Point) -> bool {
+    let crosses = |place: usize| {
+        let (a, b) = (outline[place], outline[(place + 1) % outline.len()]);
+        (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+    };
+    (0..outline.len()).filter(|place| crosses(*place)).count() % 2 == 1
+}
+
+/// Colour of a share of the life.
+pub fn colour(share: f64) -> String {
+    let at = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
+    let first = (at as usize).min(RAMP.len() - 2);
+    let [r, g, b] =
+        [0, 1, 2].map(|i| (RAMP[first][i] + (at - first as f64) * (RAMP[first + 1][i] - RAMP[first][i])).round() as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// A length of 1, 2 or 5 times a power of ten, of the unit that is shown; `scale` is in pixels to a mm, `span` in mm.
+pub(crate) fn scale_bar(sketch: &mut Sketch, [x, y]: Point, [scale, span]: [f64; 2], text: f64) {
+    let (scale, span) = (scale / per("mm"), span * per("mm"));
+    let most = 0.3 * span;
+    let power = 10f64.powf(most.log10().floor());
+    let length = [5.0, 2.0, 1.0].into_iter().map(|part| part * power).find(|length| *length <= most).unwrap_or(power);
+    let end = x + length * scale;
+    sketch.path(&[[x, y - 5.0], [x, y], [end, y], [end, y - 5.0]], EDGE, 1.2, "");
+    sketch.name([end + 6.0, y], &format!("{length} {}", name_of("mm")), "start", text, QUIET);
+}
+
+/// What the colours stand for.
+fn ramp(sketch: &mut Sketch, size: Size) {
+    let (right, y) = (size.width - 10.0, size.height - 8.0);
+    let (width, parts) = (90.0, 30);
+    let words = 3.3 * size.text;
+    for part in 0..parts {
+        let share = f64::from(part) / f64::from(parts);
+        let x = right - words - width + share * width;
+        let step = width / f64::from(parts) + 0.5;
+        sketch.area(&[[x, y - 8.0], [x + step, y - 8.0], [x + step, y], [x, y]], &colour(share), 1.0);
+    }
+    sketch.name([right - words - width - 6.0, y], "cycles: 0", "end", size.text, QUIET);
+    sketch.name([right - words + 6.0, y], "life", "start", size.text, QUIET);
+}

@@ -1,0 +1,89 @@
+//! A spectrum in words and figures: what a case was understood to load its plate with, and how often its passes came.
+
+use serde_json::{Value, json};
+
+use super::model_words::{clean, short};
+use perilife_growth::case::Case;
+use perilife_growth::predict::Prediction;
+use perilife_plate::loading::spectrum::Spectrum;
+
+/// Shares of the largest load whose exceedances are told.
+const LEVELS: [f64; 4] = [0.9, 0.75, 0.5, 0.25];
+
+/// Bars of the histogram of ranges.
+pub const BARS: usize = 20;
+/// Levels of the maxima that are written, at the most.
+const MAXIMA_MOST: usize = 200;
+
+/// How often a pass has a maximum as large or larger, by falling maximum over the largest load, and how many of its cycles have a range in each of
+/// equal parts of the largest range, all over the largest load.
+pub fn curves(spectrum: &Spectrum) -> Value {
+    let levels = spectrum.exceedances();
+    let each = levels.len().div_ceil(MAXIMA_MOST);
+    let kept = levels.iter().enumerate().filter(|(place, _)| place % each == 0 || place + 1 == levels.len());
+    let maxima: Vec<[f64; 2]> = kept.map(|(_, (level, count))| [clean(*level), clean(*count)]).collect();
+    let (cycles, largest) = spectrum.ranges(BARS);
+    json!({ "maxima": maxima, "largest_range": clean(largest), "cycles_by_range": cycles })
+}
+
+/// How many maxima of a pass are larger than each of the levels.
+fn exceedances(spectrum: &Spectrum) -> [f64; 4] {
+    LEVELS.map(|level| spectrum.cycles.iter().filter(|cycle| cycle.max > level).map(|cycle| cycle.count).sum())
+}
+
+/// What was understood of a spectrum, in a line.
+pub fn more_words(case: &Case, spectrum: &Spectrum) -> String {
+    let left_out =
+        if spectrum.omitted > 0.0 { format!(" ({} more are left out)", short(spectrum.omitted)) } else { String::new() };
+    let passes = spectrum.repeats.map_or_else(|| "again and again".to_owned(), |passes| format!("{} passes", short(passes)));
+    let levels = LEVELS.map(|level| short(100.0 * level)).join(", ");
+    let above = exceedances(spectrum).map(short).join(", ");
+    let retardation = case.retardation.as_ref().map_or_else(
+        || "no retardation: the mean rate of a pass".to_owned(),
+        |model| format!("retardation {}, underloads: {}", model.kind, model.kind.0.underload),
+    );
+    format!(
+        "{} ({}): {} cycles a pass{left_out}, {} kinds, {passes}; above {levels} % of the largest: {above} a pass; {retardation}",
+        spectrum.file,
+        spectrum.format,
+        short(spectrum.per_pass),
+        spectrum.kinds
+    )
+}
+
+/// How many passes a run took, and how they were counted.
+pub fn words(case: &Case, prediction: &Prediction) -> Option<String> {
+    let spectrum = case.loading.spectrum.as_ref()?;
+    let model = case.retardation.as_ref().map_or("none", |model| model.kind.name());
+    let passes = prediction.life_cycles() / spectrum.per_pass;
+    Some(format!("{passes:.2} passes of {} cycles, retardation {model}", short(spectrum.per_pass)))
+}
+
+/// Passes in a life; `null` without a spectrum, and of a life without end.
+pub fn passes(case: &Case, prediction: &Prediction) -> Value {
+    let spectrum = case.loading.spectrum.as_ref();
+    json!(spectrum.zip(prediction.life()).map(|(spectrum, life)| life / spectrum.per_pass))
+}
+
+/// The object `spectrum` of a result; `null` where the loads are none.
+pub fn json(case: &Case, prediction: &Prediction) -> Value {
+    let Some(spectrum) = &case.loading.spectrum else { return Value::Null };
+    json!({
+        "file": spectrum.file,
+        "format": spectrum.format,
+        "cycles_per_pass": clean(spectrum.per_pass),
+        "cycles_omitted_per_pass": clean(spectrum.omitted),
+        "kinds_of_cycles": spectrum.kinds,
+        "classes_of_mean_rate": spectrum.classes.len(),
+        "largest": clean(spectrum.largest[1]),
+        "smallest_over_largest": clean(spectrum.smallest()),
+        "stress_ratio_min": clean(spectrum.ratios[0]),
+        "stress_ratio_max": clean(spectrum.ratios[1]),
+        "repeats": spectrum.repeats,
+        "exceedances": LEVELS.iter().zip(exceedances(spectrum)).map(|(level, count)| json!([level, clean(count)])).collect::<Vec<_>>(),
+        "curves": curves(spectrum),
+        "truncated_at": (spectrum.largest[1] < spectrum.largest[0]).then(|| clean(spectrum.largest[1] / spectrum.largest[0])),
+        "life_cycles_without_retardation": prediction.unretarded_cycles,
+        "retardation": case.retardation.as_ref().map_or_else(|| json!({ "model": "none" }), |model| model.json()),
+    })
+}

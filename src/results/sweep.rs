@@ -1,0 +1,344 @@
+//! Results of a sweep: plan, outcome of every case, `sweep.csv`, `sweep.json`, `life.svg`.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::chart::{self, Mark, Series};
+use super::csv;
+use super::output::write_file;
+use super::units::{shown_result, shown_table};
+use perilife_base::cells::field;
+use perilife_base::error::{Error, Result, input_missing};
+use perilife_calibration::sweep::distribution::quantile;
+use perilife_calibration::sweep::draw::label;
+use perilife_calibration::sweep::{DrawnCase, Sweep, design};
+use perilife_growth::predict::StopReason;
+
+/// File that says what a sweep consists of.
+pub const PLAN_FILE: &str = "plan.json";
+/// File of a case that says what came of it.
+pub const OUTCOME_FILE: &str = "outcome.toml";
+/// The table.
+pub const TABLE_FILE: &str = "sweep.csv";
+/// The figures.
+pub const FIGURES_FILE: &str = "sweep.json";
+/// The picture.
+pub const CHART_FILE: &str = "life.svg";
+/// Failures that the figures list at most; the table has all.
+const FAILURES_MAX: usize = 100;
+
+/// What a sweep consists of: all that is needed to collect its results.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// Program version.
+    pub version: String,
+    /// Name of the sweep.
+    pub name: String,
+    /// The sweep file as it was read.
+    pub design: Value,
+    /// What varies.
+    pub columns: Vec<String>,
+    /// Every case.
+    pub cases: Vec<PlannedCase>,
+}
+
+/// A case of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PlannedCase {
+    /// Hash of its input.
+    pub input: String,
+    /// Its values, as the table writes them.
+    pub values: Vec<String>,
+}
+
+/// What came of a case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Outcome {
+    /// Hash of the input it came of.
+    pub input: String,
+    /// Cycles to the end of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub life_cycles: Option<f64>,
+    /// Why it ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stop_reason: Option<String>,
+    /// Whether that is less than what the plate lives, all that could end it sooner being checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub life_is_lower_bound: Option<bool>,
+    /// Crack length at the end.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crack_length_final_mm: Option<f64>,
+    /// Time it took.
+    pub wall_s: f64,
+    /// Why there is no result.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+    /// Whether a machine was to blame and not the input, so that the next call tries again.
+    #[serde(default)]
+    pub try_again: bool,
+    /// What the user should know.
+    #[serde(default)]
+    pub warnings: Vec<String>,
+    /// Whether the files of the run stand beside this.
+    pub has_files: bool,
+}
+
+impl Outcome {
+    /// Whether its run ended before the plate did ([`StopReason::is_lower_bound`]).
+    fn is_cut_off(&self) -> bool {
+        self.stop_reason.as_deref().and_then(|reason| reason.parse::<StopReason>().ok()).is_some_and(StopReason::is_lower_bound)
+    }
+
+    /// A case without a result.
+    pub fn failed(case: &DrawnCase, problem: &str, wall_s: f64) -> Self {
+        Outcome {
+            input: case.hash.clone(),
+            life_cycles: None,
+            stop_reason: None,
+            life_is_lower_bound: None,
+            crack_length_final_mm: None,
+            wall_s,
+            problem: Some(problem.to_owned()),
+            try_again: false,
+            warnings: Vec::new(),
+            has_files: false,
+        }
+    }
+}
+
+impl Plan {
+    /// The plan of a sweep.
+    pub fn new(sweep: &Sweep, cases: &[DrawnCase]) -> Self {
+        let planned =
+            |case: &DrawnCase| PlannedCase { input: case.hash.clone(), values: case.values.iter().map(written).collect() };
+        Plan {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            name: sweep.name.clone(),
+            design: design::echo(&sweep.document.table),
+            columns: sweep.columns(),
+            cases: cases.iter().map(planned).collect(),
+        }
+    }
+}
+
+/// A value as the table writes it.
+fn written(value: &toml::Value) -> String {
+    match value {
+        toml::Value::Float(number) => csv::exact(*number),
+        toml::Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// `sweep.csv`: a row for each case in order; one that is not there yet says so.
+pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
+    let columns: String = plan.columns.iter().map(|key| format!("{},", field(key))).collect();
+    let mut text = format!("case,{columns}life_cycles,stop_reason,crack_length_final_mm,wall_s,problem,life_is_lower_bound\n");
+    for (i, (case, outcome)) in plan.cases.iter().zip(outcomes).enumerate() {
+        let values: String = case.values.iter().map(|value| format!("{},", field(value))).collect();
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{},{values}", label(i + 1));
+        let _ = match outcome {
+            Some(outcome) => writeln!(
+                text,
+                "{},{},{},{},{},{}",
+                outcome.life_cycles.map_or_else(String::new, csv::exact),
+                outcome.stop_reason.as_deref().unwrap_or_default(),
+                outcome.crack_length_final_mm.map_or_else(String::new, csv::number),
+                csv::exact(outcome.wall_s),
+                field(&outcome.problem.as_deref().unwrap_or_default().replace('\n', " ")),
+                outcome.life_is_lower_bound.map_or_else(String::new, |is_lower| is_lower.to_string())
+            ),
+            None => writeln!(text, ",,,,not run yet,"),
+        };
+    }
+    text
+}
+
+/// `sweep.json`: the design, counts, quantiles of life, failures. `wall_s` is the time of this call, `computing_s` that of the
+/// runs.
+pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value {
+    let there = || outcomes.iter().flatten();
+    let numbered = || outcomes.iter().enumerate().filter_map(|(i, outcome)| Some((label(i + 1), outcome.as_ref()?)));
+    let lives = Lives::of(outcomes);
+    let failures: Vec<Value> =
+        numbered().filter_map(|(case, outcome)| Some(json!({ "case": case, "problem": outcome.problem.as_ref()? }))).collect();
+    let missing: Vec<String> =
+        outcomes.iter().enumerate().filter(|(_, outcome)| outcome.is_none()).map(|(i, _)| label(i + 1)).collect();
+    let run_out = |outcome: &&Outcome| outcome.stop_reason.as_deref() == Some(StopReason::RunOut.name());
+    json!({
+        "name": plan.name,
+        "cases": plan.cases.len(),
+        "succeeded": there().filter(|outcome| outcome.problem.is_none()).count(),
+        "failed": failures.len(),
+        "missing": missing.len(),
+        "run_outs": there().filter(run_out).count(),
+        "unlimited": lives.unlimited,
+        "lower_bounds": lives.bounds,
+        "life_cycles": lives.figures(),
+        "failures": failures.iter().take(FAILURES_MAX).collect::<Vec<_>>(),
+        "missing_cases": missing,
+        "warnings": warnings(outcomes),
+        "columns": plan.columns,
+        "design": plan.design,
+        "version": plan.version,
+        "wall_s": wall_s,
+        "computing_s": there().map(|outcome| outcome.wall_s).sum::<f64>(),
+    })
+}
+
+/// Lives of the cases that have one.
+pub(super) struct Lives {
+    /// Upwards, each with whether it is a lower bound; unlimited ones at the end, infinite.
+    pub sorted: Vec<(f64, bool)>,
+    /// How many are unlimited.
+    pub unlimited: usize,
+    /// How many are lower bounds.
+    pub bounds: usize,
+}
+
+impl Lives {
+    fn of(outcomes: &[Option<Outcome>]) -> Self {
+        let there = || outcomes.iter().flatten().filter(|outcome| outcome.problem.is_none());
+        Lives::ranked(there().map(|outcome| (outcome.life_cycles.unwrap_or(f64::INFINITY), outcome.is_cut_off())))
+    }
+
+    /// Of lives, infinite where they are unlimited, and whether each is a lower bound.
+    pub fn ranked(lives: impl Iterator<Item = (f64, bool)>) -> Self {
+        let mut sorted: Vec<(f64, bool)> = lives.collect();
+        sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let unlimited = sorted.iter().filter(|(life, _)| life.is_infinite()).count();
+        let bounds = sorted.iter().filter(|(_, is_bound)| *is_bound).count();
+        Lives { sorted, unlimited, bounds }
+    }
+
+    /// A quantile: its figure where no bound lies below it, and in words. A bound is at least its figure, so that the quantile of the
+    /// figures is a bound as well.
+    fn quantile(&self, q: f64) -> (Option<f64>, Option<String>) {
+        let figures: Vec<f64> = self.sorted.iter().map(|(life, _)| *life).collect();
+        let value = quantile(&figures, q);
+        if figures.is_empty() {
+            return (None, None);
+        }
+        if !value.is_finite() {
+            return (None, Some("unlimited".to_owned()));
+        }
+        let is_bound = self.sorted.iter().any(|(life, is_bound)| *is_bound && *life <= value);
+        if is_bound { (None, Some(format!("above {value:.0}"))) } else { (Some(value), Some(format!("{value:.0}"))) }
+    }
+
+    /// Quantiles by [`quantile`], null where the cases do not say them, and in words.
+    pub fn figures(&self) -> Value {
+        let [p05, p50, p95] = [0.05, 0.5, 0.95].map(|q| self.quantile(q));
+        let ends = || self.sorted.iter().filter(|(life, _)| life.is_finite()).map(|(life, _)| *life);
+        json!({
+            "p05": p05.0,
+            "p50": p50.0,
+            "p95": p95.0,
+            "words": { "p05": p05.1, "p50": p50.1, "p95": p95.1 },
+            "least": ends().next(),
+            "most": ends().next_back(),
+        })
+    }
+}
+
+/// Writes table, figures and picture into the folder of a sweep; returns the figures.
+pub fn write(folder: &Path, plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Result<Value> {
+    let figures = figures(plan, outcomes, wall_s);
+    write_file(&folder.join(TABLE_FILE), shown_table(&table(plan, outcomes)).as_bytes())?;
+    draw(&folder.join(CHART_FILE), plan, outcomes)?;
+    // Last, so that whoever waits for it finds the others.
+    write_file(&folder.join(FIGURES_FILE), format!("{:#}\n", shown_result(&figures)).as_bytes())?;
+    Ok(figures)
+}
+
+/// `life.svg`: life over the first key that varies if that is a number, else the share of cases that have ended by then.
+fn draw(path: &Path, plan: &Plan, outcomes: &[Option<Outcome>]) -> Result<()> {
+    let mut over: Vec<(f64, f64)> = plan
+        .cases
+        .iter()
+        .zip(outcomes)
+        .filter_map(|(case, outcome)| Some((case.values.first()?.parse().ok()?, outcome.as_ref()?.life_cycles?)))
+        .collect();
+    let title = |what: &str| format!("{}: {what}", plan.name);
+    let first = plan.columns.first().filter(|key| !key.starts_with("fitted.") && !over.is_empty());
+    if let Some(key) = first {
+        over.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // One key of a grid gives a curve, several keys or chance a cloud.
+        let is_curve = plan.columns.len() == 1 && over.windows(2).all(|pair| pair[0].0 < pair[1].0) && over.len() < 100;
+        let mark = if is_curve { Mark::Line } else { Mark::Dots };
+        let series = Series { name: format!("{} cases", over.len()), points: over, mark };
+        return chart::linear(path, &title("life"), [key, "Life N, cycles"], &[series]);
+    }
+    let lives = Lives::of(outcomes).sorted;
+    let share = |i: usize| 100.0 * (i as f64 + 0.5) / lives.len() as f64;
+    // One that goes on has not ended.
+    let ended = lives.iter().enumerate().filter(|(_, (life, is_bound))| life.is_finite() && !is_bound);
+    let points: Vec<(f64, f64)> = ended.map(|(i, (life, _))| (*life, share(i))).collect();
+    let series = Series { name: format!("{} of {} cases", points.len(), lives.len()), points, mark: Mark::Dots };
+    chart::linear(path, &title("distribution of life"), ["Life N, cycles", "Share of cases that have ended, %"], &[series])
+}
+
+impl Plan {
+    /// As [`read_plan`] gives it back: numbers may be of another type, of the same value.
+    pub fn as_read(&self) -> Plan {
+        let read = serde_json::to_string(self).ok().and_then(|text| serde_json::from_str(&text).ok());
+        read.unwrap_or_else(|| self.clone())
+    }
+}
+
+/// Reads the plan of a folder; `None` where there is none.
+pub fn read_plan(folder: &Path) -> Result<Option<Plan>> {
+    let path = folder.join(PLAN_FILE);
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(Error::file(&path, "cannot read", error)),
+    };
+    serde_json::from_str(&text).map(Some).map_err(|error| {
+        let remedy = "remove the folder, and run `perilife sweep` again";
+        input_missing("file", format!("is no plan of a sweep: {error}"), remedy).in_file(&path)
+    })
+}
+
+/// Outcome in the folder of a case, if it is that of this input. One that cannot be read counts as none: it is made again.
+pub fn read_outcome(folder: &Path, input: &str) -> Option<Outcome> {
+    // TOML and not JSON: its reader gives back every bit of a number.
+    let text = std::fs::read_to_string(folder.join(OUTCOME_FILE)).ok()?;
+    toml::from_str::<Outcome>(&text).ok().filter(|outcome| outcome.input == input)
+}
+
+/// Warnings that the figures list at most.
+const WARNINGS_MAX: usize = 20;
+
+/// Warnings by number of cases; those that differ in their numbers only are one, told by the first case that has it. Where they begin with a
+/// share, as of a life outside the range of a formula, the largest stands beside it.
+fn warnings(outcomes: &[Option<Outcome>]) -> Vec<Value> {
+    let mut found: BTreeMap<String, Vec<(usize, &str)>> = BTreeMap::new();
+    for (i, outcome) in outcomes.iter().enumerate() {
+        for warning in outcome.iter().flat_map(|outcome| &outcome.warnings) {
+            let words = warning.chars().filter(|c| !c.is_ascii_digit()).collect();
+            found.entry(words).or_default().push((i + 1, warning));
+        }
+    }
+    let mut found: Vec<Vec<(usize, &str)>> = found.into_values().collect();
+    found.sort_by_key(|all| (std::cmp::Reverse(all.len()), all[0].0));
+    let told = |all: Vec<(usize, &str)>| {
+        let (first, text) = all[0];
+        let shares = all.iter().filter_map(|(case, text)| Some((text.split_once(" % ")?.0.parse::<f64>().ok()?, *case)));
+        let largest = shares.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+        json!({
+            "cases": all.len(),
+            "first": label(first),
+            "warning": text,
+            "largest_percent": largest.map(|(share, _)| share),
+            "largest_in": largest.map(|(_, case)| label(case)),
+        })
+    };
+    found.into_iter().take(WARNINGS_MAX).map(told).collect()
+}

@@ -1,0 +1,139 @@
+//! What a test report asks of a fit to readings: specimen, load, number of readings, and the criteria of ASTM E647 that they can be
+//! held against. Keys `test` and `criteria` of `fit.json`.
+
+use serde_json::{Value, json};
+
+use super::checks;
+use super::model_words::{clean, loading};
+use perilife_base::units::{GPA, KN, MM, MPA};
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::rates::STEP_MIN;
+use perilife_growth::case::Case;
+use perilife_measured::{MeasuredCurve, side_difference_max};
+use perilife_plate::specimen::handbook::handbook;
+use perilife_plate::specimen::{LoadMeasure, SpecimenKind};
+
+/// Specimen, material, load and formula for K; `null` what the calibration file does not say.
+pub fn test(calibration: &CalibrationCase) -> Value {
+    let case = &calibration.case;
+    let (specimen, material) = (&case.specimen, &case.material);
+    let formula = handbook(specimen);
+    let (unit, load) = match specimen.load_measure {
+        LoadMeasure::Stress => ("MPa gross stress", case.loading.maximum / MPA),
+        LoadMeasure::Force => ("kN", case.loading.maximum / KN),
+    };
+    let lengths = || calibration.read.iter().flat_map(|curve| curve.crack_length.iter().copied());
+    json!({
+        "specimen_kind": specimen.kind.name(),
+        "width_mm": clean(specimen.width / MM),
+        "thickness_mm": clean(specimen.thickness / MM),
+        "material": material.name,
+        "youngs_modulus_gpa": clean(material.youngs_modulus / GPA),
+        "yield_strength_mpa": calibration.yield_strength.map(|strength| clean(strength / MPA)),
+        "load": loading(case),
+        "load_max": format!("{} {unit}", clean(load)),
+        "stress_ratio": case.loading.ratio,
+        "specimens": calibration.read.len(),
+        "readings": lengths().count(),
+        "first_reading_mm": clean(lengths().fold(f64::INFINITY, f64::min) / MM),
+        "last_reading_mm": clean(lengths().fold(0.0, f64::max) / MM),
+        "formula": formula.as_ref().map(|formula| formula.name),
+        "formula_source": formula.as_ref().map(|formula| formula.source),
+        "formula_range": formula.as_ref().map(|formula| formula.range),
+    })
+}
+
+/// A criterion: what is asked, what was found, and whether it holds (`null`: it cannot be judged), with a remark.
+fn criterion(name: &str, asked: String, found: String, holds: Option<bool>, remark: String) -> Value {
+    json!({ "name": name, "asked": asked, "found": found, "holds": holds, "remark": remark })
+}
+
+/// The criteria of ASTM E647 that readings and specimen can be held against.
+pub fn criteria(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64) -> Vec<Value> {
+    let mut case = calibration.case.clone();
+    case.material.yield_strength = calibration.yield_strength;
+    let size = checks::of_case(&case).into_iter().find(|check| check.name == "e647_size");
+    let size = size.map(|check| {
+        let holds = check.verdict == checks::Verdict::Holds;
+        let asked = match case.specimen.kind {
+            SpecimenKind::CompactTension => "W/20 ≤ B ≤ W/4, a ≥ 0.2 W",
+            _ => "B ≤ W/8",
+        };
+        let remark = if holds { "holds".to_owned() } else { check.words };
+        let found = format!("B {} mm, W {} mm", clean(case.specimen.thickness / MM), clean(case.specimen.width / MM));
+        criterion("Size of the specimen (7.1, A1.3)", asked.to_owned(), found, Some(holds), remark)
+    });
+    let mut all: Vec<Value> = size.into_iter().collect();
+    all.push(ligament(calibration, &case, delta_k));
+    all.push(steps(&calibration.read));
+    all.push(symmetry(&calibration.read, &case));
+    all.push(left_out(calibration));
+    all
+}
+
+/// Ligament at the longest reading that was fitted.
+fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) -> f64) -> Value {
+    const NAME: &str = "Ligament at the longest fitted crack (7.2)";
+    let (specimen, loading) = (&case.specimen, &case.loading);
+    let longest = case.stop.crack_length;
+    let rule = match specimen.kind {
+        SpecimenKind::MiddleTension => "W − 2a ≥ 1.25 P_max/(B σ_YS)",
+        _ => "W − a ≥ (4/π) (K_max/σ_YS)²",
+    };
+    let Some(ligament) = specimen.ligament(longest) else {
+        return criterion(
+            NAME,
+            rule.to_owned(),
+            "not known".to_owned(),
+            None,
+            "cannot be judged: no standard specimen".to_owned(),
+        );
+    };
+    let found = format!("{:.1} mm", ligament / MM);
+    let Some(strength) = calibration.yield_strength else {
+        return criterion(NAME, rule.to_owned(), found, None, "cannot be judged: no yield strength given".to_owned());
+    };
+    let most = calibration.curves.iter().flat_map(|curve| curve.load_factor.iter().copied()).fold(1.0, f64::max);
+    let asked = specimen.ligament_asked(most * loading.maximum, most * delta_k(longest) / loading.range_share(), strength);
+    let holds = ligament >= asked;
+    let remark = if holds { "holds" } else { "readings with a smaller ligament are marked ligament_yields" };
+    criterion(NAME, format!("{rule} = {:.1} mm", asked / MM), found, Some(holds), remark.to_owned())
+}
+
+fn steps(curves: &[MeasuredCurve]) -> Value {
+    let of_curve =
+        |curve: &MeasuredCurve| curve.crack_length.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect::<Vec<f64>>();
+    let steps: Vec<f64> = curves.iter().flat_map(of_curve).collect();
+    let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
+    let short = steps.iter().filter(|step| **step < STEP_MIN * (1.0 - 1e-6)).count();
+    let remark =
+        if short == 0 { "holds".to_owned() } else { format!("{short} of {} steps are shorter; kept and marked", steps.len()) };
+    criterion(
+        "Step between readings, least (8.6.2)",
+        "Δa ≥ 0.25 mm".to_owned(),
+        format!("{:.2} mm", least / MM),
+        Some(short == 0),
+        remark,
+    )
+}
+
+fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Value {
+    const NAME: &str = "Lengths on the sides of a specimen";
+    let specimen = &case.specimen;
+    let most = side_difference_max(specimen.kind, specimen.width, specimen.thickness);
+    let asked = format!("differ by at most {:.2} mm", most / MM);
+    let found = curves.iter().flat_map(|curve| curve.side_difference.iter().copied()).fold(f64::NAN, f64::max);
+    if found.is_nan() {
+        return criterion(NAME, asked, "not recorded".to_owned(), None, "cannot be judged: one length a reading".to_owned());
+    }
+    let holds = found <= most;
+    let remark = if holds { "holds" } else { "readings with more are marked uneven_front" };
+    criterion(NAME, asked, format!("{:.2} mm", found / MM), Some(holds), remark.to_owned())
+}
+
+fn left_out(calibration: &CalibrationCase) -> Value {
+    let count = calibration.left_out.len();
+    let found = if count == 0 { "none".to_owned() } else { format!("{count} windows of cycles") };
+    let reasons: Vec<&str> = calibration.left_out.iter().map(|window| &*window.reason).collect();
+    criterion("Readings left out", "with reason".to_owned(), found, Some(true), reasons.join("; "))
+}

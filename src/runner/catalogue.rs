@@ -1,0 +1,168 @@
+//! Every kind of every key of the input files.
+
+use serde_json::{Value, json};
+
+use perilife_base::input::{Folder, Quantity};
+use perilife_base::kinds::KindLine;
+use perilife_base::table::{
+    Decimal,
+    units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit},
+};
+use perilife_base::units::shown::told;
+use perilife_base::units::us::System;
+use perilife_calibration::criterion::Criterion;
+use perilife_calibration::exponent::Parameter;
+use perilife_calibration::laws::FitLaw;
+use perilife_calibration::rates::RateMethod;
+use perilife_calibration::sweep::{DesignKind, DistributionKind, Scale, Scatter};
+use perilife_growth::case::record::Estimate;
+use perilife_growth::case::{Failure, LIBRARY, Lot, Method};
+use perilife_growth::predict::StopReason;
+use perilife_growth::predict::tip_factors::StressIntensityMethod;
+use perilife_laws::growth_law::GrowthLawKind;
+use perilife_laws::growth_law::description::Constant;
+use perilife_laws::growth_law::table::TableEnds;
+use perilife_laws::retardation::{Constant as Retarding, RetardationKind};
+use perilife_laws::{Ageing, Driver};
+use perilife_measured::RangeKind;
+use perilife_nodes::basis::{BasisKind, Enrichment};
+use perilife_plate::loading::spectrum::SpectrumFormat;
+use perilife_plate::loading::{Grip, LoadingKind, Transverse};
+use perilife_plate::material::growth_data::{self, GrowthRecord};
+use perilife_plate::material::{Plane, library};
+use perilife_plate::specimen::beta;
+use perilife_plate::specimen::drawing::{DrawingUnit, SymmetryPlane};
+use perilife_plate::specimen::{Component, Edge, Ends, Head, SpecimenKind};
+use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_points::crack_tip::TipState;
+use perilife_points::solver::{SolverKind, SolverUsed, Symmetry};
+use perilife_scenes::SceneEnd;
+use perilife_scenes::read::{Kinematics, LoadKind};
+use perilife_scenes::scene::{Calibration, DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
+
+/// Every line, in the order of an input file: key, name, meaning.
+pub fn lines() -> Vec<(String, String, String)> {
+    let of_the_test = [
+        SpecimenKind::lines(),
+        DrawingUnit::lines(),
+        SymmetryPlane::lines(),
+        Ends::lines(),
+        Head::lines(),
+        Plane::lines(),
+        LoadingKind::lines(),
+        SpectrumFormat::lines(),
+        RetardationKind::lines(),
+        LoadKind::lines(),
+        Grip::lines(),
+        Edge::lines(),
+        Transverse::lines(),
+        Component::lines(),
+    ];
+    let of_the_model = [
+        Method::lines(),
+        BasisKind::lines(),
+        Enrichment::lines(),
+        BondLawKind::lines(),
+        PointLaw::lines(),
+        ZeroEnergyControl::lines(),
+        Kernel::lines(),
+        Rotation::lines(),
+        SurfaceCorrection::lines(),
+        Kinematics::lines(),
+        Discretisation::lines(),
+        Symmetry::lines(),
+        SolverKind::lines(),
+        beside(&SolverKind::lines(), SceneSolver::lines()),
+        DamageLaw::lines(),
+        Calibration::lines(),
+        DamageEntry::lines(),
+        Driver::lines(),
+        GrowthLawKind::lines(),
+        TableEnds::lines(),
+        Ageing::lines(),
+        Failure::lines(),
+        Lot::lines(),
+    ];
+    let of_calibration = [
+        Parameter::lines(),
+        Criterion::lines(),
+        FitLaw::lines(),
+        System::lines(),
+        LengthUnit::lines(),
+        CycleUnit::lines(),
+        LoadUnit::lines(),
+        IntensityUnit::lines(),
+        RateUnit::lines(),
+        RangeKind::lines(),
+        Decimal::lines(),
+        Estimate::lines(),
+        RateMethod::lines(),
+        SolverUsed::lines(),
+        StopReason::lines(),
+        TipState::lines(),
+        beside(&StopReason::lines(), SceneEnd::lines()),
+    ];
+    let of_sweeps = [DesignKind::lines(), Scatter::lines(), Scale::lines(), DistributionKind::lines()];
+    let of_the_tips = StressIntensityMethod::lines();
+    let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
+    let mut all: Vec<_> = of_the_test.into_iter().flatten().map(words).collect();
+    all.extend(library::names().into_iter().map(|name| {
+        let meaning = library::find(&name, &Folder::none()).map_or_else(
+            |error| error.to_string(),
+            |file| told(&format!("{}; E {} GPa, nu {}", file.title, file.youngs_modulus_gpa.value, file.poisson_ratio.value)),
+        );
+        ("material.name".to_owned(), name, meaning)
+    }));
+    let record =
+        |record: GrowthRecord| ("material.name".to_owned(), record.name.clone(), format!("{}; with growth data", record.title()));
+    all.extend(growth_data::records().into_iter().map(record));
+    all.extend(of_the_model.into_iter().flatten().map(words));
+    all.push((
+        GrowthLawKind::KEY.to_owned(),
+        LIBRARY.to_owned(),
+        "the growth data of the material that material.name names".to_owned(),
+    ));
+    all.push((
+        "specimen.outline_file".to_owned(),
+        "part.dxf".to_owned(),
+        "a plate from a drawing, DXF or SVG: layers outline, holes (full circles), cracks".to_owned(),
+    ));
+    all.push((
+        beta::KEY.to_owned(),
+        "beta.csv".to_owned(),
+        "K = β σ √(πa) by a table crack_length_mm,beta, for hand calculation; `perilife sif --sweep` writes one".to_owned(),
+    ));
+    all.push(("output.animation".to_owned(), "true".to_owned(), "also growth.svg: the cracks as they grow".to_owned()));
+    all.push(("output.paraview".to_owned(), "true".to_owned(), "also the fields of some moments, for ParaView".to_owned()));
+    all.extend(of_calibration.into_iter().flatten().map(words));
+    all.extend(of_sweeps.into_iter().flatten().map(words));
+    all.extend(of_the_tips.into_iter().map(words));
+    all
+}
+
+/// Such lines as one object, with the constants of every growth law and model of retardation: keys of `[fatigue]` and `[loading]`, units, and whether a
+/// case has to give them.
+pub fn json(lines: Vec<(String, String, String)>) -> Value {
+    let kinds = lines.into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
+    let constant = |key: &str, quantity: &Quantity, needed: bool| json!({ "key": key, "unit": quantity.unit, "what": quantity.what, "needed": needed });
+    let law = |law: GrowthLawKind| {
+        let of_law = |own: &Constant| constant(own.key, &own.quantity, own.default.is_none());
+        json!({ "name": law.name(), "meaning": law.meaning(), "constants": law.0.constants.iter().map(of_law).collect::<Vec<_>>() })
+    };
+    let retardation = |model: RetardationKind| {
+        // A threshold of the law, which it may have, stands for a constant.
+        let of_model = |own: &Retarding| constant(own.key, &own.quantity, (own.default)(Plane::Stress, Some(1.0)).is_none());
+        let constants: Vec<Value> = model.0.constants.iter().map(of_model).collect();
+        json!({ "name": model.name(), "meaning": model.meaning(), "constants": constants })
+    };
+    json!({
+        "kinds": kinds.collect::<Vec<_>>(),
+        "laws": GrowthLawKind::all().map(law).collect::<Vec<_>>(),
+        "retardations": RetardationKind::all().map(retardation).collect::<Vec<_>>(),
+    })
+}
+
+/// The lines of a second choice for a key that do not stand in the first one already.
+fn beside(first: &[KindLine], second: Vec<KindLine>) -> Vec<KindLine> {
+    second.into_iter().filter(|line| first.iter().all(|known| (known.key, known.name) != (line.key, line.name))).collect()
+}

@@ -1,0 +1,270 @@
+//! Is an input file right, and what would be run? What was understood of it, in words and as a drawing, without running it.
+
+mod preview;
+mod understood;
+
+use std::path::Path;
+
+use serde_json::map::Entry;
+use serde_json::{Map, Value, json};
+
+use self::preview::{as_input, is_quick, preview};
+pub use self::understood::Line;
+use self::understood::{built as built_words, case_lines, curves_line, line, plate_lines, points_words, rates_line, sweep_lines};
+use crate::scene_model;
+use crate::scene_picture::scene_svg;
+use crate::{Kind, Task};
+use perilife_base::error::Result;
+use perilife_base::input::{Document, Provenance};
+use perilife_base::units::{MM, MPA};
+use perilife_calibration::calibrate::Calibration;
+use perilife_calibration::laws::case::LawCase;
+use perilife_calibration::sweep::design::{self, CASES_MAX};
+use perilife_calibration::sweep::{DrawnCase, Sweep};
+use perilife_growth::case::Case;
+use perilife_growth::case::needs;
+use perilife_results::checks;
+use perilife_results::model_words::{self, mm, short};
+use perilife_results::pictures::plate::Plate;
+use perilife_results::run::refuse_beforehand;
+use perilife_results::specimen_picture::specimen_svg;
+use perilife_results::spectrum::curves;
+use perilife_scenes::Scene;
+use perilife_scenes::assembly::preview as preview_scene;
+use perilife_scenes::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
+
+/// What a file asks for, checked.
+#[derive(Debug)]
+pub struct Checked {
+    /// `case`, `calibration`, `fracture` or `sweep`.
+    pub kind: &'static str,
+    /// Its name.
+    pub name: String,
+    /// What was understood.
+    pub lines: Vec<Line>,
+    /// What the user should know.
+    pub warnings: Vec<String>,
+    /// Specimen, cracks, loads and supports as SVG.
+    pub drawing: String,
+    /// The same for others to draw; none of scenes.
+    pub plate: Option<Plate>,
+    /// Exceedances and ranges of a pass of a spectrum, for others to draw; none of other loads.
+    pub spectrum: Option<Value>,
+    /// The input as it was given.
+    pub echo: Value,
+    /// Files that were read for it.
+    pub provenance: Provenance,
+}
+
+impl Checked {
+    /// As one object.
+    pub fn json(&self) -> Value {
+        let mut understood: Map<String, Value> = Map::new();
+        for line in &self.lines {
+            // A scene has several loads and supports.
+            match understood.entry(line.what.replace(' ', "_")) {
+                Entry::Vacant(place) => drop(place.insert(line.value.clone().into())),
+                Entry::Occupied(mut place) => {
+                    let both = format!("{}; {}", place.get().as_str().unwrap_or_default(), line.value);
+                    place.insert(both.into());
+                }
+            }
+        }
+        json!({
+            "ok": true, "kind": self.kind, "name": self.name, "understood": understood, "warnings": self.warnings,
+            "plate": self.plate, "spectrum": self.spectrum, "case": self.echo,
+        })
+    }
+}
+
+/// What a document that was read as a task asks for. The body is built as well where that is quick, since only then some troubles
+/// show.
+pub fn check(document: &Document, task: &Task) -> Result<Checked> {
+    match task {
+        Task::Sweep { sweep, cases } => checked_sweep(sweep, cases),
+        Task::Scene(scene) => checked_scene(document, scene),
+        Task::Fit(Calibration::Rates(case)) => Ok(checked_laws(document, case)),
+        Task::Fit(Calibration::Lives(calibration)) => {
+            let mut checked = checked_case(document, "calibration", &calibration.case, &calibration.warnings)?;
+            checked.lines.insert(0, curves_line(&calibration.curves));
+            Ok(checked)
+        }
+        Task::Prediction { case, .. } => {
+            refuse_beforehand(case).map_err(|error| document.locate(error))?;
+            let mut checked = checked_case(document, "case", case, &case.warnings)?;
+            // What a life will rest on, as far as that is known before it.
+            let checks = checks::of_case(case);
+            checked.lines.push(line("verdict", checks::verdict(&checks)));
+            checked.lines.extend(checks::lines(&checks).into_iter().map(|words| line("rests on", words)));
+            Ok(checked)
+        }
+        Task::Factors { case, .. } => checked_case(document, "case", case, &case.warnings),
+    }
+}
+
+/// [`check`] of a file. Overrides are those of the command that runs it.
+pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
+    // Read once: a pipe is empty the second time.
+    let mut document = Document::read(path, &[])?;
+    let kind = Kind::of(&document.table);
+    if kind == Kind::Sweep {
+        return check(&document, &Task::sweep(document.clone(), overrides, CASES_MAX)?);
+    }
+    document.set_all(overrides)?;
+    // An override may make it something else.
+    check(&document, &Task::read(Kind::of(&document.table), &document, &[])?)
+}
+
+fn checked_sweep(sweep: &Sweep, cases: &[DrawnCase]) -> Result<Checked> {
+    let lines = sweep_lines(sweep, cases);
+    // A sweep has one case at least; what they have in common shows in any of them.
+    let first = cases[0].read()?;
+    let mut checked = checked_case(&sweep.base, "sweep", &first, &first.warnings)?;
+    checked.name.clone_from(&sweep.name);
+    checked.echo = design::echo(&sweep.document.table);
+    checked.provenance = sweep.document.folder.opened().so_far();
+    checked.lines.splice(0..0, lines);
+    Ok(checked)
+}
+
+/// A case, with its warnings so far.
+fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: &[String]) -> Result<Checked> {
+    let budget = needs::of_case(case);
+    let preview = budget.within_machine().and_then(|()| preview(case)).map_err(|error| document.locate(error))?;
+    let warnings = [warnings, &preview.warnings].concat();
+    let mut lines = case_lines(case, preview.points);
+    lines.push(line("computing", budget.words()));
+    let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
+    let plate = Some(Plate::of(case));
+    let spectrum = case.loading.spectrum.as_deref().map(curves);
+    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, plate, spectrum, echo: case.echo.clone(), provenance })
+}
+
+/// A fit of laws has a plate only where its rates come from readings.
+fn checked_laws(document: &Document, case: &LawCase) -> Checked {
+    let mut lines = vec![rates_line(case)];
+    let (mut drawing, mut plate) = (String::new(), None);
+    if let Some(test) = &case.test {
+        lines.extend(case_lines(&test.case, "none: rates over handbook K".to_owned()));
+        (drawing, plate) = (specimen_svg(&test.case), Some(Plate::of(&test.case)));
+    }
+    let provenance = document.folder.opened().so_far();
+    let (name, warnings, echo) = (case.name.clone(), case.warnings.clone(), case.echo.clone());
+    Checked { kind: "calibration", name, lines, warnings, drawing, plate, spectrum: None, echo, provenance }
+}
+
+fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
+    let (lines, of_points) = scene_lines(scene).map_err(|error| document.locate(error))?;
+    let (name, echo, provenance) = (scene.name.clone(), scene.echo.clone(), scene.provenance.clone());
+    let warnings = [&scene.warnings[..], &of_points].concat();
+    let drawing = scene_drawing(scene);
+    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, plate: None, spectrum: None, echo, provenance })
+}
+
+/// Lines about loads and supports that fit below the drawing of a scene.
+const LINES_MAX: usize = 8;
+/// Bonds up to which points and bonds of a scene are built, those of 1e5 points at the usual horizon; below a second.
+const BONDS_BUILT: f64 = 1.5e6;
+
+/// One line for each thing understood, and what the user should know; points and bonds are built where that is quick, since only
+/// then some troubles show.
+fn scene_lines(scene: &Scene) -> Result<(Vec<Line>, Vec<String>)> {
+    let budget = scene.budget();
+    budget.within_machine()?;
+    let is_quick = budget.bonds <= BONDS_BUILT && is_quick(&budget, &scene.specimen);
+    let built = is_quick.then(|| preview_scene(scene).map_err(as_input)).transpose()?;
+    let specimen = &scene.specimen;
+    let chosen = scene_model::of_scene(scene, None);
+    let micro = scene.echo.get("micro_cracks").and_then(|section| section.get("count")).and_then(serde_json::Value::as_u64);
+    let cracks = specimen.cracks.len() - micro.unwrap_or(0) as usize;
+    let micro_words = micro.map_or_else(String::new, |count| format!(", {count} micro cracks"));
+    let asked = scene.model.spacing;
+    let (counts, [fine, coarse], horizon) = match &built {
+        Some(laid) => (built_words([laid.points, laid.bonds, laid.cut]), laid.spacings, laid.horizons[0]),
+        None => (format!("about {:.0}", budget.points), [asked; 2], asked * scene.model.horizon_ratio),
+    };
+    // Scenes ask for the spacing of the coarsest level.
+    let points = points_words(&counts, [fine, coarse], [asked * fine / coarse, horizon], &chosen);
+    let mut lines = plate_lines(specimen, &scene.material, ("flaws", cracks, micro_words));
+    lines.extend([
+        line("law", model_words::words(&chosen, &model_words::OF_BONDS)),
+        line("points", points),
+        line("procedure", procedure_words(scene)),
+    ]);
+    lines.extend(scene.drives.iter().map(|drive| line("load", drive_words(drive))));
+    lines.extend(scene.holds.iter().map(|hold| line("support", hold_words(hold))));
+    lines.extend(scene.refinement.as_ref().map(|refinement| line("refinement", refinement.words())));
+    lines.extend([line("damage", damage_words(scene)), line("computing", budget.words())]);
+    Ok((lines, built.map_or_else(Vec::new, |built| built.warnings)))
+}
+
+fn procedure_words(scene: &Scene) -> String {
+    let solver = scene.model.solver;
+    match scene.procedure {
+        Procedure::Static => format!("one equilibrium at full load, solver {solver}"),
+        Procedure::QuasiStatic { steps, iterations: None } => format!("{steps} load steps, solver {solver}"),
+        Procedure::QuasiStatic { steps, iterations: Some(each) } => {
+            format!("{steps} load steps of {each} iterations, not to rest, solver {solver}")
+        }
+        Procedure::Dynamic { duration, time_step } => {
+            let step = time_step.map_or_else(|| "its own time step".to_owned(), |step| format!("time step {step:e} s"));
+            format!("motion over {duration:e} s, {step}, solver {solver}")
+        }
+    }
+}
+
+/// The drawing of a scene with its loads and supports in words.
+fn scene_drawing(scene: &Scene) -> String {
+    let loads = scene.drives.iter().map(|drive| format!("blue: {}", drive_words(drive)));
+    let holds = scene.holds.iter().map(|hold| format!("green: {}", hold_words(hold)));
+    let mut lines: Vec<String> = loads.chain(holds).collect();
+    let more = lines.len().saturating_sub(LINES_MAX);
+    lines.truncate(LINES_MAX);
+    lines.extend((more > 0).then(|| format!("and {more} more loads and supports")));
+    scene_svg(scene, &procedure_words(scene), &lines)
+}
+
+fn drive_words(drive: &SceneLoad) -> String {
+    let pair = |[x, y]: [f64; 2], unit: f64| format!("({}, {})", short(x / unit), short(y / unit));
+    let components = |components: [Option<f64>; 2]| {
+        let one = |value: Option<f64>| value.map_or_else(|| "free".to_owned(), mm);
+        format!("({}, {})", one(components[0]), one(components[1]))
+    };
+    let what = match drive.action {
+        Action::Traction(traction) => format!("traction {} MPa", pair(traction, MPA)),
+        Action::Displacement(values) => format!("displacement {} mm", components(values)),
+        Action::Velocity(values) => format!("velocity {} mm/s", components(values)),
+        Action::Platen(motion) => format!("platen moving {} mm", pair(motion, MM)),
+    };
+    let ramp = if drive.rise.ramp > 0.0 { format!(", rising over {:e} s", drive.rise.ramp) } else { String::new() };
+    let from = if drive.rise.from > 0.0 { format!(" from {:e} s on", drive.rise.from) } else { String::new() };
+    format!("{what} on {}{ramp}{from}", drive.region)
+}
+
+fn hold_words(hold: &SceneSupport) -> String {
+    let held = match hold.components {
+        [true, true] => "x and y",
+        [true, false] => "x",
+        _ => "y",
+    };
+    format!("{held} held on {}", hold.region)
+}
+
+fn damage_words(scene: &Scene) -> String {
+    let damage = &scene.damage;
+    let limit = match (damage.law, damage.stretch, scene.material.fracture_energy) {
+        (DamageLaw::CriticalStretch | DamageLaw::CriticalEnergy, Some(stretch), _) => format!(", critical stretch {stretch}"),
+        (DamageLaw::CriticalStretch | DamageLaw::CriticalEnergy, None, Some(energy)) => {
+            format!(", fracture energy {energy} J/m²")
+        }
+        (DamageLaw::PrincipalStress, ..) => {
+            format!(", tensile strength {} MPa", short(damage.tensile_strength.unwrap_or(f64::NAN) / MPA))
+        }
+        (DamageLaw::NonlinearTwoParameter, ..) => damage.nonlinear.map_or_else(String::new, |law| {
+            let printed = if law.printed { ", as printed" } else { "" };
+            format!(", stretches {:.6}, {:.6}, {:.6}{printed}", law.elastic, law.peak, law.last)
+        }),
+        _ => String::new(),
+    };
+    format!("{}{limit}", damage.law)
+}

@@ -1,0 +1,214 @@
+//! What `perilife check` has understood of a file, in words.
+
+use toml::Value;
+
+use perilife_base::units::{GPA, MM, MM_PER_CYCLE};
+use perilife_calibration::laws::case::LawCase;
+use perilife_calibration::sweep::{DesignKind, DrawnCase, Sweep};
+use perilife_growth::case::{Case, Engine, LawSource, Model};
+use perilife_measured::MeasuredCurve;
+use perilife_plate::material::Material;
+use perilife_plate::specimen::handbook::handbook_beside;
+use perilife_plate::specimen::part_through::{RANGE, SOURCE};
+use perilife_plate::specimen::{Specimen, Support};
+use perilife_results::model_words::{self, Choice, mm, short};
+use perilife_results::{fit_use, spectrum};
+
+/// One line of what was understood.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// What it is about.
+    pub what: &'static str,
+    /// What was understood.
+    pub value: String,
+}
+
+/// The measured curves of a calibration, inside its window.
+pub(super) fn curves_line(curves: &[MeasuredCurve]) -> Line {
+    let readings: usize = curves.iter().map(|curve| curve.cycles.len()).sum();
+    let lengths = || curves.iter().flat_map(|curve| &curve.crack_length).map(|length| length / MM);
+    let (shortest, longest) = (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
+    let lives = || curves.iter().filter_map(|curve| Some(curve.cycles.last()? - curve.cycles.first()?));
+    let (least, most) = (lives().fold(f64::INFINITY, f64::min), lives().fold(0.0, f64::max));
+    let lives = if curves.len() == 1 { format!("{most:.0}") } else { format!("{least:.0} to {most:.0}") };
+    let specimens =
+        if curves.len() == 1 { format!("specimen {}", curves[0].specimen) } else { format!("{} specimens", curves.len()) };
+    let value = format!("{specimens}: {readings} readings from {} to {} mm in {lives} cycles", short(shortest), short(longest));
+    line("measured", value)
+}
+
+/// The rates that laws are fitted to.
+pub(super) fn rates_line(case: &LawCase) -> Line {
+    let [low, high] = case.delta_k_range();
+    let ratios = case.ratios().iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let (rates, of) = (count(case.rows.len(), "rate"), case.law);
+    line("measured", format!("{rates} at R = {ratios}, ΔK {} to {} MPa√m, law {of}", short(low), short(high)))
+}
+
+/// The design of a sweep, and what its cases have for each key that varies; that of the first case follows.
+pub(super) fn sweep_lines(sweep: &Sweep, cases: &[DrawnCase]) -> Vec<Line> {
+    let design = &sweep.design;
+    let seed = if design.kind == DesignKind::Grid { String::new() } else { format!(", seed {}", design.seed) };
+    let number = count(cases.len(), "case");
+    let mut lines = vec![line("sweep", format!("{number} of {}, {}{seed}", sweep.base.name, design.kind))];
+    for (column, key) in sweep.columns().iter().enumerate() {
+        let numbers: Option<Vec<f64>> = cases
+            .iter()
+            .map(|case| match &case.values[column] {
+                Value::Integer(number) => Some(*number as f64),
+                Value::Float(number) => Some(*number),
+                _ => None,
+            })
+            .collect();
+        let values = match numbers {
+            Some(numbers) => {
+                let (low, high) = numbers.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+                format!("{} to {}", figures(low), figures(high))
+            }
+            None => {
+                let mut words: Vec<String> = cases.iter().map(|case| case.values[column].to_string()).collect();
+                words.sort();
+                words.dedup();
+                words.join(", ")
+            }
+        };
+        lines.push(line("varies", format!("{key}: {values}")));
+    }
+    lines.push(line("first case", cases[0].name.clone()));
+    lines
+}
+
+/// Specimen, flaws and material of a case or a scene; `flaws` is the name of their line, `of_them` more words about them.
+pub(super) fn plate_lines(
+    specimen: &Specimen,
+    material: &Material,
+    (flaws, cracks, of_them): (&'static str, usize, String),
+) -> Vec<Line> {
+    let [width, length, thickness] = [specimen.gross_width, specimen.length(), specimen.thickness].map(mm);
+    let counts =
+        [(cracks, "crack"), (specimen.slots.len(), "slot"), (specimen.holes.len(), "hole"), (specimen.tips.len(), "tip")];
+    let counts = counts.map(|(number, name)| count(number, name)).join(", ");
+    let (modulus, nu, plane) = (short(material.youngs_modulus / GPA), material.poisson_ratio, material.plane);
+    vec![
+        line("specimen", format!("{}, {width} x {length} x {thickness} mm (width, length, thickness)", specimen.kind)),
+        line(flaws, format!("{counts}{of_them}")),
+        line("material", format!("{}: E {modulus} GPa, nu {nu}, plane {plane}", material.name)),
+    ]
+}
+
+/// Points and bonds that were built, in words.
+pub(super) fn built([points, bonds, cut]: [usize; 3]) -> String {
+    format!("{points} and {bonds} bonds, {cut} of them cut by the initial cracks,")
+}
+
+/// How a plate is divided: spacing of the finest and the coarsest level, the finest asked for, and the horizon there, m.
+pub(super) fn points_words(count: &str, spacings: [f64; 2], [asked, horizon]: [f64; 2], chosen: &[Choice]) -> String {
+    let ([fine, coarse], [asked, horizon]) = (spacings.map(mm), [asked, horizon].map(mm));
+    let to = if fine == coarse { String::new() } else { format!(" to {coarse}") };
+    let moved = if fine == asked { String::new() } else { format!(" ({asked} asked for)") };
+    let choices = model_words::words(chosen, &["discretisation", "horizon_ratio", "solver"]);
+    format!("{count} at spacing {fine}{to} mm{moved}, horizon {horizon} mm, {choices}")
+}
+
+/// What the program understood of a case, one line each; `points` says how it is divided.
+pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
+    let (specimen, fatigue) = (&case.specimen, &case.fatigue);
+    let chosen = model_words::of_case(case, None);
+    let held = match specimen.supports.first() {
+        None => "nothing held, loads in equilibrium",
+        Some(Support::Moved { .. }) => "nothing else held",
+        Some(Support::Fixed { .. }) => "held as [supports] or its kind says",
+        Some(Support::Elsewhere) => "held outside the plate",
+        Some(Support::ClampedEnds) => "rigid ends that cannot rotate",
+        Some(Support::RigidEnds) => "rigid ends that rotate about pins",
+    };
+    let of_front = || specimen.part_through.map_or_else(|| "none for this specimen".to_owned(), |_| format!("{SOURCE}; {RANGE}"));
+    let formula = handbook_beside(specimen)
+        .map_or_else(of_front, |formula| format!("{} ({}); {}", formula.name, formula.source, formula.range));
+    let end = Some(case.stop.crack_length).filter(|length| length.is_finite());
+    let mut end = end.map_or_else(String::new, |length| format!("crack length {} mm, or ", mm(length)));
+    if case.stop.crack_depth.is_finite() {
+        end += &format!("crack depth {} mm, or ", mm(case.stop.crack_depth));
+    }
+    if case.stop.at_break_through {
+        end += "break-through, or ";
+    }
+    let mut lines = plate_lines(specimen, &case.material, ("crack", specimen.cracks.len(), crack_words(specimen)));
+    let cycles = format!("{}; {held}", model_words::loading(case));
+    lines.push(line("loading", cycles));
+    lines.extend(case.loading.spectrum.iter().map(|spectrum| line("spectrum", spectrum::more_words(case, spectrum))));
+    let by_points = matches!(case.model, Model::Points(_));
+    lines.extend(case.chosen.as_ref().map(|why| line("model", format!("{}, chosen: {why}", case.model.method()))));
+    lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));
+    lines.push(line("points", points));
+    lines.push(line("fatigue", law_words(case)));
+    lines.extend(by_points.then(|| line("driver", model_words::words(&chosen, &["driver"]))));
+    if case.spends_bond_life() {
+        let radius = fatigue.zone_radius_horizons;
+        let then = if case.engine() == Engine::BondsThenPoints {
+            "; K of the tips once cracks from slots are 1.5 horizons long"
+        } else {
+            ""
+        };
+        let words = format!("{}, zone radius {radius} horizons, a solve after every break{then}", fatigue.ageing);
+        lines.push(line("ageing", words));
+    }
+    lines.push(line("handbook K", formula));
+    let bears = case.stop.required.map(|factor| format!("not bearing {factor:.4} times the largest load, or "));
+    // So many that nobody asked for them.
+    let last = if case.stop.cycles_max < 1e9 {
+        format!("{} cycles", case.stop.cycles_max)
+    } else {
+        "the end of plate or growth".to_owned()
+    };
+    lines.push(line("stop", format!("{end}{}{last}", bears.unwrap_or_default())));
+    lines
+}
+
+/// Its size.
+fn crack_words(specimen: &Specimen) -> String {
+    let depth = specimen.part_through.map(|flaw| format!(", depth {} mm of {} mm", mm(flaw.depth), mm(flaw.through_depth())));
+    format!("; length {} mm{}", mm(specimen.crack_length), depth.unwrap_or_default())
+}
+
+fn law_words(case: &Case) -> String {
+    if let Some(record) = &case.law_record {
+        let constants = record.fatigue.iter().filter(|(key, _)| *key != "growth_law");
+        let constants = constants.map(|(key, value)| match value.as_float() {
+            Some(number) if number != 0.0 && number.abs() < 1e-3 => format!("{key} {number:.4e}"),
+            Some(number) => format!("{key} {number:.4}"),
+            None => format!("{key} {value}"),
+        });
+        return format!("{}, fitted to {} rates: {}", record.kind(), record.rates, constants.collect::<Vec<_>>().join(", "));
+    }
+    match &case.law {
+        LawSource::Inline(law) => format!("a = {:e} per cycle, p = {} at horizon {} mm", law.a, law.p, mm(law.horizon)),
+        LawSource::Paris(law) => format!("da/dN = {:e} ΔK^{} (mm/cycle, MPa√m)", law.c / MM_PER_CYCLE, law.m),
+        LawSource::Factor(law) => format!("{}: {}", law.kind, law.in_words()),
+        LawSource::Fitted(record) => {
+            let law = fit_use::law_line(case).unwrap_or_default();
+            let of_bonds = match case.model {
+                Model::Points(_) => format!("; a = {:e} per cycle at horizon {} mm", record.a, record.horizon_mm),
+                Model::Handbook(_) | Model::Nodes(_) => String::new(),
+            };
+            format!("{law}{of_bonds}")
+        }
+        LawSource::Missing(path) if path.as_os_str().is_empty() => "to be fitted".to_owned(),
+        LawSource::Missing(path) => format!("{} does not exist yet", path.display()),
+    }
+}
+
+pub(super) fn line(what: &'static str, value: String) -> Line {
+    Line { what, value }
+}
+
+/// So many of something.
+fn count(number: usize, name: &str) -> String {
+    format!("{number} {name}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A number of any size in a few figures.
+fn figures(value: f64) -> String {
+    let is_plain = value == 0.0 || (1e-2..1e7).contains(&value.abs());
+    if is_plain { short(value) } else { format!("{value:.4e}") }
+}

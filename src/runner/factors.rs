@@ -1,0 +1,150 @@
+//! Stress intensity factors of every crack tip by several methods, and on nodes the stress of the plate, with or without cracks.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+
+use super::{Summary, Watcher};
+use perilife_base::error::{Error, Result, input};
+use perilife_base::units::shown::{column, per, told};
+use perilife_base::units::{MM, MPA, MPA_SQRT_M};
+use perilife_growth::case::Case;
+use perilife_growth::predict::pin_arcs;
+use perilife_growth::predict::tip_factors::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
+use perilife_growth::stress_concentration::stressed;
+use perilife_plate::specimen::handbook::handbook_beside;
+use perilife_points::crack_tip::TipState;
+use perilife_results::units::show_folder;
+use perilife_results::{model_words, stresses};
+
+/// Factors of the tips, and stresses where a folder for them is given or there is no crack.
+pub(super) fn run(
+    case: &Case,
+    methods: &[StressIntensityMethod],
+    on_nodes: bool,
+    folder: Option<&Path>,
+    watcher: &dyn Watcher,
+) -> Result<Summary> {
+    if let (Some(folder), false) = (folder, case.specimen.is_through()) {
+        let problem = "takes the stress of the plate on nodes, which do not know a crack that does not go through";
+        return Err(input("--out", folder.display(), problem, "leave it out"));
+    }
+    let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);
+    let (mut found, mut tables, mut lines) = (Map::new(), String::new(), Vec::new());
+    if has_cracks || !on_nodes {
+        let tips = stress_intensity(case, methods)?;
+        for warning in notes(case, &tips)?.into_iter().chain(pin_arcs::line(case)) {
+            watcher.warn(&warning);
+        }
+        let pins = model_words::pins(case);
+        if !pins.is_empty() {
+            found.insert("pins".to_owned(), json!(pins));
+        }
+        tables.push_str(&table(&tips));
+        let is_beside = tips.iter().any(|tip| tip.handbook_k_i.is_some());
+        if let Some(formula) = handbook_beside(&case.specimen).filter(|_| is_beside) {
+            let words = format!("{}: {}", formula.name, formula.range);
+            tables.push_str(&format!("handbook K_I by {words}\n"));
+            found.insert("handbook".to_owned(), words.into());
+        }
+        found.insert("tips".to_owned(), tips.iter().map(object).collect());
+    }
+    if folder.is_some() || !has_cracks {
+        let stressed = stressed(case)?;
+        stresses::warnings(&stressed).iter().for_each(|warning| watcher.warn(warning));
+        tables.push_str(&stresses::table(&stressed));
+        lines.push(stresses::words(case, &stressed));
+        found.insert("stresses".to_owned(), stresses::object(&stressed));
+        if let Some(folder) = folder {
+            stresses::write(folder, case, &stressed, &Value::Object(found.clone()))?;
+            show_folder(folder, &mut Value::Null)?;
+        }
+    }
+    let mut figures = Value::Object(found.clone());
+    figures["name"] = json!(case.name);
+    Ok(Summary { result: Value::Object(found), figures, tables, lines, refusal: None })
+}
+
+/// What the methods say of their results, each once.
+fn notes(case: &Case, tips: &[TipResult]) -> Result<Vec<String>> {
+    let results = || tips.iter().flat_map(|tip| &tip.methods);
+    if tips.iter().all(|tip| tip.methods.is_empty()) {
+        return Ok(Vec::new());
+    }
+    if results().all(|result| result.intensity.k_i.is_none()) {
+        let why = results().find_map(|result| result.note.as_deref()).unwrap_or("no method gives a factor");
+        return Err(Error::Mechanics(format!("{}: {why}", case.name)));
+    }
+    let mut said: Vec<String> = Vec::new();
+    for words in results().filter_map(|result| Some(format!("{}: {}", result.method, result.note.as_ref()?))) {
+        if !said.contains(&words) {
+            said.push(words);
+        }
+    }
+    Ok(said)
+}
+
+fn in_mpa(factor: Option<f64>) -> Option<f64> {
+    factor.map(|k| k / MPA_SQRT_M)
+}
+
+fn object(tip: &TipResult) -> Value {
+    let mut methods = Map::new();
+    for MethodResult { method, intensity, t_stress, is_closed, note, wall_s } in &tip.methods {
+        let mut entry = json!({
+            "k_i_mpa_sqrt_m": in_mpa(intensity.k_i), "k_ii_mpa_sqrt_m": in_mpa(intensity.k_ii), "wall_s": wall_s
+        });
+        if *is_closed {
+            entry["state"] = json!(TipState::Closed.name());
+        }
+        if let Some(t_stress) = t_stress {
+            entry["t_stress_mpa"] = json!(t_stress / MPA);
+        }
+        if let Some(note) = note {
+            entry["note"] = json!(note);
+        }
+        methods.insert(method.name().to_owned(), entry);
+    }
+    let [x, y] = tip.tip.position;
+    let mut object = json!({
+        "x_mm": x / MM, "y_mm": y / MM, "direction": tip.tip.direction,
+        "methods": methods, "handbook_k_i_mpa_sqrt_m": in_mpa(tip.handbook_k_i)
+    });
+    if let Some(end) = tip.end {
+        object["end"] = json!(end.name());
+    }
+    object
+}
+
+/// One line a tip and method, in the units that are shown.
+fn table(tips: &[TipResult]) -> String {
+    let [x, y] = ["x_mm", "y_mm"].map(column);
+    let [k_i, k_ii, t] = ["K_I MPa√m", "K_II MPa√m", "T MPa"].map(told);
+    let mut text =
+        format!("{x:>10} {y:>10}  {:<14} {k_i:>12} {k_ii:>12} {t:>9} {:>12} {:>8}\n", "method", "handbook K_I", "time s");
+    let words = |factor: Option<f64>| in_mpa(factor).map_or_else(|| "-".to_owned(), |k| format!("{:.4}", k * per("MPa√m")));
+    for tip in tips {
+        let [x, y] = tip.tip.position.map(|metres| metres / MM * per("mm"));
+        if let Some(end) = tip.end {
+            // Writing to a String cannot fail.
+            let k_i = words(tip.handbook_k_i);
+            let _ =
+                writeln!(text, "{x:>10.4} {y:>10.4}  {:<14} {k_i:>12} {:>12} {:>9} {k_i:>12} {:>8.2}", end.name(), "-", "-", 0.0);
+        }
+        for result in &tip.methods {
+            // Writing to a String cannot fail.
+            let _ = writeln!(
+                text,
+                "{x:>10.4} {y:>10.4}  {:<14} {:>12} {:>12} {:>9} {:>12} {:>8.2}",
+                result.method,
+                words(result.intensity.k_i),
+                words(result.intensity.k_ii),
+                result.t_stress.map_or_else(|| "-".to_owned(), |t| format!("{:.2}", t / MPA * per("MPa"))),
+                words(tip.handbook_k_i),
+                result.wall_s
+            );
+        }
+    }
+    text
+}

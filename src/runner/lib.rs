@@ -1,0 +1,210 @@
+//! From a document to results: one reader and one runner of whatever an input file asks for, used by the commands, by sweeps and by
+//! the workers of a service.
+//!
+//! Knows: what a document asks for, how it is run, what it leaves; the list of all kinds; results of scenes.
+//! Must not know: terminals, networks, how jobs are kept.
+//!
+//! Imports `results` and what it imports, and `scenes`; service, program and Python import it.
+
+mod draft;
+pub mod factor_sweep;
+mod factors;
+mod judged;
+pub mod sweep;
+pub mod scene_model;
+pub mod scene_picture;
+pub mod scene_results;
+pub mod catalogue;
+pub mod check;
+pub mod sweep_folder;
+mod task;
+
+pub use perilife_scenes as scenes;
+
+pub use draft::{Draft, put_law};
+pub use judged::Judged;
+pub use task::{Kind, Task, Wanted};
+
+use std::path::Path;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use perilife_base::error::{Error, Result};
+use perilife_base::units::MM;
+use perilife_calibration::calibrate::{Calibration, Fitted};
+use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::population::plate::lot_of;
+use perilife_calibration::sweep::fleet;
+use perilife_growth::case::Case;
+use perilife_growth::predict::checkpoint::Checkpoint;
+use perilife_growth::predict::residual_strength::check_strength;
+use perilife_growth::predict::{Observer, Prediction, Silent, predict, resume};
+use perilife_results::output::Share;
+use perilife_results::sweep::Plan;
+use perilife_results::units::show_folder;
+use perilife_scenes::checkpoint::SceneCheckpoint;
+use perilife_scenes::{Fracture, Scene, SceneEnd, SceneObserver};
+use sweep_folder::SweepFolder;
+
+/// Receives progress and warnings of a run of whatever kind.
+pub trait Watcher: Observer + SceneObserver {
+    /// What the user should know of the run, as it comes up.
+    fn warn(&self, _warning: &str) {}
+}
+
+impl Watcher for Silent {}
+
+/// What came of a run.
+#[derive(Debug, Default)]
+pub struct Summary {
+    /// Content of `result.json`, `fit.json` or `sweep.json`.
+    pub result: Value,
+    /// The part of it that a listing of runs shows, all that the user should know under `warnings`.
+    pub figures: Value,
+    /// Tables that were asked for on standard output.
+    pub tables: String,
+    /// The result in words.
+    pub lines: Vec<String>,
+    /// Why the run does not count, though its files are written.
+    pub refusal: Option<Error>,
+}
+
+impl Summary {
+    /// The summary of a run that counts.
+    /// Errors: its refusal.
+    pub fn counted(mut self) -> Result<Summary> {
+        self.refusal.take().map_or(Ok(self), Err)
+    }
+}
+
+/// Where an earlier run of a task stood.
+#[derive(Debug)]
+pub enum TaskCheckpoint {
+    /// Of a run of cycles.
+    Cycles(Box<Checkpoint>),
+    /// Of a scene.
+    Scene(Box<SceneCheckpoint>),
+}
+
+impl TaskCheckpoint {
+    /// The checkpoint of a task from the bytes of its file.
+    /// Errors: bytes that are no checkpoint, or one of another task.
+    pub fn of(task: &Task, bytes: &[u8]) -> Result<TaskCheckpoint> {
+        match task {
+            Task::Scene(scene) => SceneCheckpoint::from_bytes(bytes)
+                .and_then(|kept| kept.check(scene).map(|()| TaskCheckpoint::Scene(Box::new(kept)))),
+            _ => Checkpoint::from_bytes(bytes)
+                .and_then(|kept| kept.check(task.case()?).map(|()| TaskCheckpoint::Cycles(Box::new(kept)))),
+        }
+    }
+
+    /// How far the run had come, in words.
+    pub fn words(&self) -> String {
+        match self {
+            TaskCheckpoint::Cycles(kept) => {
+                let progress = kept.progress();
+                format!("N = {:.1}, a = {:.3} mm", progress.cycles, progress.crack_length / MM)
+            }
+            TaskCheckpoint::Scene(kept) => format!("step {}, {:.1} % done", kept.step(), 100.0 * kept.progress().share),
+        }
+    }
+}
+
+/// Runs a task, from a checkpoint of it if there is one, and writes all files of its results into an empty folder if one is given.
+/// Errors: mechanics without a result, wrong input that shows only now, files that cannot be written.
+pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
+    match task {
+        Task::Prediction { case, wanted } => {
+            check_wanted(case, wanted)?;
+            let prediction = match from {
+                Some(TaskCheckpoint::Cycles(checkpoint)) => resume(case, *checkpoint, watcher)?,
+                _ => predict(case, watcher)?,
+            };
+            of_prediction(case, &prediction, wanted, folder, watcher)
+        }
+        Task::Scene(scene) => {
+            let fracture = match from {
+                Some(TaskCheckpoint::Scene(checkpoint)) => perilife_scenes::resume(scene, *checkpoint, watcher)?,
+                _ => perilife_scenes::run(scene, watcher)?,
+            };
+            of_scene(scene, &fracture, folder, watcher)
+        }
+        Task::Fit(calibration) => of_fit(calibration, folder, watcher),
+        Task::Factors { case, methods, on_nodes } => factors::run(case, methods, *on_nodes, folder, watcher),
+        Task::Sweep { sweep, cases } => {
+            let Some(folder) = folder else { return Err(Error::Mechanics(format!("{}: a sweep needs a folder", sweep.name))) };
+            let begun = Instant::now();
+            let read = sweep.document.folder.opened().so_far();
+            let folder = SweepFolder::open(folder, Plan::new(sweep, cases), &read, Share::Alone)?;
+            let threads = rayon::current_num_threads();
+            sweep::run(&cases.iter().collect::<Vec<_>>(), &folder, threads, true, &|| ())?;
+            sweep::collect(&folder, begun, watcher)
+        }
+    }
+}
+
+/// Refuses what a run would be refused for after it: what is wrong there should not cost a run.
+/// Errors: a record that is damaged, a fleet in which nothing scatters, a factor that is none, a plate without known strength, a load
+/// that breaks it at once.
+pub fn check_wanted(case: &Case, wanted: &Wanted) -> Result<()> {
+    let lot = lot_of(case)?;
+    case.fleet.as_ref().map_or(Ok(()), |fleet| fleet::check(fleet, lot.as_ref().err()))?;
+    wanted.inspection.map_or(Ok(()), |from| from.check())?;
+    if wanted.strength {
+        // K of its curve comes later.
+        check_strength(case)?;
+    }
+    perilife_results::run::refuse_beforehand(case)
+}
+
+/// Judges a run of cycles and writes its files.
+/// Errors: as [`Judged::of`]; files that cannot be written.
+pub fn of_prediction(
+    case: &Case,
+    prediction: &Prediction,
+    wanted: &Wanted,
+    folder: Option<&Path>,
+    watcher: &dyn Watcher,
+) -> Result<Summary> {
+    let mut judged = Judged::of(case, prediction, wanted, watcher)?;
+    if let Some(folder) = folder {
+        judged.write(folder, case, prediction)?;
+        judged.show(folder)?;
+    }
+    Ok(judged.summary(case, prediction))
+}
+
+/// Writes the files of a scene that was run.
+pub fn of_scene(scene: &Scene, fracture: &Fracture, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
+    fracture.warnings.iter().for_each(|warning| watcher.warn(warning));
+    let mut result = crate::scene_results::result(scene, fracture);
+    if let Some(folder) = folder {
+        crate::scene_results::write(folder, scene, fracture, &result)?;
+        show_folder(folder, &mut result)?;
+    }
+    let is_bad = matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable);
+    let bad = || Error::Mechanics(format!("{}: {}: {}", scene.name, fracture.end, fracture.end.meaning()));
+    let (figures, lines) = (result.clone(), crate::scene_results::words(scene, fracture));
+    Ok(Summary { result, figures, lines, refusal: is_bad.then(bad), ..Summary::default() })
+}
+
+fn of_fit(calibration: &Calibration, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
+    let started = Instant::now();
+    let fitted = calibration.fit(watcher)?;
+    let wall_s = started.elapsed().as_secs_f64();
+    fitted.warnings().iter().for_each(|warning| watcher.warn(warning));
+    let result = fitted.report(wall_s);
+    folder.map_or(Ok(()), |folder| {
+        perilife_results::fit::write(folder, &fitted, &perilife_results::fit::Kept::of(&fitted, &result)?)
+    })?;
+    let mut figures = result.clone();
+    if let Fitted::Lives(CalibrationCase { case, .. }, _) = fitted {
+        // What the law is of.
+        figures["material"] = json!(case.material.name);
+        figures["plane"] = json!(case.material.plane.name());
+        figures["stress_ratio"] = json!(case.loading.ratio);
+        figures["thickness_mm"] = json!(case.specimen.thickness / MM);
+    }
+    Ok(Summary { result, figures, lines: fitted.summary(wall_s), ..Summary::default() })
+}

@@ -1,0 +1,295 @@
+//! Results of a fracture scene: `history.csv`, `crack_path.csv`, `cracking.csv`, `result.json`, charts and the damaged plate.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::scene_model;
+use perilife_base::error::Result;
+use perilife_base::raster::Snapshot;
+use perilife_base::units::{KN, MM};
+use perilife_plate::specimen::Point;
+use perilife_results::chart::{self, Mark, Series};
+use perilife_results::csv::{exact, number};
+use perilife_results::damage::DamagePicture;
+use perilife_results::model_words::{self, clean};
+use perilife_results::output::{Room, write_file};
+use perilife_results::{provenance, vtk};
+use perilife_scenes::outcome::{HistoryRow, PathPoint};
+use perilife_scenes::scene::{Action, Procedure, SceneLaw};
+use perilife_scenes::{Fracture, Scene, SceneEnd};
+
+/// Columns of `history.csv`.
+pub const HISTORY_COLUMNS: &str = "step,time_s,displacement_mm,load_n,broken_bonds,kinetic_j,strain_j,fracture_j,work_j";
+/// Columns of `crack_path.csv` and `cracking.csv`.
+pub const PATH_COLUMNS: &str = "tip,step,time_s,x_mm,y_mm,damage,speed_m_s";
+
+/// Rows of the history that are numbers: the last ones of a motion that blew up may not be.
+fn rows(fracture: &Fracture) -> impl Iterator<Item = &HistoryRow> {
+    let finite = |row: &&HistoryRow| {
+        [row.time, row.displacement, row.load, row.kinetic, row.strain, row.fracture, row.work].iter().all(|x| x.is_finite())
+    };
+    fracture.history.iter().filter(finite)
+}
+
+/// `history.csv`: one row a recorded step.
+pub fn history(fracture: &Fracture) -> String {
+    let mut text = format!("{HISTORY_COLUMNS}\n");
+    for row in rows(fracture) {
+        let energies = [row.kinetic, row.strain, row.fracture, row.work].map(number).join(",");
+        let (time, displacement, load) = (exact(row.time), number(row.displacement / MM), number(row.load));
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{},{time},{displacement},{load},{},{energies}", row.step, row.broken_bonds);
+    }
+    text
+}
+
+/// `crack_path.csv` of [`Fracture::path`] and `cracking.csv` of [`Fracture::cracking`]: where every crack front stood and how
+/// fast it came there, in the order of time.
+pub fn crack_path(path: &[PathPoint]) -> String {
+    let mut text = format!("{PATH_COLUMNS}\n");
+    for point in path {
+        let [x, y] = point.position.map(|metres| number(metres / MM));
+        let (time, damage, speed) = (exact(point.time), number(point.damage), number(point.speed));
+        let _ = writeln!(text, "{},{},{time},{x},{y},{damage},{speed}", point.tip, point.step);
+    }
+    text
+}
+
+/// All tables by the names of their files.
+pub fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
+    [
+        ("history.csv", history(fracture)),
+        ("crack_path.csv", crack_path(&fracture.path)),
+        ("cracking.csv", crack_path(&fracture.cracking)),
+    ]
+}
+
+/// Bytes that a scene will write, roughly.
+pub fn room(scene: &Scene) -> Room {
+    Room { tables: 64_000, all: scene.budget().disk_bytes as u64 }
+}
+
+/// Writes all files of a scene into `folder`.
+pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &Value) -> Result<()> {
+    // Tables and figures first: what a full disk cuts off are pictures.
+    for (file, text) in tables(fracture) {
+        write_file(&folder.join(file), text.as_bytes())?;
+    }
+    write_file(&folder.join(perilife_results::json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
+    provenance::write(folder, "fracture", provenance::table_of(&scene.echo), &scene.provenance)?;
+    draw_charts(folder, scene, fracture)?;
+    // The last state of a motion that blew up is no number.
+    let finite = |snapshot: &&Snapshot| snapshot.displacement.iter().flatten().all(|u| u.is_finite());
+    let snapshots: Vec<Snapshot> = fracture.snapshots.iter().filter(finite).cloned().collect();
+    draw_plate(folder, scene, fracture, &snapshots)?;
+    vtk::write_wanted(folder, scene.output, &fracture.grid, &snapshots)
+}
+
+/// Load and broken bonds over displacement; in time also load, broken bonds and energies over time.
+fn draw_charts(folder: &Path, scene: &Scene, fracture: &Fracture) -> Result<()> {
+    const MOVED: &str = "Displacement of the loads, mm";
+    const TIME: &str = "Time, µs";
+    let line = |name: &str, x: fn(&HistoryRow) -> f64, y: fn(&HistoryRow) -> f64| Series {
+        name: name.to_owned(),
+        mark: Mark::Line,
+        points: rows(fracture).map(|row| (x(row), y(row))).collect(),
+    };
+    let moved = |row: &HistoryRow| row.displacement / MM;
+    let time = |row: &HistoryRow| row.time * 1e6;
+    let load = |row: &HistoryRow| row.load / KN;
+    let broken = |row: &HistoryRow| row.broken_bonds as f64;
+    let chart = |file: &str, what: &str, names: [&str; 2], series: &[Series]| {
+        chart::linear(&folder.join(file), &format!("{}: {what}", scene.name), names, series)
+    };
+    chart("load_displacement.svg", "load over displacement", [MOVED, "Load, kN"], &[line("load", moved, load)])?;
+    if !matches!(scene.procedure, Procedure::Dynamic { .. }) {
+        let names = [MOVED, "Broken bonds"];
+        return chart("broken_bonds.svg", "broken bonds over displacement", names, &[line("broken bonds", moved, broken)]);
+    }
+    chart("broken_bonds.svg", "broken bonds over time", [TIME, "Broken bonds"], &[line("broken bonds", time, broken)])?;
+    chart("load_time.svg", "load over time", [TIME, "Load, kN"], &[line("load", time, load)])?;
+    let energies = [
+        line("kinetic", time, |row| row.kinetic),
+        line("strain", time, |row| row.strain),
+        line("fracture", time, |row| row.fracture),
+        Series { mark: Mark::Dashes, ..line("work of the loads", time, |row| row.work) },
+    ];
+    chart("energies.svg", "energies over time", [TIME, "Energy, J"], &energies)
+}
+
+/// `damage_first.svg` and `damage.svg`: the plate at the start and at the end.
+fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Snapshot]) -> Result<()> {
+    let paths = paths(fracture);
+    let none = Vec::new();
+    let first = snapshots.first().map(|snapshot| ("damage_first.svg", snapshot, &none));
+    let last = snapshots.last().map(|snapshot| ("damage.svg", snapshot, &paths));
+    for (file, snapshot, paths) in first.into_iter().chain(last) {
+        let caption = caption(scene, fracture, snapshot);
+        let picture = DamagePicture { grid: &fracture.grid, snapshot, cracks: &scene.specimen.cracks, paths, caption: &caption };
+        picture.write(&folder.join(file))?;
+    }
+    Ok(())
+}
+
+/// When a snapshot was taken.
+fn caption(scene: &Scene, fracture: &Fracture, snapshot: &Snapshot) -> Vec<String> {
+    match scene.procedure {
+        Procedure::Static => vec!["static".to_owned()],
+        Procedure::QuasiStatic { steps, iterations: Some(_) } => vec![format!("load step {:.0} of {steps}", snapshot.cycles)],
+        // States of equilibrium stand closer than the steps of the load where bonds are damaged: they are no share of these.
+        Procedure::QuasiStatic { .. } => {
+            let state = snapshot.cycles as usize;
+            let row = fracture.history.iter().find(|row| row.step == state);
+            let moved = row.map(|row| format!("displacement {:.4e} mm", row.displacement / MM));
+            let last = fracture.history.last().map_or(state, |row| row.step);
+            std::iter::once(format!("state {state} of {last}")).chain(moved).collect()
+        }
+        Procedure::Dynamic { .. } => vec![format!("time {:.3} µs", snapshot.cycles * 1e6)],
+    }
+}
+
+/// Path of every front, m.
+fn paths(fracture: &Fracture) -> Vec<Vec<Point>> {
+    let count = fracture.path.iter().map(|point| point.tip + 1).max().unwrap_or(0);
+    let mut paths = vec![Vec::new(); count];
+    fracture.path.iter().for_each(|point| paths[point.tip].push(point.position));
+    paths
+}
+
+/// What came of a scene, in words.
+pub fn words(scene: &Scene, fracture: &Fracture) -> Vec<String> {
+    let last = fracture.history.last().copied().unwrap_or_default();
+    let figures = &fracture.figures;
+    let when = |step: Option<usize>| match step {
+        None => "never".to_owned(),
+        Some(step) if figures.time_step > 0.0 => format!("step {step}, {:.3} µs", step as f64 * figures.time_step * 1e6),
+        Some(step) => format!("step {step}"),
+    };
+    let way = match scene.procedure {
+        Procedure::Static => "one static solve".to_owned(),
+        Procedure::QuasiStatic { iterations: Some(_), .. } => format!("{} load steps", last.step),
+        Procedure::QuasiStatic { steps, .. } => format!("{steps} load steps, {} states of equilibrium", last.step),
+        Procedure::Dynamic { .. } => format!("{} time steps of {:.4} µs", last.step, figures.time_step * 1e6),
+    };
+    let mut lines = vec![
+        format!("{}: peak load {:.4} kN", scene.name, fracture.peak_load() / KN),
+        format!("  stopped        {}: {}", fracture.end, fracture.end.meaning()),
+        format!("  displacement   {:.6} mm at the end, load {:.4} kN", last.displacement / MM, last.load / KN),
+        format!("  first break    {}", when(fracture.onset_step)),
+        format!("  separated      {}", when(fracture.separated_step)),
+        format!("  broken         {} of {} bonds", last.broken_bonds, figures.bonds),
+    ];
+    lines.extend(
+        figures
+            .touching
+            .filter(|flanks| flanks.pressed > 0)
+            .map(|flanks| format!("  flanks         pressed together over {:.0} % of the cracks", 100.0 * flanks.share())),
+    );
+    lines.push(format!("  computed       {} points, {way}, {:.1} s", figures.points, figures.wall_s));
+    lines
+}
+
+/// The whole object. A figure that does not exist is `null`.
+pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
+    let figures = &fracture.figures;
+    let peak = rows(fracture).max_by(|a, b| a.load.total_cmp(&b.load));
+    let last = rows(fracture).last();
+    let warnings: Vec<&String> = scene.warnings.iter().chain(&fracture.warnings).collect();
+    let mut result = json!({
+        "name": scene.name,
+        "stop_reason": fracture.end.name(),
+        "stop_meaning": fracture.end.meaning(),
+        "converged": !matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable),
+        "peak_load_n": peak.map(|row| clean(row.load.max(0.0))),
+        "peak_step": peak.map(|row| row.step),
+        "peak_displacement_mm": peak.map(|row| clean(row.displacement / MM)),
+        "onset_step": fracture.onset_step,
+        "onset_time_s": fracture.onset_step.and_then(|step| time_of(step, fracture)),
+        "separated_step": fracture.separated_step,
+        "separated_time_s": fracture.separated_step.and_then(|step| time_of(step, fracture)),
+        "broken_bonds": last.map(|row| row.broken_bonds),
+        "energy_balance_error": energy_error(fracture),
+        "flanks_pressed_share": figures.touching.map(|flanks| clean(flanks.share())),
+        "fronts": fronts(fracture),
+        "points": figures.points,
+        "bonds": figures.bonds,
+        "steps": last.map(|row| row.step),
+        "evaluations": figures.evaluations,
+        "time_step_s": (figures.time_step > 0.0).then_some(figures.time_step),
+        "wall_s": figures.wall_s,
+        "memory_mb": figures.memory_mb,
+        "loading": loading(scene),
+        "model": model_words::object(&scene_model::of_scene(scene, Some(fracture.grid.spacing))),
+        "damage": damage(scene),
+        "warnings": warnings,
+        "version": env!("CARGO_PKG_VERSION"),
+        "case": scene.echo,
+    });
+    let tables = tables(fracture);
+    let tables: Vec<(&str, &str)> = tables.iter().map(|(name, text)| (*name, &**text)).collect();
+    provenance::add(&mut result, &scene.provenance, &tables);
+    result
+}
+
+/// Time of a step where there is time.
+fn time_of(step: usize, fracture: &Fracture) -> Option<f64> {
+    (fracture.figures.time_step > 0.0).then(|| clean(step as f64 * fracture.figures.time_step))
+}
+
+/// Largest of |kinetic + strain + fracture - work| over the largest energy of the history.
+fn energy_error(fracture: &Fracture) -> Option<f64> {
+    let largest = rows(fracture).map(|row| row.kinetic.max(row.strain).max(row.work.abs())).fold(0.0, f64::max);
+    let left = rows(fracture).map(|row| (row.kinetic + row.strain + row.fracture - row.work).abs()).fold(0.0, f64::max);
+    (largest > 0.0).then(|| left / largest).filter(|error| error.is_finite())
+}
+
+/// Where every crack front stands at the end.
+fn fronts(fracture: &Fracture) -> Value {
+    let count = fracture.path.iter().map(|point| point.tip + 1).max().unwrap_or(0);
+    let last = |tip: usize| fracture.path.iter().rev().find(|point| point.tip == tip);
+    let words = |point: &PathPoint| {
+        json!({
+            "tip": point.tip, "step": point.step, "time_s": point.time,
+            "x_mm": clean(point.position[0] / MM), "y_mm": clean(point.position[1] / MM), "damage": clean(point.damage),
+        })
+    };
+    (0..count).filter_map(last).map(words).collect()
+}
+
+fn loading(scene: &Scene) -> Value {
+    let kinds: Vec<&str> = scene
+        .drives
+        .iter()
+        .map(|drive| match drive.action {
+            Action::Traction(_) => "traction",
+            Action::Displacement(_) => "displacement",
+            Action::Velocity(_) => "velocity",
+            Action::Platen(_) => "platens",
+        })
+        .collect();
+    match scene.procedure {
+        Procedure::Static => json!({ "procedure": "static", "kinds": kinds }),
+        Procedure::QuasiStatic { steps, iterations } => {
+            json!({ "procedure": "quasi_static", "steps": steps, "iterations_per_step": iterations, "kinds": kinds })
+        }
+        Procedure::Dynamic { duration, .. } => json!({ "procedure": "dynamic", "duration_s": duration, "kinds": kinds }),
+    }
+}
+
+fn damage(scene: &Scene) -> Value {
+    let damage = &scene.damage;
+    let by_points = matches!(scene.model.law, SceneLaw::Correspondence { .. });
+    json!({
+        "law": damage.law.name(),
+        "enters": by_points.then(|| damage.enters.name()),
+        "critical_stretch": damage.stretch,
+        "calibration": scene.takes_fracture_energy().then(|| damage.calibration.name()),
+        "trapping": scene.takes_fracture_energy().then(|| scene.trapping()),
+        "elastic_stretch": damage.nonlinear.map(|law| law.elastic),
+        "peak_stretch": damage.nonlinear.map(|law| law.peak),
+        "final_stretch": damage.nonlinear.map(|law| law.last),
+        "printed_law": damage.nonlinear.map(|law| law.printed),
+    })
+}

@@ -1,0 +1,288 @@
+//! What a document asks for, read and found right.
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+use toml::Table;
+
+use crate::scene_results;
+use perilife_base::error::{Result, input};
+use perilife_base::input::Document;
+use perilife_calibration::calibrate::Calibration;
+use perilife_calibration::population::plate::lot_of;
+use perilife_calibration::sweep::design::{CASES_MAX, is_sweep};
+use perilife_calibration::sweep::detection::Detection;
+use perilife_calibration::sweep::{DrawnCase, Sweep};
+use perilife_growth::case::needs;
+use perilife_growth::case::{Case, Method};
+use perilife_growth::predict::tip_factors::StressIntensityMethod;
+use perilife_measured::{Import, MeasuredCurve};
+use perilife_points::budget::Budget;
+use perilife_results::band::{InspectFrom, no_band_to_narrow};
+use perilife_results::output::{Room, RunKind};
+use perilife_results::{run, stresses};
+use perilife_scenes::Scene;
+use perilife_scenes::read::is_scene;
+
+/// What is done with a document.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = JobKind))]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Fits the fatigue law to measured curves.
+    Calibration,
+    /// Runs a case.
+    Prediction,
+    /// Runs a fracture scene without cycles.
+    Scene,
+    /// Runs many cases of one.
+    Sweep,
+    /// Stress intensity factors of a case.
+    Sif,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Kind; 5] = [Kind::Calibration, Kind::Prediction, Kind::Scene, Kind::Sweep, Kind::Sif];
+
+    /// The kind of run that a document of these sections is input of.
+    pub fn of(table: &Table) -> Kind {
+        match () {
+            () if is_sweep(table) => Kind::Sweep,
+            () if is_scene(table) => Kind::Scene,
+            () if table.contains_key("measured") || table.contains_key("fit") => Kind::Calibration,
+            () => Kind::Prediction,
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Calibration => "calibration",
+            Kind::Prediction => "prediction",
+            Kind::Scene => "scene",
+            Kind::Sweep => "sweep",
+            Kind::Sif => "sif",
+        }
+    }
+
+    /// Its place in URLs.
+    pub fn collection(self) -> &'static str {
+        match self {
+            Kind::Calibration => "calibrations",
+            Kind::Prediction => "predictions",
+            Kind::Scene => "scenes",
+            Kind::Sweep => "sweeps",
+            Kind::Sif => "sif",
+        }
+    }
+
+    /// Options of its command that a job of it may have.
+    pub fn options(self) -> &'static [&'static str] {
+        if self == Kind::Sif { &["method"] } else { &[] }
+    }
+}
+
+impl FromStr for Kind {
+    type Err = ();
+
+    fn from_str(name: &str) -> std::result::Result<Self, ()> {
+        Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or(())
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// What is wanted beside a run of cycles.
+#[derive(Debug, Clone, Default)]
+pub struct Wanted {
+    /// Residual strength over crack length.
+    pub strength: bool,
+    /// Readings of the plate itself, set against its case, that narrow the band of what it has left.
+    pub readings: Option<MeasuredCurve>,
+    /// What is left from a crack length on, and how often to look.
+    pub inspection: Option<InspectFrom>,
+    /// How inspections find cracks, from which the probability follows that they miss this one.
+    pub detection: Option<Detection>,
+    /// Life at somewhat other input.
+    pub sensitivities: bool,
+    /// No bounds of the error of the life.
+    pub no_estimate: bool,
+    /// The life by the other engine, too.
+    pub cross_check: bool,
+}
+
+/// A document read as what it asks for.
+#[derive(Debug, Clone)]
+pub enum Task {
+    /// A case.
+    Prediction {
+        /// The case.
+        case: Box<Case>,
+        /// What is wanted beside the run.
+        wanted: Box<Wanted>,
+    },
+    /// A fracture scene.
+    Scene(Box<Scene>),
+    /// A fit to a-N curves, or of laws over K to rates.
+    Fit(Calibration),
+    /// Stress intensity factors of a case.
+    Factors {
+        /// Its plate and load.
+        case: Box<Case>,
+        /// By which methods, each once.
+        methods: Vec<StressIntensityMethod>,
+        /// Whether nodes alone are asked for, which need no crack.
+        on_nodes: bool,
+    },
+    /// A sweep with all its cases.
+    Sweep {
+        /// The sweep.
+        sweep: Box<Sweep>,
+        /// Its cases.
+        cases: Vec<DrawnCase>,
+    },
+}
+
+/// Points of a plate from which K on points takes minutes.
+const POINTS_QUICK: f64 = 3e5;
+
+/// The methods for K where none is named: all, or nodes alone where a small crack asks for many points.
+fn quick_methods(case: &mut Case) -> Vec<StressIntensityMethod> {
+    let points = needs::on_points(case).points;
+    if points <= POINTS_QUICK || !case.specimen.is_through() {
+        return StressIntensityMethod::ALL.to_vec();
+    }
+    case.warnings.push(format!(
+        "K is that of nodes alone, since the plate would have {points:.1e} points: for K on points give --method ring or energy_release"
+    ));
+    vec![StressIntensityMethod::ElementFreeGalerkin]
+}
+
+impl Task {
+    /// Reads a document as input of a kind of run; `methods` are names of [`StressIntensityMethod`] where that asks for them.
+    pub fn read(kind: Kind, document: &Document, methods: &[String]) -> Result<Task> {
+        Ok(match kind {
+            Kind::Prediction => Task::Prediction { case: Box::new(Case::from_document(document)?), wanted: Box::default() },
+            Kind::Scene => Task::Scene(Box::new(Scene::from_document(document)?)),
+            Kind::Calibration => Task::Fit(Calibration::from_document(document)?),
+            Kind::Sif => {
+                let mut chosen: Vec<StressIntensityMethod> = Vec::new();
+                for name in methods {
+                    let method = name.parse()?;
+                    if !chosen.contains(&method) {
+                        chosen.push(method);
+                    }
+                }
+                let is_of_nodes = chosen == [StressIntensityMethod::ElementFreeGalerkin];
+                let mut case = Box::new(if is_of_nodes { Case::plate_on_nodes(document)? } else { Case::plate_of(document)? });
+                let on_nodes = is_of_nodes
+                    || chosen.is_empty() && case.chosen.is_none() && case.model.method() == Method::ElementFreeGalerkin;
+                let methods = if chosen.is_empty() { quick_methods(&mut case) } else { chosen };
+                Task::Factors { case, methods, on_nodes }
+            }
+            Kind::Sweep => Task::sweep(document.clone(), &[], CASES_MAX)?,
+        })
+    }
+
+    /// Adds readings of the plate of a case, of any table that [`perilife_measured`] reads.
+    /// Errors: a file of no readings or of several specimens, readings that are not of this plate, a case whose life has no band.
+    pub fn read_plate(&mut self, document: &Document, file: &Path) -> Result<()> {
+        let Task::Prediction { case, wanted } = self else {
+            return Err(input("--measured", file.display(), "is for cases with cycles", "leave it out"));
+        };
+        let mut measured = perilife_measured::read_into(document.folder.opened(), &[file.to_path_buf()], &Import::default())?;
+        measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        case.warnings.append(&mut measured.warnings);
+        case.provenance = document.folder.opened().so_far();
+        let [curve] = measured.curves.as_slice() else {
+            let names: Vec<&str> = measured.curves.iter().map(|curve| &*curve.specimen).take(5).collect();
+            let problem = format!("holds {} specimens ({}), and a plate is one", measured.curves.len(), names.join(", "));
+            return Err(input("--measured", file.display(), problem, "give a table of the readings of this plate alone"));
+        };
+        lot_of(case)?.map_err(|why| no_band_to_narrow(curve, &why))?;
+        wanted.readings = Some(curve.clone());
+        Ok(())
+    }
+
+    /// Reads a sweep of at most so many cases, with overrides of design and case.
+    pub fn sweep(document: Document, overrides: &[String], most: usize) -> Result<Task> {
+        let sweep = Box::new(Sweep::with_overrides(document, overrides, most)?);
+        let cases = sweep.cases()?;
+        Ok(Task::Sweep { sweep, cases })
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Task::Prediction { case, .. } | Task::Factors { case, .. } => &case.name,
+            Task::Scene(scene) => &scene.name,
+            Task::Fit(calibration) => calibration.name(),
+            Task::Sweep { sweep, .. } => &sweep.name,
+        }
+    }
+
+    /// What the user should know of it before it is run.
+    pub fn warnings(&self) -> &[String] {
+        match self {
+            Task::Prediction { case, .. } | Task::Factors { case, .. } => &case.warnings,
+            Task::Scene(scene) => &scene.warnings,
+            Task::Fit(calibration) => calibration.warnings(),
+            Task::Sweep { .. } => &[],
+        }
+    }
+
+    /// What makes folders of its results.
+    pub fn run_kind(&self) -> RunKind {
+        match self {
+            Task::Prediction { .. } => RunKind::Predict,
+            Task::Factors { .. } => RunKind::Sif,
+            Task::Scene(_) => RunKind::Fracture,
+            Task::Fit(_) => RunKind::Calibrate,
+            Task::Sweep { .. } => RunKind::Sweep,
+        }
+    }
+
+    /// The case that its run follows through cycles.
+    pub(super) fn case(&self) -> Result<&Case> {
+        match self {
+            Task::Prediction { case, .. } => Ok(case),
+            _ => Err(input("--checkpoint", self.name(), "is no run that can be kept", "leave it out")),
+        }
+    }
+
+    /// What its runs take up, of every `n`-th of many with `n` so that there are at most `most`; nothing of a fit to rates.
+    pub fn budgets(&self, most: usize) -> Result<Vec<Budget>> {
+        Ok(match self {
+            Task::Prediction { case, .. } => vec![needs::of_case(case)],
+            Task::Factors { case, methods, .. } => {
+                let has_points = methods.iter().any(|method| *method != StressIntensityMethod::ElementFreeGalerkin);
+                vec![if has_points { needs::on_points(case) } else { needs::of_case(case) }]
+            }
+            Task::Scene(scene) => vec![scene.budget()],
+            Task::Fit(Calibration::Lives(calibration)) => vec![needs::of_case(&calibration.case)],
+            Task::Fit(Calibration::Rates(_)) => Vec::new(),
+            Task::Sweep { cases, .. } => {
+                let step = cases.len().div_ceil(most).max(1);
+                cases.iter().step_by(step).map(|case| Ok(needs::of_case(&case.read()?))).collect::<Result<_>>()?
+            }
+        })
+    }
+
+    /// Bytes that it will write, roughly; 0 where that is little.
+    pub fn room(&self) -> Room {
+        match self {
+            Task::Prediction { case, .. } => run::room(case),
+            Task::Scene(scene) => scene_results::room(scene),
+            Task::Factors { case, .. } => stresses::room(case),
+            Task::Fit(_) => Room { tables: 64_000, all: 1_000_000 },
+            Task::Sweep { .. } => Room::default(),
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! What changes in the bonds of a scene: damage and the history it depends on. Written by the interaction alone.
+
+use serde::{Deserialize, Serialize};
+
+use perilife_base::sealed::{dense, sparse};
+use perilife_points::net::Net;
+
+/// State of every bond of a net.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BondState {
+    /// Share of its stiffness that a bond still has, 1 - D; 0 broken.
+    pub share: Vec<f64>,
+    /// Largest stretch so far, for laws with history.
+    pub peak: Vec<f64>,
+    /// Whether a bond may fail; not near loads and supports.
+    pub may_fail: Vec<bool>,
+}
+
+/// What has changed in the bonds of a net: those that are not as at first.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KeptBonds {
+    share: Vec<(u32, f64)>,
+    peak: Vec<(u32, f64)>,
+}
+
+impl BondState {
+    /// Bonds of the plate with its cracks cut. Bonds with an end among the `no_fail` points never fail.
+    pub fn new(net: &Net, no_fail: &[bool]) -> Self {
+        let mut share = vec![1.0; net.bonds.len()];
+        for &bond in &net.pre_cut {
+            share[bond as usize] = 0.0;
+        }
+        let may_fail = net.bonds.iter().map(|bond| !no_fail[bond.from as usize] && !no_fail[bond.to as usize]).collect();
+        BondState { peak: vec![0.0; share.len()], share, may_fail }
+    }
+
+    /// What has changed in the bonds.
+    pub fn kept(&self) -> KeptBonds {
+        KeptBonds { share: sparse(&self.share, 1.0), peak: sparse(&self.peak, 0.0) }
+    }
+
+    /// Puts the bonds where they stood; whether they are those of this net.
+    pub fn restore(&mut self, kept: &KeptBonds) -> bool {
+        let count = self.share.len();
+        let fits = kept.share.iter().chain(&kept.peak).all(|(bond, _)| (*bond as usize) < count);
+        if fits {
+            self.share = dense(&kept.share, 1.0, count);
+            self.peak = dense(&kept.peak, 0.0, count);
+        }
+        fits
+    }
+
+    /// Damage of every point ([`Net::damage`]), 0 to 1.
+    pub fn damage(&self, net: &Net) -> Vec<f64> {
+        net.damage(&self.share)
+    }
+
+    /// Bonds broken beside the cracks of the start.
+    pub fn broken(&self, net: &Net) -> usize {
+        self.share.iter().filter(|&&share| share == 0.0).count() - net.pre_cut.len()
+    }
+}

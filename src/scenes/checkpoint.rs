@@ -1,0 +1,168 @@
+//! The course of a run: what is taken down of it, who hears how far it is, and what it takes to go on with a run that was broken off.
+//!
+//! A scene can be taken up where a step of it is done and taken down. Explicit motion, relaxation and marching carry all they
+//! depend on from step to step; it stands here whole. Along a path of equilibrium the solver remembers more than that (its factor is
+//! that of an earlier state): it is built anew after every so many states, checkpoint or not, and the path can be taken up there.
+//! So a scene taken up gives the same histories as one that nobody interrupted, bit for bit, on the same kind of processor.
+
+use std::time::Instant;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::bonds::{BondState, KeptBonds};
+use super::log::{Log, Records};
+use super::scene::Scene;
+use super::{SceneObserver, SceneProgress};
+use perilife_base::error::{Error, Result};
+use perilife_base::sealed::{Seal, refused};
+
+/// First bytes of a checkpoint.
+pub const SIGN: &[u8] = b"perilife scene checkpoint\n";
+const SEAL: Seal = Seal { of: "a scene of this program", magic: SIGN, form: 2 };
+
+/// State of a scene after one of its steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneCheckpoint {
+    /// Hash of what the scene says.
+    scene: [u8; 32],
+    /// Largest share of the run so far, 0 to 1.
+    share: f64,
+    /// Time spent on the run so far, s.
+    wall_s: f64,
+    records: Records,
+    bonds: KeptBonds,
+    /// Where its procedure stands, with what its interaction or its solver keeps, as bytes: the scene says which procedure it is.
+    place: Vec<u8>,
+}
+
+impl SceneCheckpoint {
+    /// How far the run had come.
+    pub fn progress(&self) -> SceneProgress {
+        SceneProgress { share: self.share }
+    }
+
+    /// The step after which it was taken down, as `history.csv` counts them.
+    pub fn step(&self) -> usize {
+        self.records.last_step()
+    }
+
+    /// Whether it is that of a run of this scene, by all that decides how the run goes; its name and where the file lies do not.
+    pub fn belongs_to(&self, scene: &Scene) -> bool {
+        self.scene == hash(scene)
+    }
+
+    /// Refuses the checkpoint of another scene.
+    pub fn check(&self, scene: &Scene) -> Result<()> {
+        if self.belongs_to(scene) {
+            Ok(())
+        } else {
+            Err(refused("belongs to another scene, or to this one before it was changed"))
+        }
+    }
+
+    /// As bytes, with a checksum.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        SEAL.to_bytes(self)
+    }
+
+    /// From what [`SceneCheckpoint::to_bytes`] gave.
+    pub fn from_bytes(bytes: &[u8]) -> Result<SceneCheckpoint> {
+        SEAL.read(bytes)
+    }
+}
+
+/// A checkpoint whose sizes or procedure are not those of the run.
+pub(super) fn of_another() -> Error {
+    refused("is that of another plate or procedure")
+}
+
+/// Hash of all that decides how the run of a scene goes.
+fn hash(scene: &Scene) -> [u8; 32] {
+    let Scene { specimen, material, model, drives, holds, damage, procedure, refinement, .. } = scene;
+    // Debug output of floats says them to the last bit.
+    let all = format!("{:?}", (specimen, material, model, drives, holds, damage, procedure, refinement));
+    Sha256::digest(all).into()
+}
+
+/// Time spent on a run.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock {
+    begun: Instant,
+    /// Time spent before it was taken up, s.
+    earlier_s: f64,
+}
+
+impl Clock {
+    /// Starts to count for a run that begins, or goes on from a checkpoint.
+    pub fn start(from: Option<&SceneCheckpoint>) -> Self {
+        Clock { begun: Instant::now(), earlier_s: from.map_or(0.0, |from| from.wall_s) }
+    }
+
+    /// Time spent so far, s.
+    pub fn seconds(self) -> f64 {
+        self.earlier_s + self.begun.elapsed().as_secs_f64()
+    }
+}
+
+/// Course of a run.
+pub struct Course<'a> {
+    /// What is taken down.
+    pub log: Log<'a>,
+    observer: &'a dyn SceneObserver,
+    clock: Clock,
+    scene: [u8; 32],
+    /// Largest share of the run so far.
+    share: f64,
+    /// Where the run goes on, until its procedure stands there.
+    from: Option<SceneCheckpoint>,
+}
+
+impl<'a> Course<'a> {
+    /// The course of a run of a scene, from a checkpoint of it if there is one.
+    pub fn new(
+        scene: &Scene,
+        log: Log<'a>,
+        observer: &'a dyn SceneObserver,
+        clock: Clock,
+        from: Option<SceneCheckpoint>,
+    ) -> Self {
+        Course { log, observer, clock, scene: hash(scene), share: 0.0, from }
+    }
+
+    /// Puts log and bonds where the run stood, and tells where its procedure did; `None`, and nothing is touched, at the beginning of
+    /// a run.
+    /// Errors: a checkpoint of another plate.
+    pub fn take_up<T: DeserializeOwned>(&mut self, bonds: &mut BondState) -> Result<Option<T>> {
+        let Some(SceneCheckpoint { share, records, bonds: kept, place, .. }) = self.from.take() else { return Ok(None) };
+        self.share = share;
+        let fits = self.log.restore(records) && bonds.restore(&kept);
+        postcard::from_bytes(&place).ok().filter(|_| fits).map(Some).ok_or_else(of_another)
+    }
+
+    /// Tells how far the run is.
+    pub fn step_done(&mut self, share: f64) -> Result<()> {
+        self.share = self.share.max(share);
+        if let Some(row) = self.log.last() {
+            self.observer.row(row);
+        }
+        if self.observer.step_done(&SceneProgress { share: self.share }) {
+            return Ok(());
+        }
+        Err(Error::Mechanics("the run was cancelled".to_owned()))
+    }
+
+    /// Offers what it takes to go on from here, the procedure standing at this place.
+    pub fn may_keep<T: Serialize>(&self, bonds: &BondState, place: impl Fn() -> T) {
+        self.observer.may_keep(&|| SceneCheckpoint {
+            scene: self.scene,
+            share: self.share,
+            wall_s: self.clock.seconds(),
+            records: self.log.records(),
+            bonds: bonds.kept(),
+            // Numbers, lists and options of known length can always be written to memory.
+            place: postcard::to_stdvec(&place()).unwrap_or_default(),
+        });
+    }
+}

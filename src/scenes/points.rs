@@ -1,0 +1,124 @@
+//! Points and bonds of a scene, and where loads and supports take hold of them: points, stretches of the outline, words.
+
+use std::fmt;
+
+use super::correspondence::NET_LAW;
+use super::scene::{Action, Discretisation, LoadRamp, Region, Scene, SceneLaw, SceneLoad};
+use crate::levels::dual_horizon::{self, MultiLevelSpec};
+use perilife_base::error::{Result, input};
+use perilife_base::units::MM;
+use perilife_plate::specimen::geometry::{along, bounding_box};
+use perilife_plate::specimen::{Edge, Load, Point, Specimen};
+use perilife_points::body::Body;
+use perilife_points::net::Net;
+
+/// Points and bonds of a scene, and the lattice body behind them if there is one.
+/// Errors: wrong input that shows only now, choices that do not go together.
+pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
+    let model = &scene.model;
+    match (model.law, model.arrangement) {
+        (law, Discretisation::Lattice) => {
+            let law = match law {
+                SceneLaw::Bonds(law) => law,
+                SceneLaw::Correspondence { .. } => NET_LAW,
+            };
+            let body =
+                Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, model.lattice_angle)?;
+            Ok((Net::of_body(&body), Some(body)))
+        }
+        (SceneLaw::Bonds(law), Discretisation::DualHorizon) => {
+            let ask = MultiLevelSpec {
+                specimen: &scene.specimen,
+                material: &scene.material,
+                law: &law,
+                spacing: model.spacing,
+                horizon_ratio: model.horizon_ratio,
+                lattice_angle: model.lattice_angle,
+                refinement: scene.refinement.as_ref(),
+                floating: is_floating(scene),
+            };
+            Ok((dual_horizon::build(&ask)?, None))
+        }
+        (SceneLaw::Correspondence { .. }, arrangement) => {
+            let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
+            Err(input("model.discretisation", format!("\"{arrangement}\""), problem, "use \"lattice\""))
+        }
+    }
+}
+
+/// Whether nothing holds the plate, so that its loads must balance.
+fn is_floating(scene: &Scene) -> bool {
+    scene.specimen.supports.is_empty()
+        && scene.holds.is_empty()
+        && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
+}
+
+impl Region {
+    /// The outermost row of a whole side.
+    pub fn side(edge: Edge) -> Region {
+        Region::Edge { edge, depth: 0.0, range: [f64::NEG_INFINITY, f64::INFINITY] }
+    }
+
+    /// Points within the region, ascending; of a side at least those of its outermost row.
+    pub fn points(&self, net: &Net, specimen: &Specimen) -> Vec<u32> {
+        let all = || net.positions.iter().enumerate();
+        match *self {
+            Region::Box { low, high } => {
+                let inside = |p: &Point| (0..2).all(|i| p[i] >= low[i] && p[i] <= high[i]);
+                all().filter(|(_, p)| inside(p)).map(|(i, _)| i as u32).collect()
+            }
+            Region::Edge { edge, depth, range } => {
+                let [low, high] = bounding_box(&specimen.outline);
+                let axis = usize::from(matches!(edge, Edge::Top | Edge::Bottom));
+                let far = matches!(edge, Edge::Top | Edge::Right);
+                let away = |p: &Point| if far { high[axis] - p[axis] } else { p[axis] - low[axis] };
+                let along = |point: &usize| {
+                    let at = net.positions[*point][1 - axis];
+                    at >= range[0] && at <= range[1]
+                };
+                net.within(depth, away).filter(along).map(|point| point as u32).collect()
+            }
+        }
+    }
+}
+
+impl SceneLoad {
+    /// A load on the outermost row of a whole side, at once.
+    pub fn on_side(edge: Edge, action: Action) -> SceneLoad {
+        SceneLoad { region: Region::side(edge), action, rise: LoadRamp::AT_ONCE, key: "loading.edges".to_owned() }
+    }
+
+    /// A traction as loads of the plate; none where the load is something else, or the outline does not reach its part of the
+    /// side.
+    pub fn loads(&self, specimen: &Specimen) -> Vec<Load> {
+        let (&Region::Edge { edge, range, .. }, Action::Traction(traction)) = (&self.region, self.action) else {
+            return Vec::new();
+        };
+        let axis = usize::from(edge.normal()[0] != 0.0);
+        let clipped = |(a, b): (Point, Point)| {
+            let share = |at: f64| ((at - a[axis]) / (b[axis] - a[axis])).clamp(0.0, 1.0);
+            let (first, second) = (share(range[0]), share(range[1]));
+            let (from, to) = (first.min(second), first.max(second));
+            (to > from).then(|| Load::Edge { from: along(a, b, from), to: along(a, b, to), traction })
+        };
+        edge.stretches(specimen).into_iter().filter_map(clipped).collect()
+    }
+}
+
+impl fmt::Display for Region {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mm = |metres: f64| (metres / MM * 1e4).round() / 1e4;
+        match *self {
+            Region::Edge { edge, depth, range } => {
+                write!(f, "{edge}")?;
+                if range[0].is_finite() {
+                    write!(f, " from {} to {} mm", mm(range[0]), mm(range[1]))?;
+                }
+                if depth > 0.0 { write!(f, ", {} mm deep", mm(depth)) } else { Ok(()) }
+            }
+            Region::Box { low, high } => {
+                write!(f, "the box ({}, {}) to ({}, {}) mm", mm(low[0]), mm(low[1]), mm(high[0]), mm(high[1]))
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Loads of a scene without time, all of which grow in proportion, its energies, and its rows.
+//!
+//! Work between two states of equilibrium by the trapezoidal rule, `½ (R + R')·Δū + ½ (f + f')·Δu`: on a ray of elastic loading
+//! it is exact. What is neither strain nor fracture energy has become motion that a scene without time does not follow: the
+//! excess over a jump.
+
+use serde::{Deserialize, Serialize};
+
+use super::super::bonds::BondState;
+use super::super::boundary::{Boundary, Motion};
+use super::super::checkpoint::Course;
+use super::super::contact::Touching;
+use super::super::interaction::Driven;
+use super::super::outcome::{HistoryRow, SceneEnd};
+use crate::levels::equilibrium::FullLoad;
+use perilife_base::error::{Result, input};
+use perilife_points::net::Net;
+
+impl FullLoad {
+    /// Loads and supports of a boundary.
+    /// Errors: a prescribed velocity: there is no time.
+    pub fn of(net: &Net, boundary: &Boundary) -> Result<Self> {
+        let mut full = FullLoad::none(net);
+        for held in &boundary.held {
+            let Motion::Displacement(value) = held.motion else {
+                let remedy = "give loading.duration_s, or kind = \"displacement\" with displacement_mm";
+                return Err(input("loading.kind", "\"velocity\"", "needs time, and the scene has none", remedy));
+            };
+            let at = held.point as usize * net.unknowns + held.component;
+            (full.held[at], full.motion[at]) = (true, value);
+        }
+        for &(point, force) in &boundary.forces {
+            for (component, force) in force.into_iter().enumerate() {
+                let at = point as usize * net.unknowns + component;
+                full.external[at] += if full.held[at] { 0.0 } else { force };
+            }
+        }
+        full.pin(net);
+        Ok(full)
+    }
+
+    /// Lets the plate float after all: something that is not among these loads holds it.
+    pub fn release(&mut self) {
+        std::mem::take(&mut self.pins).into_iter().for_each(|at| self.held[at] = false);
+    }
+
+    /// Work that the held unknowns would do on the way to full load against these forces of the bonds, and work of the given
+    /// forces over this displacement, J.
+    pub fn works(&self, u: &[f64], force: &[f64]) -> [f64; 2] {
+        let driven: f64 = self.motion.iter().zip(force).map(|(motion, force)| -motion * force).sum();
+        let pushed: f64 = self.external.iter().zip(u).map(|(force, u)| force * u).sum();
+        [driven, pushed]
+    }
+}
+
+/// A state of equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct State {
+    /// Share of the full load.
+    pub level: f64,
+    /// Work of the held unknowns per share of the full load, J.
+    driven: f64,
+    /// Work that the forces of full load would do over its displacement, J.
+    pushed: f64,
+    /// Strain energy, J.
+    pub strain: f64,
+}
+
+impl State {
+    /// The state with this displacement, forces of the bonds and strain energy.
+    pub fn new(full: &FullLoad, level: f64, u: &[f64], force: &[f64], strain: f64) -> Self {
+        let [driven, pushed] = full.works(u, force);
+        State { level, driven, pushed, strain }
+    }
+
+    /// The same with the forces of rigid bodies that the interaction moves by itself.
+    pub fn with_driven(mut self, driven: Option<Driven>) -> Self {
+        self.driven += driven.map_or(0.0, |driven| driven.rate);
+        self
+    }
+
+    /// The state on the ray to this one of full load.
+    pub fn at(self, level: f64) -> Self {
+        State { level, driven: level * self.driven, pushed: level * self.pushed, strain: level * level * self.strain }
+    }
+}
+
+/// Sums of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Account {
+    /// Where the run is.
+    pub state: State,
+    /// Work so far, J.
+    pub work: f64,
+    /// Energy taken by damage, J.
+    pub fracture: f64,
+    /// Rows so far.
+    pub rows: usize,
+    /// Largest work so far, J.
+    largest: f64,
+}
+
+impl Account {
+    /// Goes on to another state of equilibrium.
+    pub fn go(&mut self, to: State) {
+        let from = std::mem::replace(&mut self.state, to);
+        let driven = 0.5 * (from.driven + to.driven) * (to.level - from.level);
+        let pushed = 0.5 * (from.level + to.level) * (to.pushed - from.pushed);
+        self.work += driven + pushed;
+        self.largest = self.largest.max(self.work);
+    }
+
+    /// Work that is neither strain nor fracture energy, over the largest work.
+    pub fn excess(&self) -> f64 {
+        let nowhere = self.work - self.state.strain - self.fracture;
+        if self.largest > 0.0 { nowhere / self.largest } else { 0.0 }
+    }
+
+    /// Whether the strain energy is not finite, or exceeds so many times all the work there ever was.
+    pub fn is_impossible(&self, times: f64) -> bool {
+        self.state.strain.is_nan() || self.state.strain > times * self.largest
+    }
+
+    /// Takes down a row with this displacement and forces of the bonds.
+    pub fn row(
+        &mut self,
+        course: &mut Course<'_>,
+        u: &[f64],
+        force: &[f64],
+        driven: Option<Driven>,
+        bonds: &BondState,
+    ) -> Result<()> {
+        self.rows += 1;
+        let of_points = || course.log.boundary.measure(course.log.net.unknowns, self.state.level, u, force);
+        let (displacement, load) = driven.map_or_else(of_points, |driven| (driven.displacement, driven.load));
+        let row = HistoryRow {
+            step: self.rows,
+            displacement,
+            load,
+            strain: self.state.strain,
+            fracture: self.fracture,
+            work: self.work,
+            ..HistoryRow::default()
+        };
+        course.log.row(row, u, bonds);
+        course.step_done(self.state.level)
+    }
+}
+
+/// Where a procedure without time ended.
+pub struct Walked {
+    /// Why.
+    pub end: SceneEnd,
+    /// Last displacement, m.
+    pub u: Vec<f64>,
+    /// Energies.
+    pub account: Account,
+    /// Evaluations of the forces.
+    pub evaluations: usize,
+    /// How flanks stand at the end, where they are kept apart.
+    pub touching: Option<Touching>,
+}

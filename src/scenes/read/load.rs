@@ -1,0 +1,245 @@
+//! One load of a scene: what it does, and where.
+
+use serde::Deserialize;
+use toml::Value;
+
+use super::region;
+use crate::scene::{Action, LoadRamp, Region, SceneLoad};
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::{Quantity, number, refuse_given, slice};
+use perilife_base::units::{MM, MPA};
+use perilife_plate::loading::Transverse;
+use perilife_plate::specimen::geometry::unit;
+use perilife_plate::specimen::{Edge, Point, Specimen};
+
+perilife_base::kinds! {
+    /// Loads of fracture scenes.
+    pub enum LoadKind for "loading.kind" {
+        Traction = "traction": "stress_mpa on edges; fracture scenes",
+        Displacement = "displacement": "displacement_mm of edges or regions, reached in the last of the steps or at the end of ramp_s; fracture scenes",
+        Velocity = "velocity": "velocity_mm_s of edges or regions; fracture scenes with duration_s",
+        Platens = "platens": "rigid plates without friction that press on edges by displacement_mm; fracture scenes",
+    }
+}
+
+/// Keys of one load.
+pub const KEYS: &[&str] = &[
+    "kind",
+    "edges",
+    "regions",
+    "grip_mm",
+    "range_mm",
+    "stress_mpa",
+    "displacement_mm",
+    "velocity_mm_s",
+    "direction",
+    "transverse",
+    "from_s",
+];
+/// More than this is a slip.
+const REGIONS_MAX: usize = 50;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LoadInput {
+    kind: LoadKind,
+    edges: Option<Vec<Edge>>,
+    regions: Option<Vec<Value>>,
+    grip_mm: Option<f64>,
+    range_mm: Option<[f64; 2]>,
+    stress_mpa: Option<f64>,
+    displacement_mm: Option<f64>,
+    velocity_mm_s: Option<f64>,
+    direction: Option<[f64; 2]>,
+    transverse: Option<Transverse>,
+    ramp_s: Option<f64>,
+    from_s: Option<f64>,
+}
+
+/// Time of a scene of motion, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clock {
+    /// Duration.
+    pub duration: f64,
+    /// `ramp_s` of all loads that have none of their own.
+    pub ramp: f64,
+}
+
+/// One load: a drive for each of its edges or regions.
+pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Specimen) -> Result<Vec<SceneLoad>> {
+    let load: LoadInput = slice(value, path)?;
+    let size = size(&load, path)?;
+    let direction = direction(&load, path)?;
+    check_keys(&load, path)?;
+    let rise = rise(&load, path, clock)?;
+    let (regions, kind) = (regions(&load, path, specimen)?, load.kind);
+    let mut drives = Vec::new();
+    for (region, key) in regions {
+        let outward = match region {
+            Region::Edge { edge, .. } => Some(edge.normal()),
+            Region::Box { .. } => None,
+        };
+        let unit = direction.or(outward).ok_or_else(|| {
+            let problem = "is missing: a region has no outward side";
+            input_missing(&format!("{path}.direction"), problem, "give direction = [x, y]")
+        })?;
+        let vector = unit.map(|component: f64| size * component);
+        let held = load.transverse == Some(Transverse::Held);
+        let components = [0, 1].map(|i| (unit[i] != 0.0 || held).then_some(vector[i]));
+        let action = match kind {
+            LoadKind::Traction => Action::Traction(vector),
+            LoadKind::Displacement => Action::Displacement(components),
+            LoadKind::Velocity => Action::Velocity(components),
+            // A platen presses: it moves against the outward normal.
+            LoadKind::Platens => Action::Platen(vector.map(|component| -component)),
+        };
+        let drive = SceneLoad { region, action, rise, key };
+        if kind == LoadKind::Traction {
+            push_traction(&drive, path, specimen)?;
+        }
+        drives.push(drive);
+    }
+    Ok(drives)
+}
+
+/// How a load rises: in a scene of motion by its own `ramp_s`, or that of all loads, from `from_s` on.
+fn rise(load: &LoadInput, path: &str, clock: Option<Clock>) -> Result<LoadRamp> {
+    const TIME: Quantity = number("a time in s", 0.0, 1e6);
+    let (ramp_key, from_key) = (format!("{path}.ramp_s"), format!("{path}.from_s"));
+    let Some(clock) = clock else {
+        let given = [(&ramp_key, load.ramp_s), (&from_key, load.from_s)];
+        return match given.into_iter().find_map(|(key, value)| Some((key, value?))) {
+            None => Ok(LoadRamp::AT_ONCE),
+            Some((key, value)) => {
+                Err(input(key, value, "has no meaning without duration_s", "give loading.duration_s, or leave it out"))
+            }
+        };
+    };
+    let ramp = TIME.read_optional(&ramp_key, load.ramp_s)?.unwrap_or(clock.ramp);
+    let from = TIME.read_optional(&from_key, load.from_s)?.unwrap_or(0.0);
+    if from >= clock.duration {
+        let problem = format!("is not before the end of the scene, {} s: the load would never act", clock.duration);
+        return Err(input(&from_key, from, problem, "give a smaller one, or a longer loading.duration_s"));
+    }
+    if ramp == 0.0 && matches!(load.kind, LoadKind::Displacement | LoadKind::Platens) {
+        let problem = "is missing: a displacement at once would be an infinite velocity";
+        return Err(input_missing(&ramp_key, problem, "give the time in which the displacement is reached"));
+    }
+    Ok(LoadRamp { from, ramp })
+}
+
+/// The one size of a load, SI.
+fn size(load: &LoadInput, path: &str) -> Result<f64> {
+    const STRESS: Quantity = Quantity { what: "a stress", unit: "MPa", low: -1e5, high: 1e5, si: MPA };
+    const SHIFT: Quantity = Quantity { what: "a displacement", unit: "mm", low: -1e4, high: 1e4, si: MM };
+    const SPEED: Quantity = Quantity { what: "a velocity", unit: "mm/s", low: -1e8, high: 1e8, si: MM };
+    let choices = [
+        ("stress_mpa", load.stress_mpa, STRESS, &[LoadKind::Traction][..]),
+        ("displacement_mm", load.displacement_mm, SHIFT, &[LoadKind::Displacement, LoadKind::Platens]),
+        ("velocity_mm_s", load.velocity_mm_s, SPEED, &[LoadKind::Velocity]),
+    ];
+    for (key, given, ..) in choices.iter().filter(|choice| !choice.3.contains(&load.kind)) {
+        if let Some(given) = given {
+            let problem = format!("does not go with kind = \"{}\"", load.kind);
+            return Err(input(&format!("{path}.{key}"), given, problem, "leave it out, or give another kind"));
+        }
+    }
+    // Every kind has its key above.
+    let own = choices.iter().find(|choice| choice.3.contains(&load.kind));
+    let Some((key, given, quantity, _)) = own else { return Ok(0.0) };
+    let key = format!("{path}.{key}");
+    let given = given.ok_or_else(|| input_missing(&key, "is missing: there is no load", format!("give {}", quantity.what)))?;
+    let size = quantity.read(&key, given)?;
+    if size == 0.0 || (load.kind == LoadKind::Platens && size < 0.0) {
+        let (problem, remedy) = match load.kind {
+            LoadKind::Platens => ("does not press: platens move against the plate", "give the way of the platen, above zero"),
+            _ => ("loads nothing", "give another value, or hold points in [supports]"),
+        };
+        return Err(input(&key, given, problem, remedy));
+    }
+    Ok(size)
+}
+
+/// Unit vector of `direction`.
+fn direction(load: &LoadInput, path: &str) -> Result<Option<Point>> {
+    let Some([x, y]) = load.direction else { return Ok(None) };
+    let (key, given) = (format!("{path}.direction"), format!("[{x}, {y}]"));
+    let Some(direction) = unit([x, y]) else {
+        return Err(input(&key, given, "has no direction", "give [x, y], for example [0, 1]"));
+    };
+    if load.kind == LoadKind::Platens {
+        let problem = "does not go with platens, which move against the side that they press on";
+        return Err(input(&key, given, problem, "leave it out"));
+    }
+    Ok(Some(direction))
+}
+
+/// Keys that the kind of load has no use for.
+fn check_keys(load: &LoadInput, path: &str) -> Result<()> {
+    let moved = matches!(load.kind, LoadKind::Displacement | LoadKind::Velocity);
+    if let Some(transverse) = load.transverse.filter(|_| !moved) {
+        let problem = format!("does not go with kind = \"{}\"", load.kind);
+        return Err(input(&format!("{path}.transverse"), transverse, problem, "leave it out"));
+    }
+    if let Some(depth) = load.grip_mm.filter(|_| !moved) {
+        let problem = format!("does not go with kind = \"{}\", which acts on the side itself", load.kind);
+        return Err(input(&format!("{path}.grip_mm"), depth, problem, "leave it out"));
+    }
+    if load.regions.is_some() && !moved {
+        let problem = format!("does not go with kind = \"{}\", which acts on sides", load.kind);
+        return Err(input_missing(&format!("{path}.regions"), problem, "give edges"));
+    }
+    Ok(())
+}
+
+/// Edges or regions of a load, each with the key that says which points it takes hold of.
+fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Region, String)>> {
+    let (edges_key, regions_key) = (format!("{path}.edges"), format!("{path}.regions"));
+    match (&load.edges, &load.regions) {
+        (None, None) => {
+            let remedy = "give edges = [\"top\", \"bottom\", \"left\", \"right\"] or some of them, or regions";
+            Err(input_missing(&edges_key, "is missing: nothing is loaded", remedy))
+        }
+        (Some(_), Some(_)) => Err(input_missing(&regions_key, "stands beside edges", "give them as parts of their own")),
+        (Some(edges), None) => {
+            if edges.is_empty() {
+                return Err(input(&edges_key, "[]", "is empty: nothing is loaded", "name the loaded sides"));
+            }
+            if let Some((i, edge)) = edges.iter().enumerate().find(|(i, edge)| edges[..*i].contains(edge)) {
+                return Err(input(&format!("{edges_key}[{i}]"), edge, "stands twice", "name each side once"));
+            }
+            let (depth, range) = (format!("{path}.grip_mm"), format!("{path}.range_mm"));
+            let place = if load.range_mm.is_some() { &range } else { &edges_key };
+            let of_edge = |edge: &Edge| {
+                let depth = (depth.as_str(), load.grip_mm.unwrap_or(0.0));
+                Ok((region::edge(*edge, &edges_key, depth, (&range, load.range_mm), specimen)?, place.clone()))
+            };
+            edges.iter().map(of_edge).collect()
+        }
+        (None, Some(regions)) => {
+            let given = [("grip_mm", load.grip_mm.is_some()), ("range_mm", load.range_mm.is_some())];
+            refuse_given(path, &given, "goes with edges, not with regions", "leave it out")?;
+            if regions.is_empty() || regions.len() > REGIONS_MAX {
+                let remedy = format!("give 1 to {REGIONS_MAX} boxes {{ from_mm = [x, y], to_mm = [x, y] }}");
+                return Err(input(&regions_key, format!("{} regions", regions.len()), "is no place of a load", remedy));
+            }
+            let of_box = |(i, value): (usize, &Value)| {
+                let key = format!("{regions_key}[{i}]");
+                let (low, high) = region::box_from_value(value, &key, specimen)?;
+                Ok((Region::Box { low, high }, key))
+            };
+            regions.iter().enumerate().map(of_box).collect()
+        }
+    }
+}
+
+/// Puts a traction on the part of a side that it acts on.
+fn push_traction(drive: &SceneLoad, path: &str, specimen: &mut Specimen) -> Result<()> {
+    let loads = drive.loads(specimen);
+    if loads.is_empty() {
+        let key = format!("{path}.range_mm");
+        return Err(input_missing(&key, "lies where the outline does not reach this side", "move it onto the side"));
+    }
+    specimen.loads.extend(loads);
+    Ok(())
+}

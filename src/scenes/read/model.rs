@@ -1,0 +1,210 @@
+//! `[model]` of a scene: points, law and solver.
+
+use serde::Deserialize;
+use toml::Value;
+
+use crate::correspondence::elasticity::SILLING_FACTOR;
+use crate::scene::{Discretisation, PointLaw, Procedure, SceneLaw, SceneModel, SceneSolver, ZeroEnergyControl};
+use perilife_base::error::{Error, Result, input, input_missing};
+use perilife_base::input::{LENGTH, number, refuse_given, slice};
+use perilife_plate::material::Material;
+use perilife_plate::specimen::Specimen;
+use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
+use perilife_points::spacing::HORIZON_RATIO;
+use perilife_points::spacing::{check_spacing, default_spacing};
+
+perilife_base::kinds! {
+    /// Measures of deformation of a bond.
+    pub enum Kinematics for "model.kinematics" {
+        Small = "small": "stretch and direction of a bond linear in the displacements; fracture scenes",
+        Finite = "finite": "true stretch along the deformed bond; bond_based by velocity_verlet or adaptive_dynamic_relaxation; fracture scenes",
+    }
+}
+
+/// Keys of `[model]`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    bond_law: Option<String>,
+    kernel: Option<Kernel>,
+    rotation: Option<Rotation>,
+    surface_correction: Option<SurfaceCorrection>,
+    spacing_mm: Option<f64>,
+    horizon_ratio: Option<f64>,
+    lattice_angle_deg: Option<f64>,
+    discretisation: Option<Discretisation>,
+    solver: Option<SceneSolver>,
+    zero_energy_control: Option<ZeroEnergyControl>,
+    zero_energy_factor: Option<f64>,
+    kinematics: Option<Kinematics>,
+}
+
+/// Reads `[model]`; what is left out gets the program's choice.
+pub fn from_value(value: &Value, specimen: &Specimen, material: &Material, procedure: &Procedure) -> Result<SceneModel> {
+    let input: Input = slice(value, "model")?;
+    let spacing = LENGTH.read_optional("model.spacing_mm", input.spacing_mm)?.unwrap_or_else(|| default_spacing(specimen).0);
+    check_spacing(spacing, specimen)?;
+    let ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
+    let angle = number("an angle in degrees", -90.0, 90.0).read_optional("model.lattice_angle_deg", input.lattice_angle_deg)?;
+    let law = law(&input, material)?;
+    let arrangement = input.discretisation.unwrap_or(Discretisation::Lattice);
+    let solver = solver(input.solver, law, *procedure)?;
+    Ok(SceneModel {
+        finite: finite(&input, law, solver)?,
+        law,
+        spacing,
+        horizon_ratio: ratio.unwrap_or(HORIZON_RATIO),
+        lattice_angle: angle.unwrap_or(0.0).to_radians(),
+        arrangement,
+        solver,
+    })
+}
+
+fn law(input: &Input, material: &Material) -> Result<SceneLaw> {
+    match input.bond_law.as_deref() {
+        Some(name) if name.parse::<PointLaw>().is_ok() => correspondence(input),
+        name => bonds(name, input, material),
+    }
+}
+
+/// Springs in the bonds; a kernel that is left out is that of the law's literature.
+fn bonds(name: Option<&str>, given: &Input, material: &Material) -> Result<SceneLaw> {
+    const KEY: &str = "model.bond_law";
+    let names = || {
+        let springs = BondLawKind::ALL.iter().filter(|kind| **kind != BondLawKind::StateBased).map(|kind| kind.name());
+        springs.chain(PointLaw::ALL.iter().map(|law| law.name())).collect::<Vec<_>>().join(", ")
+    };
+    let kind = match name {
+        None => BondLawKind::TwoParameter,
+        Some(name) => {
+            let quoted = format!("\"{name}\"");
+            match name.parse::<BondLawKind>() {
+                Ok(BondLawKind::StateBased) => {
+                    let problem = "has no damage: its dilatation counts whole neighbourhoods; fracture scenes do not take it";
+                    return Err(input(KEY, quoted, problem, format!("use one of {}", names())));
+                }
+                Ok(kind) => kind,
+                Err(_) => return Err(input(KEY, quoted, "is not a known kind", format!("use one of {}", names()))),
+            }
+        }
+    };
+    let controls = [
+        ("zero_energy_control", given.zero_energy_control.is_some()),
+        ("zero_energy_factor", given.zero_energy_factor.is_some()),
+    ];
+    let problem = format!("goes with bond_law = \"correspondence\"; {kind} has no zero-energy modes");
+    refuse_given("model", &controls, &problem, "leave it out")?;
+    let kernel = match kind {
+        BondLawKind::BondBased | BondLawKind::OneBondTwoParameter => Kernel::Constant,
+        BondLawKind::TwoParameter | BondLawKind::StateBased => Kernel::Conical,
+    };
+    let law = BondLaw {
+        kind,
+        kernel: given.kernel.unwrap_or(kernel),
+        rotation: given.rotation.unwrap_or(Rotation::Free),
+        surface_correction: given.surface_correction.unwrap_or(SurfaceCorrection::VolumeAndSurface),
+    };
+    stencil::check(&law, material).map_err(|error| beyond_springs(error, &law, material))?;
+    Ok(SceneLaw::Bonds(law))
+}
+
+/// The remedy of a Poisson's ratio beyond springs that a scene has.
+fn beyond_springs(error: Error, law: &BondLaw, material: &Material) -> Error {
+    match error {
+        Error::Input(mut trouble) if material.poisson_ratio > stencil::poisson_limit(material.plane) => {
+            let also = if law.kind == BondLawKind::BondBased { "" } else { ", or another Poisson's ratio" };
+            trouble.remedy = format!("use model.bond_law = \"correspondence\", which takes any{also}");
+            Error::Input(trouble)
+        }
+        other => other,
+    }
+}
+
+fn correspondence(given: &Input) -> Result<SceneLaw> {
+    let of_bonds = [
+        ("kernel", given.kernel.is_some()),
+        ("rotation", given.rotation.is_some()),
+        ("surface_correction", given.surface_correction.is_some()),
+        ("kinematics", given.kinematics.is_some()),
+    ];
+    let problem = "goes with laws of bonds, not with bond_law = \"correspondence\"";
+    refuse_given("model", &of_bonds, problem, "leave it out")?;
+    const FACTOR: &str = "model.zero_energy_factor";
+    let control = given.zero_energy_control.unwrap_or(ZeroEnergyControl::Silling);
+    let factor = match (control, given.zero_energy_factor) {
+        (ZeroEnergyControl::None, Some(factor)) => {
+            let problem = "says how strong a control is, and zero_energy_control = \"none\"";
+            return Err(input(FACTOR, factor, problem, "leave it out, or use \"silling\" or \"spring\""));
+        }
+        (ZeroEnergyControl::None, None) => 0.0,
+        (ZeroEnergyControl::Silling, factor) => {
+            number("a factor", 0.0, 1e3).read(FACTOR, check_sign(factor.unwrap_or(SILLING_FACTOR))?)?
+        }
+        (ZeroEnergyControl::Spring, Some(factor)) => {
+            number("a spring constant c_I in N/m⁷", 0.0, 1e40).read(FACTOR, check_sign(factor)?)?
+        }
+        (ZeroEnergyControl::Spring, None) => {
+            let remedy = "give the spring constant c_I in N/m⁷; it raises Young's modulus by π c_I h δ⁴/8";
+            return Err(input_missing(FACTOR, "is missing: springs of which stiffness?", remedy));
+        }
+    };
+    Ok(SceneLaw::Correspondence { control, factor })
+}
+
+fn check_sign(factor: f64) -> Result<f64> {
+    if factor >= 0.0 || factor.is_nan() {
+        return Ok(factor);
+    }
+    let problem = "is negative: the control would feed the zero-energy modes instead of damping them";
+    Err(input("model.zero_energy_factor", factor, problem, "give zero or more"))
+}
+
+/// The solver of procedure and law, or the one asked for where it suits them.
+fn solver(asked: Option<SceneSolver>, law: SceneLaw, procedure: Procedure) -> Result<SceneSolver> {
+    const KEY: &str = "model.solver";
+    let timed = matches!(procedure, Procedure::Dynamic { .. });
+    let by_points = matches!(law, SceneLaw::Correspondence { .. });
+    let marches = matches!(procedure, Procedure::QuasiStatic { iterations: Some(_), .. });
+    let usual = match (timed, by_points || marches) {
+        (true, _) => SceneSolver::VelocityVerlet,
+        (false, true) => SceneSolver::AdaptiveDynamicRelaxation,
+        (false, false) => SceneSolver::Secant,
+    };
+    let Some(asked) = asked else { return Ok(usual) };
+    let refuse = |problem: &str, remedy: &str| Err(input(KEY, format!("\"{asked}\""), problem, remedy));
+    match asked {
+        SceneSolver::VelocityVerlet if !timed => {
+            refuse("follows motion in time, and the scene has no loading.duration_s", "give duration_s, or leave the solver out")
+        }
+        SceneSolver::Secant | SceneSolver::AdaptiveDynamicRelaxation if timed => refuse(
+            "looks for equilibrium, and loading.duration_s asks for motion in time",
+            "use \"velocity_verlet\", or give loading.steps instead of duration_s",
+        ),
+        SceneSolver::Secant if marches => refuse(
+            "finds equilibrium in every step, and loading.iterations_per_step asks for steps that do not come to rest",
+            "use \"adaptive_dynamic_relaxation\", or leave iterations_per_step out",
+        ),
+        SceneSolver::Secant if by_points => refuse(
+            "works on springs in bonds, which bond_law = \"correspondence\" has not",
+            "use \"adaptive_dynamic_relaxation\"",
+        ),
+        _ => Ok(asked),
+    }
+}
+
+/// Whether bonds are measured by their true stretch.
+fn finite(given: &Input, law: SceneLaw, solver: SceneSolver) -> Result<bool> {
+    if given.kinematics != Some(Kinematics::Finite) {
+        return Ok(false);
+    }
+    let refuse = |problem: &str, remedy: &str| Err(input("model.kinematics", "\"finite\"", problem, remedy));
+    if !matches!(law, SceneLaw::Bonds(BondLaw { kind: BondLawKind::BondBased, .. })) {
+        let problem = "is built for bond_law = \"bond_based\" only: a tangential spring has no true stretch";
+        return refuse(problem, "use bond_based, or kinematics = \"small\"");
+    }
+    if solver == SceneSolver::Secant {
+        let problem = "does not go with solver = \"secant\", whose stiffness is linear in the displacements";
+        return refuse(problem, "use solver = \"adaptive_dynamic_relaxation\"");
+    }
+    Ok(true)
+}

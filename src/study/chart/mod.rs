@@ -1,0 +1,225 @@
+//! Speed against accuracy: what a result costs with every method, and how far it is from a truth that none of them gave.
+//!
+//! A [`Panel`] is a [`Scene`] with a name. Its [`choice`]s are methods, resolutions, laws, solvers and steps. [`run`] makes one run of a
+//! choice; [`schedule`] makes all of them in random order, each in a process of its own, beside reference runs. What is refused or
+//! fails is a point of the [`Chart`] as well, with its reason.
+
+pub mod choice;
+pub mod run;
+pub mod schedule;
+
+pub use choice::{Choice, Family};
+pub use run::Run;
+
+use super::scene::Scene;
+use super::standard::{COMPACT_TENSION, MIDDLE_TENSION, SINGLE_EDGE};
+use super::tasks::{Outcome, chosen};
+use perilife_base::error::Result;
+use perilife_calibration::median::median;
+
+/// A scene of the chart.
+#[derive(Debug)]
+pub struct Panel {
+    /// Name, as `perilife chart NAME` takes it.
+    pub name: &'static str,
+    /// What it is, in words.
+    pub about: &'static str,
+    /// What is asked.
+    pub scene: Scene,
+}
+
+const fn panel(name: &'static str, about: &'static str, scene: Scene) -> Panel {
+    Panel { name, about, scene }
+}
+
+/// All scenes, in the order of the panels.
+pub static SCENES: [Panel; 12] = [
+    panel("middle_tension", "middle-tension panel, W 100 mm, a 10 to 38 mm", Scene::Growth(MIDDLE_TENSION)),
+    panel("compact_tension", "compact specimen, W 50 mm, a 15 to 35 mm", Scene::Growth(COMPACT_TENSION)),
+    panel("single_edge", "single-edge panel, W 50 mm, a 8 to 28 mm", Scene::Growth(SINGLE_EDGE)),
+    panel("slant_factors", "slant crack, 30° to the side: K_I and K_II", Scene::Factors("slant_severance")),
+    panel("slant_severance", "slant crack until the plate is in two", Scene::Plate("slant_severance")),
+    panel("hole_entered", "edge crack that enters a hole", Scene::Plate("hole_attracts")),
+    panel("hole_passed", "edge crack that passes a hole", Scene::Plate("hole_missed")),
+    panel("offset_cracks", "two edge cracks that pass each other", Scene::Plate("offset_edge_cracks")),
+    panel("three_cracks", "three collinear cracks that join", Scene::Plate("three_cracks")),
+    panel("bending_with_holes", "bent beam with three holes, one entered", Scene::Plate("three_point_bending")),
+    panel("tension_plate", "plate in uniform tension, 100 x 200 mm", Scene::Tension),
+    panel("hole_in_tension", "hole of 20 mm in a plate of 100 x 200 mm in tension", Scene::Hole),
+];
+
+/// The scenes of these names, all where no name is given.
+pub fn scenes(names: &[String]) -> Result<Vec<&'static Panel>> {
+    chosen(&SCENES, |panel| panel.name, names, "SCENE", "is not a scene of the chart")
+}
+
+perilife_base::kinds! {
+    /// What came of a point of the chart.
+    pub enum Status for "status of the chart" {
+        Measured = "measured": "ran, and its time is the median of its runs",
+        Refused = "refused": "the program refuses the case",
+        Failed = "failed": "the run failed, or its cracks end elsewhere than those of the truth",
+        Stopped = "stopped": "took longer than a run may",
+    }
+}
+
+/// A point of the chart: a choice in a scene.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Scene.
+    pub panel: &'static Panel,
+    /// Choice.
+    pub choice: Choice,
+    /// What came of its last run.
+    pub outcome: Outcome<Run>,
+    /// Seconds of every run.
+    pub walls: Vec<f64>,
+    /// The same over those of the reference run beside it.
+    pub ratios: Vec<f64>,
+    /// Whether no other point of its scene is both faster and nearer to the truth.
+    pub is_on_front: bool,
+}
+
+impl Point {
+    /// What came of it.
+    pub fn status(&self) -> Status {
+        match self.outcome {
+            Outcome::Done(_) => Status::Measured,
+            Outcome::Refused(_) => Status::Refused,
+            Outcome::Failed(_) => Status::Failed,
+            Outcome::Stopped(_) => Status::Stopped,
+        }
+    }
+
+    /// Median of the wall times, s.
+    pub fn wall_s(&self) -> Option<f64> {
+        (!self.walls.is_empty()).then(|| median(&self.walls))
+    }
+
+    /// Median of the wall times over those of the reference run.
+    pub fn time_ratio(&self) -> Option<f64> {
+        (!self.ratios.is_empty()).then(|| median(&self.ratios))
+    }
+
+    /// Largest less least wall time over the median, percent.
+    pub fn spread_percent(&self) -> Option<f64> {
+        let [least, most] = self.range_s()?;
+        Some(100.0 * (most - least) / self.wall_s()?)
+    }
+
+    /// Least and largest wall time, s.
+    pub fn range_s(&self) -> Option<[f64; 2]> {
+        let least = self.walls.iter().copied().fold(f64::INFINITY, f64::min);
+        (!self.walls.is_empty()).then(|| [least, self.walls.iter().copied().fold(0.0, f64::max)])
+    }
+
+    /// Place in the chart: seconds, error in percent.
+    pub fn place(&self) -> Option<(f64, f64)> {
+        Some((self.wall_s()?, self.outcome.done()?.error_percent)).filter(|(_, error)| error.is_finite())
+    }
+
+    /// The command that repeats a run of it.
+    pub fn command(&self) -> String {
+        let sets = self.choice.set.iter().map(|key| {
+            let plain = key.chars().all(|c| c.is_ascii_alphanumeric() || "._=-".contains(c));
+            if plain { format!(" --set {key}") } else { format!(" --set '{key}'") }
+        });
+        format!("perilife chart {} --once{}", self.panel.name, sets.collect::<String>())
+    }
+}
+
+/// A finished chart.
+#[derive(Debug, Clone)]
+pub struct Chart {
+    /// Points, scene by scene.
+    pub points: Vec<Point>,
+    /// Median of all reference runs, s.
+    pub reference_s: f64,
+    /// What it was measured on.
+    pub machine: Machine,
+}
+
+impl Chart {
+    /// The chart of these points, fronts marked; `references` are the seconds of reference runs.
+    pub fn new(mut points: Vec<Point>, references: &[f64]) -> Chart {
+        for panel in &SCENES {
+            let of_scene: Vec<usize> = (0..points.len()).filter(|&i| points[i].panel.name == panel.name).collect();
+            let place = |&i: &usize| {
+                points[i].place().map_or((f64::NAN, f64::NAN), |(time, error)| {
+                    // Below its own uncertainty the truth cannot tell errors apart.
+                    (time, error.max(panel.scene.truth_uncertainty_percent()))
+                })
+            };
+            let places: Vec<(f64, f64)> = of_scene.iter().map(place).collect();
+            front(&places).into_iter().for_each(|at| points[of_scene[at]].is_on_front = true);
+        }
+        let known: Vec<f64> = references.iter().copied().filter(|seconds| seconds.is_finite()).collect();
+        Chart { points, reference_s: median(&known), machine: Machine::here() }
+    }
+
+    /// Scenes that have points, in their order.
+    pub fn scenes(&self) -> Vec<&'static Panel> {
+        SCENES.iter().filter(|panel| self.of(panel).next().is_some()).collect()
+    }
+
+    /// Points of a scene.
+    pub fn of<'c>(&'c self, panel: &'c Panel) -> impl Iterator<Item = &'c Point> {
+        self.points.iter().filter(|point| point.panel.name == panel.name)
+    }
+
+    /// Families that have points, in the order of the legend.
+    pub fn families(&self) -> Vec<Family> {
+        Family::ALL.iter().copied().filter(|family| self.points.iter().any(|point| point.choice.family == *family)).collect()
+    }
+}
+
+/// Relative gain of error that earns a slower run its place on a front: less is round-off between solvers that are equally exact.
+const GAIN: f64 = 1e-3;
+
+/// Pareto front of time and error: indices, fastest first, of points (time, error) that are nearer to the reference than every faster
+/// one by more than `GAIN`. Points that are not finite have no place on it.
+pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).filter(|&i| points[i].0.is_finite() && points[i].1.is_finite()).collect();
+    order.sort_by(|&a, &b| points[a].0.total_cmp(&points[b].0).then(points[a].1.total_cmp(&points[b].1)));
+    let mut best = f64::INFINITY;
+    order.retain(|&i| {
+        let nearer = points[i].1 < best * (1.0 - GAIN);
+        if nearer {
+            best = points[i].1;
+        }
+        nearer
+    });
+    order
+}
+
+/// Program, threads and vector units that a chart was measured with.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Machine {
+    /// Version of the program.
+    pub version: &'static str,
+    /// Threads of the solvers.
+    pub threads: usize,
+    /// Instruction set of the vectors that the kernels use, chosen when they run.
+    pub instruction_set: String,
+}
+
+impl Machine {
+    /// The machine at hand.
+    pub fn here() -> Self {
+        // The name of the variant, without what it holds.
+        let name = format!("{:?}", pulp::Arch::new());
+        let instruction_set = name.split(['(', ' ']).next().unwrap_or_default().to_owned();
+        Machine {
+            version: env!("CARGO_PKG_VERSION"),
+            threads: rayon::current_num_threads(),
+            instruction_set: format!("{} {instruction_set}", std::env::consts::ARCH),
+        }
+    }
+}
+
+impl std::fmt::Display for Machine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Machine { version, threads, instruction_set } = self;
+        write!(f, "perilife {version}, {threads} threads, {instruction_set}")
+    }
+}

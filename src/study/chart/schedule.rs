@@ -1,0 +1,165 @@
+//! In which order what is run how often: every run in a process of its own, in random order, with reference runs in between.
+
+use std::time::Instant;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+use super::choice::{Choice, choices};
+use super::run::Run;
+use super::{Chart, Panel, Point, SCENES};
+use crate::tasks::Outcome;
+use perilife_base::error::Result;
+
+/// Seed of the order: the same runs in the same order every time.
+const SEED: u64 = 1;
+/// Seconds after which a reference run no longer counts as beside a run.
+const REFERENCE_FRESH_S: f64 = 20.0;
+/// Runs of a point by the seconds of its first one: up to these seconds, so many.
+const RUNS: [(f64, usize); 3] = [(2.0, 5), (20.0, 3), (f64::INFINITY, 1)];
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Quick choices only, a run each.
+    pub is_quick: bool,
+    /// Seconds a run may take.
+    pub limit_s: f64,
+}
+
+impl Effort {
+    /// Under an hour on two cores.
+    pub const FULL: Effort = Effort { is_quick: false, limit_s: 120.0 };
+    /// Under three minutes.
+    pub const QUICK: Effort = Effort { is_quick: true, limit_s: 20.0 };
+
+    /// Runs of a point whose first one took so many seconds.
+    fn runs(self, first_s: f64) -> usize {
+        if self.is_quick { 1 } else { RUNS.iter().find(|(seconds, _)| first_s <= *seconds).map_or(1, |(_, runs)| *runs) }
+    }
+}
+
+/// What is run: a scene by name, and keys.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Request {
+    /// Scene.
+    pub scene: String,
+    /// Keys.
+    pub set: Vec<String>,
+}
+
+/// A run, and the reference run beside it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// What ran.
+    pub request: Request,
+    /// What came of it.
+    pub outcome: Outcome<Run>,
+    /// Seconds of the reference run beside it.
+    pub reference_s: f64,
+}
+
+/// Runs a request in a process of its own, no longer than so many seconds.
+pub type Isolated<'a> = &'a dyn Fn(&Request, f64) -> Result<Outcome<Run>>;
+
+/// Keeps every run as it ends.
+pub type Keep<'a> = &'a mut dyn FnMut(&Record) -> Result<()>;
+
+/// The default run of the first scene, which all times are compared with.
+fn reference_request() -> Request {
+    Request { scene: SCENES[0].name.to_owned(), set: Vec::new() }
+}
+
+struct Measuring<'a> {
+    isolated: Isolated<'a>,
+    keep: Keep<'a>,
+    limit_s: f64,
+    /// Seconds of the last reference run, and when it ended.
+    reference: Option<(f64, Instant)>,
+    references: Vec<f64>,
+    records: Vec<Record>,
+}
+
+impl Measuring<'_> {
+    fn reference(&mut self) -> Result<f64> {
+        let fresh = self.reference.filter(|(_, at)| at.elapsed().as_secs_f64() < REFERENCE_FRESH_S);
+        let wall = match fresh {
+            Some((wall, _)) => return Ok(wall),
+            None => (self.isolated)(&reference_request(), f64::INFINITY)?.done().map_or(f64::NAN, |run| run.wall_s),
+        };
+        self.reference = Some((wall, Instant::now()));
+        self.references.push(wall);
+        Ok(wall)
+    }
+
+    fn measure(&mut self, request: Request) -> Result<()> {
+        let reference_s = self.reference()?;
+        let outcome = (self.isolated)(&request, self.limit_s)?;
+        let record = Record { request, outcome, reference_s };
+        (self.keep)(&record)?;
+        self.records.push(record);
+        Ok(())
+    }
+
+    fn of<'r>(&'r self, request: &'r Request) -> impl Iterator<Item = &'r Record> {
+        self.records.iter().filter(move |record| record.request == *request)
+    }
+}
+
+/// Measures the choices of these scenes; runs that are `known` from an earlier call are not made again.
+pub fn measure(
+    scenes: &[&'static Panel],
+    effort: Effort,
+    known: Vec<Record>,
+    isolated: Isolated<'_>,
+    keep: Keep<'_>,
+) -> Result<Chart> {
+    let references = known.iter().map(|record| record.reference_s).collect();
+    let mut measuring = Measuring { isolated, keep, limit_s: effort.limit_s, reference: None, references, records: known };
+    let mut planned: Vec<(&'static Panel, Choice, Request)> = Vec::new();
+    for panel in scenes {
+        for choice in choices(panel)?.into_iter().filter(|choice| choice.is_quick || !effort.is_quick) {
+            let request = Request { scene: panel.name.to_owned(), set: choice.set.clone() };
+            planned.push((panel, choice, request));
+        }
+    }
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    let firsts: Vec<Request> = planned.iter().map(|(_, _, request)| request.clone()).collect();
+    for request in shuffled(firsts, &mut random) {
+        if measuring.of(&request).next().is_none() {
+            measuring.measure(request)?;
+        }
+    }
+    let repeats = planned.iter().flat_map(|(_, _, request)| {
+        let walls: Vec<f64> = measuring.of(request).filter_map(|record| Some(record.outcome.done()?.wall_s)).collect();
+        let wanted = walls.first().map_or(0, |first| effort.runs(*first)).saturating_sub(walls.len());
+        vec![request.clone(); wanted]
+    });
+    for request in shuffled(repeats.collect(), &mut random) {
+        measuring.measure(request)?;
+    }
+    let points = planned.into_iter().map(|(panel, choice, request)| point(panel, choice, measuring.of(&request))).collect();
+    Ok(Chart::new(points, &measuring.references))
+}
+
+fn point<'r>(panel: &'static Panel, choice: Choice, records: impl Iterator<Item = &'r Record>) -> Point {
+    let outcome = Outcome::Failed("was not run".to_owned());
+    let mut point = Point { panel, choice, outcome, walls: Vec::new(), ratios: Vec::new(), is_on_front: false };
+    for record in records {
+        if let Some(run) = record.outcome.done() {
+            point.walls.push(run.wall_s);
+            point.ratios.push(run.wall_s / record.reference_s);
+        }
+        point.outcome = record.outcome.clone();
+    }
+    point
+}
+
+/// In random order (Fisher and Yates).
+fn shuffled<T>(mut all: Vec<T>, random: &mut ChaCha8Rng) -> Vec<T> {
+    for i in (1..all.len()).rev() {
+        all.swap(i, (random.next_u64() % (i as u64 + 1)) as usize);
+    }
+    all
+}

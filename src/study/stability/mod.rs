@@ -1,0 +1,250 @@
+//! Where methods fail: each method is taken across the range of one parameter until its error passes a bound or it gives no result.
+//!
+//! A [`Sweep`] has a truth that does not come from the method (a handbook's quadrature, a closed form, uniform strain, or a method that
+//! shares neither points nor bonds with it). Its cases run at rising values; the ends of the safe range, the run of stable values around
+//! the usual one, are found by bisection. Every run has a [`Budget`] of cycle blocks and seconds, and a panic is a failure with a
+//! name, so that nothing hangs and nothing is left out.
+
+mod budget;
+mod factors;
+mod lives;
+mod readings;
+mod scenes;
+
+use std::time::Instant;
+
+pub use budget::{Budget, Run, within};
+
+use super::tasks::{Outcome, chosen, side_by_side};
+use perilife_base::error::Result;
+
+/// A method in a sweep: its name in the table, and its error at a value of the parameter, percent.
+pub type Method = (&'static str, fn(f64, &Run) -> Result<f64>);
+
+/// A parameter that is taken across its range.
+pub struct Sweep {
+    /// Name, as `perilife stability NAME` takes it.
+    pub name: &'static str,
+    /// What is varied and what the error is measured against.
+    pub about: &'static str,
+    /// The parameter, as the axis of the picture names it.
+    pub parameter: &'static str,
+    /// Its unit; empty where it has none.
+    pub unit: &'static str,
+    /// Values, rising.
+    pub values: &'static [f64],
+    /// Value that is usual, from which the safe range is sought in both directions; one of the values.
+    pub usual: f64,
+    /// Whether there are others between the values.
+    pub is_continuous: bool,
+    /// Error up to which a result counts as right, percent.
+    pub bound_percent: f64,
+    /// Methods, each with a line of its own.
+    pub methods: &'static [Method],
+}
+
+/// What most sweeps have in common.
+const SWEEP: Sweep = Sweep {
+    name: "",
+    about: "",
+    parameter: "",
+    unit: "",
+    values: &[],
+    usual: 0.0,
+    is_continuous: true,
+    bound_percent: 2.0,
+    methods: &[],
+};
+
+/// All sweeps, in the order in which a life is computed.
+pub static SWEEPS: [Sweep; 28] = [
+    scenes::SPRING,
+    scenes::SILLING,
+    lives::PLANE_STRESS,
+    lives::PLANE_STRAIN,
+    lives::HORIZON_RATIO,
+    factors::LATTICE_ANGLE,
+    factors::HOLE_OFFSET,
+    factors::PLATE_SIZE,
+    factors::CRACK_LENGTH,
+    factors::EDGE_CRACK_LENGTH,
+    factors::LIGAMENT,
+    factors::HOLE_DISTANCE,
+    factors::HOLE_DIAMETER,
+    factors::CRACK_DISTANCE,
+    factors::KINK_MIXITY,
+    factors::BIAXIALITY,
+    lives::STEP_ERROR,
+    lives::SEVERING_STEP,
+    lives::EXPONENT,
+    lives::AGEING,
+    scenes::TIME_STEP,
+    scenes::LOAD_STEPS,
+    scenes::DENSITY_FACTOR,
+    factors::LAST_LIGAMENT,
+    factors::INFLUENCE_RADIUS,
+    factors::NODE_OFFSET,
+    readings::NOISE,
+    readings::COUNT,
+];
+
+/// How a run is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Error within the bound of the sweep.
+    Stable,
+    /// A result beyond it.
+    Degraded,
+    /// No result.
+    Failed,
+}
+
+impl Status {
+    /// As the table names it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Stable => "stable",
+            Status::Degraded => "degraded",
+            Status::Failed => "failed",
+        }
+    }
+}
+
+impl Sweep {
+    /// Judgement over an outcome.
+    pub fn status(&self, outcome: &Outcome<f64>) -> Status {
+        match outcome.done() {
+            Some(error) if error.abs() <= self.bound_percent => Status::Stable,
+            Some(_) => Status::Degraded,
+            None => Status::Failed,
+        }
+    }
+
+    /// First and last value.
+    pub fn range(&self) -> [f64; 2] {
+        [self.values[0], self.values[self.values.len() - 1]]
+    }
+}
+
+/// A method across a parameter.
+#[derive(Clone)]
+pub struct Record {
+    /// Which sweep.
+    pub sweep: &'static Sweep,
+    /// Which method.
+    pub method: &'static str,
+    /// Values, rising, those of the bisection among them, with what came of them.
+    pub points: Vec<(f64, Outcome<f64>)>,
+    /// Ends of the safe range: the last stable values, `None` where the range has no end within the sweep or the budget.
+    pub ends: [Option<f64>; 2],
+    /// Whether the usual value is stable; without it there is no safe range. `None` where the budget was spent on it.
+    pub is_safe: Option<bool>,
+    /// Seconds it took.
+    pub wall_s: f64,
+}
+
+impl Record {
+    /// End of the safe range on the side of a value.
+    pub fn end_beside(&self, value: f64) -> Option<f64> {
+        let [low, high] = self.ends;
+        if value < self.sweep.usual { low } else { high }
+    }
+}
+
+/// How thorough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Every so many-th value is run.
+    pub stride: usize,
+    /// Relative width to which an end of the safe range is narrowed.
+    pub resolution: f64,
+    /// Of every run.
+    pub budget: Budget,
+    /// Whether methods that take most of the time are among them.
+    pub with_slow: bool,
+}
+
+/// Sweeps and their methods that take more than half of the time of all: a quick look at all sweeps goes without them.
+pub const SLOW: [(&str, &str); 2] =
+    [("horizon_ratio", "bond_strain by its own strain"), ("ageing", "bond_strain, ageing everywhere")];
+
+impl Effort {
+    /// All values, ends to 2 %.
+    pub const FULL: Effort =
+        Effort { stride: 1, resolution: 0.02, budget: Budget { seconds: 60.0, blocks: 4000 }, with_slow: true };
+    /// Every third value, ends to 20 %.
+    pub const QUICK: Effort =
+        Effort { stride: 3, resolution: 0.2, budget: Budget { seconds: 20.0, blocks: 1000 }, with_slow: false };
+}
+
+/// The sweeps of these names, all where no name is given.
+pub fn sweeps(names: &[String]) -> Result<Vec<&'static Sweep>> {
+    chosen(&SWEEPS, |sweep| sweep.name, names, "NAME", "is not a stability sweep")
+}
+
+/// Records of some sweeps in their order. `done` hears of every one as it ends.
+pub fn run(sweeps: &[&'static Sweep], effort: Effort, done: &(dyn Fn(&Record) + Sync)) -> Vec<Record> {
+    let all = sweeps.iter().flat_map(|sweep| sweep.methods.iter().map(|method| (*sweep, *method)));
+    let tasks: Vec<_> = all.filter(|(sweep, method)| effort.with_slow || !SLOW.contains(&(sweep.name, method.0))).collect();
+    side_by_side(&tasks, |(sweep, method)| {
+        let record = walk(sweep, *method, effort);
+        done(&record);
+        record
+    })
+}
+
+/// Bisections of an end at the most: enough for 2 % of a range of one decade.
+const BISECTIONS_MAX: usize = 8;
+
+/// Runs a method at every value and narrows the ends of its safe range.
+fn walk(sweep: &'static Sweep, (method, error): Method, effort: Effort) -> Record {
+    let begun = Instant::now();
+    let measure = |value: f64| (value, within(effort.budget, |run| error(value, run)));
+    let mut points: Vec<(f64, Outcome<f64>)> = values(sweep, effort.stride).into_iter().map(measure).collect();
+    let is_stable = |point: &(f64, Outcome<f64>)| sweep.status(&point.1) == Status::Stable;
+    let is_judged = |point: &(f64, Outcome<f64>)| !matches!(point.1, Outcome::Stopped(_));
+    let at_usual = points.iter().position(|point| point.0 == sweep.usual);
+    let is_safe = at_usual.map(|at| &points[at]).filter(|point| is_judged(point)).map(is_stable);
+    let mut ends = [None, None];
+    if let Some(usual) = at_usual.filter(|_| is_safe == Some(true)) {
+        let below = points[..usual].iter().rposition(|point| !is_stable(point)).map(|at| [at + 1, at]);
+        let above = points[usual..].iter().position(|point| !is_stable(point)).map(|more| [usual + more - 1, usual + more]);
+        // The last stable value and the first beyond it.
+        let pairs =
+            [below, above].map(|pair| pair.filter(|pair| is_judged(&points[pair[1]])).map(|pair| pair.map(|at| points[at].0)));
+        for (end, pair) in ends.iter_mut().zip(pairs) {
+            let Some([mut inside, mut beyond]) = pair else { continue };
+            for _ in 0..BISECTIONS_MAX {
+                if !sweep.is_continuous || (beyond - inside).abs() <= effort.resolution * beyond.abs().max(inside.abs()) {
+                    break;
+                }
+                let point = measure(between(inside, beyond));
+                if is_stable(&point) {
+                    inside = point.0;
+                } else {
+                    beyond = point.0;
+                }
+                let goes_on = is_judged(&point);
+                points.push(point);
+                if !goes_on {
+                    break;
+                }
+            }
+            *end = Some(inside);
+        }
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Record { sweep, method, points, ends, is_safe, wall_s: begun.elapsed().as_secs_f64() }
+}
+
+/// Every so many-th value, the first, the last and the usual one among them.
+fn values(sweep: &Sweep, stride: usize) -> Vec<f64> {
+    let last = sweep.values.len() - 1;
+    let is_chosen = |(at, value): &(usize, &f64)| at % stride == 0 || *at == last || **value == sweep.usual;
+    sweep.values.iter().enumerate().filter(is_chosen).map(|(_, value)| *value).collect()
+}
+
+/// The middle, of ratios where both are above zero.
+fn between(a: f64, b: f64) -> f64 {
+    if a > 0.0 && b > 0.0 { (a * b).sqrt() } else { 0.5 * (a + b) }
+}

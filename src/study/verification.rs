@@ -1,0 +1,162 @@
+//! Verification rows as text, CSV, JSON and as tables for documents.
+
+use std::cmp::Ordering;
+
+use serde_json::{Value, json};
+
+use crate::{Row, Topic};
+use perilife_base::cells::defused;
+
+/// One row as a line on the console.
+pub fn line(row: &Row) -> String {
+    let mark = verdict(row);
+    let figures = format!("{:>12} against {:>12}", number(row.computed), number(row.reference));
+    let known = row.known_miss.as_ref().map_or_else(String::new, |miss| format!(", known miss {} %", bound(miss.bound_percent)));
+    let error = format!("{:+.3} % (bound {} %{known})", row.error_percent, bound(row.bound_percent));
+    format!("  {mark:<5} {:<62} {figures}  {error}, {:.1} s", row.quantity, row.wall_s)
+}
+
+/// All rows as one JSON object, `{"rows": [...]}`.
+pub fn object(rows: &[Row]) -> Value {
+    let row = |row: &Row| {
+        json!({
+            "name": row.name, "quantity": row.quantity, "computed": row.computed, "reference": row.reference,
+            "error_percent": row.error_percent, "bound_percent": row.bound_percent, "ok": row.ok(),
+            "known_miss": row.known_miss.as_ref().map(|miss| &miss.reason),
+            "miss_bound_percent": row.known_miss.as_ref().map(|miss| miss.bound_percent),
+            "source": row.source, "wall_s": row.wall_s,
+        })
+    };
+    json!({ "rows": rows.iter().map(row).collect::<Vec<_>>() })
+}
+
+/// All rows as CSV, one header line.
+pub fn csv(rows: &[Row]) -> String {
+    let mut text =
+        "name,quantity,computed,reference,error_percent,bound_percent,ok,known_miss,source,wall_s,miss_bound_percent\n"
+            .to_owned();
+    for row in rows {
+        let quoted = |field: &str| format!("\"{}\"", defused(field).replace('"', "\"\""));
+        text += &format!(
+            "{},{},{:.12e},{:.12e},{:.6},{},{},{},{},{:.3},{}\n",
+            row.name,
+            quoted(&row.quantity),
+            row.computed,
+            row.reference,
+            row.error_percent,
+            row.bound_percent,
+            row.ok(),
+            quoted(row.known_miss.as_ref().map_or("", |miss| &miss.reason)),
+            quoted(&row.source),
+            row.wall_s,
+            row.known_miss.as_ref().map_or_else(String::new, |miss| format!("{:.6}", miss.bound_percent)),
+        );
+    }
+    text
+}
+
+/// A table for a document: every topic with the row that takes the largest share of its bound, the worst topic first. Known misses
+/// are counted, and left out of that where the topic has other rows.
+pub fn summary(rows: &[Row]) -> String {
+    let mut names: Vec<&str> = rows.iter().map(|row| row.name).collect();
+    names.dedup();
+    let mut topics: Vec<(f64, String)> = names
+        .into_iter()
+        .filter_map(|name| {
+            let of_topic = || rows.iter().filter(|row| row.name == name);
+            let misses = of_topic().filter(|row| !row.ok()).count();
+            let worst =
+                of_topic().max_by(|a, b| (a.ok(), share(a)).partial_cmp(&(b.ok(), share(b))).unwrap_or(Ordering::Less))?;
+            let figures = format!("{} % | {} %", signed(worst.error_percent, 1), bound(worst.bound_percent));
+            let line = format!("| `{name}` | {} | {misses} | {} | {figures} |\n", of_topic().count(), cell(&worst.quantity));
+            Some((share(worst), line))
+        })
+        .collect();
+    topics.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let head =
+        "| topic | rows | known misses | its worst row within bounds | error | bound |\n|---|---|---|---|---|---|\n".to_owned();
+    topics.into_iter().fold(head, |text, (_, line)| text + &line)
+}
+
+/// Text for a cell of a table, in which a bar would end it.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+/// Share of its bound that a row takes.
+fn share(row: &Row) -> f64 {
+    (row.error_percent / row.bound_percent).abs()
+}
+
+/// The verification as a document: [`summary`], then all rows of every topic. It holds no wall times, and figures of few digits,
+/// so that whoever computes it again gets the same text.
+pub fn markdown(topics: &[&Topic], rows: &[Row]) -> String {
+    let mut text = format!(
+        "# Accuracy\n\nWritten by `perilife verify --markdown`: figures of the program beside their references. Errors are in percent \
+         of the reference;\nwhere that is 0, the figure is an error itself. A known miss has a second bound, which it may not \
+         pass.\n\n{}",
+        summary(rows)
+    );
+    for topic in topics {
+        text += &format!("\n## {}\n\n{}.\n\n", topic.name, topic.about);
+        text += "| quantity | computed | reference | error, % | bound, % | source |\n|---|---|---|---|---|---|\n";
+        rows.iter().filter(|row| row.name == topic.name).for_each(|row| text += &markdown_row(row));
+    }
+    text
+}
+
+fn markdown_row(row: &Row) -> String {
+    let (reason, second) = row.known_miss.as_ref().map_or_else(Default::default, |miss| {
+        (format!(" (known miss: {})", cell(&miss.reason)), format!("; known miss {}", bound(miss.bound_percent)))
+    });
+    let [computed, reference] = [row.computed, row.reference].map(four_digits);
+    let (error, bound) = (signed(row.error_percent, 2), bound(row.bound_percent));
+    format!(
+        "| {}{reason} | {computed} | {reference} | {error} | {bound}{second} | {} |\n",
+        cell(&row.quantity),
+        cell(&row.source)
+    )
+}
+
+/// With its sign, which zero has none of.
+fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:+.decimals$}");
+    if text.contains(|digit| ('1'..='9').contains(&digit)) || !value.is_finite() { text } else { text[1..].to_owned() }
+}
+
+/// Two decimals; a power of ten where that would be none.
+fn bound(percent: f64) -> String {
+    if percent < 0.01 { format!("{percent:.1e}") } else { format!("{percent:.2}") }
+}
+
+/// Four significant digits; what round-off leaves is zero.
+fn four_digits(value: f64) -> String {
+    let size = value.abs();
+    if size < 1e-9 {
+        return "0".to_owned();
+    }
+    if size < 1e-3 {
+        return format!("{value:.3e}");
+    }
+    let decimals = 3 - size.log10().floor() as i32;
+    let unit = 10_f64.powi(-decimals);
+    format!("{:.*}", decimals.max(0) as usize, (value / unit).round() * unit)
+}
+
+fn verdict(row: &Row) -> &'static str {
+    match (row.ok(), row.fails()) {
+        (true, _) => "ok",
+        (false, true) => "FAIL",
+        (false, false) => "miss",
+    }
+}
+
+/// Six digits, with an exponent only where it helps.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-3..1e7).contains(&size) {
+        return format!("{value:.4e}");
+    }
+    let digits = if size >= 1000.0 { 0 } else { 4 };
+    format!("{value:.digits$}")
+}
