@@ -29,6 +29,7 @@ pub struct Elasticity {
 
 impl Elasticity {
     /// Constants of a material.
+    #[inline]
     pub fn of(material: &Material) -> Self {
         let nu = material.poisson_ratio;
         let kappa = match material.plane {
@@ -40,11 +41,13 @@ impl Elasticity {
     }
 
     /// Those of another material, E in Pa, in the same plane state.
+    #[inline]
     pub fn another(&self, youngs_modulus: f64, poisson_ratio: f64) -> Self {
         Elasticity::of(&Material::elastic(youngs_modulus, poisson_ratio, self.plane))
     }
 
     /// Stress of a displacement gradient `∂u_i/∂x_j`, as [xx, yy, xy], Pa: `σ = 2G (ε + (3-κ)/(2(κ-1)) tr ε)`.
+    #[inline]
     pub fn stress(&self, gradient: &[[f64; 2]; 2]) -> [f64; 3] {
         let [[xx, xy], [yx, yy]] = *gradient;
         let two_g = 2.0 * self.shear_modulus;
@@ -54,6 +57,7 @@ impl Elasticity {
 
     /// `P_j q_,j` of the interaction integral, with `P_j = σ_ij u^aux_i,1 + σ^aux_ij u_i,1 - σ_ik ε^aux_ik δ_1j`, of two displacement
     /// gradients in the axes of a tip.
+    #[inline]
     pub fn interaction(&self, field: &[[f64; 2]; 2], auxiliary: &[[f64; 2]; 2], q: [f64; 2]) -> f64 {
         let (stress, stress_aux) = (self.stress(field), self.stress(auxiliary));
         let flow = |s: [f64; 3], h: &[[f64; 2]; 2]| [s[0] * h[0][0] + s[2] * h[1][0], s[2] * h[0][0] + s[1] * h[1][0]];
@@ -62,6 +66,7 @@ impl Elasticity {
     }
 
     /// `P_j m_j` on a face without traction, or with that of `field`: `σ^aux_ij m_j u_i,1 - σ_ik ε^aux_ik m_1`.
+    #[inline]
     pub fn interaction_on_face(&self, field: &[[f64; 2]; 2], auxiliary: &[[f64; 2]; 2], [m1, m2]: [f64; 2]) -> f64 {
         let [xx, yy, xy] = self.stress(auxiliary);
         let traction = [xx * m1 + xy * m2, xy * m1 + yy * m2];
@@ -85,16 +90,19 @@ pub struct Eigenfunction {
 
 impl Eigenfunction {
     /// 2G u at (r, θ) for coefficient 1, in the axes of the tip.
+    #[inline]
     pub fn displacement(&self, kappa: f64, r: f64, theta: f64) -> [f64; 2] {
         Place::new(self.order, r, theta).displacement(self.symmetry, kappa)
     }
 
     /// 2G ∂u_i/∂x_j at (r, θ) for coefficient 1.
+    #[inline]
     pub fn gradient(&self, kappa: f64, r: f64, theta: f64) -> [[f64; 2]; 2] {
         Place::new(self.order, r, theta).gradient(self.symmetry, kappa)
     }
 
     /// 2G u and 2G ∂u_i/∂x_j of both functions of an order, opening first, for which angles and powers are computed once.
+    #[inline]
     pub fn both(order: i32, kappa: f64, r: f64, theta: f64) -> [([f64; 2], [[f64; 2]; 2]); 2] {
         let place = Place::new(order, r, theta);
         [Symmetry::Opening, Symmetry::Sliding]
@@ -165,6 +173,7 @@ impl Place {
 }
 
 /// Coefficient of the n = 1 function over the factor it stands for: K_I = a₁ √(2π), K_II = -b₁ √(2π).
+#[inline]
 pub fn coefficient_of_unit_factor(symmetry: Symmetry) -> f64 {
     let size = 1.0 / (2.0 * std::f64::consts::PI).sqrt();
     match symmetry {
@@ -177,6 +186,7 @@ pub fn coefficient_of_unit_factor(symmetry: Symmetry) -> f64 {
 ///
 /// In Kolosov's potentials `φ' = -1/(4π z)`, `ψ' = -φ'`: `2G (u_,1 + i v_,1) = κ φ' - conj(φ' + ψ' + conj(z) φ'')` and
 /// `2G (u_,2 + i v_,2) = i [κ φ' - conj(φ' - ψ' - conj(z) φ'')]`.
+#[inline]
 pub fn force_gradient(elasticity: Elasticity, r: f64, theta: f64) -> [[f64; 2]; 2] {
     let Elasticity { kappa, shear_modulus, .. } = elasticity;
     let size = -1.0 / (8.0 * std::f64::consts::PI * shear_modulus * r);

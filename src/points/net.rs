@@ -37,6 +37,7 @@ pub struct NetBond {
 
 impl NetBond {
     /// Unit vector across the bond (normal turned by +90°).
+    #[inline]
     pub fn tangent(&self) -> Point {
         [-self.normal[1], self.normal[0]]
     }
@@ -172,16 +173,19 @@ impl Net {
     }
 
     /// Number of points.
+    #[inline]
     pub fn len(&self) -> usize {
         self.positions.len()
     }
 
     /// Whether there are no points.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 
     /// Bonds of a point with their other end: (bond, other point, whether this point owns it).
+    #[inline]
     pub fn bonds_of(&self, point: usize) -> impl Iterator<Item = (usize, usize, bool)> + '_ {
         self.entries[self.starts[point] as usize..self.starts[point + 1] as usize].iter().map(|&entry| {
             let (b, owned) = ((entry / 2) as usize, entry % 2 == 0);
@@ -201,6 +205,7 @@ impl Net {
     }
 
     /// Bonds in a point's own horizon with their other end.
+    #[inline]
     pub fn family_of(&self, point: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.bonds_of(point).filter(|&(b, _, owned)| owned || b < self.mutual).map(|(b, other, _)| (b, other))
     }

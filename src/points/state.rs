@@ -20,6 +20,7 @@ pub struct Bonds {
 
 impl Bonds {
     /// Bonds of the plate with its initial cracks cut.
+    #[inline]
     pub fn new(body: &Body) -> Self {
         let mut bonds = Bonds::with_multipliers(body, body.multiplier.clone());
         for &bond in &body.pre_cut {
@@ -47,12 +48,14 @@ impl Bonds {
     }
 
     /// Bonds of the body that are cut, ascending.
+    #[inline]
     pub fn broken(&self, body: &Body) -> Vec<Bond> {
         let is_broken = |bond: Bond| body.multiplier[bond as usize] > 0.0 && !self.is_intact(bond);
         (0..body.multiplier.len()).map(|bond| bond as Bond).filter(|&bond| is_broken(bond)).collect()
     }
 
     /// Bonds of the body that carry by another multiplier than its own, ascending, with theirs.
+    #[inline]
     pub fn scaled(&self, body: &Body) -> Vec<(Bond, f32)> {
         let both = self.multiplier.iter().zip(&body.multiplier).enumerate();
         both.filter(|(_, (now, whole))| **now > 0.0 && now != whole).map(|(bond, (now, _))| (bond as Bond, *now)).collect()
@@ -69,36 +72,43 @@ impl Bonds {
     }
 
     /// Whether the chunk that starts at column `chunk x LANES` of a row is regular.
+    #[inline]
     pub fn chunk_is_regular(&self, row: usize, chunk: usize) -> bool {
         self.regular[row * self.chunks + chunk]
     }
 
     /// Whether the chunks of a row are regular.
+    #[inline]
     pub fn row_is_regular(&self, row: usize) -> &[bool] {
         &self.regular[row * self.chunks..(row + 1) * self.chunks]
     }
 
     /// Chunks of a row from the first to the last one that holds points.
+    #[inline]
     pub fn inhabited(&self, row: usize) -> Range<usize> {
         self.inhabited[row].clone()
     }
 
     /// Chunks of a row.
+    #[inline]
     pub fn chunks(&self) -> usize {
         self.chunks
     }
 
     /// Whether a bond carries.
+    #[inline]
     pub fn is_intact(&self, bond: Bond) -> bool {
         self.multiplier[bond as usize] > 0.0
     }
 
     /// Breaks a bond for good.
+    #[inline]
     pub fn cut(&mut self, body: &Body, bond: Bond) {
         self.set(body, bond, 0.0);
     }
 
     /// Gives a bond another multiplier.
+    #[inline]
     pub fn set(&mut self, body: &Body, bond: Bond, multiplier: f32) {
         self.multiplier[bond as usize] = multiplier;
         let (_, from, to) = body.ends(bond);

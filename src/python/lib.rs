@@ -1,6 +1,5 @@
 //! What the Python package `perilife` is built on: documents from dicts and files, runs under the eyes of Python.
 
-
 mod document;
 mod errors;
 mod run;

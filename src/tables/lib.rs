@@ -20,6 +20,7 @@ use perilife_base::cells::{CELLS_MAX, SMALLER, TEXT_MAX, UNPACKED_MAX, defused, 
 use perilife_base::error::{Error, InputError, Result};
 use perilife_base::units::unmistakable;
 
+pub use polars;
 pub use polars::prelude::{Column, DataFrame};
 
 /// Name of the column of crack length, mm.

@@ -3,6 +3,7 @@
 use perilife_base::input::Folder;
 use perilife_base::machine;
 use perilife_growth::case::Case;
+use perilife_growth::case::needs;
 use perilife_points::bond_law::stencil::Stencil;
 use perilife_points::budget::Budget;
 use perilife_scenes::Scene;
@@ -33,7 +34,7 @@ fn points_and_bonds_are_those_of_the_plate() {
     ];
     for model in models {
         let case = case(SQUARE, model);
-        let budget = Budget::of(&case);
+        let budget = needs::of_case(&case);
         let body = case.points().body(&case.specimen, &case.material).unwrap();
         let ratio = budget.points / body.points.len() as f64;
         println!("{:.0} points against {} of {}", budget.points, body.points.len(), model.trim());
@@ -62,7 +63,7 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
     ];
     for (name, specimen, model) in cases {
         let large = case(specimen, model);
-        let budget = Budget::of(&large);
+        let budget = needs::of_case(&large);
         let error = budget.within(LIMIT).unwrap_err();
         println!("{name}: {error}");
         assert_eq!(error.exit_code(), 2);
@@ -73,7 +74,7 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
         let coarser = Case::from_toml(&format!("{specimen}{PLATE}{model}"), "case", Folder::none(), &[set]);
         // A spacing that fits the memory may leave too few points on the crack, which is said by its own words.
         if let Ok(coarser) = coarser {
-            Budget::of(&coarser).within(LIMIT).unwrap_or_else(|error| panic!("{name} at {spacing} mm: {error}"));
+            needs::of_case(&coarser).within(LIMIT).unwrap_or_else(|error| panic!("{name} at {spacing} mm: {error}"));
         }
     }
     let levels = "refinement = { regions = [{ box_mm = [[-29, -29], [29, 29]], levels = 4 }] }\n";
@@ -88,7 +89,7 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
 fn files_are_counted_as_they_are_asked_for() {
     let asked = "[output]\nparaview = true\n";
     for model in ["spacing_mm = 0.5", "method = \"element_free_galerkin\", nodes = 2000"] {
-        let [without, with] = ["", asked].map(|more| Budget::of(&case(SQUARE, &format!("model = {{ {model} }}\n{more}"))));
+        let [without, with] = ["", asked].map(|more| needs::of_case(&case(SQUARE, &format!("model = {{ {model} }}\n{more}"))));
         let of_point = (with.disk_bytes - without.disk_bytes) / with.points;
         println!("{model}: {:.0} and {:.0} bytes", without.disk_bytes, with.disk_bytes);
         assert!(of_point > 1000.0 && without.disk_bytes < 5e6, "{model}: {of_point}");

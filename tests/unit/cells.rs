@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use perilife_base::cells::{CELLS_MAX, ROWS_MAX, UNPACKED_MAX, defused, field, restored};
 use perilife_measured::{Import, parse, survey};
+use perilife_tables::polars::prelude::{AnyValue, Column, DataFrame, DataType, Scalar};
 use perilife_tables::{csv, frame, parquet, read_parquet};
-use polars::prelude::{AnyValue, Column, DataFrame, DataType, Scalar};
 
 use crate::support::workbook::workbook;
 

@@ -42,7 +42,10 @@ fn members_do_not_grow() {
     let Some((base, before)) = before_the_change() else { return };
     let (now, before): (i64, i64) = (pins.values().sum(), before.values().sum());
     let messages = git(&["log", "--format=%B", &format!("{base}..HEAD")]).unwrap_or_default();
-    assert!(is_allowed(now - before, &messages), "the pins rise from {before} to {now} lines since {base}: at most {RISE} without `house: +N, because ...` in a commit message");
+    assert!(
+        is_allowed(now - before, &messages),
+        "the pins rise from {before} to {now} lines since {base}: at most {RISE} without `house: +N, because ...` in a commit message"
+    );
 }
 
 /// Whether the sum of the pins may rise by so many lines.
@@ -57,7 +60,10 @@ fn is_allowed(rise: i64, messages: &str) -> bool {
 #[test]
 fn a_rise_needs_a_reason() {
     assert!(is_allowed(300, "") && is_allowed(-5000, "") && !is_allowed(301, "Spectra"));
-    assert!(is_allowed(450, "Spectra\n\nhouse: +450, because of nine formats") && !is_allowed(451, "house: +450, because of nine formats"));
+    assert!(
+        is_allowed(450, "Spectra\n\nhouse: +450, because of nine formats")
+            && !is_allowed(451, "house: +450, because of nine formats")
+    );
     assert!(!is_allowed(450, "house: +450") && !is_allowed(450, "house: +many, because I may"));
     assert!(is_allowed(900, "house: +450, because of a\nx\nhouse: +450, because of b"));
 }

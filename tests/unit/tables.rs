@@ -6,8 +6,8 @@ use perilife_base::units::MM;
 use perilife_calibration::median::pointwise_median_at;
 use perilife_measured::{Import, MeasuredCurve, read};
 use perilife_results::frames::{SHARES, cycle_quantiles, fit_curves, specimens, wide};
+use perilife_tables::polars::prelude::Column;
 use perilife_tables::{DataFrame, csv, join_by_specimen, parquet, read_parquet, wide_to_long};
-use polars::prelude::Column;
 
 use super::misfit::{exact_curve, fit_to, lengths, paris_model};
 

@@ -131,6 +131,7 @@ pub const UNIT_FORCE: f64 = perilife_base::units::KN;
 impl Loading {
     /// Load of the cycle over [`Loading::maximum`], on a plate on which the latter does this work `Σ f·u`, J: 1 where the load is given,
     /// else `δ_max / δ`.
+    #[inline]
     pub fn share(&self, work: f64) -> f64 {
         match self.control {
             LoadControl::Load => 1.0,
@@ -139,16 +140,19 @@ impl Loading {
     }
 
     /// Smallest and largest stress ratio of the cycles that open the crack.
+    #[inline]
     pub fn ratios(&self) -> [f64; 2] {
         self.spectrum.as_ref().map_or([self.ratio; 2], |spectrum| spectrum.ratios)
     }
 
     /// Stress ratio of a tip of whose K at maximum load residual stress makes the share s: `(R (K - sK) + sK)/K = R + s (1 - R)`.
+    #[inline]
     pub fn ratio_at(&self, share_of_residual: f64) -> f64 {
         self.ratio + share_of_residual * (1.0 - self.ratio)
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.
+    #[inline]
     pub fn displacement(&self) -> Option<f64> {
         match self.control {
             LoadControl::Load => None,
@@ -158,6 +162,7 @@ impl Loading {
 
     /// Share of the maximum that counts as range, `1 - max(R, 0)`: a closed crack does not open under compression
     /// (theory: closure assumption for negative R).
+    #[inline]
     pub fn range_share(&self) -> f64 {
         1.0 - self.ratio.max(0.0)
     }

@@ -60,11 +60,13 @@ impl Material {
     }
 
     /// Shear modulus G = E / (2 (1+ν)), Pa.
+    #[inline]
     pub fn shear_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
     }
 
     /// E' of `K = √(E' G)`: E in plane stress, E/(1-ν²) in plane strain, Pa.
+    #[inline]
     pub fn plane_modulus(&self) -> f64 {
         match self.plane {
             Plane::Stress => self.youngs_modulus,

@@ -27,28 +27,33 @@ pub struct LineEnd {
 
 impl CrackLine {
     /// Length of its straight piece at one end, m.
+    #[inline]
     pub fn last_piece(&self, at_last: bool) -> f64 {
         let piece = if at_last { self.points.windows(2).last() } else { self.points.windows(2).next() };
         piece.map_or(0.0, |piece| distance(piece[0], piece[1]))
     }
 
     /// A straight crack.
+    #[inline]
     pub fn straight(from: Point, to: Point) -> Self {
         CrackLine { points: vec![from, to] }
     }
 
     /// Length along the line, m.
+    #[inline]
     pub fn length(&self) -> f64 {
         self.points.windows(2).map(|piece| distance(piece[0], piece[1])).sum()
     }
 
     /// One of its ends.
+    #[inline]
     pub fn end(&self, at_last: bool) -> Point {
         // A line has two points at the least.
         if at_last { self.points[self.points.len() - 1] } else { self.points[0] }
     }
 
     /// Unit vector in which the line points at one of its ends, out of itself.
+    #[inline]
     pub fn direction(&self, at_last: bool) -> Point {
         let n = self.points.len();
         if at_last { direction(self.points[n - 2], self.points[n - 1]) } else { direction(self.points[1], self.points[0]) }
@@ -130,16 +135,19 @@ impl CrackLine {
     }
 
     /// Adds a straight piece at one of its ends.
+    #[inline]
     pub fn grow(&mut self, at_last: bool, to: Point) {
         if at_last { self.points.push(to) } else { self.points.insert(0, to) }
     }
 
     /// Its straight pieces, in its own sense.
+    #[inline]
     pub fn pieces(&self) -> impl Iterator<Item = [Point; 2]> + '_ {
         self.points.windows(2).map(|piece| [piece[0], piece[1]])
     }
 
     /// Whether a straight segment crosses the line or comes as near to it as `slack`, m, with one of its ends.
+    #[inline]
     pub fn meets(&self, from: Point, to: Point, slack: f64) -> bool {
         self.pieces()
             .any(|[a, b]| segments_touch(from, to, a, b) || [a, b].iter().any(|p| distance_to_segment(*p, from, to) < slack))
@@ -147,6 +155,7 @@ impl CrackLine {
     }
 
     /// Distance of a point from the line, m.
+    #[inline]
     pub fn distance(&self, point: Point) -> f64 {
         self.pieces().map(|[a, b]| distance_to_segment(point, a, b)).fold(f64::INFINITY, f64::min)
     }

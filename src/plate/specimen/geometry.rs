@@ -5,39 +5,46 @@ use std::collections::HashMap;
 use super::{Point, Slot, Specimen};
 
 /// Distance between two points, m.
+#[inline]
 pub fn distance(a: Point, b: Point) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
 /// Point at share `t` of the way from `a` to `b`.
+#[inline]
 pub fn along(a: Point, b: Point, t: f64) -> Point {
     [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
 }
 
 /// Unit vector from `a` to `b`; zero where they coincide.
+#[inline]
 pub fn direction(a: Point, b: Point) -> Point {
     let length = distance(a, b);
     if length > 0.0 { [(b[0] - a[0]) / length, (b[1] - a[1]) / length] } else { [0.0, 0.0] }
 }
 
 /// The direction of a vector that was given, of length 1; `None` for one that shows none.
+#[inline]
 pub fn unit([x, y]: Point) -> Option<Point> {
     let size = x.hypot(y);
     (1e-9..1e9).contains(&size).then(|| [x / size, y / size])
 }
 
 /// Twice the signed area of the triangle abc: positive where a, b, c turn counter-clockwise.
+#[inline]
 pub fn turn(a: Point, b: Point, c: Point) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
 /// Turn of the way from `before` over `at` to `after`, rad, negative where a counter-clockwise outline is concave.
+#[inline]
 pub fn turn_at(before: Point, at: Point, after: Point) -> f64 {
     let ([ax, ay], [bx, by]) = (direction(before, at), direction(at, after));
     (ax * by - ay * bx).atan2(ax * bx + ay * by)
 }
 
 /// Whether the closed segments ab and cd share a point; touching counts.
+#[inline]
 pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
     // Most pairs are far apart: compare the boxes first.
     if a[0].max(b[0]) < c[0].min(d[0])
@@ -52,6 +59,7 @@ pub fn segments_touch(a: Point, b: Point, c: Point, d: Point) -> bool {
 }
 
 /// Share of the way from `a` to `b` at which the line through them meets the line through c and d; `None` if parallel.
+#[inline]
 pub fn meeting_share(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
     let (from_a, from_b) = (turn(c, d, a), turn(c, d, b));
     let share = from_a / (from_a - from_b);
@@ -59,6 +67,7 @@ pub fn meeting_share(a: Point, b: Point, c: Point, d: Point) -> Option<f64> {
 }
 
 /// Shares of the way from `a` to `b` at which the line through them comes into a circle and leaves it; `None` if it passes the circle.
+#[inline]
 pub fn circle_shares(a: Point, b: Point, centre: Point, radius: f64) -> Option<[f64; 2]> {
     // |f + t d| = radius
     let (d, f) = ([b[0] - a[0], b[1] - a[1]], [a[0] - centre[0], a[1] - centre[1]]);
@@ -68,12 +77,14 @@ pub fn circle_shares(a: Point, b: Point, centre: Point, radius: f64) -> Option<[
 }
 
 /// Where the piece from `a` to `b` first crosses a circle.
+#[inline]
 pub fn circle_crossing(a: Point, b: Point, centre: Point, radius: f64) -> Option<Point> {
     let shares = circle_shares(a, b, centre, radius)?;
     shares.into_iter().find(|share| (0.0..=1.0).contains(share)).map(|share| along(a, b, share))
 }
 
 /// Share of the way from `a` to `b` at which the closed segment ab is nearest to `p`.
+#[inline]
 pub fn nearest_share(p: Point, a: Point, b: Point) -> f64 {
     let (ab, ap) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let squared = ab[0] * ab[0] + ab[1] * ab[1];
@@ -81,21 +92,25 @@ pub fn nearest_share(p: Point, a: Point, b: Point) -> f64 {
 }
 
 /// The point of the closed segment ab that is nearest to `p`.
+#[inline]
 pub fn nearest_of_segment(p: Point, a: Point, b: Point) -> Point {
     along(a, b, nearest_share(p, a, b))
 }
 
 /// Distance of `p` from the closed segment ab, m.
+#[inline]
 pub fn distance_to_segment(p: Point, a: Point, b: Point) -> f64 {
     distance(p, nearest_of_segment(p, a, b))
 }
 
 /// Edges of a closed polygon, last point to first included.
+#[inline]
 pub fn edges(polygon: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
     (0..polygon.len()).map(|i| (polygon[i], polygon[(i + 1) % polygon.len()]))
 }
 
 /// Whether `p` lies inside the polygon (crossing count; a point exactly on the edge may fall either way).
+#[inline]
 pub fn point_in_polygon(p: Point, polygon: &[Point]) -> bool {
     let mut inside = false;
     for (a, b) in edges(polygon) {
@@ -107,16 +122,19 @@ pub fn point_in_polygon(p: Point, polygon: &[Point]) -> bool {
 }
 
 /// Distance of `p` from the polygon's boundary, m.
+#[inline]
 pub fn distance_to_polygon(p: Point, polygon: &[Point]) -> f64 {
     edges(polygon).map(|(a, b)| distance_to_segment(p, a, b)).fold(f64::INFINITY, f64::min)
 }
 
 /// Signed area, m²: positive if counter-clockwise.
+#[inline]
 pub fn polygon_area(polygon: &[Point]) -> f64 {
     edges(polygon).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0
 }
 
 /// Lower left and upper right corner of the box around the points.
+#[inline]
 pub fn bounding_box(points: &[Point]) -> [Point; 2] {
     points.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
         [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
@@ -124,6 +142,7 @@ pub fn bounding_box(points: &[Point]) -> [Point; 2] {
 }
 
 /// The first pair of edges of the polygon that touch without being neighbours, by index.
+#[inline]
 pub fn self_intersection(polygon: &[Point]) -> Option<(usize, usize)> {
     let n = polygon.len();
     let edge = |i: usize| (polygon[i], polygon[(i + 1) % n]);
@@ -167,11 +186,13 @@ impl Places {
     }
 
     /// Whether there is none.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
 
     /// Numbers of the places in cells within `reach` of one, m, in an order that depends on the places alone.
+    #[inline]
     pub fn near(&self, at: Point, reach: f64) -> impl Iterator<Item = u32> + '_ {
         let range = |x: f64| ((x - reach) / self.width).floor() as i64..=((x + reach) / self.width).floor() as i64;
         let columns = range(at[0]);
@@ -180,6 +201,7 @@ impl Places {
     }
 
     /// Way from a position to a place, m.
+    #[inline]
     pub fn away(&self, place: u32, from: Point) -> Point {
         let [x, y] = self.places[place as usize];
         [x - from[0], y - from[1]]
@@ -188,6 +210,7 @@ impl Places {
 
 impl Slot {
     /// Corners of the slot, counter-clockwise: right of `from`, right of `to`, left of `to`, left of `from`.
+    #[inline]
     pub fn corners(&self) -> [Point; 4] {
         let [dx, dy] = direction(self.from, self.to);
         let half = self.width / 2.0;
@@ -197,6 +220,7 @@ impl Slot {
     }
 
     /// Whether `p` lies in the slot.
+    #[inline]
     pub fn contains(&self, p: Point) -> bool {
         let [dx, dy] = direction(self.from, self.to);
         let (x, y) = (p[0] - self.from[0], p[1] - self.from[1]);
@@ -207,6 +231,7 @@ impl Slot {
 
 impl Specimen {
     /// Whether `point` lies in the material: inside the outline, outside holes and slots. Cracks have no width.
+    #[inline]
     pub fn contains(&self, point: Point) -> bool {
         point_in_polygon(point, &self.outline)
             && self.holes.iter().all(|hole| distance(point, hole.centre) > hole.radius)
@@ -215,6 +240,7 @@ impl Specimen {
 
     /// The same of a point of a lattice: on the outline, within `slack`, m, a point is one on every side of the plate, and none on the
     /// rim of a hole or a slot, so that a plate that is its own mirror image has points that are.
+    #[inline]
     pub fn has_point_at(&self, point: Point, slack: f64) -> bool {
         let is_inside = || point_in_polygon(point, &self.outline) || distance_to_polygon(point, &self.outline) <= slack;
         let is_void = |slot: &Slot| slot.contains(point) || distance_to_polygon(point, &slot.corners()) <= slack;
@@ -224,6 +250,7 @@ impl Specimen {
     }
 
     /// Length of the part of a segment that lies inside the outline, m, for a segment that crosses it at most once.
+    #[inline]
     pub fn length_inside(&self, from: Point, to: Point) -> f64 {
         let crossing = edges(&self.outline)
             .filter(|(a, b)| segments_touch(from, to, *a, *b))
@@ -261,6 +288,7 @@ perilife_base::kinds! {
 
 impl Edge {
     /// Unit vector out of the plate.
+    #[inline]
     pub fn normal(self) -> Point {
         match self {
             Edge::Top => [0.0, 1.0],
@@ -271,11 +299,13 @@ impl Edge {
     }
 
     /// Stretches of the outline on this side, within 1e-6 of the size of the plate; empty where only a corner touches the bounding box.
+    #[inline]
     pub fn stretches(self, specimen: &Specimen) -> Vec<(Point, Point)> {
         self.level(specimen, [-1.0, 1e-6])
     }
 
     /// A stretch along this side that lies deeper than those of it by less than a drawing can tell from a slip, 1e-4 of the size of the plate.
+    #[inline]
     pub fn step(self, specimen: &Specimen) -> Option<(Point, Point)> {
         self.level(specimen, [1e-6, 1e-4]).first().copied()
     }

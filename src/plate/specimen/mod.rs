@@ -104,6 +104,7 @@ pub struct Crack {
 
 impl Crack {
     /// A straight crack.
+    #[inline]
     pub fn straight(from: Point, to: Point) -> Self {
         Crack { from, to, continues: false }
     }
@@ -162,16 +163,19 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 impl Load {
     /// Whether it is a pin whose contact follows from the load.
+    #[inline]
     pub fn is_elastic_pin(&self) -> bool {
         matches!(self, Load::Pin { contact: Bearing::Elastic(_), .. })
     }
 
     /// Whether it is a pin with friction, which takes a part of the energy that cracks release.
+    #[inline]
     pub fn has_friction(&self) -> bool {
         matches!(self, Load::Pin { contact: Bearing::Elastic(pin), .. } if pin.friction > 0.0)
     }
 
     /// The stretch of the outline that it loads, with the tractions at both ends; `None` of a pin.
+    #[inline]
     pub fn on_edge(&self) -> Option<(Point, Point, [Point; 2])> {
         match *self {
             Load::Edge { from, to, traction } => Some((from, to, [traction; 2])),
@@ -182,6 +186,7 @@ impl Load {
 
     /// Two places with forces, N per m of thickness, that have force and moment of what acts on an edge from one share of its way to
     /// another; none of a pin.
+    #[inline]
     pub fn forces_between(&self, [start, end]: [f64; 2]) -> Vec<(Point, Point)> {
         let Some((from, to, tractions)) = self.on_edge() else { return Vec::new() };
         let half = 0.5 * (end - start) * geometry::distance(from, to);
@@ -327,12 +332,14 @@ impl Specimen {
     }
 
     /// Whether its ends are clamped or sides of it moved straight, so that they do not turn.
+    #[inline]
     pub fn has_straight_grips(&self) -> bool {
         self.supports.iter().any(|support| matches!(support, Support::ClampedEnds | Support::Moved { .. }))
     }
 
     /// Section over which the nominal stress makes the force `P` of the sides that are moved straight, m²: `P δ = Σ F_i u_i` with
     /// `u_i = way_i δ`.
+    #[inline]
     pub fn moved_section(&self) -> Option<f64> {
         let area = |support: &Support| match *support {
             Support::Moved { from, to, way, .. } => Some(way * geometry::distance(from, to) * self.thickness),
@@ -342,6 +349,7 @@ impl Specimen {
     }
 
     /// Size of the plate along y, m.
+    #[inline]
     pub fn length(&self) -> f64 {
         let [low, high] = geometry::bounding_box(&self.outline);
         high[1] - low[1]
@@ -349,6 +357,7 @@ impl Specimen {
 
     /// Sizes of the flaws that spacing and horizon have to resolve, m: half length of a crack with two tips, whole length of one with
     /// one tip, length of a slot; C(T) from the load line.
+    #[inline]
     pub fn flaw_sizes(&self) -> Vec<f64> {
         if !self.kind.is_plate() {
             return vec![self.crack_length];
@@ -359,17 +368,20 @@ impl Specimen {
     }
 
     /// Number of tips of a crack.
+    #[inline]
     pub fn tips_of(&self, line: &CrackLine) -> usize {
         let ends = |tip: &&TipSeed| !tip.from_slot && [true, false].iter().any(|&at_last| line.end(at_last) == tip.position);
         self.tips.iter().filter(ends).count()
     }
 
     /// The smallest of the [`Specimen::flaw_sizes`], m.
+    #[inline]
     pub fn smallest_flaw(&self) -> f64 {
         self.flaw_sizes().into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// Distance of a place from the nearest rim, m: outline, holes, slots.
+    #[inline]
     pub fn rim_distance(&self, at: Point) -> f64 {
         let holes = self.holes.iter().map(|hole| (geometry::distance(at, hole.centre) - hole.radius).abs());
         let slots = self.slots.iter().map(|slot| geometry::distance_to_polygon(at, &slot.corners()));
@@ -389,6 +401,7 @@ impl Specimen {
     }
 
     /// Least way from the tip of a crack over which that is straight, m ([`CrackLine::straight_way`]).
+    #[inline]
     pub fn least_straight_way(&self) -> f64 {
         let lines = self.crack_lines();
         let ends = (0..self.tips.len()).filter_map(|tip| self.line_end(tip));
@@ -396,6 +409,7 @@ impl Specimen {
     }
 
     /// Area of the material, m²: outline less holes and slots.
+    #[inline]
     pub fn area(&self) -> f64 {
         let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();
         let slots: f64 = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to) * slot.width).sum();
@@ -403,6 +417,7 @@ impl Specimen {
     }
 
     /// Crack length in the convention of the specimen for given growths of its tips, m.
+    #[inline]
     pub fn crack_length_after(&self, growth_of_tips: &[f64]) -> f64 {
         let sum: f64 = growth_of_tips.iter().sum();
         match self.convention {
@@ -412,6 +427,7 @@ impl Specimen {
     }
 
     /// Key that its cracks were given by.
+    #[inline]
     pub fn crack_key(&self) -> &'static str {
         self.kind.crack_key(self.convention)
     }
@@ -429,6 +445,7 @@ impl Specimen {
     }
 
     /// Takes these lines for its cracks.
+    #[inline]
     pub fn set_crack_lines(&mut self, lines: &[CrackLine]) {
         let pieces = |line: &CrackLine| {
             line.pieces().enumerate().map(|(piece, [from, to])| Crack { from, to, continues: piece > 0 }).collect::<Vec<_>>()
@@ -449,6 +466,7 @@ impl Specimen {
     }
 
     /// Whether it has tips, and all of them are those of sharp cracks.
+    #[inline]
     pub fn has_sharp_tips(&self) -> bool {
         !self.tips.is_empty() && (0..self.tips.len()).all(|tip| self.line_end(tip).is_some())
     }

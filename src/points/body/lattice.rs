@@ -35,6 +35,7 @@ pub struct Lattice {
 
 /// The spacing nearest to the requested one that divides the gross width, an even number of times where a crack lies on its middle
 /// line; the requested one itself on a turned lattice, m.
+#[inline]
 pub fn fitting_spacing(specimen: &Specimen, spacing: f64, angle: f64) -> f64 {
     if angle == 0.0 { specimen.gross_width / across(specimen, spacing) } else { spacing }
 }
@@ -115,6 +116,7 @@ impl Lattice {
     }
 
     /// The lattice of half the spacing whose places are the four parts of every place, at ± a quarter of the spacing.
+    #[inline]
     pub fn halved(&self) -> Lattice {
         let (columns, rows) = (2 * self.columns, 2 * self.rows);
         let stride = columns.next_multiple_of(LANES) + 2 * self.padding;
@@ -122,22 +124,26 @@ impl Lattice {
     }
 
     /// Length of an array over all places, padding included.
+    #[inline]
     pub fn places(&self) -> usize {
         // One chunk more than the last padded row, so that whole chunks can be read at its end.
         self.stride * (self.rows + 2 * self.padding) + LANES
     }
 
     /// Memory index of a column and row.
+    #[inline]
     pub fn place(&self, column: usize, row: usize) -> usize {
         (row + self.padding) * self.stride + column + self.padding
     }
 
     /// Column and row of a memory index that lies on the lattice.
+    #[inline]
     pub fn column_row(&self, place: usize) -> (usize, usize) {
         (place % self.stride - self.padding, place / self.stride - self.padding)
     }
 
     /// Position of a place, m; `column` and `row` may be fractional or outside.
+    #[inline]
     pub fn position_of(&self, column: f64, row: f64) -> Point {
         let [c, s] = self.axis;
         let (x, y) = (column * self.spacing, row * self.spacing);
@@ -145,12 +151,14 @@ impl Lattice {
     }
 
     /// Position of a memory index, m.
+    #[inline]
     pub fn position(&self, place: usize) -> Point {
         let (column, row) = self.column_row(place);
         self.position_of(column as f64, row as f64)
     }
 
     /// Fractional (column, row) of a position.
+    #[inline]
     pub fn locate(&self, point: Point) -> [f64; 2] {
         let [c, s] = self.axis;
         let (x, y) = (point[0] - self.origin[0], point[1] - self.origin[1]);
@@ -158,18 +166,21 @@ impl Lattice {
     }
 
     /// A vector in lattice axes, from plate axes.
+    #[inline]
     pub fn to_axes(&self, vector: Point) -> Point {
         let [c, s] = self.axis;
         [vector[0] * c + vector[1] * s, vector[1] * c - vector[0] * s]
     }
 
     /// A vector in plate axes, from lattice axes.
+    #[inline]
     pub fn from_axes(&self, vector: Point) -> Point {
         let [c, s] = self.axis;
         [vector[0] * c - vector[1] * s, vector[0] * s + vector[1] * c]
     }
 
     /// Memory distance to the neighbour `dx` columns and `dy` rows away.
+    #[inline]
     pub fn step(&self, dx: i32, dy: i32) -> isize {
         dy as isize * self.stride as isize + dx as isize
     }

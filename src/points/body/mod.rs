@@ -65,6 +65,7 @@ pub struct Body {
 
 impl Body {
     /// The raster of its lattice.
+    #[inline]
     pub fn grid(&self) -> PointGrid {
         let mut point_at = vec![None; self.lattice.columns * self.lattice.rows];
         for (i, &place) in self.points.iter().enumerate() {
@@ -158,33 +159,39 @@ impl Body {
     }
 
     /// Number of lattice places, padding included.
+    #[inline]
     pub fn places(&self) -> usize {
         self.is_point.len()
     }
 
     /// Horizon δ, m.
+    #[inline]
     pub fn horizon(&self) -> f64 {
         self.stencil.horizon
     }
 
     /// Stencil entry, owner and partner of a bond.
+    #[inline]
     pub fn ends(&self, bond: Bond) -> (usize, usize, usize) {
         let (k, place) = (bond as usize / self.places(), bond as usize % self.places());
         (k, place, place.wrapping_add_signed(self.steps[k]))
     }
 
     /// The point behind a place: itself, or that whose mirror image it is, and how it is mirrored.
+    #[inline]
     pub fn behind(&self, place: usize) -> (usize, Flips) {
         self.mirror.behind(&self.lattice, place)
     }
 
     /// Rigid motions that cost nothing: along the rows, along the columns, turning.
+    #[inline]
     pub fn free_motion(&self) -> [bool; 3] {
         let [across, along] = [0, 1].map(|axis| self.boundary.floating && self.mirror.lines[axis].is_none());
         [across, along, across && along && !self.stencil.resists_rotation()]
     }
 
     /// Middle of a bond, m.
+    #[inline]
     pub fn middle(&self, bond: Bond) -> Point {
         let (_, from, to) = self.ends(bond);
         let (a, b) = (self.lattice.position(from), self.lattice.position(to));
@@ -192,6 +199,7 @@ impl Body {
     }
 
     /// Whether no end of the bond lies in a no-fail zone.
+    #[inline]
     pub fn can_fail(&self, bond: Bond) -> bool {
         let (_, from, to) = self.ends(bond);
         !self.no_fail[from] && !self.no_fail[to]

@@ -31,6 +31,7 @@ pub struct Layout {
 
 impl Layout {
     /// Layout over the lattice of a body.
+    #[inline]
     pub fn of(lattice: &Lattice, unknowns: usize) -> Self {
         Layout {
             unknowns,
@@ -42,41 +43,49 @@ impl Layout {
     }
 
     /// Length of a vector.
+    #[inline]
     pub fn len(&self) -> usize {
         self.rows * self.row_len() + LANES
     }
 
     /// Whether there is nothing in it.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.rows == 0
     }
 
     /// Length of a padded row with all components.
+    #[inline]
     pub fn row_len(&self) -> usize {
         self.unknowns * self.stride
     }
 
     /// Index of the first component of a memory place of the lattice.
+    #[inline]
     pub fn index(&self, place: usize) -> usize {
         place / self.stride * self.row_len() + place % self.stride
     }
 
     /// Distance in the vector to the neighbour `dx`, `dy` away.
+    #[inline]
     pub fn step(&self, dx: i32, dy: i32) -> isize {
         dy as isize * self.row_len() as isize + dx as isize
     }
 
     /// A zero vector.
+    #[inline]
     pub fn zeros(&self) -> Vec<f64> {
         vec![0.0; self.len()]
     }
 
     /// Padded rows that one task takes: enough work that handing it out does not count, the same for any number of threads.
+    #[inline]
     pub fn rows_per_task(&self) -> usize {
         PLACES_PER_TASK.div_ceil(self.stride)
     }
 
     /// Values of a vector that one task takes.
+    #[inline]
     pub fn part(&self) -> usize {
         self.row_len() * self.rows_per_task()
     }
@@ -92,6 +101,7 @@ pub fn dot<T: Copy + Sync + Into<f64>>(layout: &Layout, a: &[f64], b: &[T]) -> f
 }
 
 /// Scalar products of two vectors with a third in one pass, summed like [`dot`].
+#[inline]
 pub fn dots(layout: &Layout, [a, b]: [&[f64]; 2], z: &[f32]) -> [f64; 2] {
     use rayon::prelude::*;
     let part = layout.part();
@@ -101,6 +111,7 @@ pub fn dots(layout: &Layout, [a, b]: [&[f64]; 2], z: &[f32]) -> [f64; 2] {
 }
 
 /// Euclidean norm of a vector in single precision, summed like [`dot`].
+#[inline]
 pub fn norm(layout: &Layout, a: &[f32]) -> f64 {
     use rayon::prelude::*;
     let square = |part: &[f32]| part.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 #[cfg(feature = "tables")]
-use perilife_tables::{DataFrame, parquet};
+use perilife_tables::polars::prelude::Column;
 #[cfg(feature = "tables")]
-use polars::prelude::Column;
+use perilife_tables::{DataFrame, parquet};
 use tempfile::tempdir;
 
 use crate::interface::cli::perilife;
