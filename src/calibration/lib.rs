@@ -17,6 +17,7 @@ pub mod criterion;
 pub mod exponent;
 pub mod fit;
 pub mod lack_of_fit;
+pub mod inspection;
 pub mod laws;
 pub mod median;
 pub mod outliers;

@@ -6,7 +6,7 @@ use super::checkpoint;
 use super::console::Console;
 use perilife_base::error::Result;
 use perilife_base::input::Document;
-use perilife_results::band::{FACTOR, InspectFrom};
+use perilife_calibration::inspection::{FACTOR, InspectFrom};
 use perilife_results::output::OutputFile;
 use perilife_runner::{Kind, Task};
 

@@ -14,10 +14,10 @@ mod _perilife {
 
     use perilife_base::input::Folder;
     use perilife_base::units::MM;
+    use perilife_calibration::inspection::InspectFrom;
     use perilife_growth::predict::factor_sweep::factor_sweep;
     use perilife_measured::Import;
     use perilife_plate::material::{growth_data, library};
-    use perilife_results::band::InspectFrom;
     use perilife_results::paper::{self, Signed};
     use perilife_results::{factor_sweep as tables, provenance};
     use perilife_runner::check::check as check_document;

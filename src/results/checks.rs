@@ -5,16 +5,15 @@ mod part_through;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::fit_use;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, LawSource};
+use perilife_growth::predict::fit_use;
+use perilife_growth::predict::judgement::first_delta_k;
 use perilife_growth::predict::plastic_zone::plastic_zone;
 use perilife_growth::predict::{CurvePoint, Prediction, StopReason};
-use perilife_plate::loading::LoadControl;
 use perilife_plate::material::growth_data::BATCH_FACTOR;
 use perilife_plate::specimen::SpecimenKind;
-use perilife_plate::specimen::handbook::handbook;
 use perilife_points::crack_tip::TipState;
 
 /// Lines that are printed below a verdict at the most.
@@ -319,12 +318,6 @@ fn first_extrapolation(case: &Case) -> Option<Check> {
         let words = format!("law: ΔK {first:.2} at the start is below the lowest fitted, {low:.2} MPa√m (safe)");
         Check { side: Some(Side::Safe), ..Check::new("extrapolation_below", Verdict::Doubtful, words) }
     })
-}
-
-/// ΔK of the initial crack, Pa√m, where a handbook has it and it only rises from there.
-pub(super) fn first_delta_k(case: &Case) -> Option<f64> {
-    let formula = handbook(&case.specimen).filter(|_| case.loading.control == LoadControl::Load)?;
-    Some(formula.delta_k(case.specimen.crack_length, case.loading.maximum, case.loading.range_share()))
 }
 
 fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {

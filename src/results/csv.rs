@@ -54,6 +54,11 @@ impl Row {
     }
 }
 
+/// Crack length, mm, and cycles of rows.
+pub fn curve(rows: &[Row]) -> Vec<[f64; 2]> {
+    rows.iter().map(|row| [row.crack_length_mm, row.cycles]).collect()
+}
+
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
 /// (load squared times compliance), the force where the cycles are of a `displacement`, m, of a crack that did not go through at the start its depth,
 /// with residual stress K_res of the leading tip and its stress ratio, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::axis::Axis;
-use super::band::{Inspection, Lives as Band};
+use super::band::Lives as Band;
 use super::chart::{COMPUTED, Frame, LARGE, Mark, SECOND};
 use super::csv;
 use super::model_words::clean;
@@ -15,6 +15,7 @@ use super::output::write_file;
 use super::sweep::Lives;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
+use perilife_calibration::inspection::Inspection;
 use perilife_calibration::sweep::detection::Detection;
 use perilife_calibration::sweep::fleet::{self, FleetLives, FleetPlate, Looked, Looks};
 use perilife_growth::case::{Case, Fleet};

@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::band::Inspection;
 use super::model_words::clean;
 use perilife_base::units::MM;
+use perilife_calibration::inspection::Inspection;
 use perilife_calibration::sweep::detection::{Detection, Schedule};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{CurvePoint, Prediction};

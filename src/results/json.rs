@@ -13,9 +13,9 @@ use perilife_growth::record::TipRecord;
 use perilife_plate::specimen::part_through::{BREAK_THROUGH, Limit, STATED_ERROR};
 
 use super::checks;
-use super::fit_use::extrapolated;
-pub use super::fit_use::life_share_extrapolated;
 use super::model_words::{self, clean};
+use perilife_growth::predict::fit_use::extrapolated;
+pub use perilife_growth::predict::fit_use::life_share_extrapolated;
 
 /// Name of the file.
 pub const RESULT_FILE: &str = "result.json";

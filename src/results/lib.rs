@@ -20,7 +20,6 @@ pub mod fit;
 #[cfg(feature = "tables")]
 pub mod frames;
 pub mod fleet;
-pub mod fit_use;
 pub mod inspections;
 pub mod json;
 pub mod model_words;

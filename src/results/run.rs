@@ -1,4 +1,4 @@
-//! A run of cycles: whether it counts as a result, and all its files.
+//! A run of cycles: all its files.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -21,15 +21,16 @@ use super::pictures::stress::stress_svg;
 use super::pictures::tables::RunTables;
 use super::quality::Quality;
 use super::specimen_picture::{nodes_svg, tip_svg};
-use super::{checks, factors, fit_use, json, provenance, spectrum, vtk};
-use perilife_base::error::{Error, Result, input};
-use perilife_base::units::{KN, MM, MPA, MPA_SQRT_M};
+use super::{checks, factors, json, provenance, spectrum, vtk};
+use perilife_base::error::Result;
+use perilife_base::units::{KN, MM, MPA};
 use perilife_growth::case::needs;
-use perilife_growth::case::{Case, Model, RECORD, first_load};
+use perilife_growth::case::{Case, Model, RECORD};
+use perilife_growth::predict::fit_use;
+use perilife_growth::predict::judgement::{breaks_at_once, refusal};
 use perilife_growth::predict::moment::stress_field;
 use perilife_growth::predict::part_through::PartThroughLife;
 use perilife_growth::predict::plastic_zone::{self, PlasticZone};
-use perilife_growth::predict::record::BLOCKS_WITHOUT_GROWTH;
 use perilife_growth::predict::residual_strength::Strength;
 use perilife_growth::predict::{Prediction, StopReason};
 use perilife_growth::record::DepthRecord;
@@ -39,98 +40,6 @@ use perilife_plate::specimen::{LengthConvention, LoadMeasure, PartThrough, Point
 
 /// Table of the ways of the tips.
 pub const CRACK_PATH_FILE: &str = "crack_path.csv";
-
-/// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
-/// Errors: [`Error::Mechanics`] if the run ended before the crack grew.
-pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
-    let mut warnings = Vec::new();
-    let start = prediction.curve.first().map_or(f64::INFINITY, |point| point.crack_length);
-    // An empty curve compares as not grown.
-    let grown = prediction.crack_length_final().max(0.0) > start;
-    let no_curve = |why: &str, remedy: &str| {
-        Err(Error::Mechanics(format!("{}: {why} before the crack grew, so there is no curve; {remedy}", case.name)))
-    };
-    match prediction.stop {
-        StopReason::NoConvergence if grown => {
-            warnings.push("the equilibrium solver did not converge; the curve ends where it last did".to_owned());
-        }
-        StopReason::NoConvergence => {
-            return no_curve(
-                "the equilibrium solver did not converge",
-                "try model.solver = \"direct\" or another model.spacing_mm",
-            );
-        }
-        StopReason::NoGrowth if grown => {
-            warnings.push(format!(
-                "no crack tip grew over the last {BLOCKS_WITHOUT_GROWTH} blocks, though bonds went on breaking: the curve ends where the \
-                 last tip stood; use fatigue.driver = \"tip_field\", or give another model.spacing_mm"
-            ));
-        }
-        StopReason::NoGrowth => {
-            return no_curve(
-                "bonds went on breaking without growth of a crack tip",
-                "use fatigue.driver = \"tip_field\", or give another model.spacing_mm",
-            );
-        }
-        // Under the threshold nothing ages either, which is an answer.
-        StopReason::NothingAges if !grown && (case.fatigue.threshold > 0.0 || !case.spends_bond_life()) => {
-            let why = "nothing grows: every crack stays closed or below the threshold of its growth law";
-            warnings.push(why.to_owned());
-        }
-        StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole | StopReason::CracksJoined if !grown => {
-            let why = format!("no bond that can fail is strained at a crack tip (stopped: {})", prediction.stop);
-            return no_curve(
-                &why,
-                "move crack and hole or support apart, or give a smaller model.spacing_mm; `perilife check` names the tips",
-            );
-        }
-        _ => {}
-    }
-    warnings.extend(fit_use::extrapolated(case, prediction));
-    Ok(warnings)
-}
-
-/// What breaks at the first load, and the load that it would bear.
-fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
-    let [row] = prediction.curve.as_slice() else { return None };
-    let required = case.stop.required.unwrap_or(1.0);
-    let load = case.loading.share(row.work) * case.loading.maximum * required;
-    let k_max = row.k_max_at(required, &case.loading);
-    // A limit that is reached but for round-off has no words of its own.
-    let words = || first_load(case, load, Some(k_max).filter(|k| *k > 0.0));
-    prediction.stop.is_strength().then(|| words().unwrap_or_else(|| format!("{} at the first load", prediction.stop.meaning())))
-}
-
-/// Why a run does not count though it came to an end: more than a quarter of its life lies above the fitted range of ΔK, and the
-/// case does not allow that. It is written all the same, marked as refused: what it cost is not thrown away.
-pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
-    if let Some(problem) = breaks_at_once(case, prediction) {
-        return Some(Error::Mechanics(format!("{}: {problem}", case.name)));
-    }
-    let [_, above] = fit_use::life_shares_outside(case, prediction)?;
-    (above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation).then(|| {
-        extrapolates(case, &format!("{:.1} % of the life lies above", 100.0 * above), "; the results are marked as refused")
-    })
-}
-
-/// Why a case is refused before it is run: its first ΔK lies above the fitted range, and K only rises from there.
-/// Errors: [`Error::Input`] where it does.
-pub fn refuse_beforehand(case: &Case) -> Result<()> {
-    let Some([_, high]) = fit_use::fitted_range(case).filter(|_| !case.allow_extrapolation) else { return Ok(()) };
-    match checks::first_delta_k(case).map(|delta_k| delta_k / MPA_SQRT_M) {
-        Some(first) if first > high * (1.0 + 1e-6) => {
-            Err(extrapolates(case, &format!("ΔK {first:.2} MPa√m at the start, and the whole life, lies above"), ""))
-        }
-        _ => Ok(()),
-    }
-}
-
-fn extrapolates(case: &Case, what: &str, more: &str) -> Error {
-    let [low, high] = fit_use::fitted_range(case).unwrap_or([f64::NAN; 2]);
-    let text = format!("{what} the fitted range of ΔK, {low:.2} to {high:.2} MPa√m, where cracks grow faster than computed");
-    let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
-    input("fatigue.allow_extrapolation", false, format!("{}: {text}{more}", case.name), remedy)
-}
 
 /// Keys of `result.json` that a listing of runs shows.
 pub const FIGURES: [&str; 29] = [

@@ -7,8 +7,8 @@ use serde_json::{Map, Value, json};
 use super::{Summary, Wanted, Watcher};
 use perilife_base::error::{Error, Result};
 use perilife_growth::case::Case;
-use perilife_growth::predict::Prediction;
 use perilife_growth::predict::residual_strength::{Strength, residual_strength};
+use perilife_growth::predict::{Prediction, judgement};
 use perilife_results::answers::{Answers, Asked};
 use perilife_results::band::Lives;
 use perilife_results::checks;
@@ -31,13 +31,13 @@ pub struct Judged {
 
 impl Judged {
     /// Of a run, of which the watcher is told what the user should know.
-    /// Errors: as [`run::judge`]; a damaged record.
+    /// Errors: as [`judgement::judge`]; a damaged record.
     pub fn of(case: &Case, prediction: &Prediction, wanted: &Wanted, watcher: &dyn Watcher) -> Result<Self> {
         // What a check says in a line stands in the file at length.
         let told = run::told_by_checks(case, prediction);
         let warn = |warnings: &[String]| warnings.iter().filter(|line| !told.contains(line)).for_each(|line| watcher.warn(line));
         warn(&prediction.warnings);
-        let judged = run::judge(case, prediction)?;
+        let judged = judgement::judge(case, prediction)?;
         warn(&judged);
         checks::lines(&checks::of_run(case, prediction)).iter().for_each(|line| watcher.warn(line));
         // If that fails, the run itself is written all the same.
@@ -54,7 +54,7 @@ impl Judged {
             Err(error) => (Answers::default(), Err(error)),
         };
         let kept = Kept::of(case, prediction, (&lives, &quality, &answers));
-        let refusal = run::refusal(case, prediction);
+        let refusal = judgement::refusal(case, prediction);
         let mut warnings: Vec<String> = refusal.iter().map(Error::to_string).collect();
         let listed = kept.result["warnings"].as_array().into_iter().flatten();
         warnings.extend(listed.filter_map(|warning| Some(warning.as_str()?.to_owned())));

@@ -155,7 +155,7 @@ pub fn check_wanted(case: &Case, wanted: &Wanted) -> Result<()> {
         // K of its curve comes later.
         check_strength(case)?;
     }
-    perilife_results::run::refuse_beforehand(case)
+    perilife_growth::predict::judgement::refuse_beforehand(case)
 }
 
 /// Judges a run of cycles and writes its files.

@@ -5,7 +5,6 @@ use perilife_base::machine;
 use perilife_growth::case::Case;
 use perilife_growth::case::needs;
 use perilife_points::bond_law::stencil::Stencil;
-use perilife_points::budget::Budget;
 use perilife_scenes::Scene;
 
 const PLATE: &str = r#"

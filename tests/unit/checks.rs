@@ -2,9 +2,9 @@
 
 use perilife_base::input::Folder;
 use perilife_growth::case::Case;
+use perilife_growth::predict::judgement::{refusal, refuse_beforehand};
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 use perilife_results::checks::{Check, Side, Verdict, is_bound_below, lines, of_case, of_run, verdict};
-use perilife_results::run::{refusal, refuse_beforehand};
 
 use crate::support::hand_cases::{PANEL, hand_case, hand_run, try_hand_case_in};
 use crate::support::{made_up_case, made_up_run};

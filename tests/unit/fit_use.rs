@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use perilife_growth::case::Case;
+use perilife_growth::predict::fit_use;
 use perilife_growth::predict::plastic_zone::{plastic_zone, warnings};
 use perilife_growth::predict::{Silent, predict};
-use perilife_results::{fit_use, json};
+use perilife_results::json;
 
 use crate::support::hand_cases::{PANEL, hand_case, hand_run};
 use crate::support::{made_up_case, made_up_run};

@@ -1,12 +1,13 @@
 //! The band of lives on a plate that was run: rows, what has none and why, inspections, digits.
 
 use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_calibration::inspection::{InspectFrom, Inspection};
 use perilife_calibration::population::fit;
 use perilife_calibration::population::intervals::{INTERVALS_MAX, Reading, Specimen};
 use perilife_calibration::population::plate::Plate;
 use perilife_growth::case::{Case, LawSource, Lot};
 use perilife_growth::predict::{Prediction, Silent, predict};
-use perilife_results::band::{COLUMNS, InspectFrom, Inspection, Lives, band_words, left_of_table};
+use perilife_results::band::{COLUMNS, Lives, band_words, left_of_table};
 use perilife_results::csv::{self, Row};
 use toml::Table;
 
@@ -149,12 +150,12 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     let (run, mut lives) = lives(&case);
     let rows: Vec<Row> = run.curve.iter().map(Row::of).collect();
     let from = InspectFrom { crack_length_mm: 20.0, tip: None, factor: 4.0, names: ["--inspect-from", "--factor", "--tip"] };
-    let point = Inspection::of(&rows, None, None, from, false).unwrap();
+    let point = Inspection::of(&csv::curve(&rows), None, None, from, false).unwrap();
     assert!(!point.has_band && (4.0 * point.inspection_interval_cycles - point.remaining_cycles).abs() < 1e-6);
     // What a service reads from the table is what the run itself says.
     let table = lives.beside(csv::a_n(&run, None));
     assert!(table.lines().next().unwrap().ends_with(&COLUMNS.join(",")));
-    let with_band = Inspection::of(&rows, None, left_of_table(&table).as_deref(), from, false).unwrap();
+    let with_band = Inspection::of(&csv::curve(&rows), None, left_of_table(&table).as_deref(), from, false).unwrap();
     let plate = &lives.band.as_ref().unwrap().0;
     let exact = plate.left(20.0 * MM, None).unwrap();
     assert!((with_band.remaining_cycles_p05.unwrap() / exact.quantiles[0] - 1.0).abs() < 2e-3, "{with_band:?} {exact:?}");

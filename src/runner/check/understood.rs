@@ -6,13 +6,14 @@ use perilife_base::units::{GPA, MM, MM_PER_CYCLE};
 use perilife_calibration::laws::case::LawCase;
 use perilife_calibration::sweep::{DesignKind, DrawnCase, Sweep};
 use perilife_growth::case::{Case, Engine, LawSource, Model};
+use perilife_growth::predict::fit_use;
 use perilife_measured::MeasuredCurve;
 use perilife_plate::material::Material;
 use perilife_plate::specimen::handbook::handbook_beside;
 use perilife_plate::specimen::part_through::{RANGE, SOURCE};
 use perilife_plate::specimen::{Specimen, Support};
 use perilife_results::model_words::{self, Choice, mm, short};
-use perilife_results::{fit_use, spectrum};
+use perilife_results::spectrum;
 
 /// One line of what was understood.
 #[derive(Debug, Clone, PartialEq)]

@@ -18,7 +18,8 @@ use crate::job::{Job, State, is_id};
 use crate::problem::{Answer, Problem};
 use crate::store::{Origin, media_type};
 use perilife_base::error::input;
-use perilife_results::band::{self, Inspection};
+use perilife_calibration::inspection::{self, InspectFrom, Inspection};
+use perilife_results::band;
 use perilife_results::csv::{self, A_N_FILE};
 use perilife_results::resample::Sampling;
 
@@ -188,8 +189,8 @@ pub async fn remaining(
 ) -> Answer<Json<Inspection>> {
     let Query(from) = from.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
     let names = ["crack_length_mm", "factor", "tip"];
-    let factor = from.factor.unwrap_or(band::FACTOR);
-    let from = band::InspectFrom { crack_length_mm: from.crack_length_mm, tip: from.tip, factor, names };
+    let factor = from.factor.unwrap_or(inspection::FACTOR);
+    let from = InspectFrom { crack_length_mm: from.crack_length_mm, tip: from.tip, factor, names };
     from.check()?;
     let Some((text, _room)) = curve(&app, &id).await? else {
         must_have_result(&job_of(&app, "predictions", &id).await?)?;
@@ -203,7 +204,7 @@ pub async fn remaining(
     if let Some(refused) = summary.as_ref().and_then(|summary| summary["refused"].as_str()) {
         return Err(Problem::conflict(format!("the run has no life: {refused}")));
     }
-    let tips = summary.as_ref().and_then(|summary| band::TipLengths::of_table(&text, &summary["tips"]));
+    let tips = summary.as_ref().and_then(|summary| band::tip_lengths_of_table(&text, &summary["tips"]));
     let is_lower_bound = summary.is_some_and(|summary| summary["life_is_lower_bound"] == true);
-    Ok(Json(Inspection::of(&rows, tips.as_ref(), left.as_deref(), from, is_lower_bound)?))
+    Ok(Json(Inspection::of(&csv::curve(&rows), tips.as_ref(), left.as_deref(), from, is_lower_bound)?))
 }

@@ -1,14 +1,14 @@
 //! How far a run stays within what its law was fitted to, and how sure that law is.
 
+use super::Prediction;
+use crate::case::record::FittedRecord;
+use crate::case::{Case, LawSource, Model};
 use perilife_base::units::MPA_SQRT_M;
-use perilife_growth::case::record::FittedRecord;
-use perilife_growth::case::{Case, LawSource, Model};
-use perilife_growth::predict::Prediction;
 
 /// Share of life outside the fitted ΔK range above which a run is warned about, and of a side of the range that is named then.
 const WARNED: f64 = 0.05;
 /// Share of life above the fitted range from which a run is refused unless the case allows it: there cracks grow faster than computed.
-pub(super) const EXTRAPOLATION_REFUSED: f64 = 0.25;
+pub const EXTRAPOLATION_REFUSED: f64 = 0.25;
 const NAMED: f64 = 0.01;
 
 /// Share of the life that was spent at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
@@ -71,7 +71,7 @@ pub fn law_line(case: &Case) -> Option<String> {
 }
 
 /// Smallest and largest ΔK that the law of a case was fitted to, MPa√m.
-pub(super) fn fitted_range(case: &Case) -> Option<[f64; 2]> {
+pub fn fitted_range(case: &Case) -> Option<[f64; 2]> {
     let of_bonds = fitted(case).map(|record| [record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m]);
     let over_k = case.law_record.as_ref().map(|record| [record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m]);
     over_k.or(of_bonds)

@@ -1,0 +1,185 @@
+//! What is left of a life from a crack length on, and how often to inspect.
+
+use serde::Serialize;
+
+use crate::population::plate::Quantiles;
+use perilife_base::error::{Result, input};
+use perilife_base::monotone::Monotone;
+use perilife_base::units::MM;
+use perilife_growth::case::Case;
+use perilife_growth::predict::Prediction;
+
+/// Factor of the inspection interval: three looks before the end.
+pub const FACTOR: f64 = 3.0;
+
+/// What is left of a life from a crack length on, and an inspection interval.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Remaining))]
+pub struct Inspection {
+    /// Crack length today: of a plate that of the crack of `tip`.
+    pub crack_length_mm: f64,
+    /// The tip of a plate whose crack that is.
+    pub tip: Option<usize>,
+    /// Crack length of the curve then: in a plate of all cracks together.
+    pub crack_length_of_all_mm: f64,
+    /// Cycles at which the curve reaches that length.
+    pub cycles_at: f64,
+    /// Cycles at its end.
+    pub life_cycles: f64,
+    /// From there to the end.
+    pub remaining_cycles: f64,
+    /// Cycles that 5 % of specimens do not live on; null without a band.
+    pub remaining_cycles_p05: Option<f64>,
+    /// Median of the specimens.
+    pub remaining_cycles_p50: Option<f64>,
+    /// Cycles that 95 % do not live on.
+    pub remaining_cycles_p95: Option<f64>,
+    /// What the remaining life is divided by.
+    pub factor: f64,
+    /// The 5 % remaining life over the factor; without a band remaining cycles over the factor.
+    pub inspection_interval_cycles: f64,
+    /// Whether there is a band, from which the interval comes.
+    pub has_band: bool,
+    /// Whether the plate lives on where its curve ends: at a hole, where cracks have joined, or at stop.cycles_max.
+    pub life_is_lower_bound: bool,
+}
+
+/// From which crack length on a plate is inspected.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InspectFrom {
+    /// Crack length, mm: in the convention of a standard specimen, in a plate the length of the crack of a tip.
+    pub crack_length_mm: f64,
+    /// The tip of a plate; the one that ends its life where it is left out.
+    pub tip: Option<usize>,
+    /// What the remaining life is divided by.
+    pub factor: f64,
+    /// What the user calls length, factor and tip.
+    pub names: [&'static str; 3],
+}
+
+impl InspectFrom {
+    /// Refuses a factor below 1.
+    pub fn check(&self) -> Result<()> {
+        if self.factor.is_finite() && self.factor >= 1.0 {
+            return Ok(());
+        }
+        Err(input(self.names[1], self.factor, "is not 1 or more", format!("give for example {FACTOR}")))
+    }
+}
+
+/// Lengths of the crack of every tip of a plate over the rows of its curve, mm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TipLengths {
+    /// By tip; empty of the end of a slot.
+    pub lengths: Vec<Vec<f64>>,
+    /// The tip that ends the life.
+    pub leads: usize,
+}
+
+impl TipLengths {
+    /// Of a run; `None` of a standard specimen, whose crack length is that of its convention.
+    pub fn of_run(case: &Case, prediction: &Prediction) -> Option<Self> {
+        let (leads, _) = prediction.leading_tip(&case.specimen)?;
+        let of_tip = |tip: usize| {
+            let lengths = prediction.curve.iter().map(|row| row.crack_length_of(&case.specimen, tip).map(|length| length / MM));
+            lengths.collect::<Option<Vec<f64>>>().unwrap_or_default()
+        };
+        Some(TipLengths { lengths: (0..case.specimen.tips.len()).map(of_tip).collect(), leads })
+    }
+
+    /// The tip that is meant, and the length of all cracks when its crack has the length that was asked for, linear between rows.
+    /// Errors: no such tip, a length that its crack does not come to.
+    fn of_all(&self, curve: &[[f64; 2]], from: InspectFrom) -> Result<(usize, f64)> {
+        let tip = from.tip.unwrap_or(self.leads);
+        let Some(lengths) = self.lengths.get(tip).filter(|lengths| !lengths.is_empty()) else {
+            let problem = format!("is no crack tip of this plate, which has {}", self.lengths.len());
+            return Err(input(from.names[2], tip, problem, "count tips from 0, as in a_n.csv"));
+        };
+        let (shortest, longest) = (lengths[0], lengths[lengths.len() - 1]);
+        let length = from.crack_length_mm;
+        if !(shortest..=longest).contains(&length) {
+            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest:.4} to {longest:.4} mm");
+            return Err(input(from.names[0], length, problem, "give a length between them, or another tip"));
+        }
+        let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
+        let (a, b) = (lengths[after - 1], lengths[after]);
+        let share = if b > a { (length - a) / (b - a) } else { 1.0 };
+        let all = curve[after - 1][0] + share * (curve[after][0] - curve[after - 1][0]);
+        Ok((tip, all))
+    }
+}
+
+impl Inspection {
+    /// Of a curve, crack length in mm and cycles, with at least one row; `left` is what is left at its rows.
+    /// Errors: a length that is not on the curve, a factor below 1, a tip that is none.
+    pub fn of(
+        curve: &[[f64; 2]],
+        tips: Option<&TipLengths>,
+        left: Option<&[Quantiles]>,
+        from: InspectFrom,
+        is_lower_bound: bool,
+    ) -> Result<Self> {
+        from.check()?;
+        let of_tip = tips.map(|tips| tips.of_all(curve, from)).transpose()?;
+        if let (None, Some(tip)) = (of_tip, from.tip) {
+            let problem = "belongs to plates with cracks of their own: this specimen has the crack length of its standard";
+            return Err(input(from.names[2], tip, problem, "leave it out"));
+        }
+        let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, all)| all), curve[curve.len() - 1]);
+        let (shortest, longest) = (curve[0][0], end[0]);
+        if !(shortest..=longest).contains(&length) {
+            let problem = format!("is not on the curve, which goes from {shortest} to {longest} mm");
+            return Err(input(from.names[0], length, problem, "give a length between them"));
+        }
+        let cycles_at = Monotone::new(curve.iter().copied()).at(length);
+        let remaining = end[1] - cycles_at;
+        Ok(Inspection {
+            crack_length_mm: from.crack_length_mm,
+            tip: of_tip.map(|(tip, _)| tip),
+            crack_length_of_all_mm: length,
+            cycles_at,
+            life_cycles: end[1],
+            remaining_cycles: remaining,
+            remaining_cycles_p05: None,
+            remaining_cycles_p50: None,
+            remaining_cycles_p95: None,
+            factor: from.factor,
+            inspection_interval_cycles: remaining / from.factor,
+            has_band: false,
+            life_is_lower_bound: is_lower_bound,
+        }
+        .with(left.and_then(|left| between(curve, left, length, remaining))))
+    }
+
+    /// The same with quantiles of the remaining life.
+    pub fn with(self, quantiles: Option<Quantiles>) -> Self {
+        let Some([low, middle, high]) = quantiles else { return self };
+        Inspection {
+            remaining_cycles_p05: Some(low),
+            remaining_cycles_p50: Some(middle),
+            remaining_cycles_p95: Some(high),
+            inspection_interval_cycles: low / self.factor,
+            has_band: true,
+            ..self
+        }
+    }
+
+    /// Quantiles of the remaining life, where there is a band.
+    pub fn quantiles(&self) -> Option<Quantiles> {
+        Some([self.remaining_cycles_p05?, self.remaining_cycles_p50?, self.remaining_cycles_p95?])
+    }
+}
+
+/// Quantiles of what is left at a length between rows: their ratio to the cycles of the run is linear between them.
+fn between(curve: &[[f64; 2]], left: &[Quantiles], length: f64, remaining: f64) -> Option<Quantiles> {
+    let end = curve[curve.len() - 1][1];
+    let ratio = |i: usize| left[i].map(|cycles| cycles / (end - curve[i][1]));
+    let last = curve.iter().rposition(|row| row[1] < end)?;
+    let before = curve.partition_point(|row| row[0] <= length).saturating_sub(1).min(last);
+    let after = (before + 1).min(last);
+    let (a, b) = (curve[before][0], curve[after][0]);
+    let share = if b > a { ((length - a) / (b - a)).clamp(0.0, 1.0) } else { 0.0 };
+    let (from, to) = (ratio(before), ratio(after));
+    let found = [0, 1, 2].map(|k| remaining * (from[k] + share * (to[k] - from[k])));
+    found.iter().all(|cycles| cycles.is_finite()).then_some(found)
+}
