@@ -43,7 +43,7 @@ perilife_base::kinds! {
     }
 }
 
-/// Exponents p of bonds for which a crack was seen to grow steadily, so that its rate is known ([`rate_constant`]).
+/// Exponents p of bonds for which a crack was seen to grow steadily, so that its rate is known (`rate_constant` of `growth`).
 pub const STEADY_EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=8.0;
 
 /// The error of an exponent outside [`STEADY_EXPONENTS`].

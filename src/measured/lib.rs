@@ -3,10 +3,10 @@
 //! Knows: the words that laboratories use in headers, readings and rates, loads between readings, readings left out.
 //! Must not know: points, nodes, growth, fits.
 //!
-//! Imports `base` and `plate`, and `tables` for Parquet.
+//! Imports `base` and `plate`.
 //!
 //! In the order data flows: what the user says of files (`import`); words and units of column `names`, the `header` they make up,
-//! and `numerals`; the cells of a `table` (CSV in any usual dress, a workbook, with the feature `tables` also Parquet) without rows that `marks` leave out; its `columns`
+//! and `numerals`; the cells of a `table` (CSV in any usual dress, a workbook) without rows that `marks` leave out; its `columns`
 //! and the `decimal` sign; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
@@ -56,8 +56,7 @@ pub fn read_into(opened: &Opened, files: &[PathBuf], import: &Import) -> Result<
     Ok(all)
 }
 
-/// Reads the bytes of one file; `file` is only named in messages and, where there is no specimen column, in the curve. Its ending
-/// tells Parquet from CSV.
+/// Reads the bytes of one file; `file` is only named in messages and, where there is no specimen column, in the curve.
 pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
     let table = table::read(bytes, file, import)?;
     let layout = columns::recognise(&table, import)?;

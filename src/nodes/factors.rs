@@ -1,6 +1,6 @@
 //! K_I, K_II and T of a tip: interaction integral over a ring of its own points.
 //!
-//! As [`perilife_points::stress_intensity::ring`], with gradients straight from the shape functions: eight radii by four times eight angles, counted
+//! As `stress_intensity::ring` of `points`, with gradients straight from the shape functions: eight radii by four times eight angles, counted
 //! from face to face, so that a crack that bends divides no point from its side. Faces that leave the line straight behind the tip, and those
 //! that tractions act on, give the second integral.
 

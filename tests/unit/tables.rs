@@ -1,13 +1,11 @@
 //! Data frames against the plain arithmetic they stand beside.
 
-use std::path::Path;
-
 use perilife_base::units::MM;
 use perilife_calibration::median::pointwise_median_at;
 use perilife_measured::{Import, MeasuredCurve, read};
 use perilife_results::frames::{SHARES, cycle_quantiles, fit_curves, specimens, wide};
-use perilife_tables::polars::prelude::Column;
-use perilife_tables::{DataFrame, csv, join_by_specimen, parquet, read_parquet, wide_to_long};
+use perilife_tables::polars::prelude::{ParquetReader, SerReader};
+use perilife_tables::{DataFrame, csv, join_by_specimen, parquet, wide_to_long};
 
 use super::misfit::{exact_curve, fit_to, lengths, paris_model};
 
@@ -80,37 +78,8 @@ fn parquet_and_csv_give_back_the_same_curves() {
         }
     };
     let table = wide_to_long(&wide(&curves, &lengths()).unwrap()).unwrap();
-    check("long.parquet", parquet(&table).unwrap());
+    let stored = parquet(&table).unwrap();
+    assert!(ParquetReader::new(std::io::Cursor::new(stored)).finish().unwrap().equals_missing(&table));
     check("long.csv", csv(&table).unwrap());
-    check("wide.parquet", parquet(&wide(&curves, &lengths()).unwrap()).unwrap());
     check("wide.csv", csv(&wide(&curves, &lengths()).unwrap()).unwrap());
-}
-
-#[test]
-fn a_file_that_only_claims_to_be_parquet_is_refused_with_words() {
-    let folder = tempfile::tempdir().unwrap();
-    for bytes in [&b""[..], b"PAR1", b"PAR1 nothing of the kind PAR1", b"specimen,cycles\n"] {
-        let path = folder.path().join("claims.parquet");
-        std::fs::write(&path, bytes).unwrap();
-        let error = read(&[path], &Import::default()).unwrap_err();
-        assert_eq!(error.exit_code(), 2);
-        assert!(error.to_string().contains("claims.parquet: is not a Parquet table"), "{error}");
-    }
-}
-
-/// Some hundred bytes can stand for any number of equal rows: refused before they take up memory.
-#[test]
-fn a_parquet_file_of_too_many_rows_is_refused() {
-    for (rows, is_fine) in [(1_000_000, true), (1_000_001, false)] {
-        let column = |name: &str| Column::new(name.into(), vec![9.0; rows]);
-        let table = DataFrame::new_infer_height(vec![column("cycles"), column("crack_length_mm")]).unwrap();
-        let bytes = parquet(&table).unwrap();
-        let read = read_parquet(&bytes, Path::new("many.parquet"));
-        if is_fine {
-            assert_eq!(read.unwrap().rows.len(), rows);
-        } else {
-            let error = read.map(|cells| cells.rows.len()).unwrap_err().to_string();
-            assert!(error.contains("many.parquet") && error.contains("rows are more than 1000000"), "{error}");
-        }
-    }
 }

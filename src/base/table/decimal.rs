@@ -5,42 +5,8 @@
 //! the file decides, and for cycles even then; it is refused unless `[measured] decimal` says which it is.
 
 use super::cells::{Row, Separator, Table};
-use super::numerals::{Evidence, evidence, number};
+use super::numerals::{Decimal, Evidence, evidence, number};
 use crate::error::{Error, Result};
-
-crate::kinds! {
-    /// Decimal signs.
-    pub enum Decimal for "measured.decimal" {
-        Point = ".": "1234.5",
-        Comma = ",": "1234,5",
-    }
-}
-
-impl Decimal {
-    /// The character.
-    pub fn sign(self) -> char {
-        match self {
-            Decimal::Point => '.',
-            Decimal::Comma => ',',
-        }
-    }
-
-    /// Its name in messages.
-    pub fn words(self) -> &'static str {
-        match self {
-            Decimal::Point => "point",
-            Decimal::Comma => "comma",
-        }
-    }
-
-    /// The sign that separates thousands beside it.
-    pub fn other(self) -> Decimal {
-        match self {
-            Decimal::Point => Decimal::Comma,
-            Decimal::Comma => Decimal::Point,
-        }
-    }
-}
 
 /// A column of numbers that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

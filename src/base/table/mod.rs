@@ -1,6 +1,6 @@
 //! Tables of text as cells, each row with its line: from CSV in any usual dress, or a workbook.
 //!
-//! Only the form is judged here: the encoding and which character separates columns ([`lines`]), which row is the header ([`cut`]), which
+//! Only the form is judged here: the encoding and which character separates columns (`lines`), which row is the header (`cut`), which
 //! sign is the decimal one ([`decimal`]). What a column means is said by the [`Vocabulary`] of whoever reads.
 
 pub mod cells;
@@ -18,7 +18,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 pub use cells::{Fault, Row, Separator, Table, whole_file};
-pub use decimal::Decimal;
+pub use numerals::Decimal;
 
 use crate::error::Result;
 

@@ -1,6 +1,38 @@
 //! Numbers as they are written: digits, a decimal sign, signs between thousands, an exponent.
 
-use super::decimal::Decimal;
+crate::kinds! {
+    /// Decimal signs.
+    pub enum Decimal for "measured.decimal" {
+        Point = ".": "1234.5",
+        Comma = ",": "1234,5",
+    }
+}
+
+impl Decimal {
+    /// The character.
+    pub fn sign(self) -> char {
+        match self {
+            Decimal::Point => '.',
+            Decimal::Comma => ',',
+        }
+    }
+
+    /// Its name in messages.
+    pub fn words(self) -> &'static str {
+        match self {
+            Decimal::Point => "point",
+            Decimal::Comma => "comma",
+        }
+    }
+
+    /// The sign that separates thousands beside it.
+    pub fn other(self) -> Decimal {
+        match self {
+            Decimal::Point => Decimal::Comma,
+            Decimal::Comma => Decimal::Point,
+        }
+    }
+}
 
 /// What a cell tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use super::table::Rates;
 use super::{FactorLaw, GrowthLawKind};
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, INTENSITY, Quantity, number, slice, value_at};
@@ -183,6 +182,30 @@ impl Description {
         let problem = format!("{problem} growth_law \"{}\"{why}", self.name);
         Err(input_missing(&format!("fatigue.{key}"), problem, format!("leave it out, {remedy}")))
     }
+}
+
+/// Rows of a file of rates, as whoever reads such files gives them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rates {
+    /// Name of the file in the case.
+    pub file: String,
+    /// Names of its columns of ΔK and da/dN.
+    pub columns: [String; 2],
+    /// Whether the file, or the user, says the stress ratio.
+    pub says_ratio: bool,
+    /// Its rows in their order.
+    pub rows: Vec<RatedRow>,
+}
+
+/// A row of rates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RatedRow {
+    /// Line in the file.
+    pub line: usize,
+    /// Stress ratio R.
+    pub ratio: f64,
+    /// ΔK, Pa√m, and da/dN, m/cycle.
+    pub pair: [f64; 2],
 }
 
 /// `[fatigue]` and what its law needs to know about the rest of the case.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::FactorLaw;
-use super::description::{Description, GAMMA, Given, UNSAID};
+use super::description::{Description, GAMMA, Given, RatedRow, Rates, UNSAID};
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
 
@@ -136,30 +136,6 @@ impl Table {
             )
         })
     }
-}
-
-/// Rows of a file of rates, as whoever reads such files gives them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rates {
-    /// Name of the file in the case.
-    pub file: String,
-    /// Names of its columns of ΔK and da/dN.
-    pub columns: [String; 2],
-    /// Whether the file, or the user, says the stress ratio.
-    pub says_ratio: bool,
-    /// Its rows in their order.
-    pub rows: Vec<RatedRow>,
-}
-
-/// A row of rates.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RatedRow {
-    /// Line in the file.
-    pub line: usize,
-    /// Stress ratio R.
-    pub ratio: f64,
-    /// ΔK, Pa√m, and da/dN, m/cycle.
-    pub pair: [f64; 2],
 }
 
 /// The table of a case.

@@ -10,11 +10,19 @@ use faer::sparse::linalg::amd;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::sparse::{FaerError, SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Side};
 
 /// The fronts are too small to be shared out: four parts take half as long again.
 const PAR: faer::Par = faer::Par::Seq;
+
+/// What was computed, unless it is too large for its indices. Short memory ends the process, as it does elsewhere: it is no property of a matrix.
+fn fits<T>(computed: Result<T, FaerError>) -> Option<T> {
+    match computed {
+        Err(FaerError::OutOfMemory) => std::alloc::handle_alloc_error(std::alloc::Layout::new::<T>()),
+        computed => computed.ok(),
+    }
+}
 
 /// Order and structure of the factor of matrices with one pattern.
 pub struct Structure(SymbolicCholesky<usize>);
@@ -33,9 +41,9 @@ impl Structure {
         let graph = SymbolicSparseColMat::new_unsorted_checked(points, points, starts, None, rows);
         let (mut order, mut place) = (vec![0; points], vec![0; points]);
         let scratch = amd::order_maybe_unsorted_scratch::<usize>(points, graph.compute_nnz());
-        let mut memory = MemBuffer::try_new(scratch).ok()?;
+        let mut memory = MemBuffer::new(scratch);
         let control = amd::Control::default();
-        amd::order_maybe_unsorted(&mut order, &mut place, graph.as_ref(), control, MemStack::new(&mut memory)).ok()?;
+        fits(amd::order_maybe_unsorted(&mut order, &mut place, graph.as_ref(), control, MemStack::new(&mut memory)))?;
         let of_unknowns = |of_points: &[usize]| -> Vec<usize> {
             of_points.iter().flat_map(|point| (0..block).map(move |c| point * block + c)).collect()
         };
@@ -46,13 +54,13 @@ impl Structure {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..CholeskySymbolicParams::default()
         };
-        factorize_symbolic_cholesky(pattern, Side::Lower, order, params).ok().map(Structure)
+        fits(factorize_symbolic_cholesky(pattern, Side::Lower, order, params)).map(Structure)
     }
 
     /// The factor of an A of the pattern by its lower triangle; `None` where A is not positive definite.
     pub fn factor(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Option<Factor<'_>> {
         let mut values = vec![0.0; self.0.len_val()];
-        let mut memory = MemBuffer::try_new(self.0.factorize_numeric_llt_scratch::<f64>(PAR, faer::Spec::default())).ok()?;
+        let mut memory = MemBuffer::new(self.0.factorize_numeric_llt_scratch::<f64>(PAR, faer::Spec::default()));
         let (side, none) = (Side::Lower, faer::linalg::cholesky::llt::factor::LltRegularization::default());
         let stack = MemStack::new(&mut memory);
         self.0.factorize_numeric_llt(&mut values, matrix, side, none, PAR, stack, faer::Spec::default()).ok()?;
@@ -67,12 +75,11 @@ pub struct Factor<'a> {
 }
 
 impl Factor<'_> {
-    /// Solves `A x = b` in place of b; `None` where memory is short.
-    pub fn solve(&self, b: &mut [f64]) -> Option<()> {
-        let mut memory = MemBuffer::try_new(self.symbolic.solve_in_place_scratch::<f64>(1, PAR)).ok()?;
+    /// Solves `A x = b` in place of b.
+    pub fn solve(&self, b: &mut [f64]) {
+        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, PAR));
         let n = b.len();
         let b = MatMut::from_column_major_slice_mut(b, n, 1);
         LltRef::new(self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, b, PAR, MemStack::new(&mut memory));
-        Some(())
     }
 }

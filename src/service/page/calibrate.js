@@ -121,7 +121,7 @@ export function createCalibrateView() {
     const job = await jobToStartFrom(id);
     const files = await Promise.all(job.inputs.map(async ({ name: own, href }) => {
       const file = await getBlob(href);
-      return { name: own, file, text: /\.(parquet|xlsx|xlsm)$/i.test(own) ? null : await file.text() };
+      return { name: own, file, text: /\.(xlsx|xlsm)$/i.test(own) ? null : await file.text() };
     }));
     const isShown = fillAll(job.case);
     await measured.load(files, job.case.measured);

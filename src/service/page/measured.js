@@ -46,7 +46,7 @@ export function createMeasured(onChange) {
     const bytes = await file.arrayBuffer();
     // Quotation marks and line ends do not come through a form as they are.
     const name = file.name.replace(/["\r\n]/g, "'");
-    const isTable = /\.(parquet|xlsx|xlsm)$/i.test(name);
+    const isTable = /\.(xlsx|xlsm)$/i.test(name);
     return { name, file: new Blob([bytes]), text: isTable ? null : new TextDecoder().decode(bytes) };
   }
 

@@ -6,15 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-#[cfg(feature = "tables")]
-use perilife_tables::polars::prelude::Column;
-#[cfg(feature = "tables")]
-use perilife_tables::{DataFrame, parquet};
 use tempfile::tempdir;
 
 use crate::interface::cli::perilife;
 use crate::support::browser::Browser;
 use crate::support::server::{Server, in_folder};
+use crate::support::workbook::workbook;
 
 const DELETE: char = '\u{e017}';
 const RIGHT: char = '\u{e014}';
@@ -42,13 +39,11 @@ if (innerWidth < 600) for (const e of document.querySelectorAll("main button, ma
 return flaws;
 "#;
 
-/// Readings of another specimen beside the example.
-#[cfg(feature = "tables")]
-fn more() -> DataFrame {
-    let lengths: Vec<f64> = (0..30).map(|i| 9.0 + f64::from(i)).collect();
-    let cycles: Vec<f64> = (0..30).map(|i| 300_000.0 * (1.0 - 0.9_f64.powi(i))).collect();
-    let columns = vec![Column::new("crack_length_mm".into(), lengths), Column::new("cycles".into(), cycles)];
-    DataFrame::new_infer_height(columns).unwrap()
+/// Readings of another specimen beside the example, as a workbook.
+fn more() -> Vec<u8> {
+    let row = |i: i32| [9.0 + f64::from(i), 300_000.0 * (1.0 - 0.9_f64.powi(i))].map(|number| number.to_string()).to_vec();
+    let header = ["crack_length_mm", "cycles"].map(str::to_owned).to_vec();
+    workbook(&[("readings", std::iter::once(header).chain((0..30).map(row)).collect())])
 }
 
 /// A browser, and the folder for pictures of what it sees.
@@ -124,19 +119,16 @@ fn the_page_leads_from_readings_to_remaining_life() {
     // A good file, the test it is of, a fit.
     page.click("#example");
     page.see("#calibrate:not([disabled])");
-    #[cfg(feature = "tables")]
-    {
-        // Tables that are no text go up as they are.
-        let table = dir.path().join("more.parquet");
-        fs::write(&table, parquet(&more()).unwrap()).unwrap();
-        page.fill("#measured-input", table.to_str().unwrap());
-        page.see("[data-file='more.parquet']");
-        page.until("document.querySelector('#test-check').textContent.includes('2 specimens')");
-        page.see("#calibrate:not([disabled])");
-        page.click("[aria-label='Remove more.parquet']");
-        page.until("!document.querySelector('#test-check').textContent.includes('2 specimens')");
-        page.see("#calibrate:not([disabled])");
-    }
+    // Tables that are no text go up as they are.
+    let table = dir.path().join("more.xlsx");
+    fs::write(&table, more()).unwrap();
+    page.fill("#measured-input", table.to_str().unwrap());
+    page.see("[data-file='more.xlsx']");
+    page.until("document.querySelector('#test-check').textContent.includes('2 specimens')");
+    page.see("#calibrate:not([disabled])");
+    page.click("[aria-label='Remove more.xlsx']");
+    page.until("!document.querySelector('#test-check').textContent.includes('2 specimens')");
+    page.see("#calibrate:not([disabled])");
     page.fill("#view-measure [data-key='specimen.width_mm']", "15");
     page.until("document.querySelectorAll('#view-measure [aria-invalid=true]').length === 1");
     page.fill("#view-measure [data-key='specimen.width_mm']", "152.4");

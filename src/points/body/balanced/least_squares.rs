@@ -273,7 +273,7 @@ impl<'a> Part<'a> {
     /// Adds what a factor makes of the gradient, as far as the dual rises.
     fn step(&self, factor: &Factor<'_>, gradient: Vec<f64>, dual: &mut Dual, limits: Bounded) -> Option<()> {
         let mut step = gradient;
-        factor.solve(&mut step)?;
+        factor.solve(&mut step);
         let z = self.apply_transposed(&step);
         let y: Vec<f64> = self.links.iter().map(|&link| dual.y[link as usize]).collect();
         // Slope of the dual along the step: falls as the way grows.
