@@ -1,10 +1,12 @@
 //! Says in the program which commit it was built from, where that can be told: results repeat it.
 
+use std::path::Path;
 use std::process::Command;
 
 fn main() {
     // Whenever the sources change the program is built anew, and with it this answer.
-    println!("cargo:rerun-if-changed=src");
+    let sources = if Path::new("src").is_dir() { "src" } else { ".." };
+    println!("cargo:rerun-if-changed={sources}");
     println!("cargo:rerun-if-changed=Cargo.toml");
     println!("cargo:rerun-if-env-changed=PERILIFE_COMMIT");
     let given = std::env::var("PERILIFE_COMMIT").ok().filter(|commit| !commit.is_empty());

@@ -49,8 +49,6 @@ pub use perilife_calibration::calibrate::{Calibration, Fitted};
 pub use perilife_growth::case::Case;
 pub use perilife_growth::predict::{CurvePoint, Observer, Prediction, Progress, Silent, StopReason, predict, resume};
 pub use perilife_runner::Draft;
-#[cfg(feature = "service")]
-#[doc(inline)]
-pub use perilife_service as service;
 
+#[doc(hidden)]
 pub mod commands;

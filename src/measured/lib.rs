@@ -5,9 +5,8 @@
 //!
 //! Imports `base` and `plate`.
 //!
-//! In the order data flows: what the user says of files (`import`); words and units of column `names`, the `header` they make up,
-//! and `numerals`; the cells of a `table` (CSV in any usual dress, a workbook) without rows that `marks` leave out; its `columns`
-//! and the `decimal` sign; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
+//! In the order data flows: what the user says of files (`import`); words and units of column `names` and the `header` they make up; the cells
+//! of a `table` (cut by [`perilife_base::table`]) without rows that `marks` leave out; its `columns`; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
 //! accepted; cycles that fall or repeat are a mistake of the file and refused.
