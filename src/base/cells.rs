@@ -36,7 +36,7 @@ fn is_number(text: &str) -> bool {
 /// is a plain number. [`restored`] takes it away again.
 ///
 /// ```
-/// use crate::cells::{defused, restored};
+/// use perilife_base::cells::{defused, restored};
 /// assert_eq!(defused("=1+1"), "'=1+1");
 /// assert_eq!(restored("'=1+1"), "=1+1");
 /// assert_eq!(defused("-5.3"), "-5.3");

@@ -104,7 +104,7 @@ impl fmt::Display for InputError {
 /// Input error about a key and its value.
 ///
 /// ```
-/// let error = crate::error::input("specimen.crack_length_mm", 90.0, "is beyond the half width 76.2 mm", "give a shorter crack");
+/// let error = perilife_base::error::input("specimen.crack_length_mm", 90.0, "is beyond the half width 76.2 mm", "give a shorter crack");
 /// assert_eq!(error.to_string(), "specimen.crack_length_mm = 90: is beyond the half width 76.2 mm; give a shorter crack");
 /// assert_eq!(error.exit_code(), 2);
 /// ```

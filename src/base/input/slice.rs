@@ -38,7 +38,7 @@ const ONE_BREAK: &str = "leave it out: driver \"bond_strain\" solves after every
 /// #[serde(deny_unknown_fields)]
 /// struct Stop { cycles_max: f64 }
 /// let value: toml::Value = "cycles_maks = 5".parse::<toml::Table>().unwrap().into();
-/// let error = crate::input::slice::<Stop>(&value, "stop").unwrap_err();
+/// let error = perilife_base::input::slice::<Stop>(&value, "stop").unwrap_err();
 /// assert_eq!(error.to_string(), "stop.cycles_maks = 5: is not a known key; known here: cycles_max");
 /// ```
 pub fn slice<T: DeserializeOwned>(value: &Value, path: &str) -> Result<T> {

@@ -192,7 +192,7 @@ fn below(bound: u64, stream: &mut ChaCha8Rng) -> u64 {
 /// between the two at `⌊h⌋` and `⌊h⌋ + 1`, counted from 0, by the fraction of h. NaN for an empty sample.
 ///
 /// ```
-/// # use crate::sweep::distribution::quantile;
+/// # use perilife_calibration::sweep::distribution::quantile;
 /// assert_eq!(quantile(&[1.0, 2.0, 4.0, 8.0], 0.5), 3.0);
 /// ```
 pub fn quantile(sorted: &[f64], q: f64) -> f64 {
