@@ -1,4 +1,9 @@
 //! What the Python package `perilife` is built on: documents from dicts and files, runs under the eyes of Python.
+//!
+//! Knows: Python's values, errors, threads and signals.
+//! Must not know: mechanics; everything runs through `runner`.
+//!
+//! Imports `runner` and what it imports.
 
 mod document;
 mod errors;
