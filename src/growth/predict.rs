@@ -27,11 +27,9 @@ mod snapshot;
 pub mod tip_factors;
 mod way;
 
-pub use outcome::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, Snapshot, StopReason, TipRecord};
+pub use outcome::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord};
 pub use perilife_base::watch::Silent;
 pub use record::Observer;
-
-pub use perilife_base::raster::PointGrid;
 
 use std::cell::OnceCell;
 

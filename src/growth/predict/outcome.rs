@@ -5,7 +5,7 @@ use crate::CrackGrowth;
 pub use crate::cross_check::CrossCheck;
 pub use crate::record::{CurvePoint, StopReason, TipRecord};
 use perilife_base::machine;
-pub use perilife_base::raster::{PointGrid, Snapshot};
+use perilife_base::raster::{PointGrid, Snapshot};
 use perilife_base::units::MM;
 use perilife_plate::specimen::Specimen;
 use perilife_points::body::Body;
