@@ -1,6 +1,6 @@
 //! What all members share: errors, units, named choices, input documents, tables of text, numerics without mechanics.
 //!
-//! Knows: the three kinds of errors; TOML, its keys and overrides; tables cut into cells and their decimal sign; SI and US units; quadrature,
+//! Knows: the three kinds of errors; TOML, its keys and overrides; tables cut into cells, the words of their column names and their decimal sign; SI and US units; quadrature,
 //! monotone cubics and straight lines; sealed checkpoints; the raster of pictures; free memory; limits that `perilife stability` measured.
 //! Must not know: plates, laws of growth, equations of mechanics, files of results.
 //!

@@ -3,9 +3,9 @@
 use super::doubts::{check_cycles, check_names, not_specimens, other_lengths, rejected, statistics};
 use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, Import};
-use super::names::{Column, Named, Role, says_tip_to_tip, unit_at_end};
 use perilife_base::error::{Error, Result};
 use perilife_base::table::decimal::decide;
+use perilife_base::table::names::{Column, Named, Role, says_tip_to_tip, unit_at_end};
 use perilife_base::table::numerals::number;
 use perilife_base::table::{
     Decimal,

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use super::columns::is_stress;
-use super::names::{Column, Role};
 use perilife_base::error::{Result, input};
+use perilife_base::table::names::{Column, Role};
 use perilife_base::table::{Fault, Table};
 use perilife_base::units::{MM, round_off};
 use perilife_plate::specimen::{LoadMeasure, Specimen, SpecimenKind};

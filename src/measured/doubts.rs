@@ -3,9 +3,9 @@
 use super::header::columns_of;
 use super::import::{ColumnNames, Import};
 use super::marks::rejects;
-use super::names::{Column, Role, is_of_statistics, says_from_notch, speaks_of_length, speaks_of_thousands};
 use perilife_base::error::Result;
 use perilife_base::table::Decimal;
+use perilife_base::table::names::{Column, Role, is_of_statistics, says_from_notch, speaks_of_length, speaks_of_thousands};
 use perilife_base::table::numerals::number;
 use perilife_base::table::{Fault, Row, Table, whole_file};
 

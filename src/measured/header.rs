@@ -2,7 +2,7 @@
 //! beside each other, `N1, a1, N2, a2`, or `N, a, N, a`.
 
 use super::import::Import;
-use super::names::{Column, Named, Role, is_length_of, is_unit_or_blank, with_unit};
+use perilife_base::table::names::{Column, Named, Role, is_length_of, is_unit_or_blank, with_unit};
 use perilife_base::table::units::Unit;
 use perilife_base::table::{Sheet, Vocabulary};
 

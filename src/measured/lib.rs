@@ -1,11 +1,11 @@
 //! Tables of readings as laboratories write them: cycles, crack lengths and loads of one or many specimens.
 //!
-//! Knows: the words that laboratories use in headers, readings and rates, loads between readings, readings left out.
+//! Knows: readings and rates, loads between readings, readings left out.
 //! Must not know: points, nodes, growth, fits.
 //!
 //! Imports `base` and `plate`.
 //!
-//! In the order data flows: what the user says of files (`import`); words and units of column `names` and the `header` they make up; the cells
+//! In the order data flows: what the user says of files (`import`); the `header` that column names make up ([`perilife_base::table::names`]); the cells
 //! of a `table` (cut by [`perilife_base::table`]) without rows that `marks` leave out; its `columns`; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
@@ -19,7 +19,6 @@ mod import;
 mod leave_out;
 mod loads;
 mod marks;
-mod names;
 pub mod rates;
 mod wide_rates;
 mod readings;
@@ -33,7 +32,7 @@ pub use curve::{Loads, Measured, MeasuredCurve, PROBLEMS_MAX, READINGS_MIN, Sour
 pub use import::{ColumnNames, Import};
 pub use leave_out::LeaveOut;
 pub use loads::{LoadHistory, SAME_LOAD};
-pub use names::{Column, Named, Role};
+pub use perilife_base::table::names::{Column, Named, Role};
 pub use rates::{RangeKind, RateFile, RateFileKeys, RateRow, RateTable};
 
 use perilife_base::error::{Error, InputError, Result};

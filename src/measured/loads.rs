@@ -4,10 +4,10 @@
 //! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
 
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, first_of};
-use super::names::Role;
 use perilife_base::error::Result;
 use perilife_base::line::line;
 use perilife_base::table::Fault;
+use perilife_base::table::names::Role;
 use perilife_base::units::round_off;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_plate::loading::Loading;

@@ -2,8 +2,8 @@
 
 use super::header::columns_of;
 use super::import::Import;
-use super::names::{Role, marks_out, says_one_of};
 use perilife_base::error::Result;
+use perilife_base::table::names::{Role, marks_out, says_one_of};
 use perilife_base::table::numerals::is_number;
 use perilife_base::table::{Row, Table};
 

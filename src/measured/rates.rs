@@ -12,13 +12,13 @@ use super::doubts::rejected;
 use super::header::columns_of;
 use super::import::{ColumnNames, Import};
 use super::marks::counts;
-use super::names::{Column, Named, Role};
 use super::readings::value;
 use super::table;
 use super::wide_rates;
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, number};
 use perilife_base::table::decimal::decide;
+use perilife_base::table::names::{Column, Named, Role};
 use perilife_base::table::{
     Decimal, Sheet,
     units::{IntensityUnit, RateUnit, Unit},

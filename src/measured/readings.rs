@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use super::columns::{Layout, Series, Shape, is_stress};
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
-use super::names::{Column, Role};
 use perilife_base::error::{Error, Result};
 use perilife_base::table::Decimal;
+use perilife_base::table::names::{Column, Role};
 use perilife_base::table::numerals::{is_number, number};
 use perilife_base::table::{Fault, Row, Table, whole_file};
 use perilife_plate::specimen::LoadMeasure;

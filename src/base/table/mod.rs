@@ -8,6 +8,7 @@ mod cut;
 pub mod decimal;
 mod hidden;
 mod lines;
+pub mod names;
 pub mod numerals;
 pub mod units;
 pub mod words;

@@ -4,12 +4,12 @@
 //! no crack length. Words of a quantity that a test has beside cycles, length and load (K, COD, time, temperature, sizes) mark a column
 //! that is none of these, so that it never becomes a specimen.
 
-mod vocabulary;
+pub mod vocabulary;
 
 use vocabulary::*;
 
-use perilife_base::table::decimal::Numbers;
-use perilife_base::table::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit, Unit};
+use super::decimal::Numbers;
+use super::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit, Unit};
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,7 +76,7 @@ pub struct Column {
 
 impl Column {
     /// How the decimal sign of its numbers is looked for.
-    pub(super) fn numbers(&self) -> Numbers {
+    pub fn numbers(&self) -> Numbers {
         let counts = match self.role {
             Role::Cycles => self.factor == 1.0,
             Role::Max | Role::Min | Role::Range => self.factor < 1e3,
@@ -86,29 +86,29 @@ impl Column {
     }
 
     /// A column of one quantity in its unit.
-    pub(super) fn new(index: usize, role: Role, unit: Named) -> Column {
+    pub fn new(index: usize, role: Role, unit: Named) -> Column {
         let factor = if let Named::Is(unit) = unit { unit.si() } else { 1.0 };
         Column { index, role, unit, factor, is_log: false }
     }
 
     /// The same column in a unit that the name does not say.
-    pub(super) fn in_unit(self, unit: Unit) -> Column {
+    pub fn in_unit(self, unit: Unit) -> Column {
         let own = Column::new(self.index, self.role, self.unit).factor;
         Column { unit: Named::Is(unit), factor: self.factor / own * unit.si(), ..self }
     }
 
     /// Whether it holds lengths tip to tip (`2a`), of which the half is taken.
-    pub(super) fn is_tip_to_tip(&self) -> bool {
+    pub fn is_tip_to_tip(&self) -> bool {
         self.factor < Column::new(self.index, self.role, self.unit).factor
     }
 
     /// The same column of lengths tip to tip.
-    pub(super) fn tip_to_tip(self) -> Column {
+    pub fn tip_to_tip(self) -> Column {
         Column { factor: 0.5 * self.factor, ..self }
     }
 
     /// What a name means, whatever its case, blanks and brackets.
-    pub(super) fn named(index: usize, name: &str) -> Column {
+    pub fn named(index: usize, name: &str) -> Column {
         of_words(name, |words, bracket| {
             let column = |role, unit| Column::new(index, role, unit);
             // A bare capital letter names a specimen as often as a crack length.
@@ -142,7 +142,7 @@ impl Column {
     }
 
     /// The column that the user gives a role, its unit still that of its name.
-    pub(super) fn given(index: usize, role: Role, name: &str) -> Column {
+    pub fn given(index: usize, role: Role, name: &str) -> Column {
         let own = Column::named(index, name);
         if matches!(role, Role::Length | Role::Side) && own.is_tip_to_tip() {
             return Column { role, ..own };
@@ -177,7 +177,7 @@ fn any_in(words: &[&str], list: &str) -> bool {
 }
 
 /// Whether a word of a text is one of a list.
-pub(super) fn says_one_of(text: &str, list: &str) -> bool {
+pub fn says_one_of(text: &str, list: &str) -> bool {
     of_words(text, |words, _| any_in(words, list))
 }
 
@@ -326,7 +326,7 @@ fn load_unit(words: &[&str]) -> Option<Unit> {
 }
 
 /// The unit of cycles or length that a name ends with, whatever else it says: a specimen's name in a wide table.
-pub(super) fn unit_at_end(name: &str, role: Role) -> Named {
+pub fn unit_at_end(name: &str, role: Role) -> Named {
     let known = if role == Role::Cycles { cycle_unit } else { length_unit };
     // `CT-1000` and `plate m` end with no unit.
     let is_said = |unit: &[&str]| {
@@ -341,7 +341,7 @@ pub(super) fn unit_at_end(name: &str, role: Role) -> Named {
 }
 
 /// Whether a specimen's name in a wide table says that its lengths are tip to tip (`P1 2a`) or the half (`P1 a`); `None` if neither.
-pub(super) fn says_tip_to_tip(name: &str) -> Option<bool> {
+pub fn says_tip_to_tip(name: &str) -> Option<bool> {
     of_words(name, |words, _| match words.contains(&"2a") {
         true => Some(true),
         false => words.contains(&"a").then_some(false),
@@ -349,7 +349,7 @@ pub(super) fn says_tip_to_tip(name: &str) -> Option<bool> {
 }
 
 /// Whether a line says that cycles are counted in thousands or millions: `N x 1000`, `Zyklen in Tausend`; not `precracked for 50 thousand cycles`.
-pub(super) fn speaks_of_thousands(line: &str) -> bool {
+pub fn speaks_of_thousands(line: &str) -> bool {
     const MANY: &str = "kilocycles kilocycle kcycles kcycle thousand thousands tausend tsd milliers migliaia miles megacycles mcycles million millions mio";
     let (mut words, bracket) = words(line);
     words.extend(bracket);
@@ -366,13 +366,13 @@ pub(super) fn speaks_of_thousands(line: &str) -> bool {
 }
 
 /// Whether a name says that its lengths are measured from the notch.
-pub(super) fn says_from_notch(name: &str) -> bool {
+pub fn says_from_notch(name: &str) -> bool {
     const NOTCH: &str = "notch kerb kerbe kerbgrund entaille muesca entalla intaglio";
     of_words(name, |words, _| any_in(words, NOTCH) && (any_in(words, LENGTH) || any_in(words, SIDES) || words.contains(&"from")))
 }
 
 /// Metres per unit of a column whose name speaks of a crack length by whatever method, half of it where that is tip to tip.
-pub(super) fn speaks_of_length(name: &str) -> Option<f64> {
+pub fn speaks_of_length(name: &str) -> Option<f64> {
     const METHODS: &str = "total dcpd acpd pd edc compliance cod cmod bfs visual optical optisch visuell";
     of_words(name, |words, bracket| {
         let is_plain = |rest: &&[&str]| {
@@ -385,7 +385,7 @@ pub(super) fn speaks_of_length(name: &str) -> Option<f64> {
 }
 
 /// Whether a name in a row of specimens is that of a statistic or of a model; `Design A` and `-40 C` are specimens.
-pub(super) fn is_of_statistics(name: &str) -> bool {
+pub fn is_of_statistics(name: &str) -> bool {
     const STATISTICS: &str = "mean average avg mittel mittelwert moyenne media std sd stdev stddev dev deviation standardabweichung streuung ecart \
         scatter variance cov cv";
     const MODELS: &str = "predicted prediction model design fitted regression confidence";
@@ -401,7 +401,7 @@ pub(super) fn is_of_statistics(name: &str) -> bool {
 }
 
 /// Whether a name is a word and perhaps a unit of length.
-pub(super) fn is_length_of(name: &str, word: &str) -> bool {
+pub fn is_length_of(name: &str, word: &str) -> bool {
     of_words(name, |words, bracket| unit_of(words, bracket, length_unit).iter().any(|(words, _)| *words == [word]))
 }
 
@@ -410,7 +410,7 @@ fn any_marks(words: &[&str]) -> bool {
 }
 
 /// Whether a column that says which readings count marks those that do not.
-pub(super) fn marks_out(name: &str) -> bool {
+pub fn marks_out(name: &str) -> bool {
     of_words(name, |words, _| any_in(words, MARKS_OUT) || !any_in(words, MARKS_KEEP))
 }
 
@@ -419,7 +419,7 @@ const NO_UNIT: &str = "-–—/%°1";
 
 /// A name with the unit of the row below it, unless it has one itself.
 /// Errors: its own unit, where the row says another one.
-pub(super) fn with_unit(name: &str, unit: &str) -> std::result::Result<String, Unit> {
+pub fn with_unit(name: &str, unit: &str) -> std::result::Result<String, Unit> {
     let column = Column::named(0, name);
     let unit = unit.trim_matches(['(', ')', '[', ']', '{', '}', ' ']);
     if unit.chars().all(|c| NO_UNIT.contains(c)) && column.unit != Named::No {
@@ -442,7 +442,7 @@ pub(super) fn with_unit(name: &str, unit: &str) -> std::result::Result<String, U
 }
 
 /// Whether a cell of a row below the header is a unit, or blank.
-pub(super) fn is_unit_or_blank(cell: &str) -> bool {
+pub fn is_unit_or_blank(cell: &str) -> bool {
     const MORE: [&[&str]; 12] =
         [&["s"], &["sec"], &["h"], &["hz"], &["c"], &["f"], &["k"], &["v"], &["mm", "cycle"], &["cm"], &["um"], &["gpa"]];
     let text = cell.trim_matches(['(', ')', '[', ']', '{', '}', ' ', '.']);
