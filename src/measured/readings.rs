@@ -7,7 +7,7 @@ use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated,
 use perilife_base::error::{Error, Result};
 use perilife_base::table::Decimal;
 use perilife_base::table::names::{Column, Role};
-use perilife_base::table::numerals::{is_number, number};
+use perilife_base::table::quantities::number_at;
 use perilife_base::table::{Fault, Row, Table, whole_file};
 use perilife_plate::specimen::LoadMeasure;
 
@@ -150,20 +150,8 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
 
 /// The number in a cell in SI units.
 pub(super) fn value(table: &Table, row: &Row, column: Column, decimal: Decimal) -> Result<f64> {
-    let cell = row.cell(column.index);
-    let refused = |problem: &str, remedy: &str| Err(table.cell_fault(row, column.index).error(problem, remedy));
-    match number(cell, decimal) {
-        Some(number) if number.is_finite() => Ok(column.factor * if column.is_log { 10_f64.powf(number) } else { number }),
-        None if cell.is_empty() => refused("is empty", "give a number or leave the whole row out"),
-        None if is_number(cell) => refused(
-            &format!("is not a number whose decimal sign is the {} of this file", decimal.words()),
-            "give a plain number such as 1234.5 or 1.2345e3, the same decimal sign in the whole file, thousands in groups of three",
-        ),
-        None if !cell.parse::<f64>().is_ok_and(|number| !number.is_finite()) => {
-            refused("is not a number", "give a plain number such as 1234.5 or 1.2345e3, thousands in groups of three")
-        }
-        _ => refused("is not a finite number", "give the reading, or leave the whole row out"),
-    }
+    let number = number_at(table, row, column.index, decimal)?;
+    Ok(column.factor * if column.is_log { 10_f64.powf(number) } else { number })
 }
 
 /// Largest load and stress ratio of a reading, either NaN where the file does not say it; of a file that has ranges alone, the range

@@ -172,6 +172,19 @@ fn of_words<T>(name: &str, read: impl FnOnce(&[&str], &[&str]) -> T) -> T {
     read(&words, &bracket)
 }
 
+/// The unit of a name that is made up of a quantity, whose words are asked about, and perhaps a unit like this one; `None` of another name.
+pub fn quantity(name: &str, like: Unit, is_core: impl Fn(&[&str]) -> bool) -> Option<Named> {
+    let known: fn(&[&str]) -> Option<Unit> = if let Unit::Length(_) = like { length_unit } else { load_unit };
+    of_words(name, |words, bracket| {
+        unit_of(words, bracket, known).into_iter().find_map(|(words, unit)| is_core(words).then_some(unit))
+    })
+}
+
+/// Whether words are made up of some lists, at least one of the first.
+pub fn made_of(words: &[&str], core: &str, more: &[&str]) -> bool {
+    any_in(words, core) && words.iter().all(|word| is_in(core, word) || more.iter().any(|list| is_in(list, word)))
+}
+
 fn any_in(words: &[&str], list: &str) -> bool {
     words.iter().any(|word| is_in(list, word))
 }
