@@ -5,7 +5,7 @@
 
 use std::sync::OnceLock;
 
-use super::growth_law::GrowthLaw;
+use super::growth_law::{Acting, GrowthLaw};
 use perilife_plate::loading::spectrum::{Class, Spectrum};
 
 /// Classes up to which they are summed at every K; of more, sums are tabulated.
@@ -76,16 +76,30 @@ impl GrowthLaw for SpectrumLaw {
 
     /// Of the first class, by size, that counts and of which the law says nothing.
     fn beyond(&self, k_max: f64, _: f64) -> Option<String> {
-        if !self.law.is_refused_beyond() && self.classes.len() > SUMMED {
-            return None;
-        }
-        let all = self.mean(k_max);
-        let counts = |class: &&Class| class.share * self.law.rate(k_max * class.max, class.ratio) > BEYOND * all;
         let told = |class: &Class| self.law.beyond(k_max * class.max, class.ratio);
-        self.classes.iter().filter(counts).find_map(told)
+        let counts = |class: &&Class, all: f64| class.share * self.law.rate(k_max * class.max, class.ratio) > BEYOND * all;
+        // Most laws know every K, and few sums are asked for.
+        let first = self.classes.iter().find(|class| told(class).is_some())?;
+        let all = self.mean(k_max);
+        self.classes.iter().filter(|class| class.max >= first.max && counts(class, all)).find_map(told)
     }
 
     fn is_refused_beyond(&self) -> bool {
         self.law.is_refused_beyond()
+    }
+
+    fn acting(&self, k_max: f64, _: f64) -> Vec<Acting> {
+        let all = self.mean(k_max);
+        let growth = |class: &Class| class.share * self.law.rate(k_max * class.max, class.ratio) / all;
+        let acting = self.classes.iter().map(|class| Acting::new(k_max * class.max, class.ratio, growth(class)));
+        acting.filter(|acting| acting.share > 0.0).collect()
+    }
+
+    fn share_beyond(&self, k_max: f64, ratio: f64) -> f64 {
+        let is_beyond = |acting: &&Acting| {
+            let k_max = acting.delta_k / (1.0 - acting.ratio.max(0.0));
+            self.law.beyond(k_max, acting.ratio).is_some()
+        };
+        self.acting(k_max, ratio).iter().filter(is_beyond).map(|acting| acting.share).sum()
     }
 }

@@ -218,7 +218,7 @@ pub fn library_law(name: &str, thickness: f64, ratio: f64, folder: &Folder) -> R
 }
 
 /// Refuses a power of ΔK at another stress ratio than that of its rates; what is to be said of other laws there.
-pub(super) fn ratio_line(record: &LawRecord, ratio: f64) -> Result<Option<String>> {
+pub(crate) fn ratio_line(record: &LawRecord, ratio: f64, key: &str) -> Result<Option<String>> {
     let (low, high) = (record.stress_ratio_min, record.stress_ratio_max);
     if (low - RATIO_SLACK..=high + RATIO_SLACK).contains(&ratio) {
         return Ok(None);
@@ -231,7 +231,7 @@ pub(super) fn ratio_line(record: &LawRecord, ratio: f64) -> Result<Option<String
         let others: Vec<&str> = fits().filter(|law| law.takes_ratio).map(|law| law.name).collect();
         let (last, before) = others.split_last().map_or(("", String::new()), |(last, before)| (last, before.join(", ")));
         let remedy = format!("fit {before} or {last} to rates at several ratios");
-        return Err(input("loading.stress_ratio", ratio, problem, remedy));
+        return Err(input(key, ratio, problem, remedy));
     }
     Ok(Some(format!("the law {} was fitted to stress ratios from {low} to {high} and is used at {ratio}", record.kind())))
 }

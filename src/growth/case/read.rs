@@ -266,9 +266,11 @@ fn check_spectrum(case: &Case) -> Result<()> {
 /// What the user should know about law and horizon of this case.
 fn law_lines(case: &Case) -> Result<Vec<String>> {
     let mut lines: Vec<String> = Vec::new();
-    for ratio in case.loading.ratios() {
-        let of_record = case.law_record.as_ref().map(|record| law_source::ratio_line(record, ratio)).transpose()?;
-        lines.extend(of_record.flatten().filter(|line| !lines.contains(line)));
+    // Of a spectrum the cycles count by their share of the growth (`predict::fit_use`).
+    match (&case.loading.spectrum, &case.law_record) {
+        (Some(spectrum), _) => lines.extend(spectrum.notes.iter().cloned()),
+        (None, Some(record)) => lines.extend(law_source::ratio_line(record, case.loading.ratio, "loading.stress_ratio")?),
+        (None, None) => {}
     }
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(case)),

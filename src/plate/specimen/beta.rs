@@ -43,8 +43,8 @@ pub struct BetaTable {
     stress: f64,
     file: String,
     last_line: usize,
-    /// Unit of its lengths, m.
-    unit: f64,
+    /// Name of the column of its lengths, and their unit, m.
+    column: (String, f64),
 }
 
 impl Specimen {
@@ -70,12 +70,12 @@ impl Specimen {
     pub fn read_beta(&mut self, file: &str, folder: &Folder) -> Result<()> {
         let (a, tips) = self.length_of_beta()?;
         let path = folder.path(file);
-        let rows = rows(&folder.read(file)?, &path)?;
+        let (rows, column) = rows(&folder.read(file)?, &path)?;
         let [first, last] = [rows[0], rows[rows.len() - 1]];
         if a < first.length * (1.0 - SLACK) || a > last.length * (1.0 + SLACK) {
             let (row, end) = if a < first.length { (first, "begins") } else { (last, "ends") };
             let problem = format!("is where the table {end}, and the crack has {} mm at the start", round(a));
-            return Err(row.fault(&path, problem, "give a table from the initial crack length to the end"));
+            return Err(row.fault(&path, &column, problem, "give a table from the initial crack length to the end"));
         }
         self.beta = Some(BetaTable {
             logarithms: Blended::new(rows.iter().map(|row| (row.length, row.beta.ln()))),
@@ -84,7 +84,7 @@ impl Specimen {
             stress: self.beta_stress(1.0),
             file: file.to_owned(),
             last_line: last.line,
-            unit: last.unit,
+            column: (column, last.unit),
         });
         Ok(())
     }
@@ -153,10 +153,10 @@ impl BetaTable {
             return Ok(());
         }
         let a = self.logarithms.x()[self.logarithms.x().len() - 1];
-        let row = Row { line: self.last_line, length: a, beta: f64::NAN, unit: self.unit };
+        let row = Row { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
         let problem = format!("is where the table ends, and growth goes on to {} mm", round(self.length_at(crack_length)));
         let most = round(self.bounds()[1]);
-        Err(row.fault(self.file.as_ref(), problem, &format!("give a longer table, or stop.crack_length_mm up to {most}")))
+        Err(row.fault(self.file.as_ref(), &self.column.0, problem, &format!("give a longer table, or stop.crack_length_mm up to {most}")))
     }
 }
 
@@ -171,9 +171,9 @@ struct Row {
 
 impl Row {
     /// What is wrong with it, its length as the file has it.
-    fn fault(self, file: &Path, problem: impl Into<String>, remedy: &str) -> Error {
+    fn fault(self, file: &Path, name: &str, problem: impl Into<String>, remedy: &str) -> Error {
         let length = ((self.length / self.unit * 1e6).round() / 1e6).to_string();
-        Fault { line: Some(self.line), key: Some("crack length"), value: Some(&length), ..whole_file(file) }
+        Fault { line: Some(self.line), key: Some(name), value: Some(&length), ..whole_file(file) }
             .error(problem, remedy)
     }
 }
@@ -195,8 +195,8 @@ const WORDS: Words<bool> = Words {
     remedy: "begin with crack_length_mm,beta (or crack_length_in,beta), then one pair a line",
 };
 
-/// The rows of the table.
-fn rows(bytes: &[u8], file: &Path) -> Result<Vec<Row>> {
+/// The rows of the table, and the name of the column of lengths.
+fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<Row>, String)> {
     let table = table::read(bytes, file, &WORDS)?;
     let roles = WORDS.roles(&table, None)?;
     let place = |of_beta: bool| roles.iter().position(|(role, _)| *role == of_beta).unwrap_or_default();
@@ -211,12 +211,12 @@ fn rows(bytes: &[u8], file: &Path) -> Result<Vec<Row>> {
         let row = Row { line, length: values[0] * unit, beta: values[1], unit };
         if let Some(before) = rows.last().filter(|before| before.length >= row.length) {
             let problem = format!("does not rise above the {} mm of line {}", round(before.length), before.line);
-            return Err(row.fault(file, problem, "sort the rows by crack length, each length once"));
+            return Err(row.fault(file, &table.header[length], problem, "sort the rows by crack length, each length once"));
         }
         rows.push(row);
     }
     match rows[..] {
-        [_, _, ..] => Ok(rows),
+        [_, _, ..] => Ok((rows, table.header[length].clone())),
         _ => Err(whole_file(file).error("has one row, which is no curve", "give two rows or more below crack_length_mm,beta")),
     }
 }

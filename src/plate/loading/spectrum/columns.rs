@@ -136,7 +136,9 @@ pub(super) fn read(
     if columns.len() == 1 && format == SpectrumFormat::TurningPoints {
         notes.extend(without_count(&mut table)?);
     }
-    let read: Vec<(usize, bool)> = columns.iter().map(|column| (column.index, column.role == Role::Count)).collect();
+    // Forces may be written in thousands, as counts are; stresses and ratios are below a thousand.
+    let is_large = |role: Role| role == Role::Count || (role != Role::Ratio && !scale.0.is_stress());
+    let read: Vec<(usize, bool)> = columns.iter().map(|column| (column.index, is_large(column.role))).collect();
     let rows = numbers(&table, &read)?;
     let of = |values: &[f64], role: Role| {
         let place = columns.iter().position(|column| column.role == role)?;
@@ -174,7 +176,7 @@ fn columns_of(table: &Table, asked: Option<SpectrumFormat>, scale: (Unit, f64)) 
                 Ok((SpectrumFormat::Cycles, bare(&[Role::Max, Role::Min, Role::Count][..count])))
             }
             (None | Some(SpectrumFormat::TurningPoints), 1) => {
-                if asked.is_none() && table.header_line == 0 {
+                if asked.is_none() {
                     refuse_pairs(table)?;
                 }
                 Ok((SpectrumFormat::TurningPoints, bare(&[Role::Load])))
