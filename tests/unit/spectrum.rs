@@ -106,13 +106,18 @@ fn turning_points_are_counted_in_their_order() {
         ("b.txt", format!("stress in units of 2 MPa\n{column}"), SpectrumFormat::TurningPoints),
         ("c.txt", format!("made up\n6 50.0 0.0 0 0\n{whole}\n"), SpectrumFormat::Fastran),
         ("d.csv", format!("load\n{}", column.replace('\n', ",0\n")), SpectrumFormat::TurningPoints),
-        ("e.txt", format!("6\n{column}"), SpectrumFormat::TurningPoints),
+        ("e.txt", format!("load\n{column}"), SpectrumFormat::TurningPoints),
     ];
     for (file, content, format) in files {
         let loading = loading(file, &content, "").unwrap_or_else(|error| panic!("{file}: {error}"));
         assert_eq!(loading.spectrum.as_ref().unwrap().format, format, "{file}");
         assert_eq!(cycles(&loading), wanted, "{file}");
     }
+    // The number of values in the first line, beyond any of them; 4 may be either.
+    let counted = loading("g.txt", "8\n1\n3\n1\n2\n1\n3\n1\n2\n", "").unwrap().spectrum.unwrap();
+    assert!(counted.per_pass == 4.0 && counted.notes[0].contains("line 1, 8, is the number of values"), "{:?}", counted.notes);
+    let named = loading("h.txt", "load\n4\n1\n3\n1\n2\n", "").unwrap().spectrum.unwrap();
+    assert_eq!((named.per_pass, named.largest[0]), (2.0, 4.0));
     // Time beside the load, as UTF-16 with a byte order mark.
     let text =
         points.iter().enumerate().fold("Time [s],Load [MPa]\n".to_owned(), |text, (i, point)| format!("{text}{i},{point}\n"));
@@ -178,11 +183,12 @@ fn compression_and_a_threshold_count_as_the_law_says() {
 /// What may be either is asked about, by the key that settles it or the name to give.
 #[test]
 fn what_may_be_either_is_asked_about() {
-    let rows: [(&str, &str, &[&str]); 12] = [
+    let rows: [(&str, &str, &[&str]); 13] = [
         ("100,50.0,1\n80,45.0,10\n", "", &["a.csv:1:", "3 columns without a name", "spectrum_format = \"cycles\""]),
         ("30,0.5\n40,1.5\n", "", &["a.csv:1:", "2 columns without a name"]),
         ("12,5\n110,25\n40,5\n", "", &["a.csv:1:", "12,5", "decimal commas", "turning_points"]),
         ("7\n1\n2\n1\n2\n1\n3\n", "", &["a.csv:1:", "may be the number of values, and 6 follow"]),
+        ("4\n1\n3\n1\n2\n", "", &["a.csv:1:", "may be the number of values, and 4 follow"]),
         ("max,min,cumulative cycles\n2,1,5\n", "", &["a.csv:1:", "cumulative cycles", "not a known column"]),
         ("max,min,cycles,repeats\n2,1,5,2\n", "", &["a.csv:1:", "repeats", "same as an earlier column"]),
         ("range,count\n2.5,1\n", "", &["a.csv:1:", "range,count", "lacks a column"]),
@@ -200,7 +206,7 @@ fn what_may_be_either_is_asked_about() {
     let converted = loading("a.csv", "smax [ksi],smin [ksi]\n10,1\n", "").unwrap();
     assert!((converted.maximum / (2.0 * 10.0 * 6.894_757e6) - 1.0).abs() < 1e-6, "{}", converted.maximum);
     let passed_over = loading("a.csv", "max,min,cycles\n2,1,5\n2,2,7\n3,1,0\n", "").unwrap().spectrum.unwrap();
-    assert!(passed_over.cycles.len() == 1 && passed_over.notes[0].contains("2 rows without range"), "{:?}", passed_over.notes);
+    assert!(passed_over.cycles.len() == 1 && passed_over.notes[0].contains("2 rows are not counted"), "{:?}", passed_over.notes);
 }
 
 /// Shares of the growth by class of cycle: a law of one cycle asked of every class.

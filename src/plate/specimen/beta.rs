@@ -156,7 +156,12 @@ impl BetaTable {
         let row = Row { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
         let problem = format!("is where the table ends, and growth goes on to {} mm", round(self.length_at(crack_length)));
         let most = round(self.bounds()[1]);
-        Err(row.fault(self.file.as_ref(), &self.column.0, problem, &format!("give a longer table, or stop.crack_length_mm up to {most}")))
+        Err(row.fault(
+            self.file.as_ref(),
+            &self.column.0,
+            problem,
+            &format!("give a longer table, or stop.crack_length_mm up to {most}"),
+        ))
     }
 }
 
@@ -173,8 +178,7 @@ impl Row {
     /// What is wrong with it, its length as the file has it.
     fn fault(self, file: &Path, name: &str, problem: impl Into<String>, remedy: &str) -> Error {
         let length = ((self.length / self.unit * 1e6).round() / 1e6).to_string();
-        Fault { line: Some(self.line), key: Some(name), value: Some(&length), ..whole_file(file) }
-            .error(problem, remedy)
+        Fault { line: Some(self.line), key: Some(name), value: Some(&length), ..whole_file(file) }.error(problem, remedy)
     }
 }
 

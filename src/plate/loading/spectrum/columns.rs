@@ -256,17 +256,17 @@ fn without_count(table: &mut Table) -> Result<Option<String>> {
     if first.fract() != 0.0 || rest.len() < 4 {
         return Ok(None);
     }
-    if first == follow {
+    if first == follow && first > 2.0 * most {
         table.rows.remove(0);
         return Ok(Some(format!("{}: line {line}, {first}, is the number of values that follow", table.file.display())));
     }
-    if (first - follow).abs() <= ALIKE * follow + 1.0 && first > 2.0 * most {
+    let is_named = table.header_line > 0 && role(&table.names[0]).is_some();
+    let is_near = (first - follow).abs() <= ALIKE * follow + 1.0 && first > 2.0 * most;
+    if is_near || (first == follow && !is_named) {
         let cell = first.to_string();
         let fault = Fault { line: Some(line), value: Some(&cell), ..whole_file(&table.file) };
-        return Err(fault.error(
-            format!("may be the number of values, and {follow} follow"),
-            "correct it, or remove the line if it is a load",
-        ));
+        let problem = format!("may be the number of values, and {follow} follow");
+        return Err(fault.error(problem, "remove the line, or write the name load above it if it is a load"));
     }
     Ok(None)
 }

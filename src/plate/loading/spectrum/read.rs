@@ -207,10 +207,8 @@ fn cycles_of(content: Content, notes: &mut Vec<String>) -> Result<Vec<Cycle>> {
         return Err(input_missing("spectrum", problem, "give at least one row max, min, cycles with a range"));
     }
     if let Some(first) = passed_over.first() {
-        notes.push(format!(
-            "{} rows without range, or with a count of 0, are not counted (first: line {first})",
-            passed_over.len()
-        ));
+        let rows = if passed_over.len() == 1 { "1 row is".to_owned() } else { format!("{} rows are", passed_over.len()) };
+        notes.push(format!("{rows} not counted, having no range or a count of 0 (first: line {first})"));
     }
     Ok(cycles)
 }
