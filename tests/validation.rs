@@ -10,6 +10,7 @@ mod kept_back;
 mod median_virkler;
 mod notched_plates;
 mod plate_band;
+mod practice5_spectra;
 mod population;
 mod rates_virkler;
 mod rivals;

@@ -4,8 +4,7 @@
 
 use std::path::Path;
 
-use super::SpectrumFormat;
-use super::content::{Content, RawCycle};
+use super::content::{Content, RawCycle, SpectrumFormat};
 use perilife_base::error::Result;
 use perilife_base::table::names::vocabulary::{
     FORCE, LOAD_MORE, MAX, MAX_STRESS, MAX_WORDS, MIN, MIN_STRESS, MIN_WORDS, RANGE, RANGE_STRESS, RANGE_WORDS, STRESS, words,

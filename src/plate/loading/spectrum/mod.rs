@@ -14,7 +14,7 @@ mod spx;
 mod sub;
 
 pub use classes::Class;
-pub use read::SpectrumFormat;
+pub use content::SpectrumFormat;
 pub(super) use read::refuse;
 
 use std::fmt;

@@ -1,7 +1,7 @@
 //! A spectrum from its file: which format it has, what it says, and what of it is left out.
 
 use super::classes::{classes, kinds};
-use super::content::{Content, RawCycle};
+use super::content::{Content, RawCycle, SpectrumFormat};
 use super::rainflow::rainflow;
 use super::rows::{fault, rows};
 use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, spx, sub};
@@ -12,17 +12,6 @@ use perilife_base::table;
 use perilife_base::table::units::{LoadUnit, Unit};
 use std::borrow::Cow;
 use std::path::Path;
-
-perilife_base::kinds! {
-    /// How a spectrum is written.
-    pub enum SpectrumFormat for "loading.spectrum_format" {
-        Cycles = "cycles": "table with the columns max, min, cycles (or range, mean, cycles), in order, each maximum before its minimum",
-        TurningPoints = "turning_points": "one column of loads, counted by rainflow as repeating (ASTM E1049, 5.4.5), each cycle at the place of its maximum",
-        Spx = "spx": "AFGROW .spx: XML with elements B (Mx, Mn, C) in every SubSpectrum",
-        Sub = "sub": "AFGROW .sub: a title with the number of rows, then rows max min cycles",
-        Fastran = "fastran": "FASTRAN: a title, points Smax Smin INVERT ICLIP, then turning points as whole numbers",
-    }
-}
 
 /// Keys that belong to a spectrum, beside its scale.
 fn given(input: &Input) -> [(&'static str, bool); 5] {
