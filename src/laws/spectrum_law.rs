@@ -77,11 +77,9 @@ impl GrowthLaw for SpectrumLaw {
     /// Of the first class, by size, that counts and of which the law says nothing.
     fn beyond(&self, k_max: f64, _: f64) -> Option<String> {
         let told = |class: &Class| self.law.beyond(k_max * class.max, class.ratio);
-        let counts = |class: &&Class, all: f64| class.share * self.law.rate(k_max * class.max, class.ratio) > BEYOND * all;
-        // Most laws know every K, and few sums are asked for.
-        let first = self.classes.iter().find(|class| told(class).is_some())?;
-        let all = self.mean(k_max);
-        self.classes.iter().filter(|class| class.max >= first.max && counts(class, all)).find_map(told)
+        let all = self.classes.iter().any(|class| told(class).is_some()).then(|| self.mean(k_max))?;
+        let counts = |class: &&Class| class.share * self.law.rate(k_max * class.max, class.ratio) > BEYOND * all;
+        self.classes.iter().filter(counts).find_map(told)
     }
 
     fn is_refused_beyond(&self) -> bool {
@@ -95,11 +93,11 @@ impl GrowthLaw for SpectrumLaw {
         acting.filter(|acting| acting.share > 0.0).collect()
     }
 
-    fn share_beyond(&self, k_max: f64, ratio: f64) -> f64 {
-        let is_beyond = |acting: &&Acting| {
-            let k_max = acting.delta_k / (1.0 - acting.ratio.max(0.0));
-            self.law.beyond(k_max, acting.ratio).is_some()
-        };
-        self.acting(k_max, ratio).iter().filter(is_beyond).map(|acting| acting.share).sum()
+    fn share_beyond(&self, k_max: f64, _: f64) -> f64 {
+        let is_beyond = |class: &&Class| self.law.beyond(k_max * class.max, class.ratio).is_some();
+        let rate = |class: &Class| class.share * self.law.rate(k_max * class.max, class.ratio);
+        let beyond: f64 = self.classes.iter().filter(is_beyond).map(rate).sum();
+        // Most laws know every K, and the mean over all classes is asked of the others alone.
+        if beyond > 0.0 { beyond / self.mean(k_max) } else { 0.0 }
     }
 }
