@@ -161,7 +161,7 @@ fn quick_methods(case: &mut Case) -> Vec<StressIntensityMethod> {
         return StressIntensityMethod::ALL.to_vec();
     }
     case.warnings.push(format!(
-        "K is that of nodes alone, since the plate would have {points:.1e} points: for K on points give --method ring or energy_release"
+        "K is that of nodes alone, since the plate would have {points:.1e} points: for K on points give --method ring"
     ));
     vec![StressIntensityMethod::ElementFreeGalerkin]
 }
