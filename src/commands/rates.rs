@@ -116,7 +116,7 @@ pub fn run(args: &Args) -> Result<()> {
     let ratio = args.stress_ratio.or(case.as_ref().map(|case| case.loading.ratio)).unwrap_or(0.0);
     let ratio = number("a ratio", -2.0, 0.99).read("stress_ratio", ratio)?;
     let thickness_mm = case.as_ref().map_or(THICKNESS_MM, |case| case.specimen.thickness / MM);
-    let materials = MaterialRates::all(&args.materials, ratio, thickness_mm)?;
+    let (materials, of_materials) = MaterialRates::all(&args.materials, ratio, thickness_mm)?;
     if let Some(path) = &args.picture {
         let points = specimens.iter().flat_map(|specimen| &specimen.points);
         let in_units = |point: &RatePoint| (point.delta_k / MPA_SQRT_M, point.rate / MM_PER_CYCLE);
@@ -126,7 +126,7 @@ pub fn run(args: &Args) -> Result<()> {
         args.console.say(&shown_table(&rates_of_materials::table(&materials, ratio)));
     }
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
-    for warning in measured.warnings.iter().chain(&of_specimens) {
+    for warning in of_materials.iter().chain(&measured.warnings).chain(&of_specimens) {
         args.console.warn(warning);
     }
     let table = table(specimens.iter().flat_map(|one| one.points.iter().map(|point| (&*one.name, point))));

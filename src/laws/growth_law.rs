@@ -5,6 +5,7 @@ pub mod description;
 pub mod forman;
 pub mod nasgro;
 pub mod paris;
+mod rising;
 pub mod table;
 pub mod walker;
 
@@ -79,7 +80,12 @@ pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
         None
     }
 
-    /// Whether a run ends in an error there.
+    /// In words, that its rates are of other stress ratios than this one, and which are taken.
+    fn beyond_ratio(&self, _ratio: f64) -> Option<String> {
+        None
+    }
+
+    /// Whether a run ends in an error where K lies beyond.
     fn is_refused_beyond(&self) -> bool {
         false
     }
@@ -162,6 +168,10 @@ impl GrowthLaw for FactorLaw {
     fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
         let grows = k_max * (1.0 - ratio.max(0.0)) > self.threshold;
         self.table.as_ref().filter(|_| grows).and_then(|table| table.beyond(k_max, ratio))
+    }
+
+    fn beyond_ratio(&self, ratio: f64) -> Option<String> {
+        self.table.as_ref().and_then(|table| table.beyond_ratio(ratio))
     }
 
     fn is_refused_beyond(&self) -> bool {

@@ -199,7 +199,8 @@ pub(super) fn rates(given: &Given<'_>, key: &str) -> Result<Option<Rates>> {
     let Some(file) = given.get::<RateFile>(key.trim_start_matches("fatigue."))?.map(|file| file.keys()) else { return Ok(None) };
     let (table, _) = file.read(given.folder, key)?;
     let rows = table.rows.iter().map(|row| RatedRow { line: row.line, ratio: row.ratio, pair: [row.delta_k, row.rate] });
-    Ok(Some(Rates { rows: rows.collect(), columns: table.columns, says_ratio: table.says_ratio, file: file.file }))
+    let (rows, notes) = (rows.collect(), table.warnings);
+    Ok(Some(Rates { rows, notes, columns: table.columns, says_ratio: table.says_ratio, file: file.file }))
 }
 
 /// The growth law of a material of the library, for a plate of this thickness, m, at a stress ratio.

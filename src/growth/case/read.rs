@@ -277,7 +277,7 @@ fn law_lines(case: &Case) -> Result<Vec<String>> {
         LawSource::Paris(law) => lines.extend(doubt(&steady(*law), case.loading.ratio)),
         LawSource::Factor(law) => {
             lines.extend(doubt(&FactorLaw { threshold: 0.0, ..law.clone() }, case.loading.ratio));
-            lines.extend(law.table.as_ref().and_then(|table| table.line(case.loading.ratio)));
+            lines.extend(law.table.iter().flat_map(|table| table.lines(case.loading.ratios())));
         }
         LawSource::Fitted(record) => {
             let law = ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m };

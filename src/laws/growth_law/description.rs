@@ -193,6 +193,8 @@ pub struct Rates {
     pub columns: [String; 2],
     /// Whether the file, or the user, says the stress ratio.
     pub says_ratio: bool,
+    /// What the user should know of it.
+    pub notes: Vec<String>,
     /// Its rows in their order.
     pub rows: Vec<RatedRow>,
 }

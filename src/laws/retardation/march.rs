@@ -141,7 +141,8 @@ impl<'a> March<'a> {
     fn now(&self, cycle: &Cycle, a: f64, k: f64) -> Now {
         let k_max = cycle.max * k;
         let size = self.laws.retardation.map_or(0.0, |model| model.zone_size(k_max));
-        Now { a, k_max, ratio: (cycle.min / cycle.max).max(self.laws.least), size }
+        let least = self.laws.least;
+        Now { a, k_max, ratio: (cycle.min / cycle.max).max(least), least, size }
     }
 
     /// da/dN of a cycle, m, in the zone of an overload or out of it.
