@@ -1,5 +1,5 @@
 //! Growth rates as other programs keep them, several stress ratios side by side: AFGROW's `.lkpx` and easigrow's `.dadn`. They are read as the table
-//! of one row a rate that [`super::rates`] takes.
+//! of one row a rate that [`super::rates`] takes, as are tables with a column for every stress ratio: `da/dN (mm/cycle), R=0.1, R=0.5`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -7,8 +7,12 @@ use std::path::Path;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
+use super::header::columns_of;
+use super::import::Import;
 use perilife_base::error::Result;
-use perilife_base::table::{Fault, whole_file};
+use perilife_base::table::names::{Named, Role, ratio_of_name};
+use perilife_base::table::units::{RateUnit, Unit};
+use perilife_base::table::{Fault, Row, Table, whole_file};
 
 /// A rate with its ΔK at every stress ratio, in the units of the file.
 type WideRow = (f64, Vec<f64>);
@@ -39,6 +43,39 @@ pub fn as_table(bytes: &[u8], file: &Path) -> Option<Result<String>> {
         }
         text
     }))
+}
+
+/// Puts the columns of stress ratios below each other, which hold ΔK beside a column of da/dN, or da/dN beside one of ΔK; a cell without text
+/// stands for nothing. Without a unit in their names ΔK has that of the rates, which the note says.
+pub(super) fn below_each_other(table: &mut Table, import: &Import) {
+    let columns = columns_of(&table.header, &table.names, import);
+    let of = |role: Role| columns.iter().find(|column| column.role == role);
+    let (own, name) = match (of(Role::Rate), of(Role::DeltaK).or(of(Role::KMax))) {
+        (Some(rate), None) => (rate, "ΔK"),
+        (None, Some(delta_k)) => (delta_k, "da/dN"),
+        _ => return,
+    };
+    let ratios: Vec<(usize, f64, &str)> =
+        (0..columns.len()).filter_map(|i| ratio_of_name(&table.names[i]).map(|(ratio, unit)| (i, ratio, unit))).collect();
+    let Some((first, _, unit)) = ratios.first().copied() else { return };
+    let is_us = own.unit == Named::Is(Unit::Rate(RateUnit::Inch));
+    let assumed = if is_us { "(ksi√in)" } else { "(MPa√m)" };
+    let is_assumed = name == "ΔK" && unit.is_empty() && import.intensity.is_none();
+    if is_assumed {
+        let (file, name) = (table.file.display(), &table.header[first]);
+        table
+            .notes
+            .push(format!("{file}: {name} is read as ΔK {assumed}, the unit that goes with the rates; else give intensity_unit"));
+    }
+    let other = format!("{name} {}", if is_assumed { assumed } else { unit });
+    let header = vec![table.header[own.index].clone(), other, "stress_ratio".to_owned()];
+    let cells = |row: &Row, (i, ratio, _): (usize, f64, &str)| {
+        let is_known = !row.cell(i).is_empty();
+        is_known.then(|| Row::of(row.line, vec![row.cell(own.index), row.cell(i), &ratio.to_string()]))
+    };
+    table.rows = ratios.iter().flat_map(|of| table.rows.iter().filter_map(|row| cells(row, *of))).collect();
+    table.names = vec![table.names[own.index].clone(), header[1].clone(), header[2].clone()];
+    table.header = header;
 }
 
 /// easigrow: remarks behind `#`, a row of stress ratios, then a row a rate: da/dN in m and ΔK in MPa√m at every ratio.

@@ -128,14 +128,6 @@ impl LawCase {
             return Err(lacks_ratio(&keys.file, "measured.rates").in_file(&path));
         }
         self.warnings.extend(found.warnings);
-        if found.flagged > 0 {
-            let of = found.flagged + found.rows.len();
-            self.warnings.push(format!(
-                "{}: {} of {of} rates are left out, since they are flagged",
-                path.display(),
-                found.flagged
-            ));
-        }
         if let Some(range) = found.range {
             self.range = Some(range);
         }

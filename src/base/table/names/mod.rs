@@ -34,6 +34,10 @@ pub enum Role {
     Load,
     /// Range of the stress intensity.
     DeltaK,
+    /// Stress intensity at maximum load, in tables of rates.
+    KMax,
+    /// Stress intensity at minimum load, in tables of rates.
+    KMin,
     /// da/dN.
     Rate,
     /// Width of the specimen.
@@ -139,6 +143,18 @@ impl Column {
                 false => column(Role::Unknown, Named::No),
             }
         })
+    }
+
+    /// What a name means in a table of rates: `Kmax (MPa√m)` and `K_min`, too.
+    pub fn named_of_rates(index: usize, name: &str) -> Column {
+        let of_end = |role: Role, list: &str| {
+            let is_end = |core: &[&str]| match core.iter().position(|word| is_in(list, word)) {
+                Some(place) => K_AT.contains(&&*[&core[..place], &core[place + 1..]].concat().join(" ")),
+                None => matches!((core, role), (["kmax"], Role::KMax) | (["kmin"], Role::KMin)),
+            };
+            of_words(name, |words, bracket| of_quantity(index, role, words, bracket, &is_end))
+        };
+        of_end(Role::KMax, MAX).or_else(|| of_end(Role::KMin, MIN)).unwrap_or_else(|| Column::named(index, name))
     }
 
     /// The column that the user gives a role, its unit still that of its name.
@@ -303,8 +319,8 @@ fn of_rates(index: usize, words: &[&str], bracket: &[&str]) -> Option<Column> {
 /// The column of a quantity whose unit may have blanks and brackets of its own: the longest unit at the end of all words counts.
 fn of_quantity(index: usize, role: Role, words: &[&str], bracket: &[&str], is_core: &dyn Fn(&[&str]) -> bool) -> Option<Column> {
     let like = match role {
-        Role::DeltaK => Unit::Intensity(IntensityUnit::MpaSqrtM),
-        _ => Unit::Rate(RateUnit::Millimetre),
+        Role::Rate => Unit::Rate(RateUnit::Millimetre),
+        _ => Unit::Intensity(IntensityUnit::MpaSqrtM),
     };
     let all = [words, bracket].concat();
     let (is_log, all) = match all.as_slice() {
@@ -411,6 +427,17 @@ pub fn is_of_statistics(name: &str) -> bool {
             name.trim_start().starts_with(['+', '-', '\u{b1}']) && words.last().is_some_and(|word| is_in(SPREAD, word));
         is_statistic || is_model || is_signed || words == ["s", "d"]
     })
+}
+
+/// The stress ratio of a column that is named by it, and the bracket behind it: `R=0.1`, `R 0.5 (MPa√m)`, `ΔK at R0.7`.
+pub fn ratio_of_name(name: &str) -> Option<(f64, &str)> {
+    let is_word = |place: &usize| name[*place..].starts_with(['R', 'r']) && !name[..*place].ends_with(char::is_alphanumeric);
+    let place = name.char_indices().map(|(place, _)| place).find(is_word)?;
+    let text = name[place + 1..].trim_start_matches(['=', ' ', '_', ':']);
+    let (number, rest) = text.split_at(text.find([' ', '(', '[', '{']).unwrap_or(text.len()));
+    let ratio = number.replace(',', ".").replace('\u{2212}', "-").parse().ok().filter(|ratio| *ratio < 1.0)?;
+    let rest = rest.trim_start();
+    (rest.is_empty() || rest.starts_with(['(', '[', '{'])).then_some((ratio, rest))
 }
 
 /// Whether a name is a word and perhaps a unit of length.

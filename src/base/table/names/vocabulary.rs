@@ -56,6 +56,8 @@ pub const DELTA_K: [&str; 12] = [
     "stress intensity factor range",
     "range of stress intensity",
 ];
+/// Names of the stress intensity at one load, as it is called beside `max` or `min`.
+pub const K_AT: [&str; 6] = ["k", "k i", "ki", "sif", "stress intensity", "stress intensity factor"];
 /// Names of the growth in a cycle.
 pub const RATE: [&str; 9] = [
     "da dn",
