@@ -122,7 +122,7 @@ impl FactorLaw {
 
     /// K_max at which it lets a crack grow without limit, Pa√m.
     pub fn toughness(&self) -> Option<f64> {
-        self.kind.0.place(Role::Toughness).map(|place| self.constants[place])
+        self.kind.0.place(Role::Toughness).map(|place| self.constants[place]).filter(|k_c| k_c.is_finite())
     }
 
     /// ΔK at which its own rate is 0 at a stress ratio, Pa√m, where it has such a constant.

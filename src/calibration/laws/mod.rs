@@ -103,14 +103,9 @@ impl LawFits {
 /// Errors: [`Error::Mechanics`] where the rates do not tell the law asked for, or none; constants that no law has, or no metal.
 pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFits> {
     candidate::check_given(given)?;
-    let mut candidates: Vec<LawFit> = kinds().map(|kind| fit(kind, given, rows)).collect();
     let smooth = Smooth::through(rows);
     let effective = smooth.effective_rates(rows);
-    for candidate in &mut candidates {
-        candidate.widen((rows.len() as f64 / effective).sqrt());
-        candidate.aicc = criterion(candidate, effective);
-        candidate.judge_errors();
-    }
+    let candidates: Vec<LawFit> = kinds().map(|kind| judged(kind, given, rows, effective)).collect();
     let chosen = choose(&candidates, wanted)?;
     let others = candidates.iter().enumerate().filter(|(i, other)| *i != chosen && other.left_out.is_none());
     let next = others.map(|(_, other)| other).min_by(|a, b| a.aicc.total_cmp(&b.aicc));
@@ -120,6 +115,24 @@ pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFi
     fits.warnings.extend(smooth.misfit(rows, fits.law()));
     check_metal(fits.law(), rows)?;
     Ok(fits)
+}
+
+/// A law fitted to rates that count as so many; where they do not tell a constant of a factor that may be 1, as that of fracture in the NASGRO
+/// equation, it is fitted without the factor.
+fn judged(kind: GrowthLawKind, given: &Given, rows: &[RateRow], effective: f64) -> LawFit {
+    let mut law = fit(kind, given, rows);
+    law.widen((rows.len() as f64 / effective).sqrt());
+    law.aicc = criterion(&law, effective);
+    law.judge_errors();
+    let has = |own: &[(&str, f64)]| own.iter().any(|(key, _)| law.unknown == Some(key));
+    let Some((of, constants)) = kind.0.factors.iter().find(|(_, own)| has(own)) else { return law };
+    let mut simpler = given.clone();
+    for (key, value) in *constants {
+        simpler.entry((*key).to_owned()).or_insert(*value);
+    }
+    let mut simpler = judged(kind, &simpler, rows, effective);
+    simpler.lacks.push(of);
+    if simpler.left_out.is_none() { simpler } else { law }
 }
 
 /// The place of the law asked for, or of the best.
@@ -231,7 +244,8 @@ fn about_polynomial(x: &[f64], y: &[f64]) -> Vec<f64> {
 
 fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
     let law = fits.law();
-    let mut lines = Vec::new();
+    let without = |of: &&str| format!("the law {} is fitted without its factor of {of}, which no rate tells", law.kind);
+    let mut lines: Vec<String> = law.lacks.iter().map(without).collect();
     if let Some((kind, margin)) = fits.margin.filter(|(_, margin)| *margin < -WORSE) {
         lines.push(format!("the rates are not for the law {}: {kind} is better by {:.1} of AICc", law.kind, -margin));
     }

@@ -31,11 +31,16 @@ pub struct Description {
     pub complete: &'static str,
     /// Meaning as one of the laws that rates are fitted by.
     pub fit: Option<&'static str>,
+    /// Factors that may be 1: what each is of, and the constants, in the units of their keys, at which it is; the first one alone does it.
+    pub factors: &'static [Factor],
     /// Whether it holds at other stress ratios than those of its rates.
     pub takes_ratio: bool,
     /// What of it takes the compression of a cycle into account, and the stress ratio down to which that is known.
     pub compression: Option<(&'static str, f64)>,
 }
+
+/// A factor of a law: what it is of, and the constants at which it is 1.
+pub type Factor = (&'static str, &'static [(&'static str, f64)]);
 
 /// What a law is where its file says nothing: a formula of its constants.
 pub(super) const UNSAID: Description = Description {
@@ -48,6 +53,7 @@ pub(super) const UNSAID: Description = Description {
     others: &[],
     complete: "give all constants of the law",
     fit: None,
+    factors: &[],
     takes_ratio: true,
     compression: None,
 };
@@ -235,15 +241,24 @@ impl Given<'_> {
     /// The constants of a law in SI units, in their order.
     /// Errors: one that is missing, or beyond its bounds.
     pub fn constants(&self, law: &Description) -> Result<Vec<f64>> {
+        // Of a factor that is 1 nothing else is asked.
+        let without = |constant: &Constant| {
+            let (_, own) = law.factors.iter().find(|(_, own)| own[1..].iter().any(|(key, _)| *key == constant.key))?;
+            let is_one =
+                value_at(self.section, own[0].0).and_then(|value| value.as_float().or(value.as_integer().map(|n| n as f64)));
+            own.iter().find(|(key, _)| is_one == Some(own[0].1) && *key == constant.key).map(|(_, value)| *value)
+        };
         let value = |constant: &Constant| {
             let path = format!("fatigue.{}", constant.key);
             match (self.get(constant.key)?, constant.default) {
                 (Some(value), _) => constant.quantity.read(&path, value),
                 (None, Some(value)) => Ok(value * constant.quantity.si),
-                (None, None) if constant.role == Role::Toughness => self.material.toughness.ok_or_else(|| {
-                    let problem = "is missing, and the material has no toughness";
-                    input_missing(&path, problem, "give the K at which growth becomes unstable")
-                }),
+                (None, None) if constant.role == Role::Toughness => {
+                    self.material.toughness.or(without(constant)).ok_or_else(|| {
+                        let problem = "is missing, and the material has no toughness";
+                        input_missing(&path, problem, "give the K at which growth becomes unstable")
+                    })
+                }
                 (None, None) => {
                     let why =
                         if constant.name == "horizon" { ": A is meaningless without the horizon it belongs to" } else { "" };
