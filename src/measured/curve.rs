@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::columns::is_stress;
 use perilife_base::error::{Result, input};
+use perilife_base::input::LENGTH;
 use perilife_base::table::names::{Column, Role};
 use perilife_base::table::{Fault, Table};
 use perilife_base::units::{MM, round_off};
@@ -40,6 +41,8 @@ pub struct MeasuredCurve {
     pub load_factor: Vec<f64>,
     /// Whether the growth up to each reading is left out (`measured.leave_out`); empty where none is.
     pub left_out: Vec<bool>,
+    /// Precision of a reading, m, where the user says it.
+    pub precision: Option<f64>,
     /// Where the readings stand.
     pub source: Source,
 }
@@ -136,6 +139,7 @@ impl MeasuredCurve {
             side_difference: some(&self.side_difference, readings),
             loads: self.loads.as_ref().map(|loads| loads.of_readings(readings)),
             stated: Vec::new(),
+            precision: self.precision,
             load_factor: some(&self.load_factor, readings),
             left_out: if self.left_out.is_empty() { Vec::new() } else { left_out.collect() },
             source: Source {
@@ -268,6 +272,14 @@ pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f6
 }
 
 impl Measured {
+    /// The same of readings of a precision, mm.
+    /// Errors: one that is no length.
+    pub fn of_precision(mut self, key: &str, precision: Option<f64>) -> Result<Self> {
+        let precision = LENGTH.read_optional(key, precision)?;
+        self.curves.iter_mut().for_each(|curve| curve.precision = precision);
+        Ok(self)
+    }
+
     /// Puts the curves of another file behind these.
     /// Specimens named by files of one stem have the names of their folders.
     /// Errors: a specimen whose name another one has.

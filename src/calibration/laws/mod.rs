@@ -19,9 +19,11 @@ mod least_squares;
 use nalgebra::{DMatrix, DVector};
 
 use crate::paris::doubt_of_exponent;
+use crate::rates::threshold;
 pub use candidate::Given;
 use fit::{LawFit, fit};
 use perilife_base::error::{Error, Result, input_missing};
+use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_laws::growth_law::{GrowthLawKind, doubt};
 use perilife_measured::RateRow;
 
@@ -246,6 +248,10 @@ fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
     let law = fits.law();
     let without = |of: &&str| format!("the law {} is fitted without its factor of {of}, which no rate tells", law.kind);
     let mut lines: Vec<String> = law.lacks.iter().map(without).collect();
+    for of_test in rows.chunk_by(|a, b| a.series == b.series) {
+        let rates = of_test.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE));
+        lines.extend(threshold(rates).map(|(_, words)| format!("{}: {words}", of_test[0].series)));
+    }
     if let Some((kind, margin)) = fits.margin.filter(|(_, margin)| *margin < -WORSE) {
         lines.push(format!("the rates are not for the law {}: {kind} is better by {:.1} of AICc", law.kind, -margin));
     }
