@@ -136,6 +136,7 @@ impl CalibrationCase {
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
         measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        measured.leave_standing_out()?;
         let read = measured.curves.clone();
         measured.leave_out(&keys.leave_out)?;
         let window_ends = window_ends(&keys)?;

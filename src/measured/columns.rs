@@ -39,6 +39,8 @@ pub struct Series {
     pub lengths: Vec<Column>,
     /// Readings of the same crack on several sides.
     pub sides: Vec<Column>,
+    /// A few optical readings, by which the crack lengths are corrected.
+    pub optical: Option<Column>,
     /// Loads, of every role one at the most.
     pub loads: Vec<Column>,
     /// Columns of quantities that the case says too: ΔK, sizes, the smallest load where no other says how large a cycle is.
@@ -118,6 +120,9 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
     match (cycles.as_slice(), lengths.as_slice()) {
         ([cycles], [_, ..]) => {
             let specimen = of(|column| column.role == Role::Specimen);
+            let optical = optical(table, &columns).map(|column| length_column(table, column, import)).transpose()?;
+            let columns: Vec<Column> =
+                columns.iter().filter(|column| optical.is_none_or(|optical| optical.index != column.index)).copied().collect();
             let (lengths, sides) = lengths_and_sides(table, &columns, import)?;
             let cycles = cycle_column(table, *cycles, import)?;
             let (loads, mut compared) = loads(table, &columns, import, warnings)?;
@@ -129,7 +134,8 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
             warnings.extend(not_read(table, &columns));
             let stem = table.file.file_stem().map_or_else(|| "specimen".to_owned(), |stem| stem.to_string_lossy().into_owned());
             let specimen = specimen.first().copied();
-            Ok((Shape::Long, vec![Series { name: stem, specimen, cycles, lengths, sides, loads, compared, own: Vec::new() }]))
+            let own = Vec::new();
+            Ok((Shape::Long, vec![Series { name: stem, specimen, cycles, lengths, sides, optical, loads, compared, own }]))
         }
         ([_, second, ..], _) => Err(says_the_same(table, second.index, "cycles")),
         ([], [length]) if wide && length.index == 0 => {
@@ -171,6 +177,7 @@ impl Series {
             cycles,
             lengths: vec![length],
             sides: Vec::new(),
+            optical: None,
             loads: Vec::new(),
             compared: Vec::new(),
             own,
@@ -219,7 +226,7 @@ impl Layout {
 /// Columns of numbers.
 fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
     let of = |series: &Series| -> Vec<Column> {
-        let read = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides);
+        let read = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides).chain(&series.optical);
         let all = read.chain(&series.loads).chain(&series.compared);
         all.copied().collect()
     };
@@ -230,6 +237,16 @@ fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
         numbers.dedup_by_key(|column| column.index);
     }
     numbers
+}
+
+/// Of two columns of crack length the one that a few rows have, at most every second: optical readings beside those of potential drop.
+fn optical(table: &Table, columns: &[Column]) -> Option<Column> {
+    let lengths: Vec<Column> = columns.iter().filter(|column| column.role == Role::Length).copied().collect();
+    let [one, other] = *lengths.as_slice() else { return None };
+    let [of_one, of_other] =
+        [one, other].map(|column| table.rows.iter().filter(|row| !row.cell(column.index).is_empty()).count());
+    let (few, count, many) = if of_one < of_other { (one, of_one, of_other) } else { (other, of_other, of_one) };
+    (count > 0 && 2 * count <= many + 1).then_some(few)
 }
 
 /// Columns of crack length, and those of single sides beside them: where no column has the mean, the sides have it.

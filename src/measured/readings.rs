@@ -3,12 +3,14 @@
 use std::collections::HashMap;
 
 use super::columns::{Layout, Series, Shape, is_stress};
-use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
+use super::curve::{Loads, Measured, MeasuredCurve, Source, Stated, first_of};
 use perilife_base::error::{Error, Result};
+use perilife_base::line::line;
 use perilife_base::table::Decimal;
 use perilife_base::table::names::{Column, Role};
 use perilife_base::table::quantities::number_at;
 use perilife_base::table::{Fault, Row, Table, whole_file};
+use perilife_base::units::MM;
 use perilife_plate::specimen::LoadMeasure;
 
 /// More cycles than any test has run: beyond it the unit is wrong.
@@ -21,18 +23,24 @@ const LENGTH_MAX: f64 = 100.0;
 type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
 
 /// Curves of a table of cells.
-pub(super) fn curves_of(table: &Table, layout: &Layout, fate: Fate<'_>) -> Result<Measured> {
+pub(super) fn curves_of(table: &Table, layout: &Layout, least: usize, fate: Fate<'_>) -> Result<Measured> {
     let mut measured = Measured { curves: Vec::new(), warnings: layout.warnings.clone() };
     for series in &layout.series {
-        measured.curves.extend(curves(table, layout.decimal, series, fate)?);
+        let mut of_series = curves(table, layout.decimal, series, fate)?;
+        if let Some(column) = series.optical {
+            let correct = |curve| correct(curve, table, layout.decimal, column);
+            measured.warnings.extend(of_series.iter_mut().map(correct).collect::<Result<Vec<_>>>()?);
+        }
+        measured.curves.extend(of_series);
     }
     let mut falling = Vec::new();
     for curve in &measured.curves {
         let specimen = || Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
-        if curve.cycles.len() < READINGS_MIN {
+        let count = curve.cycles.len();
+        if count < least {
             fate(specimen().error(
-                format!("has {} readings", curve.cycles.len()),
-                format!("give at least {READINGS_MIN} readings for every specimen"),
+                format!("has {count} reading{}", if count == 1 { "" } else { "s" }),
+                format!("give at least {least} readings for every specimen"),
             ))?;
         } else if layout.shape == Shape::WideLengths && curve.crack_length.last() <= curve.crack_length.first() {
             fate(specimen().error(
@@ -83,6 +91,25 @@ fn curves(table: &Table, decimal: Decimal, series: &Series, fate: Fate<'_>) -> R
         add_reading(&mut curves[place], table, row, decimal, series).or_else(&mut *fate)?;
     }
     Ok(curves)
+}
+
+/// Corrects crack lengths of potential drop or compliance by the few that were read optically, as E647 asks: by the straight line through those that
+/// have both. What was done.
+fn correct(curve: &mut MeasuredCurve, table: &Table, decimal: Decimal, optical: Column) -> Result<String> {
+    let (mut own, mut read) = (Vec::new(), Vec::new());
+    let rows = table.rows.iter().filter(|row| !row.cell(optical.index).is_empty());
+    for (row, at) in rows.filter_map(|row| Some((row, curve.source.lines.iter().position(|line| *line == row.line)?))) {
+        own.push(curve.crack_length[at]);
+        read.push(value(table, row, optical, decimal)?);
+    }
+    let start = format!("{}: specimen {}: {}", table.file.display(), curve.specimen, curve.source.length_column);
+    let name = &table.header[optical.index];
+    let Some(line) = line(&own, &read).filter(|line| line.slope > 0.0) else {
+        return Ok(format!("{start} is not corrected: {} of its readings have {name} too, and a line needs two", own.len()));
+    };
+    curve.crack_length.iter_mut().for_each(|length| *length = line.intercept + line.slope * *length);
+    let (offset, slope, count) = (line.intercept / MM, line.slope, own.len());
+    Ok(format!("{start} is corrected by {count} readings of {name} (ASTM E647): {offset:.3} mm + {slope:.4} times it"))
 }
 
 /// Adds the reading of a row after checking it by itself and against the reading before.

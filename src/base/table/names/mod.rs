@@ -258,7 +258,8 @@ fn cycle_unit(words: &[&str]) -> Option<Unit> {
 fn length(words: &[&str], bracket: &[&str]) -> Option<(Role, Named)> {
     unit_of(words, bracket, length_unit).into_iter().find_map(|(words, unit)| {
         let has = |list| any_in(words, list);
-        if has(LENGTH) && all_in(words, &[LENGTH, LENGTH_MORE]) {
+        let by_method = matches!(unit, Named::Is(_)) && has(METHODS);
+        if (has(LENGTH) || by_method) && all_in(words, &[LENGTH, LENGTH_MORE, METHODS]) {
             return Some((Role::Length, unit));
         }
         let sides = has(SIDES) && all_in(words, &[SIDES, SIDE_MORE, LENGTH, LENGTH_MORE]);
