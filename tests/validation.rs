@@ -11,6 +11,7 @@ mod median_virkler;
 mod notched_plates;
 mod plate_band;
 mod practice5_spectra;
+mod practice5_laws;
 mod population;
 mod rates_virkler;
 mod rivals;

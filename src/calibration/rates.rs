@@ -7,16 +7,13 @@
 //!
 //! ΔK of every rate, and the validity that depends on the specimen, follow from the case ([`add_delta_k`]).
 //!
-//! Of rates below 1e-5 mm/cycle, those of K-decreasing tests, steps count down to ten times the precision of a reading: as the user says it, or the
-//! scatter of the readings about such parabolas. ΔK_th is ΔK at 1e-7 mm/cycle by the line of log ΔK over log da/dN through at least five rates from
-//! there to 1e-6 mm/cycle ([`threshold`]).
+//! Below 1e-5 mm/cycle, in K-decreasing tests, steps count down to ten times the precision of a reading, as the user says it or as readings scatter.
 
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::median::median;
 use perilife_base::cells::field;
 use perilife_base::line::{Line, line};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
@@ -26,15 +23,9 @@ use perilife_measured::{MeasuredCurve, side_difference_max};
 /// Smallest increment of crack length between readings that E647 (8.6.2) asks for, m.
 pub const STEP_MIN: f64 = 0.25 * MM;
 
-/// Rates below which a test is one to the threshold, m/cycle, and steps over the precision of a reading that count there.
+/// Rates below which a test is one to the threshold, m/cycle.
 const SLOW: f64 = 1e-5 * MM_PER_CYCLE;
-const STEP_PRECISIONS: f64 = 10.0;
-
-/// Rates of the line to the threshold, mm/cycle, the first being that at ΔK_th, and fewest of them.
-const NEAR_THRESHOLD: [f64; 2] = [1e-7, 1e-6];
-const OF_THRESHOLD_MIN: usize = 5;
-
-/// Steepest fall of K over the crack length that a K-decreasing test may have, 1/m, with room for its steps.
+/// Steepest fall of ln K over the crack length in a K-decreasing test, 1/m, with room for its steps.
 const GRADIENT_MIN: f64 = -0.08 * 1.05 / MM;
 
 /// Readings on each side of the middle one of a parabola.
@@ -121,7 +112,7 @@ impl Flags {
 /// [`add_delta_k`].
 pub fn rates(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
     let factors = curve.step_factors();
-    let curve = &MeasuredCurve { precision: curve.precision.or_else(|| scatter(curve)), ..curve.clone() };
+    let curve = &MeasuredCurve { precision: curve.precision.or_else(|| Some(curve.scatter())), ..curve.clone() };
     match method {
         RateMethod::Secant => (1..curve.cycles.len()).filter_map(|i| secant(curve, &factors, i)).collect(),
         RateMethod::Polynomial7 => {
@@ -165,27 +156,10 @@ fn holds(curve: &MeasuredCurve, middle: usize) -> bool {
 
 /// Seven-point incremental polynomial: `â = b0 + b1 x + b2 x²`, `x = (N - C1) / C2` scaled to -1..1 over the seven readings.
 pub(super) fn polynomial7(curve: &MeasuredCurve, middle: usize) -> Option<RatePoint> {
-    if middle < HALF_SPAN || middle + HALF_SPAN >= curve.cycles.len() || !holds(curve, middle) {
+    let (n, a) = (&curve.cycles, &curve.crack_length);
+    if middle < HALF_SPAN || middle + HALF_SPAN >= n.len() || !holds(curve, middle) {
         return None;
     }
-    let seven = middle - HALF_SPAN..=middle + HALF_SPAN;
-    let (length, rate) = parabola(curve, middle)?;
-    let mean_factor = curve.load_factor.get(seven).map_or(1.0, |factors| factors.iter().sum::<f64>() / factors.len() as f64);
-    let point = point(curve, curve.cycles[middle], length, rate, middle - 1..=middle + 1);
-    Some(RatePoint { load_factor: mean_factor, ..point })
-}
-
-/// Scatter of a reading, m, as a standard deviation: 1.4826 times the median of the distances from the parabola, which takes a third of the variance.
-fn scatter(curve: &MeasuredCurve) -> Option<f64> {
-    let middles = HALF_SPAN..curve.cycles.len().saturating_sub(HALF_SPAN);
-    let off = |middle: usize| parabola(curve, middle).map(|(length, _)| (length - curve.crack_length[middle]).abs());
-    let distances: Vec<f64> = middles.filter_map(off).collect();
-    (!distances.is_empty()).then(|| 1.4826 * median(&distances) / (2.0_f64 / 3.0).sqrt())
-}
-
-/// Length, m, and rate, m/cycle, at the middle of seven readings.
-fn parabola(curve: &MeasuredCurve, middle: usize) -> Option<(f64, f64)> {
-    let (n, a) = (&curve.cycles, &curve.crack_length);
     let seven = middle - HALF_SPAN..=middle + HALF_SPAN;
     let (first, last) = (n[middle - HALF_SPAN], n[middle + HALF_SPAN]);
     // Cycles of a computed curve stand still where noise lets a length fall.
@@ -202,13 +176,15 @@ fn parabola(curve: &MeasuredCurve, middle: usize) -> Option<(f64, f64)> {
     // Cycles rise strictly, so the seven x differ; only readings crowded at one end could still be singular.
     let b = normal.try_inverse().map(|inverse| inverse * right)?;
     let x = (n[middle] - centre) / half;
-    Some((b[0] + b[1] * x + b[2] * x * x, (b[1] + 2.0 * b[2] * x) / half))
+    let (length, rate) = (b[0] + b[1] * x + b[2] * x * x, (b[1] + 2.0 * b[2] * x) / half);
+    let mean_factor = curve.load_factor.get(seven).map_or(1.0, |factors| factors.iter().sum::<f64>() / factors.len() as f64);
+    Some(RatePoint { load_factor: mean_factor, ..point(curve, n[middle], length, rate, middle - 1..=middle + 1) })
 }
 
 /// A point with the flags that need no specimen; `readings` are those whose distances count.
 fn point(curve: &MeasuredCurve, cycles: f64, crack_length: f64, rate: f64, readings: RangeInclusive<usize>) -> RatePoint {
     // A step of exactly 0.25 mm is long enough, also after its conversion to metres.
-    let slow = curve.precision.filter(|_| rate < SLOW).map_or(STEP_MIN, |precision| STEP_MIN.min(STEP_PRECISIONS * precision));
+    let slow = curve.precision.filter(|_| rate < SLOW).map_or(STEP_MIN, |precision| STEP_MIN.min(10.0 * precision));
     let steps = curve.crack_length[readings.clone()].windows(2);
     let short_step = steps.into_iter().any(|pair| (pair[1] - pair[0]).abs() < slow * (1.0 - 1e-6));
     RatePoint {
@@ -262,34 +238,23 @@ pub fn add_delta_k(points: &mut [RatePoint], case: &Case, delta_k: &dyn Fn(f64) 
     for middle in 0..points.len() {
         let around = &points[middle.saturating_sub(HALF_SPAN)..points.len().min(middle + HALF_SPAN + 1)];
         let falls = around.len() > 2 && around.windows(2).all(|pair| pair[1].delta_k < pair[0].delta_k);
-        let [lengths, log_k] = [|point: &RatePoint| point.crack_length, |point: &RatePoint| point.delta_k.ln()]
-            .map(|of| around.iter().map(of).collect::<Vec<f64>>());
+        let (lengths, log_k): (Vec<f64>, Vec<f64>) = around.iter().map(|point| (point.crack_length, point.delta_k.ln())).unzip();
         points[middle].flags.k_gradient = falls && line(&lengths, &log_k).is_some_and(|line| line.slope < GRADIENT_MIN);
     }
 }
 
-/// ΔK_th, MPa√m, of rates `(ΔK in MPa√m, da/dN in mm/cycle)`, and what is to be said of it; `None` where none is that slow.
-pub fn threshold(rates: impl Iterator<Item = (f64, f64)>) -> Option<(Option<f64>, String)> {
-    let [low, high] = NEAR_THRESHOLD;
-    let slow: Vec<(f64, f64)> = rates.filter(|(k, rate)| *k > 0.0 && (0.0..high).contains(rate)).collect();
-    let lowest = slow.iter().map(|pair| pair.1).filter(|rate| *rate > 0.0).reduce(f64::min)?;
-    let (log_rate, log_k): (Vec<f64>, Vec<f64>) =
-        slow.iter().filter(|pair| pair.1 >= low).map(|(k, rate)| (rate.log10(), k.log10())).unzip();
-    let of_line = line(&log_rate, &log_k).filter(|_| log_k.len() >= OF_THRESHOLD_MIN);
-    let k = of_line.map(|line| 10_f64.powf(line.intercept + line.slope * low.log10()));
-    let start = format!("rates go down to {lowest:.1e} mm/cycle, to the threshold");
-    let rest = match k {
-        Some(k) => format!(
-            "ΔK_th = {k:.3} MPa√m at {low:e} mm/cycle by the line of ASTM E647 through {} rates below {high:e} mm/cycle; give it by \
-             fatigue.delta_k_threshold_mpa_sqrt_m where a law has no threshold of its own",
-            log_k.len()
-        ),
-        None => format!(
-            "of {OF_THRESHOLD_MIN} rates from {low:e} to {high:e} mm/cycle, which ΔK_th of ASTM E647 needs, {} are there",
-            log_k.len()
-        ),
-    };
-    Some((k, format!("{start}: {rest}")))
+/// ΔK_th, MPa√m, and what is to be said of it: ΔK at 1e-7 mm/cycle by the line of log ΔK over log da/dN that E647 takes through at least five rates
+/// from there to 1e-6 mm/cycle. `rates` are ΔK, MPa√m, and da/dN, mm/cycle.
+pub fn threshold(rates: impl Iterator<Item = (f64, f64)>) -> Option<(f64, String)> {
+    let slow = rates.filter(|(k, rate)| *k > 0.0 && (1e-7..1e-6).contains(rate));
+    let (log_rate, log_k): (Vec<f64>, Vec<f64>) = slow.map(|(k, rate)| (rate.log10(), k.log10())).unzip();
+    let line = line(&log_rate, &log_k).filter(|_| log_k.len() >= 5)?;
+    let (k, count) = (10_f64.powf(line.intercept - 7.0 * line.slope), log_k.len());
+    let words = format!(
+        "the test goes to its threshold: ΔK_th = {k:.3} MPa√m at 1e-7 mm/cycle by the line of ASTM E647 through {count} rates; give it by \
+         fatigue.delta_k_threshold_mpa_sqrt_m where a law has none of its own"
+    );
+    Some((k, words))
 }
 
 /// A table of rates, each with its specimen, that [`perilife_measured::RateFile`] reads back:

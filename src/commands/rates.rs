@@ -211,7 +211,7 @@ fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
             "paris_c_mm_per_cycle": law.map(|law| 10_f64.powf(law.intercept)),
             "paris_m": law.map(|law| law.slope),
             "scatter_decades": law.map(|law| law.scatter),
-            "delta_k_threshold_mpa_sqrt_m": specimen.threshold().and_then(|(k, _)| k),
+            "delta_k_threshold_mpa_sqrt_m": specimen.threshold().map(|(k, _)| k),
             "flagged": specimen.flagged(),
             "warnings": specimen.warnings,
             "points": points(specimen),
@@ -226,7 +226,7 @@ impl SpecimenRates {
     }
 
     /// ΔK_th of the rates that count.
-    fn threshold(&self) -> Option<(Option<f64>, String)> {
+    fn threshold(&self) -> Option<(f64, String)> {
         let good = self.points.iter().filter(|point| !point.flags.any());
         threshold(good.map(|point| (point.delta_k / MPA_SQRT_M, point.rate / MM_PER_CYCLE)))
     }

@@ -19,9 +19,6 @@ const FALL_SCATTERS: f64 = 10.0;
 /// See [`FALL_SCATTERS`].
 const FALL_SHARE: f64 = 0.02;
 
-/// Growth over the scatter of readings up to which a crack stands.
-const STANDS_SCATTERS: f64 = 3.0;
-
 /// Slack of window ends against readings, m: `9.0 mm` in a file and in a key need not be the same binary number.
 const LENGTH_SLACK: f64 = 1e-9;
 
@@ -314,23 +311,19 @@ impl Measured {
     /// Errors: no other is there.
     pub fn leave_standing_out(&mut self) -> Result<()> {
         let grown = |curve: &MeasuredCurve| curve.crack_length.iter().copied().fold(0.0, f64::max) - curve.crack_length[0];
-        let (standing, growing): (Vec<_>, Vec<_>) =
-            self.curves.drain(..).partition(|curve| grown(curve) <= STANDS_SCATTERS * curve.scatter());
-        self.curves = growing;
-        if let Some(first) = standing.first().filter(|_| self.curves.is_empty()) {
+        let stands = |curve: &MeasuredCurve| grown(curve) <= 3.0 * curve.scatter();
+        if let Some(first) = self.curves.first().filter(|_| self.curves.iter().all(stands)) {
             let fault = Fault { key: Some("specimen"), value: Some(&first.specimen), ..first.fault(0) };
-            let problem = "has a crack that does not grow by more than its readings scatter, as every specimen";
-            return Err(fault.error(problem, "give readings of a crack that grows"));
+            return Err(
+                fault.error("has a crack that does not grow by more than its readings scatter", "give readings of growth")
+            );
         }
         let line = |curve: &MeasuredCurve| {
-            format!(
-                "{}: specimen {}: its crack does not grow in {:.0} cycles (run-out): not fitted",
-                curve.source.file.display(),
-                curve.specimen,
-                curve.life()
-            )
+            let (file, name, life) = (curve.source.file.display(), &curve.specimen, curve.life());
+            format!("{file}: specimen {name}: its crack does not grow in {life:.0} cycles (run-out): not fitted")
         };
-        self.warnings.extend(first_of(standing.iter().map(line).collect()));
+        self.warnings.extend(first_of(self.curves.iter().filter(|curve| stands(curve)).map(line).collect()));
+        self.curves.retain(|curve| !stands(curve));
         Ok(())
     }
 

@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
-use super::curve::READINGS_MIN;
 use perilife_base::error::{Result, input};
 use perilife_base::table::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
 use perilife_base::table::{Decimal, Sheet, TextOrNumber};
@@ -31,15 +30,8 @@ pub struct Import {
     pub rate: Option<RateUnit>,
     /// Whether the file is a table of rates over ΔK.
     pub of_rates: bool,
-    /// Whether the readings are of a plate in service, of which one says where its crack is.
+    /// Whether the readings are of a plate in service: one says where its crack is.
     pub of_plate: bool,
-}
-
-impl Import {
-    /// Fewest readings of a specimen.
-    pub(super) fn readings_min(&self) -> usize {
-        if self.of_plate { 1 } else { READINGS_MIN }
-    }
 }
 
 /// Which column is which, by a key and the name in the header, or the number from 1; what is left out is found by the names that

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::columns::{Layout, Series, Shape, is_stress};
-use super::curve::{Loads, Measured, MeasuredCurve, Source, Stated, first_of};
+use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
 use perilife_base::error::{Error, Result};
 use perilife_base::line::line;
 use perilife_base::table::Decimal;
@@ -23,7 +23,7 @@ const LENGTH_MAX: f64 = 100.0;
 type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
 
 /// Curves of a table of cells.
-pub(super) fn curves_of(table: &Table, layout: &Layout, least: usize, fate: Fate<'_>) -> Result<Measured> {
+pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fate<'_>) -> Result<Measured> {
     let mut measured = Measured { curves: Vec::new(), warnings: layout.warnings.clone() };
     for series in &layout.series {
         let mut of_series = curves(table, layout.decimal, series, fate)?;
@@ -36,7 +36,7 @@ pub(super) fn curves_of(table: &Table, layout: &Layout, least: usize, fate: Fate
     let mut falling = Vec::new();
     for curve in &measured.curves {
         let specimen = || Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
-        let count = curve.cycles.len();
+        let (count, least) = (curve.cycles.len(), if of_plate { 1 } else { READINGS_MIN });
         if count < least {
             fate(specimen().error(
                 format!("has {count} reading{}", if count == 1 { "" } else { "s" }),
@@ -96,14 +96,15 @@ fn curves(table: &Table, decimal: Decimal, series: &Series, fate: Fate<'_>) -> R
 /// Corrects crack lengths of potential drop or compliance by the few that were read optically, as E647 asks: by the straight line through those that
 /// have both. What was done.
 fn correct(curve: &mut MeasuredCurve, table: &Table, decimal: Decimal, optical: Column) -> Result<String> {
-    let (mut own, mut read) = (Vec::new(), Vec::new());
+    let place = |row: &Row| curve.source.lines.iter().position(|line| *line == row.line);
     let rows = table.rows.iter().filter(|row| !row.cell(optical.index).is_empty());
-    for (row, at) in rows.filter_map(|row| Some((row, curve.source.lines.iter().position(|line| *line == row.line)?))) {
-        own.push(curve.crack_length[at]);
-        read.push(value(table, row, optical, decimal)?);
-    }
-    let start = format!("{}: specimen {}: {}", table.file.display(), curve.specimen, curve.source.length_column);
-    let name = &table.header[optical.index];
+    let both = rows.filter_map(|row| Some((curve.crack_length[place(row)?], row)));
+    let both = both.map(|(own, row)| Ok((own, value(table, row, optical, decimal)?))).collect::<Result<Vec<_>>>()?;
+    let (own, read): (Vec<f64>, Vec<f64>) = both.into_iter().unzip();
+    let (start, name) = (
+        format!("{}: specimen {}: {}", table.file.display(), curve.specimen, curve.source.length_column),
+        &table.header[optical.index],
+    );
     let Some(line) = line(&own, &read).filter(|line| line.slope > 0.0) else {
         return Ok(format!("{start} is not corrected: {} of its readings have {name} too, and a line needs two", own.len()));
     };

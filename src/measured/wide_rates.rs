@@ -45,8 +45,8 @@ pub fn as_table(bytes: &[u8], file: &Path) -> Option<Result<String>> {
     }))
 }
 
-/// Puts the columns of stress ratios below each other, which hold ΔK beside a column of da/dN, or da/dN beside one of ΔK; a cell without text
-/// stands for nothing. Without a unit in their names ΔK has that of the rates, which the note says.
+/// Puts columns of stress ratios below each other, which hold ΔK beside a column of da/dN, or da/dN beside one of ΔK; an empty cell stands for
+/// nothing. Without a unit in their names ΔK has that of the rates, which a note says.
 pub(super) fn below_each_other(table: &mut Table, import: &Import) {
     let columns = columns_of(&table.header, &table.names, import);
     let of = |role: Role| columns.iter().find(|column| column.role == role);
@@ -55,27 +55,24 @@ pub(super) fn below_each_other(table: &mut Table, import: &Import) {
         (None, Some(delta_k)) => (delta_k, "da/dN"),
         _ => return,
     };
-    let ratios: Vec<(usize, f64, &str)> =
-        (0..columns.len()).filter_map(|i| ratio_of_name(&table.names[i]).map(|(ratio, unit)| (i, ratio, unit))).collect();
-    let Some((first, _, unit)) = ratios.first().copied() else { return };
-    let is_us = own.unit == Named::Is(Unit::Rate(RateUnit::Inch));
-    let assumed = if is_us { "(ksi√in)" } else { "(MPa√m)" };
-    let is_assumed = name == "ΔK" && unit.is_empty() && import.intensity.is_none();
-    if is_assumed {
-        let (file, name) = (table.file.display(), &table.header[first]);
+    let named = |(i, name)| ratio_of_name(name).map(|(ratio, unit)| (i, ratio.to_string(), unit));
+    let ratios: Vec<(usize, String, &str)> = table.names.iter().map(String::as_str).enumerate().filter_map(named).collect();
+    let Some((first, _, mut unit)) = ratios.first().cloned() else { return };
+    if name == "ΔK" && unit.is_empty() && import.intensity.is_none() {
+        unit = if own.unit == Named::Is(Unit::Rate(RateUnit::Inch)) { "(ksi√in)" } else { "(MPa√m)" };
+        let (file, column) = (table.file.display(), &table.header[first]);
         table
             .notes
-            .push(format!("{file}: {name} is read as ΔK {assumed}, the unit that goes with the rates; else give intensity_unit"));
+            .push(format!("{file}: {column} is read as ΔK {unit}, the unit that goes with the rates; else give intensity_unit"));
     }
-    let other = format!("{name} {}", if is_assumed { assumed } else { unit });
-    let header = vec![table.header[own.index].clone(), other, "stress_ratio".to_owned()];
-    let cells = |row: &Row, (i, ratio, _): (usize, f64, &str)| {
-        let is_known = !row.cell(i).is_empty();
-        is_known.then(|| Row::of(row.line, vec![row.cell(own.index), row.cell(i), &ratio.to_string()]))
+    let cells = |row: &Row, (i, ratio, _): &(usize, String, &str)| {
+        let cells = [row.cell(own.index), row.cell(*i), ratio].into_iter().collect();
+        (!row.cell(*i).is_empty()).then_some(Row { line: row.line, cells })
     };
-    table.rows = ratios.iter().flat_map(|of| table.rows.iter().filter_map(|row| cells(row, *of))).collect();
-    table.names = vec![table.names[own.index].clone(), header[1].clone(), header[2].clone()];
-    table.header = header;
+    let rows = ratios.iter().flat_map(|of| table.rows.iter().filter_map(|row| cells(row, of))).collect();
+    let header = |own: &str| vec![own.to_owned(), format!("{name} {unit}"), "stress_ratio".to_owned()];
+    let (names, header) = (header(&table.names[own.index]), header(&table.header[own.index]));
+    (table.rows, table.names, table.header) = (rows, names, header);
 }
 
 /// easigrow: remarks behind `#`, a row of stress ratios, then a row a rate: da/dN in m and ΔK in MPa√m at every ratio.

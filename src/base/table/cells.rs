@@ -97,11 +97,6 @@ pub struct Row {
 }
 
 impl Row {
-    /// A row of these cells.
-    pub fn of(line: usize, cells: Vec<&str>) -> Self {
-        Row { line, cells: StringRecord::from(cells) }
-    }
-
     /// The cell of a column, without blanks around it.
     pub fn cell(&self, column: usize) -> &str {
         self.cells.get(column).unwrap_or_default()

@@ -14,9 +14,6 @@ const AT_END: f64 = 1e-3;
 /// Smallest over largest eigenvalue of scaled normal equations below which constants trade against each other without end.
 const SINGULAR: f64 = 1e-13;
 
-/// A constant that the rates do not tell, and why.
-type Unknown = (&'static str, String);
-
 /// A constant of a fitted law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constant {
@@ -43,24 +40,14 @@ pub struct LawFit {
     pub aicc: f64,
     /// Why it is out of question.
     pub left_out: Option<String>,
-    /// The constant that the rates do not tell, if that is why.
-    pub unknown: Option<&'static str>,
-    /// Its factors that no rate tells, and that are 1.
-    pub lacks: Vec<&'static str>,
+    /// Its factor that no rate tells, and that is 1.
+    pub lacks: Option<&'static str>,
 }
 
 impl LawFit {
     fn none(kind: GrowthLawKind, why: String) -> Self {
-        LawFit {
-            kind,
-            constants: Vec::new(),
-            fitted: 0,
-            residuals: Vec::new(),
-            aicc: f64::NAN,
-            left_out: Some(why),
-            unknown: None,
-            lacks: Vec::new(),
-        }
+        let (constants, residuals, left_out) = (Vec::new(), Vec::new(), Some(why));
+        LawFit { kind, constants, fitted: 0, residuals, aicc: f64::NAN, left_out, lacks: None }
     }
 
     /// Its constants, without those of factors that it lacks and that have no value.
@@ -86,9 +73,7 @@ impl LawFit {
             let error = constant.error.filter(|error| *error > parameter.error_max * size)?;
             Some(unidentified(parameter, &format!("{:.3e} ± {error:.1e}", constant.value)))
         });
-        if let (None, Some((key, why))) = (&self.left_out, unknown) {
-            (self.unknown, self.left_out) = (Some(key), Some(why));
-        }
+        self.left_out = self.left_out.take().or(unknown);
     }
 }
 
@@ -114,7 +99,7 @@ pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFi
         return LawFit::none(kind, "no least sum of squares was found".to_owned());
     };
     let scatter = best.sum() / (rows.len() - free.len() - 1) as f64;
-    let (unknown, trouble) = at_end(&free, &best).or_else(|| trade(&free, &best.slopes)).unzip();
+    let trouble = at_end(&free, &best).or_else(|| trade(&free, &best.slopes));
     let errors = errors(&candidate, &best, scatter);
     let c = Constant { key: kind.0.constants[0].key, value: best.level.exp(), error: Some(best.level.exp() * errors[0]) };
     let is_free = |key: &str| free.iter().any(|parameter| parameter.key == key);
@@ -127,8 +112,7 @@ pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFi
         residuals: best.residuals,
         aicc: f64::NAN,
         left_out: trouble,
-        unknown,
-        lacks: Vec::new(),
+        lacks: None,
     }
 }
 
@@ -142,7 +126,7 @@ fn starts(free: &[Parameter]) -> Vec<Vec<f64>> {
 }
 
 /// A constant whose best value is an end of its range.
-fn at_end(free: &[Parameter], best: &Minimum) -> Option<Unknown> {
+fn at_end(free: &[Parameter], best: &Minimum) -> Option<String> {
     let (parameter, low) = free.iter().zip(&best.at).find_map(|(parameter, &value)| {
         let [low, high] = parameter.bounds;
         let near = AT_END * (high - low);
@@ -158,12 +142,13 @@ fn at_end(free: &[Parameter], best: &Minimum) -> Option<Unknown> {
     Some(unidentified(parameter, &format!("the optimum lies at an end of its range, {end}")))
 }
 
-fn unidentified(parameter: &Parameter, why: &str) -> Unknown {
-    (parameter.key, format!("{} not identified: {why}; {}, or give it by fit.given", parameter.key, parameter.told_by))
+/// Why a law is out of question, the key of the constant first.
+fn unidentified(parameter: &Parameter, why: &str) -> String {
+    format!("{} not identified: {why}; {}, or give it by fit.given", parameter.key, parameter.told_by)
 }
 
 /// A constant that others can make up for.
-fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<Unknown> {
+fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<String> {
     let mut scaled = without_level(slopes);
     for (i, parameter) in free.iter().enumerate() {
         let size = scaled.column(i).norm();

@@ -119,22 +119,22 @@ pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFi
     Ok(fits)
 }
 
-/// A law fitted to rates that count as so many; where they do not tell a constant of a factor that may be 1, as that of fracture in the NASGRO
-/// equation, it is fitted without the factor.
+/// A law fitted to rates that count as so many; where they do not tell a constant of one factor that may be 1, as that of fracture in the NASGRO
+/// equation, it is fitted without it. Without any of them it would be another law.
 fn judged(kind: GrowthLawKind, given: &Given, rows: &[RateRow], effective: f64) -> LawFit {
-    let mut law = fit(kind, given, rows);
-    law.widen((rows.len() as f64 / effective).sqrt());
-    law.aicc = criterion(&law, effective);
-    law.judge_errors();
-    let has = |own: &[(&str, f64)]| own.iter().any(|(key, _)| law.unknown == Some(key));
-    let Some((of, constants)) = kind.0.factors.iter().find(|(_, own)| has(own)) else { return law };
-    let mut simpler = given.clone();
-    for (key, value) in *constants {
-        simpler.entry((*key).to_owned()).or_insert(*value);
-    }
-    let mut simpler = judged(kind, &simpler, rows, effective);
-    simpler.lacks.push(of);
-    if simpler.left_out.is_none() { simpler } else { law }
+    let judged = |given: &Given| {
+        let mut law = fit(kind, given, rows);
+        law.widen((rows.len() as f64 / effective).sqrt());
+        law.aicc = criterion(&law, effective);
+        law.judge_errors();
+        law
+    };
+    let law = judged(given);
+    let unknown = |(key, _): &(&str, f64)| law.left_out.as_ref().is_some_and(|why| why.starts_with(key));
+    let Some((of, constants)) = kind.0.factors.iter().find(|(_, own)| own.iter().any(unknown)) else { return law };
+    let others = constants.iter().map(|(key, value)| ((*key).to_owned(), *value));
+    let simpler = judged(&others.chain(given.clone()).collect());
+    if simpler.left_out.is_none() { LawFit { lacks: Some(of), ..simpler } } else { law }
 }
 
 /// The place of the law asked for, or of the best.
@@ -246,12 +246,13 @@ fn about_polynomial(x: &[f64], y: &[f64]) -> Vec<f64> {
 
 fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
     let law = fits.law();
-    let without = |of: &&str| format!("the law {} is fitted without its factor of {of}, which no rate tells", law.kind);
-    let mut lines: Vec<String> = law.lacks.iter().map(without).collect();
-    for of_test in rows.chunk_by(|a, b| a.series == b.series) {
-        let rates = of_test.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE));
-        lines.extend(threshold(rates).map(|(_, words)| format!("{}: {words}", of_test[0].series)));
-    }
+    let without = |of: &str| format!("the law {} is fitted without its factor of {of}, which no rate tells", law.kind);
+    let mut lines: Vec<String> = law.lacks.map(without).into_iter().collect();
+    let of_test = |test: &[RateRow]| {
+        let rates = test.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE));
+        threshold(rates).map(|(_, words)| format!("{}: {words}", test[0].series))
+    };
+    lines.extend(rows.chunk_by(|a, b| a.series == b.series).filter_map(of_test));
     if let Some((kind, margin)) = fits.margin.filter(|(_, margin)| *margin < -WORSE) {
         lines.push(format!("the rates are not for the law {}: {kind} is better by {:.1} of AICc", law.kind, -margin));
     }

@@ -31,7 +31,7 @@ pub struct Description {
     pub complete: &'static str,
     /// Meaning as one of the laws that rates are fitted by.
     pub fit: Option<&'static str>,
-    /// Factors that may be 1: what each is of, and the constants, in the units of their keys, at which it is; the first one alone does it.
+    /// Factors that rates need not tell.
     pub factors: &'static [Factor],
     /// Whether it holds at other stress ratios than those of its rates.
     pub takes_ratio: bool,
@@ -39,7 +39,7 @@ pub struct Description {
     pub compression: Option<(&'static str, f64)>,
 }
 
-/// A factor of a law: what it is of, and the constants at which it is 1.
+/// A factor of a law: what it is of, and constants, in the units of their keys, at which it is 1; the first one does that alone.
 pub type Factor = (&'static str, &'static [(&'static str, f64)]);
 
 /// What a law is where its file says nothing: a formula of its constants.
@@ -241,20 +241,16 @@ impl Given<'_> {
     /// The constants of a law in SI units, in their order.
     /// Errors: one that is missing, or beyond its bounds.
     pub fn constants(&self, law: &Description) -> Result<Vec<f64>> {
-        // Of a factor that is 1 nothing else is asked.
-        let without = |constant: &Constant| {
-            let (_, own) = law.factors.iter().find(|(_, own)| own[1..].iter().any(|(key, _)| *key == constant.key))?;
-            let is_one =
-                value_at(self.section, own[0].0).and_then(|value| value.as_float().or(value.as_integer().map(|n| n as f64)));
-            own.iter().find(|(key, _)| is_one == Some(own[0].1) && *key == constant.key).map(|(_, value)| *value)
-        };
+        let is_one = |(_, own): &Factor| matches!(self.get::<f64>(own[0].0), Ok(Some(value)) if value == own[0].1);
+        let of_one =
+            |key: &str| law.factors.iter().filter(|factor| is_one(factor)).flat_map(|(_, own)| *own).find(|own| own.0 == key);
         let value = |constant: &Constant| {
             let path = format!("fatigue.{}", constant.key);
             match (self.get(constant.key)?, constant.default) {
                 (Some(value), _) => constant.quantity.read(&path, value),
                 (None, Some(value)) => Ok(value * constant.quantity.si),
                 (None, None) if constant.role == Role::Toughness => {
-                    self.material.toughness.or(without(constant)).ok_or_else(|| {
+                    self.material.toughness.or(of_one(constant.key).map(|own| own.1)).ok_or_else(|| {
                         let problem = "is missing, and the material has no toughness";
                         input_missing(&path, problem, "give the K at which growth becomes unstable")
                     })

@@ -1,52 +1,31 @@
 //! A rising curve through rates that scatter.
 
-use nalgebra::{DMatrix, DVector};
+use perilife_base::monotone::Monotone;
 
-/// Rates for each point of a curve, and most points.
-const RATES_PER_POINT: usize = 3;
-const POINTS_MAX: usize = 12;
-/// Distance of ln da/dN up to which squares count, and beyond it sizes, so that outliers pull no more than others.
-const SQUARES: f64 = 0.05;
-/// Rounds of weights.
-const ROUNDS: usize = 40;
+/// Fewest points of a curve.
+const POINTS_MIN: usize = 3;
 
-/// ΔK and rates of a rising curve through rates by rising ΔK, and the root mean square of ln of what they lie from it: straight lines in logarithms
-/// between a few points, evenly among the rates, by least sizes of ln da/dN. Of the numbers of points with a rising curve the one with the least
-/// criterion of Akaike (1974, IEEE Trans. Autom. Control 19:716; Hurvich and Tsai 1989) counts. `None`: too few rates, or none that rises.
+/// ΔK and rates of a rising curve through rates by rising ΔK, and the root mean square of ln of what they lie from it: medians, which outliers do not
+/// move, of as few neighbours as make it rise, and straight on from them to the ends. `None`: too few rates, or none that rises.
 pub(super) fn rising(pairs: &[[f64; 2]]) -> Option<(Vec<[f64; 2]>, f64)> {
     let logs: Vec<[f64; 2]> = pairs.iter().map(|pair| pair.map(f64::ln)).collect();
-    let n = logs.len();
-    let of = |points: usize| -> Option<(f64, Vec<[f64; 2]>, f64)> {
-        let mut at: Vec<f64> = (0..points).map(|k| logs[(k * (n - 1) + (points - 1) / 2) / (points - 1)][0]).collect();
-        at.dedup();
-        let (heights, residuals) = fit(&logs, &at)?;
-        let curve: Vec<[f64; 2]> = at.iter().zip(&heights).map(|(x, y)| [x.exp(), y.exp()]).collect();
-        let (n, k) = (n as f64, at.len() as f64 + 1.0);
-        let size = residuals.iter().map(|r| r.abs()).sum::<f64>() / n;
-        let rms = (residuals.iter().map(|r| r * r).sum::<f64>() / n).sqrt();
-        let criterion = 2.0 * n * size.max(1e-9).ln() + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0).max(1.0);
-        curve.windows(2).all(|pair| pair[0][1] < pair[1][1]).then_some((criterion, curve, rms))
+    let of = |size: usize| {
+        let mut curve: Vec<[f64; 2]> = logs.chunks_exact(size).map(|some| [0, 1].map(|k| median(some, k))).collect();
+        for (end, next, place) in [(0, 1, 0), (curve.len() - 1, curve.len() - 2, logs.len() - 1)] {
+            let ([x, y], [x_next, y_next]) = (curve[end], curve[next]);
+            curve[end] = [logs[place][0], y + (logs[place][0] - x) * (y_next - y) / (x_next - x)];
+        }
+        let rises = curve.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] < pair[1][1]);
+        rises.then_some(curve)
     };
-    let numbers = 2..=(n / RATES_PER_POINT).min(POINTS_MAX);
-    numbers.filter_map(of).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, curve, rms)| (curve, rms))
+    let curve = (3..=logs.len() / POINTS_MIN).step_by(2).find_map(of)?;
+    let smooth = Monotone::new(curve.iter().copied());
+    let squares: f64 = logs.iter().map(|[x, y]| (y - smooth.at(*x)).powi(2)).sum();
+    Some((curve.iter().map(|pair| pair.map(f64::exp)).collect(), (squares / logs.len() as f64).sqrt()))
 }
 
-/// Heights of the points at `at`, and what the rates lie above the lines between them.
-fn fit(logs: &[[f64; 2]], at: &[f64]) -> Option<(DVector<f64>, DVector<f64>)> {
-    let last = at.len().checked_sub(1).filter(|last| *last > 0)?;
-    let mut hats = DMatrix::zeros(logs.len(), at.len());
-    for (row, [x, _]) in logs.iter().enumerate() {
-        let next = at.partition_point(|point| point < x).clamp(1, last);
-        let share = (x - at[next - 1]) / (at[next] - at[next - 1]);
-        (hats[(row, next - 1)], hats[(row, next)]) = (1.0 - share, share);
-    }
-    let rates = DVector::from_iterator(logs.len(), logs.iter().map(|pair| pair[1]));
-    let mut residuals = DVector::<f64>::zeros(logs.len());
-    let mut heights = DVector::zeros(at.len());
-    for _ in 0..ROUNDS {
-        let weighted = DMatrix::from_fn(logs.len(), at.len(), |i, k| hats[(i, k)] / f64::abs(residuals[i]).max(SQUARES));
-        heights = (hats.transpose() * &weighted).cholesky()?.solve(&(weighted.transpose() * &rates));
-        residuals = &rates - &hats * &heights;
-    }
-    Some((heights, residuals))
+fn median(some: &[[f64; 2]], k: usize) -> f64 {
+    let mut values: Vec<f64> = some.iter().map(|pair| pair[k]).collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }

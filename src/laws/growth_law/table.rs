@@ -236,7 +236,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
             key: Some(key.to_owned()),
             value: Some(round_off(value).to_string()),
             problem,
-            remedy: "give rates that rise over ΔK, both above zero, of one test at each stress ratio or of at least six rows"
+            remedy: "give rates that rise over ΔK, both above zero, of one test at each stress ratio or of at least nine rows"
                 .to_owned(),
             ..InputError::default()
         }))
