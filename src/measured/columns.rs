@@ -5,7 +5,8 @@ use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, Import};
 use perilife_base::error::{Error, Result};
 use perilife_base::table::decimal::decide;
-use perilife_base::table::names::{Column, Named, Role, says_tip_to_tip, unit_at_end};
+use perilife_base::table::names::vocabulary::METHODS;
+use perilife_base::table::names::{Column, Named, Role, says_one_of, says_tip_to_tip, unit_at_end};
 use perilife_base::table::numerals::number;
 use perilife_base::table::{
     Decimal,
@@ -121,8 +122,13 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
         ([cycles], [_, ..]) => {
             let specimen = of(|column| column.role == Role::Specimen);
             let optical = optical(table, &columns).map(|column| length_column(table, column, import)).transpose()?;
-            let columns: Vec<Column> =
-                columns.iter().filter(|column| optical.is_none_or(|optical| optical.index != column.index)).copied().collect();
+            let is_optical = |column: &Column| optical.is_some_and(|optical| optical.index == column.index);
+            // A length without a method goes before those of methods.
+            let by_method = |column: &Column| column.role == Role::Length && says_one_of(&table.names[column.index], METHODS);
+            let is_plain = |column: &Column| column.role == Role::Length && !is_optical(column) && !by_method(column);
+            let has_plain = columns.iter().any(is_plain);
+            let belongs = |column: &&Column| !is_optical(column) && !(has_plain && by_method(column));
+            let columns: Vec<Column> = columns.iter().filter(belongs).copied().collect();
             let (lengths, sides) = lengths_and_sides(table, &columns, import)?;
             let cycles = cycle_column(table, *cycles, import)?;
             let (loads, mut compared) = loads(table, &columns, import, warnings)?;

@@ -55,9 +55,9 @@ pub(super) fn below_each_other(table: &mut Table, import: &Import) {
         (None, Some(delta_k)) => (delta_k, "da/dN"),
         _ => return,
     };
-    let named = |(i, name)| ratio_of_name(name).map(|(ratio, unit)| (i, ratio.to_string(), unit));
-    let ratios: Vec<(usize, String, &str)> = table.names.iter().map(String::as_str).enumerate().filter_map(named).collect();
-    let Some((first, _, mut unit)) = ratios.first().cloned() else { return };
+    let named = |(i, name)| ratio_of_name(name).map(|(ratio, unit)| (i, ratio, unit));
+    let ratios: Vec<(usize, &str, &str)> = table.names.iter().map(String::as_str).enumerate().filter_map(named).collect();
+    let Some((first, _, mut unit)) = ratios.first().copied() else { return };
     if name == "ΔK" && unit.is_empty() && import.intensity.is_none() {
         unit = if own.unit == Named::Is(Unit::Rate(RateUnit::Inch)) { "(ksi√in)" } else { "(MPa√m)" };
         let (file, column) = (table.file.display(), &table.header[first]);
@@ -65,7 +65,7 @@ pub(super) fn below_each_other(table: &mut Table, import: &Import) {
             .notes
             .push(format!("{file}: {column} is read as ΔK {unit}, the unit that goes with the rates; else give intensity_unit"));
     }
-    let cells = |row: &Row, (i, ratio, _): &(usize, String, &str)| {
+    let cells = |row: &Row, (i, ratio, _): &(usize, &str, &str)| {
         let cells = [row.cell(own.index), row.cell(*i), ratio].into_iter().collect();
         (!row.cell(*i).is_empty()).then_some(Row { line: row.line, cells })
     };

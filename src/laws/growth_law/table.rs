@@ -217,12 +217,16 @@ fn read(given: &Given<'_>) -> Result<Table> {
         let remedy = "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
         return Err(input("fatigue.walker_gamma", gamma, problem, remedy));
     }
-    // Of a spectrum some cycles may lie beyond: that is said.
-    if let Some([problem, _]) = table.outside(given.ratios[0]).filter(|_| given.ratios[0] > last && !holds_ends) {
-        let by_gamma = if table.curves.len() == 1 { "give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or " } else { "" };
-        let remedy = format!(
-            "{by_gamma}add rates at this ratio to the table, or give growth_table_ends = \"held\" to use those of R = {last} (non-conservative)"
-        );
+    // Of a spectrum some cycles may lie above several ratios: that is said. One ratio says nothing of others.
+    let is_one = table.curves.len() == 1;
+    let ratio = given.ratios[usize::from(is_one)];
+    if let Some([problem, _]) = table.outside(ratio).filter(|_| ratio > last && (is_one || !holds_ends)) {
+        let remedy = match is_one {
+            true => "give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or add rates at this ratio to the table".to_owned(),
+            false => format!(
+                "add rates at this ratio to the table, or take those of R = {last} by growth_table_ends = \"held\" (non-conservative)"
+            ),
+        };
         return Err(input(KEY, format!("\"{}\"", rates.file), problem, remedy));
     }
     Ok(table)

@@ -431,14 +431,14 @@ pub fn is_of_statistics(name: &str) -> bool {
 }
 
 /// The stress ratio of a column that is named by it, and the bracket behind it: `R=0.1`, `R 0.5 (MPa√m)`, `ΔK at R0.7`.
-pub fn ratio_of_name(name: &str) -> Option<(f64, &str)> {
+pub fn ratio_of_name(name: &str) -> Option<(&str, &str)> {
     let is_word = |place: &usize| name[*place..].starts_with(['R', 'r']) && !name[..*place].ends_with(char::is_alphanumeric);
     let place = name.char_indices().map(|(place, _)| place).find(is_word)?;
     let text = name[place + 1..].trim_start_matches(['=', ' ', '_', ':']);
     let (number, rest) = text.split_at(text.find([' ', '(', '[', '{']).unwrap_or(text.len()));
-    let ratio = number.replace(',', ".").replace('\u{2212}', "-").parse().ok().filter(|ratio| *ratio < 1.0)?;
+    let is_ratio = number.replace(',', ".").replace('\u{2212}', "-").parse().is_ok_and(|ratio: f64| ratio < 1.0);
     let rest = rest.trim_start();
-    (rest.is_empty() || rest.starts_with(['(', '[', '{'])).then_some((ratio, rest))
+    (is_ratio && (rest.is_empty() || rest.starts_with(['(', '[', '{']))).then_some((number, rest))
 }
 
 /// Whether a name is a word and perhaps a unit of length.

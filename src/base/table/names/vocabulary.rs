@@ -14,7 +14,7 @@ pub const LENGTH: &str = "a 2a length len risslaenge risslange rissl fissure gri
 pub const LENGTH_MORE: &str = "crack size average avg ave av mean mittlere mittel mittelwert visual optical measured current corrected physical \
     fatigue the of length longueur longitud lunghezza de la della moyenne media flaw a half halbe";
 /// How a crack length was measured, beside a word or a unit of length.
-pub const METHODS: &str = "dcpd acpd pd dc ac potential drop method";
+pub const METHODS: &str = "dcpd acpd pd dc ac by potential drop method";
 pub const SIDES: &str = "front back rear left right afront aback aleft aright vorne hinten links rechts vorderseite rueckseite vorn avant arriere gauche droite near far";
 /// Letters of sides, beside a word of length only.
 pub const SIDE_LETTERS: &str = "f b l r fl fr bl br lf rf lb rb";
