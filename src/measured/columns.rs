@@ -122,13 +122,12 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
         ([cycles], [_, ..]) => {
             let specimen = of(|column| column.role == Role::Specimen);
             let optical = optical(table, &columns).map(|column| length_column(table, column, import)).transpose()?;
-            let is_optical = |column: &Column| optical.is_some_and(|optical| optical.index == column.index);
             // A length without a method goes before those of methods.
-            let by_method = |column: &Column| column.role == Role::Length && says_one_of(&table.names[column.index], METHODS);
-            let is_plain = |column: &Column| column.role == Role::Length && !is_optical(column) && !by_method(column);
-            let has_plain = columns.iter().any(is_plain);
-            let belongs = |column: &&Column| !is_optical(column) && !(has_plain && by_method(column));
-            let columns: Vec<Column> = columns.iter().filter(belongs).copied().collect();
+            let by_method = |column: &Column| says_one_of(&table.names[column.index], METHODS);
+            let is_other = |column: &Column| optical.is_none_or(|optical| optical.index != column.index);
+            let is_plain = |column: &Column| column.role == Role::Length && is_other(column) && !by_method(column);
+            let by_method = |column: &Column| column.role == Role::Length && columns.iter().any(is_plain) && by_method(column);
+            let columns: Vec<Column> = columns.iter().filter(|column| is_other(column) && !by_method(column)).copied().collect();
             let (lengths, sides) = lengths_and_sides(table, &columns, import)?;
             let cycles = cycle_column(table, *cycles, import)?;
             let (loads, mut compared) = loads(table, &columns, import, warnings)?;
@@ -245,14 +244,13 @@ fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
     numbers
 }
 
-/// Of two columns of crack length the one that a few rows have, at most every second: optical readings beside those of potential drop.
+/// Of two columns of crack length the one that at most every second row has: optical readings beside those of potential drop.
 fn optical(table: &Table, columns: &[Column]) -> Option<Column> {
-    let lengths: Vec<Column> = columns.iter().filter(|column| column.role == Role::Length).copied().collect();
-    let [one, other] = *lengths.as_slice() else { return None };
-    let [of_one, of_other] =
-        [one, other].map(|column| table.rows.iter().filter(|row| !row.cell(column.index).is_empty()).count());
-    let (few, count, many) = if of_one < of_other { (one, of_one, of_other) } else { (other, of_other, of_one) };
-    (count > 0 && 2 * count <= many + 1).then_some(few)
+    let count = |column: &Column| table.rows.iter().filter(|row| !row.cell(column.index).is_empty()).count();
+    let mut lengths: Vec<Column> = columns.iter().filter(|column| column.role == Role::Length).copied().collect();
+    lengths.sort_by_key(count);
+    let [few, many] = *lengths.as_slice() else { return None };
+    (count(&few) > 0 && 2 * count(&few) <= count(&many) + 1).then_some(few)
 }
 
 /// Columns of crack length, and those of single sides beside them: where no column has the mean, the sides have it.

@@ -221,13 +221,9 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
                 )),
             }
         };
-        let ends = Ends {
-            delta_k: delta_k.map(above_zero).transpose()?,
-            k_max: k_max.map(above_zero).transpose()?,
-            k_min: k_min.map(|column| value(&cells, row, column, decimal)).transpose()?,
-            ratio: ratio.map(|column| value(&cells, row, column, decimal)).transpose()?.or(keys.stress_ratio),
-        };
-        let of_row = ends.ratio();
+        let of = |column: Option<Column>| column.map(|column| value(&cells, row, column, decimal)).transpose();
+        let [delta_k, k_max] = [delta_k.map(above_zero).transpose()?, k_max.map(above_zero).transpose()?];
+        let (of_row, tensile) = cycle([delta_k, k_max, of(k_min)?], of(ratio)?.or(keys.stress_ratio), keys.delta_k);
         if of_row >= 1.0 {
             let fault = cells.cell_fault(row, ratio.or(k_min).unwrap_or(k).index);
             return Err(fault.error("is no stress ratio below 1", "give K_min over K_max"));
@@ -237,7 +233,7 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
                 .map_or_else(|| format!("{name}, R {of_row}"), |column| format!("{name}, {}", row.cell(column.index))),
             place: format!("{}: line {}", file.display(), row.line),
             line: row.line,
-            delta_k: ends.tensile(of_row, keys.delta_k),
+            delta_k: tensile,
             rate: above_zero(rate)?,
             ratio: of_row,
         });
@@ -262,32 +258,20 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     Ok(table)
 }
 
-/// What a row says of the stress intensity, Pa√m: two of its ends, its range and its ratio say all.
-struct Ends {
-    delta_k: Option<f64>,
-    k_max: Option<f64>,
-    k_min: Option<f64>,
-    ratio: Option<f64>,
-}
-
-impl Ends {
-    /// R, to four digits where it follows from K.
-    fn ratio(&self) -> f64 {
-        let k_max = self.k_max.or(self.delta_k.zip(self.k_min.filter(|k_min| *k_min >= 0.0)).map(|(range, k_min)| range + k_min));
-        let k_min = self.k_min.or(k_max.zip(self.delta_k).map(|(k_max, range)| k_max - range));
-        let of_k = k_max.zip(k_min).map(|(k_max, k_min)| (k_min / k_max * 1e4).round() / 1e4);
-        self.ratio.or(of_k).unwrap_or(0.0)
-    }
-
-    /// Tensile ΔK. Where K_max is known, it is clear what ΔK is at R < 0.
-    fn tensile(&self, ratio: f64, range: Option<RangeKind>) -> f64 {
-        match (self.k_max, self.delta_k) {
-            (Some(k_max), Some(_)) if ratio < 0.0 => k_max,
-            (Some(k_max), None) => k_max - self.k_min.unwrap_or(ratio * k_max).max(0.0),
-            (_, Some(full)) if ratio < 0.0 && range == Some(RangeKind::Full) => full / (1.0 - ratio),
-            (_, delta_k) => delta_k.unwrap_or(f64::NAN),
-        }
-    }
+/// R and tensile ΔK of what a row says of ΔK, K_max and K_min, Pa√m, and R: two say all. R that follows from K has four digits; where K_max is known
+/// it is clear what ΔK is at R < 0.
+fn cycle([delta_k, k_max, k_min]: [Option<f64>; 3], ratio: Option<f64>, range: Option<RangeKind>) -> (f64, f64) {
+    let k_max = k_max.or(delta_k.zip(k_min.filter(|k_min| *k_min >= 0.0)).map(|(range, k_min)| range + k_min));
+    let least = k_min.or(k_max.zip(delta_k).map(|(k_max, range)| k_max - range));
+    let of_k = k_max.zip(least).map(|(k_max, k_min)| (k_min / k_max * 1e4).round() / 1e4);
+    let ratio = ratio.or(of_k).unwrap_or(0.0);
+    let tensile = match (k_max, delta_k) {
+        (Some(k_max), Some(_)) if ratio < 0.0 => k_max,
+        (Some(k_max), None) => k_max - k_min.unwrap_or(ratio * k_max).max(0.0),
+        (_, Some(full)) if ratio < 0.0 && range == Some(RangeKind::Full) => full / (1.0 - ratio),
+        (_, delta_k) => delta_k.unwrap_or(f64::NAN),
+    };
+    (ratio, tensile)
 }
 
 /// Leaves rows out whose rate was too small to be measured, `<1e-8`, `ND`, `run-out`: bounds of the threshold.

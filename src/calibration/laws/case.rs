@@ -168,13 +168,13 @@ impl LawCase {
         self.rows.retain(|row| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(&row.delta_k));
         let count = self.rows.len();
         if count < 3 {
-            let (problem, remedy) = match self.flagged {
-                0 => ("rates are left of the tables".to_owned(), "give three rates at least; widen the window in ΔK"),
-                flagged => (
-                    format!("rates are left of the tables: {flagged} are flagged"),
-                    "of short steps near the threshold write the table by `perilife rates --precision-mm`; to take a flagged rate as it is, empty its \
-                     cell in the column flags",
-                ),
+            let problem = format!("rates are left of the tables, and {} are flagged", self.flagged);
+            let remedy = match self.flagged {
+                0 => "give three rates at least; widen the window in ΔK",
+                _ => {
+                    "write the table by `perilife rates --precision-mm` where steps near a threshold are short; to take a flagged rate as it is, empty \
+                     its cell in the column flags"
+                }
             };
             return Err(input("measured.rates", count, problem, remedy));
         }
