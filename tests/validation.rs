@@ -10,7 +10,6 @@ mod kept_back;
 mod median_virkler;
 mod notched_plates;
 mod plate_band;
-
 mod practice5_laws;
 mod practice5_spectra;
 mod population;

@@ -2,7 +2,7 @@
 //!
 //! Under a spectrum the cycles that grow the crack count, by their shares of the growth at every K, and not its largest cycle.
 
-use super::laws::growth_law;
+use super::laws::{growth_law, law_of_cycle};
 use super::{CurvePoint, Prediction};
 use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource, Model};
@@ -58,12 +58,15 @@ pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
     sides.into_iter().map(|(share, words)| format!("{:.1} % of the life is spent at ΔK {words}", 100.0 * share)).collect()
 }
 
-/// What is to be said of cycles of a spectrum at other stress ratios than those of the law.
+/// What is to be said of cycles of a spectrum at other stress ratios than those of the law, fitted or a table.
 pub fn of_other_ratios(case: &Case, prediction: &Prediction) -> Option<String> {
     case.loading.spectrum.as_ref()?;
-    let share = share_of_other_ratios(case, Some(prediction)).filter(|share| *share > NAMED)?;
-    let [low, high] = fitted_ratios(case)?;
-    Some(format!("{:.1} % of the growth is by cycles at stress ratios outside those of the law, {low} to {high}", 100.0 * share))
+    let law = law_of_cycle(case).ok()?;
+    let of_table = |acting: &Acting, _| if law.beyond_ratio(acting.ratio).is_some() { 1.0 } else { 0.0 };
+    let fitted = share_of_other_ratios(case, Some(prediction));
+    let share = fitted.or_else(|| life_share(case, &prediction.curve, &of_table)).filter(|share| *share > NAMED)?;
+    let of_law = fitted_ratios(case).map_or_else(String::new, |[low, high]| format!(", {low} to {high}"));
+    Some(format!("{:.1} % of the growth is by cycles at stress ratios outside those of the law{of_law}", 100.0 * share))
 }
 
 /// The law of a record in words: rate at the pivot and m with their errors, never A alone. `None` for inline constants, whose

@@ -1,7 +1,5 @@
 //! A rising curve through rates that scatter.
 
-use perilife_base::monotone::Monotone;
-
 /// Fewest points of a curve.
 const POINTS_MIN: usize = 3;
 
@@ -19,8 +17,12 @@ pub(super) fn rising(pairs: &[[f64; 2]]) -> Option<(Vec<[f64; 2]>, f64)> {
         rises.then_some(curve)
     };
     let curve = (3..=logs.len() / POINTS_MIN).step_by(2).find_map(of)?;
-    let smooth = Monotone::new(curve.iter().copied());
-    let squares: f64 = logs.iter().map(|[x, y]| (y - smooth.at(*x)).powi(2)).sum();
+    let off = |[x, y]: &[f64; 2]| {
+        let next = curve.partition_point(|point| point[0] < *x).clamp(1, curve.len() - 1);
+        let [from, to] = [curve[next - 1], curve[next]];
+        y - from[1] - (x - from[0]) / (to[0] - from[0]) * (to[1] - from[1])
+    };
+    let squares: f64 = logs.iter().map(|pair| off(pair).powi(2)).sum();
     Some((curve.iter().map(|pair| pair.map(f64::exp)).collect(), (squares / logs.len() as f64).sqrt()))
 }
 

@@ -6,7 +6,6 @@ use super::FactorLaw;
 use super::description::{Description, GAMMA, Given, RatedRow, Rates, UNSAID};
 use super::rising::rising;
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
-use perilife_base::monotone::Monotone;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
 
 /// What it says of itself.
@@ -31,16 +30,11 @@ perilife_base::kinds! {
 
 /// Stress ratios that differ by less are one.
 const SAME_RATIO: f64 = 0.02;
-/// Straight lines that stand for the cubic between two rows.
-const PARTS: usize = 4;
-/// Share of ln(1-R) in ln ΔK at equal rate, beside a straight line over R: 1 - γ = 0.4 by Walker of many metals, less near thresholds.
-const BEND: f64 = 0.2;
 /// Distance of a ratio from that of a curve up to which it has the whole of it, not the rates alone that the next one has too.
 const NEAR_RATIO: f64 = 0.005;
 
-/// da/dN over ΔK at one or several stress ratios: between its rows a rising cubic in logarithms ([`Monotone`]), and between two ratios ln ΔK nearly
-/// straight over R at equal da/dN ([`BEND`]), so that curves meet that bend at their thresholds, and tests of different ΔK. Known are the rates that
-/// both ratios have.
+/// da/dN over ΔK at one or several stress ratios: straight lines between its rows in logarithms, and between two ratios ln ΔK straight over R at
+/// equal da/dN, so that curves meet that bend at their thresholds, and tests of different ΔK. Known are the rates that both ratios have.
 /// Compression counts as nothing unless a curve is of a negative ratio. Below the lowest ratio its curve counts, which is conservative. One ratio R₀
 /// alone holds at another by Walker's exponent (1970): its rate is that at `ΔK₀ = K_max (1-R)^γ (1-R₀)^(1-γ)`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -71,22 +65,22 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// ln ΔK over ln da/dN.
-    fn over_rate(&self) -> Monotone {
-        Monotone::new(self.rows.iter().map(|row| [row[1].ln(), row[0].ln()]))
+    /// ln ΔK at da/dN, straight between rows over ln da/dN.
+    fn log_k(&self, rate: f64) -> f64 {
+        let next = self.rows.partition_point(|row| row[1] < rate).clamp(1, self.rows.len() - 1);
+        let [from, to] = [next - 1, next].map(|row| self.rows[row].map(f64::ln));
+        from[0] + (rate.ln() - from[1]) / (to[1] - from[1]) * (to[0] - from[0])
     }
 
-    /// Both curves at rates that lie in both: at those of their rows, and between them.
+    /// Both curves at the rates of their rows that lie in both.
     fn with(&self, other: &Curve) -> Vec<[f64; 3]> {
         let low = self.rows[0][1].max(other.rows[0][1]);
         let high = self.rows[self.rows.len() - 1][1].min(other.rows[other.rows.len() - 1][1]);
         let rows = self.rows.iter().chain(&other.rows).map(|row| row[1]);
-        let mut rates: Vec<f64> = rows.filter(|rate| (low..=high).contains(rate)).map(f64::ln).collect();
+        let mut rates: Vec<f64> = rows.filter(|rate| (low..=high).contains(rate)).collect();
         rates.sort_by(f64::total_cmp);
         rates.dedup();
-        let parts = rates.windows(2).flat_map(|pair| (0..PARTS).map(|i| pair[0] + i as f64 / PARTS as f64 * (pair[1] - pair[0])));
-        let (own, its) = (self.over_rate(), other.over_rate());
-        parts.chain(rates.last().copied()).map(|rate| [rate, own.at(rate), its.at(rate)]).collect()
+        rates.into_iter().map(|rate| [rate.ln(), self.log_k(rate), other.log_k(rate)]).collect()
     }
 }
 
@@ -102,20 +96,16 @@ impl Table {
         [&self.curves[0], &self.curves[self.curves.len() - 1]].map(|curve| curve.ratio)
     }
 
-    /// The band that a ratio lies in, how much of its second curve counts, and what comes to ln ΔK. Where two curves have no rate in common that
-    /// of the higher ratio counts, which is the faster one.
-    fn around(&self, ratio: f64) -> (&[[f64; 3]], f64, f64) {
+    /// The band that a ratio lies in, and how much of its second curve counts. Where two curves have no rate in common that of the higher ratio
+    /// counts, which is the faster one.
+    fn around(&self, ratio: f64) -> (&[[f64; 3]], f64) {
         let next = self.curves.partition_point(|curve| curve.ratio < ratio);
         let [from, to] = [next.saturating_sub(1), next.min(self.curves.len() - 1)];
         let [low, high] = [from, to].map(|curve| self.curves[curve].ratio);
         match &self.bands[from + to][..] {
-            _ if ratio - low < NEAR_RATIO => (&self.bands[2 * from], 0.0, 0.0),
-            band if high - ratio >= NEAR_RATIO && band.len() > 1 => {
-                let (share, [own, low, high]) =
-                    ((ratio - low) / (high - low), [ratio, low, high].map(|r| (1.0 - r.max(0.0)).ln()));
-                (band, share, BEND * (own - low - share * (high - low)))
-            }
-            _ => (&self.bands[2 * to], 0.0, 0.0),
+            _ if ratio - low < NEAR_RATIO => (&self.bands[2 * from], 0.0),
+            band if high - ratio >= NEAR_RATIO && band.len() > 1 => (band, (ratio - low) / (high - low)),
+            _ => (&self.bands[2 * to], 0.0),
         }
     }
 
@@ -156,8 +146,8 @@ impl Table {
         if log_k.is_nan() || log_k == f64::NEG_INFINITY {
             return 0.0;
         }
-        let (band, share, more) = self.around(ratio);
-        let at = |knot: &[f64; 3]| knot[1] + share * (knot[2] - knot[1]) + more;
+        let (band, share) = self.around(ratio);
+        let at = |knot: &[f64; 3]| knot[1] + share * (knot[2] - knot[1]);
         let next = band.partition_point(|knot| at(knot) < log_k).clamp(1, band.len() - 1);
         let [from, to] = [&band[next - 1], &band[next]];
         let part = ((log_k - at(from)) / (at(to) - at(from))).clamp(0.0, 1.0);
@@ -167,8 +157,8 @@ impl Table {
     /// In words, that K lies beyond the rows.
     pub fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
         let delta_k = self.delta_k(k_max, ratio);
-        let (band, share, more) = self.around(ratio);
-        let [low, high] = [band[0], band[band.len() - 1]].map(|knot| (knot[1] + share * (knot[2] - knot[1]) + more).exp());
+        let (band, share) = self.around(ratio);
+        let [low, high] = [band[0], band[band.len() - 1]].map(|knot| (knot[1] + share * (knot[2] - knot[1])).exp());
         let [at, low_mpa, high_mpa] = [delta_k, low, high].map(|k| k / MPA_SQRT_M);
         // Rows that are hit but for round-off.
         let is_beyond = delta_k > 0.0 && !(low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(&delta_k);
