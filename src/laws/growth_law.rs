@@ -132,7 +132,8 @@ impl FactorLaw {
 
     /// Least stress ratio whose compression it knows; `None` where compression counts as nothing.
     pub fn least_ratio(&self) -> Option<f64> {
-        self.kind.0.compression.map(|(_, least)| least)
+        let of_table = self.table.as_ref().map(|table| table.curves[0].ratio).filter(|ratio| *ratio < 0.0);
+        of_table.or(self.kind.0.compression.map(|(_, least)| least))
     }
 
     /// In words, with its constants.

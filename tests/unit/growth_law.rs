@@ -99,6 +99,28 @@ fn a_table_is_straight_in_logarithms() {
     assert!(apart.beyond(20.0 / 0.75 * MPA_SQRT_M, 0.25).is_none());
 }
 
+/// A table with a curve of compression uses it, down to its ratio.
+#[test]
+fn a_table_may_have_negative_ratios() {
+    let rows: String = [(-1.0, 4.0), (0.0, 1.0)]
+        .map(|(ratio, scale)| [5.0_f64, 50.0].map(|k| format!("{k},{},{ratio}\n", scale * 1e-8 * k.powi(3))).concat())
+        .concat();
+    let text = format!("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n{rows}");
+    let keys = "growth_table = { file = \"rates.csv\", delta_k = \"tensile\" }\n";
+    for (ratio, rate, words) in [(-1.0, 4e-5, ""), (-1.4, 4e-5, "R = -1.4 lies below -1 to 0"), (0.0, 1e-5, "")] {
+        let case = read_with(&text, keys, &[&format!("loading.stress_ratio={ratio:?}"), "model.method=handbook"]).unwrap();
+        let LawSource::Factor(law) = &case.law else { panic!() };
+        near(law.rate(10.0 * MPA_SQRT_M, ratio) / MM_PER_CYCLE, rate, 1e-9);
+        let said = case.warnings.join("\n");
+        assert!(
+            said.contains(words)
+                && said.contains("(non-conservative)") != words.is_empty()
+                && !said.contains("counts as nothing"),
+            "{ratio}: {said}"
+        );
+    }
+}
+
 /// Rows in any order, ratios that are one, and rates that scatter, with an outlier: the law that they come from.
 #[test]
 fn measured_rates_are_a_table() {

@@ -304,7 +304,7 @@ fn steady(paris: ParisLaw) -> Walker {
 
 /// Compression in a cycle counts as nothing, whatever Walker's exponent.
 fn compression_line(case: &Case) -> Option<String> {
-    let counts = matches!(&case.law, LawSource::Factor(law) if law.kind.0.compression.is_some());
+    let counts = matches!(&case.law, LawSource::Factor(law) if law.least_ratio().is_some());
     let law = GrowthLawKind::all().find(|kind| kind.0.compression.is_some())?;
     let [ratio, _] = case.loading.ratios();
     (ratio < 0.0 && !counts).then(|| {

@@ -79,7 +79,7 @@ impl Curve {
         let rows = self.rows.iter().chain(&other.rows).map(|row| row[1]);
         let mut rates: Vec<f64> = rows.filter(|rate| (low..=high).contains(rate)).collect();
         rates.sort_by(f64::total_cmp);
-        rates.dedup();
+        rates.dedup_by(|next, rate| *next / *rate < 1.0 + 1e-12);
         rates.into_iter().map(|rate| [rate.ln(), self.log_k(rate), other.log_k(rate)]).collect()
     }
 }
