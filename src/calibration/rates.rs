@@ -251,8 +251,8 @@ pub fn threshold(rates: impl Iterator<Item = (f64, f64)>) -> Option<(f64, String
     let line = line(&log_rate, &log_k).filter(|_| log_k.len() >= 5)?;
     let (k, count) = (10_f64.powf(line.intercept - 7.0 * line.slope), log_k.len());
     let words = format!(
-        "the test goes to its threshold: ΔK_th = {k:.3} MPa√m at 1e-7 mm/cycle by the line of ASTM E647 through {count} rates; give it by \
-         fatigue.delta_k_threshold_mpa_sqrt_m where a law has none of its own"
+        "threshold: ΔK_th = {k:.3} MPa√m at 1e-7 mm/cycle (ASTM E647 line through {count} rates); for a law without a threshold set \
+         fatigue.delta_k_threshold_mpa_sqrt_m"
     );
     Some((k, words))
 }

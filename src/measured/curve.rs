@@ -320,7 +320,7 @@ impl Measured {
         }
         let line = |curve: &MeasuredCurve| {
             let (file, name, life) = (curve.source.file.display(), &curve.specimen, curve.life());
-            format!("{file}: specimen {name}: its crack does not grow in {life:.0} cycles (run-out): not fitted")
+            format!("{file}: specimen {name}: no crack growth in {life:.0} cycles (run-out); excluded from the fit")
         };
         self.warnings.extend(first_of(self.curves.iter().filter(|curve| stands(curve)).map(line).collect()));
         self.curves.retain(|curve| !stands(curve));

@@ -285,8 +285,8 @@ fn leave_censored_out(cells: &mut Table, k: Column, rate: Column) -> Result<()> 
     };
     let Some(first) = cells.rows.iter().find(|row| is_censored(row)) else { return Ok(()) };
     let [name, of_k, rate] = [&cells.header[k.index], first.cell(k.index), first.cell(rate.index)];
-    let why = format!("without a rate that could be measured, first at {name} = {of_k}: {rate}");
-    cells.leave_out(&why, "such rows bound the threshold; give rates as numbers to have them counted", is_censored)
+    let why = format!("with a rate below the measurable one, first at {name} = {of_k}: {rate}");
+    cells.leave_out(&why, "their ΔK is a lower bound of the threshold", is_censored)
 }
 
 fn with_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Column> {

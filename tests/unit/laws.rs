@@ -179,7 +179,7 @@ fn a_factor_that_no_rate_tells_is_left_out() {
     let near_threshold = table(&law, &RATIOS, [3.0, 25.0], 30, 0.02, 7);
     let fits = fit_laws(&rows(&near_threshold), fit_by("best"), &Given::new()).unwrap();
     assert_eq!((fits.law().kind, fits.law().lacks), (key, Some("fracture")), "{:#?}", fits.candidates);
-    assert!(fits.warnings.iter().any(|line| line.contains("without its factor of fracture")), "{:?}", fits.warnings);
+    assert!(fits.warnings.iter().any(|line| line.contains("without its fracture factor")), "{:?}", fits.warnings);
     for (name, truth) in [("nasgro_n", 3.0), ("nasgro_p", 0.5), ("nasgro_delta_k_0_mpa_sqrt_m", 2.6)] {
         assert!((constant(fits.law(), name).0 / truth - 1.0).abs() < 0.1, "{name}: {:?}", constant(fits.law(), name));
     }

@@ -44,7 +44,7 @@ const OWN: [(&str, f64, StopReason); 15] = [
     ("welded_panel", 135_129.0, StopReason::Toughness),
     // Through after 535 242.2 cycles, then into the hole.
     ("corner_crack_to_next_hole", 1_412_104.0, StopReason::EnteredHole),
-    ("hole_under_flights", 3_017_058.8, StopReason::NetSectionYield),
+    ("hole_under_flights", 1_659_780.1, StopReason::NetSectionYield),
     ("bracket", 63_603.3, StopReason::Toughness),
     ("compact_with_pins", 243_506.9, StopReason::CrackLengthReached),
     // 120 324.9 cycles of phase I by the S-N law, the rest of growth.

@@ -246,7 +246,7 @@ fn about_polynomial(x: &[f64], y: &[f64]) -> Vec<f64> {
 
 fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
     let law = fits.law();
-    let without = |of: &str| format!("the law {} is fitted without its factor of {of}, which no rate tells", law.kind);
+    let without = |of: &str| format!("law {}: fitted without its {of} factor, not identifiable from these rates", law.kind);
     let mut lines: Vec<String> = law.lacks.map(without).into_iter().collect();
     let of_test = |test: &[RateRow]| {
         let rates = test.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE));

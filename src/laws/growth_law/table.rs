@@ -115,13 +115,13 @@ impl Table {
         let counted = if first < 0.0 { ratio } else { ratio.max(0.0) };
         let takes_any = is_one && (self.walker_gamma.is_some() || !self.says_ratio);
         let is_known = takes_any || (first - SAME_RATIO..=last + SAME_RATIO).contains(&counted);
-        let of = if is_one { format!("{first}, that") } else { format!("{first} to {last}, those") };
+        let of = if is_one { format!("{first}, the ratio") } else { format!("{first} to {last}, the ratios") };
         let (side, end) = if counted > last { ("above", last) } else { ("below", first) };
         let effect = if counted > last || counted < 0.0 { "non-conservative" } else { "conservative" };
         (!is_known).then(|| {
             [
-                format!("R = {} lies {side} {of} of the table of rates", round_off(ratio)),
-                format!(": the rates of R = {end} are used there ({effect})"),
+                format!("R = {} is {side} {of} of the table of rates", round_off(ratio)),
+                format!("; rates of R = {end} used ({effect})"),
             ]
         })
     }
@@ -261,7 +261,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
             return Err(wrong(Some(&same[fall]), &rates.columns[1], at, problem));
         };
         notes.push(format!(
-            "{}: the rates at R = {ratio} scatter: a rising curve of {} points through {} rates is used, which lie {rms:.3} of ln da/dN (rms) from it",
+            "{}: rates at R = {ratio} scatter; rising curve of {} points used, rms of {} rates {rms:.3} in ln(da/dN)",
             rates.file,
             rows.len(),
             pairs.len()
