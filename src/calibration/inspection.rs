@@ -6,6 +6,7 @@ use crate::population::plate::Quantiles;
 use perilife_base::error::{Result, input};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
+use perilife_base::units::shown::length_given;
 use perilife_growth::case::Case;
 use perilife_growth::predict::Prediction;
 
@@ -58,6 +59,14 @@ pub struct InspectFrom {
 }
 
 impl InspectFrom {
+    /// From a length as [`length_given`] reads it.
+    /// Errors: text that is not a length.
+    pub fn read(text: &str, tip: Option<usize>, factor: f64, names: [&'static str; 3]) -> Result<Self> {
+        let length = length_given(text).filter(|length| length.is_finite());
+        let wrong = || input(names[0], text, "is not a length", "give for example 6.35mm or 0.25in");
+        Ok(InspectFrom { crack_length_mm: length.ok_or_else(wrong)? / MM, tip, factor, names })
+    }
+
     /// Refuses a factor below 1.
     pub fn check(&self) -> Result<()> {
         if self.factor.is_finite() && self.factor >= 1.0 {
@@ -98,8 +107,8 @@ impl TipLengths {
         let (shortest, longest) = (lengths[0], lengths[lengths.len() - 1]);
         let length = from.crack_length_mm;
         if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest:.4} to {longest:.4} mm");
-            return Err(input(from.names[0], length, problem, "give a length between them, or another tip"));
+            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest:.4} mm to {longest:.4} mm");
+            return Err(input(from.names[0], in_mm(length), problem, "give a length between them, or another tip"));
         }
         let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
         let (a, b) = (lengths[after - 1], lengths[after]);
@@ -128,8 +137,8 @@ impl Inspection {
         let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, all)| all), curve[curve.len() - 1]);
         let (shortest, longest) = (curve[0][0], end[0]);
         if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve, which goes from {shortest} to {longest} mm");
-            return Err(input(from.names[0], length, problem, "give a length between them"));
+            let problem = format!("is not on the curve, which goes from {} to {}", in_mm(shortest), in_mm(longest));
+            return Err(input(from.names[0], in_mm(length), problem, "give a length between them"));
         }
         let cycles_at = Monotone::new(curve.iter().copied()).at(length);
         let remaining = end[1] - cycles_at;
@@ -168,6 +177,11 @@ impl Inspection {
     pub fn quantiles(&self) -> Option<Quantiles> {
         Some([self.remaining_cycles_p05?, self.remaining_cycles_p50?, self.remaining_cycles_p95?])
     }
+}
+
+/// A length with its unit, without round-off.
+fn in_mm(length: f64) -> String {
+    format!("{} mm", (1e4 * length).round() / 1e4)
 }
 
 /// Quantiles of what is left at a length between rows: their ratio to the cycles of the run is linear between them.

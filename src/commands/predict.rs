@@ -7,6 +7,7 @@ use super::console::Console;
 use perilife_base::error::Result;
 use perilife_base::input::Document;
 use perilife_calibration::inspection::{FACTOR, InspectFrom};
+use perilife_results::answers::Asked;
 use perilife_results::output::OutputFile;
 use perilife_runner::{Kind, Task};
 
@@ -39,18 +40,21 @@ pub struct Args {
     /// Readings of this very plate (cycles, crack length), which narrow the band of what it has left
     #[arg(long, value_name = "READINGS.csv", help_heading = "Input")]
     pub measured: Option<PathBuf>,
-    /// Also say what is left from this crack length on, and how often to look: the 5 % remaining life over the factor
-    #[arg(long, value_name = "MM", help_heading = "Output")]
-    pub inspect_from: Option<f64>,
+    /// Inspection interval from this crack length, 6.35mm or 0.25in: 5 % remaining life / factor; a bare number is in the unit of --units
+    #[arg(long, value_name = "LENGTH", help_heading = "Output")]
+    pub inspect_from: Option<String>,
     /// Factor of the inspection interval
     #[arg(long, value_name = "F", default_value_t = FACTOR, requires = "inspect_from", help_heading = "Output")]
     pub factor: f64,
     /// Tip of a plate whose crack has that length; the one that ends the life where it is left out
     #[arg(long, value_name = "NUMBER", requires = "inspect_from", help_heading = "Output")]
     pub tip: Option<usize>,
-    /// Crack lengths in mm that an inspection finds with 50 and with 90 %: also say with what probability all of them miss the crack
+    /// Crack lengths that an inspection finds with 50 and with 90 %, units as of --inspect-from: probability that all of them miss the crack
     #[arg(long, value_name = "A50,A90", requires = "inspect_from", help_heading = "Output")]
     pub pod: Option<String>,
+    /// Cycles of the first inspection [default: at the length of --inspect-from; of a fleet when 5 % of plates have it]
+    #[arg(long, value_name = "CYCLES", requires = "pod", value_parser = cycles, help_heading = "Output")]
+    pub first_inspection: Option<f64>,
     /// Also write lives of so many plates that differ in law, initial length and load (fleet.csv and .svg), as the key fleet.plates does
     #[arg(long, value_name = "PLATES", help_heading = "Output")]
     pub fleet: Option<u64>,
@@ -74,6 +78,12 @@ pub struct Args {
     pub console: Console,
 }
 
+/// A number of cycles, zero or more.
+fn cycles(text: &str) -> std::result::Result<f64, String> {
+    let cycles = text.parse::<f64>().ok().filter(|cycles| cycles.is_finite() && *cycles >= 0.0);
+    cycles.ok_or_else(|| "not a number of cycles; give for example 50000".to_owned())
+}
+
 /// Runs `perilife predict`.
 pub fn run(args: &Args) -> Result<()> {
     let mut set = super::with_output(&args.set, [("paraview", args.paraview), ("animation", args.animate)]);
@@ -86,12 +96,12 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if let Task::Prediction { wanted, .. } = &mut task {
         wanted.strength = args.residual_strength;
-        wanted.detection = args.pod.as_deref().map(str::parse).transpose()?;
-        wanted.sensitivities = args.sensitivities;
+        let detection = args.pod.as_deref().map(str::parse).transpose()?;
+        wanted.asked = Asked { detection, first_inspection: args.first_inspection, sensitivities: args.sensitivities };
         (wanted.no_estimate, wanted.cross_check) = (args.no_estimate, args.cross_check);
         let names = ["--inspect-from", "--factor", "--tip"];
-        wanted.inspection =
-            args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });
+        let from = args.inspect_from.as_deref().map(|text| InspectFrom::read(text, args.tip, args.factor, names));
+        wanted.inspection = from.transpose()?;
     }
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     let summary = summary.counted()?;

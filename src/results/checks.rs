@@ -5,6 +5,7 @@ mod part_through;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::model_words::short;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, LawSource};
@@ -26,6 +27,8 @@ const DOUBTFUL_PERCENT: f64 = 1.0;
 const OUTSIDE_DOUBTFUL: f64 = 0.05;
 /// Thickness of the plate over that of the specimens, or the other way, up to which both have the same constraint at the tip.
 const THICKNESS_ALIKE: f64 = 1.25;
+/// Factor of the life by retardation from which it is doubtful.
+const RETARDED_DOUBTFUL: f64 = 1.5;
 /// Exponent where the law has none: what an error of K does to the rate.
 const EXPONENT_USUAL: f64 = 3.0;
 
@@ -113,6 +116,7 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(cross_check(case, prediction));
     checks.extend(part_through::checks(case, prediction));
     checks.extend(reversal(case, prediction));
+    checks.extend(retardation(case, prediction));
     checks.extend(stress_ratio(case));
     checks.extend(thickness(case));
     checks.extend(size(case));
@@ -163,7 +167,15 @@ pub fn verdict(checks: &[Check]) -> String {
 /// The lines below it: conditions that do not hold, at most five.
 pub fn lines(checks: &[Check]) -> Vec<String> {
     let open = checks.iter().filter(|check| check.verdict != Verdict::Holds);
-    open.take(LINES_MOST).map(|check| check.words.chars().take(LETTERS_MOST).collect()).collect()
+    open.take(LINES_MOST).map(|check| cut(&check.words)).collect()
+}
+
+/// A line of at most [`LETTERS_MOST`] letters, cut between words.
+fn cut(words: &str) -> String {
+    let Some((end, _)) = words.char_indices().nth(LETTERS_MOST) else { return words.to_owned() };
+    let most = words.char_indices().nth(LETTERS_MOST - 2).map_or(end, |(place, _)| place);
+    let kept = words[..=most].rfind(' ').map_or(end, |space| space);
+    format!("{} …", words[..kept].trim_end())
 }
 
 /// The array of `result.json`.
@@ -240,18 +252,26 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
     const NAME: &str = "small_scale_yielding";
     let zone = plastic_zone(case, &prediction.curve)?;
     let percent = 100.0 * zone.life_share_too_large;
+    let never = zone.too_large_to.is_none() && zone.too_large_from == Some(zone.first.crack_length);
     let words = match zone.too_large_from {
         None => "small-scale yielding: holds to the end".to_owned(),
+        Some(from) if never => format!("small-scale yielding: not from N = 0, {} mm, on", two_digits(from / MM)),
         Some(from) => {
             let until = zone.too_large_to.map_or_else(|| "on".to_owned(), |to| format!("to {} mm", two_digits(to / MM)));
             format!("small-scale yielding: not from {} mm {until}, {percent:.1} % of life", two_digits(from / MM))
         }
     };
-    let remedy = match zone.too_small {
-        "ligament" => "end the life there by stop.crack_length_mm: beyond it cracks grow faster than K says",
-        _ => "begin with a longer crack: shorter ones grow faster than K says",
+    let end = match zone.total_from {
+        Some(total) if case.specimen.crack_lines().len() > 1 => format!(" = {} (all cracks together)", two_digits(total / MM)),
+        _ => String::new(),
     };
-    Some(Check::sized(NAME, percent, percent > DOUBTFUL_PERCENT, Side::Unsafe, words, remedy))
+    let remedy = match zone.too_small {
+        _ if never => "reduce the load: K does not describe this crack".to_owned(),
+        "ligament" => format!("end the life there by stop.crack_length_mm{end}: beyond it cracks grow faster than K says"),
+        _ => "begin with a longer crack: shorter ones grow faster than K says".to_owned(),
+    };
+    let check = Check::sized(NAME, percent, never || percent > DOUBTFUL_PERCENT, Side::Unsafe, words, &remedy);
+    Some(if never { Check { verdict: Verdict::Fails, ..check } } else { check })
 }
 
 /// A length as the criterion deserves: two digits, and the third of a length of more than ten.
@@ -351,6 +371,29 @@ fn reversal(case: &Case, prediction: &Prediction) -> Option<Check> {
     Some(Check { side: Some(Side::Unsafe), remedy, ..Check::new("reversal", Verdict::Fails, words) })
 }
 
+/// Life over that without load interaction; the constants of a model come from the case, which no test backs.
+fn retardation(case: &Case, prediction: &Prediction) -> Option<Check> {
+    const NAME: &str = "retardation";
+    let model = case.retardation.as_ref()?.kind;
+    let mean = prediction.unretarded_cycles.filter(|cycles| *cycles > 0.0);
+    // A run that is cut off has gone as far as the other, or on for longer.
+    let is_cut_off = prediction.stop == StopReason::RunOut;
+    let Some(mean) = mean.filter(|mean| !(is_cut_off && prediction.life_cycles() <= *mean)) else {
+        let words = format!("retardation: {model}, given, not calibrated; its effect is not known");
+        return Some(Check::not_checked(NAME, &words, "compare with loading.retardation = \"none\""));
+    };
+    let factor = prediction.life().map_or(f64::INFINITY, |life| life / mean);
+    let times = match factor {
+        f64::INFINITY => "unlimited life by it".to_owned(),
+        _ => format!("life {}× that without", if is_cut_off { format!("≥ {factor:.2}") } else { format!("{factor:.2}") }),
+    };
+    let words = format!("retardation: {times} ({model}: given, not calibrated)");
+    let side = if factor > 1.0 { Side::Unsafe } else { Side::Safe };
+    let is_large = !(1.0 / RETARDED_DOUBTFUL..=RETARDED_DOUBTFUL).contains(&factor);
+    let remedy = "fit its constant to a test under a spectrum, or compare with loading.retardation = \"none\"";
+    Some(Check::sized(NAME, 100.0 * (1.0 - 1.0 / factor), is_large, side, words, remedy))
+}
+
 /// Stress ratio of the law against that of the cycles.
 fn stress_ratio(case: &Case) -> Option<Check> {
     const NAME: &str = "stress_ratio";
@@ -362,11 +405,13 @@ fn stress_ratio(case: &Case) -> Option<Check> {
     };
     // Of what is refused no life comes about, so any other ratio is bridged by γ.
     let is_within = [least, most].iter().all(|ratio| (low - 0.02..=high + 0.02).contains(ratio));
-    let ratio = if least == most { least.to_string() } else { format!("{least:.3} to {most:.3}") };
+    let between = |low: f64, high: f64| if low == high { short(low) } else { format!("{} to {}", short(low), short(high)) };
+    let ratio = between(least, most);
     let words = if is_within {
         format!("stress ratio: {ratio} is that of the law")
     } else {
-        format!("stress ratio: {ratio}, law of {low}, by γ = {} (Walker)", case.fatigue.walker_gamma)
+        let gamma = short(case.fatigue.walker_gamma);
+        format!("stress ratio: {ratio}, law of {}, by γ = {gamma} (Walker)", between(low, high))
     };
     let verdict = if is_within { Verdict::Holds } else { Verdict::Doubtful };
     let remedy = (!is_within).then(|| format!("calibrate at R = {ratio}"));

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::model_words::clean;
+use super::model_words::{chance, clean, mm};
 use perilife_base::units::MM;
 use perilife_calibration::inspection::Inspection;
 use perilife_calibration::sweep::detection::{Detection, Schedule};
@@ -30,15 +30,20 @@ struct Row {
 }
 
 impl Inspections {
-    /// Of a run: the first at the length from which on the plate is inspected, the others by the interval, before the end of the run.
-    pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, detection: Detection) -> Self {
-        let schedule = Schedule { detection, cycles: [inspection.cycles_at, inspection.inspection_interval_cycles] };
+    /// Of a run: the first at the length from which on the plate is inspected, or after the cycles given, the others by the interval, before the
+    /// end. From that length on the crack grows by the quantile that the interval is taken from: cycles of the run times its remaining life over that
+    /// of the run.
+    pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, detection: Detection, first: Option<f64>) -> Self {
+        let at = inspection.cycles_at;
+        let schedule = Schedule { detection, cycles: [first.unwrap_or(at), inspection.inspection_interval_cycles] };
+        let pace = inspection.remaining_cycles_p05.map_or(1.0, |low| low / inspection.remaining_cycles);
+        let cycles = |row: &CurvePoint| if row.cycles > at { at + pace * (row.cycles - at) } else { row.cycles };
         let of_tip = |row: &CurvePoint| inspection.tip.and_then(|tip| row.crack_length_of(&case.specimen, tip));
         let length = |row: &CurvePoint| of_tip(row).unwrap_or(row.crack_length);
         let (mut inspected, mut rows) = (schedule.begin(), Vec::new());
         for pair in prediction.curve.windows(2) {
             let told = |cycles, crack_length, found, missed| rows.push(Row { cycles, crack_length, found, missed });
-            inspected.grow([pair[0].cycles, pair[1].cycles], [length(&pair[0]), length(&pair[1])], told);
+            inspected.grow([cycles(&pair[0]), cycles(&pair[1])], [length(&pair[0]), length(&pair[1])], told);
         }
         Inspections { schedule, rows }
     }
@@ -63,7 +68,13 @@ impl Inspections {
 
     /// A line of a summary.
     pub fn words(&self) -> String {
-        let (count, missed) = (self.rows.len(), self.missed());
-        format!("  detection      {count} inspections miss the crack with a probability of {missed:.2e}")
+        let Detection { a50, a90 } = self.schedule.detection;
+        format!(
+            "  detection      all {} inspections miss the crack: {} (independent; found with 50 % at {} mm, with 90 % at {} mm)",
+            self.rows.len(),
+            chance(self.missed()),
+            mm(a50),
+            mm(a90)
+        )
     }
 }

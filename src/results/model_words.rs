@@ -261,6 +261,14 @@ pub fn short(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
+/// Probability below which none is claimed: inspections are hardly independent of each other.
+const CHANCE_LEAST: f64 = 1e-3;
+
+/// A probability that a crack is missed.
+pub fn chance(probability: f64) -> String {
+    if probability < CHANCE_LEAST { "below 1e-3".to_owned() } else { format!("{probability:.2e}") }
+}
+
 /// A length in millimetres.
 pub fn mm(metres: f64) -> String {
     short(metres / MM)

@@ -9,7 +9,7 @@ use perilife_base::error::{Error, Result};
 use perilife_growth::case::Case;
 use perilife_growth::predict::residual_strength::{Strength, residual_strength};
 use perilife_growth::predict::{Prediction, judgement};
-use perilife_results::answers::{Answers, Asked};
+use perilife_results::answers::Answers;
 use perilife_results::band::Lives;
 use perilife_results::checks;
 use perilife_results::quality::Quality;
@@ -45,21 +45,20 @@ impl Judged {
         let mut lives = Lives::of(case, prediction)?;
         let quality = Quality::of(case, prediction, [!wanted.no_estimate, wanted.cross_check]);
         let asked = wanted.readings.as_ref().map_or(Ok(()), |curve| lives.narrow(curve));
-        let asked = asked.and_then(|()| wanted.inspection.map_or(Ok(()), |from| lives.inspect(from)));
-        let answered = asked.and_then(|()| {
-            Answers::of(case, prediction, &lives, Asked { detection: wanted.detection, sensitivities: wanted.sensitivities })
-        });
+        // A length that the crack never has is wrong input, and no result is written for it.
+        if asked.is_ok() {
+            wanted.inspection.map_or(Ok(()), |from| lives.inspect(from))?;
+        }
+        let answered = asked.and_then(|()| Answers::of(case, prediction, &lives, wanted.asked));
         let (answers, asked) = match answered {
             Ok(answers) => (answers, Ok(())),
             Err(error) => (Answers::default(), Err(error)),
         };
-        let kept = Kept::of(case, prediction, (&lives, &quality, &answers));
+        let kept = Kept::of(case, prediction, (&lives, &quality, &answers), &judged);
         let refusal = judgement::refusal(case, prediction);
         let mut warnings: Vec<String> = refusal.iter().map(Error::to_string).collect();
         let listed = kept.result["warnings"].as_array().into_iter().flatten();
         warnings.extend(listed.filter_map(|warning| Some(warning.as_str()?.to_owned())));
-        let new: Vec<String> = judged.into_iter().filter(|warning| !warnings.contains(warning)).collect();
-        warnings.extend(new);
         let (strengths, missed) = match strengths {
             Ok(strengths) => (strengths, None),
             Err(error) => (None, Some(error)),
@@ -93,7 +92,7 @@ impl Judged {
 
     /// The result in words.
     pub fn words(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
-        let mut lines = run::words(case, prediction, &self.lives, &self.quality);
+        let mut lines = run::words(case, prediction, (&self.lives, &self.quality, &self.answers));
         lines.extend(self.answers.words());
         lines
     }

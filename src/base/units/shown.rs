@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::MM;
 use super::us::{System, Unit, renamed};
 use super::words::{in_units, with_keys};
 
@@ -31,6 +32,15 @@ pub fn told_of_file(words: &str) -> String {
 pub fn per(metric: &str) -> f64 {
     let unit = Unit::named(metric, System::Si).filter(|_| shown() == System::Us);
     unit.map_or(1.0, |unit| unit.factor(System::Us))
+}
+
+/// A length that a user types, m: `0.25in`, `6.35mm`, or a number in the unit that is shown.
+pub fn length_given(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let units = ["mm", "inch", "in"].into_iter().find_map(|unit| Some((text.strip_suffix(unit)?, unit)));
+    let (number, unit) = units.unwrap_or((text, name_of("mm")));
+    let size = Unit::named("mm", System::Si).filter(|_| unit != "mm").map_or(1.0, |unit| unit.factor(System::Si));
+    number.trim_end().parse::<f64>().ok().map(|number| number * size * MM)
 }
 
 /// Name of the unit that is shown in place of a metric one.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{CurvePoint, Prediction};
+use super::{CurvePoint, Prediction, governing_tip};
 use crate::case::Case;
 use perilife_base::units::MM;
 use perilife_plate::material::Plane;
@@ -16,7 +16,7 @@ const ON_RIM: f64 = 1e-6;
 /// Plastic zone at one crack length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Zone {
-    /// Crack length, m.
+    /// Crack length, m: of a plate that of the governing crack.
     pub crack_length: f64,
     /// K_max, Pa√m.
     pub k_max: f64,
@@ -42,8 +42,10 @@ pub struct PlasticZone {
     pub first: Zone,
     /// At the last one, or at the first at which it is as large as its room.
     pub last: Zone,
-    /// Crack length from which small-scale yielding does not hold, m; `None` where it holds to the end.
+    /// Crack length, as [`Zone::crack_length`], from which small-scale yielding does not hold, m; `None` where it holds to the end.
     pub too_large_from: Option<f64>,
+    /// Length of all cracks together there, m.
+    pub total_from: Option<f64>,
     /// Crack length from which it holds after all, to the end, m: a crack that was too short has grown.
     pub too_large_to: Option<f64>,
     /// What is too small there.
@@ -58,10 +60,13 @@ pub struct PlasticZone {
 /// a plate the nearest free edge is at least `(4/π) (K_max/σ_Y)²` away from every tip, and cracks from rims are at least as long.
 pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     let strength = case.material.yield_strength?;
+    let governing = governing_tip(&case.specimen, curve);
+    let length =
+        |point: &CurvePoint| governing.and_then(|tip| point.crack_length_of(&case.specimen, tip)).unwrap_or(point.crack_length);
     let known: Vec<(&CurvePoint, Zone)> = curve
         .iter()
         .filter(|point| point.delta_k.is_finite())
-        .map(|point| (point, zone(case, point, point.k_max(&case.loading), strength)))
+        .map(|point| (point, Zone { crack_length: length(point), ..zone(case, point, point.k_max(&case.loading), strength) }))
         // Where every tip has reached an edge there is no room for a zone.
         .filter(|(_, zone)| zone.room().0.is_finite())
         .collect();
@@ -71,15 +76,16 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     // How much of the room that is asked for is missing is linear between two rows.
     let missing = |zone: &Zone| 1.0 - zone.room().0 / asked(case, zone, strength);
     let is_missing: Vec<bool> = known.iter().map(|(_, zone)| missing(zone) > 0.0).collect();
-    // Crack length and cycles between a row and the one before it at which small-scale yielding ends or begins.
+    // Crack length, that of all cracks, and cycles between a row and the one before it at which small-scale yielding ends or begins.
     let change = |row: usize| {
         let ([before, point], [smaller, zone]) = ([row - 1, row].map(|row| known[row].0), [row - 1, row].map(|row| known[row].1));
         let share = missing(&smaller) / (missing(&smaller) - missing(&zone));
         let at = |from: f64, to: f64| from + share * (to - from);
-        (at(before.crack_length, point.crack_length), at(before.cycles, point.cycles))
+        let lengths = [at(smaller.crack_length, zone.crack_length), at(before.crack_length, point.crack_length)];
+        (lengths, at(before.cycles, point.cycles))
     };
     let life = curve.last()?.cycles;
-    let mut since = is_missing[0].then(|| (known[0].0.crack_length, known[0].0.cycles));
+    let mut since = is_missing[0].then(|| ([first.crack_length, known[0].0.crack_length], known[0].0.cycles));
     let mut outgrown = since.map(|(length, _)| (length, first.room().1));
     let (mut regained, mut cycles) = (None, 0.0);
     for row in (1..known.len()).filter(|row| is_missing[*row] != is_missing[*row - 1]) {
@@ -99,10 +105,11 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     Some(PlasticZone {
         first,
         last,
-        too_large_from: outgrown.map(|(length, _)| length),
-        too_large_to: regained.filter(|_| since.is_none()),
+        too_large_from: outgrown.map(|([length, _], _)| length),
+        total_from: outgrown.map(|([_, total], _)| total),
+        too_large_to: regained.filter(|_| since.is_none()).map(|[length, _]| length),
         too_small: outgrown.map_or_else(|| last.room().1, |(_, name)| name),
-        life_share_too_large: if life > 0.0 { cycles / life } else { 0.0 },
+        life_share_too_large: if life > 0.0 { cycles / life } else { f64::from(u8::from(since.is_some())) },
     })
 }
 
@@ -177,8 +184,9 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
             room / MM
         ));
     }
-    let needed = 2.5 * (zone.first.k_max / strength).powi(2);
-    if case.material.plane == Plane::Strain && case.specimen.thickness < needed {
+    let needed = thickness_of_strain(&zone.first, strength);
+    // With retardation the life by the other zones is told beside it.
+    if case.material.plane == Plane::Strain && case.specimen.thickness < needed && case.retardation.is_none() {
         lines.push(format!(
             "material.plane = \"strain\", but plane strain at the crack tip asks for a thickness of {:.2} mm from the start \
              (2.5 (K_max/yield)², ASTM E399), and the plate has {:.2} mm",
@@ -187,6 +195,20 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// Thickness from which on a tip is in plane strain (ASTM E399), m.
+fn thickness_of_strain(zone: &Zone, strength: f64) -> f64 {
+    2.5 * (zone.k_max / strength).powi(2)
+}
+
+/// Plane state by the thickness of a plate at the start, where its case has the other, and the thickness from which on a tip is in plane strain,
+/// m, at the start and at the end.
+pub(super) fn other_plane(case: &Case, curve: &[CurvePoint]) -> Option<(Plane, [f64; 2])> {
+    let (zone, strength) = plastic_zone(case, curve).zip(case.material.yield_strength)?;
+    let needed = [zone.first, zone.last].map(|zone| thickness_of_strain(&zone, strength));
+    let asked = if case.specimen.thickness > needed[0] { Plane::Strain } else { Plane::Stress };
+    (asked != case.material.plane).then_some((asked, needed))
 }
 
 impl PlasticZone {

@@ -168,12 +168,12 @@ impl<'a> Record<'a> {
         // Rows of a front are retarded as they grow, and what they would take without is not known.
         let unretarded_cycles = recounted.as_ref().filter(|_| counted.is_none()).and(curve.last()).map(|row| row.cycles);
         let (stop, of_order) = match recounted {
-            Some(Recounted { curve: new, stop, warning }) => {
+            Some(Recounted { curve: new, stop, warnings }) => {
                 snapshots.recount(&curve, &new);
                 curve = new;
-                (stop, warning)
+                (stop, warnings)
             }
-            None => (stop, None),
+            None => (stop, Vec::new()),
         };
         if let Some(phase) = &phase_one {
             let before = curve.clone();

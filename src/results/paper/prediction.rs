@@ -2,11 +2,13 @@
 
 use serde_json::Value;
 
+use super::answers::quantile_words;
 use super::numbers::{self, by_band, fixed, level, short, sized, whole};
 use super::{
     Drawings, Sheets, Signed, answers, figure, hashes, letter, mark, part_through, prose, quoted, recorded, signatures, spectrum,
     terms,
 };
+use crate::band::interval_of;
 use crate::chart::Size;
 use crate::pictures::curves::{a_n_svg, end_words, k_svg};
 use crate::pictures::plate::{Plate, plate_svg};
@@ -44,6 +46,7 @@ pub fn body(result: &Value, tables: &RunTables, drawings: &Drawings, signed: &Si
         terms(&understood(result, plate.as_ref()))
     );
     page += &checks(result);
+    page += &messages(&result["warnings"]);
     page += &signatures(signed, "Computed by");
     let commit = result["commit"]
         .as_str()
@@ -124,6 +127,9 @@ fn life(result: &Value, reason: &str) -> String {
     let Some(life) = result["life_cycles"].as_f64() else {
         return card("Life", "unlimited", "no crack grows under this load");
     };
+    if let Some(fleet) = fleet_life(&result["fleet"], life) {
+        return fleet;
+    }
     let title = match reason {
         "entered_hole" => "Cycles to the hole",
         "crack_length_reached" | "run_out" => "Cycles to what was asked for",
@@ -144,6 +150,18 @@ fn life(result: &Value, reason: &str) -> String {
         None => "no band of plates".to_owned(),
     };
     card(title, &cycles(by_band(life, life * (1.0 - error), life * (1.0 + error))), &below)
+}
+
+/// Life of a fleet, in the place of that of the run.
+fn fleet_life(fleet: &Value, run: f64) -> Option<String> {
+    let plates = fleet["plates"].as_f64()?;
+    let [low, middle, high] = ["p05", "p50", "p95"].map(|quantile| quantile_words(&fleet["life_cycles"], quantile));
+    Some(format!(
+        "<h2>Life of the fleet, 5 % of plates</h2><p class=\"big\">{low} <small>cycles</small></p><p>median {middle}, 95 % {high} cycles, {} plates; \
+         this run, the plate of the case alone: {}</p>",
+        whole(plates),
+        whole(run)
+    ))
 }
 
 fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String {
@@ -255,13 +273,8 @@ fn law(result: &Value) -> Vec<(&'static str, String)> {
             other => recorded(other),
         },
     ));
-    let inspection = &result["inspection"];
-    if let (Some(interval), Some(length)) =
-        (inspection["inspection_interval_cycles"].as_f64(), inspection["crack_length_mm"].as_f64())
-    {
-        let digits = 10f64.powf(interval.max(1.0).log10().floor() - 2.0).max(1.0);
-        let interval = whole((interval / digits).floor() * digits);
-        rows.push(("Inspect every", format!("{interval} cycles, from a crack of {} mm", short(length))));
+    if let (Some(interval), Some(length)) = (interval_of(result), result["inspection"]["crack_length_mm"].as_f64()) {
+        rows.push(("Inspect every", format!("{interval}, from a crack of {} mm", short(length))));
     }
     rows
 }
@@ -299,6 +312,18 @@ fn checks(result: &Value) -> String {
         "<h2>Is it valid?</h2>\n<div class=\"scroll\"><table class=\"checks\"><thead><tr><th>What the life rests on</th><th>Computed life</th><th>What to do</th></tr></thead><tbody>\n\
          {rows}</tbody></table></div>\n"
     )
+}
+
+/// Every message of the run, as the console has them.
+fn messages(warnings: &Value) -> String {
+    let lines: String = warnings
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
+        .map(|line| format!("<li>{}</li>\n", prose(line)))
+        .collect();
+    if lines.is_empty() { lines } else { format!("<h2>Messages</h2>\n<ul class=\"small\">\n{lines}</ul>\n") }
 }
 
 fn effect(check: &Value) -> String {
