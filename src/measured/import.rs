@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 
+use super::leave_out::LeaveOut;
 use perilife_base::error::{Result, input};
 use perilife_base::table::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
 use perilife_base::table::{Decimal, Sheet, TextOrNumber};
 
 /// What the user says about files of readings; a header that names its own unit must agree.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Import {
     /// Unit of crack length.
     pub length: Option<LengthUnit>,
@@ -30,6 +31,8 @@ pub struct Import {
     pub rate: Option<RateUnit>,
     /// Whether the file is a table of rates over ΔK.
     pub of_rates: bool,
+    /// Rows that are left out by their lines.
+    pub left_out: Vec<LeaveOut>,
 }
 
 /// Which column is which, by a key and the name in the header, or the number from 1; what is left out is found by the names that

@@ -25,7 +25,9 @@ use perilife_base::{
     },
     units::round_off,
 };
-use perilife_measured::{Column, ColumnNames, Import, Layout, Loads, MeasuredCurve, Named, SAME_LOAD, Shape, Survey, survey};
+use perilife_measured::{
+    Column, ColumnNames, Import, Layout, LeaveOut, Loads, MeasuredCurve, Named, SAME_LOAD, Shape, Survey, survey,
+};
 use perilife_plate::specimen::LoadMeasure;
 use perilife_runner::check;
 
@@ -101,10 +103,12 @@ struct Readings {
     sheet: Option<String>,
     /// JSON object of columns by name, as `columns` of `[measured]`.
     columns: Option<String>,
+    /// JSON list of rows that are left out by their lines, as `leave_out` of `[measured]`.
+    leave_out: Option<String>,
 }
 
 /// Fields of the form beside the files: what the user says of them.
-const FIELDS: [&str; 6] = ["length_unit", "cycle_unit", "load_unit", "decimal", "sheet", "columns"];
+const FIELDS: [&str; 7] = ["length_unit", "cycle_unit", "load_unit", "decimal", "sheet", "columns", "leave_out"];
 
 /// Reads measured a-N curves: what was understood, and every row that is wrong.
 #[utoipa::path(post, path = "/v1/measured", tag = "inputs",
@@ -125,6 +129,7 @@ pub async fn measured(State(app): State<App>, Extension(caller): Extension<Calle
         cycles: field("cycle_unit").map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
         load: field("load_unit").map(|name| named(LoadUnit::ALL, LoadUnit::name, "load_unit", name)).transpose()?,
         columns: field("columns").map(|text| columns(text)).transpose()?.unwrap_or_default(),
+        left_out: field("leave_out").map(|text| left_out(text)).transpose()?.unwrap_or_default(),
         decimal: field("decimal").map(|name| named(Decimal::ALL, Decimal::name, "decimal", name)).transpose()?,
         sheet: field("sheet").map(|name| Sheet(name.clone())),
         ..Import::default()
@@ -147,6 +152,13 @@ fn columns(text: &str) -> Answer<ColumnNames> {
         let remedy = format!("give a JSON object with keys of {}", ColumnNames::KEYS.join(", "));
         input("columns", text, format!("names no columns: {error}"), remedy).into()
     })
+}
+
+/// Rows of a JSON list.
+fn left_out(text: &str) -> Answer<Vec<LeaveOut>> {
+    let wrong =
+        |error| input("leave_out", text, format!("names no rows: {error}"), "give a JSON list of { file, line, value, reason }");
+    serde_json::from_str(text).map_err(|error| wrong(error).into())
 }
 
 /// The kind of this name.
