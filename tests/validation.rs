@@ -11,6 +11,7 @@ mod median_virkler;
 mod notched_plates;
 mod plate_band;
 mod population;
+mod practice5_answers;
 mod rates_virkler;
 mod rivals;
 mod stability;

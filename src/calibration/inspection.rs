@@ -107,8 +107,8 @@ impl TipLengths {
         let (shortest, longest) = (lengths[0], lengths[lengths.len() - 1]);
         let length = from.crack_length_mm;
         if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest:.4} mm to {longest:.4} mm");
-            return Err(input(from.names[0], in_mm(length), problem, "give a length between them, or another tip"));
+            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest:.4} to {longest:.4} mm");
+            return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them, or another tip"));
         }
         let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
         let (a, b) = (lengths[after - 1], lengths[after]);
@@ -137,8 +137,8 @@ impl Inspection {
         let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, all)| all), curve[curve.len() - 1]);
         let (shortest, longest) = (curve[0][0], end[0]);
         if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve, which goes from {} to {}", in_mm(shortest), in_mm(longest));
-            return Err(input(from.names[0], in_mm(length), problem, "give a length between them"));
+            let problem = format!("is not on the curve, which goes from {shortest} to {longest} mm");
+            return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them"));
         }
         let cycles_at = Monotone::new(curve.iter().copied()).at(length);
         let remaining = end[1] - cycles_at;
@@ -177,11 +177,6 @@ impl Inspection {
     pub fn quantiles(&self) -> Option<Quantiles> {
         Some([self.remaining_cycles_p05?, self.remaining_cycles_p50?, self.remaining_cycles_p95?])
     }
-}
-
-/// A length with its unit, without round-off.
-fn in_mm(length: f64) -> String {
-    format!("{} mm", (1e4 * length).round() / 1e4)
 }
 
 /// Quantiles of what is left at a length between rows: their ratio to the cycles of the run is linear between them.

@@ -53,8 +53,8 @@ pub struct Args {
     #[arg(long, value_name = "A50,A90", requires = "inspect_from", help_heading = "Output")]
     pub pod: Option<String>,
     /// Cycles of the first inspection [default: at the length of --inspect-from; of a fleet when 5 % of plates have it]
-    #[arg(long, value_name = "CYCLES", requires = "pod", value_parser = cycles, help_heading = "Output")]
-    pub first_inspection: Option<f64>,
+    #[arg(long, value_name = "CYCLES", requires = "pod", help_heading = "Output")]
+    pub first_inspection: Option<u64>,
     /// Also write lives of so many plates that differ in law, initial length and load (fleet.csv and .svg), as the key fleet.plates does
     #[arg(long, value_name = "PLATES", help_heading = "Output")]
     pub fleet: Option<u64>,
@@ -78,12 +78,6 @@ pub struct Args {
     pub console: Console,
 }
 
-/// A number of cycles, zero or more.
-fn cycles(text: &str) -> std::result::Result<f64, String> {
-    let cycles = text.parse::<f64>().ok().filter(|cycles| cycles.is_finite() && *cycles >= 0.0);
-    cycles.ok_or_else(|| "not a number of cycles; give for example 50000".to_owned())
-}
-
 /// Runs `perilife predict`.
 pub fn run(args: &Args) -> Result<()> {
     let mut set = super::with_output(&args.set, [("paraview", args.paraview), ("animation", args.animate)]);
@@ -97,7 +91,11 @@ pub fn run(args: &Args) -> Result<()> {
     if let Task::Prediction { wanted, .. } = &mut task {
         wanted.strength = args.residual_strength;
         let detection = args.pod.as_deref().map(str::parse).transpose()?;
-        wanted.asked = Asked { detection, first_inspection: args.first_inspection, sensitivities: args.sensitivities };
+        wanted.asked = Asked {
+            detection,
+            first_inspection: args.first_inspection.map(|cycles| cycles as f64),
+            sensitivities: args.sensitivities,
+        };
         (wanted.no_estimate, wanted.cross_check) = (args.no_estimate, args.cross_check);
         let names = ["--inspect-from", "--factor", "--tip"];
         let from = args.inspect_from.as_deref().map(|text| InspectFrom::read(text, args.tip, args.factor, names));

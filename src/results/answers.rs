@@ -6,24 +6,13 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::band::Lives;
-use super::fleet::{FleetReport, looks};
+use super::fleet::FleetReport;
+pub use super::inspections::Asked;
 use super::inspections::Inspections;
 use super::sensitivities::Sensitivities;
 use perilife_base::error::Result;
-use perilife_calibration::sweep::detection::Detection;
 use perilife_growth::case::{Case, Stop};
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
-
-/// What is asked for; a fleet is by the section of the case.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Asked {
-    /// How inspections find cracks.
-    pub detection: Option<Detection>,
-    /// Cycles of the first inspection.
-    pub first_inspection: Option<f64>,
-    /// Life at somewhat other input.
-    pub sensitivities: bool,
-}
 
 /// A run as K(a) of other plates is recorded from: one that `stop.cycles_max` ended continues, since faster plates grow longer cracks in these
 /// cycles. Where it cannot, its own rows are all there is.
@@ -46,17 +35,13 @@ impl Answers {
     /// Of a run; `lives` say when its plate is looked at and how its law scatters.
     /// Errors: a fleet in which nothing scatters, a run without K.
     pub fn of(case: &Case, prediction: &Prediction, lives: &Lives, asked: Asked) -> Result<Self> {
-        let inspections = lives.inspection().zip(asked.detection);
-        let inspections = inspections
-            .map(|(inspection, detection)| Inspections::of(case, prediction, inspection, detection, asked.first_inspection));
+        let inspections = lives.inspection().and_then(|inspection| Inspections::of(case, prediction, inspection, asked));
         if case.fleet.is_none() && !asked.sensitivities {
             return Ok(Answers { inspections, ..Answers::default() });
         }
         let run = whole(case, prediction);
-        let of_whole = if matches!(run, Cow::Owned(_)) { Some(Lives::of(case, &run)?) } else { None };
-        let band = &of_whole.as_ref().unwrap_or(lives).band;
-        let looks = lives.inspection().map(|inspection| looks(case, prediction, inspection, asked));
-        let of_fleet = |fleet| FleetReport::of(case, [prediction, &run], fleet, band, looks);
+        let of_whole = if matches!(run, Cow::Owned(_)) { &Lives::of(case, &run)? } else { lives };
+        let of_fleet = |fleet| FleetReport::of(case, fleet, (prediction, lives.inspection()), (&run, of_whole), asked);
         let fleet = case.fleet.as_ref().map(of_fleet).transpose()?;
         let sensitivities = asked.sensitivities.then(|| Sensitivities::of(case, &run)).transpose()?;
         Ok(Answers { inspections, fleet, sensitivities })

@@ -172,10 +172,8 @@ pub fn lines(checks: &[Check]) -> Vec<String> {
 
 /// A line of at most [`LETTERS_MOST`] letters, cut between words.
 fn cut(words: &str) -> String {
-    let Some((end, _)) = words.char_indices().nth(LETTERS_MOST) else { return words.to_owned() };
-    let most = words.char_indices().nth(LETTERS_MOST - 2).map_or(end, |(place, _)| place);
-    let kept = words[..=most].rfind(' ').map_or(end, |space| space);
-    format!("{} …", words[..kept].trim_end())
+    let of = |end: usize| format!("{}…", &words[..words[..end].rfind(' ').unwrap_or(end)]);
+    words.char_indices().nth(LETTERS_MOST).map_or_else(|| words.to_owned(), |(end, _)| of(end))
 }
 
 /// The array of `result.json`.
@@ -261,16 +259,14 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
             format!("small-scale yielding: not from {} mm {until}, {percent:.1} % of life", two_digits(from / MM))
         }
     };
-    let end = match zone.total_from {
-        Some(total) if case.specimen.crack_lines().len() > 1 => format!(" = {} (all cracks together)", two_digits(total / MM)),
-        _ => String::new(),
-    };
     let remedy = match zone.too_small {
-        _ if never => "reduce the load: K does not describe this crack".to_owned(),
-        "ligament" => format!("end the life there by stop.crack_length_mm{end}: beyond it cracks grow faster than K says"),
-        _ => "begin with a longer crack: shorter ones grow faster than K says".to_owned(),
+        _ if never => "reduce the load: K does not describe this crack",
+        "ligament" => {
+            "end the life there by stop.crack_length_mm (in a plate of all cracks): beyond it cracks grow faster than K says"
+        }
+        _ => "begin with a longer crack: shorter ones grow faster than K says",
     };
-    let check = Check::sized(NAME, percent, never || percent > DOUBTFUL_PERCENT, Side::Unsafe, words, &remedy);
+    let check = Check::sized(NAME, percent, never || percent > DOUBTFUL_PERCENT, Side::Unsafe, words, remedy);
     Some(if never { Check { verdict: Verdict::Fails, ..check } } else { check })
 }
 
@@ -371,27 +367,23 @@ fn reversal(case: &Case, prediction: &Prediction) -> Option<Check> {
     Some(Check { side: Some(Side::Unsafe), remedy, ..Check::new("reversal", Verdict::Fails, words) })
 }
 
-/// Life over that without load interaction; the constants of a model come from the case, which no test backs.
+/// Life over that without retardation, whose constants come from the case alone.
 fn retardation(case: &Case, prediction: &Prediction) -> Option<Check> {
     const NAME: &str = "retardation";
-    let model = case.retardation.as_ref()?.kind;
-    let mean = prediction.unretarded_cycles.filter(|cycles| *cycles > 0.0);
-    // A run that is cut off has gone as far as the other, or on for longer.
-    let is_cut_off = prediction.stop == StopReason::RunOut;
-    let Some(mean) = mean.filter(|mean| !(is_cut_off && prediction.life_cycles() <= *mean)) else {
-        let words = format!("retardation: {model}, given, not calibrated; its effect is not known");
-        return Some(Check::not_checked(NAME, &words, "compare with loading.retardation = \"none\""));
-    };
-    let factor = prediction.life().map_or(f64::INFINITY, |life| life / mean);
-    let times = match factor {
-        f64::INFINITY => "unlimited life by it".to_owned(),
-        _ => format!("life {}× that without", if is_cut_off { format!("≥ {factor:.2}") } else { format!("{factor:.2}") }),
-    };
-    let words = format!("retardation: {times} ({model}: given, not calibrated)");
+    const REMEDY: &str = "fit its constant to a test under a spectrum, or compare with loading.retardation = \"none\"";
+    let (model, is_cut_off) = (case.retardation.as_ref()?.kind, prediction.stop == StopReason::RunOut);
+    let factor = prediction.life().unwrap_or(f64::INFINITY) / prediction.unretarded_cycles.unwrap_or(f64::NAN);
+    // A run that is cut off may have come as far as the other, which then says nothing.
+    if !(factor > if is_cut_off { 1.0 } else { 0.0 }) {
+        let words = format!("retardation: effect of {model} not known; given, not calibrated");
+        return Some(Check::not_checked(NAME, &words, REMEDY));
+    }
+    let times = if factor.is_finite() { format!("{factor:.2}× that") } else { "unlimited, not".to_owned() };
+    let words =
+        format!("retardation: life {}{times} without ({model}: given, not calibrated)", if is_cut_off { "≥ " } else { "" });
     let side = if factor > 1.0 { Side::Unsafe } else { Side::Safe };
     let is_large = !(1.0 / RETARDED_DOUBTFUL..=RETARDED_DOUBTFUL).contains(&factor);
-    let remedy = "fit its constant to a test under a spectrum, or compare with loading.retardation = \"none\"";
-    Some(Check::sized(NAME, 100.0 * (1.0 - 1.0 / factor), is_large, side, words, remedy))
+    Some(Check::sized(NAME, 100.0 * (1.0 - 1.0 / factor), is_large, side, words, REMEDY))
 }
 
 /// Stress ratio of the law against that of the cycles.

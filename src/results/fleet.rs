@@ -6,18 +6,17 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::answers::Asked;
 use super::axis::Axis;
-use super::band::every_words;
+use super::band::{Lives as Band, every_words};
 use super::chart::{COMPUTED, Frame, LARGE, Mark, SECOND};
 use super::csv;
+use super::inspections::Asked;
 use super::model_words::{chance, clean};
 use super::output::write_file;
 use super::sweep::Lives;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
 use perilife_calibration::inspection::Inspection;
-use perilife_calibration::population::plate::{NoBand, Plate, PlateBand};
 use perilife_calibration::sweep::fleet::{self, FleetLives, FleetPlate, Looked, Looks};
 use perilife_growth::case::{Case, Fleet};
 use perilife_growth::predict::{CurvePoint, Prediction};
@@ -42,16 +41,22 @@ pub struct FleetReport {
 }
 
 impl FleetReport {
-    /// Of a run, and of the same run as K(a) is recorded from, whose `band` says how the law of its lot scatters.
+    /// Of a run with its lives, and of the same run as K(a) is recorded from.
     /// Errors: as [`fleet::lives`].
     pub fn of(
         case: &Case,
-        [own, whole]: [&Prediction; 2],
         fleet: &Fleet,
-        band: &std::result::Result<(Plate, PlateBand), NoBand>,
-        looks: Option<Looks>,
+        (own, inspection): (&Prediction, Option<&Inspection>),
+        (whole, band): (&Prediction, &Band),
+        asked: Asked,
     ) -> Result<Self> {
-        let lives = fleet::lives(case, whole, fleet, band.as_ref().map(|(plate, _)| plate), looks)?;
+        let looks = inspection.map(|inspection| Looks {
+            detectable: detectable(case, own, inspection),
+            factor: inspection.factor,
+            detection: asked.detection,
+            first: asked.first_inspection,
+        });
+        let lives = fleet::lives(case, whole, fleet, band.band.as_ref().map(|(plate, _)| plate), looks)?;
         let per_pass = case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass);
         Ok(FleetReport { fleet: *fleet, lives, looks, run: own.life(), per_pass })
     }
@@ -103,7 +108,6 @@ impl FleetReport {
         json!({
             "plates": self.lives.plates.len(),
             "seed": self.fleet.seed,
-            "headline": self.headline(),
             "life_cycles": ranked.figures(),
             "unlimited": ranked.unlimited,
             "lower_bounds": ranked.bounds,
@@ -215,16 +219,6 @@ impl FleetReport {
 fn words_of(lives: &Lives) -> [String; 3] {
     let figures = lives.figures();
     ["p05", "p50", "p95"].map(|quantile| figures["words"][quantile].as_str().unwrap_or("unknown").to_owned())
-}
-
-/// How the plates of a fleet are inspected, by what was asked of the plate of the run.
-pub(super) fn looks(case: &Case, prediction: &Prediction, inspection: &Inspection, asked: Asked) -> Looks {
-    Looks {
-        detectable: detectable(case, prediction, inspection),
-        factor: inspection.factor,
-        detection: asked.detection,
-        first: asked.first_inspection,
-    }
 }
 
 /// Length of the crack that ends the life when the one that is inspected has its length, m: the way is that of the run.

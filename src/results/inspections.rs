@@ -9,6 +9,17 @@ use perilife_calibration::sweep::detection::{Detection, Schedule};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{CurvePoint, Prediction};
 
+/// What is asked for; a fleet is by the section of the case.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Asked {
+    /// How inspections find cracks.
+    pub detection: Option<Detection>,
+    /// Cycles of the first inspection.
+    pub first_inspection: Option<f64>,
+    /// Life at somewhat other input.
+    pub sensitivities: bool,
+}
+
 /// Inspections of a run from a crack length on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inspections {
@@ -30,12 +41,12 @@ struct Row {
 }
 
 impl Inspections {
-    /// Of a run: the first at the length from which on the plate is inspected, or after the cycles given, the others by the interval, before the
-    /// end. From that length on the crack grows by the quantile that the interval is taken from: cycles of the run times its remaining life over that
-    /// of the run.
-    pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, detection: Detection, first: Option<f64>) -> Self {
-        let at = inspection.cycles_at;
-        let schedule = Schedule { detection, cycles: [first.unwrap_or(at), inspection.inspection_interval_cycles] };
+    /// Of a run: the first at the length that the plate is inspected from or after the cycles that are asked, the others by the interval; `None`
+    /// where nobody asked. From that length on the crack grows by the quantile of the interval: the cycles of the run, stretched to its end.
+    pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, asked: Asked) -> Option<Self> {
+        let (detection, at) = (asked.detection?, inspection.cycles_at);
+        let schedule =
+            Schedule { detection, cycles: [asked.first_inspection.unwrap_or(at), inspection.inspection_interval_cycles] };
         let pace = inspection.remaining_cycles_p05.map_or(1.0, |low| low / inspection.remaining_cycles);
         let cycles = |row: &CurvePoint| if row.cycles > at { at + pace * (row.cycles - at) } else { row.cycles };
         let of_tip = |row: &CurvePoint| inspection.tip.and_then(|tip| row.crack_length_of(&case.specimen, tip));
@@ -45,7 +56,7 @@ impl Inspections {
             let told = |cycles, crack_length, found, missed| rows.push(Row { cycles, crack_length, found, missed });
             inspected.grow([cycles(&pair[0]), cycles(&pair[1])], [length(&pair[0]), length(&pair[1])], told);
         }
-        Inspections { schedule, rows }
+        Some(Inspections { schedule, rows })
     }
 
     /// Probability that all of them miss the crack.

@@ -42,8 +42,7 @@ pub struct FleetPlate {
     /// Cycles at which its crack is as long as can be found, and from there to the end: infinite where it has none, or is cut off before; none at
     /// all of a plate that breaks before. `None`: not asked.
     pub window: Option<[f64; 2]>,
-    /// Probability that inspections miss its crack to the end, 1 of a plate that breaks before the first; `None` without inspections, or of an
-    /// unlimited life.
+    /// Probability that inspections miss its crack to the end, 1 if it breaks before the first; `None` without them, or of an unlimited life.
     pub missed: Option<f64>,
 }
 
@@ -193,11 +192,8 @@ impl<'f> Drawing<'f> {
             let [of_length, of_load] = [0, 1].map(|column| row.get(column).copied().unwrap_or(0.5));
             let own = self.recorded.unchanged();
             let crack_length = initial_length.map_or(own.crack_length, |lengths| length(lengths, of_length));
-            Change {
-                load: if load_scatter > 0.0 { normal_above_zero(1.0, load_scatter, of_load) } else { 1.0 },
-                crack_length,
-                ..own
-            }
+            let load = if load_scatter > 0.0 { normal_above_zero(1.0, load_scatter, of_load) } else { 1.0 };
+            Change { load, crack_length, ..own }
         };
         match &self.laws {
             Laws::One(law, ratio) => Ok((0..plates).map(|_| ask(next(), 1.0, &|k, _| law.rate(k, *ratio))).collect()),

@@ -132,6 +132,18 @@ pub fn governing_tip(specimen: &Specimen, curve: &[CurvePoint]) -> Option<usize>
     (0..last.tips.len()).max_by(|a, b| leads(*a).total_cmp(&leads(*b)))
 }
 
+/// Length of the governing crack of a plate where all its cracks have a length, m; that length of a standard specimen.
+pub fn governing_length(specimen: &Specimen, curve: &[CurvePoint], total: f64) -> f64 {
+    let of_tip = |tip| {
+        let after = curve.partition_point(|row| row.crack_length < total).min(curve.len() - 1);
+        let [from, to] = [&curve[after.saturating_sub(1)], &curve[after]];
+        let share = ((total - from.crack_length) / (to.crack_length - from.crack_length)).clamp(0.0, 1.0);
+        let [a, b] = [from.crack_length_of(specimen, tip)?, to.crack_length_of(specimen, tip)?];
+        Some(if share.is_nan() { b } else { a + share * (b - a) })
+    };
+    governing_tip(specimen, curve).and_then(of_tip).unwrap_or(total)
+}
+
 /// What a run reports while it goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress {

@@ -44,8 +44,6 @@ pub struct PlasticZone {
     pub last: Zone,
     /// Crack length, as [`Zone::crack_length`], from which small-scale yielding does not hold, m; `None` where it holds to the end.
     pub too_large_from: Option<f64>,
-    /// Length of all cracks together there, m.
-    pub total_from: Option<f64>,
     /// Crack length from which it holds after all, to the end, m: a crack that was too short has grown.
     pub too_large_to: Option<f64>,
     /// What is too small there.
@@ -76,16 +74,15 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     // How much of the room that is asked for is missing is linear between two rows.
     let missing = |zone: &Zone| 1.0 - zone.room().0 / asked(case, zone, strength);
     let is_missing: Vec<bool> = known.iter().map(|(_, zone)| missing(zone) > 0.0).collect();
-    // Crack length, that of all cracks, and cycles between a row and the one before it at which small-scale yielding ends or begins.
+    // Crack length and cycles between a row and the one before it at which small-scale yielding ends or begins.
     let change = |row: usize| {
         let ([before, point], [smaller, zone]) = ([row - 1, row].map(|row| known[row].0), [row - 1, row].map(|row| known[row].1));
         let share = missing(&smaller) / (missing(&smaller) - missing(&zone));
         let at = |from: f64, to: f64| from + share * (to - from);
-        let lengths = [at(smaller.crack_length, zone.crack_length), at(before.crack_length, point.crack_length)];
-        (lengths, at(before.cycles, point.cycles))
+        (at(smaller.crack_length, zone.crack_length), at(before.cycles, point.cycles))
     };
     let life = curve.last()?.cycles;
-    let mut since = is_missing[0].then(|| ([first.crack_length, known[0].0.crack_length], known[0].0.cycles));
+    let mut since = is_missing[0].then(|| (first.crack_length, known[0].0.cycles));
     let mut outgrown = since.map(|(length, _)| (length, first.room().1));
     let (mut regained, mut cycles) = (None, 0.0);
     for row in (1..known.len()).filter(|row| is_missing[*row] != is_missing[*row - 1]) {
@@ -105,9 +102,8 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     Some(PlasticZone {
         first,
         last,
-        too_large_from: outgrown.map(|([length, _], _)| length),
-        total_from: outgrown.map(|([_, total], _)| total),
-        too_large_to: regained.filter(|_| since.is_none()).map(|[length, _]| length),
+        too_large_from: outgrown.map(|(length, _)| length),
+        too_large_to: regained.filter(|_| since.is_none()),
         too_small: outgrown.map_or_else(|| last.room().1, |(_, name)| name),
         life_share_too_large: if life > 0.0 { cycles / life } else { f64::from(u8::from(since.is_some())) },
     })

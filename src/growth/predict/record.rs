@@ -5,10 +5,11 @@ use std::time::Instant;
 
 use super::checkpoint::{self, Checkpoint};
 use super::initiation::{PhaseOne, phase_one};
+use super::outcome::governing_length;
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::way::Way;
-use super::{CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord};
+use super::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord};
 use super::{laws, pin_arcs, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::{CrackGrowth, GrowthStatus, plate};
@@ -165,15 +166,17 @@ impl<'a> Record<'a> {
         let mut curve = growth.curve();
         let counted = growth.overload();
         let recounted = retarded::recount(case, &curve, stop, counted)?;
+        let own = recounted.as_ref();
+        let of_zones = own.map_or(Ok(None), |own| retarded::other_zones(case, &curve, stop, own, counted.is_none()))?;
         // Rows of a front are retarded as they grow, and what they would take without is not known.
         let unretarded_cycles = recounted.as_ref().filter(|_| counted.is_none()).and(curve.last()).map(|row| row.cycles);
         let (stop, of_order) = match recounted {
-            Some(Recounted { curve: new, stop, warnings }) => {
+            Some(Recounted { curve: new, stop, warning }) => {
                 snapshots.recount(&curve, &new);
                 curve = new;
-                (stop, warnings)
+                (stop, warning)
             }
-            None => (stop, Vec::new()),
+            None => (stop, None),
         };
         if let Some(phase) = &phase_one {
             let before = curve.clone();
@@ -186,10 +189,11 @@ impl<'a> Record<'a> {
         snapshots.keep_within(&curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
-        let cross_check = growth.cross_check(last);
+        let length = |check: CrossCheck| governing_length(&case.specimen, &curve, check.crack_length);
+        let cross_check = growth.cross_check(last).map(|check| CrossCheck { crack_length: length(check), ..check });
         let mut warnings = warnings(case, growth, of_growth, &curve);
         warnings.extend(cross_check.and_then(|check| check.warning()));
-        warnings.extend(of_order);
+        warnings.extend(of_order.into_iter().chain(of_zones));
         warnings.extend(failure);
         warnings.extend(phase_one.zip(case.fatigue.initiation).into_iter().flat_map(|(phase, law)| phase.warnings(&law)));
         warnings.extend(phase_one.iter().flat_map(|phase| of_local_stress(case, phase)));

@@ -22,10 +22,11 @@ const UNLIKE: f64 = 0.01;
 pub(super) struct Recounted {
     pub curve: Vec<CurvePoint>,
     pub stop: StopReason,
-    pub warnings: Vec<String>,
+    pub warning: Option<String>,
 }
 
-/// The rows of a run as [`march`] counts them, with what its thickness says of the zones of its overloads.
+/// The rows of a run with the cycles of the retarded tip, ended where no cycles or no growth are left; `None` where nothing is retarded. Rows of a
+/// front that does not go through have their cycles already; `counted` is where its end at the face stands after them.
 /// Errors: a case without law.
 pub(super) fn recount(
     case: &Case,
@@ -33,53 +34,6 @@ pub(super) fn recount(
     stop: StopReason,
     counted: Option<Underway>,
 ) -> Result<Option<Recounted>> {
-    let Some(mut own) = march(case, curve, stop, counted)? else { return Ok(None) };
-    own.warnings.extend(other_zones(case, curve, stop, &own, counted.is_none())?);
-    Ok(Some(own))
-}
-
-/// Warning of a plate whose thickness needs another plane state than its zones have: with the life by those zones, where all of it was marched.
-fn other_zones(case: &Case, curve: &[CurvePoint], stop: StopReason, own: &Recounted, is_whole: bool) -> Result<Option<String>> {
-    let Some((plane, [first, last])) = other_plane(case, curve) else { return Ok(None) };
-    let mut other = Case { retardation: case.retardation.as_ref().map(|model| in_plane(case, model, plane)), ..case.clone() };
-    other.material.plane = plane;
-    let other = if is_whole { march(&other, curve, stop, None)? } else { None };
-    let life = |counted: &Recounted| match counted.stop {
-        StopReason::NothingAges => f64::INFINITY,
-        _ => counted.curve.last().map_or(0.0, |row| row.cycles),
-    };
-    let words = |life: f64| if life.is_finite() { format!("{life:.0} cycles") } else { "unlimited".to_owned() };
-    let lives = other.map_or_else(String::new, |other| {
-        let side = if life(&other) < life(own) { "unsafe" } else { "safe" };
-        format!("; with zones of plane {plane} the life is {} instead of {} ({side} side)", words(life(&other)), words(life(own)))
-    });
-    let (thickness, sense) = (case.specimen.thickness, if plane == Plane::Strain { "thicker" } else { "thinner" });
-    Ok(Some(format!(
-        "retardation: plastic zones are those of plane {}, but the plate of {:.2} mm is {sense} than plane strain at the tip needs, {:.2} mm \
-         at the start and {:.2} mm at the end (2.5 (K_max/yield)², ASTM E399){lives}; give \
-         material.plane = \"{plane}\"",
-        case.material.plane,
-        thickness / MM,
-        first / MM,
-        last / MM
-    )))
-}
-
-/// A model of retardation in another plane state; constants that a case does not give are the defaults there.
-fn in_plane(case: &Case, model: &Retardation, plane: Plane) -> Retardation {
-    let mut other = Retardation { plane, ..model.clone() };
-    for (constant, value) in model.kind.0.constants.iter().zip(&mut other.constants) {
-        let [here, there] = [model.plane, plane].map(|plane| (constant.default)(plane, None));
-        let is_given = !case.echo["loading"][constant.key].is_null();
-        *value = there.filter(|_| here != there && !is_given).unwrap_or(*value);
-    }
-    other
-}
-
-/// The rows of a run with the cycles of the retarded tip, ended where no cycles or no growth are left; `None` where nothing is retarded. Rows of a
-/// front that does not go through have their cycles already; `counted` is where its end at the face stands after them.
-/// Errors: a case without law.
-fn march(case: &Case, curve: &[CurvePoint], stop: StopReason, counted: Option<Underway>) -> Result<Option<Recounted>> {
     let (Some(retardation), Some(spectrum)) = (&case.retardation, &case.loading.spectrum) else { return Ok(None) };
     let of_front = curve.iter().take_while(|row| row.is_of_front()).count();
     let Some(first) = curve.get(of_front) else { return Ok(None) };
@@ -127,6 +81,46 @@ fn march(case: &Case, curve: &[CurvePoint], stop: StopReason, counted: Option<Un
     Ok(Some(recounted(rows, stop, of_front)))
 }
 
+/// Warning of a plate whose thickness needs another plane state than the zones of `own` have; with the life by those where all of it was marched.
+/// Errors: a case without law.
+pub(super) fn other_zones(
+    case: &Case,
+    curve: &[CurvePoint],
+    stop: StopReason,
+    own: &Recounted,
+    is_whole: bool,
+) -> Result<Option<String>> {
+    let Some((plane, [first, last])) = other_plane(case, curve) else { return Ok(None) };
+    let mut other = Case { retardation: case.retardation.as_ref().map(|model| in_plane(case, model, plane)), ..case.clone() };
+    other.material.plane = plane;
+    let other = if is_whole { recount(&other, curve, stop, None)? } else { None };
+    let life = |counted: &Recounted| match counted.stop {
+        StopReason::NothingAges => "unlimited".to_owned(),
+        _ => format!("{:.0} cycles", counted.curve.last().map_or(0.0, |row| row.cycles)),
+    };
+    let [sense, side] = if plane == Plane::Strain { ["thicker", "unsafe"] } else { ["thinner", "safe"] };
+    let lives = other.map_or_else(String::new, |other| {
+        format!("; with zones of plane {plane} the life is {} instead of {} ({side} side)", life(&other), life(own))
+    });
+    let [thickness, first, last] = [case.specimen.thickness, first, last].map(|size| size / MM);
+    Ok(Some(format!(
+        "retardation: plastic zones are those of plane {}, but the plate of {thickness:.2} mm is {sense} than plane strain at the tip needs, \
+         {first:.2} mm at the start and {last:.2} mm at the end (2.5 (K_max/yield)², ASTM E399){lives}; give material.plane = \"{plane}\"",
+        case.material.plane
+    )))
+}
+
+/// A model of retardation in another plane state; constants that a case does not give are the defaults there.
+fn in_plane(case: &Case, model: &Retardation, plane: Plane) -> Retardation {
+    let mut other = Retardation { plane, ..model.clone() };
+    for (constant, value) in model.kind.0.constants.iter().zip(&mut other.constants) {
+        let [here, there] = [model.plane, plane].map(|plane| (constant.default)(plane, None));
+        let is_given = !case.echo["loading"][constant.key].is_null();
+        *value = there.filter(|_| here != there && !is_given).unwrap_or(*value);
+    }
+    other
+}
+
 /// K of the largest load at a tip at both ends of an interval, Pa√m; what is not read is that of the other end, or of the row.
 fn factors(case: &Case, rows: [&CurvePoint; 2], tip: usize) -> [f64; 2] {
     let read = rows.map(|row| row.tips[tip].factors.map(equivalent_factor).filter(|k| *k > 0.0));
@@ -140,12 +134,12 @@ fn recounted(mut curve: Vec<CurvePoint>, stop: StopReason, of_front: usize) -> R
     if let [first, second, ..] = &mut curve[of_front..] {
         first.growth_rate = second.growth_rate;
     }
-    let of_tips = unlike(&curve[of_front..]).then(|| {
+    let warning = unlike(&curve[of_front..]).then(|| {
         "retardation: cycles are those of the tip that grows most; the others keep the share of its growth that they have by the mean rates of a \
          pass, and are not retarded by their own K"
             .to_owned()
     });
-    Recounted { curve, stop, warnings: of_tips.into_iter().collect() }
+    Recounted { curve, stop, warning }
 }
 
 /// Whether tips of unlike K grow in the same rows.

@@ -127,9 +127,6 @@ fn life(result: &Value, reason: &str) -> String {
     let Some(life) = result["life_cycles"].as_f64() else {
         return card("Life", "unlimited", "no crack grows under this load");
     };
-    if let Some(fleet) = fleet_life(&result["fleet"], life) {
-        return fleet;
-    }
     let title = match reason {
         "entered_hole" => "Cycles to the hole",
         "crack_length_reached" | "run_out" => "Cycles to what was asked for",
@@ -138,6 +135,12 @@ fn life(result: &Value, reason: &str) -> String {
         _ => "Life",
     };
     let cycles = |value: String| format!("{value} <small>cycles</small>");
+    if let Some(plates) = result["fleet"]["plates"].as_f64() {
+        let [low, middle, high] = ["p05", "p50", "p95"].map(|name| quantile_words(&result["fleet"]["life_cycles"], name));
+        let below =
+            format!("median {middle}, 95 % {high} cycles, {} plates; this run, one plate: {}", whole(plates), whole(life));
+        return card("Life of the fleet, 5 % of plates", &cycles(low), &below);
+    }
     let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| result["band"][key].as_f64());
     if let (Some(low), Some(middle), Some(high)) = (low, middle, high) {
         let of = |value: f64| by_band(value, low, high);
@@ -150,18 +153,6 @@ fn life(result: &Value, reason: &str) -> String {
         None => "no band of plates".to_owned(),
     };
     card(title, &cycles(by_band(life, life * (1.0 - error), life * (1.0 + error))), &below)
-}
-
-/// Life of a fleet, in the place of that of the run.
-fn fleet_life(fleet: &Value, run: f64) -> Option<String> {
-    let plates = fleet["plates"].as_f64()?;
-    let [low, middle, high] = ["p05", "p50", "p95"].map(|quantile| quantile_words(&fleet["life_cycles"], quantile));
-    Some(format!(
-        "<h2>Life of the fleet, 5 % of plates</h2><p class=\"big\">{low} <small>cycles</small></p><p>median {middle}, 95 % {high} cycles, {} plates; \
-         this run, the plate of the case alone: {}</p>",
-        whole(plates),
-        whole(run)
-    ))
 }
 
 fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String {

@@ -6,6 +6,7 @@ use std::path::Path;
 use axum::extract::{Request, State};
 use axum::{Extension, Json};
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use utoipa::ToSchema;
 
@@ -25,9 +26,7 @@ use perilife_base::{
     },
     units::round_off,
 };
-use perilife_measured::{
-    Column, ColumnNames, Import, Layout, LeaveOut, Loads, MeasuredCurve, Named, SAME_LOAD, Shape, Survey, survey,
-};
+use perilife_measured::{Column, ColumnNames, Import, Layout, Loads, MeasuredCurve, Named, SAME_LOAD, Shape, Survey, survey};
 use perilife_plate::specimen::LoadMeasure;
 use perilife_runner::check;
 
@@ -128,8 +127,8 @@ pub async fn measured(State(app): State<App>, Extension(caller): Extension<Calle
         length: field("length_unit").map(|name| named(LengthUnit::ALL, LengthUnit::name, "length_unit", name)).transpose()?,
         cycles: field("cycle_unit").map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
         load: field("load_unit").map(|name| named(LoadUnit::ALL, LoadUnit::name, "load_unit", name)).transpose()?,
-        columns: field("columns").map(|text| columns(text)).transpose()?.unwrap_or_default(),
-        left_out: field("leave_out").map(|text| left_out(text)).transpose()?.unwrap_or_default(),
+        columns: json_of("columns", field("columns"), &format!("object with keys of {}", ColumnNames::KEYS.join(", ")))?,
+        left_out: json_of("leave_out", field("leave_out"), "list of { file, line, value, reason }")?,
         decimal: field("decimal").map(|name| named(Decimal::ALL, Decimal::name, "decimal", name)).transpose()?,
         sheet: field("sheet").map(|name| Sheet(name.clone())),
         ..Import::default()
@@ -146,19 +145,11 @@ pub async fn measured(State(app): State<App>, Extension(caller): Extension<Calle
     while_asked(look).await.map(Json)
 }
 
-/// Columns by name of a JSON object.
-fn columns(text: &str) -> Answer<ColumnNames> {
-    serde_json::from_str(text).map_err(|error| {
-        let remedy = format!("give a JSON object with keys of {}", ColumnNames::KEYS.join(", "));
-        input("columns", text, format!("names no columns: {error}"), remedy).into()
-    })
-}
-
-/// Rows of a JSON list.
-fn left_out(text: &str) -> Answer<Vec<LeaveOut>> {
-    let wrong =
-        |error| input("leave_out", text, format!("names no rows: {error}"), "give a JSON list of { file, line, value, reason }");
-    serde_json::from_str(text).map_err(|error| wrong(error).into())
+/// What a field holds as JSON of a form; the default where it is missing.
+fn json_of<T: DeserializeOwned + Default>(key: &str, text: Option<&String>, form: &str) -> Answer<T> {
+    let Some(text) = text else { return Ok(T::default()) };
+    let wrong = |error| input(key, text, format!("cannot be read: {error}"), format!("give a JSON {form}")).into();
+    serde_json::from_str(text).map_err(wrong)
 }
 
 /// The kind of this name.
