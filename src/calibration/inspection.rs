@@ -6,7 +6,6 @@ use crate::population::plate::Quantiles;
 use perilife_base::error::{Result, input};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
-use perilife_base::units::shown::length_given;
 use perilife_growth::case::Case;
 use perilife_growth::predict::Prediction;
 
@@ -59,14 +58,6 @@ pub struct InspectFrom {
 }
 
 impl InspectFrom {
-    /// From a length as [`length_given`] reads it.
-    /// Errors: text that is not a length.
-    pub fn read(text: &str, tip: Option<usize>, factor: f64, names: [&'static str; 3]) -> Result<Self> {
-        let length = length_given(text).filter(|length| length.is_finite());
-        let wrong = || input(names[0], text, "is not a length", "give for example 6.35mm or 0.25in");
-        Ok(InspectFrom { crack_length_mm: length.ok_or_else(wrong)? / MM, tip, factor, names })
-    }
-
     /// Refuses a factor below 1.
     pub fn check(&self) -> Result<()> {
         if self.factor.is_finite() && self.factor >= 1.0 {

@@ -1,5 +1,4 @@
-//! `readings.csv` of a fit to lives: every reading of every specimen, with ΔK, rate, what speaks against it, and why it was left out; at the
-//! end the rows that are left out by their lines.
+//! `readings.csv` of a fit to lives: every reading of every specimen, with ΔK, rate, what speaks against it, and why it was left out.
 
 use std::fmt::Write as _;
 
@@ -26,7 +25,7 @@ pub fn readings_csv(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64)
     for curve in &calibration.read {
         of_curve(&mut text, curve, calibration, &case, delta_k);
     }
-    // A row that is left out by its line is no reading.
+    // Rows that are left out by their lines stand at the end.
     for one in calibration.left_out.iter().filter(|one| one.line.is_some()) {
         let _ = writeln!(text, ",NaN,NaN,,,,{},{}", field(&one.place()), field(&one.reason));
     }

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use super::checkpoint;
 use super::console::Console;
-use perilife_base::error::Result;
+use perilife_base::error::{Result, input};
 use perilife_base::input::Document;
+use perilife_base::units::{MM, shown::length_given};
 use perilife_calibration::inspection::{FACTOR, InspectFrom};
-use perilife_results::answers::Asked;
 use perilife_results::output::OutputFile;
 use perilife_runner::{Kind, Task};
 
@@ -90,16 +90,16 @@ pub fn run(args: &Args) -> Result<()> {
     }
     if let Task::Prediction { wanted, .. } = &mut task {
         wanted.strength = args.residual_strength;
-        let detection = args.pod.as_deref().map(str::parse).transpose()?;
-        wanted.asked = Asked {
-            detection,
-            first_inspection: args.first_inspection.map(|cycles| cycles as f64),
-            sensitivities: args.sensitivities,
-        };
+        wanted.asked.detection = args.pod.as_deref().map(str::parse).transpose()?;
+        wanted.asked.first_inspection = args.first_inspection.map(|cycles| cycles as f64);
+        wanted.asked.sensitivities = args.sensitivities;
         (wanted.no_estimate, wanted.cross_check) = (args.no_estimate, args.cross_check);
         let names = ["--inspect-from", "--factor", "--tip"];
-        let from = args.inspect_from.as_deref().map(|text| InspectFrom::read(text, args.tip, args.factor, names));
-        wanted.inspection = from.transpose()?;
+        if let Some(text) = &args.inspect_from {
+            let wrong = || input(names[0], text, "is not a length", "give for example 6.35mm or 0.25in");
+            let crack_length_mm = length_given(text).ok_or_else(wrong)? / MM;
+            wanted.inspection = Some(InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });
+        }
     }
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     let summary = summary.counted()?;

@@ -2,7 +2,6 @@
 //! and fields of the service's form are all read into this.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
@@ -63,21 +62,13 @@ impl LeaveOut {
         before < to - slack && after > from + slack
     }
 
-    /// Whether it is a row of a file.
-    pub(super) fn is_of(&self, file: &Path) -> bool {
-        self.line.is_some() && self.file.as_ref().is_none_or(|name| file.ends_with(name))
-    }
-
     /// Line and value, or specimen and cycles.
     pub fn place(&self) -> String {
-        let [specimen, file] = [&self.specimen, &self.file].map(|name| name.as_deref().unwrap_or("all"));
-        let cycles = [self.from_cycles, self.to_cycles].map(Option::unwrap_or_default);
+        let named = |name: &Option<String>, what| name.as_ref().map_or_else(String::new, |name| format!("{what}{name} "));
+        let [from, to] = [self.from_cycles, self.to_cycles].map(Option::unwrap_or_default);
         let value = self.value.as_deref().unwrap_or_default();
-        match self.line {
-            Some(line) if self.file.is_some() => format!("{file} line {line}: {value}"),
-            Some(line) => format!("line {line}: {value}"),
-            None => format!("specimen {specimen}, {} to {} cycles", cycles[0], cycles[1]),
-        }
+        let of_cycles = || format!("{}{from} to {to} cycles", named(&self.specimen, "specimen "));
+        self.line.map_or_else(of_cycles, |line| format!("{}line {line}: {value}", named(&self.file, "")))
     }
 }
 
@@ -86,10 +77,9 @@ pub fn check_left_out(all: &[LeaveOut], files: &[String]) -> Result<()> {
     let remedy = "give { file, line, value, reason } or { specimen, from_cycles, to_cycles, reason }";
     all.iter().enumerate().try_for_each(|(index, one)| {
         let is_row = one.line.is_some();
+        let is_mixed = [one.from_cycles, one.to_cycles].iter().any(|cycles| cycles.is_some() == is_row);
         let problem = match &one.file {
-            _ if [one.from_cycles, one.to_cycles].iter().any(|cycles| cycles.is_some() == is_row) => {
-                "is neither a row nor cycles"
-            }
+            _ if is_mixed => "is neither a row nor cycles",
             _ if one.reason.trim().is_empty() => "has a reason that says nothing",
             Some(file) if !files.contains(file) => "has a file that is not one of measured.files",
             None if is_row && files.len() > 1 => "has no file, and there are several",

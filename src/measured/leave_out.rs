@@ -40,24 +40,22 @@ impl Measured {
 
     /// Marks the growth of a window; gives the place of its curve.
     fn mark(&mut self, key: &str, window: &LeaveOut, places: &HashMap<String, usize>) -> Result<usize> {
-        let specimen = &window.specimen;
         let [from_cycles, to_cycles] = [window.from_cycles, window.to_cycles].map(|cycles| cycles.unwrap_or(f64::NAN));
-        let known = || {
+        let unknown = || {
             let names = self.curves.iter().take(NAMES_MAX).map(|curve| format!("\"{}\"", curve.specimen));
             let more = self.curves.len().saturating_sub(NAMES_MAX);
-            names.chain((more > 0).then(|| format!("{more} more"))).collect::<Vec<_>>().join(", ")
-        };
-        let place = match specimen {
-            Some(name) => places.get(name).copied().ok_or_else(|| {
-                let remedy = format!("use one of {}", known());
-                input(&format!("{key}.specimen"), format!("\"{name}\""), "is no specimen of the files", remedy)
-            })?,
-            None if self.curves.len() == 1 => 0,
-            None => {
-                let remedy = format!("name one of {}", known());
-                return Err(input_missing(&format!("{key}.specimen"), "is missing, and there are several", remedy));
+            let names = names.chain((more > 0).then(|| format!("{more} more"))).collect::<Vec<_>>().join(", ");
+            let (key, remedy) = (format!("{key}.specimen"), format!("use one of {names}"));
+            match &window.specimen {
+                Some(name) => input(&key, format!("\"{name}\""), "is no specimen of the files", remedy),
+                None => input_missing(&key, "is missing, and there are several", remedy),
             }
         };
+        let place = match &window.specimen {
+            Some(name) => places.get(name).copied(),
+            None => (self.curves.len() == 1).then_some(0),
+        };
+        let place = place.ok_or_else(unknown)?;
         if !(from_cycles.is_finite() && to_cycles.is_finite() && from_cycles < to_cycles) {
             let problem = format!("is not above from_cycles = {from_cycles}");
             return Err(input(&format!("{key}.to_cycles"), to_cycles, problem, "give the window of cycles that does not count"));

@@ -19,29 +19,26 @@ pub(super) fn read(bytes: &[u8], file: &Path, import: &Import) -> Result<Table> 
     Ok(table)
 }
 
-/// A text without quotes, blanks and what separates cells.
-fn plain(text: &str) -> String {
-    text.chars().filter(|c| !(c.is_whitespace() || "\",;|".contains(*c))).collect()
-}
-
 /// Takes rows out of a table by their lines.
 /// Errors: a line without a row, or whose row has no such cell.
 fn take_rows_out(table: &mut Table, all: &[LeaveOut]) -> Result<()> {
-    for (index, one) in all.iter().enumerate().filter(|(_, one)| one.is_of(&table.file)) {
-        let (key, line) = (format!("measured.leave_out[{index}]"), one.line.unwrap_or_default());
-        let Some(place) = table.rows.iter().position(|row| row.line == line) else {
-            let problem = format!("is not a row below the header of {}", table.file.display());
-            return Err(input(&format!("{key}.line"), line, problem, "count lines from 1, the header included"));
-        };
-        let cells: Vec<&str> = table.rows[place].cells.iter().collect();
+    let plain = |text: &str| text.replace(|c: char| c.is_whitespace() || "\",;|".contains(c), "");
+    let is_of = |one: &LeaveOut| one.line.is_some() && one.file.as_ref().is_none_or(|name| table.file.ends_with(name));
+    let own: Vec<(usize, &LeaveOut)> = all.iter().enumerate().filter(|(_, one)| is_of(one)).collect();
+    for (index, one) in own {
+        let place = table.rows.iter().position(|row| Some(row.line) == one.line);
+        let cells: Vec<&str> = place.iter().flat_map(|&place| &table.rows[place].cells).collect();
         let value = one.value.as_deref().unwrap_or_default();
         // Messages cut long rows off.
         let (given, is_cut) = (plain(value.trim_end_matches("...")), value.ends_with("..."));
         let is_it = |text: &str| if is_cut { plain(text).starts_with(&given) } else { plain(text) == given };
-        if one.value.is_none() || !cells.iter().copied().chain([&*cells.concat()]).any(is_it) {
-            let problem = format!("is not a cell of line {line} of {}, which has {}", table.file.display(), cells.join(" | "));
-            return Err(input(&format!("{key}.value"), format!("\"{value}\""), problem, "give the cell that is wrong"));
-        }
+        let is_there = one.value.is_some() && cells.iter().copied().chain([&*cells.concat()]).any(is_it);
+        let Some(place) = place.filter(|_| is_there) else {
+            let (line, cells) = (one.line.unwrap_or_default(), place.map_or("no row".to_owned(), |_| cells.join(" | ")));
+            let problem = format!("is not a cell of line {line} of {}, which has {cells}", table.file.display());
+            let remedy = "count lines from 1, the header included, and give the cell that is wrong";
+            return Err(input(&format!("measured.leave_out[{index}].value"), format!("\"{value}\""), problem, remedy));
+        };
         table.rows.remove(place);
     }
     Ok(())

@@ -16,10 +16,10 @@ use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 
 /// A run as K(a) of other plates is recorded from: one that `stop.cycles_max` ended continues, since faster plates grow longer cracks in these
 /// cycles. Where it cannot, its own rows are all there is.
-fn whole<'p>(case: &Case, prediction: &'p Prediction) -> Cow<'p, Prediction> {
+fn whole<'p>(case: &Case, prediction: &'p Prediction, is_asked: bool) -> Cow<'p, Prediction> {
     let stop = Stop { cycles_max: f64::INFINITY, ..case.stop };
     let on = || predict(&Case { stop, ..case.clone() }, &Silent).ok();
-    let on = (prediction.stop == StopReason::RunOut).then(on).flatten();
+    let on = (is_asked && prediction.stop == StopReason::RunOut).then(on).flatten();
     on.map_or(Cow::Borrowed(prediction), Cow::Owned)
 }
 
@@ -36,10 +36,7 @@ impl Answers {
     /// Errors: a fleet in which nothing scatters, a run without K.
     pub fn of(case: &Case, prediction: &Prediction, lives: &Lives, asked: Asked) -> Result<Self> {
         let inspections = lives.inspection().and_then(|inspection| Inspections::of(case, prediction, inspection, asked));
-        if case.fleet.is_none() && !asked.sensitivities {
-            return Ok(Answers { inspections, ..Answers::default() });
-        }
-        let run = whole(case, prediction);
+        let run = whole(case, prediction, case.fleet.is_some() || asked.sensitivities);
         let of_whole = if matches!(run, Cow::Owned(_)) { &Lives::of(case, &run)? } else { lives };
         let of_fleet = |fleet| FleetReport::of(case, fleet, (prediction, lives.inspection()), (&run, of_whole), asked);
         let fleet = case.fleet.as_ref().map(of_fleet).transpose()?;

@@ -100,12 +100,7 @@ impl Check {
 pub fn of_case(case: &Case) -> Vec<Check> {
     let mut checks = vec![strength(case, "toughness"), strength(case, "ligament")];
     checks.extend(first_extrapolation(case));
-    checks.extend(stress_ratio(case));
-    checks.extend(thickness(case));
-    checks.extend(size(case));
-    checks.extend(lack_of_fit(case));
-    checks.extend(growth_data(case));
-    sorted(checks)
+    sorted(checks, case)
 }
 
 /// All conditions of a life, those that matter most first: what fails, what is doubtful by its effect, what was not checked, what holds.
@@ -117,12 +112,7 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(part_through::checks(case, prediction));
     checks.extend(reversal(case, prediction));
     checks.extend(retardation(case, prediction));
-    checks.extend(stress_ratio(case));
-    checks.extend(thickness(case));
-    checks.extend(size(case));
-    checks.extend(lack_of_fit(case));
-    checks.extend(growth_data(case));
-    sorted(checks)
+    sorted(checks, case)
 }
 
 /// Growth data of the library are those of one batch.
@@ -133,7 +123,10 @@ fn growth_data(case: &Case) -> Option<Check> {
     Some(Check::sized("growth_data", percent, true, Side::Either, words, "calibrate the law to tests of this batch"))
 }
 
-fn sorted(mut checks: Vec<Check>) -> Vec<Check> {
+/// With what the law says of the plate, those that matter most first.
+fn sorted(mut checks: Vec<Check>, case: &Case) -> Vec<Check> {
+    let of_law = [stress_ratio(case), thickness(case), size(case), lack_of_fit(case), growth_data(case)];
+    checks.extend(of_law.into_iter().flatten());
     let rank = |check: &Check| check.verdict as usize;
     let effect = |check: &Check| check.effect_percent.unwrap_or(0.0).abs();
     checks.sort_by(|a, b| rank(a).cmp(&rank(b)).then(effect(b).total_cmp(&effect(a))));
@@ -167,13 +160,10 @@ pub fn verdict(checks: &[Check]) -> String {
 /// The lines below it: conditions that do not hold, at most five.
 pub fn lines(checks: &[Check]) -> Vec<String> {
     let open = checks.iter().filter(|check| check.verdict != Verdict::Holds);
-    open.take(LINES_MOST).map(|check| cut(&check.words)).collect()
-}
-
-/// A line of at most [`LETTERS_MOST`] letters, cut between words.
-fn cut(words: &str) -> String {
-    let of = |end: usize| format!("{}…", &words[..words[..end].rfind(' ').unwrap_or(end)]);
-    words.char_indices().nth(LETTERS_MOST).map_or_else(|| words.to_owned(), |(end, _)| of(end))
+    // Cut between words.
+    let cut = |words: &str, end: usize| format!("{}…", &words[..words[..end].rfind(' ').unwrap_or(end)]);
+    let line = |words: &str| words.char_indices().nth(LETTERS_MOST).map_or_else(|| words.to_owned(), |(end, _)| cut(words, end));
+    open.take(LINES_MOST).map(|check| line(&check.words)).collect()
 }
 
 /// The array of `result.json`.
@@ -183,25 +173,18 @@ pub fn json(checks: &[Check]) -> Value {
 
 /// Whether a strength is there to be checked.
 fn strength(case: &Case, name: &'static str) -> Check {
-    let (is_given, is_asked, what, key, off) = match name {
-        "toughness" => (
-            case.material.toughness.is_some(),
-            case.stop.by_toughness,
-            "fracture: not checked, no toughness given",
-            "material.toughness_mpa_sqrt_m",
-            "fracture: not checked, turned off by stop.toughness",
-        ),
-        _ => (
-            case.material.yield_strength.is_some(),
-            case.stop.by_net_section,
-            "yielding: not checked, no yield strength given",
-            "material.yield_strength_mpa",
-            "yielding: not checked, turned off by stop.net_section",
-        ),
+    let of_k = name == "toughness";
+    let (is_given, is_asked, [what, missing, key, off]) = if of_k {
+        let words = ["fracture", "toughness", "material.toughness_mpa_sqrt_m", "toughness"];
+        (case.material.toughness.is_some(), case.stop.by_toughness, words)
+    } else {
+        let words = ["yielding", "yield strength", "material.yield_strength_mpa", "net_section"];
+        (case.material.yield_strength.is_some(), case.stop.by_net_section, words)
     };
+    let not_checked = |why: String, remedy: &str| Check::not_checked(name, &format!("{what}: not checked, {why}"), remedy);
     match (is_given, is_asked) {
-        (false, _) => Check::not_checked(name, what, &format!("give {key}")),
-        (true, false) => Check::not_checked(name, off, "leave the key out"),
+        (false, _) => not_checked(format!("no {missing} given"), &format!("give {key}")),
+        (true, false) => not_checked(format!("turned off by stop.{off}"), "leave the key out"),
         (true, true) => Check::new(name, Verdict::Holds, format!("{name}: the life ends where it is reached")),
     }
 }
@@ -261,9 +244,7 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
     };
     let remedy = match zone.too_small {
         _ if never => "reduce the load: K does not describe this crack",
-        "ligament" => {
-            "end the life there by stop.crack_length_mm (in a plate of all cracks): beyond it cracks grow faster than K says"
-        }
+        "ligament" => "end the life there by stop.crack_length_mm (of all cracks): beyond it cracks grow faster than K says",
         _ => "begin with a longer crack: shorter ones grow faster than K says",
     };
     let check = Check::sized(NAME, percent, never || percent > DOUBTFUL_PERCENT, Side::Unsafe, words, remedy);
@@ -378,9 +359,9 @@ fn retardation(case: &Case, prediction: &Prediction) -> Option<Check> {
         let words = format!("retardation: effect of {model} not known; given, not calibrated");
         return Some(Check::not_checked(NAME, &words, REMEDY));
     }
-    let times = if factor.is_finite() { format!("{factor:.2}× that") } else { "unlimited, not".to_owned() };
-    let words =
-        format!("retardation: life {}{times} without ({model}: given, not calibrated)", if is_cut_off { "≥ " } else { "" });
+    let least = if is_cut_off { "≥ " } else { "" };
+    let times = if factor.is_finite() { format!("{least}{factor:.2}× that") } else { "unlimited, not".to_owned() };
+    let words = format!("retardation: life {times} without ({model}: given, not calibrated)");
     let side = if factor > 1.0 { Side::Unsafe } else { Side::Safe };
     let is_large = !(1.0 / RETARDED_DOUBTFUL..=RETARDED_DOUBTFUL).contains(&factor);
     Some(Check::sized(NAME, 100.0 * (1.0 - 1.0 / factor), is_large, side, words, REMEDY))

@@ -79,11 +79,6 @@ impl FleetReport {
         self.lives.plates.iter().filter(|plate| plate.window.is_some_and(|[_, left]| left == 0.0)).count()
     }
 
-    /// Probability that inspections miss the crack of a plate to its end, mean over the plates that have one.
-    fn missed(&self) -> Option<f64> {
-        self.lives.looked.as_ref().map(|looked| looked.missed)
-    }
-
     /// What inspections make of the fleet.
     fn looked_json(&self) -> Value {
         let Some(looks) = self.looks else { return Value::Null };
@@ -116,7 +111,7 @@ impl FleetReport {
             "laws_drawn": self.lives.one_law.is_none(),
             "one_law_because": self.lives.one_law,
             "inspections": self.looked_json(),
-            "missed": self.missed(),
+            "missed": self.lives.looked.as_ref().map(|looked| looked.missed),
         })
     }
 

@@ -79,13 +79,10 @@ impl Inspections {
 
     /// A line of a summary.
     pub fn words(&self) -> String {
-        let Detection { a50, a90 } = self.schedule.detection;
+        let (count, missed) = (self.rows.len(), chance(self.missed()));
+        let [half, most] = [self.schedule.detection.a50, self.schedule.detection.a90].map(mm);
         format!(
-            "  detection      all {} inspections miss the crack: {} (independent; found with 50 % at {} mm, with 90 % at {} mm)",
-            self.rows.len(),
-            chance(self.missed()),
-            mm(a50),
-            mm(a90)
+            "  detection      all {count} inspections miss the crack: {missed} (independent; found with 50 % at {half} mm, with 90 % at {most} mm)"
         )
     }
 }

@@ -261,12 +261,9 @@ pub fn short(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Probability below which none is claimed: inspections are hardly independent of each other.
-const CHANCE_LEAST: f64 = 1e-3;
-
-/// A probability that a crack is missed.
+/// A probability that a crack is missed; below 1e-3 none is claimed, since inspections are hardly independent of each other.
 pub fn chance(probability: f64) -> String {
-    if probability < CHANCE_LEAST { "below 1e-3".to_owned() } else { format!("{probability:.2e}") }
+    if probability < 1e-3 { "below 1e-3".to_owned() } else { format!("{probability:.2e}") }
 }
 
 /// A length in millimetres.

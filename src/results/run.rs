@@ -86,18 +86,9 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// Of a run, what was found about it, and warnings of its judgement.
-    pub fn of(
-        case: &Case,
-        prediction: &Prediction,
-        (lives, quality, answers): (&Lives, &Quality, &Answers),
-        judged: &[String],
-    ) -> Self {
+    /// Of a run and what was found about it.
+    pub fn of(case: &Case, prediction: &Prediction, (lives, quality, answers): (&Lives, &Quality, &Answers)) -> Self {
         let mut result = json::result(case, prediction);
-        if let Some(listed) = result["warnings"].as_array_mut() {
-            let new: Vec<Value> = judged.iter().map(|line| json!(line)).filter(|line| !listed.contains(line)).collect();
-            listed.extend(new);
-        }
         lives.add_to(&mut result);
         quality.add_to(&mut result);
         answers.add_to(&mut result);
@@ -206,31 +197,25 @@ fn draw_rates(folder: &Path, case: &Case, tables: &RunTables) -> Result<()> {
 }
 
 /// What came of a run, in words.
-pub fn words(case: &Case, prediction: &Prediction, (lives, quality, answers): (&Lives, &Quality, &Answers)) -> Vec<String> {
+pub fn words(case: &Case, prediction: &Prediction, lives: &Lives, quality: &Quality) -> Vec<String> {
     let checks = checks::of_run(case, prediction);
     let cycles = prediction.life().map(|life| lives.life_words().unwrap_or_else(|| format!("{life:.1} cycles")));
-    let is_refused = refusal(case, prediction).is_some();
-    let life = match cycles {
-        _ if breaks_at_once(case, prediction).is_some() => "no life, the first load breaks the plate".to_owned(),
-        Some(life) if is_refused => format!("no life that counts, {life} were computed"),
-        Some(life) if prediction.stop == StopReason::EnteredHole => format!("{life} to the hole"),
-        Some(life) if checks::is_bound_below(case, prediction) => format!("life at least {life}"),
-        Some(life) if prediction.stop.is_lower_bound() => format!("{life} to the end of the run"),
-        Some(life) => format!("life {life}"),
-        None => "life unlimited".to_owned(),
-    };
-    let mut lines = match answers.headline().filter(|_| !is_refused) {
-        // The run is one plate, and may live longer than all of a fleet.
-        Some(fleet) => {
-            vec![format!("{}: fleet, {fleet}", case.name), format!("  this run       {life}: the plate of the case alone")]
-        }
-        None => vec![format!("{}: {life}", case.name)],
-    };
-    lines.extend([
+    let mut lines = vec![
+        match cycles {
+            _ if breaks_at_once(case, prediction).is_some() => format!("{}: no life, the first load breaks the plate", case.name),
+            Some(life) if refusal(case, prediction).is_some() => {
+                format!("{}: no life that counts, {life} were computed", case.name)
+            }
+            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life} to the hole", case.name),
+            Some(life) if checks::is_bound_below(case, prediction) => format!("{}: life at least {life}", case.name),
+            Some(life) if prediction.stop.is_lower_bound() => format!("{}: {life} to the end of the run", case.name),
+            Some(life) => format!("{}: life {life}", case.name),
+            None => format!("{}: life unlimited", case.name),
+        },
         format!("  crack length   {}", length_words(case, prediction)),
         format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
         format!("  verdict        {}", checks::verdict(&checks)),
-    ]);
+    ];
     lines.extend(through_words(case, prediction).map(|words| format!("  break-through  {words}")));
     lines.extend(phase_words(prediction).map(|words| format!("  phase I        {words}")));
     lines.extend(spectrum::words(case, prediction).map(|passes| format!("  spectrum       {passes}")));
@@ -305,7 +290,7 @@ fn through_words(case: &Case, prediction: &Prediction) -> Option<String> {
 
 /// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.
 fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
-    let PlasticZone { first, last, .. } = PlasticZone::of(case, prediction)?;
+    let PlasticZone { first, last, .. } = plastic_zone::plastic_zone(case, &prediction.curve)?;
     let (horizon, thickness) = (prediction.figures.horizon, case.specimen.thickness);
     let (room, name) = last.room();
     let of_horizon = if horizon > 0.0 { format!(", {:.2} of the horizon", last.size / horizon) } else { String::new() };

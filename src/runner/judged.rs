@@ -54,7 +54,7 @@ impl Judged {
             Ok(answers) => (answers, Ok(())),
             Err(error) => (Answers::default(), Err(error)),
         };
-        let kept = Kept::of(case, prediction, (&lives, &quality, &answers), &judged);
+        let kept = Kept::of(case, prediction, (&lives, &quality, &answers));
         let refusal = judgement::refusal(case, prediction);
         let mut warnings: Vec<String> = refusal.iter().map(Error::to_string).collect();
         let listed = kept.result["warnings"].as_array().into_iter().flatten();
@@ -92,7 +92,12 @@ impl Judged {
 
     /// The result in words.
     pub fn words(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
-        let mut lines = run::words(case, prediction, (&self.lives, &self.quality, &self.answers));
+        let mut lines = run::words(case, prediction, &self.lives, &self.quality);
+        if let Some(fleet) = self.answers.headline().filter(|_| self.refusal.is_none()) {
+            // The run is one plate, and may live longer than all of a fleet.
+            let (name, run) = lines[0].split_at(case.name.len() + 2);
+            lines.splice(..1, [format!("{name}fleet, {fleet}"), format!("  this run       {run}: the plate of the case alone")]);
+        }
         lines.extend(self.answers.words());
         lines
     }

@@ -199,7 +199,11 @@ fn broken_windows_are_refused() {
         ("an empty reason", window("from_cycles = 0, to_cycles = 1e4, reason = \" \""), "says nothing"),
         ("half a window", window("from_cycles = 0, reason = \"x\""), "is neither a row nor cycles"),
         ("a row and cycles", window("line = 2, from_cycles = 0, to_cycles = 1, reason = \"x\""), "is neither a row nor cycles"),
-        ("no such line", window("line = 999, value = \"0\", reason = \"x\""), "line = 999: is not a row"),
+        (
+            "no such line",
+            window("line = 999, value = \"0\", reason = \"x\""),
+            "is not a cell of line 999 of test.csv, which has no row",
+        ),
         ("another value", window("line = 2, value = \"7x\", reason = \"x\""), "is not a cell of line 2"),
         ("no value", window("line = 2, reason = \"x\""), "is not a cell of line 2"),
         ("another file", window("file = \"b.csv\", line = 2, value = \"0\", reason = \"x\""), "not one of measured.files"),

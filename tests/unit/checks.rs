@@ -94,7 +94,7 @@ fn extrapolation_has_two_sides() {
     assert_eq!(refusal(&case, &run).unwrap().exit_code(), 2);
     let lives = perilife_results::band::Lives::of(&case, &run).unwrap();
     assert!(
-        perilife_results::run::words(&case, &run, (&lives, &Default::default(), &Default::default()))[0]
+        perilife_results::run::words(&case, &run, &lives, &perilife_results::quality::Quality::default())[0]
             .contains(": no life that counts, 100.0 cycles were computed")
     );
     // All of it on the safe side counts, with a word.

@@ -2,9 +2,9 @@
 
 use std::sync::OnceLock;
 
-use super::MM;
 use super::us::{System, Unit, renamed};
 use super::words::{in_units, with_keys};
+use super::{INCH, MM};
 
 static SHOWN: OnceLock<System> = OnceLock::new();
 
@@ -36,11 +36,10 @@ pub fn per(metric: &str) -> f64 {
 
 /// A length that a user types, m: `0.25in`, `6.35mm`, or a number in the unit that is shown.
 pub fn length_given(text: &str) -> Option<f64> {
-    let text = text.trim();
-    let units = ["mm", "inch", "in"].into_iter().find_map(|unit| Some((text.strip_suffix(unit)?, unit)));
-    let (number, unit) = units.unwrap_or((text, name_of("mm")));
-    let size = Unit::named("mm", System::Si).filter(|_| unit != "mm").map_or(1.0, |unit| unit.factor(System::Si));
-    number.trim_end().parse::<f64>().ok().map(|number| number * size * MM)
+    let units = [("mm", MM), ("inch", INCH), ("in", INCH)];
+    let given = units.into_iter().find_map(|(unit, size)| Some((text.trim().strip_suffix(unit)?, size)));
+    let (number, size) = given.unwrap_or((text, if shown() == System::Us { INCH } else { MM }));
+    Some(number.trim().parse::<f64>().ok()? * size)
 }
 
 /// Name of the unit that is shown in place of a metric one.

@@ -122,7 +122,7 @@ impl Prediction {
 }
 
 /// Tip of a plate that grew fastest at the end of a run, or has the largest K_I where nothing grew; `None` of standard specimens.
-pub fn governing_tip(specimen: &Specimen, curve: &[CurvePoint]) -> Option<usize> {
+fn governing_tip(specimen: &Specimen, curve: &[CurvePoint]) -> Option<usize> {
     let last = curve.last().filter(|_| specimen.kind.is_plate())?;
     let before = curve.len().checked_sub(2).map(|row| &curve[row]);
     let leads = |tip: usize| match before {
@@ -132,16 +132,10 @@ pub fn governing_tip(specimen: &Specimen, curve: &[CurvePoint]) -> Option<usize>
     (0..last.tips.len()).max_by(|a, b| leads(*a).total_cmp(&leads(*b)))
 }
 
-/// Length of the governing crack of a plate where all its cracks have a length, m; that length of a standard specimen.
-pub fn governing_length(specimen: &Specimen, curve: &[CurvePoint], total: f64) -> f64 {
-    let of_tip = |tip| {
-        let after = curve.partition_point(|row| row.crack_length < total).min(curve.len() - 1);
-        let [from, to] = [&curve[after.saturating_sub(1)], &curve[after]];
-        let share = ((total - from.crack_length) / (to.crack_length - from.crack_length)).clamp(0.0, 1.0);
-        let [a, b] = [from.crack_length_of(specimen, tip)?, to.crack_length_of(specimen, tip)?];
-        Some(if share.is_nan() { b } else { a + share * (b - a) })
-    };
-    governing_tip(specimen, curve).and_then(of_tip).unwrap_or(total)
+/// Length of the governing crack of a plate at a row, m; that of the row of a standard specimen.
+pub fn governing_length<'a>(specimen: &'a Specimen, curve: &[CurvePoint]) -> impl Fn(&CurvePoint) -> f64 + 'a {
+    let tip = governing_tip(specimen, curve);
+    move |row| tip.and_then(|tip| row.crack_length_of(specimen, tip)).unwrap_or(row.crack_length)
 }
 
 /// What a run reports while it goes on.

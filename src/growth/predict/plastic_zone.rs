@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{CurvePoint, Prediction, governing_tip};
+use super::{CurvePoint, governing_length};
 use crate::case::Case;
 use perilife_base::units::MM;
 use perilife_plate::material::Plane;
@@ -58,9 +58,7 @@ pub struct PlasticZone {
 /// a plate the nearest free edge is at least `(4/π) (K_max/σ_Y)²` away from every tip, and cracks from rims are at least as long.
 pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     let strength = case.material.yield_strength?;
-    let governing = governing_tip(&case.specimen, curve);
-    let length =
-        |point: &CurvePoint| governing.and_then(|tip| point.crack_length_of(&case.specimen, tip)).unwrap_or(point.crack_length);
+    let length = governing_length(&case.specimen, curve);
     let known: Vec<(&CurvePoint, Zone)> = curve
         .iter()
         .filter(|point| point.delta_k.is_finite())
@@ -164,7 +162,7 @@ fn asked(case: &Case, zone: &Zone, strength: f64) -> f64 {
 
 /// What the user should know: yielding that K does not cover, and a plane state that the thickness contradicts.
 pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
-    let (Some(zone), Some(strength)) = (plastic_zone(case, curve), case.material.yield_strength) else { return Vec::new() };
+    let Some(zone) = plastic_zone(case, curve) else { return Vec::new() };
     let mut lines = Vec::new();
     if let Some(length) = zone.too_large_from {
         let (room, name) = zone.last.room();
@@ -180,9 +178,8 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
             room / MM
         ));
     }
-    let needed = thickness_of_strain(&zone.first, strength);
     // With retardation the life by the other zones is told beside it.
-    if case.material.plane == Plane::Strain && case.specimen.thickness < needed && case.retardation.is_none() {
+    if let Some((Plane::Stress, [needed, _])) = other_plane(case, curve).filter(|_| case.retardation.is_none()) {
         lines.push(format!(
             "material.plane = \"strain\", but plane strain at the crack tip asks for a thickness of {:.2} mm from the start \
              (2.5 (K_max/yield)², ASTM E399), and the plate has {:.2} mm",
@@ -193,23 +190,11 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
     lines
 }
 
-/// Thickness from which on a tip is in plane strain (ASTM E399), m.
-fn thickness_of_strain(zone: &Zone, strength: f64) -> f64 {
-    2.5 * (zone.k_max / strength).powi(2)
-}
-
 /// Plane state by the thickness of a plate at the start, where its case has the other, and the thickness from which on a tip is in plane strain,
 /// m, at the start and at the end.
 pub(super) fn other_plane(case: &Case, curve: &[CurvePoint]) -> Option<(Plane, [f64; 2])> {
     let (zone, strength) = plastic_zone(case, curve).zip(case.material.yield_strength)?;
-    let needed = [zone.first, zone.last].map(|zone| thickness_of_strain(&zone, strength));
-    let asked = if case.specimen.thickness > needed[0] { Plane::Strain } else { Plane::Stress };
+    let needed = [zone.first, zone.last].map(|zone| 2.5 * (zone.k_max / strength).powi(2));
+    let asked = if case.specimen.thickness >= needed[0] { Plane::Strain } else { Plane::Stress };
     (asked != case.material.plane).then_some((asked, needed))
-}
-
-impl PlasticZone {
-    /// The zone of a finished run.
-    pub fn of(case: &Case, prediction: &Prediction) -> Option<Self> {
-        plastic_zone(case, &prediction.curve)
-    }
 }

@@ -5,11 +5,10 @@ use std::time::Instant;
 
 use super::checkpoint::{self, Checkpoint};
 use super::initiation::{PhaseOne, phase_one};
-use super::outcome::governing_length;
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::way::Way;
-use super::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord};
+use super::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord, governing_length};
 use super::{laws, pin_arcs, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::{CrackGrowth, GrowthStatus, plate};
@@ -166,8 +165,8 @@ impl<'a> Record<'a> {
         let mut curve = growth.curve();
         let counted = growth.overload();
         let recounted = retarded::recount(case, &curve, stop, counted)?;
-        let own = recounted.as_ref();
-        let of_zones = own.map_or(Ok(None), |own| retarded::other_zones(case, &curve, stop, own, counted.is_none()))?;
+        let end = counted.is_none().then_some(stop);
+        let of_zones = recounted.as_ref().and_then(|own| retarded::other_zones(case, &curve, own, end));
         // Rows of a front are retarded as they grow, and what they would take without is not known.
         let unretarded_cycles = recounted.as_ref().filter(|_| counted.is_none()).and(curve.last()).map(|row| row.cycles);
         let (stop, of_order) = match recounted {
@@ -189,8 +188,10 @@ impl<'a> Record<'a> {
         snapshots.keep_within(&curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
-        let length = |check: CrossCheck| governing_length(&case.specimen, &curve, check.crack_length);
-        let cross_check = growth.cross_check(last).map(|check| CrossCheck { crack_length: length(check), ..check });
+        let at = |total: f64| {
+            curve.iter().find(|row| row.crack_length >= total).map_or(total, governing_length(&case.specimen, &curve))
+        };
+        let cross_check = growth.cross_check(last).map(|check| CrossCheck { crack_length: at(check.crack_length), ..check });
         let mut warnings = warnings(case, growth, of_growth, &curve);
         warnings.extend(cross_check.and_then(|check| check.warning()));
         warnings.extend(of_order.into_iter().chain(of_zones));

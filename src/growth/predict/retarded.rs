@@ -12,7 +12,7 @@ use crate::cracks::steering::equivalent_factor;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
 use perilife_laws::growth_law::GrowthLaw;
-use perilife_laws::retardation::{Laws, March, Marched, Retardation, Underway, Zone, between};
+use perilife_laws::retardation::{Laws, March, Marched, Underway, Zone, between};
 use perilife_plate::material::Plane;
 
 /// Difference between K of tips that grow, from which the pace of the slower ones is worth a word.
@@ -81,19 +81,20 @@ pub(super) fn recount(
     Ok(Some(recounted(rows, stop, of_front)))
 }
 
-/// Warning of a plate whose thickness needs another plane state than the zones of `own` have; with the life by those where all of it was marched.
-/// Errors: a case without law.
-pub(super) fn other_zones(
-    case: &Case,
-    curve: &[CurvePoint],
-    stop: StopReason,
-    own: &Recounted,
-    is_whole: bool,
-) -> Result<Option<String>> {
-    let Some((plane, [first, last])) = other_plane(case, curve) else { return Ok(None) };
-    let mut other = Case { retardation: case.retardation.as_ref().map(|model| in_plane(case, model, plane)), ..case.clone() };
-    other.material.plane = plane;
-    let other = if is_whole { recount(&other, curve, stop, None)? } else { None };
+/// Warning of a plate whose thickness needs another plane state than the zones of `own` have; with the life by those where all of it was marched,
+/// to this end.
+pub(super) fn other_zones(case: &Case, curve: &[CurvePoint], own: &Recounted, end: Option<StopReason>) -> Option<String> {
+    let (plane, [first, last]) = other_plane(case, curve)?;
+    let mut other = case.clone();
+    let model = other.retardation.as_mut()?;
+    (other.material.plane, model.plane) = (plane, plane);
+    // Constants that the case does not give are the defaults of the other state.
+    for (constant, value) in model.kind.0.constants.iter().zip(&mut model.constants) {
+        let [here, there] = [case.material.plane, plane].map(|plane| (constant.default)(plane, None));
+        let is_given = !case.echo["loading"][constant.key].is_null();
+        *value = there.filter(|_| here != there && !is_given).unwrap_or(*value);
+    }
+    let other = end.and_then(|end| recount(&other, curve, end, None).ok()?);
     let life = |counted: &Recounted| match counted.stop {
         StopReason::NothingAges => "unlimited".to_owned(),
         _ => format!("{:.0} cycles", counted.curve.last().map_or(0.0, |row| row.cycles)),
@@ -103,22 +104,11 @@ pub(super) fn other_zones(
         format!("; with zones of plane {plane} the life is {} instead of {} ({side} side)", life(&other), life(own))
     });
     let [thickness, first, last] = [case.specimen.thickness, first, last].map(|size| size / MM);
-    Ok(Some(format!(
+    Some(format!(
         "retardation: plastic zones are those of plane {}, but the plate of {thickness:.2} mm is {sense} than plane strain at the tip needs, \
          {first:.2} mm at the start and {last:.2} mm at the end (2.5 (K_max/yield)², ASTM E399){lives}; give material.plane = \"{plane}\"",
         case.material.plane
-    )))
-}
-
-/// A model of retardation in another plane state; constants that a case does not give are the defaults there.
-fn in_plane(case: &Case, model: &Retardation, plane: Plane) -> Retardation {
-    let mut other = Retardation { plane, ..model.clone() };
-    for (constant, value) in model.kind.0.constants.iter().zip(&mut other.constants) {
-        let [here, there] = [model.plane, plane].map(|plane| (constant.default)(plane, None));
-        let is_given = !case.echo["loading"][constant.key].is_null();
-        *value = there.filter(|_| here != there && !is_given).unwrap_or(*value);
-    }
-    other
+    ))
 }
 
 /// K of the largest load at a tip at both ends of an interval, Pa√m; what is not read is that of the other end, or of the row.

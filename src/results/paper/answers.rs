@@ -32,25 +32,15 @@ fn inspections(result: &Value, sheets: &mut Sheets<'_>) -> String {
     let (found, window) = (&result["inspections"], &result["inspection"]);
     let Some(rows) = found["rows"].as_array() else { return String::new() };
     let number = |of: &Value, key: &str| of[key].as_f64().unwrap_or(f64::NAN);
+    let length = |of: &Value, key: &str| short(number(of, key));
     let mut lines = vec![
-        (
-            "Finds",
-            format!(
-                "a crack of {} mm with 50 %, of {} mm with 90 %",
-                short(number(found, "a50_mm")),
-                short(number(found, "a90_mm"))
-            ),
-        ),
+        ("Finds", format!("a crack of {} mm with 50 %, of {} mm with 90 %", length(found, "a50_mm"), length(found, "a90_mm"))),
         ("Interval", interval_of(result).unwrap_or_default()),
         ("All miss", format!("with a probability of {}, inspections taken as independent", probability(number(found, "missed")))),
     ];
     if let Some(left) = window["remaining_cycles"].as_f64() {
-        let words = format!(
-            "{} cycles from {} mm to the end, over {}",
-            whole(left),
-            short(number(window, "crack_length_mm")),
-            short(number(window, "factor"))
-        );
+        let [from, factor] = ["crack_length_mm", "factor"].map(|key| length(window, key));
+        let words = format!("{} cycles from {from} mm to the end, over {factor}", whole(left));
         lines.insert(1, ("Detectable to critical", words));
     }
     let row = |row: &Value| {
@@ -100,23 +90,19 @@ fn fleet(result: &Value, sheets: &mut Sheets<'_>) -> String {
     ];
     let looks = &fleet["inspections"];
     if let (Some(length), Some(factor)) = (looks["detectable_mm"].as_f64(), looks["factor"].as_f64()) {
-        rows.push((
-            "Detectable to critical",
-            format!(
-                "{}, each plate by its own law, load and critical length, from {} mm",
-                quantiles(&looks["detectable_to_critical_cycles"]),
-                short(length)
-            ),
-        ));
+        let (left, from) = (quantiles(&looks["detectable_to_critical_cycles"]), short(length));
+        let words = format!("{left}, each plate by its own law, load and critical length, from {from} mm");
+        rows.push(("Detectable to critical", words));
         let never = looks["break_before_detectable"].as_f64().filter(|never| *never > 0.0);
         rows.extend(never.map(|never| ("Break before", format!("{} plates", whole(never)))));
         let at = |key: &str| looks[key].as_f64();
-        let first = at("first_inspection_cycles").zip(at("break_before_first_inspection"));
-        rows.extend(first.map(|(first, before)| {
-            ("First inspection", format!("of all plates after {} cycles; {} plates break before", whole(first), whole(before)))
-        }));
-        let every = at("interval_cycles").map(|every| every_words(every, None, per_pass));
-        rows.extend(every.map(|every| ("Inspect every", format!("{every}: the 5 % of plates over {}", short(factor)))));
+        if let (Some(first), Some(before), Some(every)) =
+            (at("first_inspection_cycles"), at("break_before_first_inspection"), at("interval_cycles"))
+        {
+            rows.push(("First inspection", format!("of all after {} cycles; {} break before", whole(first), whole(before))));
+            let every = every_words(every, None, per_pass);
+            rows.push(("Inspect every", format!("{every}: the 5 % of plates over {}", short(factor))));
+        }
     }
     let missed = looks["missed_after"].as_array().filter(|missed| !missed.is_empty());
     let missed = missed.map_or_else(String::new, |missed| {

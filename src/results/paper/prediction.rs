@@ -137,8 +137,8 @@ fn life(result: &Value, reason: &str) -> String {
     let cycles = |value: String| format!("{value} <small>cycles</small>");
     if let Some(plates) = result["fleet"]["plates"].as_f64() {
         let [low, middle, high] = ["p05", "p50", "p95"].map(|name| quantile_words(&result["fleet"]["life_cycles"], name));
-        let below =
-            format!("median {middle}, 95 % {high} cycles, {} plates; this run, one plate: {}", whole(plates), whole(life));
+        let (plates, run) = (whole(plates), whole(life));
+        let below = format!("median {middle}, 95 % {high} cycles, {plates} plates; this run, one plate: {run}");
         return card("Life of the fleet, 5 % of plates", &cycles(low), &below);
     }
     let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| result["band"][key].as_f64());
@@ -307,13 +307,8 @@ fn checks(result: &Value) -> String {
 
 /// Every message of the run, as the console has them.
 fn messages(warnings: &Value) -> String {
-    let lines: String = warnings
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .map(|line| format!("<li>{}</li>\n", prose(line)))
-        .collect();
+    let line = |line: &Value| Some(format!("<li>{}</li>\n", prose(line.as_str()?)));
+    let lines: String = warnings.as_array().into_iter().flatten().filter_map(line).collect();
     if lines.is_empty() { lines } else { format!("<h2>Messages</h2>\n<ul class=\"small\">\n{lines}</ul>\n") }
 }
 
