@@ -89,10 +89,9 @@ pub fn run(args: &Args) -> Result<()> {
         task.read_plate(&document, file).map_err(|error| document.locate(error))?;
     }
     if let Task::Prediction { wanted, .. } = &mut task {
-        wanted.strength = args.residual_strength;
+        (wanted.strength, wanted.asked.sensitivities) = (args.residual_strength, args.sensitivities);
         wanted.asked.detection = args.pod.as_deref().map(str::parse).transpose()?;
         wanted.asked.first_inspection = args.first_inspection.map(|cycles| cycles as f64);
-        wanted.asked.sensitivities = args.sensitivities;
         (wanted.no_estimate, wanted.cross_check) = (args.no_estimate, args.cross_check);
         let names = ["--inspect-from", "--factor", "--tip"];
         if let Some(text) = &args.inspect_from {

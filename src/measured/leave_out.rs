@@ -51,11 +51,8 @@ impl Measured {
                 None => input_missing(&key, "is missing, and there are several", remedy),
             }
         };
-        let place = match &window.specimen {
-            Some(name) => places.get(name).copied(),
-            None => (self.curves.len() == 1).then_some(0),
-        };
-        let place = place.ok_or_else(unknown)?;
+        let alone = (self.curves.len() == 1).then_some(0);
+        let place = window.specimen.as_ref().map_or(alone, |name| places.get(name).copied()).ok_or_else(unknown)?;
         if !(from_cycles.is_finite() && to_cycles.is_finite() && from_cycles < to_cycles) {
             let problem = format!("is not above from_cycles = {from_cycles}");
             return Err(input(&format!("{key}.to_cycles"), to_cycles, problem, "give the window of cycles that does not count"));

@@ -98,9 +98,8 @@ impl Check {
 
 /// What can be told of a case before it is run.
 pub fn of_case(case: &Case) -> Vec<Check> {
-    let mut checks = vec![strength(case, "toughness"), strength(case, "ligament")];
-    checks.extend(first_extrapolation(case));
-    sorted(checks, case)
+    let strengths = ["toughness", "ligament"].map(|name| strength(case, name));
+    sorted(strengths.into_iter().chain(first_extrapolation(case)).collect(), case)
 }
 
 /// All conditions of a life, those that matter most first: what fails, what is doubtful by its effect, what was not checked, what holds.
@@ -127,9 +126,8 @@ fn growth_data(case: &Case) -> Option<Check> {
 fn sorted(mut checks: Vec<Check>, case: &Case) -> Vec<Check> {
     let of_law = [stress_ratio(case), thickness(case), size(case), lack_of_fit(case), growth_data(case)];
     checks.extend(of_law.into_iter().flatten());
-    let rank = |check: &Check| check.verdict as usize;
     let effect = |check: &Check| check.effect_percent.unwrap_or(0.0).abs();
-    checks.sort_by(|a, b| rank(a).cmp(&rank(b)).then(effect(b).total_cmp(&effect(a))));
+    checks.sort_by(|a, b| (a.verdict as usize).cmp(&(b.verdict as usize)).then(effect(b).total_cmp(&effect(a))));
     checks
 }
 

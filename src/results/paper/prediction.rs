@@ -143,7 +143,7 @@ fn life(result: &Value, reason: &str) -> String {
     }
     let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| result["band"][key].as_f64());
     if let (Some(low), Some(middle), Some(high)) = (low, middle, high) {
-        let of = |value: f64| by_band(value, low, high);
+        let of = |value: f64| by_band(value, &[low, middle, high]);
         let below = format!("9 of 10 plates: {} to {}; the fitted constants alone give {}", of(low), of(high), whole(life));
         return card(&format!("{title}, median"), &cycles(of(middle)), &below);
     }
@@ -152,7 +152,7 @@ fn life(result: &Value, reason: &str) -> String {
         Some(why) => format!("no band of plates: {}", quoted(why)),
         None => "no band of plates".to_owned(),
     };
-    card(title, &cycles(by_band(life, life * (1.0 - error), life * (1.0 + error))), &below)
+    card(title, &cycles(by_band(life, &[1.0 - error, 1.0, 1.0 + error])), &below)
 }
 
 fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String {

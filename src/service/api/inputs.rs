@@ -148,7 +148,7 @@ pub async fn measured(State(app): State<App>, Extension(caller): Extension<Calle
 /// What a field holds as JSON of a form; the default where it is missing.
 fn json_of<T: DeserializeOwned + Default>(key: &str, text: Option<&String>, form: &str) -> Answer<T> {
     let Some(text) = text else { return Ok(T::default()) };
-    let wrong = |error| input(key, text, format!("cannot be read: {error}"), format!("give a JSON {form}")).into();
+    let wrong = |error| input(key, text, format!("names no {key}: {error}"), format!("give a JSON {form}")).into();
     serde_json::from_str(text).map_err(wrong)
 }
 
