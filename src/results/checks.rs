@@ -353,7 +353,7 @@ fn retardation(case: &Case, prediction: &Prediction) -> Option<Check> {
     let (model, is_cut_off) = (case.retardation.as_ref()?.kind, prediction.stop == StopReason::RunOut);
     let factor = prediction.life().unwrap_or(f64::INFINITY) / prediction.unretarded_cycles.unwrap_or(f64::NAN);
     // A run that is cut off may have come as far as the other, which then says nothing.
-    if !(factor > if is_cut_off { 1.0 } else { 0.0 }) {
+    if factor.is_nan() || is_cut_off && factor <= 1.0 {
         let words = format!("retardation: effect of {model} not known; given, not calibrated");
         return Some(Check::not_checked(NAME, &words, REMEDY));
     }

@@ -235,7 +235,7 @@ pub fn loading(case: &Case) -> String {
             let [low, high] = spectrum.ratios.map(short);
             format!("spectrum, {cycles}{sides}{bending}, R = {low} to {high}, {} at the largest", short(loading.ratio))
         }
-        None => format!("{cycles}{sides}{bending}, R = {}{residual}", loading.ratio),
+        None => format!("{cycles}{sides}{bending}, R = {}{residual}", short(loading.ratio)),
     }
 }
 

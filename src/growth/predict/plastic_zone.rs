@@ -190,8 +190,7 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
     lines
 }
 
-/// Plane state by the thickness of a plate at the start, where its case has the other, and the thickness from which on a tip is in plane strain,
-/// m, at the start and at the end.
+/// Plane state by the thickness at the start where the case has the other, and the least thickness of plane strain, m, at start and end.
 pub(super) fn other_plane(case: &Case, curve: &[CurvePoint]) -> Option<(Plane, [f64; 2])> {
     let (zone, strength) = plastic_zone(case, curve).zip(case.material.yield_strength)?;
     let needed = [zone.first, zone.last].map(|zone| 2.5 * (zone.k_max / strength).powi(2));

@@ -15,7 +15,7 @@ use crate::{CrackGrowth, GrowthStatus, plate};
 use perilife_base::error::{Error, Result};
 use perilife_base::raster::PointGrid;
 use perilife_base::raster::Snapshot;
-use perilife_base::units::{MPA, MPA_SQRT_M};
+use perilife_base::units::{MPA, MPA_SQRT_M, round_off};
 use perilife_base::watch::{Silent, Watch};
 
 /// Exponent from which small causes decide: an error of direction of a tenth of a degree has become some 10° at 2 e³.
@@ -240,9 +240,9 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
 
 /// What the user should know of the local stress for which the S-N line of phase I is taken: its ratio, and yield.
 fn of_local_stress(case: &Case, phase: &PhaseOne) -> Vec<String> {
-    let ratio = case.loading.ratio;
+    let ratio = round_off(case.loading.ratio);
     let mut words = vec![format!("phase I: the S-N line is taken for one at the stress ratio of the case, {ratio}")];
-    let largest = phase.range / (1.0 - ratio);
+    let largest = phase.range / (1.0 - case.loading.ratio);
     if let Some(strength) = case.material.yield_strength.filter(|strength| largest > *strength) {
         words.push(format!(
             "phase I: the largest local stress, {:.1} MPa if all stays elastic, is beyond the yield strength of {:.1} MPa: S-N lines of \

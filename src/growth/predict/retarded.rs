@@ -81,8 +81,7 @@ pub(super) fn recount(
     Ok(Some(recounted(rows, stop, of_front)))
 }
 
-/// Warning of a plate whose thickness needs another plane state than the zones of `own` have; with the life by those where all of it was marched,
-/// to this end.
+/// Warning of a thickness that needs another plane state than the zones of `own` have; with the life by those, marched to this end.
 pub(super) fn other_zones(case: &Case, curve: &[CurvePoint], own: &Recounted, end: Option<StopReason>) -> Option<String> {
     let (plane, [first, last]) = other_plane(case, curve)?;
     let mut other = case.clone();

@@ -96,9 +96,8 @@ fn fleet(result: &Value, sheets: &mut Sheets<'_>) -> String {
         let never = looks["break_before_detectable"].as_f64().filter(|never| *never > 0.0);
         rows.extend(never.map(|never| ("Break before", format!("{} plates", whole(never)))));
         let at = |key: &str| looks[key].as_f64();
-        if let (Some(first), Some(before), Some(every)) =
-            (at("first_inspection_cycles"), at("break_before_first_inspection"), at("interval_cycles"))
-        {
+        if let Some(first) = at("first_inspection_cycles") {
+            let [before, every] = ["break_before_first_inspection", "interval_cycles"].map(|key| at(key).unwrap_or(f64::NAN));
             rows.push(("First inspection", format!("of all after {} cycles; {} break before", whole(first), whole(before))));
             let every = every_words(every, None, per_pass);
             rows.push(("Inspect every", format!("{every}: the 5 % of plates over {}", short(factor))));
