@@ -12,6 +12,7 @@ mod support {
     pub mod correspondence;
     pub mod daily;
     pub mod fatigue_test;
+    pub mod field;
     pub mod hand_cases;
     pub mod made_up_case;
     pub mod made_up_run;

@@ -20,7 +20,7 @@ mod hand_calculation;
 mod laws;
 mod nothing_lost;
 mod part_through;
-mod practice;
+pub mod practice;
 mod rates;
 mod readme;
 mod report;

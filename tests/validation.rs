@@ -10,6 +10,9 @@ mod kept_back;
 mod median_virkler;
 mod notched_plates;
 mod plate_band;
+
+mod practice5_laws;
+mod practice5_spectra;
 mod population;
 mod practice5_answers;
 mod rates_virkler;

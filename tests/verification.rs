@@ -42,6 +42,7 @@ mod scene_checkpoint;
 mod scene_default_law;
 mod scene_strength;
 mod solvers;
+mod spectra_by_chance;
 mod stability;
 mod stress_field;
 mod stress_intensity;

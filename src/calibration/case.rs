@@ -67,6 +67,7 @@ struct MeasuredSlice {
     to_crack_length_mm: Option<f64>,
     length_unit: Option<LengthUnit>,
     cycle_unit: Option<CycleUnit>,
+    precision_mm: Option<f64>,
     load_unit: Option<LoadUnit>,
     #[serde(default)]
     columns: ColumnNames,
@@ -136,6 +137,7 @@ impl CalibrationCase {
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
         measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        measured.leave_standing_out()?;
         let read = measured.curves.clone();
         measured.leave_out(&keys.leave_out)?;
         let window_ends = window_ends(&keys)?;
@@ -244,7 +246,7 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> perilife_base::error::Resu
         measured.add(parse(&bytes, &folder.path(file), &import)?)?;
         sources.push(source(file, &bytes));
     }
-    Ok((measured, sources))
+    Ok((measured.of_precision("measured.precision_mm", keys.precision_mm)?, sources))
 }
 
 /// What the record says about a measured file.

@@ -13,10 +13,10 @@ use super::paris::{self, Paris};
 use super::population::intervals::Specimen;
 use super::population::{Population, fit as fit_population};
 use super::power_law::PowerLaw;
-use super::rates::STEP_MIN;
+use super::rates::{STEP_MIN, threshold};
 use super::search::{Constants, FittedCurve, as_fitted, fit_all, fit_one, fitted_curve, is_at_end, own_law, picture};
 use perilife_base::error::{Error, Result, input};
-use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::record::Estimate;
 use perilife_laws::STEADY_EXPONENTS;
 use perilife_measured::{MeasuredCurve, first_of};
@@ -132,6 +132,11 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     }
     let mut estimate = Estimate::LeastSquares;
     let step_rates: Vec<Vec<StepRate>> = task.curves.iter().map(|curve| step_rates(curve, task.delta_k)).collect();
+    let of_threshold = |(curve, rates): (&MeasuredCurve, &Vec<StepRate>)| {
+        let (_, words) = threshold(rates.iter().map(|rate| (rate.log_k.exp(), rate.log_rate.exp() / MM_PER_CYCLE)))?;
+        Some(format!("specimen {}: {words}", curve.specimen))
+    };
+    warnings.extend(first_of(task.curves.iter().zip(&step_rates).filter_map(of_threshold).collect()));
     let robust = robust_line_of_all(&step_rates).filter(|_| is_fitted);
     let strange: Vec<Vec<Run>> =
         step_rates.iter().map(|rates| robust.map_or_else(Vec::new, |line| runs(rates, line.at_level_of(rates)))).collect();

@@ -6,6 +6,8 @@
 //!   no rate. Seven readings have to have one load: where it changes, the rates are secants.
 //!
 //! ΔK of every rate, and the validity that depends on the specimen, follow from the case ([`add_delta_k`]).
+//!
+//! Below 1e-5 mm/cycle, in K-decreasing tests, steps count down to ten times the precision of a reading, as the user says it or as readings scatter.
 
 use std::fmt::Write as _;
 use std::ops::RangeInclusive;
@@ -20,6 +22,11 @@ use perilife_measured::{MeasuredCurve, side_difference_max};
 
 /// Smallest increment of crack length between readings that E647 (8.6.2) asks for, m.
 pub const STEP_MIN: f64 = 0.25 * MM;
+
+/// Rates below which a test is one to the threshold, m/cycle.
+const SLOW: f64 = 1e-5 * MM_PER_CYCLE;
+/// Steepest fall of ln K over the crack length in a K-decreasing test, 1/m, with room for its steps.
+const GRADIENT_MIN: f64 = -0.08 * 1.05 / MM;
 
 /// Readings on each side of the middle one of a parabola.
 const HALF_SPAN: usize = 3;
@@ -67,7 +74,7 @@ impl RatePoint {
 /// What speaks against a rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Flags {
-    /// A step of crack length at this point is under 0.25 mm.
+    /// A step of crack length at this point is under 0.25 mm, or near the threshold under ten times the precision of a reading.
     pub short_step: bool,
     /// The rate is not above 0.
     pub not_growing: bool,
@@ -75,6 +82,8 @@ pub struct Flags {
     pub yielding: bool,
     /// The crack front is too uneven: the lengths on the sides differ by more than E647 accepts.
     pub uneven_front: bool,
+    /// K falls faster over the crack length than in a valid K-decreasing test.
+    pub k_gradient: bool,
     /// The rate is a secant, since the load changes within seven readings; nothing speaks against it.
     pub load_changes: bool,
 }
@@ -92,6 +101,7 @@ impl Flags {
             (self.not_growing, "not_growing"),
             (self.yielding, "ligament_yields"),
             (self.uneven_front, "uneven_front"),
+            (self.k_gradient, "k_gradient"),
             (self.load_changes, "load_changes"),
         ];
         words.into_iter().filter(|(set, _)| *set).map(|(_, word)| word).collect::<Vec<_>>().join(" ")
@@ -102,6 +112,7 @@ impl Flags {
 /// [`add_delta_k`].
 pub fn rates(curve: &MeasuredCurve, method: RateMethod) -> Vec<RatePoint> {
     let factors = curve.step_factors();
+    let curve = &MeasuredCurve { precision: curve.precision.or_else(|| Some(curve.scatter())), ..curve.clone() };
     match method {
         RateMethod::Secant => (1..curve.cycles.len()).filter_map(|i| secant(curve, &factors, i)).collect(),
         RateMethod::Polynomial7 => {
@@ -173,8 +184,9 @@ pub(super) fn polynomial7(curve: &MeasuredCurve, middle: usize) -> Option<RatePo
 /// A point with the flags that need no specimen; `readings` are those whose distances count.
 fn point(curve: &MeasuredCurve, cycles: f64, crack_length: f64, rate: f64, readings: RangeInclusive<usize>) -> RatePoint {
     // A step of exactly 0.25 mm is long enough, also after its conversion to metres.
+    let slow = curve.precision.filter(|_| rate < SLOW).map_or(STEP_MIN, |precision| STEP_MIN.min(10.0 * precision));
     let steps = curve.crack_length[readings.clone()].windows(2);
-    let short_step = steps.into_iter().any(|pair| (pair[1] - pair[0]).abs() < STEP_MIN * (1.0 - 1e-6));
+    let short_step = steps.into_iter().any(|pair| (pair[1] - pair[0]).abs() < slow * (1.0 - 1e-6));
     RatePoint {
         cycles,
         crack_length,
@@ -214,7 +226,7 @@ pub fn paris_line(points: &[RatePoint]) -> Option<Line> {
 pub fn add_delta_k(points: &mut [RatePoint], case: &Case, delta_k: &dyn Fn(f64) -> f64) {
     let (specimen, loading) = (&case.specimen, &case.loading);
     let uneven = side_difference_max(specimen.kind, specimen.width, specimen.thickness);
-    for point in points {
+    for point in points.iter_mut() {
         point.delta_k = delta_k(point.crack_length) * point.load_factor;
         point.ratio = if point.ratio.is_nan() { loading.ratio } else { point.ratio };
         let (load, k_max) = (loading.maximum * point.load_factor, point.delta_k / loading.range_share());
@@ -222,6 +234,27 @@ pub fn add_delta_k(points: &mut [RatePoint], case: &Case, delta_k: &dyn Fn(f64) 
         point.flags.yielding = !case.material.yield_strength.is_none_or(holds);
         point.flags.uneven_front = point.side_difference > uneven;
     }
+    // K that falls from rate to rate, by its line over seven of them; one lower load among others is none of a K-decreasing test.
+    for middle in 0..points.len() {
+        let around = &points[middle.saturating_sub(HALF_SPAN)..points.len().min(middle + HALF_SPAN + 1)];
+        let falls = around.len() > 2 && around.windows(2).all(|pair| pair[1].delta_k < pair[0].delta_k);
+        let (lengths, log_k): (Vec<f64>, Vec<f64>) = around.iter().map(|point| (point.crack_length, point.delta_k.ln())).unzip();
+        points[middle].flags.k_gradient = falls && line(&lengths, &log_k).is_some_and(|line| line.slope < GRADIENT_MIN);
+    }
+}
+
+/// ΔK_th, MPa√m, and what is to be said of it: ΔK at 1e-7 mm/cycle by the line of log ΔK over log da/dN that E647 takes through at least five rates
+/// from there to 1e-6 mm/cycle. `rates` are ΔK, MPa√m, and da/dN, mm/cycle.
+pub fn threshold(rates: impl Iterator<Item = (f64, f64)>) -> Option<(f64, String)> {
+    let slow = rates.filter(|(k, rate)| *k > 0.0 && (1e-7..1e-6).contains(rate));
+    let (log_rate, log_k): (Vec<f64>, Vec<f64>) = slow.map(|(k, rate)| (rate.log10(), k.log10())).unzip();
+    let line = line(&log_rate, &log_k).filter(|_| log_k.len() >= 5)?;
+    let (k, count) = (10_f64.powf(line.intercept - 7.0 * line.slope), log_k.len());
+    let words = format!(
+        "the test goes to its threshold: ΔK_th = {k:.3} MPa√m at 1e-7 mm/cycle by the line of ASTM E647 through {count} rates; give it by \
+         fatigue.delta_k_threshold_mpa_sqrt_m where a law has none of its own"
+    );
+    Some((k, words))
 }
 
 /// A table of rates, each with its specimen, that [`perilife_measured::RateFile`] reads back:

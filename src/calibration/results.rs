@@ -254,7 +254,7 @@ pub fn law_report(case: &LawCase, fits: &LawFits, wall_s: f64) -> Value {
 }
 
 fn values(law: &LawFit) -> Map<String, Value> {
-    law.constants.iter().map(|constant| (constant.key.to_owned(), json!(constant.value))).collect()
+    law.known_constants().map(|constant| (constant.key.to_owned(), json!(constant.value))).collect()
 }
 
 fn errors(law: &LawFit) -> Map<String, Value> {
@@ -266,7 +266,7 @@ pub fn law_record(case: &LawCase, fits: &LawFits) -> LawRecord {
     let law = fits.law();
     let mut fatigue = toml::Table::new();
     fatigue.insert("growth_law".to_owned(), law.kind.name().into());
-    fatigue.extend(law.constants.iter().map(|constant| (constant.key.to_owned(), constant.value.into())));
+    fatigue.extend(law.known_constants().map(|constant| (constant.key.to_owned(), constant.value.into())));
     let [low, high] = case.delta_k_range();
     let ratios = || case.rows.iter().map(|row| row.ratio);
     LawRecord {
@@ -313,7 +313,7 @@ pub fn law_summary(case: &LawCase, fits: &LawFits) -> Vec<String> {
         None => ", no other law is left".to_owned(),
     };
     lines.push(format!("  law            {} ({asked}{margin})", law.kind));
-    lines.extend(law.constants.iter().map(|constant| {
+    lines.extend(law.known_constants().map(|constant| {
         let error = constant.error.map_or_else(|| "(given)".to_owned(), |error| format!("± {}", figure(error, 2)));
         format!("    {:<28} {} {error}", constant.key, figure(constant.value, 5))
     }));

@@ -16,7 +16,7 @@ use perilife_base::table::{
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_calibration::outliers::doubts;
 use perilife_calibration::paris::doubt_of;
-use perilife_calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table};
+use perilife_calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table, threshold};
 use perilife_growth::case::Case;
 use perilife_measured::{ColumnNames, Import, Measured, MeasuredCurve, first_of, read_into};
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
@@ -50,6 +50,9 @@ pub struct Args {
     /// Unit of crack length where the header does not name it: mm, inch or m
     #[arg(long, value_name = "UNIT", help_heading = "Input")]
     pub length_unit: Option<String>,
+    /// Precision of a crack length, mm: near a threshold steps down to ten times it count [default: the scatter of the readings]
+    #[arg(long, value_name = "MM", help_heading = "Input")]
+    pub precision_mm: Option<f64>,
     /// Unit of cycles where the header does not name it: cycles, kilocycles or megacycles
     #[arg(long, value_name = "UNIT", help_heading = "Input")]
     pub cycle_unit: Option<String>,
@@ -106,8 +109,9 @@ impl Args {
 pub fn run(args: &Args) -> Result<()> {
     let method: RateMethod = args.method.parse()?;
     let opened = Opened::default();
-    let mut measured =
+    let measured =
         if args.measured.is_empty() { Measured::default() } else { read_into(&opened, &args.measured, &args.import()?)? };
+    let mut measured = measured.of_precision("--precision-mm", args.precision_mm)?;
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
         measured.set_against(&case.specimen, &case.material, &case.loading)?;
@@ -116,7 +120,7 @@ pub fn run(args: &Args) -> Result<()> {
     let ratio = args.stress_ratio.or(case.as_ref().map(|case| case.loading.ratio)).unwrap_or(0.0);
     let ratio = number("a ratio", -2.0, 0.99).read("stress_ratio", ratio)?;
     let thickness_mm = case.as_ref().map_or(THICKNESS_MM, |case| case.specimen.thickness / MM);
-    let materials = MaterialRates::all(&args.materials, ratio, thickness_mm)?;
+    let (materials, of_materials) = MaterialRates::all(&args.materials, ratio, thickness_mm)?;
     if let Some(path) = &args.picture {
         let points = specimens.iter().flat_map(|specimen| &specimen.points);
         let in_units = |point: &RatePoint| (point.delta_k / MPA_SQRT_M, point.rate / MM_PER_CYCLE);
@@ -126,7 +130,7 @@ pub fn run(args: &Args) -> Result<()> {
         args.console.say(&shown_table(&rates_of_materials::table(&materials, ratio)));
     }
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
-    for warning in measured.warnings.iter().chain(&of_specimens) {
+    for warning in of_materials.iter().chain(&measured.warnings).chain(&of_specimens) {
         args.console.warn(warning);
     }
     let table = table(specimens.iter().flat_map(|one| one.points.iter().map(|point| (&*one.name, point))));
@@ -163,7 +167,8 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
         let law = paris_line(&specimen.points).and_then(|law| doubt_of(10_f64.powf(law.intercept), law.slope));
         let of_law = law.map(|words| format!("specimen {}: {words}", curve.specimen));
         let outside = outside_formula(&specimen.points, &formula).map(|words| format!("specimen {}: {words}", curve.specimen));
-        specimen.warnings = doubts(curve, &delta_k).into_iter().chain(of_law).chain(outside).collect();
+        let slow = specimen.threshold().map(|(_, words)| format!("specimen {}: {words}", curve.specimen));
+        specimen.warnings = doubts(curve, &delta_k).into_iter().chain(of_law).chain(outside).chain(slow).collect();
     }
     Ok(specimens)
 }
@@ -206,6 +211,7 @@ fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
             "paris_c_mm_per_cycle": law.map(|law| 10_f64.powf(law.intercept)),
             "paris_m": law.map(|law| law.slope),
             "scatter_decades": law.map(|law| law.scatter),
+            "delta_k_threshold_mpa_sqrt_m": specimen.threshold().map(|(k, _)| k),
             "flagged": specimen.flagged(),
             "warnings": specimen.warnings,
             "points": points(specimen),
@@ -217,6 +223,12 @@ fn object(specimens: &[SpecimenRates], method: RateMethod) -> Value {
 impl SpecimenRates {
     fn flagged(&self) -> usize {
         self.points.iter().filter(|point| point.flags.any()).count()
+    }
+
+    /// ΔK_th of the rates that count.
+    fn threshold(&self) -> Option<(f64, String)> {
+        let good = self.points.iter().filter(|point| !point.flags.any());
+        threshold(good.map(|point| (point.delta_k / MPA_SQRT_M, point.rate / MM_PER_CYCLE)))
     }
 
     fn summary(&self) -> String {

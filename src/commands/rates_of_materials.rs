@@ -26,20 +26,33 @@ pub struct MaterialRates {
 }
 
 impl MaterialRates {
-    /// Of materials by name, or by the path of a file or of a folder of files, at a stress ratio and a thickness, mm.
-    /// Errors: as [`library_law`]; a folder that cannot be read.
-    pub fn all(names: &[String], ratio: f64, thickness_mm: f64) -> Result<Vec<MaterialRates>> {
+    /// Of materials by name, or by the path of a file or of a folder of files, at a stress ratio and a thickness, mm; and what is to be said of
+    /// them, and of those that cannot be drawn.
+    /// Errors: as [`library_law`], where none can be drawn.
+    pub fn all(names: &[String], ratio: f64, thickness_mm: f64) -> Result<(Vec<MaterialRates>, Vec<String>)> {
         let folder = Folder::from(Path::new(""));
-        let mut all = Vec::new();
+        let (mut all, mut lines, mut first) = (Vec::new(), Vec::new(), None);
         for name in names.iter().flat_map(|name| files(name)) {
-            let law = library_law(&name, thickness_mm * MM, ratio, &folder)?;
-            let rate = |delta_k: f64| law.rate(delta_k * MPA_SQRT_M / (1.0 - ratio.max(0.0)), ratio) / MM_PER_CYCLE;
+            let law = match library_law(&name, thickness_mm * MM, ratio, &folder) {
+                Ok(law) => law,
+                Err(error) => {
+                    lines.push(format!("{name}: no growth rates: {error}"));
+                    first = first.or(Some(error));
+                    continue;
+                }
+            };
+            lines.extend(law.beyond_ratio(ratio).map(|words| format!("{name}: {words}")));
+            let k_max = |delta_k: f64| delta_k * MPA_SQRT_M / (1.0 - ratio.max(0.0));
+            let rate = |delta_k: f64| law.rate(k_max(delta_k), ratio) / MM_PER_CYCLE;
             let at = |k: usize| RANGE[0] * (RANGE[1] / RANGE[0]).powf(k as f64 / POINTS as f64);
-            let known = |(_, rate): &(f64, f64)| (RATES[0]..=RATES[1]).contains(rate);
+            let known = |(k, rate): &(f64, f64)| (RATES[0]..=RATES[1]).contains(rate) && law.beyond(k_max(*k), ratio).is_none();
             let points = (0..=POINTS).map(|k| (at(k), rate(at(k)))).filter(known).collect();
             all.push(MaterialRates { name, points, listed: LISTED.map(|k| rate(k / per("MPa√m"))) });
         }
-        Ok(all)
+        match first {
+            Some(error) if all.is_empty() => Err(error),
+            _ => Ok((all, lines)),
+        }
     }
 }
 

@@ -28,7 +28,7 @@ pub struct Args {
     /// Case file (a calibration file does as well); its fatigue law is not needed
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Methods: ring, element_free_galerkin, energy_release; all where none is given
+    /// Methods: ring, element_free_galerkin; both where none is given
     #[arg(long, value_name = "METHOD", num_args = 1.., help_heading = "Method")]
     pub method: Vec<String>,
     /// Folder for stress and displacement of the plate on nodes (with --method element_free_galerkin), or table of --sweep; replaced if an earlier run made it

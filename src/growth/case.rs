@@ -18,6 +18,7 @@ mod residual;
 pub use boundaries::first_load;
 pub use fatigue_keys::{Lot, remove_law};
 pub use fleet::{Fleet, InitialLength};
+pub(crate) use law_source::ratio_line;
 pub use law_source::{LIBRARY, fitted_record, library_law};
 pub use model::coarse_points;
 pub use model_keys::{finer_nodes, usual_nodes};

@@ -5,6 +5,7 @@ pub mod description;
 pub mod forman;
 pub mod nasgro;
 pub mod paris;
+mod rising;
 pub mod table;
 pub mod walker;
 
@@ -51,6 +52,24 @@ pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
     })
 }
 
+/// Cycles that act on a crack, all of one size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Acting {
+    /// ΔK of ASTM E647, Pa√m.
+    pub delta_k: f64,
+    /// Stress ratio R.
+    pub ratio: f64,
+    /// Share of the growth that is by them.
+    pub share: f64,
+}
+
+impl Acting {
+    /// Cycles of this K_max, Pa√m, and stress ratio with their share of the growth.
+    pub fn new(k_max: f64, ratio: f64, share: f64) -> Self {
+        Acting { delta_k: k_max * (1.0 - ratio.max(0.0)), ratio, share }
+    }
+}
+
 /// How fast a crack grows at the stress intensity of its tip.
 pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
     /// da/dN, m/cycle, at K_max, Pa√m, and stress ratio R; 0 where the crack does not grow.
@@ -61,9 +80,24 @@ pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
         None
     }
 
-    /// Whether a run ends in an error there.
+    /// In words, that its rates are of other stress ratios than this one, and which are taken.
+    fn beyond_ratio(&self, _ratio: f64) -> Option<String> {
+        None
+    }
+
+    /// Whether a run ends in an error where K lies beyond.
     fn is_refused_beyond(&self) -> bool {
         false
+    }
+
+    /// The cycles that act at K_max, Pa√m, and R: of a spectrum all its sizes, K_max and R being those of the largest.
+    fn acting(&self, k_max: f64, ratio: f64) -> Vec<Acting> {
+        vec![Acting::new(k_max, ratio, 1.0)]
+    }
+
+    /// Share of the growth at K_max, Pa√m, and R that is by cycles of which the law says nothing.
+    fn share_beyond(&self, k_max: f64, ratio: f64) -> f64 {
+        if self.beyond(k_max, ratio).is_some() { 1.0 } else { 0.0 }
     }
 }
 
@@ -88,7 +122,7 @@ impl FactorLaw {
 
     /// K_max at which it lets a crack grow without limit, Pa√m.
     pub fn toughness(&self) -> Option<f64> {
-        self.kind.0.place(Role::Toughness).map(|place| self.constants[place])
+        self.kind.0.place(Role::Toughness).map(|place| self.constants[place]).filter(|k_c| k_c.is_finite())
     }
 
     /// ΔK at which its own rate is 0 at a stress ratio, Pa√m, where it has such a constant.
@@ -134,6 +168,10 @@ impl GrowthLaw for FactorLaw {
     fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
         let grows = k_max * (1.0 - ratio.max(0.0)) > self.threshold;
         self.table.as_ref().filter(|_| grows).and_then(|table| table.beyond(k_max, ratio))
+    }
+
+    fn beyond_ratio(&self, ratio: f64) -> Option<String> {
+        self.table.as_ref().and_then(|table| table.beyond_ratio(ratio))
     }
 
     fn is_refused_beyond(&self) -> bool {

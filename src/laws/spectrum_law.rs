@@ -5,7 +5,7 @@
 
 use std::sync::OnceLock;
 
-use super::growth_law::GrowthLaw;
+use super::growth_law::{Acting, GrowthLaw};
 use perilife_plate::loading::spectrum::{Class, Spectrum};
 
 /// Classes up to which they are summed at every K; of more, sums are tabulated.
@@ -76,16 +76,28 @@ impl GrowthLaw for SpectrumLaw {
 
     /// Of the first class, by size, that counts and of which the law says nothing.
     fn beyond(&self, k_max: f64, _: f64) -> Option<String> {
-        if !self.law.is_refused_beyond() && self.classes.len() > SUMMED {
-            return None;
-        }
-        let all = self.mean(k_max);
-        let counts = |class: &&Class| class.share * self.law.rate(k_max * class.max, class.ratio) > BEYOND * all;
         let told = |class: &Class| self.law.beyond(k_max * class.max, class.ratio);
+        let all = self.classes.iter().any(|class| told(class).is_some()).then(|| self.mean(k_max))?;
+        let counts = |class: &&Class| class.share * self.law.rate(k_max * class.max, class.ratio) > BEYOND * all;
         self.classes.iter().filter(counts).find_map(told)
     }
 
     fn is_refused_beyond(&self) -> bool {
         self.law.is_refused_beyond()
+    }
+
+    fn acting(&self, k_max: f64, _: f64) -> Vec<Acting> {
+        let all = self.mean(k_max);
+        let growth = |class: &Class| class.share * self.law.rate(k_max * class.max, class.ratio) / all;
+        let acting = self.classes.iter().map(|class| Acting::new(k_max * class.max, class.ratio, growth(class)));
+        acting.filter(|acting| acting.share > 0.0).collect()
+    }
+
+    fn share_beyond(&self, k_max: f64, _: f64) -> f64 {
+        let is_beyond = |class: &&Class| self.law.beyond(k_max * class.max, class.ratio).is_some();
+        let rate = |class: &Class| class.share * self.law.rate(k_max * class.max, class.ratio);
+        let beyond: f64 = self.classes.iter().filter(is_beyond).map(rate).sum();
+        // Most laws know every K, and the mean over all classes is asked of the others alone.
+        if beyond > 0.0 { beyond / self.mean(k_max) } else { 0.0 }
     }
 }

@@ -5,7 +5,8 @@ use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, Import};
 use perilife_base::error::{Error, Result};
 use perilife_base::table::decimal::decide;
-use perilife_base::table::names::{Column, Named, Role, says_tip_to_tip, unit_at_end};
+use perilife_base::table::names::vocabulary::METHODS;
+use perilife_base::table::names::{Column, Named, Role, says_one_of, says_tip_to_tip, unit_at_end};
 use perilife_base::table::numerals::number;
 use perilife_base::table::{
     Decimal,
@@ -39,6 +40,8 @@ pub struct Series {
     pub lengths: Vec<Column>,
     /// Readings of the same crack on several sides.
     pub sides: Vec<Column>,
+    /// A few optical readings, by which the crack lengths are corrected.
+    pub optical: Option<Column>,
     /// Loads, of every role one at the most.
     pub loads: Vec<Column>,
     /// Columns of quantities that the case says too: ΔK, sizes, the smallest load where no other says how large a cycle is.
@@ -118,6 +121,13 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
     match (cycles.as_slice(), lengths.as_slice()) {
         ([cycles], [_, ..]) => {
             let specimen = of(|column| column.role == Role::Specimen);
+            let optical = optical(table, &columns).map(|column| length_column(table, column, import)).transpose()?;
+            // A length without a method goes before those of methods.
+            let by_method = |column: &Column| says_one_of(&table.names[column.index], METHODS);
+            let is_other = |column: &Column| optical.is_none_or(|optical| optical.index != column.index);
+            let is_plain = |column: &Column| column.role == Role::Length && is_other(column) && !by_method(column);
+            let by_method = |column: &Column| column.role == Role::Length && columns.iter().any(is_plain) && by_method(column);
+            let columns: Vec<Column> = columns.iter().filter(|column| is_other(column) && !by_method(column)).copied().collect();
             let (lengths, sides) = lengths_and_sides(table, &columns, import)?;
             let cycles = cycle_column(table, *cycles, import)?;
             let (loads, mut compared) = loads(table, &columns, import, warnings)?;
@@ -129,7 +139,8 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
             warnings.extend(not_read(table, &columns));
             let stem = table.file.file_stem().map_or_else(|| "specimen".to_owned(), |stem| stem.to_string_lossy().into_owned());
             let specimen = specimen.first().copied();
-            Ok((Shape::Long, vec![Series { name: stem, specimen, cycles, lengths, sides, loads, compared, own: Vec::new() }]))
+            let own = Vec::new();
+            Ok((Shape::Long, vec![Series { name: stem, specimen, cycles, lengths, sides, optical, loads, compared, own }]))
         }
         ([_, second, ..], _) => Err(says_the_same(table, second.index, "cycles")),
         ([], [length]) if wide && length.index == 0 => {
@@ -171,6 +182,7 @@ impl Series {
             cycles,
             lengths: vec![length],
             sides: Vec::new(),
+            optical: None,
             loads: Vec::new(),
             compared: Vec::new(),
             own,
@@ -219,7 +231,7 @@ impl Layout {
 /// Columns of numbers.
 fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
     let of = |series: &Series| -> Vec<Column> {
-        let read = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides);
+        let read = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides).chain(&series.optical);
         let all = read.chain(&series.loads).chain(&series.compared);
         all.copied().collect()
     };
@@ -230,6 +242,15 @@ fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
         numbers.dedup_by_key(|column| column.index);
     }
     numbers
+}
+
+/// Of two columns of crack length the one that at most every second row has: optical readings beside those of potential drop.
+fn optical(table: &Table, columns: &[Column]) -> Option<Column> {
+    let count = |column: &Column| table.rows.iter().filter(|row| !row.cell(column.index).is_empty()).count();
+    let mut lengths: Vec<Column> = columns.iter().filter(|column| column.role == Role::Length).copied().collect();
+    lengths.sort_by_key(count);
+    let [few, many] = *lengths.as_slice() else { return None };
+    (count(&few) > 0 && 2 * count(&few) <= count(&many) + 1).then_some(few)
 }
 
 /// Columns of crack length, and those of single sides beside them: where no column has the mean, the sides have it.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use super::columns::is_stress;
 use perilife_base::error::{Result, input};
+use perilife_base::input::LENGTH;
 use perilife_base::table::names::{Column, Role};
 use perilife_base::table::{Fault, Table};
 use perilife_base::units::{MM, round_off};
@@ -40,6 +41,8 @@ pub struct MeasuredCurve {
     pub load_factor: Vec<f64>,
     /// Whether the growth up to each reading is left out (`measured.leave_out`); empty where none is.
     pub left_out: Vec<bool>,
+    /// Precision of a reading, m, where the user says it.
+    pub precision: Option<f64>,
     /// Where the readings stand.
     pub source: Source,
 }
@@ -136,6 +139,7 @@ impl MeasuredCurve {
             side_difference: some(&self.side_difference, readings),
             loads: self.loads.as_ref().map(|loads| loads.of_readings(readings)),
             stated: Vec::new(),
+            precision: self.precision,
             load_factor: some(&self.load_factor, readings),
             left_out: if self.left_out.is_empty() { Vec::new() } else { left_out.collect() },
             source: Source {
@@ -268,6 +272,14 @@ pub fn side_difference_max(kind: SpecimenKind, width: f64, thickness: f64) -> f6
 }
 
 impl Measured {
+    /// The same of readings of a precision, mm.
+    /// Errors: one that is no length.
+    pub fn of_precision(mut self, key: &str, precision: Option<f64>) -> Result<Self> {
+        let precision = LENGTH.read_optional(key, precision)?;
+        self.curves.iter_mut().for_each(|curve| curve.precision = precision);
+        Ok(self)
+    }
+
     /// Puts the curves of another file behind these.
     /// Specimens named by files of one stem have the names of their folders.
     /// Errors: a specimen whose name another one has.
@@ -292,6 +304,26 @@ impl Measured {
         }
         self.curves.extend(other.curves);
         self.warnings.extend(other.warnings);
+        Ok(())
+    }
+
+    /// Leaves specimens out whose crack does not grow by more than its readings scatter: run-outs, of which no rate follows.
+    /// Errors: no other is there.
+    pub fn leave_standing_out(&mut self) -> Result<()> {
+        let grown = |curve: &MeasuredCurve| curve.crack_length.iter().copied().fold(0.0, f64::max) - curve.crack_length[0];
+        let stands = |curve: &MeasuredCurve| grown(curve) <= 3.0 * curve.scatter();
+        if let Some(first) = self.curves.first().filter(|_| self.curves.iter().all(stands)) {
+            let fault = Fault { key: Some("specimen"), value: Some(&first.specimen), ..first.fault(0) };
+            return Err(
+                fault.error("has a crack that does not grow by more than its readings scatter", "give readings of growth")
+            );
+        }
+        let line = |curve: &MeasuredCurve| {
+            let (file, name, life) = (curve.source.file.display(), &curve.specimen, curve.life());
+            format!("{file}: specimen {name}: its crack does not grow in {life:.0} cycles (run-out): not fitted")
+        };
+        self.warnings.extend(first_of(self.curves.iter().filter(|curve| stands(curve)).map(line).collect()));
+        self.curves.retain(|curve| !stands(curve));
         Ok(())
     }
 

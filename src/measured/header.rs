@@ -2,7 +2,7 @@
 //! beside each other, `N1, a1, N2, a2`, or `N, a, N, a`.
 
 use super::import::Import;
-use perilife_base::table::names::{Column, Named, Role, is_length_of, is_unit_or_blank, with_unit};
+use perilife_base::table::names::{Column, Named, Role, is_length_of, is_unit_or_blank, ratio_of_name, with_unit};
 use perilife_base::table::units::Unit;
 use perilife_base::table::{Sheet, Vocabulary};
 
@@ -28,7 +28,8 @@ pub(super) fn is_length(column: &Column) -> bool {
 
 /// Columns of a header as it stands in the file, and with the units of the row below.
 pub(super) fn columns_of(header: &[String], names: &[String], import: &Import) -> Vec<Column> {
-    let mut columns: Vec<Column> = names.iter().enumerate().map(|(index, name)| Column::named(index, name)).collect();
+    let named = if import.of_rates { Column::named_of_rates } else { Column::named };
+    let mut columns: Vec<Column> = names.iter().enumerate().map(|(index, name)| named(index, name)).collect();
     // `aL` and `aR` beside each other are sides of one specimen; one alone may be its name.
     for pair in [["al", "ar"], ["af", "ab"]] {
         let place = |side: &str| {
@@ -58,12 +59,17 @@ pub(super) fn is_wide(columns: &[Column]) -> bool {
 }
 
 /// Whether a row of names, with what the user says, names cycles and crack length, starts a wide table or is one of pairs; of a table of
-/// rates, ΔK and da/dN.
+/// rates, K and da/dN, or one of them at stress ratios.
 fn names_a_test(names: &[String], import: &Import) -> bool {
     let import = &Import { columns: import.columns.by_name(), ..import.clone() };
     if import.of_rates {
         let columns = columns_of(names, names, import);
-        return [Role::DeltaK, Role::Rate].into_iter().all(|role| columns.iter().any(|column| column.role == role));
+        let has = |role: Role| columns.iter().any(|column| column.role == role);
+        let is_wide = || names.iter().any(|name| ratio_of_name(name).is_some());
+        return match has(Role::Rate) {
+            true => has(Role::DeltaK) || has(Role::KMax) || is_wide(),
+            false => has(Role::DeltaK) && is_wide(),
+        };
     }
     if pairs_of(names).is_some() {
         return true;

@@ -32,6 +32,8 @@ pub struct Import {
     pub of_rates: bool,
     /// Rows that are left out by their lines.
     pub left_out: Vec<LeaveOut>,
+    /// Whether the readings are of a plate in service: one says where its crack is.
+    pub of_plate: bool,
 }
 
 /// Cycles of a specimen that do not count, or a row of a file.

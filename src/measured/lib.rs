@@ -57,7 +57,7 @@ pub fn read_into(opened: &Opened, files: &[PathBuf], import: &Import) -> Result<
 pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
     let table = table::read(bytes, file, import)?;
     let layout = columns::recognise(&table, import)?;
-    curves_of(&table, &layout, &mut Err)
+    curves_of(&table, &layout, import.of_plate, &mut Err)
 }
 
 /// What a file holds although some of it is wrong.
@@ -91,7 +91,7 @@ pub fn survey(bytes: &[u8], file: &Path, import: &Import) -> Survey {
         survey.header.clone_from(&table.header);
         survey.first_rows = table.first_cells();
         let layout = columns::recognise(&table, import)?;
-        survey.measured = curves_of(&table, &layout, &mut note)?;
+        survey.measured = curves_of(&table, &layout, import.of_plate, &mut note)?;
         survey.layout = Some(layout);
         Ok(())
     };

@@ -18,12 +18,13 @@ use super::wide_rates;
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, number};
 use perilife_base::table::decimal::decide;
+use perilife_base::table::names::vocabulary::is_in;
 use perilife_base::table::names::{Column, Named, Role};
 use perilife_base::table::{
     Decimal, Sheet,
     units::{IntensityUnit, RateUnit, Unit},
 };
-use perilife_base::table::{Fault, Table, whole_file};
+use perilife_base::table::{Fault, Row, Table, whole_file};
 use perilife_base::units::MM_PER_CYCLE;
 
 perilife_base::kinds! {
@@ -155,7 +156,8 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         ..Import::default()
     };
     let wide = wide_rates::as_table(bytes, file).transpose()?;
-    let cells = table::read(wide.as_ref().map_or(bytes, |text| text.as_bytes()), file, &import)?;
+    let mut cells = table::read(wide.as_ref().map_or(bytes, |text| text.as_bytes()), file, &import)?;
+    wide_rates::below_each_other(&mut cells, &import);
     let columns = columns_of(&cells.header, &cells.names, &import);
     let of = |role: Role| {
         let mut own = columns.iter().copied().filter(move |column| column.role == role);
@@ -168,26 +170,33 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
             None => Ok(first),
         }
     };
-    let (Some(delta_k), Some(rate)) = (of(Role::DeltaK)?, of(Role::Rate)?) else { return Err(without_columns(&cells)) };
-    let delta_k = with_unit(&cells, delta_k, "intensity_unit", keys.intensity_unit.map(Unit::Intensity))?;
-    let rate = with_unit(&cells, rate, "rate_unit", keys.rate_unit.map(Unit::Rate))?;
+    let (delta_k, k_max, k_min) = (of(Role::DeltaK)?, of(Role::KMax)?, of(Role::KMin)?);
     let (ratio, specimen) = (of(Role::Ratio)?, of(Role::Specimen)?);
+    let says_range = k_min.is_some() || ratio.is_some() || keys.stress_ratio.is_some();
+    let (Some(k), Some(rate)) = (delta_k.or(k_max.filter(|_| says_range)), of(Role::Rate)?) else {
+        return Err(without_columns(&cells));
+    };
+    let of_k = |column: Column| with_unit(&cells, column, "intensity_unit", keys.intensity_unit.map(Unit::Intensity));
+    let in_unit = |column: Option<Column>| column.map(of_k).transpose();
+    let (k, delta_k, k_max, k_min) = (of_k(k)?, in_unit(delta_k)?, in_unit(k_max)?, in_unit(k_min)?);
+    let rate = with_unit(&cells, rate, "rate_unit", keys.rate_unit.map(Unit::Rate))?;
     if let (Some(column), Some(given)) = (ratio, keys.stress_ratio) {
         let problem = format!("is a column, and stress_ratio = {given} is given for the file");
         return Err(cells.header_fault(column.index).error(problem, "leave one of them out"));
     }
     let flags = cells.header.iter().position(|name| name == "flags");
-    let read: Vec<Column> = [delta_k, rate].into_iter().chain(ratio).collect();
+    let read: Vec<Column> = [rate].into_iter().chain(delta_k).chain(k_max).chain(k_min).chain(ratio).collect();
     let decimal = decide(&cells, &read.iter().map(Column::numbers).collect::<Vec<_>>(), keys.decimal)?;
 
+    leave_censored_out(&mut cells, k, rate)?;
     let known = read.iter().chain(&specimen).map(|column| column.index).chain(flags);
     let remarks = rejected(&cells, &known.collect::<Vec<_>>());
     let unit = |column: Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
     let mut table = RateTable {
-        columns: [delta_k, rate].map(|column| cells.header[column.index].clone()),
+        columns: [k, rate].map(|column| cells.header[column.index].clone()),
         warnings: cells.warnings().into_iter().chain(remarks).collect(),
-        says_ratio: ratio.is_some() || keys.stress_ratio.is_some(),
-        units: [unit(delta_k), unit(rate)],
+        says_ratio: says_range || k_max.is_some(),
+        units: [unit(k), unit(rate)],
         ..RateTable::default()
     };
     let name = file.file_name().unwrap_or_default().to_string_lossy();
@@ -212,21 +221,29 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
                 )),
             }
         };
-        let of_row = ratio.map_or(Ok(keys.stress_ratio.unwrap_or(0.0)), |column| value(&cells, row, column, decimal))?;
+        let of = |column: Option<Column>| column.map(|column| value(&cells, row, column, decimal)).transpose();
+        let [delta_k, k_max] = [delta_k.map(above_zero).transpose()?, k_max.map(above_zero).transpose()?];
+        let (of_row, tensile) = cycle([delta_k, k_max, of(k_min)?], of(ratio)?.or(keys.stress_ratio), keys.delta_k);
         if of_row >= 1.0 {
-            let fault = cells.cell_fault(row, ratio.map_or(0, |column| column.index));
+            let fault = cells.cell_fault(row, ratio.or(k_min).unwrap_or(k).index);
             return Err(fault.error("is no stress ratio below 1", "give K_min over K_max"));
         }
-        let full = above_zero(delta_k)?;
         table.rows.push(RateRow {
             series: specimen
                 .map_or_else(|| format!("{name}, R {of_row}"), |column| format!("{name}, {}", row.cell(column.index))),
             place: format!("{}: line {}", file.display(), row.line),
             line: row.line,
-            delta_k: if of_row < 0.0 && keys.delta_k == Some(RangeKind::Full) { full / (1.0 - of_row) } else { full },
+            delta_k: tensile,
             rate: above_zero(rate)?,
             ratio: of_row,
         });
+    }
+    if table.flagged > 0 {
+        let (of, file) = (table.flagged + table.rows.len(), file.display());
+        table.warnings.push(format!("{file}: {} of {of} rates are left out, since they are flagged", table.flagged));
+    }
+    if k_max.is_some() {
+        return Ok(table);
     }
     if let Some(row) = table.rows.iter().find(|row| row.ratio < 0.0) {
         let Some(range) = keys.delta_k else {
@@ -239,6 +256,37 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         table.range = Some(range);
     }
     Ok(table)
+}
+
+/// R and tensile ΔK of what a row says of ΔK, K_max and K_min, Pa√m, and R: two say all. R that follows from K has four digits; where K_max is known
+/// it is clear what ΔK is at R < 0.
+fn cycle([delta_k, k_max, k_min]: [Option<f64>; 3], ratio: Option<f64>, range: Option<RangeKind>) -> (f64, f64) {
+    let k_max = k_max.or(delta_k.zip(k_min.filter(|k_min| *k_min >= 0.0)).map(|(range, k_min)| range + k_min));
+    let least = k_min.or(k_max.zip(delta_k).map(|(k_max, range)| k_max - range));
+    let of_k = k_max.zip(least).map(|(k_max, k_min)| (k_min / k_max * 1e4).round() / 1e4);
+    let ratio = ratio.or(of_k).unwrap_or(0.0);
+    let tensile = match (k_max, delta_k) {
+        (Some(k_max), Some(_)) if ratio < 0.0 => k_max,
+        (Some(k_max), None) => k_max - k_min.unwrap_or(ratio * k_max).max(0.0),
+        (_, Some(full)) if ratio < 0.0 && range == Some(RangeKind::Full) => full / (1.0 - ratio),
+        (_, delta_k) => delta_k.unwrap_or(f64::NAN),
+    };
+    (ratio, tensile)
+}
+
+/// Leaves rows out whose rate was too small to be measured, `<1e-8`, `ND`, `run-out`: bounds of the threshold.
+fn leave_censored_out(cells: &mut Table, k: Column, rate: Column) -> Result<()> {
+    const WORDS: &str = "nd nm bdl bld lod blod loq runout notdetected nondetect nogrowth arrest arrested belowdetection \
+                         belowdetectionlimit belowlimit";
+    let is_censored = |row: &Row| {
+        let cell = row.cell(rate.index);
+        let word: String = cell.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+        cell.starts_with(['<', '≤']) || is_in(WORDS, &word)
+    };
+    let Some(first) = cells.rows.iter().find(|row| is_censored(row)) else { return Ok(()) };
+    let [name, of_k, rate] = [&cells.header[k.index], first.cell(k.index), first.cell(rate.index)];
+    let why = format!("without a rate that could be measured, first at {name} = {of_k}: {rate}");
+    cells.leave_out(&why, "such rows bound the threshold; give rates as numbers to have them counted", is_censored)
 }
 
 fn with_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Column> {

@@ -5,10 +5,12 @@ use std::collections::HashMap;
 use super::columns::{Layout, Series, Shape, is_stress};
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
 use perilife_base::error::{Error, Result};
+use perilife_base::line::line;
 use perilife_base::table::Decimal;
 use perilife_base::table::names::{Column, Role};
-use perilife_base::table::numerals::{is_number, number};
+use perilife_base::table::quantities::number_at;
 use perilife_base::table::{Fault, Row, Table, whole_file};
+use perilife_base::units::MM;
 use perilife_plate::specimen::LoadMeasure;
 
 /// More cycles than any test has run: beyond it the unit is wrong.
@@ -21,18 +23,24 @@ const LENGTH_MAX: f64 = 100.0;
 type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
 
 /// Curves of a table of cells.
-pub(super) fn curves_of(table: &Table, layout: &Layout, fate: Fate<'_>) -> Result<Measured> {
+pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fate<'_>) -> Result<Measured> {
     let mut measured = Measured { curves: Vec::new(), warnings: layout.warnings.clone() };
     for series in &layout.series {
-        measured.curves.extend(curves(table, layout.decimal, series, fate)?);
+        let mut of_series = curves(table, layout.decimal, series, fate)?;
+        if let Some(column) = series.optical {
+            let correct = |curve| correct(curve, table, layout.decimal, column);
+            measured.warnings.extend(of_series.iter_mut().map(correct).collect::<Result<Vec<_>>>()?);
+        }
+        measured.curves.extend(of_series);
     }
     let mut falling = Vec::new();
     for curve in &measured.curves {
         let specimen = || Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
-        if curve.cycles.len() < READINGS_MIN {
+        let (count, least) = (curve.cycles.len(), if of_plate { 1 } else { READINGS_MIN });
+        if count < least {
             fate(specimen().error(
-                format!("has {} readings", curve.cycles.len()),
-                format!("give at least {READINGS_MIN} readings for every specimen"),
+                format!("has {count} reading{}", if count == 1 { "" } else { "s" }),
+                format!("give at least {least} readings for every specimen"),
             ))?;
         } else if layout.shape == Shape::WideLengths && curve.crack_length.last() <= curve.crack_length.first() {
             fate(specimen().error(
@@ -83,6 +91,26 @@ fn curves(table: &Table, decimal: Decimal, series: &Series, fate: Fate<'_>) -> R
         add_reading(&mut curves[place], table, row, decimal, series).or_else(&mut *fate)?;
     }
     Ok(curves)
+}
+
+/// Corrects crack lengths of potential drop or compliance by the few that were read optically, as E647 asks: by the straight line through those that
+/// have both. What was done.
+fn correct(curve: &mut MeasuredCurve, table: &Table, decimal: Decimal, optical: Column) -> Result<String> {
+    let place = |row: &Row| curve.source.lines.iter().position(|line| *line == row.line);
+    let rows = table.rows.iter().filter(|row| !row.cell(optical.index).is_empty());
+    let both = rows.filter_map(|row| Some((curve.crack_length[place(row)?], row)));
+    let both = both.map(|(own, row)| Ok((own, value(table, row, optical, decimal)?))).collect::<Result<Vec<_>>>()?;
+    let (own, read): (Vec<f64>, Vec<f64>) = both.into_iter().unzip();
+    let (start, name) = (
+        format!("{}: specimen {}: {}", table.file.display(), curve.specimen, curve.source.length_column),
+        &table.header[optical.index],
+    );
+    let Some(line) = line(&own, &read).filter(|line| line.slope > 0.0) else {
+        return Ok(format!("{start} is not corrected: {} of its readings have {name} too, and a line needs two", own.len()));
+    };
+    curve.crack_length.iter_mut().for_each(|length| *length = line.intercept + line.slope * *length);
+    let (offset, slope, count) = (line.intercept / MM, line.slope, own.len());
+    Ok(format!("{start} is corrected by {count} readings of {name} (ASTM E647): {offset:.3} mm + {slope:.4} times it"))
 }
 
 /// Adds the reading of a row after checking it by itself and against the reading before.
@@ -150,20 +178,8 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
 
 /// The number in a cell in SI units.
 pub(super) fn value(table: &Table, row: &Row, column: Column, decimal: Decimal) -> Result<f64> {
-    let cell = row.cell(column.index);
-    let refused = |problem: &str, remedy: &str| Err(table.cell_fault(row, column.index).error(problem, remedy));
-    match number(cell, decimal) {
-        Some(number) if number.is_finite() => Ok(column.factor * if column.is_log { 10_f64.powf(number) } else { number }),
-        None if cell.is_empty() => refused("is empty", "give a number or leave the whole row out"),
-        None if is_number(cell) => refused(
-            &format!("is not a number whose decimal sign is the {} of this file", decimal.words()),
-            "give a plain number such as 1234.5 or 1.2345e3, the same decimal sign in the whole file, thousands in groups of three",
-        ),
-        None if !cell.parse::<f64>().is_ok_and(|number| !number.is_finite()) => {
-            refused("is not a number", "give a plain number such as 1234.5 or 1.2345e3, thousands in groups of three")
-        }
-        _ => refused("is not a finite number", "give the reading, or leave the whole row out"),
-    }
+    let number = number_at(table, row, column.index, decimal)?;
+    Ok(column.factor * if column.is_log { 10_f64.powf(number) } else { number })
 }
 
 /// Largest load and stress ratio of a reading, either NaN where the file does not say it; of a file that has ranges alone, the range

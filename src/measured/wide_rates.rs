@@ -1,5 +1,5 @@
 //! Growth rates as other programs keep them, several stress ratios side by side: AFGROW's `.lkpx` and easigrow's `.dadn`. They are read as the table
-//! of one row a rate that [`super::rates`] takes.
+//! of one row a rate that [`super::rates`] takes, as are tables with a column for every stress ratio: `da/dN (mm/cycle), R=0.1, R=0.5`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -7,8 +7,12 @@ use std::path::Path;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
+use super::header::columns_of;
+use super::import::Import;
 use perilife_base::error::Result;
-use perilife_base::table::{Fault, whole_file};
+use perilife_base::table::names::{Named, Role, ratio_of_name};
+use perilife_base::table::units::{RateUnit, Unit};
+use perilife_base::table::{Fault, Row, Table, whole_file};
 
 /// A rate with its ΔK at every stress ratio, in the units of the file.
 type WideRow = (f64, Vec<f64>);
@@ -39,6 +43,36 @@ pub fn as_table(bytes: &[u8], file: &Path) -> Option<Result<String>> {
         }
         text
     }))
+}
+
+/// Puts columns of stress ratios below each other, which hold ΔK beside a column of da/dN, or da/dN beside one of ΔK; an empty cell stands for
+/// nothing. Without a unit in their names ΔK has that of the rates, which a note says.
+pub(super) fn below_each_other(table: &mut Table, import: &Import) {
+    let columns = columns_of(&table.header, &table.names, import);
+    let of = |role: Role| columns.iter().find(|column| column.role == role);
+    let (own, name) = match (of(Role::Rate), of(Role::DeltaK).or(of(Role::KMax))) {
+        (Some(rate), None) => (rate, "ΔK"),
+        (None, Some(delta_k)) => (delta_k, "da/dN"),
+        _ => return,
+    };
+    let named = |(i, name)| ratio_of_name(name).map(|(ratio, unit)| (i, ratio, unit));
+    let ratios: Vec<(usize, &str, &str)> = table.names.iter().map(String::as_str).enumerate().filter_map(named).collect();
+    let Some((first, _, mut unit)) = ratios.first().copied() else { return };
+    if name == "ΔK" && unit.is_empty() && import.intensity.is_none() {
+        unit = if own.unit == Named::Is(Unit::Rate(RateUnit::Inch)) { "(ksi√in)" } else { "(MPa√m)" };
+        let (file, column) = (table.file.display(), &table.header[first]);
+        table
+            .notes
+            .push(format!("{file}: {column} is read as ΔK {unit}, the unit that goes with the rates; else give intensity_unit"));
+    }
+    let cells = |row: &Row, (i, ratio, _): &(usize, &str, &str)| {
+        let cells = [row.cell(own.index), row.cell(*i), ratio].into_iter().collect();
+        (!row.cell(*i).is_empty()).then_some(Row { line: row.line, cells })
+    };
+    let rows = ratios.iter().flat_map(|of| table.rows.iter().filter_map(|row| cells(row, of))).collect();
+    let header = |own: &str| vec![own.to_owned(), format!("{name} {unit}"), "stress_ratio".to_owned()];
+    let (names, header) = (header(&table.names[own.index]), header(&table.header[own.index]));
+    (table.rows, table.names, table.header) = (rows, names, header);
 }
 
 /// easigrow: remarks behind `#`, a row of stress ratios, then a row a rate: da/dN in m and ΔK in MPa√m at every ratio.

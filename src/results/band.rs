@@ -84,7 +84,7 @@ impl Lives {
     pub fn narrow(&mut self, curve: &MeasuredCurve) -> Result<()> {
         let (plate, _) = self.band.as_ref().map_err(|why| no_band_to_narrow(curve, why))?;
         let specimen = plate.own(curve)?;
-        let length = plate.read_to(&specimen);
+        let length = plate.read_to(&specimen, curve);
         let (left, of_lot) = (plate.left(length, Some(&specimen))?, plate.left(length, None)?);
         let read = curve.crack_length.iter().zip(&curve.cycles).filter(|(a, _)| **a <= length * (1.0 + 1e-9));
         let cycles = read.map(|(_, n)| *n).fold(0.0, f64::max);

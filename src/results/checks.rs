@@ -99,7 +99,7 @@ impl Check {
 /// What can be told of a case before it is run.
 pub fn of_case(case: &Case) -> Vec<Check> {
     let strengths = ["toughness", "ligament"].map(|name| strength(case, name));
-    sorted(strengths.into_iter().chain(first_extrapolation(case)).collect(), case)
+    sorted(strengths.into_iter().chain(first_extrapolation(case)).collect(), case, None)
 }
 
 /// All conditions of a life, those that matter most first: what fails, what is doubtful by its effect, what was not checked, what holds.
@@ -111,7 +111,7 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(part_through::checks(case, prediction));
     checks.extend(reversal(case, prediction));
     checks.extend(retardation(case, prediction));
-    sorted(checks, case)
+    sorted(checks, case, Some(prediction))
 }
 
 /// Growth data of the library are those of one batch.
@@ -123,8 +123,8 @@ fn growth_data(case: &Case) -> Option<Check> {
 }
 
 /// With what the law says of the plate, those that matter most first.
-fn sorted(mut checks: Vec<Check>, case: &Case) -> Vec<Check> {
-    let of_law = [stress_ratio(case), thickness(case), size(case), lack_of_fit(case), growth_data(case)];
+fn sorted(mut checks: Vec<Check>, case: &Case, prediction: Option<&Prediction>) -> Vec<Check> {
+    let of_law = [stress_ratio(case, prediction), thickness(case), size(case), lack_of_fit(case), growth_data(case)];
     checks.extend(of_law.into_iter().flatten());
     let effect = |check: &Check| check.effect_percent.unwrap_or(0.0).abs();
     checks.sort_by(|a, b| (a.verdict as usize).cmp(&(b.verdict as usize)).then(effect(b).total_cmp(&effect(a))));
@@ -293,24 +293,24 @@ fn unknown_range() -> Check {
     )
 }
 
-/// What the handbook says of the first ΔK.
+/// What the handbook says of the first ΔK, under a spectrum of the cycles by which the crack grows there.
 fn first_extrapolation(case: &Case) -> Option<Check> {
     let Some([low, high]) = fit_use::fitted_range(case) else { return Some(unknown_range()) };
-    let first = first_delta_k(case)? / MPA_SQRT_M;
-    if first > high * (1.0 + 1e-6) {
-        let words = format!("law: ΔK {first:.2} at the start is above the highest fitted, {high:.2}");
-        let check = Check::sized(
-            "extrapolation_above",
-            100.0,
-            true,
-            Side::Unsafe,
-            words,
-            "lower the load, or calibrate on longer cracks",
-        );
-        return Some(if case.allow_extrapolation { check } else { Check { verdict: Verdict::Fails, ..check } });
+    let first = first_delta_k(case)?;
+    let [below, above] = fit_use::growth_shares_outside(case, first)?;
+    let at = match case.loading.spectrum {
+        Some(_) => format!("{:.0} % of growth at the start", 100.0 * above.max(below)),
+        None => format!("ΔK {:.2} at the start", first / MPA_SQRT_M),
+    };
+    if above > OUTSIDE_DOUBTFUL {
+        let words = format!("law: {at} is above the highest fitted ΔK, {high:.2}");
+        let remedy = "lower the load, or calibrate on longer cracks";
+        let check = Check::sized("extrapolation_above", 100.0 * above, true, Side::Unsafe, words, remedy);
+        let is_refused = above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation;
+        return Some(if is_refused { Check { verdict: Verdict::Fails, ..check } } else { check });
     }
-    (first < low * (1.0 - 1e-6)).then(|| {
-        let words = format!("law: ΔK {first:.2} at the start is below the lowest fitted, {low:.2} MPa√m (safe)");
+    (below > OUTSIDE_DOUBTFUL).then(|| {
+        let words = format!("law: {at} is below the lowest fitted ΔK, {low:.2} MPa√m (safe)");
         Check { side: Some(Side::Safe), ..Check::new("extrapolation_below", Verdict::Doubtful, words) }
     })
 }
@@ -365,24 +365,25 @@ fn retardation(case: &Case, prediction: &Prediction) -> Option<Check> {
     Some(Check::sized(NAME, 100.0 * (1.0 - 1.0 / factor), is_large, side, words, REMEDY))
 }
 
-/// Stress ratio of the law against that of the cycles.
-fn stress_ratio(case: &Case) -> Option<Check> {
+/// Stress ratios of the law against those of the cycles that grow the crack.
+fn stress_ratio(case: &Case, prediction: Option<&Prediction>) -> Option<Check> {
     const NAME: &str = "stress_ratio";
-    let [least, most] = case.loading.ratios();
-    let [low, high] = match (&case.law, &case.law_record) {
-        (LawSource::Fitted(record), _) => [record.stress_ratio; 2],
-        (_, Some(record)) => [record.stress_ratio_min, record.stress_ratio_max],
-        _ => return None,
+    let [low, high] = fit_use::fitted_ratios(case)?;
+    let share = fit_use::share_of_other_ratios(case, prediction)?;
+    let from_to = |[low, high]: [f64; 2]| if low == high { short(low) } else { format!("{} to {}", short(low), short(high)) };
+    let (ratio, of_law) = (from_to(case.loading.ratios()), from_to([low, high]));
+    let by = match &case.law {
+        LawSource::Fitted(_) => format!("Walker's γ = {}", short(case.fatigue.walker_gamma)),
+        _ => "the law".to_owned(),
     };
-    // Of what is refused no life comes about, so any other ratio is bridged by γ.
-    let is_within = [least, most].iter().all(|ratio| (low - 0.02..=high + 0.02).contains(ratio));
-    let between = |low: f64, high: f64| if low == high { short(low) } else { format!("{} to {}", short(low), short(high)) };
-    let ratio = between(least, most);
-    let words = if is_within {
-        format!("stress ratio: {ratio} is that of the law")
-    } else {
-        let gamma = short(case.fatigue.walker_gamma);
-        format!("stress ratio: {ratio}, law of {}, by γ = {gamma} (Walker)", between(low, high))
+    let is_within = share <= OUTSIDE_DOUBTFUL;
+    let words = match is_within {
+        true if share == 0.0 => format!("stress ratio: {ratio} is that of the law"),
+        true => format!("stress ratio: {:.1} % of growth is outside R = {of_law} of the law", 100.0 * share),
+        false if case.loading.spectrum.is_some() => {
+            format!("stress ratio: {:.0} % of growth is outside R = {of_law}, by {by}", 100.0 * share)
+        }
+        false => format!("stress ratio: {ratio}, law of {of_law}, by {by}"),
     };
     let verdict = if is_within { Verdict::Holds } else { Verdict::Doubtful };
     let remedy = (!is_within).then(|| format!("calibrate at R = {ratio}"));

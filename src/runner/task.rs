@@ -159,7 +159,7 @@ fn quick_methods(case: &mut Case) -> Vec<StressIntensityMethod> {
         return StressIntensityMethod::ALL.to_vec();
     }
     case.warnings.push(format!(
-        "K is that of nodes alone, since the plate would have {points:.1e} points: for K on points give --method ring or energy_release"
+        "K is that of nodes alone, since the plate would have {points:.1e} points: for K on points give --method ring"
     ));
     vec![StressIntensityMethod::ElementFreeGalerkin]
 }
@@ -196,7 +196,8 @@ impl Task {
         let Task::Prediction { case, wanted } = self else {
             return Err(input("--measured", file.display(), "is for cases with cycles", "leave it out"));
         };
-        let mut measured = perilife_measured::read_into(document.folder.opened(), &[file.to_path_buf()], &Import::default())?;
+        let import = Import { of_plate: true, ..Import::default() };
+        let mut measured = perilife_measured::read_into(document.folder.opened(), &[file.to_path_buf()], &import)?;
         measured.set_against(&case.specimen, &case.material, &case.loading)?;
         case.warnings.append(&mut measured.warnings);
         case.provenance = document.folder.opened().so_far();

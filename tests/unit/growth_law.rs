@@ -4,7 +4,7 @@ use std::path::Path;
 
 use perilife_base::input::Folder;
 use perilife_base::quadrature::integrate;
-use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::predict::{Silent, predict};
 use perilife_laws::growth_law::nasgro::opening;
@@ -60,7 +60,7 @@ fn a_table_is_straight_in_logarithms() {
         ratio,
         rows: [5.0, 10.0, 40.0].map(|k: f64| [k * MPA_SQRT_M, scale * 1e-10 * k.powi(3)]).to_vec(),
     };
-    let one = Table { curves: vec![curve(0.1, 1.0)], holds_ends: false, walker_gamma: None, says_ratio: false };
+    let one = Table::new(vec![curve(0.1, 1.0)], false, None, false);
     // Three rows of a power law give that power law between them, at any ratio.
     for (k, ratio) in [(7.0, 0.1), (23.0, 0.1), (23.0, 0.4)] {
         near(one.rate(k / (1.0 - ratio) * MPA_SQRT_M, ratio), 1e-10 * f64::powi(k, 3), 1e-12);
@@ -68,9 +68,58 @@ fn a_table_is_straight_in_logarithms() {
     assert!(one.beyond(7.0 * MPA_SQRT_M, 0.0).is_none());
     assert!(one.beyond(41.0 * MPA_SQRT_M, 0.0).unwrap().contains("5.0000 to 40.0000"));
     near(one.rate(80.0 * MPA_SQRT_M, 0.0), 1e-10 * 40.0_f64.powi(3), 1e-12);
-    let two = Table { curves: vec![curve(0.0, 1.0), curve(0.5, 4.0)], holds_ends: true, walker_gamma: None, says_ratio: true };
-    near(two.rate(20.0 * MPA_SQRT_M, 0.25), 2.0 * 1e-10 * 15.0_f64.powi(3), 1e-12);
-    assert!(two.knows(0.5) && !two.knows(0.6) && one.knows(0.6));
+    // Between two ratios at equal rate: ln ΔK by halves, and a fifth of ln(1-R) over its straight line.
+    let two = Table::new(vec![curve(0.0, 1.0), curve(0.5, 8.0)], true, None, true);
+    let more = (0.75_f64 / 0.5_f64.sqrt()).powf(0.2);
+    let k = (20.0_f64 * 10.0).sqrt() * more;
+    near(two.rate(k / 0.75 * MPA_SQRT_M, 0.25), 1e-10 * 8000.0, 1e-12);
+    // Known are the rates that both have: 1000 to 64 000 of 1e-10, at R = 0 ΔK 10 to 40, at R = 0.5 ΔK 5 to 20.
+    assert!(two.beyond(0.99 * 50.0_f64.sqrt() * more / 0.75 * MPA_SQRT_M, 0.25).is_some());
+    assert!(two.beyond(1.01 * 50.0_f64.sqrt() * more / 0.75 * MPA_SQRT_M, 0.25).is_none());
+    near(two.rate(7.0 * MPA_SQRT_M, 0.002), 1e-10 * (7.0 * 0.998_f64).powi(3), 1e-12);
+    // Compression counts as nothing; beyond the ratios those of the nearest one, said.
+    near(two.rate(7.0 * MPA_SQRT_M, -0.5), two.rate(7.0 * MPA_SQRT_M, 0.0), 1e-15);
+    near(two.rate(30.0 * MPA_SQRT_M, 0.6), 8.0e-10 * 12.0_f64.powi(3), 1e-12);
+    for (table, ratio, words) in [
+        (&two, 0.51, None),
+        (&two, -0.5, None),
+        (&one, 0.6, None),
+        (&two, 0.6, Some("above 0 to 0.5, those of the table of rates: the rates of R = 0.5 are used there (non-conservative)")),
+        (
+            &Table::new(one.curves.clone(), false, None, true),
+            -0.1,
+            Some("below 0.1, that of the table of rates: the rates of R = 0.1 are used there (conservative)"),
+        ),
+        (&Table::new(one.curves.clone(), false, Some(0.5), true), 0.6, None),
+    ] {
+        let said = table.beyond_ratio(ratio);
+        assert_eq!(said.as_deref().map(|said| said.split_once("lies ").unwrap().1), words, "{said:?}");
+    }
+    // Two ratios without a rate in common: nothing is known between them.
+    let apart = Table::new(vec![curve(0.0, 1.0), curve(0.5, 1e6)], true, None, true);
+    assert!(apart.beyond(20.0 / 0.75 * MPA_SQRT_M, 0.25).is_none());
+}
+
+/// Rows in any order, ratios that are one, and rates that scatter, with an outlier: the law that they come from.
+#[test]
+fn measured_rates_are_a_table() {
+    let law = |k: f64| if k < 12.0 { 1e-8 * k.powi(4) } else { 1e-8 * 144.0 * k.powi(2) };
+    let row = |i: usize, scatter: f64| {
+        let k = 5.0 * 10.0_f64.powf(i as f64 / 59.0);
+        let noise = (scatter * ((7919 * i % 101) as f64 / 50.0 - 1.0)).exp() * if scatter > 0.0 && i == 20 { 8.0 } else { 1.0 };
+        format!("{k},{},{}\n", law(k) * noise, [0.094, 0.1, 0.106][i % 3])
+    };
+    for scatter in [0.0, 0.2] {
+        let rows: String = (0..60).map(|i| row(37 * i % 60, scatter)).collect();
+        let text = format!("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n{rows}");
+        let case = read_with(&text, TABLE, &["model.method=handbook"]).unwrap();
+        let LawSource::Factor(of_table) = &case.law else { panic!() };
+        for k in [6.0, 10.0, 14.0, 25.0, 45.0] {
+            near(of_table.rate(k / 0.9 * MPA_SQRT_M, 0.1) / MM_PER_CYCLE, law(k), if scatter > 0.0 { 0.15 } else { 0.01 });
+        }
+        let said = case.warnings.iter().any(|line| line.contains("scatter: a rising curve") && line.contains("through 60 rates"));
+        assert_eq!(said, scatter > 0.0, "{:?}", case.warnings);
+    }
 }
 
 const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\ncrack_length_mm = 12\n\
@@ -207,9 +256,9 @@ fn wrong_laws_are_refused() {
             &[],
             &["fatigue.k_c_mpa_sqrt_m", "no constant"],
         ),
-        (ratios, TABLE, &[], &["loading.stress_ratio", "rates.csv", "0.3 to 0.5"]),
+        (ratios, TABLE, &["loading.stress_ratio=0.6"], &["fatigue.growth_table", "rates.csv", "above 0.3 to 0.5", "held"]),
         ("delta_k_mpa_sqrt_m,rate\n1,2\n", TABLE, &[], &["rates.csv", "da_dn_mm_per_cycle", "lacks"]),
-        ("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n9,2e-4\n", TABLE, &[], &["rates.csv:3", "delta_k_mpa_sqrt_m", "rise"]),
+        ("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n9,2e-4\n", TABLE, &[], &["rates.csv:2", "da_dn_mm_per_cycle", "rise"]),
         (
             "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n12,x\n",
             TABLE,

@@ -168,6 +168,34 @@ fn what_rates_do_not_tell_is_named() {
     }
 }
 
+/// NASGRO of rates that tell nothing of fracture is fitted without that factor; without either factor it would be another law.
+#[test]
+fn a_factor_that_no_rate_tells_is_left_out() {
+    let (key, constants) = (
+        GrowthLawKind::all().find(|kind| kind.name() == "nasgro").unwrap(),
+        [3e-8, 3.0, 0.5, 0.0, 2.0, 0.3, 2.6, 1.0, 0.0, f64::INFINITY],
+    );
+    let law = key.0.of(constants.into_iter());
+    let near_threshold = table(&law, &RATIOS, [3.0, 25.0], 30, 0.02, 7);
+    let fits = fit_laws(&rows(&near_threshold), fit_by("best"), &Given::new()).unwrap();
+    assert_eq!((fits.law().kind, fits.law().lacks), (key, Some("fracture")), "{:#?}", fits.candidates);
+    assert!(fits.warnings.iter().any(|line| line.contains("without its factor of fracture")), "{:?}", fits.warnings);
+    for (name, truth) in [("nasgro_n", 3.0), ("nasgro_p", 0.5), ("nasgro_delta_k_0_mpa_sqrt_m", 2.6)] {
+        assert!((constant(fits.law(), name).0 / truth - 1.0).abs() < 0.1, "{name}: {:?}", constant(fits.law(), name));
+    }
+    assert!(fits.law().known_constants().all(|constant| constant.key != "k_c_mpa_sqrt_m"));
+    // A K_c that is given is kept, and one below a K_max of the rates is refused.
+    let given = |k_c: f64| Given::from([("k_c_mpa_sqrt_m".to_owned(), k_c)]);
+    let kept = fit_laws(&rows(&near_threshold), fit_by("nasgro"), &given(500.0)).unwrap();
+    assert_eq!(constant(kept.law(), "k_c_mpa_sqrt_m").0, 500.0);
+    assert!(
+        fit_laws(&rows(&near_threshold), fit_by("nasgro"), &given(5.0))
+            .unwrap_err()
+            .to_string()
+            .contains("a crack grew at K_max")
+    );
+}
+
 /// What rates do not tell can be given, and then it is no constant of the fit.
 #[test]
 fn constants_can_be_given() {

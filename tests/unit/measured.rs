@@ -286,3 +286,25 @@ fn typing_errors_are_named() {
         assert_eq!((errors(&measured), measured.curves[0].cycles.len()), (1, 30), "{reading} {by}");
     }
 }
+
+/// A specimen whose crack never grew is named and left out; a lot of such is refused.
+#[test]
+fn specimens_that_stood_are_left_out() {
+    let curve = |name: &str, growth: f64, noise: f64| {
+        let lengths = (0..8).map(|i| 1e-2 + 1e-3 * (growth * f64::from(i) + noise * f64::from(i * 5 % 3 - 1))).collect();
+        MeasuredCurve::new(name, (0..8).map(|i| 1e5 * f64::from(i)).collect(), lengths)
+    };
+    for (growth, noise) in [(0.0, 0.0), (0.0, 0.02)] {
+        let lot = |more| Measured { curves: [vec![curve("s1", growth, noise)], more].concat(), warnings: Vec::new() };
+        let mut measured = lot(vec![curve("s2", 0.5, 0.02), curve("s3", 0.5, 0.0)]);
+        measured.leave_standing_out().unwrap();
+        assert_eq!(measured.curves.iter().map(|curve| &*curve.specimen).collect::<Vec<_>>(), ["s2", "s3"]);
+        assert!(
+            measured.warnings[0].contains("specimen s1: its crack does not grow in 700000 cycles"),
+            "{:?}",
+            measured.warnings
+        );
+        let error = lot(Vec::new()).leave_standing_out().unwrap_err().to_string();
+        assert!(error.contains("specimen = s1: has a crack that does not grow"), "{error}");
+    }
+}

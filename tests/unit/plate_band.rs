@@ -206,8 +206,13 @@ fn readings_of_the_plate_must_lie_on_its_curve() {
         let cycles = (0..lengths.len()).map(|i| 2e4 * i as f64).collect();
         perilife_measured::MeasuredCurve::new("own", cycles, lengths.iter().map(|a| a * MM).collect())
     };
-    let own = plate.own(&curve(&[9.0, 10.1, 11.3, 12.9, 14.8])).unwrap();
-    assert!((plate.read_to(&own) / (14.8 * MM) - 1.0).abs() < 1e-9);
+    let readings = curve(&[9.0, 10.1, 11.3, 12.9, 14.8]);
+    let own = plate.own(&readings).unwrap();
+    assert!((plate.read_to(&own, &readings) / (14.8 * MM) - 1.0).abs() < 1e-9);
+    // A single one says where the crack is, and nothing of its rate.
+    let single = plate.own(&curve(&[12.9])).unwrap();
+    assert_eq!(plate.read_to(&single, &curve(&[12.9])), 12.9 * MM);
+    assert_eq!(plate.left(12.9 * MM, Some(&single)).unwrap(), plate.left(12.9 * MM, None).unwrap());
     let left = plate.left(20.0 * MM, Some(&own)).unwrap();
     assert!(left.quantiles[0] < left.quantiles[1] && left.quantiles[1] < left.quantiles[2]);
     let error = plate.left(12.0 * MM, Some(&own)).unwrap_err().to_string();

@@ -157,3 +157,53 @@ fn what_a_table_of_rates_does_not_say_is_asked_for() {
         assert!((found.rows[0].delta_k / MPA_SQRT_M / tensile - 1.0).abs() < 1e-12 && found.range == Some(range));
     }
 }
+
+/// K_max with another one of ΔK, K_min and R says all; ratios may stand side by side, and rates may be too small to be measured.
+#[test]
+fn ends_of_k_ratios_side_by_side_and_unmeasured_rates() {
+    let plain = RateFileKeys::default();
+    // ΔK 9 and R 0.1 at K_max 10; of R = -0.5 the tensile range is K_max, whatever ΔK is.
+    for (header, row, ratio, delta_k) in [
+        ("ΔK (MPa√m),Kmax (MPa√m)", "9,10", 0.1, 9.0),
+        ("Delta K (MPa√m),K_max [MPa√m]", "9,10", 0.1, 9.0),
+        ("dK (MPa√m),Max K (MPa√m)", "15,10", -0.5, 10.0),
+        ("Kmax (MPa√m),R", "10,0.1", 0.1, 9.0),
+        ("Kmax (MPa√m),R", "10,-0.5", -0.5, 10.0),
+        ("Kmax (MPa√m),Kmin (MPa√m)", "10,1", 0.1, 9.0),
+        ("K max (ksi√in),K min (MPa√m)", "9.1004773,-5", -0.5, 10.0),
+        ("ΔK (MPa√m),Kmin (MPa√m)", "9,1", 0.1, 9.0),
+        ("ΔK (MPa√m),Kmax (MPa√m),R", "9,10,0.1", 0.1, 9.0),
+    ] {
+        let found = table(&format!("{header},da/dN (mm/cycle)\n{row},1e-5\n"), &plain).unwrap();
+        let [own, of_k] = [found.rows[0].ratio, found.rows[0].delta_k / MPA_SQRT_M];
+        assert!(found.says_ratio && (own - ratio).abs() < 1e-4 && (of_k / delta_k - 1.0).abs() < 1e-6, "{header}: {own}, {of_k}");
+    }
+    let lacks = table("Kmax (MPa√m),da/dN (mm/cycle)\n10,1e-5\n", &plain).unwrap_err().to_string();
+    assert!(lacks.contains("lacks the columns"), "{lacks}");
+    for (text, first, said) in [
+        ("da/dN (mm/cycle),R=0.1,R=0.5\n1e-6,5,4\n1e-5,9,\n", [0.1, 5.0], true),
+        ("da/dN (mm/cycle),ΔK at R 0.1 (MPa√m)\n1e-6,5\n1e-5,9\n", [0.1, 5.0], false),
+        ("da/dN (in/cycle);R0,1;R0,5\n3,937008e-8;4,550239;3,1\n", [0.1, 5.0], true),
+        ("ΔK (MPa√m),R=-1 (mm/cycle),R=0.5 (mm/cycle)\n5,1e-6,2e-6\n", [-1.0, 5.0], false),
+    ] {
+        let keys = RateFileKeys { delta_k: Some(RangeKind::Tensile), ..plain.clone() };
+        let found = table(text, &keys).unwrap();
+        let row = &found.rows[0];
+        assert!((row.rate / 1e-6 / MM_PER_CYCLE - 1.0).abs() < 1e-6 && row.ratio == first[0], "{text}: {row:?}");
+        assert!((row.delta_k / first[1] / MPA_SQRT_M - 1.0).abs() < 1e-5, "{text}: {row:?}");
+        assert_eq!(
+            found.warnings.iter().any(|line| line.contains("the unit that goes with the rates")),
+            said,
+            "{:?}",
+            found.warnings
+        );
+    }
+    assert_eq!(table("da/dN (mm/cycle),R=0.1,R=0.5\n1e-6,5,4\n1e-5,9,\n", &plain).unwrap().rows.len(), 3);
+    for cell in ["<1e-8", "< 1e-8", "ND", "n.d.", "run-out", "Run out", "BDL", "< LOD", "no growth"] {
+        let text = format!("ΔK (MPa√m),da/dN (mm/cycle),R\n3.25,{cell},0.1\n5,1e-6,0.1\n");
+        let found = table(&text, &plain).unwrap();
+        assert!(found.rows.len() == 1 && found.warnings[0].contains(&format!("= 3.25: {cell} (line 2)")), "{:?}", found.warnings);
+    }
+    let wrong = table("ΔK (MPa√m),da/dN (mm/cycle),R\n3.25,slow,0.1\n5,1e-6,0.1\n", &plain).unwrap_err().to_string();
+    assert!(wrong.contains("is not a number"), "{wrong}");
+}

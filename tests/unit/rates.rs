@@ -2,7 +2,7 @@
 
 use perilife_base::input::Folder;
 use perilife_base::units::{MM, MPA};
-use perilife_calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates};
+use perilife_calibration::rates::{RateMethod, RatePoint, add_delta_k, paris_line, rates, threshold};
 use perilife_growth::case::Case;
 use perilife_measured::MeasuredCurve;
 use perilife_plate::material::Material;
@@ -95,4 +95,47 @@ fn the_ligament_must_hold_its_plastic_zone() {
     };
     assert_eq!(strength(panel(), Some(345.0 * MPA)), [false, true]);
     assert_eq!(strength(panel(), None), [false, false]);
+}
+
+/// Near a threshold steps down to ten times the precision count; K that falls too fast, and ΔK_th, are told.
+#[test]
+fn tests_to_the_threshold() {
+    let short = |rate: f64, step: f64, noise: f64, precision: Option<f64>| {
+        let lengths: Vec<f64> = (0..30).map(|i| 15.0 + step * f64::from(i) + noise * f64::from(i % 3 - 1)).collect();
+        let cycles = (0..30).map(|i| step * f64::from(i) / rate).collect();
+        let points =
+            rates(&MeasuredCurve { precision: precision.map(|p| p * MM), ..curve(cycles, &lengths) }, RateMethod::Polynomial7);
+        points.iter().filter(|point| point.flags.short_step).count()
+    };
+    for (rate, step, noise, precision, flagged) in [
+        (1e-6, 0.1, 0.0, None, 0),
+        (1e-4, 0.1, 0.0, None, 24),
+        (1e-4, 0.1, 0.0, Some(0.01), 24),
+        (1e-6, 0.1, 0.02, None, 24),
+        (1e-6, 0.1, 0.0, Some(0.01), 0),
+        (1e-6, 0.1, 0.0, Some(0.011), 24),
+        (1e-6, 0.3, 0.0, Some(0.1), 0),
+    ] {
+        assert_eq!(short(rate, step, noise, precision), flagged, "{rate} {step} {noise} {precision:?}");
+    }
+    let line = |k: f64| 1e-7 * (k / 3.0_f64).powi(12);
+    let slow: Vec<(f64, f64)> = (0..8).map(|i| 3.0 + 0.05 * f64::from(i)).map(|k| (k, line(k))).collect();
+    let (k, words) = threshold(slow.iter().copied()).unwrap();
+    assert!((k / 3.0 - 1.0).abs() < 1e-9 && words.contains("ΔK_th = 3.000 MPa√m"), "{words}");
+    assert!(threshold(slow.iter().take(4).copied()).is_none());
+    assert!(threshold(slow.iter().map(|(k, rate)| (*k, 10.0 * rate))).is_none());
+    let flagged = |gradient: f64| {
+        let of = |i: usize| {
+            let a = 15.0 + 0.3 * i as f64;
+            RatePoint {
+                crack_length: a * MM,
+                load_factor: (gradient * (a - 15.0)).exp(),
+                ..RatePoint::of_rate(f64::NAN, 1e-9, 0.2)
+            }
+        };
+        let mut points: Vec<RatePoint> = (0..12).map(of).collect();
+        add_delta_k(&mut points, &panel(), &|_| 10.0 * MPA);
+        points.iter().filter(|point| point.flags.words() == "k_gradient").count()
+    };
+    assert_eq!([0.1, -0.079, -0.0801, -0.09].map(flagged), [0, 0, 0, 12]);
 }

@@ -298,6 +298,19 @@ fn what_a_table_says_against_its_columns_is_told() {
         assert!(told.contains(words), "{header}: {told}");
     }
     assert!(warnings("N,a (mm),a DCPD (mm)", &|_, a| format!(",{}", 1.01 * a)).is_empty());
+    // Lengths of potential drop, alone or corrected by a few optical ones; two methods in every row are asked about.
+    for header in ["N,a_DCPD [mm],Vpd (uV)", "N,DCPD (mm),V/V0", "N,Crack length by potential drop (mm),Vpd (uV)"] {
+        all_are_the_curve(header, &read(&rows(header, &|i, _| format!(",{}", 600 + i)), &Import::default()).unwrap(), 1);
+    }
+    let few = |i: usize, a: f64| if i.is_multiple_of(3) { format!(",{}", 1.1 * a - 0.5) } else { ",".to_owned() };
+    let measured = read(&rows("N,a_DCPD [mm],a_optical [mm]", &few), &Import::default()).unwrap();
+    let plain = read(&rows("N,a (mm)", &|_, _| String::new()), &Import::default()).unwrap();
+    for (own, of_dcpd) in measured.curves[0].crack_length.iter().zip(&plain.curves[0].crack_length) {
+        assert!((own / (1.1 * of_dcpd - 0.5e-3) - 1.0).abs() < 1e-9, "{own} of {of_dcpd}");
+    }
+    assert!(measured.warnings[0].contains("a_DCPD [mm] is corrected by"), "{:?}", measured.warnings);
+    let error = read(&rows("N,a DCPD (mm),a ACPD (mm)", &|_, a| format!(",{a}")), &Import::default()).unwrap_err().to_string();
+    assert!(error.contains("measured.columns = { length = \"a ACPD (mm)\" }"), "{error}");
     for remark in ["rejected", "ungültig", "void: grips slipped", "fail"] {
         let told = warnings("N,a (mm),Comment", &|i, _| format!(",{}", if i == 2 { remark } else { "ok" }));
         assert!(told.contains("lab.csv:4: Comment") && told.contains("it is the only one"), "{remark}: {told}");

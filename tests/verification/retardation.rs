@@ -62,7 +62,7 @@ fn overloads_slow_a_crack_down_as_each_model_says() {
         ("closure", &FIRST, plate, Some(model("closure", &[0.3])), 0.69134),
         ("none", &SECOND, edge, None, 0.671122),
         ("wheeler", &SECOND, edge, Some(model("wheeler", &[1.43])), 0.617694),
-        ("willenborg", &SECOND, edge, Some(willenborg(1.0, 2.3)), 0.597319),
+        ("willenborg", &SECOND, edge, Some(willenborg(1.0, 2.3)), 0.636309),
         ("closure", &SECOND, edge, Some(model("closure", &[0.3])), 0.635651),
     ];
     for (name, blocks, of, model, wanted) in rows {

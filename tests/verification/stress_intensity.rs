@@ -17,9 +17,9 @@ fn ratio(method: StressIntensityMethod, specimen: &str, set: &[String], crack_le
     tip.methods[0].intensity.k_i.unwrap() / tip.handbook_k_i.unwrap()
 }
 
-/// The same from the energy released.
+/// The same from the ring.
 pub fn k_over_handbook(specimen: &str, set: &[String], crack_length_mm: f64, spacing_mm: f64) -> f64 {
-    ratio(StressIntensityMethod::EnergyRelease, specimen, set, crack_length_mm, spacing_mm)
+    ratio(StressIntensityMethod::Ring, specimen, set, crack_length_mm, spacing_mm)
 }
 
 /// A spring that resists the rotation of crack flanks carries part of the load past the tip.

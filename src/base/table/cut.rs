@@ -45,9 +45,7 @@ pub(super) fn text(text: &str, file: &Path, words: &dyn Vocabulary) -> Result<Ta
     check_size(text, file)?;
     let (lines, comments) = kept_lines(text);
     if lines.is_empty() {
-        return Err(
-            whole_file(file).error("is empty", "give a header line `specimen,cycles,crack_length_mm` and at least 5 rows")
-        );
+        return Err(whole_file(file).error("is empty", words.remedy()));
     }
     let sample = &lines[..lines.len().min(SAMPLE)];
     let mut candidates: Vec<(Merit, Separator)> = Vec::new();
@@ -62,7 +60,7 @@ pub(super) fn text(text: &str, file: &Path, words: &dyn Vocabulary) -> Result<Ta
     let Some(&(_, best)) = candidates.first() else {
         return Err(Fault { line: Some(lines[0].0), value: Some(lines[0].1), ..whole_file(file) }.error(
             "is no table of 2 to 4096 columns, separated by tabs, semicolons, commas, vertical bars or blanks",
-            "give at least the columns cycles and crack_length_mm",
+            words.remedy(),
         ));
     };
     let first_try = whole(best, &lines, &comments, file, words);
@@ -101,8 +99,9 @@ fn is_comment(line: &str) -> bool {
     ["#", "%", "//"].iter().any(|sign| line.trim_start().starts_with(sign))
 }
 
-fn has_numbers(row: &Row) -> bool {
-    row.cells.iter().filter(|cell| is_number(cell)).take(2).count() == 2
+/// Whether a row has as many numbers as a table has columns at least.
+fn has_numbers(row: &Row, words: &dyn Vocabulary) -> bool {
+    row.cells.iter().filter(|cell| is_number(cell)).take(words.columns()).count() == words.columns()
 }
 
 /// Number of columns of a header: spreadsheets end rows with empty columns, which are none.
@@ -121,9 +120,9 @@ pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
         })
         .collect();
     // A line of the preamble may speak of cycles and crack length too; below the header stand numbers.
-    let above_numbers = named.iter().find(|&&row| rows.get(below(row)).is_some_and(has_numbers));
+    let above_numbers = named.iter().find(|&&row| rows.get(below(row)).is_some_and(|row| has_numbers(row, words)));
     let header = above_numbers.or(named.first()).copied();
-    let (header, body, width_of) = match (header, head.iter().position(has_numbers)) {
+    let (header, body, width_of) = match (header, head.iter().position(|row| has_numbers(row, words))) {
         (Some(header), _) => (Some(header), below(header), header),
         (None, Some(0)) => (None, 0, 0),
         (None, Some(first)) => {
@@ -139,7 +138,7 @@ pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
         header.filter(|header| named.is_empty() && *header > 0 && width(&rows[header - 1]) == columns).map(|header| header - 1);
     let above = above.filter(|&above| words.is_header(&joined(&rows[above], &rows[above + 1], columns)));
     let is_named = !named.is_empty() || above.is_some();
-    (2..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: is_named, above })
+    (words.columns()..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: is_named, above })
 }
 
 /// Names that stand in two lines.
@@ -195,7 +194,7 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
         }
     }
     if table.rows.is_empty() {
-        return Err(whole_file(file).error("has a header but no rows", "give at least 5 readings below the header"));
+        return Err(whole_file(file).error("has a header but no rows", words.remedy()));
     }
     Ok(table)
 }
@@ -204,7 +203,7 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
 /// Errors: less than two columns.
 pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) -> Result<Table> {
     let Some(place) = place(&rows, words) else {
-        return Err(whole_file(file).error("is no table of 2 to 4096 columns", "give at least cycles and crack length"));
+        return Err(whole_file(file).error("is no table of 2 to 4096 columns", words.remedy()));
     };
     let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
     let header = match (place.header, place.above) {

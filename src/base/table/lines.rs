@@ -16,7 +16,7 @@ const LOOKED_AT: usize = 256;
 
 /// The text of a file without byte order mark.
 /// Errors: characters that no text has: the file is something else.
-pub(super) fn decoded<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>> {
+pub fn decoded<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>> {
     let text = match Encoding::for_bom(bytes).map(|(encoding, _)| encoding).or_else(|| unmarked_utf16(bytes)) {
         Some(encoding) => encoding.decode(bytes).0,
         None => match std::str::from_utf8(bytes) {

@@ -10,6 +10,7 @@ mod hidden;
 mod lines;
 pub mod names;
 pub mod numerals;
+pub mod quantities;
 pub mod units;
 pub mod words;
 mod workbook;
@@ -19,7 +20,9 @@ use std::path::Path;
 use serde::Deserialize;
 
 pub use cells::{Fault, Row, Separator, Table, whole_file};
+pub use lines::decoded;
 pub use numerals::Decimal;
+pub use workbook::is_workbook;
 
 use crate::error::Result;
 
@@ -38,6 +41,14 @@ pub trait Vocabulary {
     }
     /// The sheet of a workbook that is asked for.
     fn sheet(&self) -> Option<&Sheet>;
+    /// Fewest columns of such a table.
+    fn columns(&self) -> usize {
+        2
+    }
+    /// What to give where a file is no such table.
+    fn remedy(&self) -> &str {
+        "give the columns cycles and crack_length_mm, as in a header line `specimen,cycles,crack_length_mm`, and at least 5 rows"
+    }
 }
 
 /// Cuts the bytes of a file into cells: a workbook by its content, everything else as text.

@@ -33,6 +33,8 @@ pub struct LawCase {
     pub law: FitLaw,
     /// Constants that are given.
     pub given: Given,
+    /// Rates of the tables that are left out since they are flagged.
+    pub flagged: usize,
     /// Name of the material, if the file has one.
     pub material: String,
     /// Files with their hashes.
@@ -90,6 +92,7 @@ impl LawCase {
             rows: Vec::new(),
             law: laws.law.unwrap_or(FitLaw(Some(GrowthLawKind(&paris::LAW)))),
             given: laws.given,
+            flagged: 0,
             material: String::new(),
             sources: Vec::new(),
             test: None,
@@ -128,14 +131,7 @@ impl LawCase {
             return Err(lacks_ratio(&keys.file, "measured.rates").in_file(&path));
         }
         self.warnings.extend(found.warnings);
-        if found.flagged > 0 {
-            let of = found.flagged + found.rows.len();
-            self.warnings.push(format!(
-                "{}: {} of {of} rates are left out, since they are flagged",
-                path.display(),
-                found.flagged
-            ));
-        }
+        self.flagged += found.flagged;
         if let Some(range) = found.range {
             self.range = Some(range);
         }
@@ -172,8 +168,15 @@ impl LawCase {
         self.rows.retain(|row| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(&row.delta_k));
         let count = self.rows.len();
         if count < 3 {
-            let remedy = "give three rates at least; widen the window in ΔK, and look whether rows are flagged";
-            return Err(input("measured.rates", count, "rates are left of the tables", remedy));
+            let problem = format!("rates are left of the tables, and {} are flagged", self.flagged);
+            let remedy = match self.flagged {
+                0 => "give three rates at least; widen the window in ΔK",
+                _ => {
+                    "write the table by `perilife rates --precision-mm` where steps near a threshold are short; to take a flagged rate as it is, empty \
+                     its cell in the column flags"
+                }
+            };
+            return Err(input("measured.rates", count, problem, remedy));
         }
         Ok(())
     }

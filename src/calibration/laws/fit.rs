@@ -40,11 +40,19 @@ pub struct LawFit {
     pub aicc: f64,
     /// Why it is out of question.
     pub left_out: Option<String>,
+    /// Its factor that no rate tells, and that is 1.
+    pub lacks: Option<&'static str>,
 }
 
 impl LawFit {
     fn none(kind: GrowthLawKind, why: String) -> Self {
-        LawFit { kind, constants: Vec::new(), fitted: 0, residuals: Vec::new(), aicc: f64::NAN, left_out: Some(why) }
+        let (constants, residuals, left_out) = (Vec::new(), Vec::new(), Some(why));
+        LawFit { kind, constants, fitted: 0, residuals, aicc: f64::NAN, left_out, lacks: None }
+    }
+
+    /// Its constants, without those of factors that it lacks and that have no value.
+    pub fn known_constants(&self) -> impl Iterator<Item = &Constant> {
+        self.constants.iter().filter(|constant| constant.value.is_finite())
     }
 
     /// Root mean square of the residuals.
@@ -104,6 +112,7 @@ pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFi
         residuals: best.residuals,
         aicc: f64::NAN,
         left_out: trouble,
+        lacks: None,
     }
 }
 
@@ -133,6 +142,7 @@ fn at_end(free: &[Parameter], best: &Minimum) -> Option<String> {
     Some(unidentified(parameter, &format!("the optimum lies at an end of its range, {end}")))
 }
 
+/// Why a law is out of question, the key of the constant first.
 fn unidentified(parameter: &Parameter, why: &str) -> String {
     format!("{} not identified: {why}; {}, or give it by fit.given", parameter.key, parameter.told_by)
 }

@@ -19,9 +19,11 @@ mod least_squares;
 use nalgebra::{DMatrix, DVector};
 
 use crate::paris::doubt_of_exponent;
+use crate::rates::threshold;
 pub use candidate::Given;
 use fit::{LawFit, fit};
 use perilife_base::error::{Error, Result, input_missing};
+use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_laws::growth_law::{GrowthLawKind, doubt};
 use perilife_measured::RateRow;
 
@@ -103,14 +105,9 @@ impl LawFits {
 /// Errors: [`Error::Mechanics`] where the rates do not tell the law asked for, or none; constants that no law has, or no metal.
 pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFits> {
     candidate::check_given(given)?;
-    let mut candidates: Vec<LawFit> = kinds().map(|kind| fit(kind, given, rows)).collect();
     let smooth = Smooth::through(rows);
     let effective = smooth.effective_rates(rows);
-    for candidate in &mut candidates {
-        candidate.widen((rows.len() as f64 / effective).sqrt());
-        candidate.aicc = criterion(candidate, effective);
-        candidate.judge_errors();
-    }
+    let candidates: Vec<LawFit> = kinds().map(|kind| judged(kind, given, rows, effective)).collect();
     let chosen = choose(&candidates, wanted)?;
     let others = candidates.iter().enumerate().filter(|(i, other)| *i != chosen && other.left_out.is_none());
     let next = others.map(|(_, other)| other).min_by(|a, b| a.aicc.total_cmp(&b.aicc));
@@ -120,6 +117,24 @@ pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFi
     fits.warnings.extend(smooth.misfit(rows, fits.law()));
     check_metal(fits.law(), rows)?;
     Ok(fits)
+}
+
+/// A law fitted to rates that count as so many; where they do not tell a constant of one factor that may be 1, as that of fracture in the NASGRO
+/// equation, it is fitted without it. Without any of them it would be another law.
+fn judged(kind: GrowthLawKind, given: &Given, rows: &[RateRow], effective: f64) -> LawFit {
+    let judged = |given: &Given| {
+        let mut law = fit(kind, given, rows);
+        law.widen((rows.len() as f64 / effective).sqrt());
+        law.aicc = criterion(&law, effective);
+        law.judge_errors();
+        law
+    };
+    let law = judged(given);
+    let unknown = |(key, _): &(&str, f64)| law.left_out.as_ref().is_some_and(|why| why.starts_with(key));
+    let Some((of, constants)) = kind.0.factors.iter().find(|(_, own)| own.iter().any(unknown)) else { return law };
+    let others = constants.iter().map(|(key, value)| ((*key).to_owned(), *value));
+    let simpler = judged(&others.chain(given.clone()).collect());
+    if simpler.left_out.is_none() { LawFit { lacks: Some(of), ..simpler } } else { law }
 }
 
 /// The place of the law asked for, or of the best.
@@ -231,7 +246,13 @@ fn about_polynomial(x: &[f64], y: &[f64]) -> Vec<f64> {
 
 fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
     let law = fits.law();
-    let mut lines = Vec::new();
+    let without = |of: &str| format!("the law {} is fitted without its factor of {of}, which no rate tells", law.kind);
+    let mut lines: Vec<String> = law.lacks.map(without).into_iter().collect();
+    let of_test = |test: &[RateRow]| {
+        let rates = test.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.rate / MM_PER_CYCLE));
+        threshold(rates).map(|(_, words)| format!("{}: {words}", test[0].series))
+    };
+    lines.extend(rows.chunk_by(|a, b| a.series == b.series).filter_map(of_test));
     if let Some((kind, margin)) = fits.margin.filter(|(_, margin)| *margin < -WORSE) {
         lines.push(format!("the rates are not for the law {}: {kind} is better by {:.1} of AICc", law.kind, -margin));
     }

@@ -295,7 +295,7 @@ impl Plate {
         places
     }
 
-    /// Readings of this very plate as a specimen; `curve` has been set against the case.
+    /// Readings of this very plate as a specimen; `curve` has been set against the case. A single one says where the crack is, and no rate.
     /// Errors: a reading that is not on the curve of the run; no growth.
     pub fn own(&self, curve: &MeasuredCurve) -> Result<Specimen> {
         let (shortest, longest) = (self.lengths[self.known[0]], self.lengths[self.known[1]]);
@@ -326,6 +326,9 @@ impl Plate {
             counts: curve.counts(i),
         };
         let readings: Vec<Reading> = (0..curve.cycles.len()).map(reading).collect();
+        if readings.len() == 1 {
+            return Ok(Specimen { name: curve.specimen.clone(), intervals: Vec::new() });
+        }
         Specimen::new(&curve.specimen, &readings, &|way| self.factors.at(way) * loads.at(over_way.at(way)), INTERVALS_MAX)
     }
 
@@ -352,9 +355,9 @@ impl Plate {
         Ok(Left { crack_length: length, cycles: whole, quantiles: scaled(quantiles, whole, run) })
     }
 
-    /// Crack length at the last reading of a specimen, m.
-    pub fn read_to(&self, own: &Specimen) -> f64 {
-        own.intervals.last().map_or(f64::NAN, |interval| self.length_over_way().at(interval.to))
+    /// Crack length up to which readings of the plate say its rate, m; of a single one that itself.
+    pub fn read_to(&self, own: &Specimen, curve: &MeasuredCurve) -> f64 {
+        own.intervals.last().map_or(curve.crack_length[0], |interval| self.length_over_way().at(interval.to))
     }
 
     /// The whole life in cells: where they end along the way of the fastest tip, m, and what the lot says of their cycles.

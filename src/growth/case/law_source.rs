@@ -199,7 +199,8 @@ pub(super) fn rates(given: &Given<'_>, key: &str) -> Result<Option<Rates>> {
     let Some(file) = given.get::<RateFile>(key.trim_start_matches("fatigue."))?.map(|file| file.keys()) else { return Ok(None) };
     let (table, _) = file.read(given.folder, key)?;
     let rows = table.rows.iter().map(|row| RatedRow { line: row.line, ratio: row.ratio, pair: [row.delta_k, row.rate] });
-    Ok(Some(Rates { rows: rows.collect(), columns: table.columns, says_ratio: table.says_ratio, file: file.file }))
+    let (rows, notes) = (rows.collect(), table.warnings);
+    Ok(Some(Rates { rows, notes, columns: table.columns, says_ratio: table.says_ratio, file: file.file }))
 }
 
 /// The growth law of a material of the library, for a plate of this thickness, m, at a stress ratio.
@@ -218,7 +219,7 @@ pub fn library_law(name: &str, thickness: f64, ratio: f64, folder: &Folder) -> R
 }
 
 /// Refuses a power of ΔK at another stress ratio than that of its rates; what is to be said of other laws there.
-pub(super) fn ratio_line(record: &LawRecord, ratio: f64) -> Result<Option<String>> {
+pub(crate) fn ratio_line(record: &LawRecord, ratio: f64, key: &str) -> Result<Option<String>> {
     let (low, high) = (record.stress_ratio_min, record.stress_ratio_max);
     if (low - RATIO_SLACK..=high + RATIO_SLACK).contains(&ratio) {
         return Ok(None);
@@ -231,7 +232,7 @@ pub(super) fn ratio_line(record: &LawRecord, ratio: f64) -> Result<Option<String
         let others: Vec<&str> = fits().filter(|law| law.takes_ratio).map(|law| law.name).collect();
         let (last, before) = others.split_last().map_or(("", String::new()), |(last, before)| (last, before.join(", ")));
         let remedy = format!("fit {before} or {last} to rates at several ratios");
-        return Err(input("loading.stress_ratio", ratio, problem, remedy));
+        return Err(input(key, ratio, problem, remedy));
     }
     Ok(Some(format!("the law {} was fitted to stress ratios from {low} to {high} and is used at {ratio}", record.kind())))
 }

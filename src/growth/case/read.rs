@@ -266,16 +266,18 @@ fn check_spectrum(case: &Case) -> Result<()> {
 /// What the user should know about law and horizon of this case.
 fn law_lines(case: &Case) -> Result<Vec<String>> {
     let mut lines: Vec<String> = Vec::new();
-    for ratio in case.loading.ratios() {
-        let of_record = case.law_record.as_ref().map(|record| law_source::ratio_line(record, ratio)).transpose()?;
-        lines.extend(of_record.flatten().filter(|line| !lines.contains(line)));
+    // Of a spectrum the cycles count by their share of the growth (`predict::fit_use`).
+    match (&case.loading.spectrum, &case.law_record) {
+        (Some(spectrum), _) => lines.extend(spectrum.notes.iter().cloned()),
+        (None, Some(record)) => lines.extend(law_source::ratio_line(record, case.loading.ratio, "loading.stress_ratio")?),
+        (None, None) => {}
     }
     match &case.law {
         LawSource::Inline(_) => lines.extend(inline_line(case)),
         LawSource::Paris(law) => lines.extend(doubt(&steady(*law), case.loading.ratio)),
         LawSource::Factor(law) => {
             lines.extend(doubt(&FactorLaw { threshold: 0.0, ..law.clone() }, case.loading.ratio));
-            lines.extend(law.table.as_ref().and_then(|table| table.line(case.loading.ratio)));
+            lines.extend(law.table.iter().flat_map(|table| table.lines(case.loading.ratios())));
         }
         LawSource::Fitted(record) => {
             let law = ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m };

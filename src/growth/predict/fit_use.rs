@@ -1,28 +1,36 @@
 //! How far a run stays within what its law was fitted to, and how sure that law is.
+//!
+//! Under a spectrum the cycles that grow the crack count, by their shares of the growth at every K, and not its largest cycle.
 
-use super::Prediction;
+use super::laws::growth_law;
+use super::{CurvePoint, Prediction};
 use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource, Model};
 use perilife_base::units::MPA_SQRT_M;
+use perilife_laws::growth_law::{Acting, GrowthLaw};
 
 /// Share of life outside the fitted ΔK range above which a run is warned about, and of a side of the range that is named then.
 const WARNED: f64 = 0.05;
 /// Share of life above the fitted range from which a run is refused unless the case allows it: there cracks grow faster than computed.
 pub const EXTRAPOLATION_REFUSED: f64 = 0.25;
 const NAMED: f64 = 0.01;
+/// Change of K over which shares of growth are kept.
+const SHARES_KEPT: f64 = 0.02;
+/// Difference of a stress ratio from those of the rates that counts as none.
+pub const SAME_RATIO: f64 = 0.02;
 
-/// Share of the life that was spent at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
+/// Share of the life that was growth at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
 /// within each block. `None` without a fitted record, without life, or without any known ΔK.
 pub fn life_share_extrapolated(case: &Case, prediction: &Prediction) -> Option<f64> {
     let [low, high] = fitted_range(case)?;
-    life_share_outside(prediction, low, high)
+    life_share_outside(case, prediction, low, high)
 }
 
 /// Share of the life below the fitted range, where lives come out too short, and above it, where they come out too long; `None` as
 /// [`life_share_extrapolated`].
 pub fn life_shares_outside(case: &Case, prediction: &Prediction) -> Option<[f64; 2]> {
     let [low, high] = fitted_range(case)?;
-    Some([life_share_outside(prediction, low, f64::INFINITY)?, life_share_outside(prediction, 0.0, high)?])
+    Some([life_share_outside(case, prediction, low, f64::INFINITY)?, life_share_outside(case, prediction, 0.0, high)?])
 }
 
 /// What is to be said about life outside the fitted range of ΔK, the larger share first.
@@ -31,14 +39,14 @@ pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
     let Some([low, high]) = fitted_range(case).filter(|_| share.is_some()) else { return Vec::new() };
     let threshold = if case.fatigue.threshold > 0.0 { "" } else { ", or give fatigue.delta_k_threshold_mpa_sqrt_m" };
     let below = (
-        life_share_outside(prediction, low, f64::INFINITY),
+        life_share_outside(case, prediction, low, f64::INFINITY),
         format!(
             "below {low:.2} MPa√m, the lowest fitted value: near a threshold cracks grow slower than computed; calibrate on slower \
              growth{threshold}"
         ),
     );
     let above = (
-        life_share_outside(prediction, 0.0, high),
+        life_share_outside(case, prediction, 0.0, high),
         format!(
             "above {high:.2} MPa√m, the highest fitted value: near toughness cracks grow faster than computed; calibrate on longer cracks, \
              or end the life sooner by stop.crack_length_mm"
@@ -48,6 +56,14 @@ pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
         [below, above].into_iter().filter_map(|(share, words)| Some((share.filter(|share| *share > NAMED)?, words))).collect();
     sides.sort_by(|a, b| b.0.total_cmp(&a.0));
     sides.into_iter().map(|(share, words)| format!("{:.1} % of the life is spent at ΔK {words}", 100.0 * share)).collect()
+}
+
+/// What is to be said of cycles of a spectrum at other stress ratios than those of the law.
+pub fn of_other_ratios(case: &Case, prediction: &Prediction) -> Option<String> {
+    case.loading.spectrum.as_ref()?;
+    let share = share_of_other_ratios(case, Some(prediction)).filter(|share| *share > NAMED)?;
+    let [low, high] = fitted_ratios(case)?;
+    Some(format!("{:.1} % of the growth is by cycles at stress ratios outside those of the law, {low} to {high}", 100.0 * share))
 }
 
 /// The law of a record in words: rate at the pivot and m with their errors, never A alone. `None` for inline constants, whose
@@ -85,20 +101,67 @@ fn fitted(case: &Case) -> Option<&FittedRecord> {
 }
 
 /// Share of the life at a ΔK outside `low..=high`, MPa√m.
-fn life_share_outside(prediction: &Prediction, low: f64, high: f64) -> Option<f64> {
+fn life_share_outside(case: &Case, prediction: &Prediction, low: f64, high: f64) -> Option<f64> {
     let (low, high) = (low * MPA_SQRT_M, high * MPA_SQRT_M);
-    let (mut outside, mut known) = (0.0, 0.0);
-    for pair in prediction.curve.windows(2) {
+    life_share(case, &prediction.curve, &|acting, [from, to]| {
+        share_outside(from * acting.delta_k, to * acting.delta_k, low, high)
+    })
+}
+
+/// Share of the life by growth of cycles of which a share is told, by their size in the middle of a block and what ΔK is over that at its ends.
+fn life_share(case: &Case, curve: &[CurvePoint], of: &dyn Fn(&Acting, [f64; 2]) -> f64) -> Option<f64> {
+    let law = case.loading.spectrum.as_ref().and_then(|_| growth_law(case).ok());
+    let (mut counted, mut known, mut kept) = (0.0, 0.0, (0.0, Vec::new()));
+    for pair in curve.windows(2) {
         let cycles = pair[1].cycles - pair[0].cycles;
         // Up to a row whose K nobody read, that of the other end counts.
         let (from, to) = (pair[0].delta_k.min(pair[1].delta_k), pair[0].delta_k.max(pair[1].delta_k));
         if from.is_nan() {
             continue;
         }
+        let middle = 0.5 * (from + to);
+        if kept.1.is_empty() || (middle / kept.0 - 1.0_f64).abs() > SHARES_KEPT {
+            kept = (middle, acting(case, law.as_deref(), middle));
+        }
         known += cycles;
-        outside += cycles * share_outside(from, to, low, high);
+        let ends = [from / kept.0, to / kept.0];
+        counted += cycles * kept.1.iter().map(|acting| acting.share * of(acting, ends)).sum::<f64>();
     }
-    (known > 0.0).then(|| outside / known)
+    (known > 0.0).then(|| counted / known)
+}
+
+/// The cycles that act at a ΔK of the largest, Pa√m.
+fn acting(case: &Case, law: Option<&dyn GrowthLaw>, delta_k: f64) -> Vec<Acting> {
+    let k_max = delta_k / case.loading.range_share();
+    law.map_or_else(|| vec![Acting::new(k_max, case.loading.ratio, 1.0)], |law| law.acting(k_max, case.loading.ratio))
+}
+
+/// Shares of the growth at a ΔK of the largest cycle, Pa√m, by cycles below and above the fitted range of ΔK.
+pub fn growth_shares_outside(case: &Case, delta_k: f64) -> Option<[f64; 2]> {
+    let [low, high] = fitted_range(case)?.map(|k| k * MPA_SQRT_M);
+    let law = case.loading.spectrum.as_ref().and_then(|_| growth_law(case).ok());
+    let acting = acting(case, law.as_deref(), delta_k);
+    let share = |from: f64, to: f64| acting.iter().map(|one| one.share * share_outside(one.delta_k, one.delta_k, from, to)).sum();
+    Some([share(low, f64::INFINITY), share(0.0, high)])
+}
+
+/// Smallest and largest stress ratio that the law of a case was fitted to.
+pub fn fitted_ratios(case: &Case) -> Option<[f64; 2]> {
+    let of_record = case.law_record.as_ref().map(|record| [record.stress_ratio_min, record.stress_ratio_max]);
+    of_record.or(fitted(case).map(|record| [record.stress_ratio; 2]))
+}
+
+/// Share of the growth by cycles at other stress ratios than those of the law: over a run, or where the largest cycle has the ΔK in the middle of
+/// the fitted range.
+pub fn share_of_other_ratios(case: &Case, prediction: Option<&Prediction>) -> Option<f64> {
+    let ([low, high], range) = (fitted_ratios(case)?, fitted_range(case)?);
+    let of = |acting: &Acting, _| {
+        if (low - SAME_RATIO..=high + SAME_RATIO).contains(&acting.ratio) { 0.0 } else { 1.0 }
+    };
+    let middle = (range[0] * range[1]).sqrt() * MPA_SQRT_M;
+    let law = case.loading.spectrum.as_ref().and_then(|_| growth_law(case).ok());
+    let at_once = || acting(case, law.as_deref(), middle).iter().map(|one| one.share * of(one, [1.0; 2])).sum();
+    Some(prediction.and_then(|prediction| life_share(case, &prediction.curve, &of)).unwrap_or_else(at_once))
 }
 
 /// Share of the interval `from..to` that lies outside `low..high`. The ends of the range count as inside with a margin of

@@ -2,7 +2,7 @@
 
 use super::record::BLOCKS_WITHOUT_GROWTH;
 use super::{Prediction, StopReason, fit_use};
-use crate::case::{Case, first_load};
+use crate::case::{Case, first_load, ratio_line};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::MPA_SQRT_M;
 use perilife_plate::loading::LoadControl;
@@ -55,6 +55,7 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
         _ => {}
     }
     warnings.extend(fit_use::extrapolated(case, prediction));
+    warnings.extend(fit_use::of_other_ratios(case, prediction));
     Ok(warnings)
 }
 
@@ -81,13 +82,24 @@ pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
     })
 }
 
-/// Why a case is refused before it is run: its first ΔK lies above the fitted range, and K only rises from there.
+/// Why a case is refused before it is run: its first ΔK lies above the fitted range, or that of cycles by which a quarter of the growth is, and K
+/// only rises from there.
 /// Errors: [`Error::Input`] where it does.
 pub fn refuse_beforehand(case: &Case) -> Result<()> {
-    let Some([_, high]) = fit_use::fitted_range(case).filter(|_| !case.allow_extrapolation) else { return Ok(()) };
-    match first_delta_k(case).map(|delta_k| delta_k / MPA_SQRT_M) {
-        Some(first) if first > high * (1.0 + 1e-6) => {
-            Err(extrapolates(case, &format!("ΔK {first:.2} MPa√m at the start, and the whole life, lies above"), ""))
+    if let (Some(record), Some(spectrum)) = (&case.law_record, &case.loading.spectrum)
+        && fit_use::share_of_other_ratios(case, None).is_some_and(|share| share > fit_use::EXTRAPOLATION_REFUSED)
+    {
+        spectrum.ratios.into_iter().try_for_each(|ratio| ratio_line(record, ratio, "loading.spectrum_file").map(|_| ()))?;
+    }
+    let Some(first) = first_delta_k(case).filter(|_| !case.allow_extrapolation) else { return Ok(()) };
+    match fit_use::growth_shares_outside(case, first) {
+        Some([_, above]) if above > fit_use::EXTRAPOLATION_REFUSED => {
+            let (at, percent) = (first / MPA_SQRT_M, 100.0 * above);
+            let what = match case.loading.spectrum {
+                Some(_) => format!("{percent:.0} % of the growth at the start is by cycles whose ΔK lies above"),
+                None => format!("ΔK {at:.2} MPa√m at the start, and the whole life, lies above"),
+            };
+            Err(extrapolates(case, &what, ""))
         }
         _ => Ok(()),
     }

@@ -82,11 +82,15 @@ fn beyond(case: &Case, law: &dyn GrowthLaw, delta_k: f64) -> Option<String> {
     law.beyond(delta_k / case.loading.range_share(), case.loading.ratio)
 }
 
-/// What the user should know: how much of a life was spent where the law holds the rate of its end.
+/// What the user should know: how much of a life is growth where the law holds the rate of its end.
 pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) -> Option<String> {
     let life = curve.last()?.cycles;
-    let outside = |pair: &&[CurvePoint]| pair.iter().any(|row| beyond(case, law, row.delta_k).is_some());
-    let cycles: f64 = curve.windows(2).filter(outside).map(|pair| pair[1].cycles - pair[0].cycles).sum();
+    let share = |row: &CurvePoint| law.share_beyond(row.delta_k / case.loading.range_share(), case.loading.ratio);
+    let shares: Vec<f64> = curve.iter().map(|row| if row.delta_k.is_nan() { 0.0 } else { share(row) }).collect();
+    // Of a single kind of cycle an interval counts that is beyond at one of its ends.
+    let of = |ends: &[f64]| if case.loading.spectrum.is_some() { 0.5 * (ends[0] + ends[1]) } else { ends[0].max(ends[1]) };
+    let cycles: f64 =
+        curve.windows(2).zip(shares.windows(2)).map(|(pair, ends)| of(ends) * (pair[1].cycles - pair[0].cycles)).sum();
     (cycles > 0.0).then(|| {
         let share = 100.0 * cycles / life;
         format!("{share:.2} % of the life is spent at ΔK beyond the table of rates, where the rate of its end is held")

@@ -1,14 +1,11 @@
-//! K of the tips of the initial cracks at maximum load, by three methods, for `perilife sif`.
+//! K of the tips of the initial cracks at maximum load, by two methods, for `perilife sif`.
 //!
-//! An integral over a ring around the tip, that of the first row of a prediction ([`crate::points`]); the same on a plate of
-//! nodes, which shares nothing with points and bonds ([`perilife_nodes`]); and the energy that crack growth releases
-//! (`energy_release.rs`), which tells K_I of cracks that open only. A crack cut into bonds reaches up to half a spacing farther or less far
-//! than asked ([`perilife_points::body::severed`]); both methods on points therefore look at other lengths, too: K belongs to the requested one.
+//! An integral over a ring around the tip, that of the first row of a prediction ([`crate::points`]); and the same on a plate of
+//! nodes, which shares nothing with points and bonds ([`perilife_nodes`]). A crack cut into bonds reaches up to half a spacing farther or less far
+//! than asked ([`perilife_points::body::severed`]); the ring therefore looks at other lengths, too: K belongs to the requested one.
 //!
 //! Signs, in the frame of a tip (x₁ ahead of the tip, x₂ a quarter turn counter-clockwise from it): K_I > 0 opens the
 //! crack, K_II > 0 slides the face on the side of x₂ > 0 towards x₁ > 0.
-
-mod energy_release;
 
 use std::time::Instant;
 
@@ -30,7 +27,6 @@ perilife_base::kinds! {
     pub enum StressIntensityMethod for "sif --method" {
         Ring = "ring": "interaction integral over a ring around the tip, as predict reads it",
         ElementFreeGalerkin = "element_free_galerkin": "interaction integral on a plate of nodes without elements: K_I and K_II independent of points and bonds",
-        EnergyRelease = "energy_release": "energy released between slightly different crack lengths: K_I where the plate is symmetric about the crack, an independent check",
     }
 }
 
@@ -106,19 +102,6 @@ fn of_tips(method: StressIntensityMethod, started: Instant, tips: &[TipRecord], 
         wall_s,
     };
     tips.iter().map(result).collect()
-}
-
-/// K_I from the energy released, of plates whose flanks nothing presses together: the lengths in between are solved without contact.
-fn by_energy(case: &Case, tips: &[usize]) -> Result<Vec<MethodResult>> {
-    if case.loading.displacement().is_some() || case.specimen.crack_pressure > 0.0 || case.loading.residual.is_some() {
-        let problem = "energy_release takes constant loads on rims and holes: use ring";
-        return Err(Error::Mechanics(format!("{}: {problem}", case.name)));
-    }
-    if initial_tips::<PointPlate>(&sharp(case))?.in_contact {
-        let problem = "the load presses flanks of cracks together, which the energy released between open cracks does not know";
-        return Err(Error::Mechanics(format!("{}: {problem}: use ring", case.name)));
-    }
-    energy_release::all_tips(case, tips)
 }
 
 /// What one method says about one tip.
@@ -218,10 +201,6 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
             // Other looks at K: what they cannot tell does not hide the first.
             StressIntensityMethod::ElementFreeGalerkin => by_nodes(case).or_else(|error| match methods {
                 [StressIntensityMethod::ElementFreeGalerkin] => Err(error),
-                _ => Ok(vec![MethodResult::nothing(method, &error); tips.len()]),
-            })?,
-            StressIntensityMethod::EnergyRelease => by_energy(case, &tips).or_else(|error| match methods {
-                [StressIntensityMethod::EnergyRelease] => Err(error),
                 _ => Ok(vec![MethodResult::nothing(method, &error); tips.len()]),
             })?,
         };

@@ -31,11 +31,16 @@ pub struct Description {
     pub complete: &'static str,
     /// Meaning as one of the laws that rates are fitted by.
     pub fit: Option<&'static str>,
+    /// Factors that rates need not tell.
+    pub factors: &'static [Factor],
     /// Whether it holds at other stress ratios than those of its rates.
     pub takes_ratio: bool,
     /// What of it takes the compression of a cycle into account, and the stress ratio down to which that is known.
     pub compression: Option<(&'static str, f64)>,
 }
+
+/// A factor of a law: what it is of, and constants, in the units of their keys, at which it is 1; the first one does that alone.
+pub type Factor = (&'static str, &'static [(&'static str, f64)]);
 
 /// What a law is where its file says nothing: a formula of its constants.
 pub(super) const UNSAID: Description = Description {
@@ -48,6 +53,7 @@ pub(super) const UNSAID: Description = Description {
     others: &[],
     complete: "give all constants of the law",
     fit: None,
+    factors: &[],
     takes_ratio: true,
     compression: None,
 };
@@ -193,6 +199,8 @@ pub struct Rates {
     pub columns: [String; 2],
     /// Whether the file, or the user, says the stress ratio.
     pub says_ratio: bool,
+    /// What the user should know of it.
+    pub notes: Vec<String>,
     /// Its rows in their order.
     pub rows: Vec<RatedRow>,
 }
@@ -233,15 +241,20 @@ impl Given<'_> {
     /// The constants of a law in SI units, in their order.
     /// Errors: one that is missing, or beyond its bounds.
     pub fn constants(&self, law: &Description) -> Result<Vec<f64>> {
+        let is_one = |(_, own): &Factor| matches!(self.get::<f64>(own[0].0), Ok(Some(value)) if value == own[0].1);
+        let of_one =
+            |key: &str| law.factors.iter().filter(|factor| is_one(factor)).flat_map(|(_, own)| *own).find(|own| own.0 == key);
         let value = |constant: &Constant| {
             let path = format!("fatigue.{}", constant.key);
             match (self.get(constant.key)?, constant.default) {
                 (Some(value), _) => constant.quantity.read(&path, value),
                 (None, Some(value)) => Ok(value * constant.quantity.si),
-                (None, None) if constant.role == Role::Toughness => self.material.toughness.ok_or_else(|| {
-                    let problem = "is missing, and the material has no toughness";
-                    input_missing(&path, problem, "give the K at which growth becomes unstable")
-                }),
+                (None, None) if constant.role == Role::Toughness => {
+                    self.material.toughness.or(of_one(constant.key).map(|own| own.1)).ok_or_else(|| {
+                        let problem = "is missing, and the material has no toughness";
+                        input_missing(&path, problem, "give the K at which growth becomes unstable")
+                    })
+                }
                 (None, None) => {
                     let why =
                         if constant.name == "horizon" { ": A is meaningless without the horizon it belongs to" } else { "" };

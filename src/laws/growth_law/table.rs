@@ -4,7 +4,9 @@ use serde::Serialize;
 
 use super::FactorLaw;
 use super::description::{Description, GAMMA, Given, RatedRow, Rates, UNSAID};
+use super::rising::rising;
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
+use perilife_base::monotone::Monotone;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
 
 /// What it says of itself.
@@ -17,19 +19,30 @@ pub static LAW: Description = Description {
     ..UNSAID
 };
 
+const KEY: &str = "fatigue.growth_table";
+
 perilife_base::kinds! {
-    /// What K beyond the rows of a table of rates does.
+    /// What K and R beyond the rows of a table of rates do.
     pub enum TableEnds for "fatigue.growth_table_ends" {
         Refused = "refused": "the run ends in an error",
-        Held = "held": "the crack grows at the rate of the last row; how much of the life that is stands in a warning",
+        Held = "held": "the crack grows at the rate of the last row, or ratio; how much of the life that is stands in a warning",
     }
 }
 
 /// Stress ratios that differ by less are one.
 const SAME_RATIO: f64 = 0.02;
+/// Straight lines that stand for the cubic between two rows.
+const PARTS: usize = 4;
+/// Share of ln(1-R) in ln ΔK at equal rate, beside a straight line over R: 1 - γ = 0.4 by Walker of many metals, less near thresholds.
+const BEND: f64 = 0.2;
+/// Distance of a ratio from that of a curve up to which it has the whole of it, not the rates alone that the next one has too.
+const NEAR_RATIO: f64 = 0.005;
 
-/// da/dN over ΔK at one or several stress ratios: straight lines between its rows over ln ΔK, and between two ratios over R, in
-/// ln da/dN. One ratio R₀ alone holds at another by Walker's exponent (1970): its rate is that at `ΔK₀ = K_max (1-R)^γ (1-R₀)^(1-γ)`.
+/// da/dN over ΔK at one or several stress ratios: between its rows a rising cubic in logarithms ([`Monotone`]), and between two ratios ln ΔK nearly
+/// straight over R at equal da/dN ([`BEND`]), so that curves meet that bend at their thresholds, and tests of different ΔK. Known are the rates that
+/// both ratios have.
+/// Compression counts as nothing unless a curve is of a negative ratio. Below the lowest ratio its curve counts, which is conservative. One ratio R₀
+/// alone holds at another by Walker's exponent (1970): its rate is that at `ΔK₀ = K_max (1-R)^γ (1-R₀)^(1-γ)`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table {
     /// By rising ratio.
@@ -40,6 +53,12 @@ pub struct Table {
     pub walker_gamma: Option<f64>,
     /// Whether the file, or the user, says the ratio; one that nobody says is taken to hold for every R.
     pub says_ratio: bool,
+    /// ln of rate and of ΔK at two ratios, at every row of either: of each curve (twice itself) and of it with the next, in turn.
+    #[serde(skip)]
+    bands: Vec<Vec<[f64; 3]>>,
+    /// What the user should know of its rows.
+    #[serde(skip)]
+    notes: Vec<String>,
 }
 
 /// Rates at one stress ratio.
@@ -52,43 +71,74 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// ln da/dN at ΔK, Pa√m; beyond the ends that of the end.
-    fn log_rate(&self, delta_k: f64) -> f64 {
-        let next = self.rows.partition_point(|row| row[0] < delta_k);
-        let [from, to] = [next.saturating_sub(1), next.min(self.rows.len() - 1)].map(|row| self.rows[row]);
-        if from[0] == to[0] {
-            return from[1].ln();
-        }
-        let share = (delta_k / from[0]).ln() / (to[0] / from[0]).ln();
-        from[1].ln() + share * (to[1] / from[1]).ln()
+    /// ln ΔK over ln da/dN.
+    fn over_rate(&self) -> Monotone {
+        Monotone::new(self.rows.iter().map(|row| [row[1].ln(), row[0].ln()]))
     }
 
-    fn ends(&self) -> [f64; 2] {
-        [self.rows[0][0], self.rows[self.rows.len() - 1][0]]
+    /// Both curves at rates that lie in both: at those of their rows, and between them.
+    fn with(&self, other: &Curve) -> Vec<[f64; 3]> {
+        let low = self.rows[0][1].max(other.rows[0][1]);
+        let high = self.rows[self.rows.len() - 1][1].min(other.rows[other.rows.len() - 1][1]);
+        let rows = self.rows.iter().chain(&other.rows).map(|row| row[1]);
+        let mut rates: Vec<f64> = rows.filter(|rate| (low..=high).contains(rate)).map(f64::ln).collect();
+        rates.sort_by(f64::total_cmp);
+        rates.dedup();
+        let parts = rates.windows(2).flat_map(|pair| (0..PARTS).map(|i| pair[0] + i as f64 / PARTS as f64 * (pair[1] - pair[0])));
+        let (own, its) = (self.over_rate(), other.over_rate());
+        parts.chain(rates.last().copied()).map(|rate| [rate, own.at(rate), its.at(rate)]).collect()
     }
 }
 
 impl Table {
-    /// The two curves around a ratio and how much of the second counts.
-    fn around(&self, ratio: f64) -> (&Curve, &Curve, f64) {
+    /// Of curves by rising ratio.
+    pub fn new(curves: Vec<Curve>, holds_ends: bool, walker_gamma: Option<f64>, says_ratio: bool) -> Self {
+        let pairs = (0..2 * curves.len() - 1).map(|i| curves[i / 2].with(&curves[i.div_ceil(2)]));
+        Table { bands: pairs.collect(), curves, holds_ends, walker_gamma, says_ratio, notes: Vec::new() }
+    }
+
+    /// Lowest and highest ratio.
+    fn ends(&self) -> [f64; 2] {
+        [&self.curves[0], &self.curves[self.curves.len() - 1]].map(|curve| curve.ratio)
+    }
+
+    /// The band that a ratio lies in, how much of its second curve counts, and what comes to ln ΔK. Where two curves have no rate in common that
+    /// of the higher ratio counts, which is the faster one.
+    fn around(&self, ratio: f64) -> (&[[f64; 3]], f64, f64) {
         let next = self.curves.partition_point(|curve| curve.ratio < ratio);
-        let [from, to] = [next.saturating_sub(1), next.min(self.curves.len() - 1)].map(|curve| &self.curves[curve]);
-        let share = if from.ratio == to.ratio { 0.0 } else { (ratio - from.ratio) / (to.ratio - from.ratio) };
-        (from, to, share)
+        let [from, to] = [next.saturating_sub(1), next.min(self.curves.len() - 1)];
+        let [low, high] = [from, to].map(|curve| self.curves[curve].ratio);
+        match &self.bands[from + to][..] {
+            _ if ratio - low < NEAR_RATIO => (&self.bands[2 * from], 0.0, 0.0),
+            band if high - ratio >= NEAR_RATIO && band.len() > 1 => {
+                let (share, [own, low, high]) =
+                    ((ratio - low) / (high - low), [ratio, low, high].map(|r| (1.0 - r.max(0.0)).ln()));
+                (band, share, BEND * (own - low - share * (high - low)))
+            }
+            _ => (&self.bands[2 * to], 0.0, 0.0),
+        }
     }
 
-    /// Smallest and largest ΔK, Pa√m, that the table knows at a stress ratio.
-    pub fn range(&self, ratio: f64) -> [f64; 2] {
-        let (from, to, share) = self.around(ratio);
-        let ends = if share == 0.0 { [from.ends(); 2] } else { [from.ends(), to.ends()] };
-        [ends[0][0].max(ends[1][0]), ends[0][1].min(ends[1][1])]
+    /// That no curve is of a stress ratio, and what is done there; compression counts as nothing where no curve has it.
+    fn outside(&self, ratio: f64) -> Option<[String; 2]> {
+        let ([first, last], is_one) = (self.ends(), self.curves.len() == 1);
+        let counted = if first < 0.0 { ratio } else { ratio.max(0.0) };
+        let takes_any = is_one && (self.walker_gamma.is_some() || !self.says_ratio);
+        let is_known = takes_any || (first - SAME_RATIO..=last + SAME_RATIO).contains(&counted);
+        let of = if is_one { format!("{first}, that") } else { format!("{first} to {last}, those") };
+        let (side, end) = if counted > last { ("above", last) } else { ("below", first) };
+        let effect = if counted > last || counted < 0.0 { "non-conservative" } else { "conservative" };
+        (!is_known).then(|| {
+            [
+                format!("R = {} lies {side} {of} of the table of rates", round_off(ratio)),
+                format!(": the rates of R = {end} are used there ({effect})"),
+            ]
+        })
     }
 
-    /// Whether the table speaks about a stress ratio.
-    pub fn knows(&self, ratio: f64) -> bool {
-        let [first, last] = [&self.curves[0], &self.curves[self.curves.len() - 1]].map(|curve| curve.ratio);
-        let takes_any = self.curves.len() == 1 && (self.walker_gamma.is_some() || !self.says_ratio);
-        takes_any || (first - SAME_RATIO..=last + SAME_RATIO).contains(&ratio)
+    /// In words, that no curve is of a stress ratio, and which is taken.
+    pub fn beyond_ratio(&self, ratio: f64) -> Option<String> {
+        self.outside(ratio).map(|words| words.concat())
     }
 
     /// ΔK, Pa√m, at which the rows are read.
@@ -102,19 +152,23 @@ impl Table {
 
     /// da/dN, m/cycle, at K_max, Pa√m; beyond the ends that of the end.
     pub fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        let delta_k = self.delta_k(k_max, ratio);
-        if delta_k <= 0.0 {
+        let log_k = self.delta_k(k_max, ratio).ln();
+        if log_k.is_nan() || log_k == f64::NEG_INFINITY {
             return 0.0;
         }
-        let (from, to, share) = self.around(ratio);
-        let [from, to] = [from, to].map(|curve| curve.log_rate(delta_k));
-        (from + share * (to - from)).exp()
+        let (band, share, more) = self.around(ratio);
+        let at = |knot: &[f64; 3]| knot[1] + share * (knot[2] - knot[1]) + more;
+        let next = band.partition_point(|knot| at(knot) < log_k).clamp(1, band.len() - 1);
+        let [from, to] = [&band[next - 1], &band[next]];
+        let part = ((log_k - at(from)) / (at(to) - at(from))).clamp(0.0, 1.0);
+        (from[0] + part * (to[0] - from[0])).exp()
     }
 
     /// In words, that K lies beyond the rows.
     pub fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
         let delta_k = self.delta_k(k_max, ratio);
-        let [low, high] = self.range(ratio);
+        let (band, share, more) = self.around(ratio);
+        let [low, high] = [band[0], band[band.len() - 1]].map(|knot| (knot[1] + share * (knot[2] - knot[1]) + more).exp());
         let [at, low_mpa, high_mpa] = [delta_k, low, high].map(|k| k / MPA_SQRT_M);
         // Rows that are hit but for round-off.
         let is_beyond = delta_k > 0.0 && !(low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(&delta_k);
@@ -127,32 +181,34 @@ impl Table {
         format!("{rows} rows at {} stress ratios", self.curves.len())
     }
 
-    /// What is to be said of one that names no stress ratio.
-    pub fn line(&self, ratio: f64) -> Option<String> {
-        (!self.says_ratio).then(|| {
+    /// What is to be said of one that scatters, or names no stress ratio, or others than those of the cycles, smallest and largest.
+    pub fn lines(&self, ratios: [f64; 2]) -> Vec<String> {
+        let unsaid = (!self.says_ratio).then(|| {
             format!(
-                "the table of rates names no stress ratio: its rates are used at R = {ratio} as they are; name it in a column stress_ratio or \
-                 by growth_table = {{ file = \"...\", stress_ratio = ... }}"
+                "the table of rates names no stress ratio: its rates are used at R = {} as they are; name it in a column stress_ratio or \
+                 by growth_table = {{ file = \"...\", stress_ratio = ... }}",
+                ratios[1]
             )
-        })
+        });
+        let mut lines: Vec<String> = self.notes.iter().cloned().chain(unsaid).collect();
+        lines.extend(ratios.iter().filter_map(|ratio| self.beyond_ratio(*ratio)));
+        lines.dedup();
+        lines
     }
 }
 
 /// The table of a case.
 fn read(given: &Given<'_>) -> Result<Table> {
-    const KEY: &str = "fatigue.growth_table";
     let Some(rates) = (given.rates)(given, KEY)? else {
         let remedy =
             "name a CSV file with the columns delta_k_mpa_sqrt_m, da_dn_mm_per_cycle and, for several ratios, stress_ratio";
         return Err(input_missing(KEY, "is missing", remedy));
     };
-    let table = Table {
-        curves: curves(&rates).map_err(|error| error.in_file(&given.folder.path(&rates.file)))?,
-        holds_ends: given.get("growth_table_ends")? == Some(TableEnds::Held),
-        walker_gamma: GAMMA.quantity.read_optional("fatigue.walker_gamma", given.get(GAMMA.key)?)?,
-        says_ratio: rates.says_ratio,
-    };
-    let [first, last] = [&table.curves[0], &table.curves[table.curves.len() - 1]].map(|curve| curve.ratio);
+    let (curves, notes) = curves(&rates).map_err(|error| error.in_file(&given.folder.path(&rates.file)))?;
+    let holds_ends = given.get("growth_table_ends")? == Some(TableEnds::Held);
+    let walker_gamma = GAMMA.quantity.read_optional("fatigue.walker_gamma", given.get(GAMMA.key)?)?;
+    let table = Table { notes, ..Table::new(curves, holds_ends, walker_gamma, rates.says_ratio) };
+    let [first, last] = table.ends();
     if let Some(gamma) = table.walker_gamma.filter(|_| !table.says_ratio || table.curves.len() > 1) {
         let problem = match table.says_ratio {
             true => format!("does not go with a table of several stress ratios, {first} to {last}"),
@@ -161,55 +217,69 @@ fn read(given: &Given<'_>) -> Result<Table> {
         let remedy = "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
         return Err(input("fatigue.walker_gamma", gamma, problem, remedy));
     }
-    if let Some(ratio) = given.ratios.into_iter().find(|ratio| !table.knows(*ratio)) {
-        let (name, add) = (&rates.file, "add rates at this ratio to the table");
-        let by_gamma = format!("give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or {add}");
-        let (problem, remedy) = match table.curves.len() {
-            1 => (format!("is another stress ratio than that of {name}, {first}"), &*by_gamma),
-            _ => (format!("lies beyond the ratios of {name}, {first} to {last}"), add),
+    // Of a spectrum some cycles may lie above several ratios: that is said. One ratio says nothing of others.
+    let is_one = table.curves.len() == 1;
+    let ratio = given.ratios[usize::from(is_one)];
+    if let Some([problem, _]) = table.outside(ratio).filter(|_| ratio > last && (is_one || !holds_ends)) {
+        let remedy = match is_one {
+            true => "give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or add rates at this ratio to the table".to_owned(),
+            false => format!(
+                "add rates at this ratio to the table, or take those of R = {last} by growth_table_ends = \"held\" (non-conservative)"
+            ),
         };
-        return Err(input("loading.stress_ratio", ratio, problem, remedy));
+        return Err(input(KEY, format!("\"{}\"", rates.file), problem, remedy));
     }
     Ok(table)
 }
 
-/// The curves of a table by rising ratio, each with at least two rows, ΔK and rate rising.
-fn curves(rates: &Rates) -> Result<Vec<Curve>> {
+/// The curves of a table by rising ratio, each with at least two rows, ΔK and rate rising; and what was done for that.
+fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
     let wrong = |row: Option<&RatedRow>, key: &str, value: f64, problem: String| {
         Error::Input(Box::new(InputError {
             line: row.map(|row| row.line),
             key: Some(key.to_owned()),
             value: Some(round_off(value).to_string()),
             problem,
-            remedy: "give rows of rising ΔK with rising rates, both above zero, one stress ratio after the other".to_owned(),
+            remedy: "give rates that rise over ΔK, both above zero, of one test at each stress ratio or of at least nine rows"
+                .to_owned(),
             ..InputError::default()
         }))
     };
-    let mut curves: Vec<Curve> = Vec::new();
-    for row in &rates.rows {
-        let pair = row.pair;
-        match curves.last_mut() {
-            Some(curve) if curve.ratio == row.ratio => {
-                let last = curve.rows[curve.rows.len() - 1];
-                if let Some(i) = (0..2).find(|&i| pair[i] <= last[i]) {
-                    let si = [MPA_SQRT_M, MM_PER_CYCLE][i];
-                    let problem = format!("does not rise against {}, that of the row before", round_off(last[i] / si));
-                    return Err(wrong(Some(row), &rates.columns[i], pair[i] / si, problem));
-                }
-                curve.rows.push(pair);
-            }
-            Some(last) if last.ratio > row.ratio => {
-                let problem = format!("falls below {}, that of the rows before", last.ratio);
-                return Err(wrong(Some(row), "stress_ratio", row.ratio, problem));
-            }
-            _ => curves.push(Curve { ratio: row.ratio, rows: vec![pair] }),
+    let mut sorted = rates.rows.clone();
+    sorted.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
+    let (mut curves, mut notes, mut rest) = (Vec::new(), rates.notes.clone(), &mut sorted[..]);
+    while let Some(first) = rest.first().map(|row| row.ratio) {
+        let (same, others) = rest.split_at_mut(rest.partition_point(|row| row.ratio - first <= SAME_RATIO));
+        rest = others;
+        let last = same[same.len() - 1].ratio;
+        let mean = same.iter().map(|row| row.ratio).sum::<f64>() / same.len() as f64;
+        let ratio = if first == last { first } else { (mean * 1e4).round() / 1e4 };
+        same.sort_by(|a, b| a.pair[0].total_cmp(&b.pair[0]).then(a.pair[1].total_cmp(&b.pair[1])));
+        if same.len() < 2 {
+            let problem = "has a single row: a rate between rows needs two".to_owned();
+            return Err(wrong(Some(&same[0]), "stress_ratio", first, problem));
         }
+        let pairs: Vec<[f64; 2]> = same.iter().map(|row| row.pair).collect();
+        let falls = (1..pairs.len()).find(|&i| (0..2).any(|k| pairs[i][k] <= pairs[i - 1][k]));
+        let Some(fall) = falls else {
+            curves.push(Curve { ratio, rows: pairs });
+            continue;
+        };
+        let Some((rows, rms)) = rising(&pairs) else {
+            let [before, at] = [pairs[fall - 1][1], pairs[fall][1]].map(|rate| round_off(rate / MM_PER_CYCLE));
+            let problem = format!("does not rise against {before}, that of the next lower ΔK");
+            return Err(wrong(Some(&same[fall]), &rates.columns[1], at, problem));
+        };
+        notes.push(format!(
+            "{}: the rates at R = {ratio} scatter: a rising curve of {} points through {} rates is used, which lie {rms:.3} of ln da/dN (rms) from it",
+            rates.file,
+            rows.len(),
+            pairs.len()
+        ));
+        curves.push(Curve { ratio, rows });
     }
-    match curves.iter().find(|curve| curve.rows.len() < 2) {
-        None if curves.is_empty() => Err(wrong(None, "rows", 0.0, "are too few".to_owned())),
-        None => Ok(curves),
-        Some(curve) => {
-            Err(wrong(None, "stress_ratio", curve.ratio, "has a single row: a rate between rows needs two".to_owned()))
-        }
+    if curves.is_empty() {
+        return Err(wrong(None, "rows", 0.0, "are too few".to_owned()));
     }
+    Ok((curves, notes))
 }

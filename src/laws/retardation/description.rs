@@ -44,6 +44,8 @@ pub struct Now {
     pub k_max: f64,
     /// Stress ratio.
     pub ratio: f64,
+    /// Least stress ratio that the law knows.
+    pub least: f64,
     /// Its plastic zone, m.
     pub size: f64,
 }

@@ -2,6 +2,9 @@
 //!
 //! Equal cycles that follow each other are counted in one go as long as their rate changes by less than a hundredth, by the rate in their middle
 //! (second order: 1e-4 of their growth). Passes are jumped over where one is like the last but for the slow growth of K.
+//!
+//! A cycle that comes in a fraction of the passes, count f, comes in whole numbers: so many that f times the passes so far, rounded down, is kept. A
+//! gust of 0.02 comes in every fiftieth pass, at its place. Passes are then compared, and jumped over, by periods of so many as make all counts whole.
 
 use super::{Now, Retardation, Zone};
 use crate::growth_law::GrowthLaw;
@@ -15,6 +18,10 @@ const JUMP: f64 = 3e-3;
 const WORTH: f64 = 3.0;
 /// Change of what is left of a zone in a pass, over its size, up to which passes are alike.
 const ALIKE: f64 = 1e-3;
+/// How near to whole a count is that is whole but for round-off.
+const WHOLE: f64 = 1e-6;
+/// Times that a cycle comes in a period, in the mean, from which periods are alike although it comes once more or less.
+const OFTEN: f64 = 10.0;
 
 /// What ends a march.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,13 +50,14 @@ pub struct Laws<'a> {
 /// Where a tip stands on its way through a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Underway {
-    /// Cycle that comes next, and how often it is still to come.
+    /// Passes before this one, the cycle that comes next in it, and how often it is still to come.
+    passes: f64,
     place: usize,
     left: f64,
     /// Cycles that were last counted in one go.
     chunk: f64,
-    /// Way, m, and zone at the start of this pass, and whether all of it was marched.
-    pass: (f64, Option<Zone>, bool),
+    /// Way, m, and zone at the start of this period of passes, and whether all of it was marched.
+    period: (f64, Option<Zone>, bool),
     /// Way of the tip, m.
     pub a: f64,
     /// Cycles so far.
@@ -61,25 +69,33 @@ pub struct Underway {
 impl Underway {
     /// Before the first cycle of a spectrum.
     pub fn start(spectrum: &Spectrum) -> Self {
-        let left = spectrum.cycles.first().map_or(0.0, |cycle| cycle.count);
-        Underway { place: 0, left, chunk: 1.0, pass: (0.0, None, false), a: 0.0, cycles: 0.0, zone: None }
+        let left = spectrum.cycles.first().map_or(0.0, |cycle| times(cycle, 0.0));
+        Underway { passes: 0.0, place: 0, left, chunk: 1.0, period: (0.0, None, false), a: 0.0, cycles: 0.0, zone: None }
     }
 
     /// Puts another tip in its place, at its own way and with its own zone; the loads go on.
     pub fn take_over(&mut self, a: f64, zone: Option<Zone>) {
-        (self.a, self.zone, self.pass.2) = (a, zone, false);
+        (self.a, self.zone, self.period.2) = (a, zone, false);
     }
 
     /// The tip stands still while the loads go on to where another tip has them.
     pub fn wait_for(&mut self, other: &Underway) {
-        (self.place, self.left, self.cycles) = (other.place, other.left, other.cycles);
+        (self.passes, self.place, self.left, self.cycles) = (other.passes, other.place, other.left, other.cycles);
     }
+}
+
+/// How often a cycle comes in the pass after so many.
+fn times(cycle: &Cycle, passes: f64) -> f64 {
+    let so_far = |passes: f64| (cycle.count * passes + WHOLE).floor();
+    if cycle.count.fract() == 0.0 { cycle.count } else { so_far(passes + 1.0) - so_far(passes) }
 }
 
 /// A tip on its way through a spectrum.
 pub struct March<'a> {
     laws: Laws<'a>,
     spectrum: &'a Spectrum,
+    /// Cycles of the passes that are compared with those before them.
+    per_period: f64,
     /// Where it stands.
     pub at: Underway,
 }
@@ -93,7 +109,7 @@ pub fn between(ks: [f64; 2], way: [f64; 2]) -> impl Fn(f64) -> f64 {
 impl<'a> March<'a> {
     /// A tip that goes on from where it stands.
     pub fn new(laws: Laws<'a>, spectrum: &'a Spectrum, at: Underway) -> Self {
-        March { laws, spectrum, at }
+        March { laws, spectrum, per_period: spectrum.period * spectrum.per_pass, at }
     }
 
     /// Grows the tip to a way, m, `k` being the K of the largest load at a way, Pa√m; no more than so many cycles in all.
@@ -102,16 +118,21 @@ impl<'a> March<'a> {
             if self.at.cycles >= cycles_max {
                 return Marched::RunOut;
             }
-            let cycle = self.spectrum.cycles[self.at.place];
-            self.at.left -= self.count(&cycle, self.at.left.min(cycles_max - self.at.cycles), k, to);
+            if self.at.left > 0.0 {
+                let cycle = self.spectrum.cycles[self.at.place];
+                self.at.left -= self.count(&cycle, self.at.left.min(cycles_max - self.at.cycles), k, to);
+            }
             if self.at.left > 0.0 {
                 continue;
             }
             self.at.place = (self.at.place + 1) % self.spectrum.cycles.len();
-            self.at.left = self.spectrum.cycles[self.at.place].count;
-            if self.at.place == 0 && self.end_of_pass(k, to, cycles_max) {
-                return Marched::Arrested;
+            if self.at.place == 0 {
+                self.at.passes += 1.0;
+                if self.at.passes % self.spectrum.period == 0.0 && self.end_of_period(k, to, cycles_max) {
+                    return Marched::Arrested;
+                }
             }
+            self.at.left = times(&self.spectrum.cycles[self.at.place], self.at.passes);
         }
         Marched::Reached
     }
@@ -120,7 +141,8 @@ impl<'a> March<'a> {
     fn now(&self, cycle: &Cycle, a: f64, k: f64) -> Now {
         let k_max = cycle.max * k;
         let size = self.laws.retardation.map_or(0.0, |model| model.zone_size(k_max));
-        Now { a, k_max, ratio: (cycle.min / cycle.max).max(self.laws.least), size }
+        let least = self.laws.least;
+        Now { a, k_max, ratio: (cycle.min / cycle.max).max(least), least, size }
     }
 
     /// da/dN of a cycle, m, in the zone of an overload or out of it.
@@ -180,9 +202,9 @@ impl<'a> March<'a> {
         }
     }
 
-    /// At the end of a pass: jumps over passes like it. Whether no pass will change anything.
-    fn end_of_pass(&mut self, k: &dyn Fn(f64) -> f64, to: f64, cycles_max: f64) -> bool {
-        let (start, before, is_whole) = std::mem::replace(&mut self.at.pass, (self.at.a, self.at.zone, true));
+    /// At the end of a period: jumps over periods like it. Whether none will change anything.
+    fn end_of_period(&mut self, k: &dyn Fn(f64) -> f64, to: f64, cycles_max: f64) -> bool {
+        let (start, before, is_whole) = std::mem::replace(&mut self.at.period, (self.at.a, self.at.zone, true));
         if !is_whole {
             return false;
         }
@@ -191,11 +213,20 @@ impl<'a> March<'a> {
             return before == self.at.zone;
         }
         self.jump(growth, before, k, to, cycles_max);
-        self.at.pass = (self.at.a, self.at.zone, true);
+        self.at.period = (self.at.a, self.at.zone, true);
         false
     }
 
-    /// Jumps over passes in which the tip grows at the share of the mean rate that it had in the last one, K changing by no more than [`JUMP`].
+    /// Periods before the next cycle that comes in few of them; infinite where there is none.
+    fn without_rare(&self) -> f64 {
+        let per_period = |cycle: &&Cycle| cycle.count * self.spectrum.period;
+        let is_rare = |cycle: &&Cycle| per_period(cycle) < OFTEN && (per_period(cycle) - per_period(cycle).round()).abs() > WHOLE;
+        let next = |cycle: &Cycle| ((cycle.count * self.at.passes + WHOLE).floor() + 1.0) / cycle.count - self.at.passes;
+        let rare = self.spectrum.cycles.iter().filter(is_rare).map(next);
+        rare.fold(f64::INFINITY, f64::min) / self.spectrum.period - 1.0
+    }
+
+    /// Jumps over periods in which the tip grows at the share of the mean rate that it had in the last one, K changing by no more than [`JUMP`].
     fn jump(&mut self, growth: f64, before: Option<Zone>, k: &dyn Fn(f64) -> f64, to: f64, cycles_max: f64) {
         let start = self.at.a - growth;
         let (Some(was), Some(is)) = (before, self.at.zone) else { return };
@@ -204,20 +235,21 @@ impl<'a> March<'a> {
             return;
         }
         let mean = |a: f64| self.laws.mean.rate(k(a), 0.0);
-        let share = growth / (mean(start + 0.5 * growth) * self.spectrum.per_pass);
+        let share = growth / (mean(start + 0.5 * growth) * self.per_period);
         let (here, slope) = (k(self.at.a), (k(self.at.a) / k(start)).ln().abs() / growth);
         let way = (JUMP / slope.max(f64::MIN_POSITIVE)).min(0.5 * (to - self.at.a)).min(is.size.max(growth * WORTH) * 50.0);
-        let most = (cycles_max - self.at.cycles) / self.spectrum.per_pass;
-        let way = way.min(most * share * mean(self.at.a) * self.spectrum.per_pass);
+        let most = ((cycles_max - self.at.cycles) / self.per_period).min(self.without_rare());
+        let way = way.min(most * share * mean(self.at.a) * self.per_period);
         let middle = self.at.a + 0.5 * way;
-        let per_pass = share * mean(middle) * self.spectrum.per_pass;
-        let passes = (way / per_pass).min(most).floor();
-        if !(passes >= WORTH && per_pass.is_finite()) {
+        let per_period = share * mean(middle) * self.per_period;
+        let periods = (way / per_period).min(most).floor();
+        if !(periods >= WORTH && per_period.is_finite()) {
             return;
         }
-        let way = passes * per_pass;
+        let way = periods * per_period;
         self.at.a += way;
-        self.at.cycles += passes * self.spectrum.per_pass;
+        self.at.cycles += periods * self.per_period;
+        self.at.passes += periods * self.spectrum.period;
         let ratio = k(self.at.a) / here;
         let moved = |zone: Zone| Zone {
             from: zone.from + way,

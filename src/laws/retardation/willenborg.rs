@@ -3,9 +3,9 @@
 use super::description::{Constant, Description};
 use perilife_base::input::{INTENSITY, number};
 
-/// `da/dN = v(K_max - K_red, R)`, `K_red = φ [K_OL √(1 - Δa/r_OL) - K_max]`, `φ = (1 - K_th/K_max)/(S - 1)`, Δa being the growth since the
-/// overload. At K_OL √… = S K_max, the shut-off ratio, K_max - K_red is K_th and the crack is arrested. R of the cycle is kept: both ends of the cycle
-/// are reduced in proportion.
+/// `da/dN = v(K_max - K_red, R_eff)`, `R_eff = (K_min - K_red)/(K_max - K_red)`, `K_red = φ [K_OL √(1 - Δa/r_OL) - K_max]`,
+/// `φ = (1 - K_th/K_max)/(S - 1)`, Δa being the growth since the overload. At K_OL √… = S K_max, the shut-off ratio, K_max - K_red is K_th and
+/// the crack is arrested. The residual stress takes the same from both ends of the cycle: ΔK is kept and R falls, below 0 as the law takes it.
 pub static MODEL: Description = Description {
     name: "willenborg",
     meaning: "K reduced by residual stress, no growth from the shut-off ratio on (Willenborg 1971, Gallagher and Hughes 1974)",
@@ -28,7 +28,8 @@ pub static MODEL: Description = Description {
         let asked = zone.k_max * (1.0 - (now.a - zone.from) / zone.size).max(0.0).sqrt();
         let reduction = (1.0 - threshold / now.k_max) / (shutoff - 1.0) * (asked - now.k_max);
         let effective = now.k_max - reduction.max(0.0);
-        if now.k_max <= threshold || asked >= shutoff * now.k_max { 0.0 } else { law.rate(effective, now.ratio) }
+        let ratio = ((now.ratio * now.k_max - reduction.max(0.0)) / effective).max(now.least);
+        if now.k_max <= threshold || asked >= shutoff * now.k_max { 0.0 } else { law.rate(effective, ratio) }
     }),
     underload: "does not know underloads",
 };

@@ -6,6 +6,7 @@
 //! The stress is that in the axes of the plate: σ_y, and σ_x and τ_xy where they are given, else 0. From a file it is linear between its
 //! points: in the triangles of Delaunay, or along a line where all points lie on one, and alike across that.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use spade::{DelaunayTriangulation, FloatTriangulation, HasPosition, Point2, Triangulation};
@@ -13,17 +14,18 @@ use toml::Value;
 
 use super::Input;
 use super::formula::{Formula, KNOWN};
-use super::spectrum::rows::{cells, fault, number, rows};
 use crate::specimen::geometry::{along, distance};
 use crate::specimen::{CrackLine, Point};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Folder, shorten};
+use perilife_base::table::names::{Named, quantity};
+use perilife_base::table::quantities::{Words, in_si, numbers};
+use perilife_base::table::units::{LengthUnit, LoadUnit, Unit};
+use perilife_base::table::{self, Fault, whole_file};
 use perilife_base::units::{MM, MPA, place_mm};
 
 const FILE: &str = "loading.residual_stress_file";
 const FORMULA: &str = "loading.residual_stress";
-/// Columns of a file: place and σ_y, then what may follow.
-const COLUMNS: [&str; 5] = ["x_mm", "y_mm", "stress_mpa", "stress_x_mpa", "shear_xy_mpa"];
 /// Distance from a line over its length within which points lie on it, and beyond its ends within which they are at its end.
 const ROUND_OFF: f64 = 1e-6;
 /// Pieces of the initial cracks whose ends are looked at.
@@ -91,8 +93,7 @@ impl ResidualStress {
             (Some(formulas), None) => of_formulas(formulas).map(|field| Some(Arc::new(field))),
             (None, Some(file)) => {
                 let bytes = folder.read(file)?;
-                let read = || of_table(String::from_utf8_lossy(&bytes).trim_start_matches('\u{feff}'));
-                let field = read().map_err(|error| error.in_file(&folder.path(file)))?;
+                let field = of_table(&bytes, &folder.path(file))?;
                 let sha256 = perilife_base::input::sha256(&bytes);
                 Ok(Some(Arc::new(ResidualStress { field, words: file.clone(), sha256, key: FILE })))
             }
@@ -209,37 +210,63 @@ fn of_formulas(given: &Value) -> Result<ResidualStress> {
     Ok(ResidualStress { field: Field::Formulas(field), words: given.to_string(), sha256: String::new(), key: FORMULA })
 }
 
-/// Rows of places and stresses below a title.
-fn of_table(text: &str) -> Result<Field> {
-    const REMEDY: &str = "name the columns x_mm, y_mm, stress_mpa, and stress_x_mpa, shear_xy_mpa where they are known";
-    let mut lines = rows(text);
-    let (line, title) = lines.next().ok_or_else(|| fault(None, "row", "", "holds no row", REMEDY))?;
-    let names: Vec<String> = cells(title).map(str::to_lowercase).collect();
-    if let Some(strange) = names.iter().find(|name| !COLUMNS.contains(&name.as_str())) {
-        return Err(fault(Some(line), "column", strange, "is no column of a residual stress", REMEDY));
-    }
-    let places = COLUMNS.map(|column| names.iter().position(|name| name == column));
-    if let Some(missing) = (0..3).find(|column| places[*column].is_none()) {
-        return Err(fault(Some(line), COLUMNS[missing], title, "is missing: the title does not name it", REMEDY));
-    }
+/// Names of σ_y, σ_x and τ_xy, without the word residual.
+const STRESSES: [&[&str]; 3] = [
+    &["stress", "stress y", "stress yy", "sigma", "sigma y", "sigma yy", "sigmay", "s", "s y", "s yy", "sy", "syy"],
+    &["stress x", "stress xx", "sigma x", "sigma xx", "sigmax", "s x", "s xx", "sx", "sxx"],
+    &[
+        "shear xy",
+        "shear",
+        "shear stress",
+        "shear stress xy",
+        "stress xy",
+        "sigma xy",
+        "tau",
+        "tau xy",
+        "tauxy",
+        "s xy",
+        "sxy",
+        "txy",
+    ],
+];
+
+/// The place of a column among x, y, σ_y, σ_x, τ_xy.
+fn role(name: &str) -> Option<(usize, Named)> {
+    let axis = |axis: usize| quantity(name, Unit::Length(LengthUnit::Millimetre), |words| words == [["x", "y"][axis]]);
+    let of_stress = |component: usize| {
+        quantity(name, Unit::Load(LoadUnit::Megapascal), |words| {
+            let words = words.strip_prefix(&["residual"]).unwrap_or(words);
+            STRESSES[component].contains(&words.join(" ").as_str())
+        })
+    };
+    (0..2).find_map(|place| Some((place, axis(place)?))).or_else(|| (0..3).find_map(|place| Some((place + 2, of_stress(place)?))))
+}
+
+const WORDS: Words<usize> = Words {
+    role,
+    is_enough: |roles| (0..3).all(|column| roles.contains(&column)),
+    columns: 3,
+    remedy: "name the columns x_mm, y_mm, stress_mpa, and stress_x_mpa, shear_xy_mpa where they are known",
+};
+
+/// Rows of places and stresses below a header.
+fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
+    let table = table::read(bytes, file, &WORDS)?;
+    let roles = WORDS.roles(&table, None)?;
+    let unit = |column: usize, named: Named| in_si(&table, column, named, None);
+    let factors = roles.iter().enumerate().map(|(column, (_, named))| unit(column, *named)).collect::<Result<Vec<f64>>>()?;
+    let columns: Vec<(usize, bool)> = (0..roles.len()).map(|column| (column, false)).collect();
+    let fault = |line: Option<usize>, key: &str, value: &str, problem: &str, remedy: &str| {
+        Fault { line, key: Some(key), value: Some(value), ..whole_file(file) }.error(problem, remedy)
+    };
     let mut samples = Vec::new();
-    for (line, text) in lines {
-        let given: Vec<&str> = cells(text).collect();
-        if given.len() != names.len() {
-            return Err(fault(
-                Some(line),
-                "row",
-                text,
-                &format!("has {} values for {} columns", given.len(), names.len()),
-                REMEDY,
-            ));
+    for (line, values) in numbers(&table, &columns)? {
+        let of = |role: usize| roles.iter().position(|(own, _)| *own == role).map_or(0.0, |place| values[place] * factors[place]);
+        let stress = [of(3), of(2), of(4)];
+        if let Some(large) = stress.iter().map(|stress| stress / MPA).find(|stress| stress.abs() > MOST) {
+            return Err(fault(Some(line), "stress", &large.to_string(), "is beyond any stress in MPa", "check its unit"));
         }
-        let value = |column: usize| places[column].map_or(Ok(0.0), |place| number(line, COLUMNS[column], given[place]));
-        let [x, y, yy, xx, xy] = [value(0)?, value(1)?, value(2)?, value(3)?, value(4)?];
-        if let Some(large) = [yy, xx, xy].iter().find(|stress| stress.abs() > MOST) {
-            return Err(fault(Some(line), "stress", &large.to_string(), "is beyond any stress in MPa", "give it in MPa"));
-        }
-        samples.push((line, Sample { at: [x * MM, y * MM], stress: [xx, yy, xy].map(|stress| stress * MPA) }));
+        samples.push((line, Sample { at: [of(0), of(1)], stress }));
     }
     let (first, last) = match samples.as_slice() {
         [(_, first), .., (_, last)] => (*first, *last),

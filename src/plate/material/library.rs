@@ -9,6 +9,8 @@
 //! Every number stands with its source. Growth data are those of [`super::growth_data`]; the law of a test of one's own is what
 //! `calibration/<name>/fitted.toml` holds.
 
+use std::path::Path;
+
 use include_dir::{Dir, include_dir};
 use serde::Deserialize;
 use toml::Value;
@@ -51,7 +53,7 @@ pub struct MaterialFile {
     pub density_kg_m3: Option<Property>,
     /// Tensile strength, MPa.
     pub tensile_strength_mpa: Option<Property>,
-    /// Its growth law: keys of `[fatigue]`, files in them from the folder of the case.
+    /// Its growth law: keys of `[fatigue]`, files in them as seen from the folder of the case.
     pub growth: Option<toml::Table>,
 }
 
@@ -71,7 +73,9 @@ pub fn names() -> Vec<String> {
 pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
     if name.ends_with(".toml") || name.contains(['/', '\\']) {
         let document = Document::in_folder(folder, name, &[])?;
-        return read(&document).map_err(|error| document.locate(error));
+        let mut file = read(&document).map_err(|error| document.locate(error))?;
+        file.growth.iter_mut().for_each(|keys| from_folder_of(name, keys));
+        return Ok(file);
     }
     let text = FILES.get_file(format!("{name}.toml")).and_then(|file| file.contents_utf8());
     let Some(text) = text else {
@@ -84,6 +88,16 @@ pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
     };
     let document = Document::parse(text, name, Folder::none(), &[])?;
     read(&document)
+}
+
+/// Files that `[growth]` of a material file names, which lie beside it.
+fn from_folder_of(name: &str, keys: &mut toml::Table) {
+    for key in ["fitted", "growth_table"] {
+        let value = keys.get_mut(key).and_then(|value| if value.is_table() { value.get_mut("file") } else { Some(value) });
+        if let Some(Value::String(file)) = value {
+            *file = Path::new(name).with_file_name(&*file).display().to_string();
+        }
+    }
 }
 
 /// What a record of growth data says of its material beside the growth.

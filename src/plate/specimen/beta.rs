@@ -10,19 +10,21 @@
 //! the rows ([`Blended`]).
 
 use std::f64::consts::PI;
+use std::path::Path;
 
 use super::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
 use perilife_base::blended::Blended;
-use perilife_base::error::{Error, InputError, Result, input_missing};
+use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::input::Folder;
-use perilife_base::units::{INCH, MM};
+use perilife_base::table::names::{self, Column, Named, made_of, vocabulary::words};
+use perilife_base::table::quantities::{Words, in_si, numbers};
+use perilife_base::table::{self, Fault, whole_file};
+use perilife_base::units::MM;
 
 /// Key of the file.
 pub const KEY: &str = "specimen.beta_file";
 /// First line of the file.
 pub const HEADER: &str = "crack_length_mm,beta";
-/// The same of a table in inches.
-const HEADER_INCH: &str = "crack_length_in,beta";
 /// Share of a length by which the table may end before it.
 const SLACK: f64 = 1e-9;
 /// Share by which cracks of one table may differ in length.
@@ -41,7 +43,8 @@ pub struct BetaTable {
     stress: f64,
     file: String,
     last_line: usize,
-    column: Column,
+    /// Name of the column of its lengths, and their unit, m.
+    column: (String, f64),
 }
 
 impl Specimen {
@@ -66,13 +69,13 @@ impl Specimen {
     /// Errors: [`Error::Input`] by file and line on what is no table, by key on a specimen that it does not describe.
     pub fn read_beta(&mut self, file: &str, folder: &Folder) -> Result<()> {
         let (a, tips) = self.length_of_beta()?;
-        let text = folder.read(file)?;
-        let rows = rows(&String::from_utf8_lossy(&text)).map_err(|error| error.in_file(&folder.path(file)))?;
+        let path = folder.path(file);
+        let (rows, column) = rows(&folder.read(file)?, &path)?;
         let [first, last] = [rows[0], rows[rows.len() - 1]];
         if a < first.length * (1.0 - SLACK) || a > last.length * (1.0 + SLACK) {
             let (row, end) = if a < first.length { (first, "begins") } else { (last, "ends") };
             let problem = format!("is where the table {end}, and the crack has {} mm at the start", round(a));
-            return Err(row.fault(problem, "give a table from the initial crack length to the end").in_file(&folder.path(file)));
+            return Err(row.fault(&path, &column, problem, "give a table from the initial crack length to the end"));
         }
         self.beta = Some(BetaTable {
             logarithms: Blended::new(rows.iter().map(|row| (row.length, row.beta.ln()))),
@@ -81,7 +84,7 @@ impl Specimen {
             stress: self.beta_stress(1.0),
             file: file.to_owned(),
             last_line: last.line,
-            column: last.column,
+            column: (column, last.unit),
         });
         Ok(())
     }
@@ -150,10 +153,15 @@ impl BetaTable {
             return Ok(());
         }
         let a = self.logarithms.x()[self.logarithms.x().len() - 1];
-        let row = Row { line: self.last_line, length: a, beta: f64::NAN, column: self.column };
+        let row = Row { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
         let problem = format!("is where the table ends, and growth goes on to {} mm", round(self.length_at(crack_length)));
         let most = round(self.bounds()[1]);
-        Err(row.fault(problem, &format!("give a longer table, or stop.crack_length_mm up to {most}")).in_file(self.file.as_ref()))
+        Err(row.fault(
+            self.file.as_ref(),
+            &self.column.0,
+            problem,
+            &format!("give a longer table, or stop.crack_length_mm up to {most}"),
+        ))
     }
 }
 
@@ -163,83 +171,58 @@ struct Row {
     line: usize,
     length: f64,
     beta: f64,
-    column: Column,
+    unit: f64,
 }
-
-/// Name and unit, m, of the column of lengths.
-type Column = (&'static str, f64);
 
 impl Row {
     /// What is wrong with it, its length as the file has it.
-    fn fault(self, problem: impl Into<String>, remedy: &str) -> Error {
-        let length = (self.length / self.column.1 * 1e6).round() / 1e6;
-        fault(self.line, self.column.0, &length.to_string(), problem, remedy)
+    fn fault(self, file: &Path, name: &str, problem: impl Into<String>, remedy: &str) -> Error {
+        let length = ((self.length / self.unit * 1e6).round() / 1e6).to_string();
+        Fault { line: Some(self.line), key: Some(name), value: Some(&length), ..whole_file(file) }.error(problem, remedy)
     }
 }
 
-/// The first line: the column of lengths, with its unit in m, and whether the file has decimal commas, since its cells stand between
-/// other marks. A table without it does not say its unit.
-fn header((line, content): (usize, &str)) -> Result<(&'static str, f64, bool)> {
-    let names = cells(content, !content.contains(','));
-    match names[..] {
-        ["crack_length_mm", "beta"] => Ok(("crack_length_mm", MM, !content.contains(','))),
-        ["crack_length_in", "beta"] => Ok(("crack_length_in", INCH, !content.contains(','))),
-        _ => {
-            let problem = format!("stands where the header {HEADER} is expected");
-            Err(fault(line, "row", content, problem, &format!("begin with {HEADER} or {HEADER_INCH}, then one pair a line")))
-        }
+/// Whether a column is β, and not a crack length.
+fn role(name: &str) -> Option<(bool, Named)> {
+    const BETA: &str = "beta β betafactor";
+    if made_of(&words(name).0.iter().map(String::as_str).collect::<Vec<_>>(), BETA, &["factor geometry"]) {
+        return Some((true, Named::No));
     }
+    let column = Column::named(0, name);
+    (column.role == names::Role::Length && !column.is_tip_to_tip()).then_some((false, column.unit))
 }
 
-/// Cells between semicolons, tabs or blanks, and commas where those are not decimal.
-fn cells(content: &str, has_decimal_commas: bool) -> Vec<&str> {
-    let parts = |mark: char| matches!(mark, ';' | '\t' | ' ') || (mark == ',' && !has_decimal_commas);
-    content.split(parts).filter(|cell| !cell.is_empty()).collect()
-}
+const WORDS: Words<bool> = Words {
+    role,
+    is_enough: |roles| roles.contains(&true) && roles.contains(&false),
+    columns: 2,
+    remedy: "begin with crack_length_mm,beta (or crack_length_in,beta), then one pair a line",
+};
 
-/// The rows of the table: two numbers a line below the header.
-fn rows(text: &str) -> Result<Vec<Row>> {
+/// The rows of the table, and the name of the column of lengths.
+fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<Row>, String)> {
+    let table = table::read(bytes, file, &WORDS)?;
+    let roles = WORDS.roles(&table, None)?;
+    let place = |of_beta: bool| roles.iter().position(|(role, _)| *role == of_beta).unwrap_or_default();
+    let (length, beta) = (place(false), place(true));
+    let unit = in_si(&table, length, roles[length].1, None)?;
     let mut rows: Vec<Row> = Vec::new();
-    let lines = text.trim_start_matches('\u{feff}').lines().enumerate().map(|(place, line)| (place + 1, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (column, unit, has_decimal_commas) = lines.next().map_or(Ok(("crack_length_mm", MM, false)), header)?;
-    for (line, content) in lines {
-        let [length, beta] = cells(content, has_decimal_commas)[..] else {
-            return Err(fault(line, "row", content, "is no pair of crack length and beta", &format!("give {column},beta")));
-        };
-        let number = |column, cell| positive(line, column, cell, has_decimal_commas);
-        let row = Row { line, length: number(column, length)? * unit, beta: number("beta", beta)?, column: (column, unit) };
+    for (row, (line, values)) in table.rows.iter().zip(numbers(&table, &[(length, false), (beta, false)])?) {
+        if let Some((column, _)) = [length, beta].into_iter().zip(&values).find(|(_, value)| **value <= 0.0) {
+            let remedy = "give lengths and beta = K/(σ√(πa)), above zero";
+            return Err(table.cell_fault(row, column).error("is not a number above zero", remedy));
+        }
+        let row = Row { line, length: values[0] * unit, beta: values[1], unit };
         if let Some(before) = rows.last().filter(|before| before.length >= row.length) {
             let problem = format!("does not rise above the {} mm of line {}", round(before.length), before.line);
-            return Err(row.fault(problem, "sort the rows by crack length, each length once"));
+            return Err(row.fault(file, &table.header[length], problem, "sort the rows by crack length, each length once"));
         }
         rows.push(row);
     }
-    if rows.len() < 2 {
-        let count = if rows.is_empty() { "no row" } else { "one row" };
-        return Err(fault(rows.len().max(1), "rows", count, "is no curve", "give two rows or more below crack_length_mm,beta"));
+    match rows[..] {
+        [_, _, ..] => Ok((rows, table.header[length].clone())),
+        _ => Err(whole_file(file).error("has one row, which is no curve", "give two rows or more below crack_length_mm,beta")),
     }
-    Ok(rows)
-}
-
-fn positive(line: usize, column: &str, cell: &str, has_decimal_commas: bool) -> Result<f64> {
-    let number = if has_decimal_commas { cell.replace(',', ".").parse::<f64>() } else { cell.parse::<f64>() };
-    match number {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        Ok(_) => Err(fault(line, column, cell, "is not a number above zero", "give lengths and beta = K/(σ√(πa)), above zero")),
-        Err(_) => Err(fault(line, column, cell, "is not a number", "give numbers with a decimal point")),
-    }
-}
-
-fn fault(line: usize, column: &str, value: &str, problem: impl Into<String>, remedy: &str) -> Error {
-    Error::Input(Box::new(InputError {
-        line: Some(line),
-        key: Some(column.to_owned()),
-        value: Some(value.to_owned()),
-        problem: problem.into(),
-        remedy: remedy.to_owned(),
-        ..InputError::default()
-    }))
 }
 
 /// Metres as mm, rounded for messages.

@@ -34,6 +34,10 @@ pub enum Role {
     Load,
     /// Range of the stress intensity.
     DeltaK,
+    /// Stress intensity at maximum load, in tables of rates.
+    KMax,
+    /// Stress intensity at minimum load, in tables of rates.
+    KMin,
     /// da/dN.
     Rate,
     /// Width of the specimen.
@@ -141,6 +145,18 @@ impl Column {
         })
     }
 
+    /// What a name means in a table of rates: `Kmax (MPa√m)` and `K_min`, too.
+    pub fn named_of_rates(index: usize, name: &str) -> Column {
+        let of_end = |role: Role, list: &str| {
+            let is_end = |core: &[&str]| match core.iter().position(|word| is_in(list, word)) {
+                Some(place) => K_AT.contains(&&*[&core[..place], &core[place + 1..]].concat().join(" ")),
+                None => matches!((core, role), (["kmax"], Role::KMax) | (["kmin"], Role::KMin)),
+            };
+            of_words(name, |words, bracket| of_quantity(index, role, words, bracket, &is_end))
+        };
+        of_end(Role::KMax, MAX).or_else(|| of_end(Role::KMin, MIN)).unwrap_or_else(|| Column::named(index, name))
+    }
+
     /// The column that the user gives a role, its unit still that of its name.
     pub fn given(index: usize, role: Role, name: &str) -> Column {
         let own = Column::named(index, name);
@@ -170,6 +186,19 @@ fn of_words<T>(name: &str, read: impl FnOnce(&[&str], &[&str]) -> T) -> T {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let bracket: Vec<&str> = bracket.iter().map(String::as_str).collect();
     read(&words, &bracket)
+}
+
+/// The unit of a name that is made up of a quantity, whose words are asked about, and perhaps a unit like this one; `None` of another name.
+pub fn quantity(name: &str, like: Unit, is_core: impl Fn(&[&str]) -> bool) -> Option<Named> {
+    let known: fn(&[&str]) -> Option<Unit> = if let Unit::Length(_) = like { length_unit } else { load_unit };
+    of_words(name, |words, bracket| {
+        unit_of(words, bracket, known).into_iter().find_map(|(words, unit)| is_core(words).then_some(unit))
+    })
+}
+
+/// Whether words are made up of some lists, at least one of the first.
+pub fn made_of(words: &[&str], core: &str, more: &[&str]) -> bool {
+    any_in(words, core) && words.iter().all(|word| is_in(core, word) || more.iter().any(|list| is_in(list, word)))
 }
 
 fn any_in(words: &[&str], list: &str) -> bool {
@@ -229,7 +258,8 @@ fn cycle_unit(words: &[&str]) -> Option<Unit> {
 fn length(words: &[&str], bracket: &[&str]) -> Option<(Role, Named)> {
     unit_of(words, bracket, length_unit).into_iter().find_map(|(words, unit)| {
         let has = |list| any_in(words, list);
-        if has(LENGTH) && all_in(words, &[LENGTH, LENGTH_MORE]) {
+        let by_method = matches!(unit, Named::Is(_)) && has(METHODS);
+        if (has(LENGTH) || by_method) && all_in(words, &[LENGTH, LENGTH_MORE, METHODS]) {
             return Some((Role::Length, unit));
         }
         let sides = has(SIDES) && all_in(words, &[SIDES, SIDE_MORE, LENGTH, LENGTH_MORE]);
@@ -290,8 +320,8 @@ fn of_rates(index: usize, words: &[&str], bracket: &[&str]) -> Option<Column> {
 /// The column of a quantity whose unit may have blanks and brackets of its own: the longest unit at the end of all words counts.
 fn of_quantity(index: usize, role: Role, words: &[&str], bracket: &[&str], is_core: &dyn Fn(&[&str]) -> bool) -> Option<Column> {
     let like = match role {
-        Role::DeltaK => Unit::Intensity(IntensityUnit::MpaSqrtM),
-        _ => Unit::Rate(RateUnit::Millimetre),
+        Role::Rate => Unit::Rate(RateUnit::Millimetre),
+        _ => Unit::Intensity(IntensityUnit::MpaSqrtM),
     };
     let all = [words, bracket].concat();
     let (is_log, all) = match all.as_slice() {
@@ -398,6 +428,17 @@ pub fn is_of_statistics(name: &str) -> bool {
             name.trim_start().starts_with(['+', '-', '\u{b1}']) && words.last().is_some_and(|word| is_in(SPREAD, word));
         is_statistic || is_model || is_signed || words == ["s", "d"]
     })
+}
+
+/// The stress ratio of a column that is named by it, and the bracket behind it: `R=0.1`, `R 0.5 (MPa√m)`, `ΔK at R0.7`.
+pub fn ratio_of_name(name: &str) -> Option<(&str, &str)> {
+    let is_word = |place: &usize| name[*place..].starts_with(['R', 'r']) && !name[..*place].ends_with(char::is_alphanumeric);
+    let place = name.char_indices().map(|(place, _)| place).find(is_word)?;
+    let text = name[place + 1..].trim_start_matches(['=', ' ', '_', ':']);
+    let (number, rest) = text.split_at(text.find([' ', '(', '[', '{']).unwrap_or(text.len()));
+    let is_ratio = number.replace(',', ".").replace('\u{2212}', "-").parse().is_ok_and(|ratio: f64| ratio < 1.0);
+    let rest = rest.trim_start();
+    (is_ratio && (rest.is_empty() || rest.starts_with(['(', '[', '{']))).then_some((number, rest))
 }
 
 /// Whether a name is a word and perhaps a unit of length.

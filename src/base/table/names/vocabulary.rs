@@ -13,6 +13,8 @@ pub const COUNTS: &str = "count counts";
 pub const LENGTH: &str = "a 2a length len risslaenge risslange rissl fissure grieta cricca cracklength cracksize crack";
 pub const LENGTH_MORE: &str = "crack size average avg ave av mean mittlere mittel mittelwert visual optical measured current corrected physical \
     fatigue the of length longueur longitud lunghezza de la della moyenne media flaw a half halbe";
+/// How a crack length was measured, beside a word or a unit of length.
+pub const METHODS: &str = "dcpd acpd pd dc ac by potential drop method";
 pub const SIDES: &str = "front back rear left right afront aback aleft aright vorne hinten links rechts vorderseite rueckseite vorn avant arriere gauche droite near far";
 /// Letters of sides, beside a word of length only.
 pub const SIDE_LETTERS: &str = "f b l r fl fr bl br lf rf lb rb";
@@ -56,6 +58,8 @@ pub const DELTA_K: [&str; 12] = [
     "stress intensity factor range",
     "range of stress intensity",
 ];
+/// Names of the stress intensity at one load, as it is called beside `max` or `min`.
+pub const K_AT: [&str; 6] = ["k", "k i", "ki", "sif", "stress intensity", "stress intensity factor"];
 /// Names of the growth in a cycle.
 pub const RATE: [&str; 9] = [
     "da dn",
@@ -74,7 +78,7 @@ pub const OTHER: &str = "k kmax kmin ki kii dk deltak keff kop kcl dkeff intensi
     ctod clip gauge gage displacement disp stroke opening position strain bfs compliance stiffness time date zeit datum \
     temps elapsed seconds hours temperature temp temperatur humidity frequency freq frequenz b w h e thickness width \
     height dicke breite modulus area r2 flag flags valid validity comment comments note notes remark remarks bemerkung \
-    closure voltage potential pd dcpd acpd line point index row file block broken bonds work x y t tip beta error residual \
+    closure voltage potential pd dcpd acpd vpd line point index row file block broken bonds work x y t tip beta error residual \
     fit fitted p f force load stress range amplitude segment segments gain phase waveform u v pop pcl energy ratio delta \
     step method operator q cross check remaining band measured dp df uneven";
 

@@ -1,5 +1,16 @@
 //! What a file of a spectrum holds, as it stands there.
 
+perilife_base::kinds! {
+    /// How a spectrum is written.
+    pub enum SpectrumFormat for "loading.spectrum_format" {
+        Cycles = "cycles": "table with the columns max, min, cycles (or range, mean, cycles), in order, each maximum before its minimum",
+        TurningPoints = "turning_points": "one column of loads, counted by rainflow as repeating (ASTM E1049, 5.4.5), each cycle at the place of its maximum",
+        Spx = "spx": "AFGROW .spx: XML with elements B (Mx, Mn, C) in every SubSpectrum",
+        Sub = "sub": "AFGROW .sub: a title with the number of rows, then rows max min cycles",
+        Fastran = "fastran": "FASTRAN: a title, points Smax Smin INVERT ICLIP, then turning points as whole numbers",
+    }
+}
+
 /// Cycles or turning points as a file has them.
 pub(super) enum Content {
     Cycles(Vec<RawCycle>),

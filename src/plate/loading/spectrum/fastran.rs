@@ -2,6 +2,7 @@
 //!
 //! The largest of the numbers stands for Smax and the smallest for Smin, others between them in proportion.
 
+use super::columns;
 use super::content::Content;
 use super::rows::{Row, cells, fault, number};
 use perilife_base::error::Result;
@@ -14,9 +15,9 @@ fn header(line: &str) -> Option<[f64; 5]> {
     <[f64; 5]>::try_from(values).ok().filter(|[points, most, least, ..]| points.fract() == 0.0 && *points >= 2.0 && most > least)
 }
 
-/// Whether the second line of a text is such a header.
-pub(super) fn is_of(second: &str) -> bool {
-    header(second).is_some()
+/// Whether the second line of a text is such a header, below a title that is no row of five columns.
+pub(super) fn is_of(first: &str, second: &str) -> bool {
+    header(second).is_some() && header(first).is_none() && !columns::is_header(first)
 }
 
 /// Reads the turning points.

@@ -4,20 +4,23 @@
 //! fractions of the stress or force of `loading.spectrum_scale_mpa` or `spectrum_scale_n`; inside they are fractions of the largest load.
 
 mod classes;
+mod columns;
 mod content;
 mod fastran;
 pub mod rainflow;
 mod read;
-pub(super) mod rows;
+mod rows;
 mod spx;
 mod sub;
-mod table;
 
 pub use classes::Class;
-pub use read::SpectrumFormat;
+pub use content::SpectrumFormat;
 pub(super) use read::refuse;
 
 use std::fmt;
+
+/// Longest period of a spectrum, passes.
+pub const PERIOD_MOST: usize = 1000;
 
 /// Loads that come again and again: from a minimum to a maximum, so many times.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +29,7 @@ pub struct Cycle {
     pub max: f64,
     /// Smallest load over the same; below `max`.
     pub min: f64,
-    /// How often it comes, one after the other; ½ of a half cycle.
+    /// How often it comes in a pass, one after the other; below 1 of one that is not in every pass.
     pub count: f64,
 }
 
@@ -53,6 +56,8 @@ pub struct Spectrum {
     pub cycles: Vec<Cycle>,
     /// Cycles of a pass, `Σ count`.
     pub per_pass: f64,
+    /// Fewest passes in which every cycle comes a whole number of times; [`PERIOD_MOST`] where there are none.
+    pub period: f64,
     /// Cycles of a pass that were left out as too small.
     pub omitted: f64,
     /// Largest value of the file, and the one that is left of it where peaks are cut off.
@@ -65,6 +70,8 @@ pub struct Spectrum {
     pub classes: Vec<Class>,
     /// How many kinds of cycles there are: pairs of maximum and minimum that differ.
     pub kinds: usize,
+    /// What the user should know of its file.
+    pub notes: Vec<String>,
     /// SHA-256 of the file.
     sha256: String,
 }

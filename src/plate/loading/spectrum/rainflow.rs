@@ -1,33 +1,20 @@
-//! Cycles of a history of loads by rainflow counting, ASTM E1049-85 (2017), 5.4.4.
+//! Cycles of a history of loads that repeats, by rainflow counting, ASTM E1049-85 (2017), 5.4.5 (ISO 12110-2:2013, A.3.3.3).
 
-/// A cycle or half cycle that was counted.
+/// A cycle that was counted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Counted {
-    /// Its two turning points, in their order in time.
-    pub ends: [f64; 2],
-    /// Their places in the history.
+    /// Its maximum.
+    pub max: f64,
+    /// Its minimum.
+    pub min: f64,
+    /// Places of its maximum and its minimum in the history.
     pub places: [usize; 2],
-    /// 1 of a cycle, ½ of a half cycle.
-    pub count: f64,
-}
-
-impl Counted {
-    /// Its range.
-    pub fn range(&self) -> f64 {
-        (self.ends[1] - self.ends[0]).abs()
-    }
-
-    /// Place of its maximum in the history, and of its minimum.
-    pub fn place_of_maximum(&self) -> [usize; 2] {
-        let [first, second] = self.places;
-        if self.ends[0] > self.ends[1] { [first, second] } else { [second, first] }
-    }
 }
 
 /// The values at which a history turns, its first and last among them, each with its place.
-pub fn turning_points(history: &[f64]) -> Vec<(usize, f64)> {
-    let mut turns: Vec<(usize, f64)> = Vec::with_capacity(history.len());
-    for (place, &value) in history.iter().enumerate() {
+fn turning_points(history: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f64)> {
+    let mut turns: Vec<(usize, f64)> = Vec::new();
+    for (place, value) in history {
         match turns[..] {
             [.., (_, last)] if last == value => continue,
             // Goes on in the direction of the last range, which is then a longer one.
@@ -39,28 +26,23 @@ pub fn turning_points(history: &[f64]) -> Vec<(usize, f64)> {
     turns
 }
 
-/// The cycles of a history, as they close; those that are left open at its end are half cycles, in their order.
+/// The cycles of a history that comes again and again: turned so that it begins and ends with its largest peak, which leaves no half cycles.
 ///
-/// With X the range under consideration and Y the one before it: while X ≥ Y, Y is a cycle and its two points are taken out, or, where it
-/// holds the starting point, a half cycle and only that point is taken out.
+/// With X the range under consideration and Y the one before it: while X ≥ Y, Y is a cycle and its two points are taken out.
 pub fn rainflow(history: &[f64]) -> Vec<Counted> {
-    let counted = |[from, to]: [(usize, f64); 2], count| Counted { ends: [from.1, to.1], places: [from.0, to.0], count };
+    let peak = (0..history.len()).max_by(|a, b| history[*a].total_cmp(&history[*b]).then(b.cmp(a))).unwrap_or(0);
+    let turned = (peak..history.len()).chain(0..(peak + 1).min(history.len())).map(|place| (place, history[place]));
     let (mut open, mut found): (Vec<(usize, f64)>, Vec<Counted>) = (Vec::new(), Vec::new());
-    for turn in turning_points(history) {
+    for turn in turning_points(turned) {
         open.push(turn);
         while let [.., a, b, c] = open[..] {
             if (c.1 - b.1).abs() < (b.1 - a.1).abs() {
                 break;
             }
-            if open.len() == 3 {
-                found.push(counted([a, b], 0.5));
-                open.remove(0);
-            } else {
-                found.push(counted([a, b], 1.0));
-                open.drain(open.len() - 3..open.len() - 1);
-            }
+            let [high, low] = if a.1 > b.1 { [a, b] } else { [b, a] };
+            found.push(Counted { max: high.1, min: low.1, places: [high.0, low.0] });
+            open.drain(open.len() - 3..open.len() - 1);
         }
     }
-    found.extend(open.windows(2).map(|pair| counted([pair[0], pair[1]], 0.5)));
     found
 }

@@ -1,24 +1,17 @@
 //! A spectrum from its file: which format it has, what it says, and what of it is left out.
 
 use super::classes::{classes, kinds};
-use super::content::{Content, RawCycle};
-use super::rainflow::{Counted, rainflow};
+use super::content::{Content, RawCycle, SpectrumFormat};
+use super::rainflow::rainflow;
 use super::rows::{fault, rows};
-use super::{Cycle, Spectrum, fastran, spx, sub, table};
+use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, spx, sub};
 use crate::loading::Input;
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Folder, number};
-
-perilife_base::kinds! {
-    /// How a spectrum is written.
-    pub enum SpectrumFormat for "loading.spectrum_format" {
-        Cycles = "cycles": "CSV with the columns max, min, cycles, in order, each maximum before its minimum",
-        TurningPoints = "turning_points": "one column of loads, counted by rainflow (ASTM E1049), each cycle at the place of its maximum",
-        Spx = "spx": "AFGROW .spx: XML with elements B (Mx, Mn, C) in every SubSpectrum",
-        Sub = "sub": "AFGROW .sub: a title with the number of rows, then rows max min cycles",
-        Fastran = "fastran": "FASTRAN: a title, points Smax Smin INVERT ICLIP, then turning points as whole numbers",
-    }
-}
+use perilife_base::table;
+use perilife_base::table::units::{LoadUnit, Unit};
+use std::borrow::Cow;
+use std::path::Path;
 
 /// Keys that belong to a spectrum, beside its scale.
 fn given(input: &Input) -> [(&'static str, bool); 5] {
@@ -57,22 +50,26 @@ impl Spectrum {
         let omission = percent("omission_percent", input.omission_percent, [0.0, 99.0])?.unwrap_or(0.0) / 100.0;
         let truncation = percent("truncation_percent", input.truncation_percent, [1.0, 100.0])?.unwrap_or(100.0) / 100.0;
         let repeats = number("a number of passes", 1e-6, 1e12).read_optional("loading.repeats", input.repeats)?;
-        let bytes = folder.read(file)?;
+        let scale = match (input.spectrum_scale_mpa, input.spectrum_scale_n) {
+            (Some(scale), _) => (Unit::Load(LoadUnit::Megapascal), scale),
+            (None, scale) => (Unit::Load(LoadUnit::Newton), scale.unwrap_or(1.0)),
+        };
+        let (bytes, path) = (folder.read(file)?, folder.path(file));
         let read = || {
-            let text = String::from_utf8_lossy(&bytes);
-            let text = text.trim_start_matches('\u{feff}');
-            let format = input.spectrum_format.unwrap_or_else(|| guess(file, text));
-            let cycles = checked(content(format, text)?)?;
+            let (format, content, mut notes) = content(&bytes, &path, input.spectrum_format, scale)?;
+            let cycles = cycles_of(content, &mut notes)?;
             let sha256 = perilife_base::input::sha256(&bytes);
+            let of_file = |note: String| if note.starts_with(file) { note } else { format!("{file}: {note}") };
             Spectrum::of(cycles, [omission, truncation]).map(|spectrum| Spectrum {
                 file: file.to_owned(),
                 format,
                 repeats,
+                notes: notes.into_iter().map(of_file).collect(),
                 sha256,
                 ..spectrum
             })
         };
-        read().map_err(|error| error.in_file(&folder.path(file)))
+        read().map_err(|error| error.in_file(&path))
     }
 
     /// The spectrum of cycles of any unit: peaks cut at the share `truncation` of the largest, ranges below the share `omission` of the
@@ -98,6 +95,7 @@ impl Spectrum {
         Ok(Spectrum {
             file: String::new(),
             format: SpectrumFormat::Cycles,
+            period: period(&left),
             cycles: left,
             per_pass,
             omitted: all - per_pass,
@@ -106,76 +104,112 @@ impl Spectrum {
             ratios,
             classes: classes(&kinds, per_pass),
             kinds: kinds.len(),
+            notes: Vec::new(),
             sha256: String::new(),
         })
     }
 }
 
-/// The format by the end of the name, or else by what the first lines hold.
-fn guess(file: &str, text: &str) -> SpectrumFormat {
-    let ending = file.rsplit_once('.').map(|(_, ending)| ending.to_lowercase()).unwrap_or_default();
-    let mut lines = rows(text).map(|(_, line)| line);
+/// Fewest passes in which all cycles come a whole number of times.
+fn period(cycles: &[Cycle]) -> f64 {
+    let is_whole = |passes: f64, count: f64| (count * passes - (count * passes).round()).abs() < 1e-6 * passes;
+    let mut fractions: Vec<f64> = cycles.iter().map(|cycle| cycle.count).filter(|count| count.fract() != 0.0).collect();
+    fractions.sort_by(f64::total_cmp);
+    fractions.dedup();
+    let period = (1..PERIOD_MOST).find(|passes| fractions.iter().all(|count| is_whole(*passes as f64, *count)));
+    period.unwrap_or(PERIOD_MOST) as f64
+}
+
+/// Format and content of a file, with what is to be said of them; the format by its key, the end of the name, or what the first lines hold.
+fn content(
+    bytes: &[u8],
+    file: &Path,
+    asked: Option<SpectrumFormat>,
+    scale: (Unit, f64),
+) -> Result<(SpectrumFormat, Content, Vec<String>)> {
+    if table::is_workbook(bytes, file) {
+        return columns::read(bytes, file, asked, scale);
+    }
+    let text = table::decoded(bytes, file)?;
+    let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let mut lines = rows(&text).map(|(_, line)| line);
     let (first, second) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
-    match ending.as_str() {
-        "spx" => SpectrumFormat::Spx,
-        "sub" => SpectrumFormat::Sub,
-        _ if first.starts_with('<') => SpectrumFormat::Spx,
-        _ if !table::names_cycles(first) && fastran::is_of(second) => SpectrumFormat::Fastran,
-        _ if table::names_cycles(first) || table::is_several(second) => SpectrumFormat::Cycles,
-        _ if table::is_numbers(first) && table::is_several(first) => SpectrumFormat::Cycles,
-        _ => SpectrumFormat::TurningPoints,
-    }
+    let format = asked.or(match ending.as_str() {
+        "spx" => Some(SpectrumFormat::Spx),
+        "sub" => Some(SpectrumFormat::Sub),
+        _ if first.starts_with('<') => Some(SpectrumFormat::Spx),
+        _ if fastran::is_of(first, second) => Some(SpectrumFormat::Fastran),
+        _ => None,
+    });
+    let content = match format {
+        Some(SpectrumFormat::Spx) => spx::read(&text)?,
+        Some(SpectrumFormat::Sub) => sub::read(rows(&text))?,
+        Some(SpectrumFormat::Fastran) => fastran::read(rows(&text))?,
+        Some(SpectrumFormat::Cycles | SpectrumFormat::TurningPoints) | None => {
+            return columns::read(without_remarks(&text).as_bytes(), file, format, scale);
+        }
+    };
+    Ok((format.unwrap_or(SpectrumFormat::Cycles), content, Vec::new()))
 }
 
-fn content(format: SpectrumFormat, text: &str) -> Result<Content> {
-    match format {
-        SpectrumFormat::Cycles => table::cycles(rows(text)),
-        SpectrumFormat::TurningPoints => table::points(rows(text)),
-        SpectrumFormat::Spx => spx::read(text),
-        SpectrumFormat::Sub => sub::read(rows(text)),
-        SpectrumFormat::Fastran => fastran::read(rows(text)),
+/// The text without remarks behind numbers; lines of nothing but a remark stay, since one may be the header.
+fn without_remarks(text: &str) -> Cow<'_, str> {
+    let has_remark = |line: &str| line.find('#').is_some_and(|at| !line[..at].trim().is_empty());
+    if !text.lines().any(has_remark) {
+        return Cow::Borrowed(text);
     }
+    let kept = text.lines().map(|line| if has_remark(line) { line.split('#').next().unwrap_or_default() } else { line });
+    Cow::Owned(kept.collect::<Vec<_>>().join("\n"))
 }
 
-/// The cycles of a file.
-/// Errors: none at all, a minimum that is not below its maximum, a number of cycles that is none.
-fn checked(content: Content) -> Result<Vec<Cycle>> {
+/// The cycles of a file, rows in which nothing changes left out, which a note says.
+/// Errors: none at all, a minimum above its maximum, a number of cycles that is none.
+fn cycles_of(content: Content, notes: &mut Vec<String>) -> Result<Vec<Cycle>> {
     let raw = match content {
         Content::Points(points) => return of_points(&points),
         Content::Cycles(raw) => raw,
     };
-    if raw.is_empty() {
-        return Err(input_missing("spectrum", "holds no cycles", "give at least one row max, min, cycles"));
-    }
-    for RawCycle { line, max, min, count } in raw.iter().copied() {
-        let (column, value, problem, remedy) = if min > max {
+    let mut cycles = Vec::with_capacity(raw.len());
+    let mut passed_over: Vec<usize> = Vec::new();
+    for RawCycle { line, max, min, count } in raw {
+        if min > max {
             let remedy = "give the maximum first; points in time order are read by spectrum_format = \"turning_points\"";
-            ("min", min, format!("is above the maximum {max}"), remedy)
-        } else if min == max {
-            ("min", min, "is the maximum: at a stress ratio of 1 nothing changes in a cycle".to_owned(), "leave the row out")
-        } else if !(count > 0.0 && count <= 1e15) {
-            ("cycles", count, "is no number of cycles".to_owned(), "give a number above zero")
+            return Err(fault(Some(line), "min", &min.to_string(), &format!("is above the maximum {max}"), remedy));
+        }
+        if !(0.0..=1e15).contains(&count) {
+            return Err(fault(
+                Some(line),
+                "cycles",
+                &count.to_string(),
+                "is not a number of cycles",
+                "give a number of 0 or more",
+            ));
+        }
+        if min == max || count == 0.0 {
+            passed_over.push(line);
         } else {
-            continue;
-        };
-        return Err(fault(Some(line), column, &value.to_string(), &problem, remedy));
+            cycles.push(Cycle { max, min, count });
+        }
     }
-    Ok(raw.into_iter().map(|RawCycle { max, min, count, .. }| Cycle { max, min, count }).collect())
+    if cycles.is_empty() {
+        let problem = "holds no cycles: no row has a range and a count above 0";
+        return Err(input_missing("spectrum", problem, "give at least one row max, min, cycles with a range"));
+    }
+    if let Some(first) = passed_over.first() {
+        let rows = if passed_over.len() == 1 { "1 row is".to_owned() } else { format!("{} rows are", passed_over.len()) };
+        notes.push(format!("{rows} not counted, having no range or a count of 0 (first: line {first})"));
+    }
+    Ok(cycles)
 }
 
-/// Cycles of turning points, each at the place of its maximum, where its growth happens and its plastic zone is made. A pass ends where the
-/// next begins, so that its way back to the first point counts.
+/// Cycles of the turning points of a pass that comes again and again, each at the place of its maximum, where its growth happens and its plastic
+/// zone is made.
 fn of_points(points: &[f64]) -> Result<Vec<Cycle>> {
-    let closed: Vec<f64> = points.iter().chain(points.first()).copied().collect();
-    let mut counted = rainflow(&closed);
+    let mut counted = rainflow(points);
     if counted.is_empty() {
         let problem = "is too few: a cycle needs a maximum and a minimum";
         return Err(input("turning points", points.len(), problem, "give at least two loads that differ"));
     }
-    counted.sort_by_key(Counted::place_of_maximum);
-    let cycle = |cycle: &Counted| {
-        let [a, b] = cycle.ends;
-        Cycle { max: a.max(b), min: a.min(b), count: cycle.count }
-    };
-    Ok(counted.iter().map(cycle).collect())
+    counted.sort_by_key(|cycle| cycle.places);
+    Ok(counted.iter().map(|cycle| Cycle { max: cycle.max, min: cycle.min, count: 1.0 }).collect())
 }

@@ -1,8 +1,7 @@
 //! `.sub` of AFGROW: sub-spectra one after the other, each a line with its number of rows, then rows `max min cycles`.
 
-use super::content::Content;
-use super::rows::{Row, cells, fault};
-use super::table::{cycle, is_numbers};
+use super::content::{Content, RawCycle};
+use super::rows::{Row, cells, fault, number};
 use perilife_base::error::Result;
 
 /// Reads all sub-spectra in their order.
@@ -18,7 +17,7 @@ pub(super) fn read<'a>(mut rows: impl Iterator<Item = Row<'a>>) -> Result<Conten
             return Err(fault(Some(line), "row", title, "stands where a .sub file has its title", remedy));
         }
         if !is_title {
-            found.push(cycle((line, title), [Some(0), Some(1), Some(2)])?);
+            found.push(cycle((line, title))?);
             continue;
         }
         has_title = true;
@@ -27,8 +26,23 @@ pub(super) fn read<'a>(mut rows: impl Iterator<Item = Row<'a>>) -> Result<Conten
                 let problem = format!("names more rows than follow, {read}");
                 return Err(fault(Some(line), "rows", title, &problem, "give as many rows max min cycles as the line says"));
             };
-            found.push(cycle(row, [Some(0), Some(1), Some(2)])?);
+            found.push(cycle(row)?);
         }
     }
     Ok(Content::Cycles(found))
+}
+
+/// Whether a line holds numbers alone.
+fn is_numbers(line: &str) -> bool {
+    cells(line).all(|cell| cell.parse::<f64>().is_ok())
+}
+
+/// A row `max min cycles`, or `max min` of one cycle.
+fn cycle((line, text): Row<'_>) -> Result<RawCycle> {
+    let values: Vec<f64> = cells(text).map(|cell| number(line, "row", cell)).collect::<Result<_>>()?;
+    match values[..] {
+        [max, min] => Ok(RawCycle { line, max, min, count: 1.0 }),
+        [max, min, count] => Ok(RawCycle { line, max, min, count }),
+        _ => Err(fault(Some(line), "row", text, &format!("has {} values", values.len()), "give rows max min cycles")),
+    }
 }

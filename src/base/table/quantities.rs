@@ -1,0 +1,130 @@
+//! Tables of numbers whose columns are known by name: β over crack length, residual stress over a plate, cycles of a spectrum.
+
+use super::cells::{Row, Table};
+use super::decimal::{Numbers, decide};
+use super::names::{Named, is_unit_or_blank, with_unit};
+use super::units::Unit;
+use super::{Decimal, Sheet, Vocabulary};
+use crate::error::Result;
+
+/// What a name means to the reader of such a table, and in which unit; `None` of a name that it does not know.
+pub type RoleOf<R> = fn(&str) -> Option<(R, Named)>;
+
+/// The words of such a table.
+pub struct Words<R> {
+    /// What a name means.
+    pub role: RoleOf<R>,
+    /// Whether columns of these roles are enough.
+    pub is_enough: fn(&[R]) -> bool,
+    /// Fewest columns.
+    pub columns: usize,
+    /// Which columns to give.
+    pub remedy: &'static str,
+}
+
+impl<R> Vocabulary for Words<R> {
+    fn is_header(&self, names: &[String]) -> bool {
+        let roles: Vec<R> = names.iter().filter_map(|name| (self.role)(name)).map(|(role, _)| role).collect();
+        (self.is_enough)(&roles)
+    }
+
+    fn is_unit(&self, cell: &str) -> bool {
+        is_unit_or_blank(cell)
+    }
+
+    fn with_unit(&self, name: &str, unit: &str) -> std::result::Result<String, &'static str> {
+        with_unit(name, unit).map_err(Unit::name)
+    }
+
+    fn sheet(&self) -> Option<&Sheet> {
+        None
+    }
+
+    fn columns(&self) -> usize {
+        self.columns
+    }
+
+    fn remedy(&self) -> &str {
+        self.remedy
+    }
+}
+
+impl<R: Copy + PartialEq> Words<R> {
+    /// Role and unit of every column.
+    /// Errors: no header, a header without the columns, a name that is not known, two columns of one role but `several`.
+    pub fn roles(&self, table: &Table, several: Option<R>) -> Result<Vec<(R, Named)>> {
+        let known: Vec<Option<(R, Named)>> = table.names.iter().map(|name| (self.role)(name)).collect();
+        let roles: Vec<R> = known.iter().flatten().map(|(role, _)| *role).collect();
+        let fault = |column: usize, problem: &str| table.header_fault(column).error(problem, self.remedy);
+        if table.header_line == 0 {
+            let first = table.rows.first().map_or("", |row| row.cell(0));
+            return Err(super::Fault {
+                line: table.rows.first().map(|row| row.line),
+                value: Some(first),
+                ..super::whole_file(&table.file)
+            }
+            .error("begins a table whose columns have no names", self.remedy));
+        }
+        if let Some(strange) = known.iter().position(Option::is_none) {
+            return Err(fault(strange, "is not a known column"));
+        }
+        if !(self.is_enough)(&roles) {
+            let names = table.header.join(",");
+            let fault = super::Fault {
+                line: Some(table.header_line),
+                key: Some("header"),
+                value: Some(&names),
+                ..super::whole_file(&table.file)
+            };
+            return Err(fault.error("lacks a column", self.remedy));
+        }
+        let twice = |at: &usize| roles[..*at].contains(&roles[*at]) && several != Some(roles[*at]);
+        match (0..roles.len()).find(twice) {
+            Some(second) => Err(fault(second, "says the same as an earlier column")),
+            None => Ok(known.into_iter().flatten().collect()),
+        }
+    }
+}
+
+/// The unit of a name, in SI; the unit that is meant where the name has none.
+/// Errors: no unit at all, or one of another quantity.
+pub fn in_si(table: &Table, column: usize, unit: Named, otherwise: Option<Unit>) -> Result<f64> {
+    let fault =
+        |problem: &str| Err(table.header_fault(column).error(problem, "write the unit behind the name, as in \"a (mm)\""));
+    match (unit, otherwise) {
+        (Named::Is(unit), _) => Ok(unit.si()),
+        (Named::No, Some(unit)) => Ok(unit.si()),
+        (Named::No, None) => fault("has no unit"),
+        (Named::Strange, _) => fault("has a unit that is not known"),
+    }
+}
+
+/// The numbers of some columns, row by row, each with its line; `counts` says of a column whether it has large whole numbers.
+/// Errors: cells that are not numbers, or whose decimal sign is not certain.
+pub fn numbers(table: &Table, columns: &[(usize, bool)]) -> Result<Vec<(usize, Vec<f64>)>> {
+    let sought: Vec<Numbers> = columns.iter().map(|&(index, counts)| Numbers { index, counts }).collect();
+    let decimal = decide(table, &sought, None)?;
+    let of_row =
+        |row: &Row| Ok((row.line, columns.iter().map(|column| number_at(table, row, column.0, decimal)).collect::<Result<_>>()?));
+    table.rows.iter().map(of_row).collect()
+}
+
+/// The number of a cell.
+/// Errors: none, one that is not finite, or one with the other decimal sign.
+pub fn number_at(table: &Table, row: &Row, column: usize, decimal: Decimal) -> Result<f64> {
+    use super::numerals::{is_number, number};
+    let cell = row.cell(column);
+    let refused = |problem: &str, remedy: &str| Err(table.cell_fault(row, column).error(problem, remedy));
+    match number(cell, decimal) {
+        Some(number) if number.is_finite() => Ok(number),
+        None if cell.is_empty() => refused("is empty", "give a number or leave the whole row out"),
+        None if is_number(cell) => refused(
+            &format!("is not a number whose decimal sign is the {} of this file", decimal.words()),
+            "give a plain number such as 1234.5 or 1.2345e3, the same decimal sign in the whole file, thousands in groups of three",
+        ),
+        None if !cell.parse::<f64>().is_ok_and(|number| !number.is_finite()) => {
+            refused("is not a number", "give a plain number such as 1234.5 or 1.2345e3, thousands in groups of three")
+        }
+        _ => refused("is not a finite number", "give the reading, or leave the whole row out"),
+    }
+}

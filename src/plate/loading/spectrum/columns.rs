@@ -1,0 +1,271 @@
+//! Columns of a spectrum by their names: cycles by any two of maximum, minimum, range, mean and stress ratio, or turning points.
+//!
+//! Columns without names are cycles or turning points only where `loading.spectrum_format` says so; one column without a name is turning points.
+
+use std::path::Path;
+
+use super::content::{Content, RawCycle, SpectrumFormat};
+use perilife_base::error::Result;
+use perilife_base::table::names::vocabulary::{
+    FORCE, LOAD_MORE, MAX, MAX_STRESS, MAX_WORDS, MIN, MIN_STRESS, MIN_WORDS, RANGE, RANGE_STRESS, RANGE_WORDS, STRESS, words,
+};
+use perilife_base::table::names::{self, Column, Named, made_of, quantity, says_one_of};
+use perilife_base::table::quantities::{Words, in_si, numbers};
+use perilife_base::table::units::{LoadUnit, Unit};
+use perilife_base::table::{self, Fault, Table, whole_file};
+
+const REMEDY: &str = "name the columns max, min, cycles (or two of max, min, range, amplitude, mean, stress ratio, and cycles), or give one \
+                      column of turning points";
+const AMPLITUDE: &str = "amplitude amplitudes amp ampl alternating sa";
+const MEAN: &str = "mean mittel mittelwert average avg sm smean";
+const LEVELS: &str = "level levels value values turning points reversals signal";
+const COUNT: &str = "n ni count counts cycles occurrences occurrence repetitions repetition repeats reps anzahl haeufigkeit lastspiele schwingspiele";
+const COUNT_MORE: &str = "cycle number of per pass block flight in the no";
+/// Counts that rise from row to row are those of an exceedance curve.
+const SUMS: &str = "elapsed total cumulative cumulated cum accumulated running gesamt gesamtzahl exceedance exceedances";
+/// Columns that nothing depends on.
+const OTHER: &str = "time t sec zeit date datum index idx i id no nr nummer point sample line row flight segment mission phase event start end begin \
+                     from to bin class name label comment remark note notes damage type source unnamed 0";
+/// Difference of a scale from the size of a unit by which both are one, and of a first number from that of the numbers behind it.
+const ALIKE: f64 = 0.02;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Role {
+    Max,
+    Min,
+    Range,
+    Amplitude,
+    Mean,
+    Ratio,
+    Count,
+    Load,
+    Other,
+}
+
+const WORDS: Words<Role> = Words { role, is_enough: |roles| format_of(roles).is_some(), columns: 1, remedy: REMEDY };
+
+/// What a name means.
+fn role(name: &str) -> Option<(Role, Named)> {
+    let column = Column::named(0, name);
+    if column.role == names::Role::Ratio {
+        return Some((Role::Ratio, Named::No));
+    }
+    let of_loads: [(Role, &str, &str); 6] = [
+        (Role::Range, RANGE, &[RANGE_WORDS, RANGE_STRESS].join(" ")),
+        (Role::Amplitude, AMPLITUDE, ""),
+        (Role::Mean, MEAN, ""),
+        (Role::Max, MAX, &[MAX_WORDS, MAX_STRESS].join(" ")),
+        (Role::Min, MIN, &[MIN_WORDS, MIN_STRESS].join(" ")),
+        (Role::Load, LEVELS, ""),
+    ];
+    let load = Unit::Load(LoadUnit::Megapascal);
+    let more = [FORCE, STRESS, LOAD_MORE, LEVELS];
+    let found = of_loads.into_iter().find_map(|(role, core, whole)| {
+        let is_core = |words: &[&str]| made_of(words, &[core, whole].join(" "), &more);
+        Some((role, quantity(name, load, is_core)?))
+    });
+    let letters = |last: &'static str| move |words: &[&str]| matches!(words, [of, letter] if *letter == last && made_of(&[of], STRESS, &[]));
+    let found = found.or_else(|| Some((Role::Amplitude, quantity(name, load, letters("a"))?)));
+    let found = found.or_else(|| Some((Role::Mean, quantity(name, load, letters("m"))?)));
+    if found.is_some() {
+        return found;
+    }
+    let (own, _) = words(name);
+    let own: Vec<&str> = own.iter().map(String::as_str).collect();
+    if !says_one_of(name, SUMS) && (column.role == names::Role::Cycles || made_of(&own, COUNT, &[COUNT_MORE])) {
+        return Some((Role::Count, if column.role == names::Role::Cycles { column.unit } else { Named::No }));
+    }
+    if own.is_empty() || own.iter().all(|word| OTHER.split_whitespace().any(|other| other == *word)) {
+        return Some((Role::Other, Named::No));
+    }
+    let is_load = |words: &[&str]| made_of(words, &[FORCE, STRESS].join(" "), &[LOAD_MORE, LEVELS]);
+    Some((Role::Load, quantity(name, load, is_load)?))
+}
+
+/// Maximum and minimum by what a row says of them: maximum, minimum, range, mean, ratio; `None` where that is not enough.
+fn ends([max, min, range, mean, ratio]: [Option<f64>; 5]) -> Option<[f64; 2]> {
+    Some(match (max, min, range, mean, ratio) {
+        (Some(max), Some(min), ..) => [max, min],
+        (Some(max), _, Some(range), ..) => [max, max - range],
+        (_, Some(min), Some(range), ..) => [min + range, min],
+        (_, _, Some(range), Some(mean), _) => [mean + 0.5 * range, mean - 0.5 * range],
+        (Some(max), _, _, _, Some(ratio)) => [max, ratio * max],
+        (Some(max), _, _, Some(mean), _) => [max, 2.0 * mean - max],
+        (_, Some(min), _, Some(mean), _) => [2.0 * mean - min, min],
+        (_, _, Some(range), _, Some(ratio)) => [range / (1.0 - ratio), ratio * range / (1.0 - ratio)],
+        _ => return None,
+    })
+}
+
+/// What columns of these roles are.
+fn format_of(roles: &[Role]) -> Option<SpectrumFormat> {
+    let has = |role: Role| roles.contains(&role);
+    let given = |role: Role| has(role).then_some(1.0);
+    let range = given(Role::Range).or(given(Role::Amplitude));
+    let of_cycles = ends([given(Role::Max), given(Role::Min), range, given(Role::Mean), given(Role::Ratio)]);
+    let loads = roles.iter().filter(|role| **role == Role::Load).count();
+    match (of_cycles, loads) {
+        (Some(_), 0) => Some(SpectrumFormat::Cycles),
+        (None, 1) if roles.iter().all(|role| matches!(role, Role::Load | Role::Other)) => Some(SpectrumFormat::TurningPoints),
+        _ => None,
+    }
+}
+
+/// Whether a line of names is a header of a spectrum.
+pub(super) fn is_header(line: &str) -> bool {
+    let names = line.split([',', ';', '\t', '|']).filter(|name| !name.trim().is_empty());
+    let roles: Vec<Role> = names.filter_map(|name| Some(role(name)?.0)).collect();
+    roles.len() > 1 && format_of(&roles).is_some()
+}
+
+/// Cycles or turning points of a table with what is to be said of them; `scale` is the unit that values have, and what a value of 1 stands for in
+/// it. Values of a column with another unit are converted.
+/// Errors: names that are not known or not enough, columns without names whose format is not given, cells that are not numbers.
+pub(super) fn read(
+    bytes: &[u8],
+    file: &Path,
+    asked: Option<SpectrumFormat>,
+    scale: (Unit, f64),
+) -> Result<(SpectrumFormat, Content, Vec<String>)> {
+    let least = if asked == Some(SpectrumFormat::Cycles) { 2 } else { 1 };
+    let mut table = table::read(bytes, file, &Words { columns: least, ..WORDS })?;
+    let mut notes = table.warnings();
+    let (format, columns) = columns_of(&table, asked, scale)?;
+    if columns.len() == 1 && format == SpectrumFormat::TurningPoints {
+        notes.extend(without_count(&mut table)?);
+    }
+    // Forces may be written in thousands, as counts are; stresses and ratios are below a thousand.
+    let is_large = |role: Role| role == Role::Count || (role != Role::Ratio && !scale.0.is_stress());
+    let read: Vec<(usize, bool)> = columns.iter().map(|column| (column.index, is_large(column.role))).collect();
+    let rows = numbers(&table, &read)?;
+    let of = |values: &[f64], role: Role| {
+        let place = columns.iter().position(|column| column.role == role)?;
+        Some(values[place] * columns[place].factor)
+    };
+    if format == SpectrumFormat::TurningPoints {
+        let points = rows.iter().filter_map(|(_, values)| of(values, Role::Load)).collect();
+        return Ok((format, Content::Points(points), notes));
+    }
+    let cycle = |(line, values): &(usize, Vec<f64>)| {
+        let value = |role: Role| of(values, role);
+        let range = value(Role::Range).or(value(Role::Amplitude).map(|amplitude| 2.0 * amplitude));
+        let [max, min] = ends([value(Role::Max), value(Role::Min), range, value(Role::Mean), value(Role::Ratio)])?;
+        Some(RawCycle { line: *line, max, min, count: value(Role::Count).unwrap_or(1.0) })
+    };
+    Ok((format, Content::Cycles(rows.iter().filter_map(cycle).collect()), notes))
+}
+
+/// A column that is read.
+struct Read {
+    index: usize,
+    role: Role,
+    /// What its numbers are multiplied by.
+    factor: f64,
+}
+
+/// Format and columns of a table.
+fn columns_of(table: &Table, asked: Option<SpectrumFormat>, scale: (Unit, f64)) -> Result<(SpectrumFormat, Vec<Read>)> {
+    let count = table.header.len();
+    let bare = |roles: &[Role]| roles.iter().enumerate().map(|(index, &role)| Read { index, role, factor: 1.0 }).collect();
+    let is_title = count == 1 && format_of(&[role(&table.names[0]).map_or(Role::Other, |(role, _)| role)]).is_none();
+    if table.header_line == 0 || is_title {
+        return match (asked, count) {
+            (Some(SpectrumFormat::Cycles), 2 | 3) => {
+                Ok((SpectrumFormat::Cycles, bare(&[Role::Max, Role::Min, Role::Count][..count])))
+            }
+            (None | Some(SpectrumFormat::TurningPoints), 1) => {
+                if asked.is_none() {
+                    refuse_pairs(table)?;
+                }
+                Ok((SpectrumFormat::TurningPoints, bare(&[Role::Load])))
+            }
+            _ => Err(nameless(table)),
+        };
+    }
+    let roles = WORDS.roles(table, Some(Role::Other))?;
+    let only: Vec<Role> = roles.iter().map(|(role, _)| *role).collect();
+    let Some(format) = format_of(&only).filter(|format| asked.is_none_or(|asked| asked == *format)) else {
+        let fault = table.header_fault(0);
+        return Err(fault.error("names columns of another format than loading.spectrum_format", "leave spectrum_format out"));
+    };
+    let mut columns = Vec::new();
+    for (index, (role, unit)) in roles.into_iter().enumerate().filter(|(_, (role, _))| *role != Role::Other) {
+        let factor = match role {
+            Role::Ratio => 1.0,
+            Role::Count => in_si(table, index, unit, Some(Unit::Cycles(table::units::CycleUnit::Cycles)))?,
+            _ => factor(table, index, unit, scale)?,
+        };
+        columns.push(Read { index, role, factor });
+    }
+    Ok((format, columns))
+}
+
+/// What values of a column are multiplied by, so that they have the unit of the scale.
+/// Errors: a unit of stress beside a scale of force, or the other way round; a scale that converts the unit once more.
+fn factor(table: &Table, column: usize, named: Named, (unit, scale): (Unit, f64)) -> Result<f64> {
+    let factor = in_si(table, column, named, Some(unit))? / unit.si();
+    let Named::Is(own) = named else { return Ok(1.0) };
+    let fault = |problem: String, remedy: &str| Err(table.header_fault(column).error(problem, remedy));
+    if own.is_stress() != unit.is_stress() {
+        let problem = format!("is in {}, and the scale of the spectrum is in {}", own.name(), unit.name());
+        return fault(problem, "give spectrum_scale_mpa = 1 for stresses, spectrum_scale_n = 1 for forces");
+    }
+    if factor != 1.0 && (scale / factor - 1.0).abs() < ALIKE {
+        let problem = format!("is converted from {} to {}, and the scale, {scale}, would do so again", own.name(), unit.name());
+        return fault(problem, "set the scale to 1, or remove the unit from the name");
+    }
+    Ok(factor)
+}
+
+/// Numbers on both sides of a comma, which may be two columns or decimals.
+fn refuse_pairs(table: &Table) -> Result<()> {
+    let Some(first) = table.rows.first().filter(|_| table.rows.iter().all(|row| row.cell(0).contains(','))) else {
+        return Ok(());
+    };
+    Err(Fault { line: Some(first.line), value: Some(first.cell(0)), ..whole_file(&table.file) }.error(
+        "may be two columns, or one with decimal commas",
+        "set loading.spectrum_format = \"cycles\" (maximum, minimum) or \"turning_points\" (decimal commas), or name the columns",
+    ))
+}
+
+fn nameless(table: &Table) -> perilife_base::error::Error {
+    let (line, shown) = match table.header_line {
+        0 => {
+            (table.rows.first().map(|row| row.line), table.rows.first().map(|row| row.cells.iter().collect::<Vec<_>>().join(",")))
+        }
+        line => (Some(line), Some(table.header.join(","))),
+    };
+    let fault = Fault { line, key: Some("row"), value: shown.as_deref(), ..whole_file(&table.file) };
+    let count = table.header.len();
+    fault.error(
+        format!("has {count} {} without a name that says what it is", if count == 1 { "column" } else { "columns" }),
+        format!("{REMEDY}; or set loading.spectrum_format = \"cycles\" for the columns maximum, minimum, cycles"),
+    )
+}
+
+/// Takes out a first number that says how many follow; what is to be said of it.
+/// Errors: one that may be such a number and is not quite.
+fn without_count(table: &mut Table) -> Result<Option<String>> {
+    let values = numbers(table, &[(0, false)])?;
+    let Some(((line, first), rest)) = values.split_first().map(|((line, values), rest)| ((*line, values[0]), rest)) else {
+        return Ok(None);
+    };
+    let (most, follow) = (rest.iter().map(|(_, values)| values[0]).fold(0.0, f64::max), rest.len() as f64);
+    if first.fract() != 0.0 || rest.len() < 4 {
+        return Ok(None);
+    }
+    if first == follow && first > 2.0 * most {
+        table.rows.remove(0);
+        return Ok(Some(format!("{}: line {line}, {first}, is the number of values that follow", table.file.display())));
+    }
+    let is_named = table.header_line > 0 && role(&table.names[0]).is_some();
+    let is_near = (first - follow).abs() <= ALIKE * follow + 1.0 && first > 2.0 * most;
+    if is_near || (first == follow && !is_named) {
+        let cell = first.to_string();
+        let fault = Fault { line: Some(line), value: Some(&cell), ..whole_file(&table.file) };
+        let problem = format!("may be the number of values, and {follow} follow");
+        return Err(fault.error(problem, "remove the line, or write the name load above it if it is a load"));
+    }
+    Ok(None)
+}

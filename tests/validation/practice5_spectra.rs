@@ -1,0 +1,83 @@
+//! Spectra of other people: their files read as they are meant, counted as they repeat, or refused by name. Right values: own counting, growth cycle
+//! by cycle and quadrature (shared data, `field/practice5`).
+
+use crate::support::field::{command, is_near, kind, predicted};
+
+/// Kind, case, passes or cycles that are right with a share, and what is said.
+type Right<'a> = (&'a str, &'a str, Wanted, f64, &'a str);
+
+enum Wanted {
+    Passes(f64),
+    Cycles(f64),
+}
+use Wanted::{Cycles, Passes};
+
+#[test]
+fn spectra_of_other_people_are_read_and_counted_as_they_mean_them() {
+    let rows: [Right<'_>; 25] = [
+        ("repeated_pass", "gust", Passes(17_114.1), 1e-5, ""),
+        ("repeated_pass", "gusts", Passes(20_292.9), 1e-5, ""),
+        ("repeated_pass", "starts_at_peak", Passes(20_231.2), 1e-5, ""),
+        ("rare_gust", "fraction", Cycles(157_868.0), 1e-3, ""),
+        ("rare_gust", "written_out", Cycles(157_868.0), 1e-3, ""),
+        ("counted_tables", "range_mean_count", Passes(209.83), 1e-4, ""),
+        ("counted_tables", "pandas", Passes(209.83), 1e-4, ""),
+        ("counted_tables", "matlab", Passes(209.83), 1e-4, ""),
+        ("decimal_comma", "semicolons", Passes(4348.64), 1e-5, ""),
+        ("count_in_first_line", "levels", Passes(643.0), 1e-4, "line 1, 400, is the number of values"),
+        ("count_in_first_line", "tough", Passes(643.0), 1e-4, "line 1, 400, is the number of values"),
+        ("rows_without_range", "held", Passes(4348.64), 1e-5, "1 row is not counted"),
+        ("rows_without_range", "zero", Passes(4348.64), 1e-5, "1 row is not counted"),
+        ("spectrum_headings", "smax", Passes(846.35), 1e-5, ""),
+        ("spectrum_headings", "max_mpa", Passes(846.35), 1e-5, ""),
+        ("spectrum_headings", "quoted", Passes(846.35), 1e-5, ""),
+        ("spectrum_headings", "unit_row", Passes(846.35), 1e-5, ""),
+        ("spectrum_headings", "more_columns", Passes(846.35), 1e-5, ""),
+        ("spectrum_headings", "utf16", Passes(846.35), 1e-5, ""),
+        ("spectrum_headings", "time", Passes(23_081.4), 1e-5, ""),
+        ("guards", "wheeler", Cycles(739_191.0), 1e-3, ""),
+        ("guards", "closure", Cycles(445_157.0), 1e-3, ""),
+        ("guards", "newman", Cycles(846_620.0), 1e-3, ""),
+        ("guards", "mean", Cycles(308_977.0), 1e-3, ""),
+        ("guards", "limit_load", Cycles(623_311.0), 1e-3, ""),
+    ];
+    for (name, case, wanted, share, words) in rows {
+        let Some(dir) = kind(name) else { return };
+        let (said, result) = predicted(dir.path(), &format!("{case}.toml"));
+        match wanted {
+            Passes(passes) => is_near(&result["passes"], passes, share, case),
+            Cycles(cycles) => is_near(&result["life_cycles"], cycles, share, case),
+        }
+        assert!(said.contains(words), "{name}, {case}: {said}");
+    }
+}
+
+#[test]
+fn what_may_be_two_spectra_is_asked_about() {
+    let rows: [(&str, &str, &[&str]); 3] = [
+        ("counted_tables", "no_header", &["no_header.csv:1", "3 columns without a name", "spectrum_format = \"cycles\""]),
+        ("counted_tables", "range_count", &["range_count.csv:1", "2 columns without a name"]),
+        ("decimal_comma", "column", &["column.csv:1", "decimal commas", "spectrum_format"]),
+    ];
+    for (name, case, words) in rows {
+        let Some(dir) = kind(name) else { return };
+        let (code, said) = command(dir.path(), &format!("predict {case}.toml --out out"));
+        assert!(code == 2 && words.iter().all(|word| said.contains(word)), "{name}, {case}: {said}");
+    }
+    // The key settles it.
+    let Some(dir) = kind("decimal_comma") else { return };
+    let (_, result) = predicted(dir.path(), "column.toml --set loading.spectrum_format=turning_points");
+    is_near(&result["passes"], 20_546.1, 1e-5, "decimal commas");
+}
+
+/// 99 % of the growth is by cycles of ΔK 3 to 5 and the law was fitted to 10 to 35; the other way round the run is refused.
+#[test]
+fn a_life_by_cycles_outside_the_law_is_told() {
+    let Some(dir) = kind("spectrum_beyond_the_law") else { return };
+    assert_eq!(command(dir.path(), "calibrate calibrate.toml --out out_fit").0, 0);
+    let (said, result) = predicted(dir.path(), "plate.toml");
+    is_near(&result["life_share_extrapolated"], 0.99, 1e-3, "share");
+    assert!(said.contains("99.0 % of life below ΔK 10.00"), "{said}");
+    let (code, said) = command(dir.path(), "predict plate.toml --out above --set loading.spectrum_scale_mpa=9.0");
+    assert!(code == 2 && said.contains("37.9 % of the life lies above the fitted range"), "{said}");
+}
