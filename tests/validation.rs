@@ -13,6 +13,7 @@ mod plate_band;
 mod practice5_laws;
 mod practice5_spectra;
 mod population;
+mod practice5_answers;
 mod rates_virkler;
 mod rivals;
 mod stability;

@@ -19,7 +19,7 @@ use perilife_base::{
 };
 use perilife_growth::case::record::SourceFile;
 use perilife_growth::case::{Case, LawSource};
-use perilife_measured::{ColumnNames, Import, LeaveOut, Measured, MeasuredCurve, parse};
+use perilife_measured::{ColumnNames, Import, LeaveOut, Measured, MeasuredCurve, check_left_out, parse};
 use perilife_plate::specimen::Specimen;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 
@@ -86,6 +86,7 @@ impl MeasuredSlice {
             columns: self.columns.clone(),
             decimal: self.decimal,
             sheet: self.sheet.clone(),
+            left_out: self.leave_out.clone(),
             ..Import::default()
         }
     }
@@ -236,6 +237,7 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> perilife_base::error::Resu
     if keys.files.is_empty() {
         return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
     }
+    check_left_out(&keys.leave_out, &keys.files)?;
     let import = keys.import();
     let mut measured = Measured::default();
     let mut sources = Vec::with_capacity(keys.files.len());

@@ -99,7 +99,7 @@ impl TipLengths {
         let length = from.crack_length_mm;
         if !(shortest..=longest).contains(&length) {
             let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest:.4} to {longest:.4} mm");
-            return Err(input(from.names[0], length, problem, "give a length between them, or another tip"));
+            return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them, or another tip"));
         }
         let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
         let (a, b) = (lengths[after - 1], lengths[after]);
@@ -129,7 +129,7 @@ impl Inspection {
         let (shortest, longest) = (curve[0][0], end[0]);
         if !(shortest..=longest).contains(&length) {
             let problem = format!("is not on the curve, which goes from {shortest} to {longest} mm");
-            return Err(input(from.names[0], length, problem, "give a length between them"));
+            return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them"));
         }
         let cycles_at = Monotone::new(curve.iter().copied()).at(length);
         let remaining = end[1] - cycles_at;

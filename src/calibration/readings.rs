@@ -25,6 +25,10 @@ pub fn readings_csv(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64)
     for curve in &calibration.read {
         of_curve(&mut text, curve, calibration, &case, delta_k);
     }
+    // Rows that are left out by their lines stand at the end.
+    for one in calibration.left_out.iter().filter(|one| one.line.is_some()) {
+        let _ = writeln!(text, ",NaN,NaN,,,,{},{}", field(&one.place()), field(&one.reason));
+    }
     text
 }
 

@@ -166,10 +166,7 @@ pub fn summary(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Vec<Str
         lines.push("  estimate       robust: repeated median of the rates".to_owned());
     }
     lines.push(format!("  misfit at ends {}", fit.misfit_at_ends.words()));
-    lines.extend(law.left_out.iter().map(|window| {
-        let specimen = window.specimen.as_ref().map_or_else(String::new, |name| format!("specimen {name}, "));
-        format!("  left out       {specimen}{} to {} cycles: {}", window.from_cycles, window.to_cycles, window.reason)
-    }));
+    lines.extend(law.left_out.iter().map(|one| format!("  left out       {} ({})", one.place(), one.reason)));
     lines.push(format!("  specimens      {}, in {wall_s:.1} s", fit.specimens.len()));
     lines
 }

@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use super::checkpoint;
 use super::console::Console;
-use perilife_base::error::Result;
+use perilife_base::error::{Result, input};
 use perilife_base::input::Document;
+use perilife_base::units::{MM, shown::length_given};
 use perilife_calibration::inspection::{FACTOR, InspectFrom};
 use perilife_results::output::OutputFile;
 use perilife_runner::{Kind, Task};
@@ -39,18 +40,21 @@ pub struct Args {
     /// Readings of this very plate (cycles, crack length), which narrow the band of what it has left
     #[arg(long, value_name = "READINGS.csv", help_heading = "Input")]
     pub measured: Option<PathBuf>,
-    /// Also say what is left from this crack length on, and how often to look: the 5 % remaining life over the factor
-    #[arg(long, value_name = "MM", help_heading = "Output")]
-    pub inspect_from: Option<f64>,
+    /// Inspection interval from this crack length, 6.35mm or 0.25in: 5 % remaining life / factor; a bare number is in the unit of --units
+    #[arg(long, value_name = "LENGTH", help_heading = "Output")]
+    pub inspect_from: Option<String>,
     /// Factor of the inspection interval
     #[arg(long, value_name = "F", default_value_t = FACTOR, requires = "inspect_from", help_heading = "Output")]
     pub factor: f64,
     /// Tip of a plate whose crack has that length; the one that ends the life where it is left out
     #[arg(long, value_name = "NUMBER", requires = "inspect_from", help_heading = "Output")]
     pub tip: Option<usize>,
-    /// Crack lengths in mm that an inspection finds with 50 and with 90 %: also say with what probability all of them miss the crack
+    /// Crack lengths that an inspection finds with 50 and with 90 %, units as of --inspect-from: probability that all of them miss the crack
     #[arg(long, value_name = "A50,A90", requires = "inspect_from", help_heading = "Output")]
     pub pod: Option<String>,
+    /// Cycles of the first inspection [default: at the length of --inspect-from; of a fleet when 5 % of plates have it]
+    #[arg(long, value_name = "CYCLES", requires = "pod", help_heading = "Output")]
+    pub first_inspection: Option<u64>,
     /// Also write lives of so many plates that differ in law, initial length and load (fleet.csv and .svg), as the key fleet.plates does
     #[arg(long, value_name = "PLATES", help_heading = "Output")]
     pub fleet: Option<u64>,
@@ -85,13 +89,16 @@ pub fn run(args: &Args) -> Result<()> {
         task.read_plate(&document, file).map_err(|error| document.locate(error))?;
     }
     if let Task::Prediction { wanted, .. } = &mut task {
-        wanted.strength = args.residual_strength;
-        wanted.detection = args.pod.as_deref().map(str::parse).transpose()?;
-        wanted.sensitivities = args.sensitivities;
+        (wanted.strength, wanted.asked.sensitivities) = (args.residual_strength, args.sensitivities);
+        wanted.asked.detection = args.pod.as_deref().map(str::parse).transpose()?;
+        wanted.asked.first_inspection = args.first_inspection.map(|cycles| cycles as f64);
         (wanted.no_estimate, wanted.cross_check) = (args.no_estimate, args.cross_check);
         let names = ["--inspect-from", "--factor", "--tip"];
-        wanted.inspection =
-            args.inspect_from.map(|crack_length_mm| InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });
+        if let Some(text) = &args.inspect_from {
+            let wrong = || input(names[0], text, "is not a length", "give for example 6.35mm or 0.25in");
+            let crack_length_mm = length_given(text).ok_or_else(wrong)? / MM;
+            wanted.inspection = Some(InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });
+        }
     }
     let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
     let summary = summary.counted()?;

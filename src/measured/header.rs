@@ -84,6 +84,10 @@ fn names_a_test(names: &[String], import: &Import) -> bool {
 }
 
 impl Vocabulary for Import {
+    fn leaves_out(&self, line: usize) -> bool {
+        self.left_out.iter().any(|one| one.line == Some(line))
+    }
+
     fn is_header(&self, names: &[String]) -> bool {
         names_a_test(names, self)
     }

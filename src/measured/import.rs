@@ -3,14 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, input, input_missing};
 use perilife_base::table::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
 use perilife_base::table::{Decimal, Sheet, TextOrNumber};
 
 /// What the user says about files of readings; a header that names its own unit must agree.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Import {
     /// Unit of crack length.
     pub length: Option<LengthUnit>,
@@ -30,8 +30,65 @@ pub struct Import {
     pub rate: Option<RateUnit>,
     /// Whether the file is a table of rates over ΔK.
     pub of_rates: bool,
+    /// Rows that are left out by their lines.
+    pub left_out: Vec<LeaveOut>,
     /// Whether the readings are of a plate in service: one says where its crack is.
     pub of_plate: bool,
+}
+
+/// Cycles of a specimen that do not count, or a row of a file.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LeaveOut {
+    /// Name of the specimen; may be left out where there is one.
+    pub specimen: Option<String>,
+    /// First cycles, as the file counts them.
+    pub from_cycles: Option<f64>,
+    /// Last cycles.
+    pub to_cycles: Option<f64>,
+    /// File of the row; may be missing where there is one.
+    pub file: Option<String>,
+    /// Line of the row in it.
+    pub line: Option<usize>,
+    /// A cell of the row, which shows that the line is the one that is meant.
+    pub value: Option<String>,
+    /// Why.
+    pub reason: String,
+}
+
+impl LeaveOut {
+    /// Whether it covers or cuts the growth between two readings, by their cycles.
+    pub fn covers(&self, before: f64, after: f64) -> bool {
+        let Some((from, to)) = self.from_cycles.zip(self.to_cycles) else { return false };
+        let slack = 1e-9 * to.abs();
+        before < to - slack && after > from + slack
+    }
+
+    /// Line and value, or specimen and cycles.
+    pub fn place(&self) -> String {
+        let named = |name: &Option<String>, what| name.as_ref().map_or_else(String::new, |name| format!("{what}{name} "));
+        let [from, to] = [self.from_cycles, self.to_cycles].map(Option::unwrap_or_default);
+        let value = self.value.as_deref().unwrap_or_default();
+        let of_cycles = || format!("{}{from} to {to} cycles", named(&self.specimen, "specimen "));
+        self.line.map_or_else(of_cycles, |line| format!("{}line {line}: {value}", named(&self.file, "")))
+    }
+}
+
+/// Refuses entries that name no readings of these files, or have no reason.
+pub fn check_left_out(all: &[LeaveOut], files: &[String]) -> Result<()> {
+    let remedy = "give { file, line, value, reason } or { specimen, from_cycles, to_cycles, reason }";
+    all.iter().enumerate().try_for_each(|(index, one)| {
+        let is_row = one.line.is_some();
+        let is_mixed = [one.from_cycles, one.to_cycles].iter().any(|cycles| cycles.is_some() == is_row);
+        let problem = match &one.file {
+            _ if is_mixed => "is neither a row nor cycles",
+            _ if one.reason.trim().is_empty() => "has a reason that says nothing",
+            Some(file) if !files.contains(file) => "has a file that is not one of measured.files",
+            None if is_row && files.len() > 1 => "has no file, and there are several",
+            _ => return Ok(()),
+        };
+        Err(input_missing(&format!("measured.leave_out[{index}]"), problem, remedy))
+    })
 }
 
 /// Which column is which, by a key and the name in the header, or the number from 1; what is left out is found by the names that

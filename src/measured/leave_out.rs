@@ -2,33 +2,9 @@
 
 use std::collections::HashMap;
 
-use serde::{Deserialize, Serialize};
-
 use super::curve::{Measured, READINGS_MIN};
+use super::import::LeaveOut;
 use perilife_base::error::{Result, input, input_missing};
-
-/// Cycles of a specimen that do not count.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LeaveOut {
-    /// Name of the specimen; may be left out where there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub specimen: Option<String>,
-    /// First cycles, as the file counts them.
-    pub from_cycles: f64,
-    /// Last cycles.
-    pub to_cycles: f64,
-    /// Why.
-    pub reason: String,
-}
-
-impl LeaveOut {
-    /// Whether it covers or cuts the growth between two readings, by their cycles.
-    pub fn covers(&self, before: f64, after: f64) -> bool {
-        let slack = 1e-9 * self.to_cycles.abs();
-        before < self.to_cycles - slack && after > self.from_cycles + slack
-    }
-}
 
 /// Most names of specimens in a message.
 const NAMES_MAX: usize = 20;
@@ -41,9 +17,10 @@ impl Measured {
         let key = |index: usize| format!("measured.leave_out[{index}]");
         let names: HashMap<String, usize> =
             self.curves.iter().enumerate().rev().map(|(place, curve)| (curve.specimen.clone(), place)).collect();
-        let mark = |(index, window)| self.mark(&key(index), window, &names);
-        let places: Vec<usize> = windows.iter().enumerate().map(mark).collect::<Result<_>>()?;
-        for (index, place) in places.into_iter().enumerate() {
+        let mark = |(index, window)| Ok((index, self.mark(&key(index), window, &names)?));
+        let windows = windows.iter().enumerate().filter(|(_, window)| window.line.is_none());
+        let places: Vec<(usize, usize)> = windows.map(mark).collect::<Result<_>>()?;
+        for (index, place) in places {
             let curve = &mut self.curves[place];
             let counted: Vec<usize> = (1..curve.cycles.len()).filter(|&step| curve.counts(step)).collect();
             if counted.len() + 1 < READINGS_MIN {
@@ -63,26 +40,19 @@ impl Measured {
 
     /// Marks the growth of a window; gives the place of its curve.
     fn mark(&mut self, key: &str, window: &LeaveOut, places: &HashMap<String, usize>) -> Result<usize> {
-        let LeaveOut { specimen, from_cycles, to_cycles, reason } = window;
-        let known = || {
+        let [from_cycles, to_cycles] = [window.from_cycles, window.to_cycles].map(|cycles| cycles.unwrap_or(f64::NAN));
+        let unknown = || {
             let names = self.curves.iter().take(NAMES_MAX).map(|curve| format!("\"{}\"", curve.specimen));
             let more = self.curves.len().saturating_sub(NAMES_MAX);
-            names.chain((more > 0).then(|| format!("{more} more"))).collect::<Vec<_>>().join(", ")
-        };
-        let place = match specimen {
-            Some(name) => places.get(name).copied().ok_or_else(|| {
-                let remedy = format!("use one of {}", known());
-                input(&format!("{key}.specimen"), format!("\"{name}\""), "is no specimen of the files", remedy)
-            })?,
-            None if self.curves.len() == 1 => 0,
-            None => {
-                let remedy = format!("name one of {}", known());
-                return Err(input_missing(&format!("{key}.specimen"), "is missing, and there are several", remedy));
+            let names = names.chain((more > 0).then(|| format!("{more} more"))).collect::<Vec<_>>().join(", ");
+            let (key, remedy) = (format!("{key}.specimen"), format!("use one of {names}"));
+            match &window.specimen {
+                Some(name) => input(&key, format!("\"{name}\""), "is no specimen of the files", remedy),
+                None => input_missing(&key, "is missing, and there are several", remedy),
             }
         };
-        if reason.trim().is_empty() {
-            return Err(input(&format!("{key}.reason"), "\"\"", "says nothing", "say why the readings do not count"));
-        }
+        let alone = (self.curves.len() == 1).then_some(0);
+        let place = window.specimen.as_ref().map_or(alone, |name| places.get(name).copied()).ok_or_else(unknown)?;
         if !(from_cycles.is_finite() && to_cycles.is_finite() && from_cycles < to_cycles) {
             let problem = format!("is not above from_cycles = {from_cycles}");
             return Err(input(&format!("{key}.to_cycles"), to_cycles, problem, "give the window of cycles that does not count"));

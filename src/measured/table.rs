@@ -2,18 +2,44 @@
 
 use std::path::Path;
 
-use super::import::Import;
+use super::import::{Import, LeaveOut};
 use super::marks::leave_marked_out;
-use perilife_base::error::Result;
+use perilife_base::error::{Result, input};
 use perilife_base::table::{self, Table};
 
-/// Cuts the bytes of a file into cells. Rows that the table itself marks as not counting are left out.
-/// Errors: as [`table::read`]; a Parquet file.
+/// Cuts the bytes of a file into cells. Rows that are left out by their lines go, and those that the table itself marks as not counting.
+/// Errors: as [`table::read`] and [`take_rows_out`]; a Parquet file.
 pub(super) fn read(bytes: &[u8], file: &Path, import: &Import) -> Result<Table> {
     if bytes.starts_with(b"PAR1") {
         return Err(table::whole_file(file).error("is a Parquet file, which is not read", "save the table as CSV or .xlsx"));
     }
     let mut table = table::read(bytes, file, import)?;
+    take_rows_out(&mut table, &import.left_out)?;
     leave_marked_out(&mut table, import)?;
     Ok(table)
+}
+
+/// Takes rows out of a table by their lines.
+/// Errors: a line without a row, or whose row has no such cell.
+fn take_rows_out(table: &mut Table, all: &[LeaveOut]) -> Result<()> {
+    let plain = |text: &str| text.replace(|c: char| c.is_whitespace() || "\",;|".contains(c), "");
+    let is_of = |one: &LeaveOut| one.line.is_some() && one.file.as_ref().is_none_or(|name| table.file.ends_with(name));
+    let own: Vec<(usize, &LeaveOut)> = all.iter().enumerate().filter(|(_, one)| is_of(one)).collect();
+    for (index, one) in own {
+        let place = table.rows.iter().position(|row| Some(row.line) == one.line);
+        let cells: Vec<&str> = place.iter().flat_map(|&place| &table.rows[place].cells).collect();
+        let value = one.value.as_deref().unwrap_or_default();
+        // Messages cut long rows off.
+        let (given, is_cut) = (plain(value.trim_end_matches("...")), value.ends_with("..."));
+        let is_it = |text: &str| if is_cut { plain(text).starts_with(&given) } else { plain(text) == given };
+        let is_there = one.value.is_some() && cells.iter().copied().chain([&*cells.concat()]).any(is_it);
+        let Some(place) = place.filter(|_| is_there) else {
+            let (line, cells) = (one.line.unwrap_or_default(), place.map_or("no row".to_owned(), |_| cells.join(" | ")));
+            let problem = format!("is not a cell of line {line} of {}, which has {cells}", table.file.display());
+            let remedy = "count lines from 1, the header included, and give the cell that is wrong";
+            return Err(input(&format!("measured.leave_out[{index}].value"), format!("\"{value}\""), problem, remedy));
+        };
+        table.rows.remove(place);
+    }
+    Ok(())
 }

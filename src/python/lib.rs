@@ -85,8 +85,8 @@ mod _perilife {
             }
             if let (Task::Prediction { wanted, .. }, Some(wishes)) = (&mut task, &wishes) {
                 (wanted.no_estimate, wanted.cross_check) = (!wishes.error_estimate, wishes.cross_check);
-                (wanted.strength, wanted.sensitivities) = (wishes.residual_strength, wishes.sensitivities);
-                wanted.detection = wishes.pod.as_deref().map(str::parse).transpose()?;
+                (wanted.strength, wanted.asked.sensitivities) = (wishes.residual_strength, wishes.sensitivities);
+                wanted.asked.detection = wishes.pod.as_deref().map(str::parse).transpose()?;
                 let names = ["inspect_from_mm", "factor", "tip"];
                 wanted.inspection = wishes.inspect_from_mm.map(|crack_length_mm| InspectFrom {
                     crack_length_mm,

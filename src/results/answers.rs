@@ -1,25 +1,26 @@
 //! What is asked of a run beside its life: inspections that may miss the crack, a fleet, sensitivities.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::band::Lives;
 use super::fleet::FleetReport;
+pub use super::inspections::Asked;
 use super::inspections::Inspections;
 use super::sensitivities::Sensitivities;
 use perilife_base::error::Result;
-use perilife_calibration::sweep::detection::Detection;
-use perilife_growth::case::Case;
-use perilife_growth::predict::Prediction;
+use perilife_growth::case::{Case, Stop};
+use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 
-/// What is asked for; a fleet is by the section of the case.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Asked {
-    /// How inspections find cracks.
-    pub detection: Option<Detection>,
-    /// Life at somewhat other input.
-    pub sensitivities: bool,
+/// A run as K(a) of other plates is recorded from: one that `stop.cycles_max` ended continues, since faster plates grow longer cracks in these
+/// cycles. Where it cannot, its own rows are all there is.
+fn whole<'p>(case: &Case, prediction: &'p Prediction, is_asked: bool) -> Cow<'p, Prediction> {
+    let stop = Stop { cycles_max: f64::INFINITY, ..case.stop };
+    let on = || predict(&Case { stop, ..case.clone() }, &Silent).ok();
+    let on = (is_asked && prediction.stop == StopReason::RunOut).then(on).flatten();
+    on.map_or(Cow::Borrowed(prediction), Cow::Owned)
 }
 
 /// The answers, as far as they were asked for.
@@ -34,11 +35,12 @@ impl Answers {
     /// Of a run; `lives` say when its plate is looked at and how its law scatters.
     /// Errors: a fleet in which nothing scatters, a run without K.
     pub fn of(case: &Case, prediction: &Prediction, lives: &Lives, asked: Asked) -> Result<Self> {
-        let inspections = lives.inspection().zip(asked.detection);
-        let inspections = inspections.map(|(inspection, detection)| Inspections::of(case, prediction, inspection, detection));
-        let fleet =
-            case.fleet.as_ref().map(|fleet| FleetReport::of(case, prediction, fleet, lives, asked.detection)).transpose()?;
-        let sensitivities = asked.sensitivities.then(|| Sensitivities::of(case, prediction)).transpose()?;
+        let inspections = lives.inspection().and_then(|inspection| Inspections::of(case, prediction, inspection, asked));
+        let run = whole(case, prediction, case.fleet.is_some() || asked.sensitivities);
+        let of_whole = if matches!(run, Cow::Owned(_)) { &Lives::of(case, &run)? } else { lives };
+        let of_fleet = |fleet| FleetReport::of(case, fleet, (prediction, lives.inspection()), (&run, of_whole), asked);
+        let fleet = case.fleet.as_ref().map(of_fleet).transpose()?;
+        let sensitivities = asked.sensitivities.then(|| Sensitivities::of(case, &run)).transpose()?;
         Ok(Answers { inspections, fleet, sensitivities })
     }
 
@@ -59,6 +61,11 @@ impl Answers {
     pub fn write(&self, folder: &Path, case: &Case) -> Result<()> {
         self.fleet.as_ref().map_or(Ok(()), |fleet| fleet.write(folder, case))?;
         self.sensitivities.as_ref().map_or(Ok(()), |sensitivities| sensitivities.write(folder, case))
+    }
+
+    /// 5 % and median life of a fleet, in words; `None` without one.
+    pub fn headline(&self) -> Option<String> {
+        self.fleet.as_ref().map(FleetReport::headline)
     }
 
     /// Lines of a summary.

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::checks;
 use super::csv::{self, Row};
+use super::model_words::short;
 use perilife_base::error::{Result, input};
 use perilife_base::units::MM;
 use perilife_calibration::inspection::{InspectFrom, Inspection, TipLengths};
@@ -33,6 +34,8 @@ pub struct Lives {
     pub band: std::result::Result<(Plate, PlateBand), NoBand>,
     is_lower_bound: bool,
     tips: Option<TipLengths>,
+    /// Cycles in a pass of a spectrum.
+    per_pass: Option<f64>,
     rows: Vec<Row>,
     own: Option<Own>,
     inspection: Option<Inspection>,
@@ -69,6 +72,7 @@ impl Lives {
             band: plate.and_then(|plate| plate.band().map(|band| (plate, band))),
             is_lower_bound: checks::is_bound_below(case, prediction),
             tips: TipLengths::of_run(case, prediction),
+            per_pass: case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass),
             rows: prediction.curve.iter().map(Row::of).collect(),
             own: None,
             inspection: None,
@@ -189,7 +193,7 @@ impl Lives {
             ));
         }
         let whose = if self.own.is_some() { OF_PLATE } else { OF_SPECIMENS };
-        lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, whose)));
+        lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, whose, self.per_pass)));
         lines
     }
 }
@@ -213,25 +217,14 @@ pub fn tip_lengths_of_table(text: &str, tips: &Value) -> Option<TipLengths> {
 }
 
 /// What an inspection says, in lines of a summary.
-fn inspection_words(inspection: &Inspection, whose: &str) -> Vec<String> {
-    let (length, factor) = (inspection.crack_length_mm, inspection.factor);
-    let [left, every] = match inspection.quantiles() {
-        Some(quantiles) => {
-            let digits = digits(&quantiles);
-            [
-                words_of(&quantiles, whose),
-                format!(
-                    "{} cycles: the 5 % remaining life over {factor}",
-                    rounded_down(inspection.inspection_interval_cycles, digits)
-                ),
-            ]
-        }
+fn inspection_words(inspection: &Inspection, whose: &str, per_pass: Option<f64>) -> Vec<String> {
+    let (length, factor, quantiles) = (short(inspection.crack_length_mm), inspection.factor, inspection.quantiles());
+    let every = every_words(inspection.inspection_interval_cycles, quantiles.as_ref(), per_pass);
+    let [left, every] = match quantiles {
+        Some(quantiles) => [words_of(&quantiles, whose), format!("{every}: the 5 % remaining life over {factor}")],
         None => [
             format!("{} cycles", grouped(inspection.remaining_cycles.round())),
-            format!(
-                "{} cycles: the remaining life over {factor}, no band",
-                grouped(inspection.inspection_interval_cycles.floor())
-            ),
+            format!("{every}: the remaining life over {factor}, no band"),
         ],
     };
     let least = if inspection.life_is_lower_bound { "at least " } else { "" };
@@ -246,7 +239,7 @@ pub fn no_band_to_narrow(curve: &MeasuredCurve, why: &str) -> perilife_base::err
 }
 
 /// Significant digits that a band deserves.
-fn digits([low, middle, high]: &Quantiles) -> usize {
+pub fn digits([low, middle, high]: &Quantiles) -> usize {
     let half = 0.5 * (high - low) / middle;
     DIGITS.iter().find(|(width, _)| half > *width).map_or(DIGITS_MOST, |(_, digits)| *digits)
 }
@@ -256,9 +249,21 @@ fn rounded(cycles: f64, digits: usize) -> String {
     written(cycles, digits, f64::round)
 }
 
-/// The same rounded down: an interval is a promise.
-fn rounded_down(cycles: f64, digits: usize) -> String {
-    written(cycles, digits, f64::floor)
+/// An interval rounded down, since it is a promise, to the digits that a band deserves, and its passes under a spectrum.
+pub fn every_words(cycles: f64, band: Option<&Quantiles>, per_pass: Option<f64>) -> String {
+    let whole = band.map_or_else(|| grouped(cycles.floor()), |band| written(cycles, digits(band), f64::floor));
+    let passes =
+        per_pass.map_or_else(String::new, |each| format!(" ({} passes)", short((100.0 * cycles / each).floor() / 100.0)));
+    format!("{whole} cycles{passes}")
+}
+
+/// The interval of the object `inspection` of a result, as the console says it.
+pub fn interval_of(result: &Value) -> Option<String> {
+    let inspection = &result["inspection"];
+    let [low, middle, high] = [3, 4, 5].map(|place| inspection[COLUMNS[place]].as_f64());
+    let band = low.zip(middle).zip(high).map(|((low, middle), high)| [low, middle, high]);
+    let cycles = inspection["inspection_interval_cycles"].as_f64()?;
+    Some(every_words(cycles, band.as_ref(), result["spectrum"]["cycles_per_pass"].as_f64()))
 }
 
 fn written(cycles: f64, digits: usize, to_whole: fn(f64) -> f64) -> String {

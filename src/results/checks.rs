@@ -5,7 +5,7 @@ mod part_through;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::model_words::short;
+use super::model_words::short;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, LawSource};
@@ -27,6 +27,8 @@ const DOUBTFUL_PERCENT: f64 = 1.0;
 const OUTSIDE_DOUBTFUL: f64 = 0.05;
 /// Thickness of the plate over that of the specimens, or the other way, up to which both have the same constraint at the tip.
 const THICKNESS_ALIKE: f64 = 1.25;
+/// Factor of the life by retardation from which it is doubtful.
+const RETARDED_DOUBTFUL: f64 = 1.5;
 /// Exponent where the law has none: what an error of K does to the rate.
 const EXPONENT_USUAL: f64 = 3.0;
 
@@ -96,14 +98,8 @@ impl Check {
 
 /// What can be told of a case before it is run.
 pub fn of_case(case: &Case) -> Vec<Check> {
-    let mut checks = vec![strength(case, "toughness"), strength(case, "ligament")];
-    checks.extend(first_extrapolation(case));
-    checks.extend(stress_ratio(case, None));
-    checks.extend(thickness(case));
-    checks.extend(size(case));
-    checks.extend(lack_of_fit(case));
-    checks.extend(growth_data(case));
-    sorted(checks)
+    let strengths = ["toughness", "ligament"].map(|name| strength(case, name));
+    sorted(strengths.into_iter().chain(first_extrapolation(case)).collect(), case, None)
 }
 
 /// All conditions of a life, those that matter most first: what fails, what is doubtful by its effect, what was not checked, what holds.
@@ -114,12 +110,8 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(cross_check(case, prediction));
     checks.extend(part_through::checks(case, prediction));
     checks.extend(reversal(case, prediction));
-    checks.extend(stress_ratio(case, Some(prediction)));
-    checks.extend(thickness(case));
-    checks.extend(size(case));
-    checks.extend(lack_of_fit(case));
-    checks.extend(growth_data(case));
-    sorted(checks)
+    checks.extend(retardation(case, prediction));
+    sorted(checks, case, Some(prediction))
 }
 
 /// Growth data of the library are those of one batch.
@@ -130,10 +122,12 @@ fn growth_data(case: &Case) -> Option<Check> {
     Some(Check::sized("growth_data", percent, true, Side::Either, words, "calibrate the law to tests of this batch"))
 }
 
-fn sorted(mut checks: Vec<Check>) -> Vec<Check> {
-    let rank = |check: &Check| check.verdict as usize;
+/// With what the law says of the plate, those that matter most first.
+fn sorted(mut checks: Vec<Check>, case: &Case, prediction: Option<&Prediction>) -> Vec<Check> {
+    let of_law = [stress_ratio(case, prediction), thickness(case), size(case), lack_of_fit(case), growth_data(case)];
+    checks.extend(of_law.into_iter().flatten());
     let effect = |check: &Check| check.effect_percent.unwrap_or(0.0).abs();
-    checks.sort_by(|a, b| rank(a).cmp(&rank(b)).then(effect(b).total_cmp(&effect(a))));
+    checks.sort_by(|a, b| (a.verdict as usize).cmp(&(b.verdict as usize)).then(effect(b).total_cmp(&effect(a))));
     checks
 }
 
@@ -164,7 +158,10 @@ pub fn verdict(checks: &[Check]) -> String {
 /// The lines below it: conditions that do not hold, at most five.
 pub fn lines(checks: &[Check]) -> Vec<String> {
     let open = checks.iter().filter(|check| check.verdict != Verdict::Holds);
-    open.take(LINES_MOST).map(|check| check.words.chars().take(LETTERS_MOST).collect()).collect()
+    // Cut between words.
+    let cut = |words: &str, end: usize| format!("{}…", &words[..words[..end].rfind(' ').unwrap_or(end)]);
+    let line = |words: &str| words.char_indices().nth(LETTERS_MOST).map_or_else(|| words.to_owned(), |(end, _)| cut(words, end));
+    open.take(LINES_MOST).map(|check| line(&check.words)).collect()
 }
 
 /// The array of `result.json`.
@@ -174,25 +171,18 @@ pub fn json(checks: &[Check]) -> Value {
 
 /// Whether a strength is there to be checked.
 fn strength(case: &Case, name: &'static str) -> Check {
-    let (is_given, is_asked, what, key, off) = match name {
-        "toughness" => (
-            case.material.toughness.is_some(),
-            case.stop.by_toughness,
-            "fracture: not checked, no toughness given",
-            "material.toughness_mpa_sqrt_m",
-            "fracture: not checked, turned off by stop.toughness",
-        ),
-        _ => (
-            case.material.yield_strength.is_some(),
-            case.stop.by_net_section,
-            "yielding: not checked, no yield strength given",
-            "material.yield_strength_mpa",
-            "yielding: not checked, turned off by stop.net_section",
-        ),
+    let of_k = name == "toughness";
+    let (is_given, is_asked, [what, missing, key, off]) = if of_k {
+        let words = ["fracture", "toughness", "material.toughness_mpa_sqrt_m", "toughness"];
+        (case.material.toughness.is_some(), case.stop.by_toughness, words)
+    } else {
+        let words = ["yielding", "yield strength", "material.yield_strength_mpa", "net_section"];
+        (case.material.yield_strength.is_some(), case.stop.by_net_section, words)
     };
+    let not_checked = |why: String, remedy: &str| Check::not_checked(name, &format!("{what}: not checked, {why}"), remedy);
     match (is_given, is_asked) {
-        (false, _) => Check::not_checked(name, what, &format!("give {key}")),
-        (true, false) => Check::not_checked(name, off, "leave the key out"),
+        (false, _) => not_checked(format!("no {missing} given"), &format!("give {key}")),
+        (true, false) => not_checked(format!("turned off by stop.{off}"), "leave the key out"),
         (true, true) => Check::new(name, Verdict::Holds, format!("{name}: the life ends where it is reached")),
     }
 }
@@ -241,18 +231,22 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
     const NAME: &str = "small_scale_yielding";
     let zone = plastic_zone(case, &prediction.curve)?;
     let percent = 100.0 * zone.life_share_too_large;
+    let never = zone.too_large_to.is_none() && zone.too_large_from == Some(zone.first.crack_length);
     let words = match zone.too_large_from {
         None => "small-scale yielding: holds to the end".to_owned(),
+        Some(from) if never => format!("small-scale yielding: not from N = 0, {} mm, on", two_digits(from / MM)),
         Some(from) => {
             let until = zone.too_large_to.map_or_else(|| "on".to_owned(), |to| format!("to {} mm", two_digits(to / MM)));
             format!("small-scale yielding: not from {} mm {until}, {percent:.1} % of life", two_digits(from / MM))
         }
     };
     let remedy = match zone.too_small {
-        "ligament" => "end the life there by stop.crack_length_mm: beyond it cracks grow faster than K says",
+        _ if never => "reduce the load: K does not describe this crack",
+        "ligament" => "end the life there by stop.crack_length_mm (of all cracks): beyond it cracks grow faster than K says",
         _ => "begin with a longer crack: shorter ones grow faster than K says",
     };
-    Some(Check::sized(NAME, percent, percent > DOUBTFUL_PERCENT, Side::Unsafe, words, remedy))
+    let check = Check::sized(NAME, percent, never || percent > DOUBTFUL_PERCENT, Side::Unsafe, words, remedy);
+    Some(if never { Check { verdict: Verdict::Fails, ..check } } else { check })
 }
 
 /// A length as the criterion deserves: two digits, and the third of a length of more than ten.
@@ -350,6 +344,25 @@ fn reversal(case: &Case, prediction: &Prediction) -> Option<Check> {
     let words = format!("reversal: minimum load opens tip {tip}, its growth is not counted");
     let remedy = Some("turn the load round: maximum times R, ratio 1/R".to_owned());
     Some(Check { side: Some(Side::Unsafe), remedy, ..Check::new("reversal", Verdict::Fails, words) })
+}
+
+/// Life over that without retardation, whose constants come from the case alone.
+fn retardation(case: &Case, prediction: &Prediction) -> Option<Check> {
+    const NAME: &str = "retardation";
+    const REMEDY: &str = "fit its constant to a test under a spectrum, or compare with loading.retardation = \"none\"";
+    let (model, is_cut_off) = (case.retardation.as_ref()?.kind, prediction.stop == StopReason::RunOut);
+    let factor = prediction.life().unwrap_or(f64::INFINITY) / prediction.unretarded_cycles.unwrap_or(f64::NAN);
+    // A run that is cut off may have come as far as the other, which then says nothing.
+    if factor.is_nan() || is_cut_off && factor <= 1.0 {
+        let words = format!("retardation: effect of {model} not known; given, not calibrated");
+        return Some(Check::not_checked(NAME, &words, REMEDY));
+    }
+    let least = if is_cut_off { "≥ " } else { "" };
+    let times = if factor.is_finite() { format!("{least}{factor:.2}× that") } else { "unlimited, not".to_owned() };
+    let words = format!("retardation: life {times} without ({model}: given, not calibrated)");
+    let side = if factor > 1.0 { Side::Unsafe } else { Side::Safe };
+    let is_large = !(1.0 / RETARDED_DOUBTFUL..=RETARDED_DOUBTFUL).contains(&factor);
+    Some(Check::sized(NAME, 100.0 * (1.0 - 1.0 / factor), is_large, side, words, REMEDY))
 }
 
 /// Stress ratios of the law against those of the cycles that grow the crack.

@@ -7,16 +7,16 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::axis::Axis;
-use super::band::Lives as Band;
+use super::band::{Lives as Band, every_words};
 use super::chart::{COMPUTED, Frame, LARGE, Mark, SECOND};
 use super::csv;
-use super::model_words::clean;
+use super::inspections::Asked;
+use super::model_words::{chance, clean};
 use super::output::write_file;
 use super::sweep::Lives;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
 use perilife_calibration::inspection::Inspection;
-use perilife_calibration::sweep::detection::Detection;
 use perilife_calibration::sweep::fleet::{self, FleetLives, FleetPlate, Looked, Looks};
 use perilife_growth::case::{Case, Fleet};
 use perilife_growth::predict::{CurvePoint, Prediction};
@@ -36,20 +36,29 @@ pub struct FleetReport {
     looks: Option<Looks>,
     /// Life of the run, cycles.
     run: Option<f64>,
+    /// Cycles in a pass of a spectrum.
+    per_pass: Option<f64>,
 }
 
 impl FleetReport {
-    /// Of a run; `band` says how the law of its lot scatters, and from which length on plates are looked at.
+    /// Of a run with its lives, and of the same run as K(a) is recorded from.
     /// Errors: as [`fleet::lives`].
-    pub fn of(case: &Case, prediction: &Prediction, fleet: &Fleet, band: &Band, detection: Option<Detection>) -> Result<Self> {
-        let plate = band.band.as_ref().map(|(plate, _)| plate);
-        let looks = band.inspection().map(|inspection| Looks {
-            detectable: detectable(case, prediction, inspection),
+    pub fn of(
+        case: &Case,
+        fleet: &Fleet,
+        (own, inspection): (&Prediction, Option<&Inspection>),
+        (whole, band): (&Prediction, &Band),
+        asked: Asked,
+    ) -> Result<Self> {
+        let looks = inspection.map(|inspection| Looks {
+            detectable: detectable(case, own, inspection),
             factor: inspection.factor,
-            detection,
+            detection: asked.detection,
+            first: asked.first_inspection,
         });
-        let lives = fleet::lives(case, prediction, fleet, plate, looks)?;
-        Ok(FleetReport { fleet: *fleet, lives, looks, run: prediction.life() })
+        let lives = fleet::lives(case, whole, fleet, band.band.as_ref().map(|(plate, _)| plate), looks)?;
+        let per_pass = case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass);
+        Ok(FleetReport { fleet: *fleet, lives, looks, run: own.life(), per_pass })
     }
 
     fn ranked(&self) -> Lives {
@@ -70,25 +79,19 @@ impl FleetReport {
         self.lives.plates.iter().filter(|plate| plate.window.is_some_and(|[_, left]| left == 0.0)).count()
     }
 
-    /// Probability that inspections miss the crack of a plate to its end, mean over the plates that have one.
-    fn missed(&self) -> Option<f64> {
-        self.lives.looked.as_ref().map(|looked| looked.missed)
-    }
-
     /// What inspections make of the fleet.
     fn looked_json(&self) -> Value {
         let Some(looks) = self.looks else { return Value::Null };
-        let Looked { every, missed_after, .. } = match &self.lives.looked {
-            Some(looked) => looked.clone(),
-            None => Looked { every: f64::NAN, missed_after: Vec::new(), missed: f64::NAN },
-        };
+        let looked = self.lives.looked.as_ref();
         json!({
             "detectable_mm": clean(looks.detectable / MM),
             "factor": looks.factor,
             "detectable_to_critical_cycles": self.windows().figures(),
             "break_before_detectable": self.never_found(),
-            "interval_cycles": every.is_finite().then_some(every),
-            "missed_after": missed_after,
+            "first_inspection_cycles": looked.map(|looked| looked.first),
+            "break_before_first_inspection": looked.map(|looked| looked.before_first),
+            "interval_cycles": looked.map(|looked| looked.every),
+            "missed_after": looked.map_or(&[][..], |looked| &looked.missed_after),
         })
     }
 
@@ -108,7 +111,7 @@ impl FleetReport {
             "laws_drawn": self.lives.one_law.is_none(),
             "one_law_because": self.lives.one_law,
             "inspections": self.looked_json(),
-            "missed": self.missed(),
+            "missed": self.lives.looked.as_ref().map(|looked| looked.missed),
         })
     }
 
@@ -163,19 +166,20 @@ impl FleetReport {
         frame.finish(&format!("{title}: share of plates that have ended over cycles"))
     }
 
+    /// 5 % and median life, which stand for the fleet.
+    pub fn headline(&self) -> String {
+        let [low, middle, _] = words_of(&self.ranked());
+        format!("5 % life {low} cycles, median {middle} cycles ({} plates)", self.lives.plates.len())
+    }
+
     /// Lines of a summary.
     pub fn words(&self) -> Vec<String> {
         let (ranked, count) = (self.ranked(), self.lives.plates.len());
-        let figures = ranked.figures();
-        let word = |quantile: &str| figures["words"][quantile].as_str().unwrap_or("unknown").to_owned();
+        let [low, middle, high] = words_of(&ranked);
         let laws = if self.lives.one_law.is_some() { ", all of the law of the case" } else { "" };
         let mut lines = vec![format!(
-            "  fleet          of {count} plates{laws}: 5 % end by {}, half by {}, 95 % by {} cycles; {} unlimited, {} cut off",
-            word("p05"),
-            word("p50"),
-            word("p95"),
-            ranked.unlimited,
-            ranked.bounds
+            "  fleet          of {count} plates{laws}: 5 % end by {low}, half by {middle}, 95 % by {high} cycles; {} unlimited, {} cut off",
+            ranked.unlimited, ranked.bounds
         )];
         if self.clipped() > 0 {
             lines.push(format!(
@@ -190,19 +194,26 @@ impl FleetReport {
 
     /// How long cracks can be found, and how likely they are not.
     fn looked_words(&self, looks: Looks) -> String {
-        let figures = self.windows().figures();
-        let word = |quantile: &str| figures["words"][quantile].as_str().unwrap_or("unknown").to_owned();
-        let [low, middle, high] = ["p05", "p50", "p95"].map(word);
+        let [low, middle, high] = words_of(&self.windows());
         let length = looks.detectable / MM;
         let missed = match &self.lives.looked {
-            Some(Looked { every, missed, .. }) => {
-                format!("; every {every:.0} cycles, inspections miss the crack of a plate with a probability of {missed:.2e}")
-            }
+            Some(Looked { first, every, before_first, missed, .. }) => format!(
+                "; all plates inspected after {first:.0} cycles, then every {}: all inspections miss the crack of a plate: {} ({before_first} \
+                 plates break before the first)",
+                every_words(*every, None, self.per_pass),
+                chance(*missed)
+            ),
             None if self.never_found() > 0 => format!("; {} plates break before", self.never_found()),
             None => String::new(),
         };
         format!("  fleet          from {length:.3} mm to the end 5 % take {low}, half {middle}, 95 % {high} cycles{missed}")
     }
+}
+
+/// 5 %, median and 95 % in words.
+fn words_of(lives: &Lives) -> [String; 3] {
+    let figures = lives.figures();
+    ["p05", "p50", "p95"].map(|quantile| figures["words"][quantile].as_str().unwrap_or("unknown").to_owned())
 }
 
 /// Length of the crack that ends the life when the one that is inspected has its length, m: the way is that of the run.

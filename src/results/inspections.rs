@@ -2,12 +2,23 @@
 
 use serde_json::{Value, json};
 
-use super::model_words::clean;
+use super::model_words::{chance, clean, mm};
 use perilife_base::units::MM;
 use perilife_calibration::inspection::Inspection;
 use perilife_calibration::sweep::detection::{Detection, Schedule};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{CurvePoint, Prediction};
+
+/// What is asked for; a fleet is by the section of the case.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Asked {
+    /// How inspections find cracks.
+    pub detection: Option<Detection>,
+    /// Cycles of the first inspection.
+    pub first_inspection: Option<f64>,
+    /// Life at somewhat other input.
+    pub sensitivities: bool,
+}
 
 /// Inspections of a run from a crack length on.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,17 +41,22 @@ struct Row {
 }
 
 impl Inspections {
-    /// Of a run: the first at the length from which on the plate is inspected, the others by the interval, before the end of the run.
-    pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, detection: Detection) -> Self {
-        let schedule = Schedule { detection, cycles: [inspection.cycles_at, inspection.inspection_interval_cycles] };
+    /// Of a run: the first at the length that the plate is inspected from or after the cycles that are asked, the others by the interval; `None`
+    /// where nobody asked. From that length on the crack grows by the quantile of the interval: the cycles of the run, stretched to its end.
+    pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, asked: Asked) -> Option<Self> {
+        let (detection, at) = (asked.detection?, inspection.cycles_at);
+        let schedule =
+            Schedule { detection, cycles: [asked.first_inspection.unwrap_or(at), inspection.inspection_interval_cycles] };
+        let pace = inspection.remaining_cycles_p05.map_or(1.0, |low| low / inspection.remaining_cycles);
+        let cycles = |row: &CurvePoint| if row.cycles > at { at + pace * (row.cycles - at) } else { row.cycles };
         let of_tip = |row: &CurvePoint| inspection.tip.and_then(|tip| row.crack_length_of(&case.specimen, tip));
         let length = |row: &CurvePoint| of_tip(row).unwrap_or(row.crack_length);
         let (mut inspected, mut rows) = (schedule.begin(), Vec::new());
         for pair in prediction.curve.windows(2) {
             let told = |cycles, crack_length, found, missed| rows.push(Row { cycles, crack_length, found, missed });
-            inspected.grow([pair[0].cycles, pair[1].cycles], [length(&pair[0]), length(&pair[1])], told);
+            inspected.grow([cycles(&pair[0]), cycles(&pair[1])], [length(&pair[0]), length(&pair[1])], told);
         }
-        Inspections { schedule, rows }
+        Some(Inspections { schedule, rows })
     }
 
     /// Probability that all of them miss the crack.
@@ -63,7 +79,10 @@ impl Inspections {
 
     /// A line of a summary.
     pub fn words(&self) -> String {
-        let (count, missed) = (self.rows.len(), self.missed());
-        format!("  detection      {count} inspections miss the crack with a probability of {missed:.2e}")
+        let (count, missed) = (self.rows.len(), chance(self.missed()));
+        let [half, most] = [self.schedule.detection.a50, self.schedule.detection.a90].map(mm);
+        format!(
+            "  detection      all {count} inspections miss the crack: {missed} (independent; found with 50 % at {half} mm, with 90 % at {most} mm)"
+        )
     }
 }

@@ -5,16 +5,16 @@ use serde_json::{Value, json};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::end_of_life::{critical_length, critical_lengths};
+use perilife_growth::predict::judgement::judge;
 use perilife_growth::predict::laws::paris_law;
 use perilife_growth::predict::part_through::PartThroughLife;
-use perilife_growth::predict::plastic_zone::{PlasticZone, Zone};
+use perilife_growth::predict::plastic_zone::{self, Zone};
 use perilife_growth::predict::{Prediction, StopReason};
 use perilife_growth::record::TipRecord;
 use perilife_plate::specimen::part_through::{BREAK_THROUGH, Limit, STATED_ERROR};
 
 use super::checks;
 use super::model_words::{self, clean};
-use perilife_growth::predict::fit_use::extrapolated;
 pub use perilife_growth::predict::fit_use::life_share_extrapolated;
 
 /// Name of the file.
@@ -23,9 +23,9 @@ pub const RESULT_FILE: &str = "result.json";
 /// The whole object. A figure that does not exist (no fitted range to compare with, no ΔK) is `null`.
 pub fn result(case: &Case, prediction: &Prediction) -> Value {
     let figures = &prediction.figures;
-    let extrapolated = extrapolated(case, prediction);
+    let judged = judge(case, prediction).unwrap_or_default();
     // What the run found comes first: it counts more than what an assumption may do.
-    let warnings: Vec<&String> = prediction.warnings.iter().chain(&extrapolated).chain(&case.warnings).collect();
+    let warnings: Vec<&String> = prediction.warnings.iter().chain(&judged).chain(&case.warnings).collect();
     let checks = checks::of_run(case, prediction);
     json!({
         "name": case.name,
@@ -143,7 +143,7 @@ fn tips(case: &Case, prediction: &Prediction) -> Vec<Value> {
 
 /// Plastic zone at the first and the last row whose K is known; `null` without yield strength.
 fn plastic_zone(case: &Case, prediction: &Prediction) -> Value {
-    let Some(found) = PlasticZone::of(case, prediction) else { return Value::Null };
+    let Some(found) = plastic_zone::plastic_zone(case, &prediction.curve) else { return Value::Null };
     let zone = |zone: &Zone| {
         json!({
             "crack_length_mm": clean(zone.crack_length / MM),

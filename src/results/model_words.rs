@@ -235,7 +235,7 @@ pub fn loading(case: &Case) -> String {
             let [low, high] = spectrum.ratios.map(short);
             format!("spectrum, {cycles}{sides}{bending}, R = {low} to {high}, {} at the largest", short(loading.ratio))
         }
-        None => format!("{cycles}{sides}{bending}, R = {}{residual}", loading.ratio),
+        None => format!("{cycles}{sides}{bending}, R = {}{residual}", short(loading.ratio)),
     }
 }
 
@@ -259,6 +259,11 @@ fn moved(specimen: &Specimen) -> &'static str {
 pub fn short(value: f64) -> String {
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A probability that a crack is missed; below 1e-3 none is claimed, since inspections are hardly independent of each other.
+pub fn chance(probability: f64) -> String {
+    if probability < 1e-3 { "below 1e-3".to_owned() } else { format!("{probability:.2e}") }
 }
 
 /// A length in millimetres.

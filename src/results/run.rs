@@ -290,7 +290,7 @@ fn through_words(case: &Case, prediction: &Prediction) -> Option<String> {
 
 /// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.
 fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
-    let PlasticZone { first, last, .. } = PlasticZone::of(case, prediction)?;
+    let PlasticZone { first, last, .. } = plastic_zone::plastic_zone(case, &prediction.curve)?;
     let (horizon, thickness) = (prediction.figures.horizon, case.specimen.thickness);
     let (room, name) = last.room();
     let of_horizon = if horizon > 0.0 { format!(", {:.2} of the horizon", last.size / horizon) } else { String::new() };

@@ -133,7 +133,7 @@ fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Value {
 
 fn left_out(calibration: &CalibrationCase) -> Value {
     let count = calibration.left_out.len();
-    let found = if count == 0 { "none".to_owned() } else { format!("{count} windows of cycles") };
-    let reasons: Vec<&str> = calibration.left_out.iter().map(|window| &*window.reason).collect();
+    let found = if count == 0 { "none".to_owned() } else { count.to_string() };
+    let reasons: Vec<String> = calibration.left_out.iter().map(|one| format!("{} ({})", one.place(), one.reason)).collect();
     criterion("Readings left out", "with reason".to_owned(), found, Some(true), reasons.join("; "))
 }

@@ -9,7 +9,7 @@ use perilife_base::error::{Error, Result};
 use perilife_growth::case::Case;
 use perilife_growth::predict::residual_strength::{Strength, residual_strength};
 use perilife_growth::predict::{Prediction, judgement};
-use perilife_results::answers::{Answers, Asked};
+use perilife_results::answers::Answers;
 use perilife_results::band::Lives;
 use perilife_results::checks;
 use perilife_results::quality::Quality;
@@ -45,10 +45,11 @@ impl Judged {
         let mut lives = Lives::of(case, prediction)?;
         let quality = Quality::of(case, prediction, [!wanted.no_estimate, wanted.cross_check]);
         let asked = wanted.readings.as_ref().map_or(Ok(()), |curve| lives.narrow(curve));
-        let asked = asked.and_then(|()| wanted.inspection.map_or(Ok(()), |from| lives.inspect(from)));
-        let answered = asked.and_then(|()| {
-            Answers::of(case, prediction, &lives, Asked { detection: wanted.detection, sensitivities: wanted.sensitivities })
-        });
+        // A length that the crack never has is wrong input, and no result is written for it.
+        if asked.is_ok() {
+            wanted.inspection.map_or(Ok(()), |from| lives.inspect(from))?;
+        }
+        let answered = asked.and_then(|()| Answers::of(case, prediction, &lives, wanted.asked));
         let (answers, asked) = match answered {
             Ok(answers) => (answers, Ok(())),
             Err(error) => (Answers::default(), Err(error)),
@@ -58,8 +59,6 @@ impl Judged {
         let mut warnings: Vec<String> = refusal.iter().map(Error::to_string).collect();
         let listed = kept.result["warnings"].as_array().into_iter().flatten();
         warnings.extend(listed.filter_map(|warning| Some(warning.as_str()?.to_owned())));
-        let new: Vec<String> = judged.into_iter().filter(|warning| !warnings.contains(warning)).collect();
-        warnings.extend(new);
         let (strengths, missed) = match strengths {
             Ok(strengths) => (strengths, None),
             Err(error) => (None, Some(error)),
@@ -94,6 +93,11 @@ impl Judged {
     /// The result in words.
     pub fn words(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
         let mut lines = run::words(case, prediction, &self.lives, &self.quality);
+        if let Some(fleet) = self.answers.headline().filter(|_| self.refusal.is_none()) {
+            // The run is one plate, and may live longer than all of a fleet.
+            let (name, run) = lines[0].split_at(case.name.len() + 2);
+            lines.splice(..1, [format!("{name}fleet, {fleet}"), format!("  this run       {run}: the plate of the case alone")]);
+        }
         lines.extend(self.answers.words());
         lines
     }

@@ -14,13 +14,13 @@ use perilife_calibration::calibrate::Calibration;
 use perilife_calibration::inspection::InspectFrom;
 use perilife_calibration::population::plate::lot_of;
 use perilife_calibration::sweep::design::{CASES_MAX, is_sweep};
-use perilife_calibration::sweep::detection::Detection;
 use perilife_calibration::sweep::{DrawnCase, Sweep};
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, Method};
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
 use perilife_measured::{Import, MeasuredCurve};
 use perilife_points::budget::Budget;
+use perilife_results::answers::Asked;
 use perilife_results::band::no_band_to_narrow;
 use perilife_results::output::{Room, RunKind};
 use perilife_results::{run, stresses};
@@ -109,10 +109,8 @@ pub struct Wanted {
     pub readings: Option<MeasuredCurve>,
     /// What is left from a crack length on, and how often to look.
     pub inspection: Option<InspectFrom>,
-    /// How inspections find cracks, from which the probability follows that they miss this one.
-    pub detection: Option<Detection>,
-    /// Life at somewhat other input.
-    pub sensitivities: bool,
+    /// How and when inspections find cracks, and lives at other input.
+    pub asked: Asked,
     /// No bounds of the error of the life.
     pub no_estimate: bool,
     /// The life by the other engine, too.

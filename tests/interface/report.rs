@@ -317,7 +317,7 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
             "1000, seed 1",
             "each plate by its own law, load and critical length, from 10 mm",
             &grouped(looks["detectable_to_critical_cycles"]["p95"].as_f64().unwrap()),
-            &grouped(looks["interval_cycles"].as_f64().unwrap()),
+            &grouped(looks["interval_cycles"].as_f64().unwrap().floor()).replace('\u{202f}', " "),
             "initial crack length",
             "a crack of 12 mm with 50 %, of 25 mm with 90 %",
         ],

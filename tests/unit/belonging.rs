@@ -151,6 +151,40 @@ fn what_is_left_out_stands_in_every_result() {
     assert!((fit.record.life_measured() - (made[36].0 - lost)).abs() < 1e-6, "{}", fit.record.life_measured());
 }
 
+/// A lab file with a word for a number, a counter that fell and a remark between its rows, as it was dropped: its hash, and all three by line.
+#[test]
+fn rows_are_left_out_by_line_value_and_reason() {
+    let good = plain(0.5);
+    let text = rows(&good, |_| String::new());
+    let mut lines: Vec<&str> = std::iter::once("cycles,crack_length_mm").chain(text.lines()).collect();
+    for (line, bad) in
+        [(5, "abc,13.1"), (9, "12,15.1"), (12, "load cell was changed here; then the test went on, as agreed with the customer")]
+    {
+        lines.insert(line - 1, bad);
+    }
+    let csv = lines.join("\n");
+    assert!(case(&csv, "").is_err());
+    let out = "leave_out = [{ line = 5, value = \"abc\", reason = \"typing error\" }, { line = 9, value = \"12\", reason = \"counter\" }, \
+               { line = 12, value = \"load cell was changed...\", reason = \"remark\" }]";
+    let bad = case(&csv, out).unwrap();
+    let (fit, plain) =
+        (calibrate(&bad, &Silent).unwrap(), calibrate(&case(&text_with_header(&text), "").unwrap(), &Silent).unwrap());
+    assert_eq!((fit.paris.m, fit.record.life_measured()), (plain.paris.m, plain.record.life_measured()));
+    assert_eq!(report(&bad, &fit, 0.0)["left_out"][0]["value"], "abc");
+    assert_eq!(bad.sources[0].sha256, perilife_base::input::sha256(csv.as_bytes()));
+    let table = perilife_calibration::readings::readings_csv(&bad, &|_| f64::NAN);
+    assert!(table.contains(",line 5: abc,typing error\n"), "{table}");
+    let record = toml::to_string(&record(&bad, &fit)).unwrap();
+    assert!(
+        record.contains("line = 5\nvalue = \"abc\"\nreason = \"typing error\"") && !record.contains("from_cycles"),
+        "{record}"
+    );
+}
+
+fn text_with_header(rows: &str) -> String {
+    format!("cycles,crack_length_mm\n{rows}")
+}
+
 #[test]
 fn broken_windows_are_refused() {
     let csv = format!("cycles,crack_length_mm\n{}", rows(&plain(0.5), |_| String::new()));
@@ -163,6 +197,16 @@ fn broken_windows_are_refused() {
         ),
         ("no reason", window("from_cycles = 0, to_cycles = 1e4"), "reason: is missing"),
         ("an empty reason", window("from_cycles = 0, to_cycles = 1e4, reason = \" \""), "says nothing"),
+        ("half a window", window("from_cycles = 0, reason = \"x\""), "is neither a row nor cycles"),
+        ("a row and cycles", window("line = 2, from_cycles = 0, to_cycles = 1, reason = \"x\""), "is neither a row nor cycles"),
+        (
+            "no such line",
+            window("line = 999, value = \"0\", reason = \"x\""),
+            "is not a cell of line 999 of test.csv, which has no row",
+        ),
+        ("another value", window("line = 2, value = \"7x\", reason = \"x\""), "is not a cell of line 2"),
+        ("no value", window("line = 2, reason = \"x\""), "is not a cell of line 2"),
+        ("another file", window("file = \"b.csv\", line = 2, value = \"0\", reason = \"x\""), "not one of measured.files"),
         ("the wrong way", window("from_cycles = 1e4, to_cycles = 0, reason = \"x\""), "is not above from_cycles = 10000"),
         ("beyond the test", window("from_cycles = 1e8, to_cycles = 2e8, reason = \"x\""), "covers no growth of specimen test"),
         ("everything", window("from_cycles = 0, to_cycles = 1e9, reason = \"x\""), "leaves 0 readings"),

@@ -149,3 +149,51 @@ fn thickness_and_ratio_are_held_against_those_of_the_law() {
     let fit = find(&checks, "lack_of_fit");
     assert_eq!((fit.verdict, fit.side, fit.effect_percent), (Verdict::Doubtful, Some(Side::Unsafe), Some(12.0)));
 }
+
+/// Gross stress above (1 - 2a/W)/1.25 of the yield strength: ASTM E647 has too little ligament from the start (M(T): W - 2a ≥ 1.25 P/(B σ_Y)).
+#[test]
+fn small_scale_yielding_fails_where_it_does_not_hold_at_the_start() {
+    for (range, life) in [("loading.stress_range_mpa=200", true), ("loading.stress_range_mpa=320", false)] {
+        let set = ["material.yield_strength_mpa=345", range];
+        let (case, run) = (hand_case(PANEL, &set), hand_run(PANEL, &set));
+        let check = named(&case, &run, "small_scale_yielding");
+        assert_eq!(
+            (check.verdict, check.effect_percent, run.life_cycles() > 0.0),
+            (Verdict::Fails, Some(100.0), life),
+            "{check:?}"
+        );
+        assert!(
+            check.words.contains("not from N = 0, 9.0 mm, on") && verdict(&of_run(&case, &run)).starts_with("not to be used"),
+            "{check:?}"
+        );
+        let why = perilife_growth::predict::error_estimate::error_estimate(&case, &run);
+        assert!(why.is_ok() == life && (life || why == Err("no life".to_owned())), "{why:?}");
+    }
+}
+
+/// Limits of a plate with several cracks are lengths of the crack that ends the life, not of all together.
+#[test]
+fn limits_name_the_governing_crack() {
+    let case = Case::from_toml(
+        &std::fs::read_to_string("data/cases/two_cracks_plate.toml").unwrap(),
+        "two",
+        std::path::Path::new("data/cases"),
+        &[],
+    )
+    .unwrap();
+    let run = predict(&case, &Silent).unwrap();
+    let (_, [first, last]) = run.leading_tip(&case.specimen).unwrap();
+    let zone = perilife_growth::predict::plastic_zone::plastic_zone(&case, &run.curve).unwrap();
+    let (from, check) = (zone.too_large_from.unwrap(), run.cross_check.unwrap().crack_length);
+    assert!([from, check].iter().all(|length| (first..last).contains(length)) && (from - 42.7e-3).abs() < 1e-3, "{from} {check}");
+    assert!(named(&case, &run, "small_scale_yielding").words.contains("not from 43 mm on"));
+    // Twins share their sum evenly.
+    assert!((check - 24.5e-3).abs() < 1e-3, "{check}");
+}
+
+#[test]
+fn lines_of_checks_end_between_words() {
+    let words = format!("stress ratio: -0.2 to 0.871, law of {} to 0.7, by γ = 0.6 (Walker)", "0.02000000068521585");
+    let checks = [Check { words, ..of_case(&hand_case(PANEL, &[]))[0].clone() }];
+    assert_eq!(lines(&checks), ["stress ratio: -0.2 to 0.871, law of 0.02000000068521585 to 0.7, by γ =…"]);
+}

@@ -230,7 +230,8 @@ fn many_specimens_take_no_longer_each_than_few() {
     assert_eq!(first.warnings[100], format!("and {} more warnings of this kind", COUNT - 100));
     let window = |name: &str| {
         let reason = "why".to_owned();
-        vec![LeaveOut { specimen: Some(name.to_owned()), from_cycles: 0.0, to_cycles: 500.0, reason }]
+        let (specimen, [from_cycles, to_cycles]) = (Some(name.to_owned()), [Some(0.0), Some(500.0)]);
+        vec![LeaveOut { specimen, from_cycles, to_cycles, reason, ..LeaveOut::default() }]
     };
     let unknown = first.leave_out(&window("c")).unwrap_err().to_string();
     assert!(unknown.len() < 1000 && unknown.contains("399980 more"), "{unknown}");

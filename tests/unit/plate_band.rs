@@ -7,8 +7,10 @@ use perilife_calibration::population::intervals::{INTERVALS_MAX, Reading, Specim
 use perilife_calibration::population::plate::Plate;
 use perilife_growth::case::{Case, LawSource, Lot};
 use perilife_growth::predict::{Prediction, Silent, predict};
+use perilife_results::answers::Asked;
 use perilife_results::band::{COLUMNS, Lives, band_words, left_of_table};
 use perilife_results::csv::{self, Row};
+use perilife_results::inspections::Inspections;
 use toml::Table;
 
 use crate::support::hand_cases::{PANEL, hand_case};
@@ -166,6 +168,14 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
         assert!(error.contains(words), "{error}");
     }
     lives.inspect(from).unwrap();
+    // Inspections follow the crack of the interval, a quarter of its 5 % life each; on that of the run there would be more of them.
+    let asked = Asked { detection: Some("20,40".parse().unwrap()), ..Asked::default() };
+    let inspections = Inspections::of(&case, &run, lives.inspection().unwrap(), asked).unwrap().json();
+    let rows = inspections["rows"].as_array().unwrap();
+    let share = with_band.remaining_cycles_p05.unwrap() / with_band.remaining_cycles;
+    assert!(rows.len() == 4 && share < 0.9, "{inspections}");
+    let third = run.cycles_at(rows[2]["crack_length_mm"].as_f64().unwrap() * MM).unwrap() - with_band.cycles_at;
+    assert!((third / (0.5 * with_band.remaining_cycles) - 1.0).abs() < 5e-3, "half of either life: {inspections}");
     let words = lives.words().join("\n");
     assert!(words.contains("inspection     every ") && words.contains("5 % remaining life over 4"), "{words}");
     let mut result = serde_json::json!({});

@@ -35,6 +35,10 @@ pub trait Vocabulary {
     /// A name with the unit of the row below it, unless it has one itself.
     /// Errors: its own unit, where the row says another one.
     fn with_unit(&self, name: &str, unit: &str) -> std::result::Result<String, &'static str>;
+    /// Whether a row is left out by its line, so that it may have other columns than the header.
+    fn leaves_out(&self, _line: usize) -> bool {
+        false
+    }
     /// The sheet of a workbook that is asked for.
     fn sheet(&self) -> Option<&Sheet>;
     /// Fewest columns of such a table.

@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use super::us::{System, Unit, renamed};
 use super::words::{in_units, with_keys};
+use super::{INCH, MM};
 
 static SHOWN: OnceLock<System> = OnceLock::new();
 
@@ -31,6 +32,14 @@ pub fn told_of_file(words: &str) -> String {
 pub fn per(metric: &str) -> f64 {
     let unit = Unit::named(metric, System::Si).filter(|_| shown() == System::Us);
     unit.map_or(1.0, |unit| unit.factor(System::Us))
+}
+
+/// A length that a user types, m: `0.25in`, `6.35mm`, or a number in the unit that is shown.
+pub fn length_given(text: &str) -> Option<f64> {
+    let units = [("mm", MM), ("inch", INCH), ("in", INCH)];
+    let given = units.into_iter().find_map(|(unit, size)| Some((text.trim().strip_suffix(unit)?, size)));
+    let (number, size) = given.unwrap_or((text, if shown() == System::Us { INCH } else { MM }));
+    Some(number.trim().parse::<f64>().ok()? * size)
 }
 
 /// Name of the unit that is shown in place of a metric one.

@@ -8,7 +8,7 @@ use std::str::FromStr;
 use crate::population::student::normal_cdf;
 use crate::sweep::distribution::normal_quantile;
 use perilife_base::error::{Error, Result, input};
-use perilife_base::units::MM;
+use perilife_base::units::shown::length_given;
 
 /// Share of cycles that is nothing.
 const ROUND_OFF: f64 = 1e-9;
@@ -35,15 +35,15 @@ impl Detection {
 impl FromStr for Detection {
     type Err = Error;
 
-    /// `A50,A90` in mm.
+    /// `A50,A90`, each as [`length_given`] reads it.
     fn from_str(text: &str) -> Result<Self> {
         let wrong = |problem: &str| {
-            let remedy = "give two crack lengths in mm, found with 50 % and with 90 %, for example --pod 2,5";
+            let remedy = "give two crack lengths, found with 50 % and with 90 %, for example --pod 2mm,5mm or --pod 0.1in,0.2in";
             input("--pod", text, problem, remedy)
         };
-        let lengths: Option<Vec<f64>> = text.split(',').map(|length| length.trim().parse().ok()).collect();
+        let lengths: Option<Vec<f64>> = text.split(',').map(length_given).collect();
         match lengths.as_deref() {
-            Some(&[a50, a90]) if a50 > 0.0 && a90 > a50 && a90.is_finite() => Ok(Detection { a50: a50 * MM, a90: a90 * MM }),
+            Some(&[a50, a90]) if a50 > 0.0 && a90 > a50 && a90.is_finite() => Ok(Detection { a50, a90 }),
             Some([_, _]) => Err(wrong("is no crack length above zero and a longer one")),
             _ => Err(wrong("is not two numbers")),
         }

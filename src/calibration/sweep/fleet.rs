@@ -4,8 +4,9 @@
 //! ([`Forecast::draw`](crate::population::forecast::Forecast::draw)): rate of the lot, scatter between specimens, noise along
 //! the crack, uncertainty of the lot itself. So a fleet of one initial length under one load has the quantiles of the band.
 //!
-//! Every plate has its own cycles from the detectable length to the length at which it breaks, by its own law and under its own load. The fleet
-//! is looked at by one interval, the 5 % quantile of these over the factor, each plate from its own detectable length on.
+//! Every plate has its own cycles from the detectable length to the length at which it breaks, by its own law and under its own load. All plates
+//! are inspected after the same cycles, since nobody knows which is the fast one: first at the 5 % quantile of their cycles to the detectable
+//! length, or where the user says, then by the 5 % quantile of the cycles from there to the end over the factor.
 
 use super::detection::{Detection, Schedule};
 use super::distribution::{hypercube, normal_quantile, quantile};
@@ -20,8 +21,6 @@ use perilife_growth::predict::recorded::{Change, Recorded, RecordedLife};
 use perilife_growth::predict::{Prediction, StopReason};
 use perilife_laws::growth_law::GrowthLaw;
 
-/// Standard deviations by which a load differs at most.
-const LOAD_DEVIATIONS: f64 = 3.0;
 /// Share of plates whose cycles from detectable to critical are shorter than those that the interval is taken from.
 const SHORTEST: f64 = 0.05;
 /// Inspections up to which it is told with what probability a crack has been missed.
@@ -43,7 +42,7 @@ pub struct FleetPlate {
     /// Cycles at which its crack is as long as can be found, and from there to the end: infinite where it has none, or is cut off before; none at
     /// all of a plate that breaks before. `None`: not asked.
     pub window: Option<[f64; 2]>,
-    /// Probability that inspections miss its crack to the end; `None` without inspections, or of an unlimited life.
+    /// Probability that inspections miss its crack to the end, 1 if it breaks before the first; `None` without them, or of an unlimited life.
     pub missed: Option<f64>,
 }
 
@@ -56,14 +55,20 @@ pub struct Looks {
     pub factor: f64,
     /// How cracks are found; `None`: not asked.
     pub detection: Option<Detection>,
+    /// Cycles of the first inspection; `None`: the 5 % quantile of those to the detectable length.
+    pub first: Option<f64>,
 }
 
 /// What inspections find of a fleet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Looked {
+    /// Cycles of the first inspection of all plates.
+    pub first: f64,
     /// Cycles from one inspection to the next.
     pub every: f64,
-    /// Probability that a crack is missed by the first inspection of its plate, by the first two, and so on; mean over the plates that end.
+    /// Plates that break before the first.
+    pub before_first: usize,
+    /// Probability that a crack is missed by the first inspection, by the first two, and so on; mean over the plates that end.
     pub missed_after: Vec<f64>,
     /// The same by all inspections to the end.
     pub missed: f64,
@@ -187,7 +192,8 @@ impl<'f> Drawing<'f> {
             let [of_length, of_load] = [0, 1].map(|column| row.get(column).copied().unwrap_or(0.5));
             let own = self.recorded.unchanged();
             let crack_length = initial_length.map_or(own.crack_length, |lengths| length(lengths, of_length));
-            Change { load: load(load_scatter, of_load), crack_length, ..own }
+            let load = if load_scatter > 0.0 { normal_above_zero(1.0, load_scatter, of_load) } else { 1.0 };
+            Change { load, crack_length, ..own }
         };
         match &self.laws {
             Laws::One(law, ratio) => Ok((0..plates).map(|_| ask(next(), 1.0, &|k, _| law.rate(k, *ratio))).collect()),
@@ -199,18 +205,22 @@ impl<'f> Drawing<'f> {
         }
     }
 
-    /// Looks at every plate from its own detectable length on by the interval of the fleet. It is known once all plates are, so that they grow again.
+    /// Inspects all plates after the same cycles. They are known once all plates are, so that they grow again.
     fn look(&self, plates: &mut [FleetPlate], looks: Looks) -> Result<Option<Looked>> {
-        let mut windows: Vec<f64> = plates.iter().filter_map(|plate| plate.window).map(|[_, left]| left).collect();
-        windows.sort_by(f64::total_cmp);
-        let every = quantile(&windows, SHORTEST) / looks.factor;
-        let Some(detection) = looks.detection.filter(|_| every > 0.0 && every.is_finite()) else { return Ok(None) };
+        let [to_detectable, to_end] = [0, 1].map(|part| {
+            let mut cycles: Vec<f64> = plates.iter().filter_map(|plate| plate.window).map(|window| window[part]).collect();
+            cycles.sort_by(f64::total_cmp);
+            quantile(&cycles, SHORTEST)
+        });
+        let (first, every) = (looks.first.unwrap_or(to_detectable), to_end / looks.factor);
+        let is_known = every > 0.0 && every.is_finite() && first.is_finite();
+        let Some(detection) = looks.detection.filter(|_| is_known) else { return Ok(None) };
+        let before_first = plates.iter().filter(|plate| plate.life.cycles <= first && !plate.life.is_bound).count();
         // Shares of cracks that the first inspection finds, the second, and so on.
         let mut found_by: Vec<f64> = Vec::new();
         let mut own = plates.iter_mut();
         self.each(|change, _, rate| {
             let Some(plate) = own.next().filter(|plate| plate.life.cycles.is_finite()) else { return };
-            let first = plate.window.map_or(f64::INFINITY, |[at, _]| at);
             let (mut inspected, mut place, mut before) = (Schedule { detection, cycles: [first, every] }.begin(), 0, 1.0);
             self.recorded.life_by(change, rate, |cycles, lengths| {
                 inspected.grow(cycles, lengths, |_, _, _, missed| {
@@ -231,7 +241,9 @@ impl<'f> Drawing<'f> {
             left
         });
         Ok((!missed.is_empty()).then(|| Looked {
+            first,
             every,
+            before_first,
             missed_after: missed_after.collect(),
             missed: missed.iter().sum::<f64>() / count,
         }))
@@ -288,15 +300,12 @@ impl LotRates {
 fn length(of: InitialLength, probability: f64) -> f64 {
     match of {
         InitialLength::LogNormal { median, deviation_ln } => median * (deviation_ln * normal_quantile(probability)).exp(),
-        InitialLength::Normal { mean, deviation } => {
-            let below = normal_cdf(-mean / deviation);
-            mean + deviation * normal_quantile((below + probability * (1.0 - below)).clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON))
-        }
+        InitialLength::Normal { mean, deviation } => normal_above_zero(mean, deviation, probability),
     }
 }
 
-/// Load over that of the case at a probability: normal within three deviations.
-fn load(scatter: f64, probability: f64) -> f64 {
-    let below = normal_cdf(-LOAD_DEVIATIONS);
-    1.0 + scatter * normal_quantile(below + probability * (1.0 - 2.0 * below))
+/// A normal quantity as far as it is above zero, at a probability.
+fn normal_above_zero(mean: f64, deviation: f64, probability: f64) -> f64 {
+    let below = normal_cdf(-mean / deviation);
+    mean + deviation * normal_quantile((below + probability * (1.0 - below)).clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON))
 }

@@ -10,7 +10,7 @@ use perilife_base::input::{LENGTH, number, slice};
 pub const PLATES: usize = 1000;
 /// Most plates of a fleet.
 pub const PLATES_MAX: usize = 100_000;
-/// Largest scatter of the load, over the load: three deviations below it a load is left.
+/// Largest scatter of the load, over the load: few draws fall to zero, which are left out.
 const LOAD_SCATTER_MAX: f64 = 0.3;
 const LENGTH_KEY: &str = "fleet.initial_length_mm";
 

@@ -51,6 +51,9 @@ pub struct ErrorEstimate {
 
 /// Bounds of the error of a run; in words why there are none.
 pub fn error_estimate(case: &Case, prediction: &Prediction) -> Result<ErrorEstimate, String> {
+    if prediction.life_cycles() <= 0.0 {
+        return Err("no life".to_owned());
+    }
     if prediction.stop == StopReason::NoConvergence {
         return Err("the solver did not converge".to_owned());
     }
@@ -119,9 +122,6 @@ fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Resu
         let error = formula.error_at(middle) * exponent.abs();
         sum += if error.is_finite() { error } else { 1.0 } * (pair[1].cycles - pair[0].cycles);
     }
-    if life <= 0.0 {
-        return Err("nothing grew".to_owned());
-    }
     Ok(ErrorEstimate {
         life_percent: 100.0 * sum / life,
         path: 0.0,
@@ -132,7 +132,7 @@ fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Resu
 fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, shares: &[f64]) -> Result<ErrorEstimate, String> {
     let (life, rows) = (prediction.life_cycles(), rows_before_meeting(&prediction.curve));
     let end = rows.last().map_or(0.0, |row| row.cycles);
-    if life <= 0.0 || end < LOOKED_AT_LEAST * life {
+    if end < LOOKED_AT_LEAST * life {
         return Err("most of the life is spent after tips have met rims, holes or cracks".to_owned());
     }
     let rates = Rates { law, ratio: case.loading.ratio };

@@ -96,11 +96,10 @@ impl Prediction {
     /// The tip that ends the life of a plate, which grew fastest at the end, and the length of its crack at the start and there, m; `None` of
     /// standard specimens, whose crack length is that of their standard, and of ends of slots.
     pub fn leading_tip(&self, specimen: &Specimen) -> Option<(usize, [f64; 2])> {
-        let (first, [.., before, last]) = (self.curve.first()?, &self.curve[..]) else { return None };
-        let grown = |tip: &usize| last.tips[*tip].growth - before.tips[*tip].growth;
-        let tip = (0..last.tips.len()).max_by(|a, b| grown(a).total_cmp(&grown(b)))?;
+        let (first, [.., last]) = (self.curve.first()?, &self.curve[1..]) else { return None };
+        let tip = governing_tip(specimen, &self.curve)?;
         let lengths = [first, last].map(|row| row.crack_length_of(specimen, tip));
-        (specimen.kind.is_plate()).then_some((tip, [lengths[0]?, lengths[1]?]))
+        Some((tip, [lengths[0]?, lengths[1]?]))
     }
 
     /// Cycles at which the crack has a length, m, linear between rows; `None` where it never has.
@@ -120,6 +119,23 @@ impl Prediction {
     pub fn crack_length_final(&self) -> f64 {
         self.curve.last().map_or(f64::NAN, |point| point.crack_length)
     }
+}
+
+/// Tip of a plate that grew fastest at the end of a run, or has the largest K_I where nothing grew; `None` of standard specimens.
+fn governing_tip(specimen: &Specimen, curve: &[CurvePoint]) -> Option<usize> {
+    let last = curve.last().filter(|_| specimen.kind.is_plate())?;
+    let before = curve.len().checked_sub(2).map(|row| &curve[row]);
+    let leads = |tip: usize| match before {
+        Some(before) => last.tips[tip].growth - before.tips[tip].growth,
+        None => last.tips[tip].factors.map_or(0.0, |[k_i, _]| k_i),
+    };
+    (0..last.tips.len()).max_by(|a, b| leads(*a).total_cmp(&leads(*b)))
+}
+
+/// Length of the governing crack of a plate at a row, m; that of the row of a standard specimen.
+pub fn governing_length<'a>(specimen: &'a Specimen, curve: &[CurvePoint]) -> impl Fn(&CurvePoint) -> f64 + 'a {
+    let tip = governing_tip(specimen, curve);
+    move |row| tip.and_then(|tip| row.crack_length_of(specimen, tip)).unwrap_or(row.crack_length)
 }
 
 /// What a run reports while it goes on.

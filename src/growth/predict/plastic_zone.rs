@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{CurvePoint, Prediction};
+use super::{CurvePoint, governing_length};
 use crate::case::Case;
 use perilife_base::units::MM;
 use perilife_plate::material::Plane;
@@ -16,7 +16,7 @@ const ON_RIM: f64 = 1e-6;
 /// Plastic zone at one crack length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Zone {
-    /// Crack length, m.
+    /// Crack length, m: of a plate that of the governing crack.
     pub crack_length: f64,
     /// K_max, Pa√m.
     pub k_max: f64,
@@ -42,7 +42,7 @@ pub struct PlasticZone {
     pub first: Zone,
     /// At the last one, or at the first at which it is as large as its room.
     pub last: Zone,
-    /// Crack length from which small-scale yielding does not hold, m; `None` where it holds to the end.
+    /// Crack length, as [`Zone::crack_length`], from which small-scale yielding does not hold, m; `None` where it holds to the end.
     pub too_large_from: Option<f64>,
     /// Crack length from which it holds after all, to the end, m: a crack that was too short has grown.
     pub too_large_to: Option<f64>,
@@ -58,10 +58,11 @@ pub struct PlasticZone {
 /// a plate the nearest free edge is at least `(4/π) (K_max/σ_Y)²` away from every tip, and cracks from rims are at least as long.
 pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     let strength = case.material.yield_strength?;
+    let length = governing_length(&case.specimen, curve);
     let known: Vec<(&CurvePoint, Zone)> = curve
         .iter()
         .filter(|point| point.delta_k.is_finite())
-        .map(|point| (point, zone(case, point, point.k_max(&case.loading), strength)))
+        .map(|point| (point, Zone { crack_length: length(point), ..zone(case, point, point.k_max(&case.loading), strength) }))
         // Where every tip has reached an edge there is no room for a zone.
         .filter(|(_, zone)| zone.room().0.is_finite())
         .collect();
@@ -76,10 +77,10 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
         let ([before, point], [smaller, zone]) = ([row - 1, row].map(|row| known[row].0), [row - 1, row].map(|row| known[row].1));
         let share = missing(&smaller) / (missing(&smaller) - missing(&zone));
         let at = |from: f64, to: f64| from + share * (to - from);
-        (at(before.crack_length, point.crack_length), at(before.cycles, point.cycles))
+        (at(smaller.crack_length, zone.crack_length), at(before.cycles, point.cycles))
     };
     let life = curve.last()?.cycles;
-    let mut since = is_missing[0].then(|| (known[0].0.crack_length, known[0].0.cycles));
+    let mut since = is_missing[0].then(|| (first.crack_length, known[0].0.cycles));
     let mut outgrown = since.map(|(length, _)| (length, first.room().1));
     let (mut regained, mut cycles) = (None, 0.0);
     for row in (1..known.len()).filter(|row| is_missing[*row] != is_missing[*row - 1]) {
@@ -102,7 +103,7 @@ pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
         too_large_from: outgrown.map(|(length, _)| length),
         too_large_to: regained.filter(|_| since.is_none()),
         too_small: outgrown.map_or_else(|| last.room().1, |(_, name)| name),
-        life_share_too_large: if life > 0.0 { cycles / life } else { 0.0 },
+        life_share_too_large: if life > 0.0 { cycles / life } else { f64::from(u8::from(since.is_some())) },
     })
 }
 
@@ -161,7 +162,7 @@ fn asked(case: &Case, zone: &Zone, strength: f64) -> f64 {
 
 /// What the user should know: yielding that K does not cover, and a plane state that the thickness contradicts.
 pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
-    let (Some(zone), Some(strength)) = (plastic_zone(case, curve), case.material.yield_strength) else { return Vec::new() };
+    let Some(zone) = plastic_zone(case, curve) else { return Vec::new() };
     let mut lines = Vec::new();
     if let Some(length) = zone.too_large_from {
         let (room, name) = zone.last.room();
@@ -177,8 +178,8 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
             room / MM
         ));
     }
-    let needed = 2.5 * (zone.first.k_max / strength).powi(2);
-    if case.material.plane == Plane::Strain && case.specimen.thickness < needed {
+    // With retardation the life by the other zones is told beside it.
+    if let Some((Plane::Stress, [needed, _])) = other_plane(case, curve).filter(|_| case.retardation.is_none()) {
         lines.push(format!(
             "material.plane = \"strain\", but plane strain at the crack tip asks for a thickness of {:.2} mm from the start \
              (2.5 (K_max/yield)², ASTM E399), and the plate has {:.2} mm",
@@ -189,9 +190,10 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
     lines
 }
 
-impl PlasticZone {
-    /// The zone of a finished run.
-    pub fn of(case: &Case, prediction: &Prediction) -> Option<Self> {
-        plastic_zone(case, &prediction.curve)
-    }
+/// Plane state by the thickness at the start where the case has the other, and the least thickness of plane strain, m, at start and end.
+pub(super) fn other_plane(case: &Case, curve: &[CurvePoint]) -> Option<(Plane, [f64; 2])> {
+    let (zone, strength) = plastic_zone(case, curve).zip(case.material.yield_strength)?;
+    let needed = [zone.first, zone.last].map(|zone| 2.5 * (zone.k_max / strength).powi(2));
+    let asked = if case.specimen.thickness >= needed[0] { Plane::Strain } else { Plane::Stress };
+    (asked != case.material.plane).then_some((asked, needed))
 }

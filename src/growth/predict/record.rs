@@ -8,14 +8,14 @@ use super::initiation::{PhaseOne, phase_one};
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::way::Way;
-use super::{CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord};
+use super::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord, governing_length};
 use super::{laws, pin_arcs, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::{CrackGrowth, GrowthStatus, plate};
 use perilife_base::error::{Error, Result};
 use perilife_base::raster::PointGrid;
 use perilife_base::raster::Snapshot;
-use perilife_base::units::{MPA, MPA_SQRT_M};
+use perilife_base::units::{MPA, MPA_SQRT_M, round_off};
 use perilife_base::watch::{Silent, Watch};
 
 /// Exponent from which small causes decide: an error of direction of a tenth of a degree has become some 10° at 2 e³.
@@ -165,6 +165,8 @@ impl<'a> Record<'a> {
         let mut curve = growth.curve();
         let counted = growth.overload();
         let recounted = retarded::recount(case, &curve, stop, counted)?;
+        let end = counted.is_none().then_some(stop);
+        let of_zones = recounted.as_ref().and_then(|own| retarded::other_zones(case, &curve, own, end));
         // Rows of a front are retarded as they grow, and what they would take without is not known.
         let unretarded_cycles = recounted.as_ref().filter(|_| counted.is_none()).and(curve.last()).map(|row| row.cycles);
         let (stop, of_order) = match recounted {
@@ -186,10 +188,13 @@ impl<'a> Record<'a> {
         snapshots.keep_within(&curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
-        let cross_check = growth.cross_check(last);
+        let at = |total: f64| {
+            curve.iter().find(|row| row.crack_length >= total).map_or(total, governing_length(&case.specimen, &curve))
+        };
+        let cross_check = growth.cross_check(last).map(|check| CrossCheck { crack_length: at(check.crack_length), ..check });
         let mut warnings = warnings(case, growth, of_growth, &curve);
         warnings.extend(cross_check.and_then(|check| check.warning()));
-        warnings.extend(of_order);
+        warnings.extend(of_order.into_iter().chain(of_zones));
         warnings.extend(failure);
         warnings.extend(phase_one.zip(case.fatigue.initiation).into_iter().flat_map(|(phase, law)| phase.warnings(&law)));
         warnings.extend(phase_one.iter().flat_map(|phase| of_local_stress(case, phase)));
@@ -235,9 +240,9 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
 
 /// What the user should know of the local stress for which the S-N line of phase I is taken: its ratio, and yield.
 fn of_local_stress(case: &Case, phase: &PhaseOne) -> Vec<String> {
-    let ratio = case.loading.ratio;
+    let ratio = round_off(case.loading.ratio);
     let mut words = vec![format!("phase I: the S-N line is taken for one at the stress ratio of the case, {ratio}")];
-    let largest = phase.range / (1.0 - ratio);
+    let largest = phase.range / (1.0 - case.loading.ratio);
     if let Some(strength) = case.material.yield_strength.filter(|strength| largest > *strength) {
         words.push(format!(
             "phase I: the largest local stress, {:.1} MPa if all stays elastic, is beyond the yield strength of {:.1} MPa: S-N lines of \

@@ -3,7 +3,8 @@
 //! `N = Σ_i w_i ∫ ds / r(f K(s))` over the intervals between the rows of the run, s being the way of the fastest tip, f the load over that
 //! of the run and ln K linear in s between rows. `w_i` are the cycles of the run in an interval over this integral with its own law, so
 //! that the law of the run gives the life of the run whatever its rows lie between; they differ from 1 by what a straight ln K misses
-//! ([`Recorded::misfit`]). Three Gauss points an interval; a life takes no memory.
+//! ([`Recorded::misfit`]) and by retardation. Intervals before the run have the mean weight of its beginning. Three Gauss points an interval; a
+//! life takes no memory.
 //!
 //! The path, and which tip leads, are those of the run: true of a single tip and of twins. Tips of unlike K share growth by the exponent
 //! of the law of the run. Kinks do not depend on the load.
@@ -120,20 +121,27 @@ impl Recorded {
             return Err(none("no crack grew"));
         }
         let law = growth_law(case)?;
-        let mut intervals: Vec<Interval> =
-            before(case, &places).windows(2).map(|pair| Interval::new(pair[0], pair[1], 1.0)).collect();
-        let first = intervals.len();
-        let (mut missed, mut life) = (0.0, 0.0);
+        let earlier = before(case, &places);
+        let first = earlier.len() - 1;
+        let (mut intervals, mut missed, mut life) = (Vec::with_capacity(first + places.len()), 0.0, 0.0);
+        // Cycles of the run and by its law over the growth that K before it is read in.
+        let mut beginning = [0.0; 2];
         for pair in places.windows(2) {
             let straight = Interval::new(pair[0], pair[1], 1.0);
             let (by_law, by_run) = (straight.cycles(&law_at(&*law, case.loading.ratio)), pair[1].cycles - pair[0].cycles);
             // A law without a rate there, or one without limit, has nothing to be set against.
             let weight = if by_law.is_finite() && by_law > 0.0 { by_run / by_law } else { 1.0 };
+            if by_law.is_finite() && (beginning[1] == 0.0 || pair[0].length < places[0].length * (1.0 + BEGINNING)) {
+                beginning = [beginning[0] + by_run, beginning[1] + by_law];
+            }
             (missed, life) = (missed + (by_run - by_law.min(2.0 * by_run)).abs(), life + by_run);
             intervals.push(Interval::new(pair[0], pair[1], weight));
         }
+        // What retardation does at the start of the run it does to shorter cracks.
+        let weight = if beginning[1] > 0.0 { beginning[0] / beginning[1] } else { 1.0 };
+        let earlier = earlier.windows(2).map(|pair| Interval::new(pair[0], pair[1], weight));
         Ok(Recorded {
-            intervals,
+            intervals: earlier.chain(intervals).collect(),
             first,
             ratio: case.loading.ratio,
             stop: prediction.stop,

@@ -5,12 +5,15 @@
 //! its growth that they have by the mean rates.
 
 use super::laws::{growth_law, law_of_cycle, least_ratio};
+use super::plastic_zone::other_plane;
 use super::{CurvePoint, StopReason};
 use crate::case::Case;
 use crate::cracks::steering::equivalent_factor;
 use perilife_base::error::Result;
+use perilife_base::units::MM;
 use perilife_laws::growth_law::GrowthLaw;
 use perilife_laws::retardation::{Laws, March, Marched, Underway, Zone, between};
+use perilife_plate::material::Plane;
 
 /// Difference between K of tips that grow, from which the pace of the slower ones is worth a word.
 const UNLIKE: f64 = 0.01;
@@ -76,6 +79,35 @@ pub(super) fn recount(
         }
     }
     Ok(Some(recounted(rows, stop, of_front)))
+}
+
+/// Warning of a thickness that needs another plane state than the zones of `own` have; with the life by those, marched to this end.
+pub(super) fn other_zones(case: &Case, curve: &[CurvePoint], own: &Recounted, end: Option<StopReason>) -> Option<String> {
+    let (plane, [first, last]) = other_plane(case, curve)?;
+    let mut other = case.clone();
+    let model = other.retardation.as_mut()?;
+    (other.material.plane, model.plane) = (plane, plane);
+    // Constants that the case does not give are the defaults of the other state.
+    for (constant, value) in model.kind.0.constants.iter().zip(&mut model.constants) {
+        let [here, there] = [case.material.plane, plane].map(|plane| (constant.default)(plane, None));
+        let is_given = !case.echo["loading"][constant.key].is_null();
+        *value = there.filter(|_| here != there && !is_given).unwrap_or(*value);
+    }
+    let other = end.and_then(|end| recount(&other, curve, end, None).ok()?);
+    let life = |counted: &Recounted| match counted.stop {
+        StopReason::NothingAges => "unlimited".to_owned(),
+        _ => format!("{:.0} cycles", counted.curve.last().map_or(0.0, |row| row.cycles)),
+    };
+    let [sense, side] = if plane == Plane::Strain { ["thicker", "unsafe"] } else { ["thinner", "safe"] };
+    let lives = other.map_or_else(String::new, |other| {
+        format!("; with zones of plane {plane} the life is {} instead of {} ({side} side)", life(&other), life(own))
+    });
+    let [thickness, first, last] = [case.specimen.thickness, first, last].map(|size| size / MM);
+    Some(format!(
+        "retardation: plastic zones are those of plane {}, but the plate of {thickness:.2} mm is {sense} than plane strain at the tip needs, \
+         {first:.2} mm at the start and {last:.2} mm at the end (2.5 (K_max/yield)², ASTM E399){lives}; give material.plane = \"{plane}\"",
+        case.material.plane
+    ))
 }
 
 /// K of the largest load at a tip at both ends of an interval, Pa√m; what is not read is that of the other end, or of the row.

@@ -126,7 +126,7 @@ def predict(
     """Runs a case of cycles to its life.
 
     ``law`` takes the place of the law of the case. The options are those of ``perilife predict``: ``measured`` is a table of readings
-    of this very plate, ``pod`` the crack lengths in mm that an inspection finds with 50 and with 90 %. ``progress`` is called now and
+    of this very plate, ``pod`` the crack lengths, in mm or with a unit, that an inspection finds with 50 and with 90 %. ``progress`` is called now and
     then with a :class:`Progress`; answering ``False`` ends the run.
     """
     if pod is not None and inspect_from_mm is None:

@@ -2,20 +2,22 @@
 
 use serde_json::Value;
 
-use super::numbers::{fixed, power, short, whole};
+use super::numbers::{fixed, short, whole};
 use super::{Sheets, quoted, terms};
+use crate::band::{every_words, interval_of};
+use crate::model_words::chance;
 
 /// Inspections that are printed, at the most.
 const INSPECTIONS_MOST: usize = 20;
 
 /// The sections of what was asked; nothing where nobody asked.
 pub fn sections(result: &Value, sheets: &mut Sheets<'_>) -> String {
-    inspections(result, sheets) + &fleet(&result["fleet"], sheets) + &sensitivities(&result["sensitivities"], sheets)
+    inspections(result, sheets) + &fleet(result, sheets) + &sensitivities(&result["sensitivities"], sheets)
 }
 
-/// A probability: as it is, or as a power of ten where it is small.
+/// A probability: as it is, or that it is small.
 fn probability(value: f64) -> String {
-    if value >= 1e-3 || value == 0.0 { fixed(value, 3) } else { power(value, 2) }
+    if value >= 1e-3 { fixed(value, 3) } else { chance(value) }
 }
 
 /// A table of text; cells are markup.
@@ -30,25 +32,15 @@ fn inspections(result: &Value, sheets: &mut Sheets<'_>) -> String {
     let (found, window) = (&result["inspections"], &result["inspection"]);
     let Some(rows) = found["rows"].as_array() else { return String::new() };
     let number = |of: &Value, key: &str| of[key].as_f64().unwrap_or(f64::NAN);
+    let length = |of: &Value, key: &str| short(number(of, key));
     let mut lines = vec![
-        (
-            "Finds",
-            format!(
-                "a crack of {} mm with 50 %, of {} mm with 90 %",
-                short(number(found, "a50_mm")),
-                short(number(found, "a90_mm"))
-            ),
-        ),
-        ("Interval", format!("{} cycles", whole(number(found, "interval_cycles")))),
-        ("All miss", format!("with a probability of {}", probability(number(found, "missed")))),
+        ("Finds", format!("a crack of {} mm with 50 %, of {} mm with 90 %", length(found, "a50_mm"), length(found, "a90_mm"))),
+        ("Interval", interval_of(result).unwrap_or_default()),
+        ("All miss", format!("with a probability of {}, inspections taken as independent", probability(number(found, "missed")))),
     ];
     if let Some(left) = window["remaining_cycles"].as_f64() {
-        let words = format!(
-            "{} cycles from {} mm to the end, over {}",
-            whole(left),
-            short(number(window, "crack_length_mm")),
-            short(number(window, "factor"))
-        );
+        let [from, factor] = ["crack_length_mm", "factor"].map(|key| length(window, key));
+        let words = format!("{} cycles from {from} mm to the end, over {factor}", whole(left));
         lines.insert(1, ("Detectable to critical", words));
     }
     let row = |row: &Value| {
@@ -65,16 +57,20 @@ fn inspections(result: &Value, sheets: &mut Sheets<'_>) -> String {
     format!("{}{}{table}{more}", sheets.title("Inspections"), terms(&lines))
 }
 
-/// Quantiles in words: 5 %, half, 95 %.
-fn quantiles(of: &Value) -> String {
-    let word = |name: &str| {
-        let words = of["words"][name].as_str().unwrap_or("not known");
-        words.parse::<f64>().map_or_else(|_| quoted(words), whole)
-    };
-    format!("5 % {}, half {}, 95 % {} cycles", word("p05"), word("p50"), word("p95"))
+/// A quantile in words.
+pub(super) fn quantile_words(of: &Value, name: &str) -> String {
+    let words = of["words"][name].as_str().unwrap_or("not known");
+    words.parse::<f64>().map_or_else(|_| quoted(words), whole)
 }
 
-fn fleet(fleet: &Value, sheets: &mut Sheets<'_>) -> String {
+/// Quantiles in words: 5 %, half, 95 %.
+fn quantiles(of: &Value) -> String {
+    let [low, middle, high] = ["p05", "p50", "p95"].map(|name| quantile_words(of, name));
+    format!("5 % {low}, half {middle}, 95 % {high} cycles")
+}
+
+fn fleet(result: &Value, sheets: &mut Sheets<'_>) -> String {
+    let (fleet, per_pass) = (&result["fleet"], result["spectrum"]["cycles_per_pass"].as_f64());
     let Some(plates) = fleet["plates"].as_f64() else { return String::new() };
     let laws = match fleet["one_law_because"].as_str() {
         Some(why) => format!("that of the case for all: {}", quoted(why)),
@@ -94,20 +90,18 @@ fn fleet(fleet: &Value, sheets: &mut Sheets<'_>) -> String {
     ];
     let looks = &fleet["inspections"];
     if let (Some(length), Some(factor)) = (looks["detectable_mm"].as_f64(), looks["factor"].as_f64()) {
-        rows.push((
-            "Detectable to critical",
-            format!(
-                "{}, each plate by its own law, load and critical length, from {} mm",
-                quantiles(&looks["detectable_to_critical_cycles"]),
-                short(length)
-            ),
-        ));
+        let (left, from) = (quantiles(&looks["detectable_to_critical_cycles"]), short(length));
+        let words = format!("{left}, each plate by its own law, load and critical length, from {from} mm");
+        rows.push(("Detectable to critical", words));
         let never = looks["break_before_detectable"].as_f64().filter(|never| *never > 0.0);
         rows.extend(never.map(|never| ("Break before", format!("{} plates", whole(never)))));
-        let every = looks["interval_cycles"].as_f64();
-        rows.extend(
-            every.map(|every| ("Inspect every", format!("{} cycles: the 5 % of plates over {}", whole(every), short(factor)))),
-        );
+        let at = |key: &str| looks[key].as_f64();
+        if let Some(first) = at("first_inspection_cycles") {
+            let [before, every] = ["break_before_first_inspection", "interval_cycles"].map(|key| at(key).unwrap_or(f64::NAN));
+            rows.push(("First inspection", format!("of all after {} cycles; {} break before", whole(first), whole(before))));
+            let every = every_words(every, None, per_pass);
+            rows.push(("Inspect every", format!("{every}: the 5 % of plates over {}", short(factor))));
+        }
     }
     let missed = looks["missed_after"].as_array().filter(|missed| !missed.is_empty());
     let missed = missed.map_or_else(String::new, |missed| {
@@ -115,7 +109,7 @@ fn fleet(fleet: &Value, sheets: &mut Sheets<'_>) -> String {
             vec![(place + 1).to_string(), missed.as_f64().map_or_else(String::new, probability)]
         };
         table(
-            &["Inspections of a plate from its detectable length on", "Its crack is missed by all, mean of the fleet"],
+            &["Inspections, after the same cycles for all plates", "The crack of a plate is missed by all, mean of the fleet"],
             missed.iter().enumerate().map(row),
         )
     });

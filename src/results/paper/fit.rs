@@ -230,6 +230,7 @@ fn specimens(fit: &Value) -> String {
 
 /// Every reading.
 fn readings(readings: &[Reading]) -> String {
+    let known = |value: f64, words: String| if value.is_finite() { words } else { "–".to_owned() };
     let row = |(place, reading): (usize, &Reading)| {
         let out = if reading.left_out.is_empty() { "" } else { " class=\"out\"" };
         let delta_k = reading.delta_k_mpa_sqrt_m.map_or("–".to_owned(), |delta_k| fixed(delta_k * per("MPa√m"), 2));
@@ -244,8 +245,8 @@ fn readings(readings: &[Reading]) -> String {
             "<tr{out}><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{delta_k}</td><td class=\"n\">{growth}</td><td>{}</td></tr>\n",
             place + 1,
             quoted(&reading.specimen),
-            whole(reading.cycles),
-            fixed(reading.crack_length_mm * per("mm"), 3),
+            known(reading.cycles, whole(reading.cycles)),
+            known(reading.crack_length_mm, fixed(reading.crack_length_mm * per("mm"), 3)),
             remarks.join("; ")
         )
     };

@@ -1,8 +1,10 @@
 //! Numbers as a report writes them: thousands apart, a true minus, powers of ten raised, no more digits than a band deserves.
 
 use crate::axis::grouped;
+use crate::band::digits;
 use perilife_base::units::shown::{name_of, per, shown};
 use perilife_base::units::us::{System, renamed};
+use perilife_calibration::population::plate::Quantiles;
 
 /// A narrow space at which no line breaks.
 const THIN: &str = "\u{202f}";
@@ -25,9 +27,9 @@ pub fn short(value: f64) -> String {
     minus(text.trim_end_matches('0').trim_end_matches('.'))
 }
 
-/// With the digits that a band deserves: the last one is at most a twentieth of half its width.
-pub fn by_band(value: f64, low: f64, high: f64) -> String {
-    let unit = 10f64.powf(((high - low) / 40.0).max(1.0).log10().floor());
+/// With the digits that a band deserves, as the console and the page say it.
+pub fn by_band(value: f64, band: &Quantiles) -> String {
+    let unit = 10f64.powf(value.max(1.0).log10().floor() + 1.0 - digits(band) as f64);
     whole((value / unit).round() * unit)
 }
 

@@ -2,11 +2,13 @@
 
 use serde_json::Value;
 
+use super::answers::quantile_words;
 use super::numbers::{self, by_band, fixed, level, short, sized, whole};
 use super::{
     Drawings, Sheets, Signed, answers, figure, hashes, letter, mark, part_through, prose, quoted, recorded, signatures, spectrum,
     terms,
 };
+use crate::band::interval_of;
 use crate::chart::Size;
 use crate::pictures::curves::{a_n_svg, end_words, k_svg};
 use crate::pictures::plate::{Plate, plate_svg};
@@ -44,6 +46,7 @@ pub fn body(result: &Value, tables: &RunTables, drawings: &Drawings, signed: &Si
         terms(&understood(result, plate.as_ref()))
     );
     page += &checks(result);
+    page += &messages(&result["warnings"]);
     page += &signatures(signed, "Computed by");
     let commit = result["commit"]
         .as_str()
@@ -132,9 +135,15 @@ fn life(result: &Value, reason: &str) -> String {
         _ => "Life",
     };
     let cycles = |value: String| format!("{value} <small>cycles</small>");
+    if let Some(plates) = result["fleet"]["plates"].as_f64() {
+        let [low, middle, high] = ["p05", "p50", "p95"].map(|name| quantile_words(&result["fleet"]["life_cycles"], name));
+        let (plates, run) = (whole(plates), whole(life));
+        let below = format!("median {middle}, 95 % {high} cycles, {plates} plates; this run, one plate: {run}");
+        return card("Life of the fleet, 5 % of plates", &cycles(low), &below);
+    }
     let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| result["band"][key].as_f64());
     if let (Some(low), Some(middle), Some(high)) = (low, middle, high) {
-        let of = |value: f64| by_band(value, low, high);
+        let of = |value: f64| by_band(value, &[low, middle, high]);
         let below = format!("9 of 10 plates: {} to {}; the fitted constants alone give {}", of(low), of(high), whole(life));
         return card(&format!("{title}, median"), &cycles(of(middle)), &below);
     }
@@ -143,7 +152,7 @@ fn life(result: &Value, reason: &str) -> String {
         Some(why) => format!("no band of plates: {}", quoted(why)),
         None => "no band of plates".to_owned(),
     };
-    card(title, &cycles(by_band(life, life * (1.0 - error), life * (1.0 + error))), &below)
+    card(title, &cycles(by_band(life, &[1.0 - error, 1.0, 1.0 + error])), &below)
 }
 
 fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String {
@@ -255,13 +264,8 @@ fn law(result: &Value) -> Vec<(&'static str, String)> {
             other => recorded(other),
         },
     ));
-    let inspection = &result["inspection"];
-    if let (Some(interval), Some(length)) =
-        (inspection["inspection_interval_cycles"].as_f64(), inspection["crack_length_mm"].as_f64())
-    {
-        let digits = 10f64.powf(interval.max(1.0).log10().floor() - 2.0).max(1.0);
-        let interval = whole((interval / digits).floor() * digits);
-        rows.push(("Inspect every", format!("{interval} cycles, from a crack of {} mm", short(length))));
+    if let (Some(interval), Some(length)) = (interval_of(result), result["inspection"]["crack_length_mm"].as_f64()) {
+        rows.push(("Inspect every", format!("{interval}, from a crack of {} mm", short(length))));
     }
     rows
 }
@@ -299,6 +303,13 @@ fn checks(result: &Value) -> String {
         "<h2>Is it valid?</h2>\n<div class=\"scroll\"><table class=\"checks\"><thead><tr><th>What the life rests on</th><th>Computed life</th><th>What to do</th></tr></thead><tbody>\n\
          {rows}</tbody></table></div>\n"
     )
+}
+
+/// Every message of the run, as the console has them.
+fn messages(warnings: &Value) -> String {
+    let line = |line: &Value| Some(format!("<li>{}</li>\n", prose(line.as_str()?)));
+    let lines: String = warnings.as_array().into_iter().flatten().filter_map(line).collect();
+    if lines.is_empty() { lines } else { format!("<h2>Messages</h2>\n<ul class=\"small\">\n{lines}</ul>\n") }
 }
 
 fn effect(check: &Value) -> String {

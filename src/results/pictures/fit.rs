@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::curves::smooth;
 use crate::axis::Axis;
 use crate::chart::{COMPUTED, Frame, INK, OF_RATES, Size};
+use crate::model_words::short;
 use crate::units::of_table;
 use perilife_base::error::{Error, InputError, Result};
 use perilife_base::units::us::System;
@@ -215,7 +216,7 @@ pub fn law_svg(rates: &[RateFitted], size: Size) -> String {
         let own = rates.iter().filter(|rate| (rate.stress_ratio - ratio).abs() < RATIO_ALIKE);
         let mut points: Vec<Point> = own.map(|rate| [rate.delta_k_mpa_sqrt_m, rate.da_dn_fitted_mm_per_cycle]).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        LawCurve { name: format!("R = {ratio}"), points, pivot: None }
+        LawCurve { name: format!("R = {}", short(*ratio)), points, pivot: None }
     };
     // More of them than a picture can tell apart have no lines.
     let laws: Vec<LawCurve> = if ratios.len() > RATIOS_DRAWN { Vec::new() } else { ratios.iter().map(of_ratio).collect() };

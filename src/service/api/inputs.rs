@@ -6,6 +6,7 @@ use std::path::Path;
 use axum::extract::{Request, State};
 use axum::{Extension, Json};
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use utoipa::ToSchema;
 
@@ -101,10 +102,12 @@ struct Readings {
     sheet: Option<String>,
     /// JSON object of columns by name, as `columns` of `[measured]`.
     columns: Option<String>,
+    /// JSON list of rows that are left out by their lines, as `leave_out` of `[measured]`.
+    leave_out: Option<String>,
 }
 
 /// Fields of the form beside the files: what the user says of them.
-const FIELDS: [&str; 6] = ["length_unit", "cycle_unit", "load_unit", "decimal", "sheet", "columns"];
+const FIELDS: [&str; 7] = ["length_unit", "cycle_unit", "load_unit", "decimal", "sheet", "columns", "leave_out"];
 
 /// Reads measured a-N curves: what was understood, and every row that is wrong.
 #[utoipa::path(post, path = "/v1/measured", tag = "inputs",
@@ -124,7 +127,8 @@ pub async fn measured(State(app): State<App>, Extension(caller): Extension<Calle
         length: field("length_unit").map(|name| named(LengthUnit::ALL, LengthUnit::name, "length_unit", name)).transpose()?,
         cycles: field("cycle_unit").map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
         load: field("load_unit").map(|name| named(LoadUnit::ALL, LoadUnit::name, "load_unit", name)).transpose()?,
-        columns: field("columns").map(|text| columns(text)).transpose()?.unwrap_or_default(),
+        columns: json_of("columns", field("columns"), &format!("object with keys of {}", ColumnNames::KEYS.join(", ")))?,
+        left_out: json_of("leave_out", field("leave_out"), "list of { file, line, value, reason }")?,
         decimal: field("decimal").map(|name| named(Decimal::ALL, Decimal::name, "decimal", name)).transpose()?,
         sheet: field("sheet").map(|name| Sheet(name.clone())),
         ..Import::default()
@@ -141,12 +145,11 @@ pub async fn measured(State(app): State<App>, Extension(caller): Extension<Calle
     while_asked(look).await.map(Json)
 }
 
-/// Columns by name of a JSON object.
-fn columns(text: &str) -> Answer<ColumnNames> {
-    serde_json::from_str(text).map_err(|error| {
-        let remedy = format!("give a JSON object with keys of {}", ColumnNames::KEYS.join(", "));
-        input("columns", text, format!("names no columns: {error}"), remedy).into()
-    })
+/// What a field holds as JSON of a form; the default where it is missing.
+fn json_of<T: DeserializeOwned + Default>(key: &str, text: Option<&String>, form: &str) -> Answer<T> {
+    let Some(text) = text else { return Ok(T::default()) };
+    let wrong = |error| input(key, text, format!("names no {key}: {error}"), format!("give a JSON {form}")).into();
+    serde_json::from_str(text).map_err(wrong)
 }
 
 /// The kind of this name.

@@ -58,12 +58,22 @@ function large(s) {
   // Without a band as many digits as the numerical error leaves.
   const error = (s.error_estimate_percent ?? 0) / 100;
   const number = band ? deserved(band[1], band) : error > 0 ? deserved(s.life_cycles, [1 - error, 1, 1 + error].map((share) => share * s.life_cycles)) : cycles(Math.round(s.life_cycles));
+  const run = `${s.life_is_lower_bound ? "≥ " : ""}${number}`;
+  if (s.fleet) return ofFleet(s.fleet, run);
   const start = `from a crack of ${fixed(from, 2)} mm`;
   const end = TO_THE_END[s.stop_reason];
   const title = BROKEN_OFF.includes(s.stop_reason) ? `Computed up to ${fixed(to, 1)} mm only` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
-  return [element("h2", null, title), value(`${s.life_is_lower_bound ? "≥ " : ""}${number}`, "cycles"),
+  return [element("h2", null, title), value(run, "cycles"),
     element("p", { class: "beside" }, bandWords(s)), band && bar(band, [0, 1.05 * band[2]]),
     element("p", { class: "quiet" }, errorWords(s) && `Numerical error: ${errorWords(s)}`)];
+}
+
+/** A fleet is its 5 % and median life; the run is one plate. */
+function ofFleet({ plates, life_cycles: { words: said } }, run) {
+  const [low, middle, high] = [said.p05, said.p50, said.p95].map((text) => (Number.isFinite(Number(text)) ? cycles(Math.round(Number(text))) : text));
+  return [element("h2", null, "Life of the fleet, 5 % of plates"), element("p", { class: "life", "data-value": "fleet_p05" }, low, element("small", null, "cycles")),
+    element("p", { class: "beside" }, `Median ${middle}, 95 % ${high} cycles (${count(plates, "plate")})`),
+    element("p", { class: "quiet" }, `This run, the plate of the case alone: ${run} cycles`)];
 }
 
 function bandWords(s) {

@@ -7,6 +7,7 @@ import { element, readCsv, section, show, showPage, table, terms } from "./dom.j
 import { cycles, deviation, fixed, percent, plain, scientific, significant, words } from "./format.js";
 import { createJobHead, describe, downloadList, inputText, pathOf, reportButton, showAtEnd } from "./job.js";
 import { warningList } from "./check.js";
+import { placeOf } from "./left_out.js";
 import { lawSections } from "./law_page.js";
 import { loadInto } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
@@ -97,7 +98,7 @@ function leftOut(readings) {
 /** What was left out, each with its reason. */
 function readingsLeftOut({ left_out: windows = [] }) {
   return windows.length > 0 && section("left-out", "Readings left out", element("ul", null, windows.map((one) =>
-    element("li", null, `${one.specimen ?? "All"}, ${cycles(one.from_cycles)} to ${cycles(one.to_cycles)} cycles: ${one.reason}`))));
+    element("li", null, `${placeOf(one)}: ${one.reason}`))));
 }
 
 function drawFit(place, fit, curves) {

@@ -4,9 +4,12 @@ import { button, element, show, table } from "./dom.js";
 import { cycles, fixed } from "./format.js";
 import { editInPlace } from "./job.js";
 
+/** Where a reading that is left out stands. */
+export const placeOf = (one) => (one.line ? `${one.file ?? "Row"}, line ${one.line} (${one.value})` : `${one.specimen ?? "All"}, ${cycles(one.from_cycles)} to ${cycles(one.to_cycles)} cycles`);
+
 /** `onChange` is told when another reading is left out. */
 export function createLeftOut(onChange) {
-  let windows = []; // as in the file
+  let windows = []; // as in the calibration file: cycles of a specimen, or a row of a file by its line
 
   /** Cycles from the reading before to the one behind. */
   function windowOf({ specimen, cycles: steps }, index, reason) {
@@ -46,7 +49,7 @@ export function createLeftOut(onChange) {
     },
     /** What is left out, with its reasons; nothing where all counts. */
     list: () => windows.length > 0 && element("div", { class: "notice", "data-part": "left-out" }, element("h3", null, "Left out"),
-      element("ul", null, windows.map((one) => element("li", null, `${one.specimen ?? "All"}, ${cycles(one.from_cycles)} to ${cycles(one.to_cycles)} cycles: ${one.reason} `,
+      element("ul", null, windows.map((one) => element("li", null, `${placeOf(one)}: ${one.reason} `,
         button("Take back", () => change(windows.filter((other) => other !== one)), { class: "button small" }))))),
     /** Marks of what is left out, for the chart of all curves. */
     marks(curves) {
@@ -54,6 +57,13 @@ export function createLeftOut(onChange) {
       return out.length > 0 ? [{ id: "left-out", name: "left out", kind: "crosses", x: out.map((point) => point[0]), y: out.map((point) => point[1]) }] : [];
     },
     windows: () => (windows.length > 0 ? windows : undefined),
+    /** Rows by their lines, without the others. */
+    rows: () => windows.filter((one) => one.line),
+    addRow: (row) => change([...windows, row]),
+    /** A file that is gone or another one has no rows left out. */
+    forget(files) {
+      windows = windows.filter((one) => !files.includes(one.file));
+    },
     clear() {
       windows = [];
     },

@@ -25,9 +25,7 @@ export function createMeasured(onChange) {
     decimal: byId("decimal"), sheet: byId("sheet") };
   const columns = createColumns(() => read());
   const [result, chartPlace] = [byId("measured-result"), byId("measured-chart")];
-  const out = createLeftOut(() => {
-    draw();
-  });
+  const out = createLeftOut(() => read());
   let files = []; // {name, file, text}
   let answer = []; // the files as the service read them
   let running = null;
@@ -37,6 +35,7 @@ export function createMeasured(onChange) {
     const fresh = await Promise.all([...list].map(keep));
     if (fresh.length === 0) return;
     // The same name again is a corrected file.
+    out.forget(fresh.map((one) => one.name));
     files = [...files.filter((old) => !fresh.some((one) => one.name === old.name)), ...fresh];
     read();
   }
@@ -64,6 +63,7 @@ export function createMeasured(onChange) {
     for (const { name, file } of files) form.append("file", file, name);
     for (const [key, input] of Object.entries(said)) if (input.value) form.append(key, input.value);
     if (columns.names()) form.append("columns", JSON.stringify(columns.names()));
+    if (out.rows().length > 0) form.append("leave_out", JSON.stringify(out.rows()));
     if (answer.length === 0) show(result, element("p", { class: "quiet", role: "status" }, "Reading …"));
     try {
       const found = await postForm("/v1/measured", form, { signal: own.signal });
@@ -111,6 +111,7 @@ export function createMeasured(onChange) {
         columns.show(answered), found.length > 0 && out.readings(answered)),
       button("Remove", () => {
         files = files.filter((one) => one.name !== file);
+        out.forget([file]);
         if (files.length === 0) {
           columns.clear();
           out.clear();
@@ -145,17 +146,12 @@ export function createMeasured(onChange) {
       table("Problems of the measured files", columns, rows, { hidden: true, name: "problems" }));
   }
 
-  /** A line that is wrong stays in the file that goes along, as a comment with the reason. */
-  function takeOut({ file: name, line }) {
-    const own = files.find((one) => one.name === name);
-    if (!line || own?.text === null) return "";
-    const place = element("span", null, button("Leave out", () => editInPlace(place, { label: `Why line ${line} does not count`, value: "", save: (reason) => {
-      const lines = own.text.split(/(?<=\n)/);
-      lines[line - 1] = `# left out (${reason}): ${lines[line - 1]}`;
-      const text = lines.join("");
-      files = files.map((one) => (one === own ? { ...own, text, file: new Blob([text]) } : one));
-      read();
-    } }), { class: "button small", "data-action": "take-out", "aria-label": `Leave out line ${line}` }));
+  /** A line that is wrong stays in the file as it was dropped: `leave_out` names it, its value and the reason. */
+  function takeOut({ file, line, value }) {
+    if (!line) return "";
+    const place = element("span", null, button("Leave out", () => editInPlace(place, { label: `Why line ${line} does not count`, value: "",
+      save: (reason) => out.addRow({ file, line, value: value ?? '""', reason }),
+    }), { class: "button small", "data-action": "take-out", "aria-label": `Leave out line ${line}` }));
     return place;
   }
 

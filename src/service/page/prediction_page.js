@@ -164,7 +164,7 @@ export async function openPrediction(root, id, signal) {
       curve.name = "c";
     }
     const deep = depths && { id: "depth", name: "a", kind: "line", smooth: "y", tone: 1, dashed: true, x: columns.cycles, y: depths };
-    chart.set([...bandOf(columns, lengths), curve, ...(deep ? [deep] : []), ...limitsOf(result, columns, lengths), endOf(columns.cycles, lengths)]);
+    chart.set([...bandOf(columns, lengths), curve, ...(deep ? [deep] : []), ...limitsOf(result), endOf(columns.cycles, lengths)]);
     const factorChart = drawFactors(columns, lengths, lead ?? 0);
     if (done.state === "succeeded" && !result.refused && columns.cycles.at(-1) > 0) {
       const place = createPlace({ columns, lengths, lead: lead ?? 0, band: quantilesOf(result), chart, factorChart, plate });
@@ -235,12 +235,11 @@ function pathsOf({ tip, cycles: steps, x_mm: xs, y_mm: ys }) {
 
 const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id: "band", name: "9 of 10 specimens", kind: "band", tone: 0, x: low, x2: high, y: lengths }] : []);
 
-/** Where small-scale yielding ends, or begins where the crack was too short: said in the crack length of the plate, shown in that of the crack that ends the life. */
-function limitsOf(result, columns, lengths) {
+/** Where small-scale yielding ends, or begins where the crack was too short: length of the governing crack. */
+function limitsOf(result) {
   const begins = result?.plastic_zone?.too_large_to_mm;
   const from = begins ?? result?.plastic_zone?.too_large_from_mm;
-  const row = from ? columns.crack_length_mm.findIndex((length) => length >= from) : -1;
-  return row < 0 ? [] : [{ id: "yielding", kind: "limit", name: `small-scale yielding ${begins ? "begins" : "ends"}, ${fixed(lengths[row], 1)} mm`, y: [lengths[row]] }];
+  return from ? [{ id: "yielding", kind: "limit", name: `small-scale yielding ${begins ? "begins" : "ends"}, ${fixed(from, 1)} mm`, y: [from] }] : [];
 }
 
 const endOf = (steps, lengths) => ({ id: "end", kind: "end", name: `${fixed(lengths.at(-1), 1)} mm`, x: [steps.at(-1)], y: [lengths.at(-1)] });

@@ -43,14 +43,17 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
     try {
       const got = await getJson(`${pathOf(job)}/remaining?crack_length_mm=${a}&factor=${f}${choice ? `&tip=${choice.value}` : ""}`, signal);
       if (document.activeElement === length) go(got.cycles_at);
+      // Under a spectrum an interval is planned in passes.
+      const { passes, life_cycles: life } = job.summary ?? {};
+      const inPasses = passes > 0 ? ` (${Math.floor((100 * got.inspection_interval_cycles * passes) / life) / 100} passes)` : "";
       const value = (key, text) => element("strong", { "data-value": key }, `${text} cycles`);
       const band = got.has_band ? [got.remaining_cycles_p05, got.remaining_cycles_p50, got.remaining_cycles_p95] : null;
       show(answer, terms([
         [got.life_is_lower_bound ? "Remaining life, at least" : "Remaining life", value("remaining_cycles", band ? deserved(band[1], band) : cycles(Math.round(got.remaining_cycles)))],
         ["Band", band ? `median; ${bandOf(band)}` : "no band"],
         // Rounded down: an interval is a promise.
-        ["Inspection interval", value("inspection_interval_cycles",
-          band ? deserved(got.inspection_interval_cycles, band, Math.floor) : cycles(Math.floor(got.inspection_interval_cycles)))],
+        ["Inspection interval", element("span", null, value("inspection_interval_cycles",
+          band ? deserved(got.inspection_interval_cycles, band, Math.floor) : cycles(Math.floor(got.inspection_interval_cycles))), inPasses)],
         ["Used so far", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
       ], "remaining"));
     } catch (error) {

@@ -106,6 +106,14 @@ fn the_page_leads_from_readings_to_remaining_life() {
         "{found}"
     );
     walk.look("02_problems");
+    // A row is left out by its line and value with a reason; the file stays as it was dropped.
+    let count = page.count("[data-action=take-out]");
+    page.click("[data-action=take-out]");
+    page.see(".edit-in-place:focus");
+    page.press(&"typing error".chars().chain([ENTER]).collect::<Vec<char>>());
+    page.until(&format!("document.querySelectorAll('[data-action=take-out]').length === {}", count - 1));
+    let left_out = page.text("[data-part=left-out]");
+    assert!(left_out.contains("broken.csv, line ") && left_out.contains("(many): typing error"), "{left_out}");
     page.click("[aria-label='Remove broken.csv']");
     page.run(
         "const data = new DataTransfer();

@@ -297,11 +297,21 @@ fn inputs_are_looked_at_as_by_the_command() {
     let file = &found["files"][0];
     assert_eq!(file["columns"]["keys"], json!(["cycles", "length", "force_max"]), "{file}");
     assert_eq!(file["curves"][0]["cycles"], json!([1000.0, 2000.0, 3000.0, 4000.0, 5000.0]));
+    // Rows that are left out by line and value are wrong no more; the others are read around them.
+    let rows = r#"[{ "file": "a.csv", "line": 4, "value": "x", "reason": "typing error" }, { "file": "a.csv", "line": 6, "value": "2500", "reason": "counter" }]"#;
+    let left = multipart(&[("leave_out", None, rows), ("file", Some("a.csv"), &csv.replace('N', "cycles"))]);
+    let left = send(left).expect(200).json();
+    assert_eq!(
+        (&left["files"][0]["problems"], &left["files"][0]["curves"][0]["lines"]),
+        (&json!([]), &json!([2, 3, 5, 7, 8])),
+        "{left}"
+    );
     let open = send(form(&said[..3])).expect(200).json();
     assert!(open["files"][0]["problems"][0]["problem"].as_str().unwrap().contains("is the decimal sign and"), "{open}");
     for (field, value, words) in [
         ("columns", "[1]", "names no columns"),
         ("decimal", ";", "is not a known unit"),
+        ("leave_out", "{}", "give a JSON list of { file, line, value, reason }"),
         ("colums", "x", "known are file, length_unit"),
     ] {
         let answer = send(form(&[(field, value)]));
