@@ -7,6 +7,7 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{perilife, texts};
+use crate::interface::practice::copy;
 use crate::support::shared::shared;
 
 /// A kind in a folder of its own; `None` with a printed reason where the data are not there.
@@ -15,14 +16,6 @@ pub fn kind(name: &str) -> Option<TempDir> {
     let dir = tempdir().unwrap();
     copy(from.parent().unwrap(), dir.path());
     Some(dir)
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap() {
-        let (source, target) = entry.map(|entry| (entry.path(), to.join(entry.file_name()))).unwrap();
-        if source.is_dir() { copy(&source, &target) } else { fs::write(&target, fs::read(&source).unwrap()).unwrap() }
-    }
 }
 
 /// What a command prints, all of it, with its exit code.

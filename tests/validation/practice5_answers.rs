@@ -1,38 +1,7 @@
 //! Fleets, inspections and retardation as users brought them, with the figures that their own growth and quadrature gave (shared data).
 
-use std::fs;
-use std::path::Path;
-
-use serde_json::Value;
-use tempfile::{TempDir, tempdir};
-
 use crate::interface::cli::{perilife, texts};
-use crate::support::shared::shared;
-
-/// A kind in a folder of its own, or `None` with a printed reason.
-fn kind(name: &str) -> Option<TempDir> {
-    let from = shared(&format!("field/practice5/{name}/README.md"))?;
-    let dir = tempdir().unwrap();
-    for file in fs::read_dir(from.parent().unwrap()).unwrap() {
-        let file = file.unwrap();
-        fs::write(dir.path().join(file.file_name()), fs::read(file.path()).unwrap()).unwrap();
-    }
-    Some(dir)
-}
-
-/// What is printed and the result of a run that is well.
-fn run(folder: &Path, arguments: &str) -> (String, Value) {
-    let arguments: Vec<&str> = ["predict"].into_iter().chain(arguments.split(' ')).chain(["--out", "out"]).collect();
-    let output = perilife(folder, &arguments);
-    let (stdout, stderr) = texts(&output);
-    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {stderr}");
-    (stdout + &stderr, serde_json::from_slice(&fs::read(folder.join("out/result.json")).unwrap()).unwrap())
-}
-
-fn is_near(found: &Value, wanted: f64, share: f64, what: &str) {
-    let found = found.as_f64().unwrap_or(f64::NAN);
-    assert!((found / wanted - 1.0).abs() < share, "{what}: {found} against {wanted}");
-}
+use crate::support::field::{is_near, kind, predicted as run};
 
 #[test]
 fn shorter_cracks_than_that_of_a_retarded_run_are_retarded() {

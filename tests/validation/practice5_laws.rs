@@ -3,11 +3,8 @@
 use std::fs;
 
 use serde_json::Value;
-use tempfile::tempdir;
 
-use crate::interface::cli::{perilife, texts};
-use crate::interface::practice::copy;
-use crate::support::shared::shared;
+use crate::support::field;
 
 /// Arguments of a command, its exit code, words of what it says, and a place in a file of results with the value that is right and the relative
 /// difference that its page allows.
@@ -161,10 +158,8 @@ const KINDS: &[(&str, &[Row])] = &[
 
 #[test]
 fn laws_and_tables_of_practice_give_the_right_value_or_the_cause() {
-    let Some(readme) = shared("field/practice5/README.md") else { return };
     for (kind, rows) in KINDS {
-        let own = tempdir().unwrap();
-        copy(&readme.parent().unwrap().join(kind), own.path());
+        let Some(own) = field::kind(kind) else { return };
         for (command, exit, words, figures) in *rows {
             for folder in ["out", "out_fit"] {
                 // Fits are kept for the predictions behind them.
@@ -172,10 +167,8 @@ fn laws_and_tables_of_practice_give_the_right_value_or_the_cause() {
                     fs::remove_dir_all(own.path().join(folder)).unwrap();
                 }
             }
-            let output = perilife(own.path(), &command.split(' ').collect::<Vec<_>>());
-            let (stdout, stderr) = texts(&output);
-            let said = format!("{stdout}{stderr}");
-            assert_eq!(output.status.code(), Some(*exit), "{kind}: {command}: {said}");
+            let (code, said) = field::command(own.path(), command);
+            assert_eq!(code, *exit, "{kind}: {command}: {said}");
             for words in *words {
                 assert!(said.contains(words), "{kind}: {command}: {words} in {said}");
             }

@@ -1,4 +1,4 @@
-//! Plates from drawings: DXF and SVG say what the keys of a case say; what is no plate is refused by layer and place.
+//! Plates from drawings: DXF says what the keys of a case say; what is no plate is refused by layer and place.
 
 use std::fmt::Write as _;
 
@@ -50,12 +50,6 @@ const CRACK: &str = "LINE cracks 10 5 20 0 11 22 21 0";
 const KEYS: &str = "width_mm = 100\nlength_mm = 200\nholes = [{ x_mm = 0, y_mm = 0, diameter_mm = 20 }]\n\
                     cracks = [{ from_mm = [5, 0], to_mm = [22, 0] }]";
 pub(super) const DXF: &str = "outline_file = \"part.dxf\"";
-const SVG: &str = "outline_file = \"part.svg\"";
-
-fn svg(size: &str, content: &str) -> String {
-    format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {size}>{content}</svg>")
-}
-
 /// One plate by its keys and by drawings of every kind of line: the same shape, and the same K.
 #[test]
 fn a_drawing_is_the_plate_of_the_keys() {
@@ -103,35 +97,10 @@ fn a_drawing_is_the_plate_of_the_keys() {
         (DXF.to_owned(), dxf(4, &polyline).replace("outline", "OUTLINE").replace("holes", "Holes").replace("cracks", "CRACKS")),
         (format!("{DXF}\noutline_symmetry = \"y=0\""), dxf(4, &half)),
         (format!("{DXF}\noutline_symmetry = \"y=0\""), dxf(4, &closed_half)),
-        (
-            SVG.to_owned(),
-            svg(
-                "width=\"100mm\" height=\"200mm\" viewBox=\"-50 -100 100 200\"",
-                "<title>part</title><g id=\"outline\"><rect x=\"-50\" y=\"-100\" width=\"100\" height=\"200\"/></g><circle id=\"holes\" r=\"10\"/><line id=\"cracks\" x1=\"5\" x2=\"22\"/>",
-            ),
-        ),
-        (
-            SVG.to_owned(),
-            svg(
-                "width=\"10cm\" viewBox=\"0 0 1000 2000\"",
-                "<g id=\"layer1\" transform=\"translate(500 1000) scale(10)\"><path id=\"outline\" d=\"M-50-100h100v200H-50z\"/><g id=\"holes\"><path id=\"p1\" d=\"M-10,0a10 10 0 1 1 20 0A10 10 0 1 1 -10 0Z\"/></g><polyline id=\"cracks\" points=\"5,0 14,0 22,0\"/></g>",
-            ),
-        ),
-        (
-            format!("{SVG}\noutline_unit = \"mm\""),
-            svg(
-                "viewBox=\"-50 -100 100 200\"",
-                "<polygon id=\"outline\" points=\"-50,-100 50,-100 50,100 -50,100\"/><circle id=\"holes\" r=\"10\"/><line id=\"cracks\" x1=\"5\" x2=\"22\"/>",
-            ),
-        ),
     ];
-    let lowest = |specimen: &Specimen| specimen.outline.iter().map(|at| at[1]).fold(f64::INFINITY, f64::min);
     for (keys, text) in &drawings {
-        let name = if keys.starts_with(DXF) { "part.dxf" } else { "part.svg" };
-        let drawn = plate(keys, &[(name, text.as_str())]);
-        // An SVG begins at the lower left corner of its viewBox.
-        let [dx, dy] = if name == "part.svg" { [50.0 * MM, lowest(&drawn) + 100.0 * MM] } else { [0.0; 2] };
-        let near = |a: [f64; 2], b: [f64; 2]| (a[0] - dx - b[0]).abs() < 1e-12 && (a[1] - dy - b[1]).abs() < 1e-12;
+        let drawn = plate(keys, &[("part.dxf", text.as_str())]);
+        let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 1e-12 && (a[1] - b[1]).abs() < 1e-12;
         assert_eq!((drawn.outline.len(), drawn.holes.len(), drawn.cracks.len()), (4, 1, 1), "{keys}: {drawn:?}");
         assert!(
             by_keys.outline.iter().all(|at| drawn.outline.iter().any(|drawn| near(*drawn, *at))),
@@ -237,8 +206,6 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         let text = dxf(unit, entities);
         refused(DXF, ("part.dxf", text.as_str()), words);
     }
-    let size = "width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\"";
-    let rect = "<rect id=\"outline\" width=\"100\" height=\"200\"/>";
     let table = |name: &str, flags: u8, colour: i8| {
         let layers = format!("0\nLAYER\n2\noutline\n70\n0\n62\n7\n0\nLAYER\n2\n{name}\n70\n{flags}\n62\n{colour}\n");
         let tables =
@@ -251,66 +218,11 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
     for (name, flags) in [("holes", 0), ("frame", 1), ("holes", 4)] {
         assert_eq!(plate(DXF, &[("part.dxf", &table(name, flags, 7))]).holes.len(), 1);
     }
-    let of_svg: [(&str, &str, &[&str]); 16] = [
-        (size, "<path id=\"outline\" d=\"M0 0H100V200\"/>", &["layer outline", "open", "(0.0000, 200.0000) mm"]),
-        (
-            size,
-            "<path id=\"outline\" d=\"M0 0H100V200C1 2 3 4 5 6Z\"/>",
-            &["layer outline", "path outline", "no circular arc at (100, 200)"],
-        ),
-        (size, "<path id=\"outline\" d=\"M0 0H100A9 8 0 0 0 100 200Z\"/>", &["arc of an ellipse at (100, 0)"]),
-        (size, "<path id=\"outline\" d=\"M0 0H100Vx\"/>", &["no path that can be read"]),
-        (size, "<rect id=\"outline\" width=\"100\" height=\"200\" rx=\"3\"/>", &["rect outline", "round corners"]),
-        (size, "<g id=\"outline\" transform=\"scale(1 2)\"><rect width=\"100\" height=\"100\"/></g>", &["stretched"]),
-        (size, "<rect id=\"rim\" width=\"100\" height=\"200\"/>", &["layer \"rim\"", "rect at (0, 200)"]),
-        (
-            size,
-            "<rect width=\"100\" height=\"200\"/><ellipse id=\"holes\" rx=\"2\" ry=\"3\"/>",
-            &["layer holes", "ellipse holes"],
-        ),
-        ("width=\"100mm\" height=\"100mm\" viewBox=\"0 0 100 200\"", rect, &["stretched"]),
-        (
-            size,
-            "<g id=\"OUTLINE\" style=\"fill:none; display : none\"><rect width=\"100\" height=\"200\"/></g>",
-            &["layer outline", "rect at (0, 200)", "is hidden (display: none)", "remove it"],
-        ),
-        (
-            size,
-            "<g display=\"none\"><g style=\"display:inline\"><rect id=\"outline\" width=\"100\" height=\"200\"/></g></g>",
-            &["layer outline", "is hidden (display: none)"],
-        ),
-        (
-            size,
-            "<rect id=\"outline\" width=\"100\" height=\"200\"/><circle id=\"holes\" visibility=\"hidden\" cx=\"30\" cy=\"50\" r=\"4\"/>",
-            &["layer holes", "circle at (34, 150)", "is hidden (visibility: hidden)"],
-        ),
-        (
-            size,
-            "<g style=\"visibility:hidden\"><rect id=\"outline\" width=\"100\" height=\"200\"/></g>",
-            &["layer outline", "is hidden (visibility: hidden)"],
-        ),
-        (
-            size,
-            "<g id=\"outline\"><svg x=\"3\" y=\"4\" width=\"50\" viewBox=\"0 0 100 200\"><rect width=\"100\" height=\"200\"/></svg></g>",
-            &["layer outline", "svg at (3, 4)", "drawing within the drawing"],
-        ),
-        ("viewBox=\"0 0 100 200\"", rect, &["specimen.outline_unit", "is missing"]),
-        (size, "<rect id=\"outline\" width=\"100%\" height=\"200\"/>", &["layer outline", "no plain number"]),
-    ];
-    for (size, content, words) in of_svg {
-        let text = svg(size, content);
-        refused(SVG, ("part.svg", text.as_str()), words);
-    }
-    // What is shown again within a hidden group is shown.
-    let shown = "<g visibility=\"hidden\"><rect id=\"outline\" style=\"visibility:visible\" width=\"100\" height=\"200\"/></g>\
-                 <line id=\"cracks\" y1=\"100\" x2=\"9\" y2=\"100\"/>";
-    assert_eq!(plate(SVG, &[("part.svg", &svg(size, shown))]).outline.len(), 4);
     let good = dxf(4, &[RECTANGLE, HOLE, CRACK]);
-    let of_keys: [(&str, &str, &str, &[&str]); 9] = [
+    let of_keys: [(&str, &str, &str, &[&str]); 8] = [
         (DXF, "part.dxf", "0\nSECTION\n", &["ends before its end mark"]),
         (DXF, "part.dxf", "PK\u{3}\u{4}\nfoo\n", &["is no DXF", "line 1"]),
-        (SVG, "part.svg", "<html><body/></html>", &["begins with <html>"]),
-        (SVG, "part.svg", "<svg><g>", &["is no whole SVG"]),
+        ("outline_file = \"part.svg\"", "part.svg", "<svg><g>", &["no drawing that is read here", "give a file .dxf"]),
         ("outline_file = \"part.step\"", "part.step", "x", &["no drawing that is read here"]),
         ("outline_file = \"part.dxf\"\nwidth_mm = 9", "part.dxf", &good, &["specimen.width_mm", "beside outline_file"]),
         (
@@ -411,9 +323,6 @@ fn what_programs_leave_in_a_drawing_changes_no_plate() {
         }
     }
 
-    let points = "<rect id=\"outline\" width=\"100\" height=\"200\"/><line id=\"cracks\" y1=\"100\" x2=\"9\" y2=\"100\"/>";
-    let points = svg("width=\"72pt\" height=\"12pc\" viewBox=\"0 0 100 200\"", points);
-    assert!((plate(SVG, &[("part.svg", &points)]).gross_width / MM - 25.4).abs() < 1e-9);
     assert_eq!(of(&[RECTANGLE, CRACK]), plate(DXF, &[("part.dxf", &(dxf(4, &[RECTANGLE, CRACK]) + "\n\n"))]));
 }
 
@@ -430,49 +339,6 @@ fn what_a_drawing_hides_or_repeats_is_refused() {
     for (entities, words) in twice {
         refused(DXF, ("part.dxf", &dxf(4, entities)), words);
     }
-    let size = "width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\"";
-    let rect = "<rect id=\"outline\" width=\"100\" height=\"200\"/>";
-    let unread: [(&str, &str, &[&str]); 17] = [
-        (
-            size,
-            "<style>.st0{fill:none;display:none;}</style><g class=\"st0\"><circle id=\"holes\" r=\"3\"/></g>",
-            &["style sheet with display"],
-        ),
-        (size, "<style><![CDATA[ .a { visibility : hidden } ]]></style>", &["style sheet with visibility"]),
-        (size, "<circle id=\"holes\" style=\"transform:translate(-40px,0px)\" r=\"3\"/>", &["<circle> with transform"]),
-        (size, "<g id=\"holes\" clip-path=\"url(#c)\"><circle r=\"3\"/></g>", &["<g> with clip-path"]),
-        (
-            size,
-            "<g transform-origin=\"60 110\" transform=\"rotate(10)\"><circle id=\"holes\" r=\"3\"/></g>",
-            &["<g> with transform-origin"],
-        ),
-        (size, "<circle id=\"holes\" style=\"Translate: 10px 5px\" r=\"3\"/>", &["<circle> with translate"]),
-        (size, "<circle id=\"holes\" style=\"fill:none;r:4px\" r=\"3\"/>", &["<circle> with r,"]),
-        (size, "<circle id=\"holes\" style=\"-webkit-transform:scale(2)\" r=\"3\"/>", &["<circle> with -webkit-transform"]),
-        (size, "<style>/* a: b; */ circle:hover { r: 4px }</style><circle id=\"holes\" r=\"3\"/>", &["style sheet with r,"]),
-        (size, "<style>@import url(a.css);</style><circle id=\"holes\" r=\"3\"/>", &["style sheet with @import"]),
-        (size, "<?xml-stylesheet href=\"a.css\"?><circle id=\"holes\" r=\"3\"/>", &["style sheet in another file"]),
-        (size, "<g opacity=\"0\"><circle id=\"holes\" r=\"3\"/></g>", &["layer holes", "is hidden (opacity: 0)"]),
-        ("width=\"100mm\" height=\"200mm\" viewBox=\"0 0 100 200\" transform=\"scale(2)\"", rect, &["<svg> with transform"]),
-        (size, "<circle id=\"holes\" cx=\"50\" cy=\"50\"/>", &["layer holes", "no radius above zero"]),
-        (size, "<circle id=\"holes\" r=\"-3\"/>", &["layer holes", "no radius above zero"]),
-        ("width=\"100mm\" height=\"200mm\"", rect, &["width without viewBox"]),
-        (
-            size,
-            "<g inkscape:label=\"Plate\" id=\"layer1\"><rect id=\"rect8\" width=\"100\" height=\"200\"/></g>",
-            &["layer \"Plate\""],
-        ),
-    ];
-    for (size, content, words) in unread {
-        let content = if content == rect { rect.to_owned() } else { format!("{rect}{content}") };
-        refused(SVG, ("part.svg", &svg(size, &content)), words);
-    }
-    // What a style sheet says of colours, what is set to nothing, and words of other elements are no matter.
-    let plain = format!(
-        "<style/><style>/* r: 4 */ .a:hover {{ fill: none; opacity: 0.5; stroke: #000 }}</style><desc>display: none; mask: all</desc>\
-         <g style=\"mask:none;clip-path:none\" clip-path=\"none\">{rect}</g><line id=\"cracks\" class=\"a\" y1=\"100\" x2=\"9\" y2=\"100\"/>"
-    );
-    assert_eq!(plate(SVG, &[("part.svg", &svg(size, &plain))]).tips.len(), 1);
 }
 
 fn refused(keys: &str, file: (&str, &str), words: &[&str]) {

@@ -4,7 +4,7 @@
 //! [specimen]
 //! kind = "plate"
 //! width_mm = 100.0              # with length_mm: a rectangle centred on 0; or outline_mm = [[x, y], ...]; or diameter_mm: a disc about 0;
-//!                               # or outline_file = "part.dxf" (.svg), with its holes and cracks before those of the keys
+//!                               # or outline_file = "part.dxf", with its holes and cracks before those of the keys
 //! length_mm = 300.0
 //! thickness_mm = 2.0
 //! holes = [{ x_mm = 20.0, y_mm = 0.0, diameter_mm = 8.0 }]

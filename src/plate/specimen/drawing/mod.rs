@@ -1,4 +1,4 @@
-//! A plate from a drawing, `specimen.outline_file`: DXF or SVG with the layers `outline`, `holes` and `cracks`.
+//! A plate from a drawing, `specimen.outline_file`: DXF with the layers `outline`, `holes` and `cracks`.
 //!
 //! ```text
 //! outline   lines and arcs that close to one line; a full circle within it is a hole
@@ -11,7 +11,6 @@
 
 pub mod curve;
 mod dxf;
-mod svg;
 
 use curve::{Curve, branched, chained};
 
@@ -114,13 +113,10 @@ fn place([x, y]: Point) -> String {
 pub fn read(file: &str, folder: &Folder, unit: Option<DrawingUnit>, symmetry: Option<SymmetryPlane>) -> Result<Shape> {
     let bytes = folder.read(file)?;
     let text = String::from_utf8_lossy(&bytes);
-    let name = file.to_lowercase();
-    let drawing = match () {
-        () if name.ends_with(".dxf") => dxf::read(&text),
-        () if name.ends_with(".svg") => svg::read(&text),
-        () => Err(Fault::of("is no drawing that is read here", "give a file .dxf or .svg")),
-    };
-    let drawing = drawing.map_err(|fault| fault.error(file))?;
+    if !file.to_lowercase().ends_with(".dxf") {
+        return Err(Fault::of("is no drawing that is read here", "give a file .dxf").error(file));
+    }
+    let drawing = dxf::read(&text).map_err(|fault| fault.error(file))?;
     let scale = scale(drawing.millimetres, unit, file)?;
     shape(drawing.lines, scale, symmetry).map_err(|fault| fault.error(file))
 }
