@@ -47,7 +47,7 @@ pub trait Vocabulary {
     }
     /// What to give where a file is no such table.
     fn remedy(&self) -> &str {
-        "give the columns cycles and crack_length_mm, as in a header line `specimen,cycles,crack_length_mm`, and at least 5 rows"
+        "give a header line `specimen,cycles,crack_length_mm`, with at least the columns cycles and crack_length_mm, and at least 5 readings"
     }
 }
 

@@ -16,15 +16,15 @@ use perilife_base::table::{self, Fault, Table, whole_file};
 
 const REMEDY: &str = "name the columns max, min, cycles (or two of max, min, range, amplitude, mean, stress ratio, and cycles), or give one \
                       column of turning points";
-const AMPLITUDE: &str = "amplitude amplitudes amp ampl alternating sa";
-const MEAN: &str = "mean mittel mittelwert average avg sm smean";
+const AMPLITUDE: &str = "amplitude amplitudes amp ampl alternating sa sigmaa";
+const MEAN: &str = "mean mittel mittelwert average avg sm smean sigmam sigmamean";
 const LEVELS: &str = "level levels value values turning points reversals signal";
 const COUNT: &str = "n ni count counts cycles occurrences occurrence repetitions repetition repeats reps anzahl haeufigkeit lastspiele schwingspiele";
 const COUNT_MORE: &str = "cycle number of per pass block flight in the no";
 /// Counts that rise from row to row are those of an exceedance curve.
 const SUMS: &str = "elapsed total cumulative cumulated cum accumulated running gesamt gesamtzahl exceedance exceedances";
 /// Columns that nothing depends on.
-const OTHER: &str = "time t sec zeit date datum index idx i id no nr nummer point sample line row flight segment mission phase event start end begin \
+const OTHER: &str = "time t day sec zeit date datum index idx i id no nr nummer point sample line row flight segment mission phase event start end begin \
                      from to bin class name label comment remark note notes damage type source unnamed 0";
 /// Difference of a scale from the size of a unit by which both are one, and of a first number from that of the numbers behind it.
 const ALIKE: f64 = 0.02;
