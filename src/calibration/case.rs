@@ -238,11 +238,14 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> perilife_base::error::Resu
         return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
     }
     check_left_out(&keys.leave_out, &keys.files)?;
-    let import = keys.import();
     let mut measured = Measured::default();
     let mut sources = Vec::with_capacity(keys.files.len());
     for file in &keys.files {
         let bytes = folder.read(file)?;
+        let mut import = keys.import();
+        // Places in the list stay, for messages.
+        let of_others = |one: &&mut LeaveOut| one.file.as_ref().is_some_and(|own| own != file);
+        import.left_out.iter_mut().filter(of_others).for_each(|one| one.line = None);
         measured.add(parse(&bytes, &folder.path(file), &import)?)?;
         sources.push(source(file, &bytes));
     }

@@ -83,13 +83,6 @@ pub fn confidence(
     }
 }
 
-/// Squared Mahalanobis distance of (ln A, p) from the fit; below 5.991 inside the 95 % ellipse (χ², 2 degrees of freedom).
-pub fn distance_squared(covariance: [[f64; 2]; 2], difference: [f64; 2]) -> f64 {
-    let matrix = Matrix2::new(covariance[0][0], covariance[0][1], covariance[1][0], covariance[1][1]);
-    let difference = Vector2::from(difference);
-    matrix.try_inverse().map_or(f64::NAN, |inverse| difference.dot(&(inverse * difference)))
-}
-
 /// Below this ratio rates of every exponent are alike.
 const DELTA_K_RATIO_NONE: f64 = 1.01;
 

@@ -127,7 +127,9 @@ impl FactorLaw {
 
     /// ΔK at which its own rate is 0 at a stress ratio, Pa√m, where it has such a constant.
     pub fn own_threshold(&self, ratio: f64) -> Option<f64> {
-        self.kind.0.place(Role::Threshold).map(|_| (self.kind.0.threshold)(&self.constants, ratio))
+        let threshold = self.kind.0.place(Role::Threshold).map(|_| (self.kind.0.threshold)(&self.constants, ratio));
+        // One that a fit without the factor of the threshold has is none.
+        threshold.filter(|delta_k| *delta_k > 1e-3 * MPA_SQRT_M)
     }
 
     /// Least stress ratio whose compression it knows; `None` where compression counts as nothing.

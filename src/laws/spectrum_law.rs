@@ -39,7 +39,12 @@ impl SpectrumLaw {
 
     /// The mean itself.
     fn mean(&self, k_max: f64) -> f64 {
-        self.classes.iter().map(|class| class.share * self.law.rate(k_max * class.max, class.ratio)).sum()
+        self.classes.iter().map(|class| self.growth(k_max, class)).sum()
+    }
+
+    /// What the cycles of a class add to the mean.
+    fn growth(&self, k_max: f64, class: &Class) -> f64 {
+        class.share * self.law.rate(k_max * class.max, class.ratio)
     }
 
     fn node(&self, place: usize) -> f64 {
@@ -74,12 +79,10 @@ impl GrowthLaw for SpectrumLaw {
         self.tabulated(k_max).unwrap_or_else(|| self.mean(k_max))
     }
 
-    /// Of the first class, by size, that counts and of which the law says nothing.
-    fn beyond(&self, k_max: f64, _: f64) -> Option<String> {
-        let told = |class: &Class| self.law.beyond(k_max * class.max, class.ratio);
-        let all = self.classes.iter().any(|class| told(class).is_some()).then(|| self.mean(k_max))?;
-        let counts = |class: &&Class| class.share * self.law.rate(k_max * class.max, class.ratio) > BEYOND * all;
-        self.classes.iter().filter(counts).find_map(told)
+    /// Of the first class, by size, of which the law says nothing, where a share of the growth that counts is by such.
+    fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
+        let told = |class: &Class| self.law.beyond(k_max * class.max, class.ratio).filter(|_| self.growth(k_max, class) > 0.0);
+        self.classes.iter().find_map(told).filter(|_| self.share_beyond(k_max, ratio) > BEYOND)
     }
 
     fn is_refused_beyond(&self) -> bool {
@@ -88,15 +91,13 @@ impl GrowthLaw for SpectrumLaw {
 
     fn acting(&self, k_max: f64, _: f64) -> Vec<Acting> {
         let all = self.mean(k_max);
-        let growth = |class: &Class| class.share * self.law.rate(k_max * class.max, class.ratio) / all;
-        let acting = self.classes.iter().map(|class| Acting::new(k_max * class.max, class.ratio, growth(class)));
-        acting.filter(|acting| acting.share > 0.0).collect()
+        let of = |class: &Class| Acting::new(k_max * class.max, class.ratio, self.growth(k_max, class) / all);
+        self.classes.iter().map(of).filter(|acting| acting.share > 0.0).collect()
     }
 
     fn share_beyond(&self, k_max: f64, _: f64) -> f64 {
         let is_beyond = |class: &&Class| self.law.beyond(k_max * class.max, class.ratio).is_some();
-        let rate = |class: &Class| class.share * self.law.rate(k_max * class.max, class.ratio);
-        let beyond: f64 = self.classes.iter().filter(is_beyond).map(rate).sum();
+        let beyond: f64 = self.classes.iter().filter(is_beyond).map(|class| self.growth(k_max, class)).sum();
         // Most laws know every K, and the mean over all classes is asked of the others alone.
         if beyond > 0.0 { beyond / self.mean(k_max) } else { 0.0 }
     }

@@ -311,7 +311,7 @@ impl Measured {
     /// Errors: no other is there.
     pub fn leave_standing_out(&mut self) -> Result<()> {
         let grown = |curve: &MeasuredCurve| curve.crack_length.iter().copied().fold(0.0, f64::max) - curve.crack_length[0];
-        let stands = |curve: &MeasuredCurve| grown(curve) <= 3.0 * curve.scatter();
+        let stands = |curve: &MeasuredCurve| grown(curve) <= 3.0 * curve.scatter().max(0.0);
         if let Some(first) = self.curves.first().filter(|_| self.curves.iter().all(stands)) {
             let fault = Fault { key: Some("specimen"), value: Some(&first.specimen), ..first.fault(0) };
             return Err(

@@ -36,6 +36,8 @@ perilife_base::kinds! {
     }
 }
 
+/// Difference of two stress ratios of a row that are one but for rounding.
+const SAME_RATIO: f64 = 0.02;
 /// A flag of `perilife rates` that speaks against nothing.
 const HARMLESS: &str = "load_changes";
 
@@ -223,14 +225,28 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         };
         let of = |column: Option<Column>| column.map(|column| value(&cells, row, column, decimal)).transpose();
         let [delta_k, k_max] = [delta_k.map(above_zero).transpose()?, k_max.map(above_zero).transpose()?];
-        let (of_row, tensile) = cycle([delta_k, k_max, of(k_min)?], of(ratio)?.or(keys.stress_ratio), keys.delta_k);
+        let said = of(ratio)?.or(keys.stress_ratio);
+        let (of_row, tensile) = cycle([delta_k, k_max, of(k_min)?], said, keys.delta_k);
+        if let (Some(said), (ratio, _)) = (said, cycle([delta_k, k_max, of(k_min)?], None, keys.delta_k))
+            && k_max.is_some()
+            && (delta_k.is_some() || k_min.is_some())
+            && (said - ratio).abs() > SAME_RATIO
+            && (said >= 0.0 || ratio.abs() > SAME_RATIO)
+        {
+            let problem = format!("belongs to a stress ratio of {ratio:.3}, and the row says {said}");
+            return Err(cells.cell_fault(row, k.index).error(problem, "correct the row, or leave one of the columns out"));
+        }
         if of_row >= 1.0 {
             let fault = cells.cell_fault(row, ratio.or(k_min).unwrap_or(k).index);
             return Err(fault.error("is no stress ratio below 1", "give K_min over K_max"));
         }
         table.rows.push(RateRow {
-            series: specimen
-                .map_or_else(|| format!("{name}, R {of_row}"), |column| format!("{name}, {}", row.cell(column.index))),
+            // R that follows from K scatters.
+            series: match (specimen, said) {
+                (Some(column), _) => format!("{name}, {}", row.cell(column.index)),
+                (None, Some(_)) => format!("{name}, R {of_row}"),
+                (None, None) => format!("{name}, R {:.2}", 0.02 * (of_row / 0.02).round()),
+            },
             place: format!("{}: line {}", file.display(), row.line),
             line: row.line,
             delta_k: tensile,
@@ -261,7 +277,11 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
 /// R and tensile ΔK of what a row says of ΔK, K_max and K_min, Pa√m, and R: two say all. R that follows from K has four digits; where K_max is known
 /// it is clear what ΔK is at R < 0.
 fn cycle([delta_k, k_max, k_min]: [Option<f64>; 3], ratio: Option<f64>, range: Option<RangeKind>) -> (f64, f64) {
-    let k_max = k_max.or(delta_k.zip(k_min.filter(|k_min| *k_min >= 0.0)).map(|(range, k_min)| range + k_min));
+    let of_range = |(delta_k, k_min): (f64, f64)| {
+        let is_full = k_min >= 0.0 || range == Some(RangeKind::Full);
+        if is_full { delta_k + k_min } else { delta_k }
+    };
+    let k_max = k_max.or(delta_k.zip(k_min).map(of_range));
     let least = k_min.or(k_max.zip(delta_k).map(|(k_max, range)| k_max - range));
     let of_k = k_max.zip(least).map(|(k_max, k_min)| (k_min / k_max * 1e4).round() / 1e4);
     let ratio = ratio.or(of_k).unwrap_or(0.0);

@@ -36,7 +36,9 @@ pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fa
     let mut falling = Vec::new();
     for curve in &measured.curves {
         let specimen = || Fault { key: Some("specimen"), value: Some(&curve.specimen), ..whole_file(&table.file) };
-        let (count, least) = (curve.cycles.len(), if of_plate { 1 } else { READINGS_MIN });
+        // A run-out has few readings of one length; it is named where the lot is complete.
+        let stands = curve.crack_length.iter().all(|length| *length <= curve.crack_length[0]) && curve.cycles.len() > 1;
+        let (count, least) = (curve.cycles.len(), if of_plate || stands { 1 } else { READINGS_MIN });
         if count < least {
             fate(specimen().error(
                 format!("has {count} reading{}", if count == 1 { "" } else { "s" }),
@@ -108,7 +110,15 @@ fn correct(curve: &mut MeasuredCurve, table: &Table, decimal: Decimal, optical: 
     let Some(line) = line(&own, &read).filter(|line| line.slope > 0.0) else {
         return Ok(format!("{start} is not corrected: {} of its readings have {name} too, and a line needs two", own.len()));
     };
-    curve.crack_length.iter_mut().for_each(|length| *length = line.intercept + line.slope * *length);
+    let corrected: Vec<f64> = curve.crack_length.iter().map(|length| line.intercept + line.slope * length).collect();
+    if !(0.5..=2.0).contains(&line.slope) || corrected.iter().any(|length| *length <= 0.0) {
+        let slope = format!("{:.3}", line.slope);
+        let fault = Fault { key: Some(&curve.source.length_column), value: Some(&slope), ..whole_file(&table.file) };
+        let problem =
+            format!("is the slope of {name} over it, beyond 0.5 to 2 or with lengths below 0: they are no readings of one crack");
+        return Err(fault.error(problem, "correct the readings, or name the length to read by measured.columns"));
+    }
+    curve.crack_length = corrected;
     let (offset, slope, count) = (line.intercept / MM, line.slope, own.len());
     Ok(format!("{start} is corrected by {count} readings of {name} (ASTM E647): {offset:.3} mm + {slope:.4} times it"))
 }

@@ -23,9 +23,7 @@ pub(super) fn read(bytes: &[u8], file: &Path, import: &Import) -> Result<Table> 
 /// Errors: a line without a row, or whose row has no such cell.
 fn take_rows_out(table: &mut Table, all: &[LeaveOut]) -> Result<()> {
     let plain = |text: &str| text.replace(|c: char| c.is_whitespace() || "\",;|".contains(c), "");
-    let is_of = |one: &LeaveOut| one.line.is_some() && one.file.as_ref().is_none_or(|name| table.file.ends_with(name));
-    let own: Vec<(usize, &LeaveOut)> = all.iter().enumerate().filter(|(_, one)| is_of(one)).collect();
-    for (index, one) in own {
+    for (index, one) in all.iter().enumerate().filter(|(_, one)| one.line.is_some()) {
         let place = table.rows.iter().position(|row| Some(row.line) == one.line);
         let cells: Vec<&str> = place.iter().flat_map(|&place| &table.rows[place].cells).collect();
         let value = one.value.as_deref().unwrap_or_default();

@@ -59,7 +59,8 @@ pub(super) fn below_each_other(table: &mut Table, import: &Import) {
     let ratios: Vec<(usize, &str, &str)> = table.names.iter().map(String::as_str).enumerate().filter_map(named).collect();
     let Some((first, _, mut unit)) = ratios.first().copied() else { return };
     if name == "ΔK" && unit.is_empty() && import.intensity.is_none() {
-        unit = if own.unit == Named::Is(Unit::Rate(RateUnit::Inch)) { "(ksi√in)" } else { "(MPa√m)" };
+        let is_inch = own.unit == Named::Is(Unit::Rate(RateUnit::Inch)) || import.rate == Some(RateUnit::Inch);
+        unit = if is_inch { "(ksi√in)" } else { "(MPa√m)" };
         let (file, column) = (table.file.display(), &table.header[first]);
         table
             .notes

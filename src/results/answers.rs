@@ -11,7 +11,7 @@ pub use super::inspections::Asked;
 use super::inspections::Inspections;
 use super::sensitivities::Sensitivities;
 use perilife_base::error::Result;
-use perilife_growth::case::{Case, Stop};
+use perilife_growth::case::{Case, Engine, Stop};
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 
 /// A run as K(a) of other plates is recorded from: one that `stop.cycles_max` ended continues, since faster plates grow longer cracks in these
@@ -19,7 +19,9 @@ use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 fn whole<'p>(case: &Case, prediction: &'p Prediction, is_asked: bool) -> Cow<'p, Prediction> {
     let stop = Stop { cycles_max: f64::INFINITY, ..case.stop };
     let on = || predict(&Case { stop, ..case.clone() }, &Silent).ok();
-    let on = (is_asked && prediction.stop == StopReason::RunOut).then(on).flatten();
+    // On points and bonds it would take as long as the run again, and more.
+    let is_quick = matches!(case.engine(), Engine::Handbook | Engine::PartThrough | Engine::Nodes);
+    let on = (is_asked && is_quick && prediction.stop == StopReason::RunOut).then(on).flatten();
     on.map_or(Cow::Borrowed(prediction), Cow::Owned)
 }
 

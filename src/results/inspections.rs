@@ -48,13 +48,23 @@ impl Inspections {
         let schedule =
             Schedule { detection, cycles: [asked.first_inspection.unwrap_or(at), inspection.inspection_interval_cycles] };
         let pace = inspection.remaining_cycles_p05.map_or(1.0, |low| low / inspection.remaining_cycles);
-        let cycles = |row: &CurvePoint| if row.cycles > at { at + pace * (row.cycles - at) } else { row.cycles };
+        let cycles = |own: f64| if own > at { at + pace * (own - at) } else { own };
         let of_tip = |row: &CurvePoint| inspection.tip.and_then(|tip| row.crack_length_of(&case.specimen, tip));
         let length = |row: &CurvePoint| of_tip(row).unwrap_or(row.crack_length);
         let (mut inspected, mut rows) = (schedule.begin(), Vec::new());
         for pair in prediction.curve.windows(2) {
             let told = |cycles, crack_length, found, missed| rows.push(Row { cycles, crack_length, found, missed });
-            inspected.grow([cycles(&pair[0]), cycles(&pair[1])], [length(&pair[0]), length(&pair[1])], told);
+            let ([from, to], [start, end]) = ([pair[0].cycles, pair[1].cycles], [length(&pair[0]), length(&pair[1])]);
+            let places = if from < at && at < to {
+                // What lies before the length is not stretched.
+                vec![(from, start), (at, start + (at - from) / (to - from) * (end - start)), (to, end)]
+            } else {
+                vec![(from, start), (to, end)]
+            };
+            let mut told = told;
+            for part in places.windows(2) {
+                inspected.grow([cycles(part[0].0), cycles(part[1].0)], [part[0].1, part[1].1], &mut told);
+            }
         }
         Some(Inspections { schedule, rows })
     }

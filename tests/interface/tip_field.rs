@@ -80,10 +80,6 @@ fn what_does_not_go_with_the_driver_is_refused() {
         &["predict", "plate.toml", "--set", "fatigue.driver=tip_field", "--set", "fatigue.ageing=crack_tip"],
         &["fatigue.ageing", "belongs to fatigue bonds", "bond_strain"],
     );
-    for (key, value) in [("growth_rate", "stress_intensity"), ("precrack", "none")] {
-        let gone = [&*format!("fatigue.{key} = \"{value}\""), "no key any more", "leave it out", "tip_field"];
-        refused(&["predict", "plate.toml", "--set", &format!("fatigue.{key}={value}")], &gone);
-    }
     refused(&["predict", "plate.toml", "--set", "fatigue.driver=tips"], &["fatigue.driver", "tip_field, bond_strain"]);
     refused(&["predict", "slot.toml", "--set", "fatigue.driver=tip_field"], &["fatigue.driver", "sharp cracks", "bond_strain"]);
     refused(

@@ -43,3 +43,8 @@ pub fn calibration(file: &str, more: &str) -> String {
          force_range_kn = 5.4\nstress_ratio = 0.1\n[model]\nmethod = \"handbook\"\n"
     )
 }
+
+/// Squared Mahalanobis distance of (ln A, p) from a fit; below 5.991 inside the 95 % ellipse (χ², 2 degrees of freedom).
+pub fn distance_squared([[a, b], [c, d]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> f64 {
+    (x * (d * x - b * y) + y * (a * y - c * x)) / (a * d - b * c)
+}

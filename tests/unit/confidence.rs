@@ -1,6 +1,6 @@
 //! Calibration finds what it was given: noisy curves of a known law, and whether the stated confidence is honest.
 
-use perilife_calibration::confidence::distance_squared;
+use crate::support::fatigue_test::distance_squared;
 use perilife_calibration::criterion::Criterion;
 
 use super::misfit::{exact_curve, fit_by, fit_to, paris_model};

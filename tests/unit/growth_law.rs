@@ -94,6 +94,10 @@ fn a_table_is_straight_in_logarithms() {
         let said = table.beyond_ratio(ratio);
         assert_eq!(said.as_deref().map(|said| said.split_once(" is ").unwrap().1), words, "{said:?}");
     }
+    // Above the rates that both have the lower ratio may know more: there its rate counts, and nothing falls back.
+    let short = Curve { rows: curve(0.5, 8.0).rows[..2].to_vec(), ..curve(0.5, 8.0) };
+    let uneven = Table::new(vec![curve(0.0, 1.0), short], true, None, true);
+    near(uneven.rate(35.0 / 0.75 * MPA_SQRT_M, 0.25), 1e-10 * 35.0_f64.powi(3), 1e-12);
     // Two ratios without a rate in common: nothing is known between them.
     let apart = Table::new(vec![curve(0.0, 1.0), curve(0.5, 1e6)], true, None, true);
     assert!(apart.beyond(20.0 / 0.75 * MPA_SQRT_M, 0.25).is_none());

@@ -193,7 +193,8 @@ proptest! {
         for units in [units, Import::default()] {
             if let Ok(measured) = parse(format!("{header}\n{body}").as_bytes(), Path::new("noise.csv"), &units) {
                 for curve in &measured.curves {
-                    prop_assert!(curve.cycles.len() >= 5);
+                    // A run-out has fewer.
+                    prop_assert!(curve.cycles.len() >= 5 || curve.crack_length.iter().all(|a| *a <= curve.crack_length[0]));
                     prop_assert!(curve.cycles.windows(2).all(|pair| pair[1] > pair[0]));
                     prop_assert!(curve.crack_length.iter().all(|a| *a > 0.0 && a.is_finite()));
                 }

@@ -178,6 +178,16 @@ fn ends_of_k_ratios_side_by_side_and_unmeasured_rates() {
         let [own, of_k] = [found.rows[0].ratio, found.rows[0].delta_k / MPA_SQRT_M];
         assert!(found.says_ratio && (own - ratio).abs() < 1e-4 && (of_k / delta_k - 1.0).abs() < 1e-6, "{header}: {own}, {of_k}");
     }
+    // K_min below zero leaves open what ΔK is; R is then said to be -1 or -0.5.
+    let text = "ΔK (MPa√m),Kmin (MPa√m),da/dN (mm/cycle)\n20,-10,1e-4\n";
+    assert!(table(text, &plain).unwrap_err().to_string().contains("delta_k = \"full\""));
+    for (range, ratio, delta_k) in [(RangeKind::Full, -1.0, 10.0), (RangeKind::Tensile, -0.5, 20.0)] {
+        let keys = RateFileKeys { delta_k: Some(range), ..plain.clone() };
+        let row = table(text, &keys).unwrap().rows.remove(0);
+        assert!((row.ratio - ratio).abs() < 1e-9 && (row.delta_k / MPA_SQRT_M - delta_k).abs() < 1e-9, "{row:?}");
+    }
+    let wrong = table("ΔK (MPa√m),Kmax (MPa√m),R,da/dN (mm/cycle)\n7,10,0.1,1e-5\n", &plain).unwrap_err().to_string();
+    assert!(wrong.contains("belongs to a stress ratio of 0.300, and the row says 0.1"), "{wrong}");
     let lacks = table("Kmax (MPa√m),da/dN (mm/cycle)\n10,1e-5\n", &plain).unwrap_err().to_string();
     assert!(lacks.contains("lacks the columns"), "{lacks}");
     for (text, first, said) in [

@@ -183,7 +183,7 @@ fn compression_and_a_threshold_count_as_the_law_says() {
 /// What may be either is asked about, by the key that settles it or the name to give.
 #[test]
 fn what_may_be_either_is_asked_about() {
-    let rows: [(&str, &str, &[&str]); 13] = [
+    let rows: [(&str, &str, &[&str]); 19] = [
         ("100,50.0,1\n80,45.0,10\n", "", &["a.csv:1:", "3 columns without a name", "spectrum_format = \"cycles\""]),
         ("30,0.5\n40,1.5\n", "", &["a.csv:1:", "2 columns without a name"]),
         ("12,5\n110,25\n40,5\n", "", &["a.csv:1:", "12,5", "decimal commas", "turning_points"]),
@@ -197,11 +197,27 @@ fn what_may_be_either_is_asked_about() {
         ("max (psi),min (psi)\n2,1\n", "", &["a.csv:1:", "unit that is not known"]),
         ("max,min,flaps\n2,1,5\n", "", &["a.csv:1:", "flaps", "not a known column"]),
         ("max,min\n2,1\n", "spectrum_format = \"turning_points\"\n", &["a.csv:1:", "another format"]),
+        ("Cycle,max,min\n1,100,0\n2,60,10\n3,55,20\n", "", &["a.csv:1:", "Cycle", "numbers the rows", "name it row"]),
+        ("N,max,min\n0,100,0\n500,60,10\n1000,55,20\n", "", &["a.csv:1:", "numbers the rows"]),
+        ("max (%),min (%)\n100,0\n80,5\n", "", &["a.csv:1:", "max (%)", "unit that is not known"]),
+        ("12 55 30\n-10\n60\n20\n75\n40\n", "", &["a.csv:1:", "12 55 30", "one load a line"]),
+        ("9\n1\n3\n1\n2\n1\n3\n", "", &["a.csv:1:", "may be the number of values, and 6 follow"]),
+        ("max,min,cycles\n100,50,1\n", "truncation_percent = 20\n", &["truncation_percent", "leaves no cycle"]),
     ];
     for (content, more, words) in rows {
         let error = loading("a.csv", content, more).unwrap_err().to_string();
         assert!(words.iter().all(|word| error.contains(word)), "{content:?}: {error}");
     }
+    // Numbers of rows under another name, and cycles whose format is given.
+    for (content, more) in
+        [("row,max,min\n1,100,0\n2,60,10\n3,55,20\n", ""), ("n,max,min\n1,9,0\n2,6,1\n3,5,2\n", "spectrum_format = \"cycles\"\n")]
+    {
+        let per_pass = loading("a.csv", content, more).unwrap().spectrum.unwrap().per_pass;
+        assert_eq!(per_pass, if more.is_empty() { 3.0 } else { 6.0 }, "{content}");
+    }
+    // Peaks that the cut leaves no range are gone, and the largest that is left is the load.
+    let cut = loading("a.csv", "max,min,cycles\n100,50,1\n20,0,1\n", "truncation_percent = 30\n").unwrap();
+    assert!((cut.maximum - 40e6).abs() < 1.0 && cut.ratio == 0.0, "{} {}", cut.maximum, cut.ratio);
     // A unit is converted, and a scale that would convert once more is refused.
     let converted = loading("a.csv", "smax [ksi],smin [ksi]\n10,1\n", "").unwrap();
     assert!((converted.maximum / (2.0 * 10.0 * 6.894_757e6) - 1.0).abs() < 1e-6, "{}", converted.maximum);

@@ -235,3 +235,23 @@ fn both_ends_of_a_front_are_retarded_by_their_own_overloads() {
         assert!(grown(retarded) < 0.9 * grown(alone), "{retarded:?} against {alone:?} alone");
     }
 }
+
+/// A gust that comes in one of 3333 passes ends the standstill below the threshold, wherever passes are compared.
+#[test]
+fn a_rare_gust_ends_a_standstill() {
+    let cycle = |max: f64, min: f64, count: f64| Cycle { max, min, count };
+    let spectrum = Spectrum::of(vec![cycle(30.0, 27.0, 100.0), cycle(110.0, 6.0, 3e-4)], [0.0, 1.0]).unwrap();
+    let law = Walker { paris: ParisLaw { c: 1e-12, m: 3.0 }, gamma: 1.0, threshold: 5e6 };
+    let (mean, wheeler) = (SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY), model("wheeler", &[1.0]));
+    let laws = Laws { law: &law, mean: &mean, retardation: Some(&wheeler), least: f64::NEG_INFINITY };
+    let mut march = March::new(laws, &spectrum, Underway::start(&spectrum));
+    let growth = law.rate(20e6, 6.0 / 110.0);
+    assert_eq!(march.advance(&|_| 20e6, 2.5 * growth, 1e15), Marched::Reached);
+    // Gusts 1, 2 and half of 3, in the passes 3334, 6667 and 10 000.
+    let passes = march.at.cycles / 100.0;
+    assert!((passes / 10_000.0 - 1.0).abs() < 1e-3, "{passes}");
+    // One that grows nothing either is arrested.
+    let still = Walker { threshold: 50e6, ..law };
+    let laws = Laws { law: &still, mean: &still, ..laws };
+    assert_eq!(March::new(laws, &spectrum, Underway::start(&spectrum)).advance(&|_| 20e6, 1.0, 1e15), Marched::Arrested);
+}

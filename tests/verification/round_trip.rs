@@ -1,8 +1,8 @@
 //! The calibration finds the constants of curves that the engine itself computed.
 
+use crate::support::fatigue_test::distance_squared;
 use perilife_base::units::MM;
 use perilife_calibration::calibrate::in_terms_of_bonds;
-use perilife_calibration::confidence::distance_squared;
 use perilife_calibration::criterion::Criterion;
 use perilife_calibration::fit::{Fit, FitTask, fit};
 use perilife_calibration::power_law::PowerLaw;

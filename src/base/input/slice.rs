@@ -18,18 +18,9 @@ pub const OF_SCENES: &[(&str, &[&str])] = &[
     ("loading.kind", &["traction", "velocity", "platens"]),
 ];
 
-/// Keys that earlier versions knew, and what to do in their place.
-const REMOVED: &[(&str, &str)] = &[
-    ("fatigue.block", ONE_BREAK),
-    ("fatigue.block_cycles", ONE_BREAK),
-    ("fatigue.bonds_per_block", ONE_BREAK),
-    ("model.discretisation", LEVELS_OF_SCENES),
-    ("fatigue.block_error_percent", "leave it out; for growth by K of the tips fatigue.step_error_percent says the same"),
-];
 /// Remedy of a fatigue case that asks for points of several levels.
 pub const LEVELS_OF_SCENES: &str = "leave it out: levels are for scenes without cycles (`perilife fracture`); for fatigue use method = \
      \"element_free_galerkin\", whose nodes refine themselves";
-const ONE_BREAK: &str = "leave it out: driver \"bond_strain\" solves after every break";
 
 /// Reads `value`, found at `path` of the file, as a `T` that denies unknown fields.
 ///
@@ -101,8 +92,8 @@ fn explain(error: &toml::de::Error, value: &Value, path: &str, beside: &[&str]) 
         let known = message
             .split_once("expected ")
             .map_or_else(String::new, |(_, list)| list.trim_start_matches("one of ").replace('`', ""));
-        if let Some((_, remedy)) = REMOVED.iter().find(|(removed, _)| *removed == key) {
-            return input(&key, given(&key).unwrap_or_default(), "is no key any more", *remedy);
+        if key == "model.discretisation" {
+            return input(&key, given(&key).unwrap_or_default(), "is not a key of fatigue cases", LEVELS_OF_SCENES);
         }
         let known = [&beside.join(", "), &*known].into_iter().filter(|list| !list.is_empty()).collect::<Vec<_>>().join(", ");
         let (value, known) = (given(&key).unwrap_or_default(), if known.is_empty() { "none".to_owned() } else { known });

@@ -104,8 +104,7 @@ impl<'t> Seen<'t> {
     }
 }
 
-const REMEDY: &str =
-    "say which by measured.decimal = \".\" or \",\" (--decimal), or write the file without separators of thousands";
+const REMEDY: &str = "say which by measured.decimal = \".\" or \",\" (--decimal) where it is a file of readings, or write it without separators of thousands";
 
 fn open_column(table: &Table, row: &Row, column: usize) -> Error {
     let cell = row.cell(column);

@@ -58,7 +58,10 @@ pub(super) fn table(bytes: &[u8], file: &Path, words: &dyn Vocabulary) -> Result
         _ => {
             let names: Vec<String> = found.iter().map(|(name, _)| format!("{name:?}")).collect();
             let problem = format!("has {} sheets of readings: {}", names.len(), names.join(", "));
-            Err(whole_file(file).error(problem, format!("say which by measured.sheet = {} (--sheet)", names[0])))
+            Err(whole_file(file).error(
+                problem,
+                format!("say which by measured.sheet = {} (--sheet) where it is a file of readings, or keep one sheet", names[0]),
+            ))
         }
     }
 }

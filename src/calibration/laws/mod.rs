@@ -131,7 +131,7 @@ fn judged(kind: GrowthLawKind, given: &Given, rows: &[RateRow], effective: f64) 
     };
     let law = judged(given);
     let unknown = |(key, _): &(&str, f64)| law.left_out.as_ref().is_some_and(|why| why.starts_with(key));
-    let Some((of, constants)) = kind.0.factors.iter().find(|(_, own)| own.iter().any(unknown)) else { return law };
+    let Some((of, constants)) = kind.0.factors.iter().find(|(_, own)| own.iter().take(2).any(unknown)) else { return law };
     let others = constants.iter().map(|(key, value)| ((*key).to_owned(), *value));
     let simpler = judged(&others.chain(given.clone()).collect());
     if simpler.left_out.is_none() { LawFit { lacks: Some(of), ..simpler } } else { law }

@@ -68,12 +68,6 @@ impl MeanLaw {
         self.at(delta_k.ln())
     }
 
-    /// Slope of ln rate over ln ΔK at a ΔK (Pa√m).
-    pub fn local_slope(&self, delta_k: f64) -> f64 {
-        let half = 0.5e-6;
-        (self.at(delta_k.ln() + half) - self.at(delta_k.ln() - half)) / (2.0 * half)
-    }
-
     /// Root mean square over the range of the local slope less m.
     pub fn slope_deviation(&self) -> f64 {
         let Some(c) = self.shape else { return 0.0 };

@@ -231,7 +231,8 @@ impl<'f> Drawing<'f> {
                     (place, before) = (place + 1, missed);
                 });
             });
-            plate.missed = Some(inspected.missed);
+            // Nothing is known of one that is cut off before.
+            plate.missed = (!plate.life.is_bound || plate.life.cycles > first).then_some(inspected.missed);
         })?;
         let missed: Vec<f64> = plates.iter().filter_map(|plate| plate.missed).collect();
         let count = missed.len() as f64;

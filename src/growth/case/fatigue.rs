@@ -37,7 +37,6 @@ pub(super) fn from_value(
     choices: &mut Choices,
 ) -> Result<Fatigue> {
     let input: FatigueKeys = slice_beside(value, "fatigue", &law_keys().collect::<Vec<_>>())?;
-    refuse_gone(&input)?;
     choices.ageing = input.ageing;
     choices.zone_radius_horizons =
         number("a radius in horizons", 0.05, 10.0).read_optional("fatigue.zone_radius_horizons", input.zone_radius_horizons)?;
@@ -66,19 +65,6 @@ pub(super) fn from_value(
     let given = Given { section: value, material, ratios: loading.ratios(), folder, rates: law_source::rates };
     let law = law_source::read(settings.threshold, hands_over, &given)?;
     Ok(Fatigue { settings, law, allow_extrapolation, lot: input.lot.unwrap_or(Lot::Same) })
-}
-
-/// Refuses keys of earlier versions, by what stands in their place.
-fn refuse_gone(input: &FatigueKeys) -> Result<()> {
-    const RATE: &str =
-        "a crack grows by its bonds, dλ/dN = -A ε^p, and from a slot by the K of its tip once it is 1.5 horizons long";
-    const START: &str = "bonds have their whole lives at N = 0";
-    let gone = [("growth_rate", &input.growth_rate, RATE), ("precrack", &input.precrack, START)];
-    let Some((key, value, words)) = gone.into_iter().find_map(|(key, value, words)| Some((key, value.as_ref()?, words))) else {
-        return Ok(());
-    };
-    let remedy = "leave it out; driver = \"tip_field\" grows sharp cracks by K from N = 0 on";
-    Err(perilife_base::error::input(&format!("fatigue.{key}"), value, format!("is no key any more: {words}"), remedy))
 }
 
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of

@@ -22,14 +22,10 @@ pub(super) struct FatigueKeys {
     pub driver: Option<Driver>,
     pub ageing: Option<Ageing>,
     pub zone_radius_horizons: Option<f64>,
-    /// Of earlier versions, to be refused by name.
-    pub precrack: Option<Value>,
     pub step_error_percent: Option<f64>,
     pub critical_stretch: Option<f64>,
     pub walker_gamma: Option<f64>,
     pub delta_k_threshold_mpa_sqrt_m: Option<f64>,
-    /// As `precrack`.
-    pub growth_rate: Option<Value>,
     pub allow_extrapolation: Option<bool>,
     pub lot: Option<Lot>,
     pub initiation: Option<Value>,

@@ -26,6 +26,8 @@ const GAUSS: [(f64, f64); 3] = [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0
 const BY_HANDBOOK: (f64, usize) = (0.1, 64);
 /// The same of other plates, whose K goes on as the power of the length by which it begins.
 const BY_POWER: (f64, usize) = (0.8, 8);
+/// Difference of the cycles of an interval from those by the law, over these, that retardation makes.
+const RETARDED: f64 = 0.02;
 /// Growth over the initial length in which that power is read.
 const BEGINNING: f64 = 0.05;
 /// Powers of the length that K may begin with.
@@ -124,21 +126,28 @@ impl Recorded {
         let earlier = before(case, &places);
         let first = earlier.len() - 1;
         let (mut intervals, mut missed, mut life) = (Vec::with_capacity(first + places.len()), 0.0, 0.0);
-        // Cycles of the run and by its law over the growth that K before it is read in.
-        let mut beginning = [0.0; 2];
+        // Cycles of the run and by its law, interval by interval.
+        let mut cycles: Vec<[f64; 2]> = Vec::with_capacity(places.len());
         for pair in places.windows(2) {
             let straight = Interval::new(pair[0], pair[1], 1.0);
             let (by_law, by_run) = (straight.cycles(&law_at(&*law, case.loading.ratio)), pair[1].cycles - pair[0].cycles);
             // A law without a rate there, or one without limit, has nothing to be set against.
             let weight = if by_law.is_finite() && by_law > 0.0 { by_run / by_law } else { 1.0 };
-            if by_law.is_finite() && (beginning[1] == 0.0 || pair[0].length < places[0].length * (1.0 + BEGINNING)) {
-                beginning = [beginning[0] + by_run, beginning[1] + by_law];
-            }
+            cycles.push(if by_law.is_finite() && by_law > 0.0 { [by_run, by_law] } else { [0.0; 2] });
             (missed, life) = (missed + (by_run - by_law.min(2.0 * by_run)).abs(), life + by_run);
             intervals.push(Interval::new(pair[0], pair[1], weight));
         }
-        // What retardation does at the start of the run it does to shorter cracks.
-        let weight = if beginning[1] > 0.0 { beginning[0] / beginning[1] } else { 1.0 };
+        // What retardation does at the start of the run it does to shorter cracks, from the first overload on.
+        let is_retarded = |[by_run, by_law]: &[f64; 2]| (by_run - by_law).abs() > RETARDED * by_law;
+        let start = cycles
+            .iter()
+            .position(is_retarded)
+            .filter(|_| case.retardation.is_some())
+            .map_or(0, |first| (first + 1).min(cycles.len() - 1));
+        let end = places[start].length * (1.0 + BEGINNING);
+        let beginning = cycles.iter().zip(&places).skip(start).take_while(|(_, place)| place.length < end);
+        let sums = beginning.fold([0.0; 2], |sums, (own, _)| [sums[0] + own[0], sums[1] + own[1]]);
+        let weight = if sums[1] > 0.0 { sums[0] / sums[1] } else { 1.0 };
         let earlier = earlier.windows(2).map(|pair| Interval::new(pair[0], pair[1], weight));
         Ok(Recorded {
             intervals: earlier.chain(intervals).collect(),

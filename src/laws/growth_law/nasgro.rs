@@ -49,6 +49,7 @@ pub static LAW: Description = Description {
     fit: Some("the NASGRO equation"),
     factors: &[
         ("fracture", &[("nasgro_q", 0.0), (K_C.key, f64::INFINITY)]),
+        ("stress ratio in the threshold", &[("nasgro_c_th", 0.0)]),
         ("threshold", &[("nasgro_p", 0.0), ("nasgro_delta_k_0_mpa_sqrt_m", 1e-6), ("nasgro_c_th", 0.0)]),
     ],
     compression: Some(("crack opening", -2.0)),

@@ -146,12 +146,19 @@ impl Table {
         if log_k.is_nan() || log_k == f64::NEG_INFINITY {
             return 0.0;
         }
+        let read = |(band, share): (&[[f64; 3]], f64)| {
+            let at = |knot: &[f64; 3]| knot[1] + share * (knot[2] - knot[1]);
+            let next = band.partition_point(|knot| at(knot) < log_k).clamp(1, band.len() - 1);
+            let [from, to] = [&band[next - 1], &band[next]];
+            let part = ((log_k - at(from)) / (at(to) - at(from))).clamp(0.0, 1.0);
+            (from[0] + part * (to[0] - from[0])).exp()
+        };
         let (band, share) = self.around(ratio);
-        let at = |knot: &[f64; 3]| knot[1] + share * (knot[2] - knot[1]);
-        let next = band.partition_point(|knot| at(knot) < log_k).clamp(1, band.len() - 1);
-        let [from, to] = [&band[next - 1], &band[next]];
-        let part = ((log_k - at(from)) / (at(to) - at(from))).clamp(0.0, 1.0);
-        (from[0] + part * (to[0] - from[0])).exp()
+        let end = band[band.len() - 1];
+        // Above the rates that two ratios have in common the lower ratio may know more, and is the slower one.
+        let below = self.curves.partition_point(|curve| curve.ratio < ratio).saturating_sub(1);
+        let more = if log_k > end[1] + share * (end[2] - end[1]) { read((&self.bands[2 * below], 0.0)) } else { 0.0 };
+        read((band, share)).max(more)
     }
 
     /// In words, that K lies beyond the rows.
@@ -239,7 +246,10 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
     sorted.sort_by(|a, b| a.ratio.total_cmp(&b.ratio));
     let (mut curves, mut notes, mut rest) = (Vec::new(), rates.notes.clone(), &mut sorted[..]);
     while let Some(first) = rest.first().map(|row| row.ratio) {
-        let (same, others) = rest.split_at_mut(rest.partition_point(|row| row.ratio - first <= SAME_RATIO));
+        // Measured ratios scatter: rows of one test have no gap between them.
+        let is_one = |i: &usize| rest[*i].ratio - first <= SAME_RATIO || rest[*i].ratio - rest[*i - 1].ratio <= 0.25 * SAME_RATIO;
+        let count = (1..rest.len()).find(|i| !is_one(i)).unwrap_or(rest.len());
+        let (same, others) = rest.split_at_mut(count);
         rest = others;
         let last = same[same.len() - 1].ratio;
         let mean = same.iter().map(|row| row.ratio).sum::<f64>() / same.len() as f64;
@@ -250,7 +260,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
             return Err(wrong(Some(&same[0]), "stress_ratio", first, problem));
         }
         let pairs: Vec<[f64; 2]> = same.iter().map(|row| row.pair).collect();
-        let falls = (1..pairs.len()).find(|&i| (0..2).any(|k| pairs[i][k] <= pairs[i - 1][k]));
+        let falls = (1..pairs.len()).find(|&i| (0..2).any(|k| pairs[i][k] <= pairs[i - 1][k] * (1.0 + 1e-9)));
         let Some(fall) = falls else {
             curves.push(Curve { ratio, rows: pairs });
             continue;

@@ -209,21 +209,36 @@ impl<'a> March<'a> {
             return false;
         }
         let growth = self.at.a - start;
+        if growth == 0.0 && before == self.at.zone {
+            // A rare cycle that did not come in this period may end the standstill.
+            let (passes, period) = (self.at.passes, self.spectrum.period);
+            let so_far = |cycle: &Cycle, passes: f64| (cycle.count * passes + WHOLE).floor();
+            if self.rare().all(|cycle| so_far(cycle, passes) > so_far(cycle, passes - period)) {
+                return true;
+            }
+            let most = (cycles_max - self.at.cycles) / self.per_period;
+            let skipped = self.without_rare().min(most).floor().max(0.0);
+            (self.at.passes, self.at.cycles) = (passes + skipped * period, self.at.cycles + skipped * self.per_period);
+        }
         if growth == 0.0 {
-            return before == self.at.zone;
+            return false;
         }
         self.jump(growth, before, k, to, cycles_max);
         self.at.period = (self.at.a, self.at.zone, true);
         false
     }
 
-    /// Periods before the next cycle that comes in few of them; infinite where there is none.
+    /// Cycles that come in few periods, or in few times the same number.
+    fn rare(&self) -> impl Iterator<Item = &Cycle> {
+        let period = self.spectrum.period;
+        let is_whole = move |count: f64| (count - count.round()).abs() <= WHOLE * period;
+        self.spectrum.cycles.iter().filter(move |cycle| cycle.count * period < OFTEN && !is_whole(cycle.count * period))
+    }
+
+    /// Periods before the next cycle that is rare; infinite where there is none.
     fn without_rare(&self) -> f64 {
-        let per_period = |cycle: &&Cycle| cycle.count * self.spectrum.period;
-        let is_rare = |cycle: &&Cycle| per_period(cycle) < OFTEN && (per_period(cycle) - per_period(cycle).round()).abs() > WHOLE;
         let next = |cycle: &Cycle| ((cycle.count * self.at.passes + WHOLE).floor() + 1.0) / cycle.count - self.at.passes;
-        let rare = self.spectrum.cycles.iter().filter(is_rare).map(next);
-        rare.fold(f64::INFINITY, f64::min) / self.spectrum.period - 1.0
+        self.rare().map(next).fold(f64::INFINITY, f64::min) / self.spectrum.period - 1.0
     }
 
     /// Jumps over periods in which the tip grows at the share of the mean rate that it had in the last one, K changing by no more than [`JUMP`].

@@ -403,10 +403,10 @@ pub fn says_from_notch(name: &str) -> bool {
 
 /// Metres per unit of a column whose name speaks of a crack length by whatever method, half of it where that is tip to tip.
 pub fn speaks_of_length(name: &str) -> Option<f64> {
-    const METHODS: &str = "total dcpd acpd pd edc compliance cod cmod bfs visual optical optisch visuell";
+    const OTHERS: &str = "total edc compliance cod cmod bfs visual optical optisch visuell";
     of_words(name, |words, bracket| {
         let is_plain = |rest: &&[&str]| {
-            (any_in(rest, LENGTH) || rest == &["visual"]) && all_in(rest, &[LENGTH, LENGTH_MORE, METHODS, SIDES])
+            (any_in(rest, LENGTH) || rest == &["visual"]) && all_in(rest, &[LENGTH, LENGTH_MORE, METHODS, OTHERS, SIDES])
         };
         let mut readings = unit_of(words, bracket, length_unit).into_iter().filter(|(rest, _)| is_plain(rest));
         let unit = readings.find_map(|(_, unit)| if let Named::Is(unit) = unit { Some(unit.si()) } else { None })?;
@@ -492,7 +492,10 @@ pub fn is_unit_or_blank(cell: &str) -> bool {
     }
     of_words(text, |words, _| {
         let k_or_stress = words.first().is_some_and(|word| ["mpa", "ksi", "kn", "n", "psi", "mpam", "mm", "kpa"].contains(word));
+        let is_of = |like| Unit::spelled(words, like).is_some();
         [length_unit, load_unit, cycle_unit].iter().any(|known| known(words).is_some())
+            || is_of(Unit::Rate(RateUnit::Millimetre))
+            || is_of(Unit::Intensity(IntensityUnit::MpaSqrtM))
             || MORE.contains(&words)
             || (k_or_stress && words.len() <= 4)
     })

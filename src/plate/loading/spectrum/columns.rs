@@ -24,9 +24,9 @@ const COUNT_MORE: &str = "cycle number of per pass block flight in the no";
 /// Counts that rise from row to row are those of an exceedance curve.
 const SUMS: &str = "elapsed total cumulative cumulated cum accumulated running gesamt gesamtzahl exceedance exceedances";
 /// Columns that nothing depends on.
-const OTHER: &str = "time t day sec zeit date datum index idx i id no nr nummer point sample line row flight segment mission phase event start end begin \
+const OTHER: &str = "time t day days hours sec seconds second elapsed timestamp temps zeit date datum index idx i id no nr nummer point sample line row flight segment mission phase event start end begin \
                      from to bin class name label comment remark note notes damage type source unnamed 0";
-/// Difference of a scale from the size of a unit by which both are one, and of a first number from that of the numbers behind it.
+/// Difference of a scale from the size of a unit by which both are one.
 const ALIKE: f64 = 0.02;
 
 /// What a column holds.
@@ -47,6 +47,9 @@ const WORDS: Words<Role> = Words { role, is_enough: |roles| format_of(roles).is_
 
 /// What a name means.
 fn role(name: &str) -> Option<(Role, Named)> {
+    if name.contains('%') {
+        return role(&name.replace('%', "")).map(|(role, _)| (role, Named::Strange));
+    }
     let column = Column::named(0, name);
     if column.role == names::Role::Ratio {
         return Some((Role::Ratio, Named::No));
@@ -131,13 +134,18 @@ pub(super) fn read(
     let least = if asked == Some(SpectrumFormat::Cycles) { 2 } else { 1 };
     let mut table = table::read(bytes, file, &Words { columns: least, ..WORDS })?;
     let mut notes = table.warnings();
+    check_preamble(&table)?;
     let (format, columns) = columns_of(&table, asked, scale)?;
     if columns.len() == 1 && format == SpectrumFormat::TurningPoints {
         notes.extend(without_count(&mut table)?);
     }
-    // Forces may be written in thousands, as counts are; stresses and ratios are below a thousand.
-    let is_large = |role: Role| role == Role::Count || (role != Role::Ratio && !scale.0.is_stress());
-    let read: Vec<(usize, bool)> = columns.iter().map(|column| (column.index, is_large(column.role))).collect();
+    // Forces in N may be written in thousands, as counts are; stresses, ratios and kN are below a thousand.
+    let is_large = |column: &Read| match column.role {
+        Role::Count => true,
+        Role::Ratio => false,
+        _ => !scale.0.is_stress() && column.factor * scale.0.si() < 1e3,
+    };
+    let read: Vec<(usize, bool)> = columns.iter().map(|column| (column.index, is_large(column))).collect();
     let rows = numbers(&table, &read)?;
     let of = |values: &[f64], role: Role| {
         let place = columns.iter().position(|column| column.role == role)?;
@@ -146,6 +154,16 @@ pub(super) fn read(
     if format == SpectrumFormat::TurningPoints {
         let points = rows.iter().filter_map(|(_, values)| of(values, Role::Load)).collect();
         return Ok((format, Content::Points(points), notes));
+    }
+    if let Some(place) = columns.iter().position(|column| column.role == Role::Count).filter(|_| asked.is_none()) {
+        // 1, 2, 3, ... as 0, 1000, 2000, 3000, ...
+        let step = rows.get(1).zip(rows.first()).map_or(0.0, |(second, first)| second.1[place] - first.1[place]);
+        let is_from = |from: f64| rows.iter().enumerate().all(|(row, (_, values))| values[place] == from + step * row as f64);
+        if rows.len() > 2 && step > 0.0 && (is_from(0.0) || is_from(step)) {
+            let problem = "numbers the rows, or says how often their cycles come";
+            let remedy = "name it row, or set loading.spectrum_format = \"cycles\" if these are numbers of cycles";
+            return Err(table.header_fault(columns[place].index).error(problem, remedy));
+        }
     }
     let cycle = |(line, values): &(usize, Vec<f64>)| {
         let value = |role: Role| of(values, role);
@@ -244,6 +262,22 @@ fn nameless(table: &Table) -> perilife_base::error::Error {
     )
 }
 
+/// Refuses lines of numbers above the table, which would be lost, but a number of its rows.
+fn check_preamble(table: &Table) -> Result<()> {
+    let title = (table.header_line, table.header.join(" "));
+    for (line, text) in table.preamble.iter().chain([&title]).filter(|(line, _)| *line > 0) {
+        let numbers: Option<Vec<f64>> =
+            text.split([' ', ',', ';', '\t']).filter(|word| !word.is_empty()).map(|word| word.parse().ok()).collect();
+        if let Some([_, ..]) = numbers.as_deref().filter(|numbers| **numbers != [table.rows.len() as f64]) {
+            let fault = Fault { line: Some(*line), value: Some(text), ..whole_file(&table.file) };
+            return Err(
+                fault.error("is above the table, and not the number of its rows", "write one load a line, or one cycle a line")
+            );
+        }
+    }
+    Ok(())
+}
+
 /// Takes out a first number that says how many follow; what is to be said of it.
 /// Errors: one that may be such a number and is not quite.
 fn without_count(table: &mut Table) -> Result<Option<String>> {
@@ -260,7 +294,7 @@ fn without_count(table: &mut Table) -> Result<Option<String>> {
         return Ok(Some(format!("{}: line {line}, {first}, is the number of values that follow", table.file.display())));
     }
     let is_named = table.header_line > 0 && role(&table.names[0]).is_some();
-    let is_near = (first - follow).abs() <= ALIKE * follow + 1.0 && first > 2.0 * most;
+    let is_near = (0.5 * follow..=2.0 * follow).contains(&first) && first > 2.0 * most;
     if is_near || (first == follow && !is_named) {
         let cell = first.to_string();
         let fault = Fault { line: Some(line), value: Some(&cell), ..whole_file(&table.file) };

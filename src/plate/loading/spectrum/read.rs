@@ -59,7 +59,7 @@ impl Spectrum {
             let (format, content, mut notes) = content(&bytes, &path, input.spectrum_format, scale)?;
             let cycles = cycles_of(content, &mut notes)?;
             let sha256 = perilife_base::input::sha256(&bytes);
-            let of_file = |note: String| if note.starts_with(file) { note } else { format!("{file}: {note}") };
+            let of_file = |note: String| if note.contains(file) { note } else { format!("{file}: {note}") };
             Spectrum::of(cycles, [omission, truncation]).map(|spectrum| Spectrum {
                 file: file.to_owned(),
                 format,
@@ -85,6 +85,14 @@ impl Spectrum {
         let share = |cycle: Cycle| Cycle { max: cycle.max.min(cut) / cut, min: cycle.min / cut, ..cycle };
         // A cycle above the cut is gone with it.
         let mut left: Vec<Cycle> = cycles.into_iter().map(share).filter(|cycle| cycle.max > cycle.min).collect();
+        let top = left.iter().map(|cycle| cycle.max).fold(0.0, f64::max);
+        if top <= 0.0 {
+            let problem = "leaves no cycle that opens a crack";
+            return Err(input("loading.truncation_percent", 100.0 * truncation, problem, "give a larger share, or leave it out"));
+        }
+        // The largest may be gone with the cut.
+        left.iter_mut().for_each(|cycle| (cycle.max, cycle.min) = (cycle.max / top, cycle.min / top));
+        let cut = cut * top;
         let all: f64 = left.iter().map(|cycle| cycle.count).sum();
         let least = omission * left.iter().map(Cycle::range).fold(0.0, f64::max);
         left.retain(|cycle| cycle.range() >= least);
@@ -154,7 +162,8 @@ fn content(
 
 /// The text without remarks behind numbers; lines of nothing but a remark stay, since one may be the header.
 fn without_remarks(text: &str) -> Cow<'_, str> {
-    let has_remark = |line: &str| line.find('#').is_some_and(|at| !line[..at].trim().is_empty());
+    let is_numbers = |text: &str| text.trim_start().starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+    let has_remark = |line: &str| line.contains('#') && is_numbers(line);
     if !text.lines().any(has_remark) {
         return Cow::Borrowed(text);
     }
