@@ -1,5 +1,6 @@
 //! Lives on recorded K(a) beside runs of their own: no figure here comes from anywhere but the program's quadrature over K of a handbook.
 
+use perilife_base::input::Folder;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::predict::laws::growth_law;
@@ -44,6 +45,32 @@ fn another_law_load_and_length_give_the_life_of_a_run_by_them() {
             let found = recorded.life(&*law, Change { crack_length: length, ..own });
             is_near(found.cycles, wanted, 1e-4, &format!("{specimen} x {factor}"));
             assert!(!found.is_clipped);
+        }
+    }
+}
+
+/// Shorter cracks are retarded as the run is once its first overload has come, whether that is early or late in a pass, or rare.
+#[test]
+fn shorter_cracks_are_retarded_whenever_the_first_overload_comes() {
+    for cycles in ["110,6,1\n60,6,4000\n", "60,6,4000\n110,6,1\n", "60,6,400\n110,6,0.1\n"] {
+        let case = |length: f64| {
+            let text = format!(
+                "[specimen]\n{}[material]\nyoungs_modulus_gpa = 72\npoisson_ratio = 0.33\nyield_strength_mpa = 345\n\
+                 [loading]\nkind = \"spectrum\"\nspectrum_file = \"s.csv\"\nspectrum_scale_mpa = 1\nretardation = \"wheeler\"\n\
+                 wheeler_exponent = 1.2\n[model]\nmethod = \"handbook\"\n[fatigue]\ngrowth_law = \"walker\"\n\
+                 paris_c_mm_per_cycle = 8.95422e-8\nparis_m = 2.874\nwalker_gamma = 0.6\n\
+                 [stop]\ncrack_length_mm = 30\ntoughness = false\nnet_section = false\n",
+                PANEL.replace("crack_length_mm = 9", &format!("crack_length_mm = {length}"))
+            );
+            let folder = Folder::at_hand([("s.csv".to_owned(), format!("max,min,cycles\n{cycles}").into_bytes())]);
+            Case::from_toml(&text, "retarded", folder, &[]).unwrap()
+        };
+        let (done, recorded) = run(&case(9.0));
+        let (law, own) = (growth_law(&case(9.0)).unwrap(), recorded.unchanged());
+        is_near(recorded.life(&*law, own).cycles, done.life_cycles(), 1e-6, cycles);
+        for length in [8.1, 6.0] {
+            let found = recorded.life(&*law, Change { crack_length: length * MM, ..own });
+            is_near(found.cycles, run(&case(length)).0.life_cycles(), 0.02, &format!("{cycles}{length} mm"));
         }
     }
 }
