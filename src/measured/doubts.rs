@@ -5,8 +5,10 @@ use super::import::{ColumnNames, Import};
 use super::marks::rejects;
 use perilife_base::error::Result;
 use perilife_base::table::Decimal;
-use perilife_base::table::names::{Column, Role, is_of_statistics, says_from_notch, speaks_of_length, speaks_of_thousands};
+use perilife_base::table::names::vocabulary::{CYCLES, LENGTH, LENGTH_MORE, METHODS, SIDES, is_in, words};
+use perilife_base::table::names::{Column, Named, Role, all_in, any_in, of_words, quantity};
 use perilife_base::table::numerals::number;
+use perilife_base::table::units::{LengthUnit, Unit};
 use perilife_base::table::{Fault, Row, Table, whole_file};
 
 /// Share by which two lengths of one reading differ that are not the same.
@@ -114,4 +116,54 @@ pub(super) fn rejected(table: &Table, read: &[usize]) -> Option<String> {
         table.header[column],
         if found.len() == 1 { "it is the only one".to_owned() } else { format!("{} rows do so", found.len()) }
     ))
+}
+
+/// Whether a line says that cycles are counted in thousands or millions: `N x 1000`, `Zyklen in Tausend`; not `precracked for 50 thousand cycles`.
+fn speaks_of_thousands(line: &str) -> bool {
+    const MANY: &str = "kilocycles kilocycle kcycles kcycle thousand thousands tausend tsd milliers migliaia miles megacycles mcycles million millions mio";
+    let (mut words, bracket) = words(line);
+    words.extend(bracket);
+    let is_count = |word: &String| word.parse::<f64>().is_ok();
+    let is_many = |i: usize| {
+        let after_count = i > 0 && is_count(&words[i - 1]);
+        let power = words[i] == "10" && words.get(i + 1).is_some_and(|next| ["3", "6"].contains(&next.as_str()));
+        let thousand = ["1000", "x1000", "1000000"].contains(&words[i].as_str()) || power;
+        let times = i > 0 && ["x", "in", "of", "mal", "times"].contains(&words[i - 1].as_str());
+        is_in(MANY, &words[i]) && !after_count || thousand && (times || words[i].starts_with('x') || line.contains('×'))
+    };
+    let is_of_cycles = words.iter().any(|word| is_in(CYCLES, word));
+    is_of_cycles && (0..words.len()).any(is_many)
+}
+
+/// Whether a name says that its lengths are measured from the notch.
+fn says_from_notch(name: &str) -> bool {
+    const NOTCH: &str = "notch kerb kerbe kerbgrund entaille muesca entalla intaglio";
+    of_words(name, |words, _| any_in(words, NOTCH) && (any_in(words, LENGTH) || any_in(words, SIDES) || words.contains(&"from")))
+}
+
+/// Metres per unit of a column whose name speaks of a crack length by whatever method, half of it where that is tip to tip.
+fn speaks_of_length(name: &str) -> Option<f64> {
+    const OTHERS: &str = "total edc compliance cod cmod bfs visual optical optisch visuell";
+    let is_plain = |rest: &[&str]| {
+        (any_in(rest, LENGTH) || rest == ["visual"]) && all_in(rest, &[LENGTH, LENGTH_MORE, METHODS, OTHERS, SIDES])
+    };
+    let Named::Is(unit) = quantity(name, Unit::Length(LengthUnit::Millimetre), is_plain)? else { return None };
+    let is_whole = of_words(name, |words, _| words.contains(&"2a"));
+    Some(if is_whole { 0.5 * unit.si() } else { unit.si() })
+}
+
+/// Whether a name in a row of specimens is that of a statistic or of a model; `Design A` and `-40 C` are specimens.
+fn is_of_statistics(name: &str) -> bool {
+    const STATISTICS: &str = "mean average avg mittel mittelwert moyenne media std sd stdev stddev dev deviation standardabweichung streuung ecart \
+        scatter variance cov cv";
+    const MODELS: &str = "predicted prediction model design fitted regression confidence";
+    const MORE: &str = "cycles cycle of the curve value line lower upper bound band zyklen lastspiele";
+    const SPREAD: &str = "s sd sigma 1s 2s 3s 1sd 2sd 3sd 2sigma 3sigma";
+    of_words(name, |words, _| {
+        let is_statistic = any_in(words, STATISTICS) && all_in(words, &[STATISTICS, MORE, "n a 2a standard type"]);
+        let is_model = any_in(words, MODELS) && all_in(words, &[MODELS, MORE]);
+        let is_signed =
+            name.trim_start().starts_with(['+', '-', '\u{b1}']) && words.last().is_some_and(|word| is_in(SPREAD, word));
+        is_statistic || is_model || is_signed || words == ["s", "d"]
+    })
 }

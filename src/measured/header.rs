@@ -2,7 +2,7 @@
 //! beside each other, `N1, a1, N2, a2`, or `N, a, N, a`.
 
 use super::import::Import;
-use perilife_base::table::names::{Column, Named, Role, is_length_of, is_unit_or_blank, ratio_of_name, with_unit};
+use perilife_base::table::names::{Column, Named, Role, is_length_of, is_unit_or_blank, with_unit};
 use perilife_base::table::units::Unit;
 use perilife_base::table::{Sheet, Vocabulary};
 
@@ -151,4 +151,15 @@ pub(super) fn pairs_of(names: &[String]) -> Option<Vec<(String, [Column; 2])>> {
         (name, [columns[2 * pair], columns[2 * pair + 1]])
     };
     Some((0..count).map(pair).collect())
+}
+
+/// The stress ratio of a column that is named by it, and the bracket behind it: `R=0.1`, `R 0.5 (MPa√m)`, `ΔK at R0.7`.
+pub(super) fn ratio_of_name(name: &str) -> Option<(&str, &str)> {
+    let is_word = |place: &usize| name[*place..].starts_with(['R', 'r']) && !name[..*place].ends_with(char::is_alphanumeric);
+    let place = name.char_indices().map(|(place, _)| place).find(is_word)?;
+    let text = name[place + 1..].trim_start_matches(['=', ' ', '_', ':']);
+    let (number, rest) = text.split_at(text.find([' ', '(', '[', '{']).unwrap_or(text.len()));
+    let is_ratio = number.replace(',', ".").replace('\u{2212}', "-").parse().is_ok_and(|ratio: f64| ratio < 1.0);
+    let rest = rest.trim_start();
+    (is_ratio && (rest.is_empty() || rest.starts_with(['(', '[', '{']))).then_some((number, rest))
 }

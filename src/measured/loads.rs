@@ -10,7 +10,7 @@ use perilife_base::table::Fault;
 use perilife_base::table::names::Role;
 use perilife_base::units::round_off;
 use perilife_base::units::{MM, MPA_SQRT_M};
-use perilife_plate::loading::Loading;
+use perilife_plate::loading::{Loading, SAME_RATIO};
 use perilife_plate::material::Material;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_plate::specimen::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
@@ -27,9 +27,6 @@ const LIGAMENT_LEFT: f64 = 0.95;
 const TOUGHNESS_FACTOR: f64 = 1.5;
 /// See [`LIGAMENT_LEFT`].
 const LEAP_OF_K: f64 = 2.0;
-
-/// Stress ratios that differ by less are the same.
-const SAME_RATIO: f64 = 0.02;
 
 impl Measured {
     /// Sets the readings against the specimen and the load of a case.

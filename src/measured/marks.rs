@@ -3,7 +3,8 @@
 use super::header::columns_of;
 use super::import::Import;
 use perilife_base::error::Result;
-use perilife_base::table::names::{Role, marks_out, says_one_of};
+use perilife_base::table::names::vocabulary::{MARKS_KEEP, MARKS_OUT};
+use perilife_base::table::names::{Role, any_in, of_words, says_one_of};
 use perilife_base::table::numerals::is_number;
 use perilife_base::table::{Row, Table};
 
@@ -80,4 +81,9 @@ pub(super) fn leave_marked_out(table: &mut Table, import: &Import) -> Result<()>
         })?;
     }
     Ok(())
+}
+
+/// Whether a column that says which readings count marks those that do not.
+fn marks_out(name: &str) -> bool {
+    of_words(name, |words, _| any_in(words, MARKS_OUT) || !any_in(words, MARKS_KEEP))
 }

@@ -26,6 +26,7 @@ use perilife_base::table::{
 };
 use perilife_base::table::{Fault, Row, Table, whole_file};
 use perilife_base::units::MM_PER_CYCLE;
+use perilife_plate::loading::SAME_RATIO;
 
 perilife_base::kinds! {
     /// What of a cycle from R K_max to K_max is ΔK in a table of rates where R is negative; at R >= 0 both are (1-R) K_max. Laws take its
@@ -36,8 +37,6 @@ perilife_base::kinds! {
     }
 }
 
-/// Difference of two stress ratios of a row that are one but for rounding.
-const SAME_RATIO: f64 = 0.02;
 /// A flag of `perilife rates` that speaks against nothing.
 const HARMLESS: &str = "load_changes";
 

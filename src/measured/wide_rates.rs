@@ -7,10 +7,10 @@ use std::path::Path;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
-use super::header::columns_of;
+use super::header::{columns_of, ratio_of_name};
 use super::import::Import;
 use perilife_base::error::Result;
-use perilife_base::table::names::{Named, Role, ratio_of_name};
+use perilife_base::table::names::{Named, Role};
 use perilife_base::table::units::{RateUnit, Unit};
 use perilife_base::table::{Fault, Row, Table, whole_file};
 

@@ -1,8 +1,9 @@
 //! Tables of numbers whose columns are known by name: β over crack length, residual stress over a plate, cycles of a spectrum.
 
-use super::cells::{Row, Table};
+use super::cells::{Fault, Row, Table, whole_file};
 use super::decimal::{Numbers, decide};
 use super::names::{Named, is_unit_or_blank, with_unit};
+use super::numerals::{is_number, number};
 use super::units::Unit;
 use super::{Decimal, Sheet, Vocabulary};
 use crate::error::Result;
@@ -56,26 +57,17 @@ impl<R: Copy + PartialEq> Words<R> {
         let known: Vec<Option<(R, Named)>> = table.names.iter().map(|name| (self.role)(name)).collect();
         let roles: Vec<R> = known.iter().flatten().map(|(role, _)| *role).collect();
         let fault = |column: usize, problem: &str| table.header_fault(column).error(problem, self.remedy);
-        if table.header_line == 0 {
-            let first = table.rows.first().map_or("", |row| row.cell(0));
-            return Err(super::Fault {
-                line: table.rows.first().map(|row| row.line),
-                value: Some(first),
-                ..super::whole_file(&table.file)
-            }
-            .error("begins a table whose columns have no names", self.remedy));
+        let of_row = |line, value| Fault { line: Some(line), value: Some(value), ..whole_file(&table.file) };
+        if let Some(row) = table.rows.first().filter(|_| table.header_line == 0) {
+            let problem = "begins a table whose columns have no names";
+            return Err(of_row(row.line, row.cell(0)).error(problem, self.remedy));
         }
         if let Some(strange) = known.iter().position(Option::is_none) {
             return Err(fault(strange, "is not a known column"));
         }
         if !(self.is_enough)(&roles) {
             let names = table.header.join(",");
-            let fault = super::Fault {
-                line: Some(table.header_line),
-                key: Some("header"),
-                value: Some(&names),
-                ..super::whole_file(&table.file)
-            };
+            let fault = Fault { key: Some("header"), ..of_row(table.header_line, &names) };
             return Err(fault.error("lacks a column", self.remedy));
         }
         let twice = |at: &usize| roles[..*at].contains(&roles[*at]) && several != Some(roles[*at]);
@@ -112,7 +104,6 @@ pub fn numbers(table: &Table, columns: &[(usize, bool)]) -> Result<Vec<(usize, V
 /// The number of a cell.
 /// Errors: none, one that is not finite, or one with the other decimal sign.
 pub fn number_at(table: &Table, row: &Row, column: usize, decimal: Decimal) -> Result<f64> {
-    use super::numerals::{is_number, number};
     let cell = row.cell(column);
     let refused = |problem: &str, remedy: &str| Err(table.cell_fault(row, column).error(problem, remedy));
     match number(cell, decimal) {

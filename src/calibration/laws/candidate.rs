@@ -9,12 +9,10 @@ use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_laws::growth_law::description::{Constant, Role};
 use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind};
 use perilife_measured::RateRow;
+use perilife_plate::loading::SAME_RATIO;
 
 /// Constants that the user gives, by their keys.
 pub type Given = BTreeMap<String, f64>;
-
-/// Stress ratios that differ by less are one.
-const SAME_RATIO: f64 = 0.02;
 
 /// Refuses constants that no law has, or beyond what it can have.
 pub(super) fn check_given(given: &Given) -> Result<()> {

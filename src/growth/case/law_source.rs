@@ -17,12 +17,11 @@ use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker, bon
 use perilife_laws::paris::ParisLaw;
 use perilife_laws::{FatigueLaw, STEADY_EXPONENTS, unsteady};
 use perilife_measured::RateFile;
+use perilife_plate::loading::SAME_RATIO;
 use perilife_plate::material::{Material, Plane, growth_data, library};
 
 /// The growth law that stands with its material.
 pub const LIBRARY: &str = "library";
-/// Slack of a stress ratio against those of the rates.
-const RATIO_SLACK: f64 = 0.02;
 
 /// The law of the case, of the kind that is asked for or else whose constants are given; `None` where the file gives none at all,
 /// as in a calibration. `hands_over` says of bonds whether they hand their crack over to its K.
@@ -221,7 +220,7 @@ pub fn library_law(name: &str, thickness: f64, ratio: f64, folder: &Folder) -> R
 /// Refuses a power of ΔK at another stress ratio than that of its rates; what is to be said of other laws there.
 pub(crate) fn ratio_line(record: &LawRecord, ratio: f64, key: &str) -> Result<Option<String>> {
     let (low, high) = (record.stress_ratio_min, record.stress_ratio_max);
-    if (low - RATIO_SLACK..=high + RATIO_SLACK).contains(&ratio) {
+    if (low - SAME_RATIO..=high + SAME_RATIO).contains(&ratio) {
         return Ok(None);
     }
     let fits = || GrowthLawKind::all().map(|kind| kind.0).filter(|law| law.fit.is_some());

@@ -7,7 +7,8 @@ use super::{CurvePoint, Prediction};
 use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource, Model};
 use perilife_base::units::MPA_SQRT_M;
-use perilife_laws::growth_law::Acting;
+use perilife_laws::growth_law::{Acting, GrowthLaw};
+use perilife_plate::loading::SAME_RATIO;
 
 /// Share of life outside the fitted ΔK range above which a run is warned about, and of a side of the range that is named then.
 const WARNED: f64 = 0.05;
@@ -16,8 +17,6 @@ pub const EXTRAPOLATION_REFUSED: f64 = 0.25;
 const NAMED: f64 = 0.01;
 /// Change of K over which shares of growth are kept.
 const SHARES_KEPT: f64 = 0.02;
-/// Difference of a stress ratio from those of the rates that counts as none.
-pub const SAME_RATIO: f64 = 0.02;
 
 /// Share of the life that was growth at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
 /// within each block. `None` without a fitted record, without life, or without any known ΔK.
@@ -113,6 +112,7 @@ fn life_share_outside(case: &Case, prediction: &Prediction, low: f64, high: f64)
 
 /// Share of the life by growth of cycles of which a share is told, by their size in the middle of a block and what ΔK is over that at its ends.
 fn life_share(case: &Case, curve: &[CurvePoint], of: &dyn Fn(&Acting, [f64; 2]) -> f64) -> Option<f64> {
+    let law = growth_law(case).ok()?;
     let (mut counted, mut known, mut kept) = (0.0, 0.0, (0.0, Vec::new()));
     for pair in curve.windows(2) {
         let cycles = pair[1].cycles - pair[0].cycles;
@@ -123,7 +123,7 @@ fn life_share(case: &Case, curve: &[CurvePoint], of: &dyn Fn(&Acting, [f64; 2]) 
         }
         let middle = 0.5 * (from + to);
         if kept.1.is_empty() || (middle / kept.0 - 1.0_f64).abs() > SHARES_KEPT {
-            kept = (middle, acting(case, middle));
+            kept = (middle, acting(case, &*law, middle));
         }
         known += cycles;
         let ends = if kept.0 > 0.0 { [from / kept.0, to / kept.0] } else { [1.0; 2] };
@@ -133,16 +133,14 @@ fn life_share(case: &Case, curve: &[CurvePoint], of: &dyn Fn(&Acting, [f64; 2]) 
 }
 
 /// The cycles that act at a ΔK of the largest, Pa√m.
-fn acting(case: &Case, delta_k: f64) -> Vec<Acting> {
-    let (k_max, ratio) = (delta_k / case.loading.range_share(), case.loading.ratio);
-    let law = case.loading.spectrum.as_ref().and_then(|_| growth_law(case).ok());
-    law.map_or_else(|| vec![Acting::new(k_max, ratio, 1.0)], |law| law.acting(k_max, ratio))
+fn acting(case: &Case, law: &dyn GrowthLaw, delta_k: f64) -> Vec<Acting> {
+    law.acting(delta_k / case.loading.range_share(), case.loading.ratio)
 }
 
 /// Shares of the growth at a ΔK of the largest cycle, Pa√m, by cycles below and above the fitted range of ΔK.
 pub fn growth_shares_outside(case: &Case, delta_k: f64) -> Option<[f64; 2]> {
     let [low, high] = fitted_range(case)?.map(|k| k * MPA_SQRT_M);
-    let acting = acting(case, delta_k);
+    let acting = acting(case, &*growth_law(case).ok()?, delta_k);
     let share = |from: f64, to: f64| acting.iter().map(|one| one.share * share_outside(one.delta_k, one.delta_k, from, to)).sum();
     Some([share(low, f64::INFINITY), share(0.0, high)])
 }
@@ -161,8 +159,8 @@ pub fn share_of_other_ratios(case: &Case, prediction: Option<&Prediction>) -> Op
         if (low - SAME_RATIO..=high + SAME_RATIO).contains(&acting.ratio) { 0.0 } else { 1.0 }
     };
     let middle = (range[0] * range[1]).sqrt() * MPA_SQRT_M;
-    let at_once = || acting(case, middle).iter().map(|one| one.share * of(one, [1.0; 2])).sum();
-    Some(prediction.and_then(|prediction| life_share(case, &prediction.curve, &of)).unwrap_or_else(at_once))
+    let at_once = || Some(acting(case, &*growth_law(case).ok()?, middle).iter().map(|one| one.share * of(one, [1.0; 2])).sum());
+    prediction.and_then(|prediction| life_share(case, &prediction.curve, &of)).or_else(at_once)
 }
 
 /// Share of the interval `from..to` that lies outside `low..high`. The ends of the range count as inside with a margin of

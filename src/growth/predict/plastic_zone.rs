@@ -178,8 +178,9 @@ pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
             room / MM
         ));
     }
-    // With retardation the life by the other zones is told beside it.
-    if let Some((Plane::Stress, [needed, _])) = other_plane(case, curve).filter(|_| case.retardation.is_none()) {
+    // With retardation the life by the other zones is told beside it, once the crack is through.
+    let is_told = case.retardation.is_some() && curve.iter().any(|row| !row.is_of_front());
+    if let Some((Plane::Stress, [needed, _])) = other_plane(case, curve).filter(|_| !is_told) {
         lines.push(format!(
             "material.plane = \"strain\", but plane strain at the crack tip asks for a thickness of {:.2} mm from the start \
              (2.5 (K_max/yield)², ASTM E399), and the plate has {:.2} mm",

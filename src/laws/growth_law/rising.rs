@@ -3,9 +3,9 @@
 /// Fewest points of a curve.
 const POINTS_MIN: usize = 3;
 
-/// ΔK and rates of a rising curve through rates by rising ΔK, and the root mean square of ln of what they lie from it: medians, which outliers do not
-/// move, of as few neighbours as make it rise, and straight on from them to the ends. `None`: too few rates, or none that rises.
-pub(super) fn rising(pairs: &[[f64; 2]]) -> Option<(Vec<[f64; 2]>, f64)> {
+/// ΔK and rates of a rising curve through rates by rising ΔK: medians, which outliers do not move, of as few neighbours as make it rise, and straight
+/// on from them to the ends. `None`: too few rates, or none that rises.
+pub(super) fn rising(pairs: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     let logs: Vec<[f64; 2]> = pairs.iter().map(|pair| pair.map(f64::ln)).collect();
     let of = |size: usize| {
         let mut curve: Vec<[f64; 2]> = logs.chunks_exact(size).map(|some| [0, 1].map(|k| median(some, k))).collect();
@@ -17,13 +17,7 @@ pub(super) fn rising(pairs: &[[f64; 2]]) -> Option<(Vec<[f64; 2]>, f64)> {
         rises.then_some(curve)
     };
     let curve = (3..=logs.len() / POINTS_MIN).step_by(2).find_map(of)?;
-    let off = |[x, y]: &[f64; 2]| {
-        let next = curve.partition_point(|point| point[0] < *x).clamp(1, curve.len() - 1);
-        let [from, to] = [curve[next - 1], curve[next]];
-        y - from[1] - (x - from[0]) / (to[0] - from[0]) * (to[1] - from[1])
-    };
-    let squares: f64 = logs.iter().map(|pair| off(pair).powi(2)).sum();
-    Some((curve.iter().map(|pair| pair.map(f64::exp)).collect(), (squares / logs.len() as f64).sqrt()))
+    Some(curve.iter().map(|pair| pair.map(f64::exp)).collect())
 }
 
 fn median(some: &[[f64; 2]], k: usize) -> f64 {

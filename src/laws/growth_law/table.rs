@@ -7,6 +7,7 @@ use super::description::{Description, GAMMA, Given, RatedRow, Rates, UNSAID};
 use super::rising::rising;
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
+use perilife_plate::loading::SAME_RATIO;
 
 /// What it says of itself.
 pub static LAW: Description = Description {
@@ -28,8 +29,6 @@ perilife_base::kinds! {
     }
 }
 
-/// Stress ratios that differ by less are one.
-const SAME_RATIO: f64 = 0.02;
 /// Distance of a ratio from that of a curve up to which it has the whole of it, not the rates alone that the next one has too.
 const NEAR_RATIO: f64 = 0.005;
 
@@ -84,8 +83,16 @@ impl Curve {
     }
 }
 
+/// ln da/dN at ln ΔK of a band, so much of its second curve counting; beyond its ends that of the end.
+fn log_rate(band: &[[f64; 3]], share: f64, log_k: f64) -> f64 {
+    let at = |knot: &[f64; 3]| knot[1] + share * (knot[2] - knot[1]);
+    let next = band.partition_point(|knot| at(knot) < log_k).clamp(1, band.len() - 1);
+    let [from, to] = [&band[next - 1], &band[next]];
+    from[0] + ((log_k - at(from)) / (at(to) - at(from))).clamp(0.0, 1.0) * (to[0] - from[0])
+}
+
 impl Table {
-    /// Of curves by rising ratio.
+    /// Of curves by rising ratio, one at least.
     pub fn new(curves: Vec<Curve>, holds_ends: bool, walker_gamma: Option<f64>, says_ratio: bool) -> Self {
         let pairs = (0..2 * curves.len() - 1).map(|i| curves[i / 2].with(&curves[i.div_ceil(2)]));
         Table { bands: pairs.collect(), curves, holds_ends, walker_gamma, says_ratio, notes: Vec::new() }
@@ -146,19 +153,13 @@ impl Table {
         if log_k.is_nan() || log_k == f64::NEG_INFINITY {
             return 0.0;
         }
-        let read = |(band, share): (&[[f64; 3]], f64)| {
-            let at = |knot: &[f64; 3]| knot[1] + share * (knot[2] - knot[1]);
-            let next = band.partition_point(|knot| at(knot) < log_k).clamp(1, band.len() - 1);
-            let [from, to] = [&band[next - 1], &band[next]];
-            let part = ((log_k - at(from)) / (at(to) - at(from))).clamp(0.0, 1.0);
-            (from[0] + part * (to[0] - from[0])).exp()
-        };
         let (band, share) = self.around(ratio);
         let end = band[band.len() - 1];
         // Above the rates that two ratios have in common the lower ratio may know more, and is the slower one.
         let below = self.curves.partition_point(|curve| curve.ratio < ratio).saturating_sub(1);
-        let more = if log_k > end[1] + share * (end[2] - end[1]) { read((&self.bands[2 * below], 0.0)) } else { 0.0 };
-        read((band, share)).max(more)
+        let is_above = log_k > end[1] + share * (end[2] - end[1]);
+        let more = if is_above { log_rate(&self.bands[2 * below], 0.0, log_k) } else { f64::NEG_INFINITY };
+        log_rate(band, share, log_k).max(more).exp()
     }
 
     /// In words, that K lies beyond the rows.
@@ -265,18 +266,20 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
             curves.push(Curve { ratio, rows: pairs });
             continue;
         };
-        let Some((rows, rms)) = rising(&pairs) else {
+        let Some(rows) = rising(&pairs) else {
             let [before, at] = [pairs[fall - 1][1], pairs[fall][1]].map(|rate| round_off(rate / MM_PER_CYCLE));
             let problem = format!("does not rise against {before}, that of the next lower ΔK");
             return Err(wrong(Some(&same[fall]), &rates.columns[1], at, problem));
         };
+        let (curve, count) = (Curve { ratio, rows }, pairs.len());
+        let (band, points) = (curve.with(&curve), curve.rows.len());
+        let squares: f64 = pairs.iter().map(|[k, rate]| (rate.ln() - log_rate(&band, 0.0, k.ln())).powi(2)).sum();
+        let rms = (squares / count as f64).sqrt();
         notes.push(format!(
-            "{}: rates at R = {ratio} scatter; rising curve of {} points used, rms of {} rates {rms:.3} in ln(da/dN)",
-            rates.file,
-            rows.len(),
-            pairs.len()
+            "{}: rates at R = {ratio} scatter; rising curve of {points} points used, rms of {count} rates {rms:.3} in ln(da/dN)",
+            rates.file
         ));
-        curves.push(Curve { ratio, rows });
+        curves.push(curve);
     }
     if curves.is_empty() {
         return Err(wrong(None, "rows", 0.0, "are too few".to_owned()));

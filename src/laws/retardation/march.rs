@@ -8,7 +8,7 @@
 
 use super::{Now, Retardation, Zone};
 use crate::growth_law::GrowthLaw;
-use perilife_plate::loading::spectrum::{Cycle, Spectrum};
+use perilife_plate::loading::spectrum::{Cycle, Spectrum, WHOLE};
 
 /// Change of the rate over the cycles counted in one go.
 const CHANGE: f64 = 0.01;
@@ -18,10 +18,6 @@ const JUMP: f64 = 3e-3;
 const WORTH: f64 = 3.0;
 /// Change of what is left of a zone in a pass, over its size, up to which passes are alike.
 const ALIKE: f64 = 1e-3;
-/// How near to whole a count is that is whole but for round-off.
-const WHOLE: f64 = 1e-6;
-/// Times that a cycle comes in a period, in the mean, from which periods are alike although it comes once more or less.
-const OFTEN: f64 = 10.0;
 
 /// What ends a march.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -213,7 +209,7 @@ impl<'a> March<'a> {
             // A rare cycle that did not come in this period may end the standstill.
             let (passes, period) = (self.at.passes, self.spectrum.period);
             let so_far = |cycle: &Cycle, passes: f64| (cycle.count * passes + WHOLE).floor();
-            if self.rare().all(|cycle| so_far(cycle, passes) > so_far(cycle, passes - period)) {
+            if self.spectrum.rare().all(|cycle| so_far(cycle, passes) > so_far(cycle, passes - period)) {
                 return true;
             }
             let most = (cycles_max - self.at.cycles) / self.per_period;
@@ -228,17 +224,10 @@ impl<'a> March<'a> {
         false
     }
 
-    /// Cycles that come in few periods, or in few times the same number.
-    fn rare(&self) -> impl Iterator<Item = &Cycle> {
-        let period = self.spectrum.period;
-        let is_whole = move |count: f64| (count - count.round()).abs() <= WHOLE * period;
-        self.spectrum.cycles.iter().filter(move |cycle| cycle.count * period < OFTEN && !is_whole(cycle.count * period))
-    }
-
     /// Periods before the next cycle that is rare; infinite where there is none.
     fn without_rare(&self) -> f64 {
         let next = |cycle: &Cycle| ((cycle.count * self.at.passes + WHOLE).floor() + 1.0) / cycle.count - self.at.passes;
-        self.rare().map(next).fold(f64::INFINITY, f64::min) / self.spectrum.period - 1.0
+        self.spectrum.rare().map(next).fold(f64::INFINITY, f64::min) / self.spectrum.period - 1.0
     }
 
     /// Jumps over periods in which the tip grows at the share of the mean rate that it had in the last one, K changing by no more than [`JUMP`].

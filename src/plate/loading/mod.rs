@@ -21,6 +21,9 @@ use crate::specimen::Edge;
 use residual::ResidualStress;
 use spectrum::{Spectrum, SpectrumFormat};
 
+/// Stress ratios that differ by less are one: tests are run, and rates stated, to two digits.
+pub const SAME_RATIO: f64 = 0.02;
+
 perilife_base::kinds! {
     /// Load histories.
     pub enum LoadingKind for "loading.kind" {

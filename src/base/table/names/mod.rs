@@ -181,7 +181,8 @@ impl Column {
     }
 }
 
-fn of_words<T>(name: &str, read: impl FnOnce(&[&str], &[&str]) -> T) -> T {
+/// Asks the words of a name, and those of a bracket at its end.
+pub fn of_words<T>(name: &str, read: impl FnOnce(&[&str], &[&str]) -> T) -> T {
     let (words, bracket) = words(name);
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let bracket: Vec<&str> = bracket.iter().map(String::as_str).collect();
@@ -201,7 +202,8 @@ pub fn made_of(words: &[&str], core: &str, more: &[&str]) -> bool {
     any_in(words, core) && words.iter().all(|word| is_in(core, word) || more.iter().any(|list| is_in(list, word)))
 }
 
-fn any_in(words: &[&str], list: &str) -> bool {
+/// Whether one of the words is in a list.
+pub fn any_in(words: &[&str], list: &str) -> bool {
     words.iter().any(|word| is_in(list, word))
 }
 
@@ -211,7 +213,7 @@ pub fn says_one_of(text: &str, list: &str) -> bool {
 }
 
 /// Whether every word is one of the lists.
-fn all_in(words: &[&str], lists: &[&str]) -> bool {
+pub fn all_in(words: &[&str], lists: &[&str]) -> bool {
     words.iter().all(|word| lists.iter().any(|list| is_in(list, word)))
 }
 
@@ -378,69 +380,6 @@ pub fn says_tip_to_tip(name: &str) -> Option<bool> {
     })
 }
 
-/// Whether a line says that cycles are counted in thousands or millions: `N x 1000`, `Zyklen in Tausend`; not `precracked for 50 thousand cycles`.
-pub fn speaks_of_thousands(line: &str) -> bool {
-    const MANY: &str = "kilocycles kilocycle kcycles kcycle thousand thousands tausend tsd milliers migliaia miles megacycles mcycles million millions mio";
-    let (mut words, bracket) = words(line);
-    words.extend(bracket);
-    let is_count = |word: &String| word.parse::<f64>().is_ok();
-    let is_many = |i: usize| {
-        let after_count = i > 0 && is_count(&words[i - 1]);
-        let power = words[i] == "10" && words.get(i + 1).is_some_and(|next| ["3", "6"].contains(&next.as_str()));
-        let thousand = ["1000", "x1000", "1000000"].contains(&words[i].as_str()) || power;
-        let times = i > 0 && ["x", "in", "of", "mal", "times"].contains(&words[i - 1].as_str());
-        is_in(MANY, &words[i]) && !after_count || thousand && (times || words[i].starts_with('x') || line.contains('×'))
-    };
-    let is_of_cycles = words.iter().any(|word| is_in(CYCLES, word));
-    is_of_cycles && (0..words.len()).any(is_many)
-}
-
-/// Whether a name says that its lengths are measured from the notch.
-pub fn says_from_notch(name: &str) -> bool {
-    const NOTCH: &str = "notch kerb kerbe kerbgrund entaille muesca entalla intaglio";
-    of_words(name, |words, _| any_in(words, NOTCH) && (any_in(words, LENGTH) || any_in(words, SIDES) || words.contains(&"from")))
-}
-
-/// Metres per unit of a column whose name speaks of a crack length by whatever method, half of it where that is tip to tip.
-pub fn speaks_of_length(name: &str) -> Option<f64> {
-    const OTHERS: &str = "total edc compliance cod cmod bfs visual optical optisch visuell";
-    of_words(name, |words, bracket| {
-        let is_plain = |rest: &&[&str]| {
-            (any_in(rest, LENGTH) || rest == &["visual"]) && all_in(rest, &[LENGTH, LENGTH_MORE, METHODS, OTHERS, SIDES])
-        };
-        let mut readings = unit_of(words, bracket, length_unit).into_iter().filter(|(rest, _)| is_plain(rest));
-        let unit = readings.find_map(|(_, unit)| if let Named::Is(unit) = unit { Some(unit.si()) } else { None })?;
-        Some(if words.contains(&"2a") { 0.5 * unit } else { unit })
-    })
-}
-
-/// Whether a name in a row of specimens is that of a statistic or of a model; `Design A` and `-40 C` are specimens.
-pub fn is_of_statistics(name: &str) -> bool {
-    const STATISTICS: &str = "mean average avg mittel mittelwert moyenne media std sd stdev stddev dev deviation standardabweichung streuung ecart \
-        scatter variance cov cv";
-    const MODELS: &str = "predicted prediction model design fitted regression confidence";
-    const MORE: &str = "cycles cycle of the curve value line lower upper bound band zyklen lastspiele";
-    const SPREAD: &str = "s sd sigma 1s 2s 3s 1sd 2sd 3sd 2sigma 3sigma";
-    of_words(name, |words, _| {
-        let is_statistic = any_in(words, STATISTICS) && all_in(words, &[STATISTICS, MORE, "n a 2a standard type"]);
-        let is_model = any_in(words, MODELS) && all_in(words, &[MODELS, MORE]);
-        let is_signed =
-            name.trim_start().starts_with(['+', '-', '\u{b1}']) && words.last().is_some_and(|word| is_in(SPREAD, word));
-        is_statistic || is_model || is_signed || words == ["s", "d"]
-    })
-}
-
-/// The stress ratio of a column that is named by it, and the bracket behind it: `R=0.1`, `R 0.5 (MPa√m)`, `ΔK at R0.7`.
-pub fn ratio_of_name(name: &str) -> Option<(&str, &str)> {
-    let is_word = |place: &usize| name[*place..].starts_with(['R', 'r']) && !name[..*place].ends_with(char::is_alphanumeric);
-    let place = name.char_indices().map(|(place, _)| place).find(is_word)?;
-    let text = name[place + 1..].trim_start_matches(['=', ' ', '_', ':']);
-    let (number, rest) = text.split_at(text.find([' ', '(', '[', '{']).unwrap_or(text.len()));
-    let is_ratio = number.replace(',', ".").replace('\u{2212}', "-").parse().is_ok_and(|ratio: f64| ratio < 1.0);
-    let rest = rest.trim_start();
-    (is_ratio && (rest.is_empty() || rest.starts_with(['(', '[', '{']))).then_some((number, rest))
-}
-
 /// Whether a name is a word and perhaps a unit of length.
 pub fn is_length_of(name: &str, word: &str) -> bool {
     of_words(name, |words, bracket| unit_of(words, bracket, length_unit).iter().any(|(words, _)| *words == [word]))
@@ -448,11 +387,6 @@ pub fn is_length_of(name: &str, word: &str) -> bool {
 
 fn any_marks(words: &[&str]) -> bool {
     [MARKS, MARKS_KEEP, MARKS_OUT].iter().any(|list| any_in(words, list))
-}
-
-/// Whether a column that says which readings count marks those that do not.
-pub fn marks_out(name: &str) -> bool {
-    of_words(name, |words, _| any_in(words, MARKS_OUT) || !any_in(words, MARKS_KEEP))
 }
 
 /// Characters of a cell in a row of units that is as good as blank.

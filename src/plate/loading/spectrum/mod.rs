@@ -21,6 +21,10 @@ use std::fmt;
 
 /// Longest period of a spectrum, passes.
 pub const PERIOD_MOST: usize = 1000;
+/// How near to whole a count is that is whole but for round-off.
+pub const WHOLE: f64 = 1e-6;
+/// Times that a cycle comes in a period, in the mean, from which periods are alike although it comes once more or less.
+const OFTEN: f64 = 10.0;
 
 /// Loads that come again and again: from a minimum to a maximum, so many times.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,7 +88,17 @@ impl fmt::Debug for Spectrum {
     }
 }
 
+/// Whether a cycle of this count comes a whole number of times in so many passes, but for the digits of the count.
+fn is_whole(count: f64, passes: f64) -> bool {
+    (count * passes - (count * passes).round()).abs() <= WHOLE * passes
+}
+
 impl Spectrum {
+    /// Cycles that come in few periods, or in few of them as often as in others.
+    pub fn rare(&self) -> impl Iterator<Item = &Cycle> {
+        self.cycles.iter().filter(|cycle| cycle.count * self.period < OFTEN && !is_whole(cycle.count, self.period))
+    }
+
     /// Stress ratio of the cycle with the largest load; of several the least.
     pub fn ratio_of_largest(&self) -> f64 {
         let most = self.cycles.iter().filter(|cycle| cycle.max == 1.0);

@@ -1,17 +1,18 @@
 //! A spectrum from its file: which format it has, what it says, and what of it is left out.
 
+use std::borrow::Cow;
+use std::path::Path;
+
 use super::classes::{classes, kinds};
 use super::content::{Content, RawCycle, SpectrumFormat};
 use super::rainflow::rainflow;
 use super::rows::{fault, rows};
-use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, spx, sub};
+use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, is_whole, spx, sub};
 use crate::loading::Input;
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Folder, number};
-use perilife_base::table;
 use perilife_base::table::units::{LoadUnit, Unit};
-use std::borrow::Cow;
-use std::path::Path;
+use perilife_base::table::{decoded, is_workbook};
 
 /// Keys that belong to a spectrum, beside its scale.
 fn given(input: &Input) -> [(&'static str, bool); 5] {
@@ -120,11 +121,10 @@ impl Spectrum {
 
 /// Fewest passes in which all cycles come a whole number of times.
 fn period(cycles: &[Cycle]) -> f64 {
-    let is_whole = |passes: f64, count: f64| (count * passes - (count * passes).round()).abs() < 1e-6 * passes;
     let mut fractions: Vec<f64> = cycles.iter().map(|cycle| cycle.count).filter(|count| count.fract() != 0.0).collect();
     fractions.sort_by(f64::total_cmp);
     fractions.dedup();
-    let period = (1..PERIOD_MOST).find(|passes| fractions.iter().all(|count| is_whole(*passes as f64, *count)));
+    let period = (1..PERIOD_MOST).find(|passes| fractions.iter().all(|count| is_whole(*count, *passes as f64)));
     period.unwrap_or(PERIOD_MOST) as f64
 }
 
@@ -135,10 +135,10 @@ fn content(
     asked: Option<SpectrumFormat>,
     scale: (Unit, f64),
 ) -> Result<(SpectrumFormat, Content, Vec<String>)> {
-    if table::is_workbook(bytes, file) {
+    if is_workbook(bytes, file) {
         return columns::read(bytes, file, asked, scale);
     }
-    let text = table::decoded(bytes, file)?;
+    let text = decoded(bytes, file)?;
     let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     let mut lines = rows(&text).map(|(_, line)| line);
     let (first, second) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
