@@ -298,19 +298,19 @@ fn first_extrapolation(case: &Case) -> Option<Check> {
     let Some([low, high]) = fit_use::fitted_range(case) else { return Some(unknown_range()) };
     let first = first_delta_k(case)?;
     let [below, above] = fit_use::growth_shares_outside(case, first)?;
-    let at = match case.loading.spectrum {
-        Some(_) => format!("{:.0} % of growth at the start", 100.0 * above.max(below)),
+    let at = |share: f64| match case.loading.spectrum {
+        Some(_) => format!("{:.0} % of growth at the start", 100.0 * share),
         None => format!("ΔK {:.2} at the start", first / MPA_SQRT_M),
     };
     if above > OUTSIDE_DOUBTFUL {
-        let words = format!("law: {at} is above the highest fitted ΔK, {high:.2}");
+        let words = format!("law: {} is above the highest fitted ΔK, {high:.2}", at(above));
         let remedy = "lower the load, or calibrate on longer cracks";
         let check = Check::sized("extrapolation_above", 100.0 * above, true, Side::Unsafe, words, remedy);
         let is_refused = above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation;
         return Some(if is_refused { Check { verdict: Verdict::Fails, ..check } } else { check });
     }
     (below > OUTSIDE_DOUBTFUL).then(|| {
-        let words = format!("law: {at} is below the lowest fitted ΔK, {low:.2} MPa√m (safe)");
+        let words = format!("law: {} is below the lowest fitted ΔK, {low:.2} MPa√m (safe)", at(below));
         Check { side: Some(Side::Safe), ..Check::new("extrapolation_below", Verdict::Doubtful, words) }
     })
 }
