@@ -22,6 +22,7 @@ use crate::case::Case;
 use history::{History, RunState};
 use overload::{overstretched, stretched};
 use perilife_base::error::{Error, Result};
+use perilife_laws::response::Response;
 use perilife_laws::{FatigueLaw, FatigueSettings};
 use perilife_points::body::{Body, Bond};
 use perilife_points::crack_tip::{CrackTip, share_out};
@@ -133,7 +134,14 @@ impl<'a> BondStrain<'a> {
         let record = |tip: &CrackTip| {
             let lead = lead * (tip.growth / self.body.horizon()).min(1.0);
             let position = [0, 1].map(|i| tip.position[i] - lead * tip.direction[i]);
-            TipRecord { state: tip.state, position, growth: tip.growth - lead, factors: None, t_stress: None, of_residual: None }
+            TipRecord {
+                state: tip.state,
+                position,
+                growth: tip.growth - lead,
+                factors: None,
+                t_stress: None,
+                response: Response::PROPORTIONAL,
+            }
         };
         self.run.tips.iter().map(record).collect()
     }

@@ -206,7 +206,7 @@ impl<'a, P: CrackedPlate> Cracks<'a, P> {
 
     /// da/dN of K_eq of a tip at maximum load, m/cycle.
     fn rate(&self, tip: &Tip) -> f64 {
-        self.law.rate(tip.equivalent(), self.case.loading.ratio_at(tip.share_of_residual()))
+        self.law.mean_rate(tip.equivalent(), self.case.loading.ratio, &tip.response)
     }
 }
 

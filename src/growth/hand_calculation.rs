@@ -11,6 +11,7 @@ use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::quadrature::integrate;
 use perilife_base::units::MM;
 use perilife_laws::growth_law::GrowthLaw;
+use perilife_laws::response::Response;
 use perilife_plate::loading::residual::ResidualStress;
 use perilife_plate::specimen::LengthConvention;
 use perilife_plate::specimen::geometry::along;
@@ -90,20 +91,21 @@ impl<'a> HandCalculation<'a> {
         &self.curve[self.curve.len() - 1]
     }
 
-    /// K at maximum load and what residual stress makes of it, Pa√m.
-    fn factors(&self, crack_length: f64) -> (f64, Option<f64>) {
+    /// K at maximum load, Pa√m, and how it follows the load.
+    fn factors(&self, crack_length: f64) -> (f64, Response) {
         let of_load = self.formula.k_i(crack_length, self.case.loading.maximum);
-        let of_residual = self.residual.as_ref().map(|residual| residual.at(crack_length));
-        (of_load + of_residual.unwrap_or(0.0), of_residual)
+        let Some(residual) = &self.residual else { return (of_load, Response::PROPORTIONAL) };
+        let of_residual = residual.at(crack_length);
+        (of_load + of_residual, Response::of_residual(of_residual / (of_load + of_residual)))
     }
 
     /// da/dN, m/cycle.
     fn rate(&self, crack_length: f64) -> f64 {
-        let (k_max, of_residual) = self.factors(crack_length);
+        let (k_max, response) = self.factors(crack_length);
         if k_max <= 0.0 {
             return 0.0;
         }
-        self.law.rate(k_max, self.case.loading.ratio_at(of_residual.map_or(0.0, |of_residual| of_residual / k_max)))
+        self.law.mean_rate(k_max, self.case.loading.ratio, &response)
     }
 
     /// Cycles between two crack lengths.
@@ -126,7 +128,7 @@ impl<'a> HandCalculation<'a> {
     /// Row of the curve; K and rate are unknown (NaN) where the plate ends.
     fn point(&self, cycles: f64, crack_length: f64) -> CurvePoint {
         let (specimen, loading) = (&self.case.specimen, &self.case.loading);
-        let (k_max, of_residual) = self.factors(crack_length);
+        let (k_max, response) = self.factors(crack_length);
         // Pressed shut.
         let k_max = if k_max < 0.0 { 0.0 } else { k_max };
         let growth = (crack_length - specimen.crack_length) / self.sharing;
@@ -151,16 +153,13 @@ impl<'a> HandCalculation<'a> {
                     growth,
                     factors: Some([k_max, 0.0]),
                     t_stress: None,
-                    of_residual,
+                    response,
                 })
                 .collect(),
             depth: None,
-            residual: None,
+            response,
         };
-        match of_residual {
-            Some(of_residual) => row.with_residual(k_max, of_residual, loading),
-            None => row,
-        }
+        row.with_response(k_max, response, loading)
     }
 
     /// The next interval of the curve; the reason why there is none after it.

@@ -5,18 +5,19 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::cracks::scales::Scales;
-use super::cracks::tip::{CracksState, Reading};
+use super::cracks::tip::{AtLoad, CracksState, Reading};
 use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment};
 use super::{Fields, SolverStatistics, State};
 use crate::case::Case;
 use crate::cross_check::largest_difference;
-use perilife_base::error::Result;
+use perilife_base::error::{Error, Result};
 use perilife_base::raster::PointGrid;
+use perilife_laws::response::Response;
 use perilife_nodes::crack::{Tip, initial_cracks};
-use perilife_nodes::factors;
+use perilife_nodes::factors::{self, TipFactors};
 use perilife_nodes::field::{Discretisation, Local};
 use perilife_nodes::resolution::{ElementFreeSettings, Resolution, room};
-use perilife_nodes::solve::{Solution, raster, raster_fields, solve_with};
+use perilife_nodes::solve::{Loaded, Solution, raster, raster_fields, solve_with};
 use perilife_plate::loading::residual::across;
 use perilife_plate::specimen::{CrackLine, Point};
 use perilife_plate::williams::Elasticity;
@@ -81,7 +82,7 @@ impl NodePlate {
     /// Displacement at a place under the maximum load, m, of the last equilibrium; `None` before one, and where nodes do not reach.
     pub fn displacement(&self, case: &Case, at: Point) -> Option<Point> {
         let (plate, solution) = self.solved.as_ref()?;
-        let (displacement, _) = plate.displacement(&solution.u, at, &mut Local::default())?;
+        let (displacement, _) = plate.displacement(&solution.whole.u, at, &mut Local::default())?;
         Some(displacement.map(|u| case.loading.share(self.state.work) * u))
     }
 
@@ -145,50 +146,62 @@ impl CrackedPlate for NodePlate {
         let specimen = &case.specimen;
         let (lines, tips) = NodePlate::cracks(case, cracks);
         let resolution = self.resolution();
-        let plate = Discretisation::new(specimen, self.elasticity, &lines, &tips, &resolution)?;
-        let residual = case.loading.residual.as_deref();
-        let solution = solve_with(specimen, &plate, resolution.far, case.loading.maximum, residual)?;
+        let plate = Discretisation::new(specimen, self.elasticity, &lines, &tips, &resolution, case.loading.residual.as_deref())?;
+        let lower = (case.loading.residual.as_deref(), &case.loading.lower_loads()[..]);
+        let solution = solve_with(specimen, &plate, resolution.far, case.loading.maximum, lower)?;
         self.state.solves += 1;
         self.state.nodes = self.state.nodes.max(plate.nodes.at.len());
-        self.state.work = solution.work;
+        self.state.work = solution.whole.work;
         self.solved = Some((plate, solution));
         Ok(())
     }
 
     fn read(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<Option<Reading>>> {
         let Some((plate, solution)) = &self.solved else { return Ok(vec![None; cracks.tips.len()]) };
-        let share = case.loading.share(self.state.work);
-        let pressure = case.specimen.crack_pressure * case.loading.maximum;
+        let Solution { whole, lower, .. } = solution;
         let (lines, tips) = NodePlate::cracks(case, cracks);
+        let has_residual = case.loading.residual.is_some();
+        let released = |at| case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
         let reading = |index: usize| {
             let axes = &plate.axes[index];
             let room = room(&case.specimen, &lines, &tips[index]);
-            let released = |at| case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
-            let stress = |at| {
-                let ([xx, yy, xy], pressure) = (released(at), pressure + solution.pressure_at(at));
-                [xx + pressure, yy + pressure, xy]
-            };
-            let read = factors::read(plate, &solution.u, index, room, &stress)?;
-            let of_residual = match &case.loading.residual {
-                Some(_) => factors::read(plate, &solution.of_residual, index, room, &released)?.factors,
-                None => [0.0; 2],
+            let read = |loaded: &Loaded, u: &[f64], is_free: bool| {
+                let share = share_of_cycle(case, loaded);
+                let pressure = case.specimen.crack_pressure * case.loading.maximum * loaded.share;
+                let stress = |at| {
+                    let ([xx, yy, xy], pressure) = (released(at), pressure + if is_free { 0.0 } else { loaded.pressure_at(at) });
+                    [xx + pressure, yy + pressure, xy]
+                };
+                let read = factors::read(plate, u, index, room, &stress)?;
+                let factors = read.factors.map(|factor| share * factor);
+                Ok::<_, Error>(TipFactors { factors, t_stress: share * read.t_stress, of_faces: share * read.of_faces, ..read })
             };
             // The stress along the crack that the plate had before it.
             let along = across(released(axes.at), axes.ahead);
             let along = along[0] * axes.ahead[0] + along[1] * axes.ahead[1];
-            let is_closed = solution.is_closed(axes.at);
-            let [k_i, k_ii] = read.factors.map(|factor| share * factor);
-            Ok(Reading {
-                factors: [if is_closed { 0.0 } else { k_i }, k_ii],
-                t_stress: share * read.t_stress + along,
+            let at_load = |loaded: &Loaded| {
+                let (found, is_closed) = (read(loaded, &loaded.u, false)?, loaded.is_closed(axes.at));
+                let [k_i, k_ii] = found.factors;
+                let factors = [if is_closed { 0.0 } else { k_i }, k_ii];
+                let of_free = || Ok::<_, Error>(read(loaded, &loaded.free, true)?.factors);
+                let free = (is_closed && has_residual).then(of_free).transpose()?;
+                let at = AtLoad { load: loaded.share, factors, t_stress: found.t_stress + along, is_closed, free };
+                Ok::<_, Error>((at, found.of_faces))
+            };
+            let (AtLoad { factors, t_stress, is_closed, free, .. }, of_pressure) = at_load(whole)?;
+            let lower = lower.iter().map(|loaded| Ok(at_load(loaded)?.0)).collect::<Result<Vec<AtLoad>>>()?;
+            let reading = Reading {
+                factors,
+                t_stress,
                 // K_II is that of the axes in which it was read: the crack without corners that nodes do not see.
                 ahead: axes.ahead,
                 spacing: axes.spacing,
                 length_offset: 0.0,
                 is_closed,
-                of_pressure: share * read.of_faces,
-                of_residual,
-            })
+                of_pressure,
+                response: Response::PROPORTIONAL,
+            };
+            Ok(reading.with_lower(&lower, free))
         };
         let read = (0..tips.len()).into_par_iter().map(reading).collect::<Result<Vec<Reading>>>()?;
         let mut readings = vec![None; cracks.tips.len()];
@@ -201,7 +214,7 @@ impl CrackedPlate for NodePlate {
     }
 
     fn is_in_contact(&self) -> bool {
-        self.solved.as_ref().is_some_and(|(_, solution)| !solution.pressed.is_empty())
+        self.solved.as_ref().is_some_and(|(_, solution)| !solution.whole.pressed.is_empty())
     }
 
     fn save(&self) -> NodeState {
@@ -237,7 +250,7 @@ impl CrackedPlate for NodePlate {
         }
         let (share, far) = (case.loading.share(self.state.work), self.resolution().far);
         let of_plate = |(plate, solution): &(Discretisation, Solution)| {
-            raster_fields(&case.specimen, plate, &solution.u, far, case.material.plane, share)
+            raster_fields(&case.specimen, plate, &solution.whole.u, far, case.material.plane, share)
         };
         let (displacement, stress) = self.solved.as_ref().map(of_plate).unwrap_or_default();
         Ok(Some(Fields { damage: vec![0.0; displacement.len()], remaining_life: Vec::new(), displacement, stress }))
@@ -253,9 +266,15 @@ impl CrackedPlate for NodePlate {
     }
 }
 
+/// What a plate that was solved under a load is multiplied by for that load of a cycle.
+fn share_of_cycle(case: &Case, loaded: &Loaded) -> f64 {
+    case.loading.share(loaded.work / (loaded.share * loaded.share))
+}
+
 /// The nodes of a case with its initial cracks.
 /// Errors: too many cells.
 pub fn initial_plate(case: &Case) -> Result<Discretisation> {
     let (lines, tips) = initial_cracks(&case.specimen);
-    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &case.nodes().resolution)
+    let (resolution, residual) = (case.nodes().resolution, case.loading.residual.as_deref());
+    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &resolution, residual)
 }

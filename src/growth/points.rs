@@ -68,8 +68,8 @@ pub struct PointPlate {
     contact: Contact,
     /// In the layout of the equilibrium, m.
     displacement: Vec<f64>,
-    /// The same of the load without residual stress; nothing where there is none.
-    of_load: Vec<f64>,
+    /// Under lower loads, where K does not follow the load in proportion.
+    lower: Vec<LowerLoad>,
     /// Work of the loads of the last equilibrium, J.
     work: f64,
     /// Of every tip.
@@ -78,6 +78,18 @@ pub struct PointPlate {
     remaining_life: Vec<(Bond, f64)>,
     solves: usize,
     iterations: usize,
+}
+
+/// What is said where the least displacement may open what the largest presses shut.
+const REVERSED: &str = "the largest displacement presses flanks together that the least one may open: growth by that is not counted on points, \
+                        which is unsafe: use model.method = \"element_free_galerkin\"";
+
+/// A plate of points under a load below the largest.
+struct LowerLoad {
+    /// Over the largest.
+    load: f64,
+    contact: Contact,
+    displacement: Vec<f64>,
 }
 
 /// Growth by the field of every tip on points.
@@ -118,29 +130,50 @@ impl PointPlate {
         let body = &self.body.clone();
         self.equilibrium.bonds_changed(body, &self.bonds, &std::mem::take(&mut self.changed));
         self.contact.follow(body, &self.blunted(cracks, lines), case.material.plane_modulus());
-        let before = self.displacement.clone();
-        for solve in 1..=CONTACT_SOLVES_MOST {
-            self.equilibrium.set_contact(body, &self.contact.springs(&|at| released(case, at), body.thickness));
-            match self.equilibrium.solve(body, &self.bonds, &mut self.displacement) {
-                Ok(iterations) => self.iterations += iterations,
-                Err(error) => {
-                    self.displacement = before;
-                    return Err(error);
-                }
+        let (mut contact, mut displacement) = (std::mem::take(&mut self.contact), self.displacement.clone());
+        let settled = self.settle_at(case, 1.0, &mut contact, &mut displacement);
+        self.contact = contact;
+        settled?;
+        self.displacement = displacement;
+        self.lower.clear();
+        let has_residual = case.loading.residual.is_some();
+        let mut is_in_contact = self.is_in_contact();
+        if is_in_contact && case.loading.displacement().is_some() {
+            is_in_contact = false;
+            if case.loading.ratio < 0.0 && !self.warnings.iter().any(|warning| warning == REVERSED) {
+                self.warnings.push(REVERSED.to_owned());
             }
-            self.solves += 1;
-            self.work = self.equilibrium.work();
-            let least = CONTACT_LEAST * self.mean_strain(case) * body.lattice.spacing;
-            if solve == CONTACT_SOLVES_MOST || !self.contact.update(&self.layout(), &self.displacement, least) {
+        }
+        // Flanks alone are in contact as they are at every load of the same sign.
+        let loads: Vec<f64> =
+            case.loading.lower_loads().into_iter().filter(|load| has_residual || is_in_contact && *load < 0.0).collect();
+        let work = self.work;
+        for load in loads {
+            let (mut contact, mut displacement) = (self.contact.clone(), self.displacement.clone());
+            self.settle_at(case, load, &mut contact, &mut displacement)?;
+            let is_free = !self.is_in_contact() && contact.closed_places().next().is_none();
+            self.lower.push(LowerLoad { load, contact, displacement });
+            if is_free || !has_residual {
+                // In a straight line from there.
                 break;
             }
         }
-        if case.loading.residual.is_some() {
-            // The load alone, flanks in contact as they are: what it leaves of the displacement is that of the residual stress.
-            self.equilibrium.set_contact(body, &self.contact.springs(&|_| crack_pressure(case), body.thickness));
-            self.of_load.clone_from(&self.displacement);
-            self.iterations += self.equilibrium.solve(body, &self.bonds, &mut self.of_load)?;
+        self.work = work;
+        Ok(())
+    }
+
+    /// Equilibrium under a share of the load, with flanks that do not overlap.
+    fn settle_at(&mut self, case: &Case, share: f64, contact: &mut Contact, displacement: &mut Vec<f64>) -> Result<()> {
+        let body = &self.body.clone();
+        for solve in 1..=CONTACT_SOLVES_MOST {
+            self.equilibrium.set_contact(body, share, &contact.springs(&|at| released(case, share, at), body.thickness));
+            self.iterations += self.equilibrium.solve(body, &self.bonds, displacement)?;
             self.solves += 1;
+            self.work = self.equilibrium.work();
+            let least = CONTACT_LEAST * self.mean_strain(case) * body.lattice.spacing;
+            if solve == CONTACT_SOLVES_MOST || !contact.update(&self.layout(), displacement, least) {
+                break;
+            }
         }
         Ok(())
     }
@@ -189,7 +222,7 @@ impl CrackedPlate for PointPlate {
             bonds,
             contact: Contact::default(),
             displacement: Vec::new(),
-            of_load: Vec::new(),
+            lower: Vec::new(),
             work: 0.0,
             memory: vec![Memory::default(); cracks.tips.len()],
             remaining_life: Vec::new(),
@@ -382,17 +415,11 @@ impl PointPlate {
     }
 }
 
-/// Pressure on the flanks at the maximum load as a stress, Pa.
-fn crack_pressure(case: &Case) -> Components {
-    let pressure = case.specimen.crack_pressure * case.loading.maximum;
-    [pressure, pressure, 0.0]
-}
-
-/// What the flanks release at the maximum load, Pa: pressure, and residual stress.
-fn released(case: &Case, at: Point) -> Components {
-    let residual = case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
-    let pressure = crack_pressure(case);
-    [0, 1, 2].map(|i| pressure[i] + residual[i])
+/// What the flanks release under a share of the maximum load, Pa: pressure, and residual stress.
+fn released(case: &Case, share: f64, at: Point) -> Components {
+    let [xx, yy, xy] = case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
+    let pressure = share * case.specimen.crack_pressure * case.loading.maximum;
+    [xx + pressure, yy + pressure, xy]
 }
 
 /// Unit vector in which a crack points at one of its ends; pieces shorter than [`DIRECTION_SPACINGS`] do not show it.

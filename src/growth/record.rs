@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
+use perilife_laws::response::Response;
 use perilife_plate::loading::Loading;
 use perilife_plate::specimen::{CrackLine, Point, Specimen};
 use perilife_points::crack_tip::TipState;
@@ -55,30 +56,8 @@ pub struct TipRecord {
     pub factors: Option<[f64; 2]>,
     /// Stress along the crack T at maximum load, Pa; `None` where `factors` is.
     pub t_stress: Option<f64>,
-    /// What residual stress makes of K_eq, Pa√m; `None` where there is no such stress.
-    pub of_residual: Option<f64>,
-}
-
-/// What residual stress does to the tip that leads.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Residual {
-    /// K_res, Pa√m: what it makes of K_eq.
-    pub factor: f64,
-    /// Stress ratio K_min/K_max with it.
-    pub ratio: f64,
-}
-
-impl Residual {
-    /// The same K_res in another K at maximum load, Pa√m; there is no ratio where that is 0.
-    pub fn beside(self, k_max: f64, loading: &Loading) -> Residual {
-        let share = self.factor / k_max;
-        Residual { ratio: if share.is_finite() { loading.ratio_at(share) } else { f64::NAN }, ..self }
-    }
-
-    /// Share of K_max that counts as range, as [`Loading::range_share`].
-    pub fn range_share(self) -> f64 {
-        (1.0 - self.ratio.max(0.0)).max(0.0)
-    }
+    /// How K_eq follows the load.
+    pub response: Response,
 }
 
 /// The end in the thickness of the front of a crack that did not go through at the start, at a recorded step.
@@ -117,8 +96,8 @@ pub struct CurvePoint {
     pub tips: Vec<TipRecord>,
     /// What a crack that did not go through at the start does in the thickness; `None` of through cracks.
     pub depth: Option<DepthRecord>,
-    /// What residual stress does to the tip that leads; `None` without.
-    pub residual: Option<Residual>,
+    /// How K of the tip that leads follows the load.
+    pub response: Response,
 }
 
 impl CurvePoint {
@@ -155,25 +134,30 @@ impl CurvePoint {
             broken_bonds,
             tips,
             depth: None,
-            residual: None,
+            response: Response::PROPORTIONAL,
         }
     }
 
-    /// The row with a residual stress that makes `of_residual` of the K at maximum load that leads, Pa√m.
-    pub fn with_residual(self, k_max: f64, of_residual: f64, loading: &Loading) -> CurvePoint {
-        let residual = Residual { factor: of_residual, ratio: f64::NAN }.beside(k_max, loading);
-        CurvePoint { delta_k: residual.range_share() * k_max, residual: Some(residual), ..self }
+    /// The row of a tip whose K follows the load so, with its largest K, Pa√m.
+    pub fn with_response(self, k_max: f64, response: Response, loading: &Loading) -> CurvePoint {
+        let row = CurvePoint { response, ..self };
+        CurvePoint { delta_k: row.range_share(loading) * k_max, ..row }
+    }
+
+    /// Share of K_max that counts as range, as [`Loading::range_share`], of the largest cycle.
+    pub fn range_share(&self, loading: &Loading) -> f64 {
+        (1.0 - self.response.ratio(loading.ratio).max(0.0)).max(0.0)
     }
 
     /// K at maximum load that leads, Pa√m; NaN where unknown.
     pub fn k_max(&self, loading: &Loading) -> f64 {
-        self.delta_k / self.residual.map_or(loading.range_share(), Residual::range_share)
+        self.delta_k / self.range_share(loading)
     }
 
-    /// That at another load, over that of the cycles, which residual stress does not follow.
+    /// That of cycles whose loads are larger by a factor.
     pub fn k_max_at(&self, load: f64, loading: &Loading) -> f64 {
-        let of_residual = self.residual.map_or(0.0, |residual| residual.factor);
-        load * (self.k_max(loading) - of_residual) + of_residual
+        let [largest, _] = self.response.cycle([load * loading.ratio, load]);
+        largest * self.k_max(loading)
     }
 
     /// Length of the crack that a tip ends, with the growth of all its tips, m; `None` of the end of a slot.
@@ -193,7 +177,7 @@ impl CurvePoint {
             growth: mix(a.growth, b.growth),
             factors: a.factors.zip(b.factors).map(|(a, b)| [0, 1].map(|i| mix(a[i], b[i]))),
             t_stress: a.t_stress.zip(b.t_stress).map(|(a, b)| mix(a, b)),
-            of_residual: a.of_residual.zip(b.of_residual).map(|(a, b)| mix(a, b)),
+            response: a.response.between(&b.response, share),
         };
         CurvePoint {
             is_solved: false,
@@ -206,10 +190,7 @@ impl CurvePoint {
             broken_bonds: self.broken_bonds,
             tips: before.tips.iter().zip(&self.tips).map(tip).collect(),
             depth: self.depth,
-            residual: before
-                .residual
-                .zip(self.residual)
-                .map(|(before, now)| Residual { factor: mix(before.factor, now.factor), ratio: mix(before.ratio, now.ratio) }),
+            response: before.response.between(&self.response, share),
         }
     }
 }

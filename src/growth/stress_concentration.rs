@@ -82,7 +82,7 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
     (resolution.in_radius, resolution.rim_reach) = (IN_RADIUS_FIRST, RIM_REACH);
     let (mut rims, mut solves): (Vec<RimStress>, usize) = (Vec::new(), 0);
     loop {
-        let plate = Discretisation::new(specimen, elasticity, &lines, &tips, &resolution)?;
+        let plate = Discretisation::new(specimen, elasticity, &lines, &tips, &resolution, None)?;
         let load = case.loading.maximum;
         let solution = solve(specimen, &plate, resolution.far, load).map_err(|error| match error {
             Error::LossOfStiffness => Error::Mechanics(format!("{}: what is left of the plate cannot carry its load", case.name)),

@@ -11,6 +11,7 @@ pub mod walker;
 
 use serde_json::Value;
 
+use crate::response::Response;
 use description::{Description, Role};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use table::Table;
@@ -75,6 +76,22 @@ pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
     /// da/dN, m/cycle, at K_max, Pa√m, and stress ratio R; 0 where the crack does not grow.
     fn rate(&self, k_max: f64, ratio: f64) -> f64;
 
+    /// Least stress ratio that it knows; where compression counts as nothing there is none.
+    fn least_ratio(&self) -> f64 {
+        f64::NEG_INFINITY
+    }
+
+    /// Mean of da/dN over the cycles of a load, m/cycle, of a tip whose K follows that load by `response`: K_max is that of the largest load,
+    /// Pa√m, and R the ratio of that one. Ratios below the least count as that.
+    fn mean_rate(&self, k_max: f64, ratio: f64, response: &Response) -> f64 {
+        match response.ratio(ratio) {
+            _ if response.is_proportional() => self.rate(k_max, ratio),
+            ratio if ratio < 1.0 => self.rate(k_max, ratio.max(self.least_ratio())),
+            // The load closes the crack.
+            _ => 0.0,
+        }
+    }
+
     /// In words, why the law says nothing about this K; its rate is then that at the end of what it knows.
     fn beyond(&self, _k_max: f64, _ratio: f64) -> Option<String> {
         None
@@ -90,14 +107,14 @@ pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
         false
     }
 
-    /// The cycles that act at K_max, Pa√m, and R: of a spectrum all its sizes, K_max and R being those of the largest.
-    fn acting(&self, k_max: f64, ratio: f64) -> Vec<Acting> {
-        vec![Acting::new(k_max, ratio, 1.0)]
+    /// The cycles that act, asked as [`GrowthLaw::mean_rate`]: of a spectrum all its sizes.
+    fn acting(&self, k_max: f64, ratio: f64, response: &Response) -> Vec<Acting> {
+        vec![Acting::new(k_max, response.ratio(ratio), 1.0)]
     }
 
-    /// Share of the growth at K_max, Pa√m, and R that is by cycles of which the law says nothing.
-    fn share_beyond(&self, k_max: f64, ratio: f64) -> f64 {
-        if self.beyond(k_max, ratio).is_some() { 1.0 } else { 0.0 }
+    /// Share of the growth that is by cycles of which the law says nothing, asked as [`GrowthLaw::mean_rate`].
+    fn share_beyond(&self, k_max: f64, ratio: f64, response: &Response) -> f64 {
+        if self.beyond(k_max, response.ratio(ratio)).is_some() { 1.0 } else { 0.0 }
     }
 }
 
@@ -132,12 +149,6 @@ impl FactorLaw {
         threshold.filter(|delta_k| *delta_k > 1e-3 * MPA_SQRT_M)
     }
 
-    /// Least stress ratio whose compression it knows; `None` where compression counts as nothing.
-    pub fn least_ratio(&self) -> Option<f64> {
-        let of_table = self.table.as_ref().map(|table| table.curves[0].ratio).filter(|ratio| *ratio < 0.0);
-        of_table.or(self.kind.0.compression.map(|(_, least)| least))
-    }
-
     /// In words, with its constants.
     pub fn in_words(&self) -> String {
         let k_c = self.toughness().map(|k_c| format!(", K_c = {:.4} MPa√m", k_c / MPA_SQRT_M)).unwrap_or_default();
@@ -166,6 +177,11 @@ impl GrowthLaw for FactorLaw {
             Some(table) => table.rate(k_max, ratio),
             None => (self.kind.0.rate)(&self.constants, k_max, ratio),
         }
+    }
+
+    fn least_ratio(&self) -> f64 {
+        let of_table = self.table.as_ref().map(|table| table.curves[0].ratio).filter(|ratio| *ratio < 0.0);
+        of_table.or(self.kind.0.compression.map(|(_, least)| least)).unwrap_or(f64::NEG_INFINITY)
     }
 
     fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {

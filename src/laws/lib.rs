@@ -10,6 +10,7 @@ pub mod growth_law;
 pub mod growth_rate;
 pub mod initiation;
 pub mod paris;
+pub mod response;
 pub mod retardation;
 pub mod spectrum_law;
 

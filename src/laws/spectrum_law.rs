@@ -1,11 +1,13 @@
 //! A spectrum as one law: the mean of da/dN over the cycles of a pass.
 //!
 //! `da/dN = Σ n_i v(f_i K_max, R_i) / Σ n_i`, K_max being that of the largest load, f_i the maximum of a cycle over the largest and R_i its
-//! ratio. A crack that grows little in a pass grows by this mean in every cycle, so that whoever grows it needs no loop over cycles.
+//! ratio, of a tip whose K is in proportion to the load; else both ends of every cycle have their K from its [`Response`]. A crack that grows
+//! little in a pass grows by this mean in every cycle, so that whoever grows it needs no loop over cycles.
 
 use std::sync::OnceLock;
 
 use super::growth_law::{Acting, GrowthLaw};
+use super::response::Response;
 use perilife_plate::loading::spectrum::{Class, Spectrum};
 
 /// Classes up to which they are summed at every K; of more, sums are tabulated.
@@ -29,26 +31,31 @@ pub struct SpectrumLaw {
 }
 
 impl SpectrumLaw {
-    /// The law of the cycles of a spectrum; ratios below `least` count as that, where the law knows none lower.
-    pub fn new(law: Box<dyn GrowthLaw>, spectrum: &Spectrum, least: f64) -> Self {
-        let clamp = |class: Class| Class { ratio: class.ratio.max(least), ..class };
-        let classes: Vec<Class> = spectrum.classes.iter().copied().map(clamp).collect();
+    /// The law of the cycles of a spectrum; ratios below the least that it knows count as that.
+    pub fn new(law: Box<dyn GrowthLaw>, spectrum: &Spectrum) -> Self {
+        let classes = spectrum.classes.clone();
         let nodes = if classes.len() > SUMMED { ((ENDS[1] - ENDS[0]) / STEP) as usize } else { 0 };
         SpectrumLaw { law, classes, table: (0..nodes).map(|_| OnceLock::new()).collect() }
     }
 
     /// The mean itself.
-    fn mean(&self, k_max: f64) -> f64 {
-        self.classes.iter().map(|class| self.growth(k_max, class)).sum()
+    fn mean(&self, k_max: f64, response: &Response) -> f64 {
+        self.classes.iter().map(|class| self.growth(k_max, class, response)).sum()
     }
 
     /// What the cycles of a class add to the mean.
-    fn growth(&self, k_max: f64, class: &Class) -> f64 {
-        class.share * self.law.rate(k_max * class.max, class.ratio)
+    fn growth(&self, k_max: f64, class: &Class, response: &Response) -> f64 {
+        self.felt(k_max, class, response).map_or(0.0, |[k, ratio]| class.share * self.law.rate(k, ratio))
+    }
+
+    /// Largest K, Pa√m, and stress ratio of the cycles of a class; `None` of those that do not open the crack.
+    fn felt(&self, k_max: f64, class: &Class, response: &Response) -> Option<[f64; 2]> {
+        let [largest, least] = response.cycle([class.max, class.min]);
+        (largest > 0.0 && largest > least).then(|| [k_max * largest, (least / largest).max(self.law.least_ratio())])
     }
 
     fn node(&self, place: usize) -> f64 {
-        *self.table[place].get_or_init(|| self.mean((ENDS[0] + STEP * place as f64).exp()).ln())
+        *self.table[place].get_or_init(|| self.mean((ENDS[0] + STEP * place as f64).exp(), &Response::PROPORTIONAL).ln())
     }
 
     /// The mean by a monotone cubic through four neighbours of the table (slopes after Fritsch and Butland 1984); `None` where that is no
@@ -76,29 +83,41 @@ impl SpectrumLaw {
 
 impl GrowthLaw for SpectrumLaw {
     fn rate(&self, k_max: f64, _: f64) -> f64 {
-        self.tabulated(k_max).unwrap_or_else(|| self.mean(k_max))
+        self.tabulated(k_max).unwrap_or_else(|| self.mean(k_max, &Response::PROPORTIONAL))
+    }
+
+    fn mean_rate(&self, k_max: f64, ratio: f64, response: &Response) -> f64 {
+        if response.is_proportional() { self.rate(k_max, ratio) } else { self.mean(k_max, response) }
     }
 
     /// Of the first class, by size, of which the law says nothing, where a share of the growth that counts is by such.
     fn beyond(&self, k_max: f64, ratio: f64) -> Option<String> {
-        let told = |class: &Class| self.law.beyond(k_max * class.max, class.ratio).filter(|_| self.growth(k_max, class) > 0.0);
-        self.classes.iter().find_map(told).filter(|_| self.share_beyond(k_max, ratio) > BEYOND)
+        let response = &Response::PROPORTIONAL;
+        let told = |class: &Class| {
+            let [k, ratio] = self.felt(k_max, class, response).filter(|_| self.growth(k_max, class, response) > 0.0)?;
+            self.law.beyond(k, ratio)
+        };
+        self.classes.iter().find_map(told).filter(|_| self.share_beyond(k_max, ratio, response) > BEYOND)
     }
 
     fn is_refused_beyond(&self) -> bool {
         self.law.is_refused_beyond()
     }
 
-    fn acting(&self, k_max: f64, _: f64) -> Vec<Acting> {
-        let all = self.mean(k_max);
-        let of = |class: &Class| Acting::new(k_max * class.max, class.ratio, self.growth(k_max, class) / all);
-        self.classes.iter().map(of).filter(|acting| acting.share > 0.0).collect()
+    fn acting(&self, k_max: f64, _: f64, response: &Response) -> Vec<Acting> {
+        let all = self.mean(k_max, response);
+        let of = |class: &Class| {
+            let [k, ratio] = self.felt(k_max, class, response)?;
+            Some(Acting::new(k, ratio, self.growth(k_max, class, response) / all))
+        };
+        self.classes.iter().filter_map(of).filter(|acting| acting.share > 0.0).collect()
     }
 
-    fn share_beyond(&self, k_max: f64, _: f64) -> f64 {
-        let is_beyond = |class: &&Class| self.law.beyond(k_max * class.max, class.ratio).is_some();
-        let beyond: f64 = self.classes.iter().filter(is_beyond).map(|class| self.growth(k_max, class)).sum();
+    fn share_beyond(&self, k_max: f64, _: f64, response: &Response) -> f64 {
+        let is_beyond =
+            |class: &&Class| self.felt(k_max, class, response).is_some_and(|[k, ratio]| self.law.beyond(k, ratio).is_some());
+        let beyond: f64 = self.classes.iter().filter(is_beyond).map(|class| self.growth(k_max, class, response)).sum();
         // Most laws know every K, and the mean over all classes is asked of the others alone.
-        if beyond > 0.0 { beyond / self.mean(k_max) } else { 0.0 }
+        if beyond > 0.0 { beyond / self.mean(k_max, response) } else { 0.0 }
     }
 }

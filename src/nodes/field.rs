@@ -16,6 +16,7 @@ use super::resolution::Resolution;
 use super::rims::sides;
 use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, place_mm};
+use perilife_plate::loading::residual::ResidualStress;
 use perilife_plate::specimen::geometry::{bounding_box, distance};
 use perilife_plate::specimen::{CrackLine, LineEnd, Point, Specimen};
 use perilife_plate::williams::Elasticity;
@@ -87,8 +88,9 @@ impl Discretisation {
         lines: &[CrackLine],
         tips: &[Tip],
         resolution: &Resolution,
+        residual: Option<&ResidualStress>,
     ) -> Result<Self> {
-        let (grid, spacings) = resolution.grid(specimen, lines, tips)?;
+        let (grid, spacings) = resolution.grid(specimen, lines, tips, residual)?;
         let ends: Vec<(LineEnd, f64)> = tips.iter().map(|tip| tip.end).zip(spacings).collect();
         let (cuts, axes) = cracks(specimen, lines, &ends, resolution.far);
         let sides = sides(specimen, &grid);

@@ -3,7 +3,8 @@
 //! The spacing is `far` but for halvings: at a tip down to the `hold`-th part of its room, the least of its distance from rims and other
 //! cracks, the length of its crack (half of it with two tips), its growth since a kink and the way over which it is straight; around holes and concave arcs of the
 //! outline to R/2.4; across every ligament to a third of it, between sides of the plate that face each other to a sixth; at sharp re-entrant
-//! corners to an eighth of the shorter side, or of the way to a tip.
+//! corners to an eighth of the shorter side, or of the way to a tip; along cracks to the way over which a residual stress changes by a quarter of
+//! its largest.
 
 use super::basis::{BasisKind, Enrichment};
 use super::crack::Tip;
@@ -11,6 +12,7 @@ use super::grid::{Grid, Source};
 use super::rims::{ARC_TURN, Stretch, stretches};
 use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, place_mm};
+use perilife_plate::loading::residual::{Components, ResidualStress};
 use perilife_plate::specimen::geometry::{
     along, bounding_box, circle_crossing, circle_shares, direction, distance, edges, meeting_share, point_in_polygon,
     segments_touch, turn_at,
@@ -43,6 +45,10 @@ const WEDGE: f64 = 0.7;
 const STRETCH_OF_GAP: f64 = 2.0;
 /// The same over the far spacing at the least.
 const STRETCH_LEAST: f64 = 1e-3;
+/// Change of a residual stress over a spacing of the crack, over its largest there.
+const CHANGE_OF_RESIDUAL: f64 = 0.25;
+/// Pieces of a far spacing, and of a piece of crack, at whose ends a residual stress is looked at first.
+const PIECES_OF_RESIDUAL: f64 = 4.0;
 /// Gap at the ends of a stretch over that at its middle above which the gap runs along it.
 const ALONGSIDE: f64 = 0.5;
 
@@ -78,7 +84,13 @@ impl Resolution {
 
     /// Cells of a plate with these cracks, and the spacing asked for at every tip, m.
     /// Errors: [`Error::Mechanics`] where the plate would have too many cells.
-    pub fn grid(&self, specimen: &Specimen, lines: &[CrackLine], tips: &[Tip]) -> Result<(Grid, Vec<f64>)> {
+    pub fn grid(
+        &self,
+        specimen: &Specimen,
+        lines: &[CrackLine],
+        tips: &[Tip],
+        residual: Option<&ResidualStress>,
+    ) -> Result<(Grid, Vec<f64>)> {
         let bounds = bounding_box(&specimen.outline);
         let [width, height] = [0, 1].map(|i| bounds[1][i] - bounds[0][i]);
         let cells = width * height / (self.far * self.far);
@@ -94,6 +106,7 @@ impl Resolution {
         sources.extend(self.of_rims(specimen, lines));
         sources.extend(self.of_corners(specimen, lines, tips));
         sources.extend(self.of_cracks(specimen, lines, tips));
+        sources.extend(residual.into_iter().flat_map(|residual| self.of_residual(lines, residual)));
         let grid = Grid::new(bounds, self.far, &sources, CELLS_MOST);
         let finest = sources.iter().min_by(|a, b| a.spacing.total_cmp(&b.spacing));
         if let Some(finest) = finest.filter(|_| grid.len() > CELLS_MOST) {
@@ -191,6 +204,30 @@ impl Resolution {
                 let share = 0.5 * side / distance(at, end);
                 let place = |i: usize| along(at, end, share * i as f64 / count as f64);
                 sources.extend((0..count).map(|i| Source::point(place(i), spacing, self.rim_reach)));
+            }
+        }
+        sources
+    }
+
+    /// Pieces of cracks over which a residual stress changes by a share of its largest.
+    fn of_residual(&self, lines: &[CrackLine], residual: &ResidualStress) -> Vec<Source> {
+        let mut open: Vec<[Point; 2]> = Vec::new();
+        for [a, b] in lines.iter().flat_map(CrackLine::pieces) {
+            let count = (PIECES_OF_RESIDUAL * distance(a, b) / self.far).ceil().max(PIECES_OF_RESIDUAL) as usize;
+            open.extend((0..count).map(|k| [k, k + 1].map(|k| along(a, b, k as f64 / count as f64))));
+        }
+        let apart = |a: Components, b: Components| [0, 1, 2].iter().map(|&i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
+        let most = open.iter().flatten().map(|at| apart(residual.at(*at), [0.0; 3])).fold(0.0, f64::max);
+        let mut sources = Vec::new();
+        while let Some([a, b]) = open.pop() {
+            let (middle, length) = (along(a, b, 0.5), distance(a, b));
+            let [from, at, to] = [a, middle, b].map(|at| residual.at(at));
+            let change = apart(from, at) + apart(at, to);
+            let spacing = length * CHANGE_OF_RESIDUAL * most / (self.fineness * change);
+            if spacing < length && length > STRETCH_LEAST * self.far {
+                open.extend([[a, middle], [middle, b]]);
+            } else if spacing < self.far {
+                sources.push(Source::point(middle, spacing, RIM_REACH));
             }
         }
         sources

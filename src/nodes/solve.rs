@@ -17,29 +17,27 @@ use perilife_plate::loading::residual::ResidualStress;
 use perilife_plate::material::Plane;
 use perilife_plate::specimen::geometry::bounding_box;
 use perilife_plate::specimen::pin::Contact;
-use perilife_plate::specimen::{Point, Specimen};
+use perilife_plate::specimen::{Load, Point, Specimen};
 use perilife_plate::williams::Elasticity;
 
-/// Displacement of a plate under its loads.
+/// A plate in equilibrium with a load.
 #[derive(Debug, Clone)]
-pub struct Solution {
+pub struct Loaded {
+    /// The load over the nominal one.
+    pub share: f64,
     /// Unknowns, m.
     pub u: Vec<f64>,
     /// Work of the loads `Σ f u`, J; of elastic pins what their contact says (`pins.rs`).
     pub work: f64,
-    /// Points of integration.
-    pub points: usize,
-    /// Area of them, m².
-    pub area: f64,
     /// Flanks of cracks in contact.
     pub pressed: Vec<Pressed>,
+    /// Unknowns with free flanks, m; nothing where none are in contact.
+    pub free: Vec<f64>,
     /// Contact of elastic pins, with the index of the load.
     pub contacts: Vec<(usize, Contact)>,
-    /// Unknowns under what a residual stress releases on the cracks alone, flanks free, m; nothing where there is none.
-    pub of_residual: Vec<f64>,
 }
 
-impl Solution {
+impl Loaded {
     /// Pressure of flanks in contact at a place of a crack, Pa.
     pub fn pressure_at(&self, at: Point) -> f64 {
         self.pressed.iter().find(|pressed| pressed.is_on(at)).map_or(0.0, |pressed| pressed.pressure)
@@ -49,6 +47,17 @@ impl Solution {
     pub fn is_closed(&self, tip: Point) -> bool {
         self.pressed.iter().any(|pressed| pressed.ends_at(tip))
     }
+}
+
+/// A plate under its loads.
+#[derive(Debug, Clone)]
+pub struct Solution {
+    /// Under the nominal load.
+    pub whole: Loaded,
+    /// Under lower loads, ascending, where it does not follow the load in proportion.
+    pub lower: Vec<Loaded>,
+    /// Area of the points of integration, m².
+    pub area: f64,
 }
 
 /// The matrices of a plate: those of cells, then those of supports.
@@ -110,17 +119,18 @@ impl Matrices for Stiffness<'_> {
 /// Solves `K u = f` at the nominal load `load`, Pa or N, by a Cholesky factor.
 /// Errors: [`perilife_base::error::Error::LossOfStiffness`] where some part moves freely; nodes in reach of a point that do not span the basis;
 /// the work was asked to end.
-pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -> Result<Solution> {
-    solve_with(specimen, plate, far, load, None)
+pub fn solve(specimen: &Specimen, plate: &Discretisation, far: f64, load: f64) -> Result<Loaded> {
+    Ok(solve_with(specimen, plate, far, load, (None, &[]))?.whole)
 }
 
-/// As [`solve`], with what a residual stress releases on the cracks: a second right-hand side of the same factor.
+/// As [`solve`], with what a residual stress releases on the cracks, and under these lower loads over the nominal one, ascending, as far as the
+/// plate does not follow the load in proportion: more right-hand sides of the same factor.
 pub fn solve_with(
     specimen: &Specimen,
     plate: &Discretisation,
     far: f64,
     load: f64,
-    residual: Option<&ResidualStress>,
+    (residual, lower): (Option<&ResidualStress>, &[f64]),
 ) -> Result<Solution> {
     watch::at(Stage::Equilibrium, 0.0)?;
     let cells = quadrature(specimen, plate);
@@ -129,43 +139,87 @@ pub fn solve_with(
     let first: Vec<u32> = plate.first.iter().copied().chain(grips.map(|first| (first + UNKNOWNS_OF_GRIP) as u32)).collect();
     let stiffness = Stiffness { plate, thickness: specimen.thickness, cells: &cells, held: &held, first: &first };
     let factor = Factor::of(&stiffness.members(), &first, &stiffness)?;
-    let section = specimen.moved_section();
-    if section.is_none() {
+    if specimen.moved_section().is_none() {
         forces.iter_mut().for_each(|force| *force *= load);
     }
-    let mut others = forces.clone();
-    let pins = press_pins(specimen, plate, &factor, &others, load)?;
-    if let Some(pins) = &pins {
-        forces.iter_mut().zip(&pins.forces).for_each(|(force, of_pins)| *force += of_pins);
-    }
-    let mut y = forces;
-    factor.forward(&mut y);
-    let mut of_residual = Vec::new();
+    let mut released = vec![0.0; forces.len()];
     if let Some(residual) = residual {
-        of_residual = vec![0.0; y.len()];
-        press_cracks(&mut of_residual, specimen, plate, &|at| residual.at(at))?;
-        others.iter_mut().zip(&of_residual).for_each(|(force, released)| *force += released);
-        factor.forward(&mut of_residual);
-        y.iter_mut().zip(&of_residual).for_each(|(y, released)| *y += released);
-        factor.backward(&mut of_residual);
+        press_cracks(&mut released, specimen, plate, &|at| residual.at(at))?;
     }
-    let mut u = y.clone();
-    factor.backward(&mut u);
-    let mut pressed = press(specimen, plate, &factor, &y, &mut u)?;
-    let work = match section {
-        None => others.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() + pins.as_ref().map_or(0.0, |pins| pins.work),
-        // Moved by 1 m, then scaled to the force of the load: contact of flanks changes with it in proportion.
-        Some(section) => {
-            let scale = load * section / held.iter().map(|square| square.reaction(&u)).sum::<f64>();
-            u.iter_mut().for_each(|u| *u *= scale);
-            pressed.iter_mut().for_each(|pressed| pressed.pressure *= scale);
-            load * section * scale
-        }
+    let balance = Balance { specimen, plate, factor: &factor, held: &held, forces, released, load };
+    let whole = balance.at(1.0)?;
+    let lower = if residual.is_some() || specimen.loads.iter().any(Load::is_elastic_pin) || !whole.pressed.is_empty() {
+        balance.lower(&whole, residual.is_some(), lower)?
+    } else {
+        Vec::new()
     };
-    let points = cells.iter().map(|(_, points)| points.len()).sum();
     let area = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
-    let contacts = pins.map_or_else(Vec::new, |pins| pins.contacts);
-    Ok(Solution { u, work, points, area, pressed, contacts, of_residual })
+    Ok(Solution { whole, lower, area })
+}
+
+/// The equilibrium of a plate whose stiffness is factored.
+struct Balance<'a> {
+    specimen: &'a Specimen,
+    plate: &'a Discretisation,
+    factor: &'a Factor,
+    held: &'a [Square],
+    /// Of the nominal load but for elastic pins, N; of a displacement those that move its places by 1 m.
+    forces: Vec<f64>,
+    /// What the residual stress releases on the cracks, N.
+    released: Vec<f64>,
+    /// Pa or N.
+    load: f64,
+}
+
+impl Balance<'_> {
+    /// Under a share of the nominal load.
+    fn at(&self, share: f64) -> Result<Loaded> {
+        let Balance { specimen, plate, factor, held, .. } = *self;
+        let section = specimen.moved_section();
+        let size = if section.is_some() { share.signum() } else { share };
+        let others: Vec<f64> = self.forces.iter().zip(&self.released).map(|(force, released)| size * force + released).collect();
+        // Without load there are no pins.
+        let pins = if share > 0.0 { press_pins(specimen, plate, factor, &others, share * self.load)? } else { None };
+        let mut y = others.clone();
+        if let Some(pins) = &pins {
+            y.iter_mut().zip(&pins.forces).for_each(|(y, of_pins)| *y += of_pins);
+        }
+        factor.forward(&mut y);
+        let mut u = y.clone();
+        factor.backward(&mut u);
+        let mut free = u.clone();
+        let mut pressed = press(specimen, plate, factor, &y, &mut u)?;
+        if pressed.is_empty() {
+            free = Vec::new();
+        }
+        let work = match section {
+            None => others.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() + pins.as_ref().map_or(0.0, |pins| pins.work),
+            // Moved by 1 m, then scaled to the force of the load: contact of flanks changes with it in proportion.
+            Some(section) => {
+                let scale = share * self.load * section / held.iter().map(|square| square.reaction(&u)).sum::<f64>();
+                u.iter_mut().chain(&mut free).for_each(|u| *u *= scale);
+                pressed.iter_mut().for_each(|pressed| pressed.pressure *= scale);
+                share.abs() * self.load * section * scale
+            }
+        };
+        Ok(Loaded { share, u, work, pressed, free, contacts: pins.map_or_else(Vec::new, |pins| pins.contacts) })
+    }
+
+    /// Under lower loads, ascending, if it does not follow the load in proportion.
+    fn lower(&self, whole: &Loaded, has_residual: bool, loads: &[f64]) -> Result<Vec<Loaded>> {
+        let has_pins = !whole.contacts.is_empty();
+        // A pin bears no pull; flanks alone are in contact as they are at every load of the same sign.
+        let mut asked: Vec<f64> = loads.iter().map(|load| if has_pins { load.max(0.0) } else { *load }).collect();
+        asked.dedup();
+        asked.retain(|load| has_pins || has_residual || *load < 0.0);
+        let Some(least) = asked.first().map(|load| self.at(*load)).transpose()? else { return Ok(Vec::new()) };
+        let bends = has_pins || has_residual && !(whole.pressed.is_empty() && least.pressed.is_empty());
+        let mut lower = vec![least];
+        for load in asked.into_iter().skip(1).filter(|_| bends) {
+            lower.push(self.at(load)?);
+        }
+        Ok(lower)
+    }
 }
 
 /// Points of the raster in a far spacing: a dozen rasters of a run then have fewer places than its solves have points of integration.

@@ -15,7 +15,6 @@ use perilife_growth::predict::plastic_zone::plastic_zone;
 use perilife_growth::predict::{CurvePoint, Prediction, StopReason};
 use perilife_plate::material::growth_data::BATCH_FACTOR;
 use perilife_plate::specimen::SpecimenKind;
-use perilife_points::crack_tip::TipState;
 
 /// Lines that are printed below a verdict at the most.
 const LINES_MOST: usize = 5;
@@ -109,7 +108,6 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     checks.extend(extrapolation(case, prediction));
     checks.extend(cross_check(case, prediction));
     checks.extend(part_through::checks(case, prediction));
-    checks.extend(reversal(case, prediction));
     checks.extend(retardation(case, prediction));
     sorted(checks, case, Some(prediction))
 }
@@ -334,16 +332,6 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
     let side = if check.difference > 0.0 { Side::Safe } else { Side::Unsafe };
     let remedy = "give a smaller model.spacing_mm";
     Some(Check::sized("cross_check", percent.abs(), check.warning().is_some(), side, words, remedy))
-}
-
-/// Tips that maximum load presses shut grow while minimum load, of the other sign, opens them, which is not counted.
-fn reversal(case: &Case, prediction: &Prediction) -> Option<Check> {
-    let [ratio, _] = case.loading.ratios();
-    let is_closed = |row: &CurvePoint| row.tips.iter().position(|tip| tip.state == TipState::Closed);
-    let tip = prediction.curve.iter().find_map(is_closed).filter(|_| ratio < 0.0)?;
-    let words = format!("reversal: minimum load opens tip {tip}, its growth is not counted");
-    let remedy = Some("turn the load round: maximum times R, ratio 1/R".to_owned());
-    Some(Check { side: Some(Side::Unsafe), remedy, ..Check::new("reversal", Verdict::Fails, words) })
 }
 
 /// Life over that without retardation, whose constants come from the case alone.

@@ -61,8 +61,8 @@ pub fn curve(rows: &[Row]) -> Vec<[f64; 2]> {
 
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
 /// (load squared times compliance), the force where the cycles are of a `displacement`, m, of a crack that did not go through at the start its depth,
-/// with residual stress K_res of the leading tip and its stress ratio, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
-pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
+/// where K does not follow the load in proportion K of the leading tip without load (K_res) and its stress ratio at that of the load, `ratio`, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
+pub fn a_n(prediction: &Prediction, displacement: Option<f64>, ratio: f64) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
     if displacement.is_some() {
@@ -72,8 +72,8 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
     if has_depth {
         text.push_str(DEPTH_COLUMNS);
     }
-    let has_residual = prediction.curve.iter().any(|point| point.residual.is_some());
-    if has_residual {
+    let is_shifted = prediction.curve.iter().any(|point| !point.response.is_proportional());
+    if is_shifted {
         text.push_str(",k_residual_mpa_sqrt_m,stress_ratio_effective");
     }
     // Fatigue bonds, driven by their own strain know no K of a tip.
@@ -97,9 +97,10 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>) -> String {
         if has_depth {
             text.push_str(&depth_fields(point.depth));
         }
-        if has_residual {
-            let of = point.residual.map_or([f64::NAN; 2], |residual| [residual.factor / MPA_SQRT_M, residual.ratio]);
-            let _ = write!(text, ",{},{}", number(of[0]), number(of[1]));
+        if is_shifted {
+            let ratio = point.response.ratio(ratio);
+            let without_load = point.delta_k / (1.0 - ratio.max(0.0)) * point.response.at(0.0) / MPA_SQRT_M;
+            let _ = write!(text, ",{},{}", number(without_load), number(ratio));
         }
         for tip in &point.tips {
             for length in [tip.position[0], tip.position[1], tip.growth] {

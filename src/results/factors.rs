@@ -112,9 +112,8 @@ pub fn factors(case: &Case, prediction: &Prediction) -> Result<String> {
         for point in &prediction.curve {
             let record = &point.tips[tip];
             let k_eq = Factors::equivalent(point, tip);
-            let share = record.of_residual.filter(|_| k_eq > 0.0).map_or(0.0, |of_residual| of_residual / k_eq);
-            let ratio = case.loading.ratio_at(share);
-            let rate = if k_eq.is_nan() { k_eq } else { law.rate(k_eq, ratio) };
+            let ratio = record.response.ratio(case.loading.ratio);
+            let rate = if k_eq.is_nan() { k_eq } else { law.mean_rate(k_eq, case.loading.ratio, &record.response) };
             let lengths = [point.crack_length, record.growth].map(|length| number(length / MM)).join(",");
             let [k_i, k_ii] = record.factors.unwrap_or([f64::NAN; 2]);
             let known = [k_i, k_ii, k_eq, (1.0 - ratio.max(0.0)) * k_eq].map(|k| number(k / MPA_SQRT_M)).join(",");

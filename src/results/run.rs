@@ -92,7 +92,7 @@ impl Kept {
         lives.add_to(&mut result);
         quality.add_to(&mut result);
         answers.add_to(&mut result);
-        let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement()));
+        let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement(), case.loading.ratio));
         let crack_path = csv::crack_path(prediction, &case.specimen.cracks);
         if let Some(object) = result.as_object_mut() {
             object.insert("plate".to_owned(), json!(Plate::of(case)));

@@ -74,7 +74,7 @@ pub fn json(case: &Case, prediction: &Prediction) -> Value {
         "cycles_per_pass": clean(spectrum.per_pass),
         "cycles_omitted_per_pass": clean(spectrum.omitted),
         "kinds_of_cycles": spectrum.kinds,
-        "classes_of_mean_rate": spectrum.classes.len(),
+        "classes_of_mean_rate": spectrum.classes.iter().filter(|class| class.max > 0.0).count(),
         "largest": clean(spectrum.largest[1]),
         "smallest_over_largest": clean(spectrum.smallest()),
         "stress_ratio_min": clean(spectrum.ratios[0]),

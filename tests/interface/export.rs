@@ -14,7 +14,7 @@ use crate::support::made_up_run;
 fn fabricated() -> TempDir {
     let dir = tempdir().unwrap();
     fs::create_dir(dir.path().join("run")).unwrap();
-    fs::write(dir.path().join("run/a_n.csv"), csv::a_n(&made_up_run::prediction(0.0), None)).unwrap();
+    fs::write(dir.path().join("run/a_n.csv"), csv::a_n(&made_up_run::prediction(0.0), None, 0.0)).unwrap();
     dir
 }
 

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use perilife_base::raster::{PointGrid, Snapshot};
 use perilife_growth::predict::{CurvePoint, Prediction, RunFigures, StopReason, TipRecord};
+use perilife_laws::response::Response;
 use perilife_plate::specimen::{Crack, Point};
 use perilife_points::solver::SolverUsed;
 
@@ -66,7 +67,7 @@ fn curve() -> Vec<CurvePoint> {
             growth,
             factors: None,
             t_stress: None,
-            of_residual: None,
+            response: Response::PROPORTIONAL,
         };
         curve.push(CurvePoint {
             is_solved: true,
@@ -79,7 +80,7 @@ fn curve() -> Vec<CurvePoint> {
             broken_bonds: 9 * step,
             tips: vec![tip(-1.0), tip(1.0)],
             depth: None,
-            residual: None,
+            response: Response::PROPORTIONAL,
         });
     }
     curve

@@ -4,6 +4,7 @@ use perilife_base::error::Error;
 use perilife_growth::GrowthStatus;
 use perilife_growth::predict::record::{BLOCKS_WITHOUT_GROWTH, Guard};
 use perilife_growth::record::{StopReason, TipRecord};
+use perilife_laws::response::Response;
 
 fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
     GrowthStatus { cycles, crack_length, delta_k: 1.0, limit_load: None, tips }
@@ -16,7 +17,7 @@ fn tip(growth: f64) -> TipRecord {
         growth,
         factors: None,
         t_stress: None,
-        of_residual: None,
+        response: Response::PROPORTIONAL,
     }
 }
 

@@ -5,6 +5,7 @@ use perilife_growth::predict::record::Record;
 use perilife_growth::predict::{Prediction, Silent};
 use perilife_growth::record::{CurvePoint, StopReason, TipRecord};
 use perilife_growth::{CrackGrowth, GrowthStatus, State};
+use perilife_laws::response::Response;
 use perilife_points::crack_tip::TipState;
 
 use crate::support::hand_cases::{PANEL, hand_case};
@@ -30,10 +31,10 @@ impl Steady {
                 growth,
                 factors: None,
                 t_stress: None,
-                of_residual: None,
+                response: Response::PROPORTIONAL,
             }],
             depth: None,
-            residual: None,
+            response: Response::PROPORTIONAL,
         });
     }
 }
@@ -98,7 +99,7 @@ fn a_row_tells_no_k_that_was_not_read_for_it() {
         growth: 1e-3,
         factors: Some([1e7, 1e6]),
         t_stress: Some(1e6),
-        of_residual: None,
+        response: Response::PROPORTIONAL,
     };
     let states = [TipState::Active, TipState::Closed, TipState::EnteredHole, TipState::LeftPlate, TipState::LinkedUp];
     let row = |work| CurvePoint::of_tips(&case, [1e3, work], 5, (states.map(tip).to_vec(), &[]), Some((2e7, 1e-7)));

@@ -5,6 +5,7 @@ use perilife_base::input::Folder;
 use perilife_growth::case::Case;
 use perilife_laws::growth_law::{GrowthLaw, Walker};
 use perilife_laws::paris::ParisLaw;
+use perilife_laws::response::Response;
 use perilife_laws::spectrum_law::SpectrumLaw;
 use perilife_plate::loading::Loading;
 use perilife_plate::loading::spectrum::rainflow::rainflow;
@@ -157,7 +158,7 @@ fn means_over_classes_are_those_over_all_cycles() {
                 let rate = |c: &Cycle| c.ratio().map_or(0.0, |ratio| c.count * law.rate(k * c.max, ratio));
                 spectrum.cycles.iter().map(rate).sum::<f64>() / spectrum.per_pass
             };
-            let mean = SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY);
+            let mean = SpectrumLaw::new(Box::new(law), &spectrum);
             for k in [3.1e6, 27.7e6] {
                 let error = mean.rate(k, 0.0) / of_cycles(k) - 1.0;
                 assert!(error.abs() < 1e-4, "m {m}, gamma {gamma}: {error:e}");
@@ -171,7 +172,7 @@ fn compression_and_a_threshold_count_as_the_law_says() {
     let cycle = |max: f64, min: f64| Cycle { max, min, count: 1.0 };
     let spectrum = Spectrum::of(vec![cycle(1.0, 0.0), cycle(0.5, 0.0), cycle(-0.2, -1.0), cycle(0.3, -3.0)], [0.0, 1.0]).unwrap();
     let law = Walker { paris: ParisLaw { c: 1e-10, m: 2.0 }, gamma: 1.0, threshold: 4e6 };
-    let mean = SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY);
+    let mean = SpectrumLaw::new(Box::new(law), &spectrum);
     // At 10 MPa√m the third opens nothing and the fourth, 3 MPa√m, lies below the threshold.
     assert!((mean.rate(10e6, 0.0) / (1e-10 * 125.0 / 4.0) - 1.0).abs() < 1e-12);
     assert_eq!(mean.rate(3.9e6, 0.0), 0.0);
@@ -231,7 +232,7 @@ fn the_cycles_that_act_are_told_with_their_shares() {
     let cycle = |max: f64, min: f64, count: f64| Cycle { max, min, count };
     let spectrum = Spectrum::of(vec![cycle(1.0, 0.0, 1.0), cycle(0.5, 0.25, 30.0), cycle(-0.1, -0.2, 9.0)], [0.0, 1.0]).unwrap();
     let law = Walker { paris: ParisLaw { c: 1e-10, m: 2.0 }, gamma: 0.5, threshold: 0.0 };
-    let acting = SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY).acting(10e6, 0.0);
+    let acting = SpectrumLaw::new(Box::new(law), &spectrum).acting(10e6, 0.0, &Response::PROPORTIONAL);
     // C (K_max √(1-R))²: 100 for one, 30 · 25/2 for thirty.
     let wanted = [(2.5e6, 0.5, 375.0 / 475.0), (10e6, 0.0, 100.0 / 475.0)];
     assert_eq!(acting.len(), 2);

@@ -40,9 +40,9 @@ fn model(name: &str, constants: &[f64]) -> Retardation {
 /// Crack length, in, after so many cycles of a sequence in an infinite plate, K = β σ √(πa); where it passes a length, in, cycles are told too.
 fn grown(blocks: &Blocks, (start, beta, m_t): (f64, f64, f64), retardation: Option<&Retardation>, cycles: f64) -> March<'static> {
     let (law, spectrum) = (Box::leak(Box::new(law(m_t))), Box::leak(Box::new(spectrum(blocks))));
-    let mean = Box::leak(Box::new(SpectrumLaw::new(Box::new(*law), spectrum, f64::NEG_INFINITY)));
+    let mean = Box::leak(Box::new(SpectrumLaw::new(Box::new(*law), spectrum)));
     let retardation = retardation.cloned().map(|model| &*Box::leak(Box::new(model)));
-    let mut march = March::new(Laws { law, mean, retardation, least: f64::NEG_INFINITY }, spectrum, Underway::start(spectrum));
+    let mut march = March::new(Laws { law, mean, retardation }, spectrum, Underway::start(spectrum));
     let k = |a: f64| beta * spectrum.largest[1] * KSI * (PI * (start * INCH + a)).sqrt();
     assert_ne!(march.advance(&k, 10.0 * INCH, cycles), Marched::Reached);
     march
@@ -152,12 +152,8 @@ fn by_hand(blocks: &Blocks, of: (f64, f64, f64), model: &Retardation, passes: us
         })
         .collect();
     let (law, spectrum) = (law(of.2), Spectrum::of(singles, [0.0, 1.0]).unwrap());
-    let mean = SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY);
-    let mut march = March::new(
-        Laws { law: &law, mean: &mean, retardation: Some(model), least: f64::NEG_INFINITY },
-        &spectrum,
-        Underway::start(&spectrum),
-    );
+    let mean = SpectrumLaw::new(Box::new(law), &spectrum);
+    let mut march = March::new(Laws { law: &law, mean: &mean, retardation: Some(model) }, &spectrum, Underway::start(&spectrum));
     let k = |a: f64| of.1 * spectrum.largest[1] * KSI * (PI * (of.0 * INCH + a)).sqrt();
     march.advance(&k, 10.0 * INCH, spectrum.per_pass);
     march.at.a / MM
@@ -170,12 +166,8 @@ fn a_crack_that_stands_still_is_arrested() {
     let model = model("willenborg", &[1.5, 3.0]);
     let spectrum = Spectrum::of(vec![Cycle { max: 1.0, min: 0.0, count: 5.0 }], [0.0, 1.0]).unwrap();
     let law = Walker { threshold: 5e6, ..law(24.0) };
-    let mean = SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY);
-    let mut march = March::new(
-        Laws { law: &law, mean: &mean, retardation: Some(&model), least: -2.0 },
-        &spectrum,
-        Underway::start(&spectrum),
-    );
+    let mean = SpectrumLaw::new(Box::new(law), &spectrum);
+    let mut march = March::new(Laws { law: &law, mean: &mean, retardation: Some(&model) }, &spectrum, Underway::start(&spectrum));
     assert_eq!(march.advance(&|_| 4e6, 1.0, 1e12), Marched::Arrested);
     // Small cycles behind the overload of every pass stand still; the overload itself grows.
     let (slow, plain) =
@@ -242,8 +234,8 @@ fn a_rare_gust_ends_a_standstill() {
     let cycle = |max: f64, min: f64, count: f64| Cycle { max, min, count };
     let spectrum = Spectrum::of(vec![cycle(30.0, 27.0, 100.0), cycle(110.0, 6.0, 3e-4)], [0.0, 1.0]).unwrap();
     let law = Walker { paris: ParisLaw { c: 1e-12, m: 3.0 }, gamma: 1.0, threshold: 5e6 };
-    let (mean, wheeler) = (SpectrumLaw::new(Box::new(law), &spectrum, f64::NEG_INFINITY), model("wheeler", &[1.0]));
-    let laws = Laws { law: &law, mean: &mean, retardation: Some(&wheeler), least: f64::NEG_INFINITY };
+    let (mean, wheeler) = (SpectrumLaw::new(Box::new(law), &spectrum), model("wheeler", &[1.0]));
+    let laws = Laws { law: &law, mean: &mean, retardation: Some(&wheeler) };
     let mut march = March::new(laws, &spectrum, Underway::start(&spectrum));
     let growth = law.rate(20e6, 6.0 / 110.0);
     assert_eq!(march.advance(&|_| 20e6, 2.5 * growth, 1e15), Marched::Reached);

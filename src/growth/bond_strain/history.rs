@@ -8,6 +8,7 @@ use crate::case::{Case, Engine};
 use crate::end_of_life::End;
 use crate::record::{CurvePoint, TipRecord};
 use perilife_laws::growth_rate::{LengthAverage, Rate, Sample, rates, release_rate_at_end};
+use perilife_laws::response::Response;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_plate::specimen::{LengthConvention, Specimen};
 use perilife_points::body::{Body, Bond};
@@ -245,7 +246,7 @@ impl GrowthHistory {
             broken_bonds: row.broken_bonds,
             tips: row.tips.clone(),
             depth: None,
-            residual: None,
+            response: Response::PROPORTIONAL,
         };
         rows.iter().enumerate().map(point).collect()
     }

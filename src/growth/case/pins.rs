@@ -36,7 +36,14 @@ pub(super) fn settle(case: &mut Case) -> Result<()> {
     }
     let (lines, tips) = initial_cracks(&case.specimen);
     let resolution = case.nodes().resolution;
-    let plate = Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &resolution)?;
+    let plate = Discretisation::new(
+        &case.specimen,
+        Elasticity::of(&case.material),
+        &lines,
+        &tips,
+        &resolution,
+        case.loading.residual.as_deref(),
+    )?;
     let solution = solve(&case.specimen, &plate, resolution.far, case.loading.maximum).map_err(|error| match error {
         Error::LossOfStiffness => Error::Mechanics("what is left of the plate cannot carry the load of its pins".to_owned()),
         other => other,

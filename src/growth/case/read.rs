@@ -16,7 +16,7 @@ use perilife_base::input::{
 };
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA};
 use perilife_laws::growth_law::description::law_keys;
-use perilife_laws::growth_law::{FactorLaw, GrowthLawKind, Walker, doubt};
+use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker, doubt};
 use perilife_laws::paris::ParisLaw;
 use perilife_laws::retardation::{Retardation, retardation_keys};
 use perilife_plate::loading::LoadingKind;
@@ -304,7 +304,7 @@ fn steady(paris: ParisLaw) -> Walker {
 
 /// Compression in a cycle counts as nothing, whatever Walker's exponent.
 fn compression_line(case: &Case) -> Option<String> {
-    let counts = matches!(&case.law, LawSource::Factor(law) if law.least_ratio().is_some());
+    let counts = matches!(&case.law, LawSource::Factor(law) if GrowthLaw::least_ratio(law).is_finite());
     let law = GrowthLawKind::all().find(|kind| kind.0.compression.is_some())?;
     let [ratio, _] = case.loading.ratios();
     (ratio < 0.0 && !counts).then(|| {

@@ -15,12 +15,6 @@ const SYMMETRIC: f64 = 1e-6;
 pub(super) fn check(case: &Case) -> Result<()> {
     let Some(residual) = case.loading.residual.as_deref() else { return Ok(()) };
     let refuse = |problem: &str, remedy: &str| Err(input(residual.key(), residual.words(), problem, remedy));
-    if case.loading.spectrum.is_some() {
-        return refuse(
-            "shifts the stress ratio of every cycle of a spectrum by itself, which is not counted",
-            "give constant amplitude",
-        );
-    }
     if case.loading.displacement().is_some() {
         return refuse("does not go with cycles of a displacement, which one load follows", "give cycles of a load");
     }

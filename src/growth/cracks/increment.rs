@@ -1,7 +1,6 @@
 //! One increment of all cracks, call by call ([`crate::predict::increment`]).
 
 use super::meeting::Segment;
-use super::steering::equivalent_factor;
 use super::step::{Counted, Course, FactorCourse};
 use super::tip::{Reading, Tip, pair_twins};
 use super::{CrackedPlate, Cracks, Parted, kink, step};
@@ -10,6 +9,7 @@ use crate::end_of_life::{self, gone};
 use crate::record::{CurvePoint, StopReason};
 use perilife_base::error::Error;
 use perilife_base::units::MM;
+use perilife_laws::response::Response;
 use perilife_plate::specimen::Load;
 use perilife_points::crack_tip::TipState;
 
@@ -139,9 +139,12 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     pub(super) fn read(&mut self) -> Result<Vec<Option<Reading>>, Error> {
         let mut readings = self.plate.read(self.case, &self.state)?;
         let mut factors: Vec<Option<[f64; 2]>> = readings.iter().map(|reading| reading.map(|reading| reading.factors)).collect();
-        pair_twins(&mut factors);
+        let twins = pair_twins(&mut factors);
         let pairs = readings.iter_mut().zip(factors).filter_map(|(reading, factors)| reading.as_mut().zip(factors));
         pairs.for_each(|(reading, factors)| reading.factors = factors);
+        let responses: Vec<Option<Response>> = readings.iter().map(|reading| reading.map(|reading| reading.response)).collect();
+        let of_twins = readings.iter_mut().zip(twins).filter_map(|(reading, twin)| reading.as_mut().zip(responses[twin]));
+        of_twins.for_each(|(reading, response)| reading.response = response);
         Ok(readings)
     }
 
@@ -166,15 +169,12 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let gaps: Vec<Option<f64>> = (0..readings.len()).map(|tip| self.faced(tip).map(|(_, gap)| gap)).collect();
         for (index, reading) in readings.iter().enumerate() {
             let Some(reading) = reading else { continue };
-            let (mut factors, mut of_residual) = (reading.factors, reading.of_residual);
+            let mut factors = reading.factors;
             if !self.state.tips[index].is_closed {
                 factors = self.plate.factors_at_line(self.case, &self.state, index, reading, gaps[index]);
-                // What brings K to the end of the line brings its parts there.
-                let way = equivalent_factor(factors) / equivalent_factor(reading.factors);
-                of_residual = of_residual.map(|factor| if way.is_finite() { way * factor } else { factor });
             }
-            let (law, loading) = (&self.law, &self.case.loading);
-            self.state.tips[index].take(factors, of_residual, |factor, share| law.rate(factor, loading.ratio_at(share)));
+            let (law, ratio) = (&self.law, self.case.loading.ratio);
+            self.state.tips[index].take(factors, reading.response, |factor, response| law.mean_rate(factor, ratio, response));
         }
     }
 
@@ -214,7 +214,9 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             self.state.step = self.next_step(growth, curvature_share, cycles / all);
         }
         let is_closing = |(index, _): (usize, &Tip)| self.is_closing(index);
-        if has_ended || is_over || self.state.active().any(is_closing) {
+        // What flanks under residual stress do in contact is known worse than the energy that a step releases.
+        let is_wedged = self.case.loading.residual.is_some() && self.plate.is_in_contact();
+        if has_ended || is_over || is_wedged || self.state.active().any(is_closing) {
             self.state.balance.forget();
         } else {
             let way = way.as_ref().filter(|_| !step.is_kink);
@@ -283,13 +285,10 @@ impl<P: CrackedPlate> Cracks<'_, P> {
                 tip.position = [0, 1].map(|i| mix(from.position[i], to.position[i]));
             }
             let grown: Vec<f64> = row.tips.iter().map(|tip| tip.growth).collect();
-            let (k_max, loading) = (way.at(t), &self.case.loading);
-            let residual = row.residual.map(|residual| residual.beside(k_max, loading));
             CurvePoint {
                 cycles: last.cycles + course.cycles(t) * (next.cycles - last.cycles),
                 crack_length: self.case.specimen.crack_length_after(&grown),
-                delta_k: residual.map_or(loading.range_share(), |residual| residual.range_share()) * k_max,
-                residual,
+                delta_k: row.range_share(&self.case.loading) * way.at(t),
                 growth_rate: step.rate * course.rise(t).exp(),
                 ..row
             }
@@ -308,7 +307,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     /// Of every tip `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its line, m; work of the loads, J.
     fn energies(&self) -> (Vec<[f64; 2]>, f64) {
         let modulus = self.case.material.plane_modulus();
-        let of_tip = |tip: &Tip| [tip.driving_factor().powi(2) / modulus, tip.length_offset];
+        // What a tip has at the load that the work is of.
+        let of_tip = |tip: &Tip| [(tip.driving_factor() * tip.response.at(1.0).max(0.0)).powi(2) / modulus, tip.length_offset];
         (self.state.tips.iter().map(of_tip).collect(), self.work())
     }
 

@@ -38,23 +38,21 @@ impl<P: CrackedPlate> Cracks<'_, P> {
 
     /// The plate as it stands, as a row; ΔK and da/dN are those of the fastest tip.
     pub(super) fn row(&self, cycles: f64, work: f64, broken_bonds: usize) -> CurvePoint {
-        let has_residual = self.case.loading.residual.is_some();
         let now = |tip: &Tip| TipRecord {
             state: if tip.is_active() && tip.is_closed { TipState::Closed } else { tip.state },
             position: self.state.position(tip),
             growth: tip.growth,
             factors: Some(tip.factors),
             t_stress: Some(tip.t_stress),
-            of_residual: has_residual.then(|| tip.equivalent_of_residual()),
+            response: tip.response,
         };
         let tips = self.state.tips.iter().map(now).collect();
         let lead = self.fastest().map(|tip| &self.state.tips[tip]);
-        let of_residual = lead.filter(|_| has_residual && !work.is_nan()).map(Tip::equivalent_of_residual);
-        let (tips, lead) = ((tips, &self.state.lines[..]), lead.map(|tip| (tip.equivalent(), tip.rate)));
-        let row = CurvePoint::of_tips(self.case, [cycles, work], broken_bonds, tips, lead);
-        match (of_residual, lead) {
-            (Some(of_residual), Some((k_max, _))) => row.with_residual(k_max, of_residual, &self.case.loading),
-            _ => row,
+        let (tips, now) = ((tips, &self.state.lines[..]), lead.map(|tip| (tip.equivalent(), tip.rate)));
+        let row = CurvePoint::of_tips(self.case, [cycles, work], broken_bonds, tips, now);
+        match lead.filter(|_| !work.is_nan()) {
+            Some(lead) => row.with_response(lead.equivalent(), lead.response, &self.case.loading),
+            None => row,
         }
     }
 
@@ -62,17 +60,10 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     fn contact_warning(&self) -> Option<String> {
         let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.was_closed);
         let tips = closed.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
-        let [ratio, _] = self.case.loading.ratios();
         (!tips.is_empty()).then(|| {
-            let reversed = if ratio < 0.0 {
-                "; the minimum load opens it, and what it grows then is not counted, which is unsafe: turn the load round (its maximum times the \
-                 stress ratio, and one over that ratio) for the life of this tip"
-            } else {
-                ""
-            };
             format!(
                 "the load presses the crack shut at tip {tips}, which does not grow while it does: flanks carry pressure, and slide without \
-                 friction{reversed}"
+                 friction"
             )
         })
     }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::kink::Kink;
 use super::steering::{Steering, equivalent_factor, factor_across, kink_angle};
 use crate::cross_check::EnergyBalance;
+use perilife_laws::response::Response;
 use perilife_plate::specimen::{CrackLine, LineEnd, Point, Specimen};
 use perilife_points::crack_tip::TipState;
 
@@ -30,11 +31,46 @@ pub struct Reading {
     pub is_closed: bool,
     /// What the pressure between flanks adds to K_I, Pa√m.
     pub of_pressure: f64,
-    /// What residual stress makes of K_I and K_II, Pa√m.
-    pub of_residual: [f64; 2],
+    /// How K_eq follows the load.
+    pub response: Response,
+}
+
+/// What is read at a tip under one load.
+#[derive(Debug, Clone, Copy)]
+pub struct AtLoad {
+    /// The load over the largest.
+    pub load: f64,
+    /// K_I and K_II, Pa√m.
+    pub factors: [f64; 2],
+    /// Stress along the crack T, Pa.
+    pub t_stress: f64,
+    /// Whether flanks are in contact up to the tip.
+    pub is_closed: bool,
+    /// K_I and K_II of free flanks, Pa√m; `None` where K of a closed tip counts as in proportion to the load.
+    pub free: Option<[f64; 2]>,
 }
 
 impl Reading {
+    /// With what was read under lower loads, ascending, and with free flanks under the largest. The load that opens the tip most gives its
+    /// factors. A tip that is closed has the K below zero that superposition gives it, as laws take it for compression.
+    pub fn with_lower(self, lower: &[AtLoad], free: Option<[f64; 2]>) -> Reading {
+        let Reading { factors, t_stress, is_closed, .. } = self;
+        let largest = AtLoad { load: 1.0, factors, t_stress, is_closed, free };
+        let opens =
+            |at: &&AtLoad| !at.is_closed && at.factors[0] > 0.0 && equivalent_factor(at.factors) > equivalent_factor(factors);
+        let by_size = |a: &&AtLoad, b: &&AtLoad| equivalent_factor(a.factors).total_cmp(&equivalent_factor(b.factors));
+        let top = *lower.iter().filter(opens).max_by(by_size).unwrap_or(&largest);
+        let (angle, whole) = (kink_angle(top.factors), equivalent_factor(top.factors));
+        let pair = |at: &AtLoad| {
+            let across = factor_across(at.factors, angle);
+            let formal = || at.free.map_or(at.load / top.load * whole, |free| factor_across(free, angle));
+            [at.load, if at.is_closed && across <= 0.0 { formal().min(0.0) } else { across } / whole]
+        };
+        let pairs: Vec<[f64; 2]> = lower.iter().chain((!lower.is_empty()).then_some(&largest)).map(pair).collect();
+        let is_closed = top.is_closed;
+        Reading { factors: top.factors, t_stress: top.t_stress, is_closed, response: Response::new(&pairs), ..self }
+    }
+
     /// Whether the load presses the tip shut, and its flanks do not slide but for the noise of the reading.
     fn stands(&self) -> bool {
         let pressed = if self.is_closed { self.of_pressure } else { self.factors[0] };
@@ -53,8 +89,8 @@ pub struct Tip {
     pub growth: f64,
     /// K_I and K_II at maximum load at the present length, Pa√m.
     pub factors: [f64; 2],
-    /// What residual stress makes of them, Pa√m.
-    pub of_residual: [f64; 2],
+    /// How K_eq follows the load.
+    pub response: Response,
     /// Stress along the crack T at maximum load, Pa.
     pub t_stress: f64,
     /// da/dN at the present length, m/cycle; of a kink that begins that of none of its length.
@@ -91,7 +127,7 @@ impl Tip {
             state: TipState::Active,
             growth: 0.0,
             factors: [0.0; 2],
-            of_residual: [0.0; 2],
+            response: Response::PROPORTIONAL,
             t_stress: 0.0,
             rate: 0.0,
             length: line.length() / specimen.tips_of(line).max(1) as f64,
@@ -120,11 +156,6 @@ impl Tip {
     /// K_eq at maximum load, Pa√m.
     pub fn equivalent(&self) -> f64 {
         equivalent_factor(self.factors)
-    }
-
-    /// What residual stress makes of K_eq, in the direction into which its factors turn it, Pa√m.
-    pub fn equivalent_of_residual(&self) -> f64 {
-        factor_across(self.of_residual, kink_angle(self.factors))
     }
 
     /// Whether its next step begins a kink.
@@ -247,22 +278,16 @@ impl Tip {
         }
     }
 
-    /// Takes the factors at the end of its line, with what residual stress makes of them, Pa√m, and the rate of K_eq at a stress ratio that
-    /// the load gives a tip of these. The rate of a tip that has ended or stands is none.
-    pub(super) fn take(&mut self, factors: [f64; 2], of_residual: [f64; 2], rate: impl Fn(f64, f64) -> f64) {
-        self.of_residual = of_residual;
+    /// Takes the factors at the end of its line, Pa√m, how they follow the load, and the rate of such a K_eq. The rate of a tip that has ended or
+    /// stands is none.
+    pub(super) fn take(&mut self, factors: [f64; 2], response: Response, rate: impl Fn(f64, &Response) -> f64) {
+        self.response = response;
         // Flanks do not overlap: what is read below zero is where places of contact are too few at a tip.
         self.factors = [factors[0].max(0.0), factors[1]];
         if !self.is_closed && self.begins_kink() {
             self.kink = Kink::new(self.factors, self.t_stress, self.growth);
         }
-        self.rate = rate(self.driving_factor(), self.share_of_residual());
-    }
-
-    /// What residual stress makes of K_eq over that.
-    pub(super) fn share_of_residual(&self) -> f64 {
-        let equivalent = self.equivalent();
-        if equivalent > 0.0 { self.equivalent_of_residual() / equivalent } else { 0.0 }
+        self.rate = rate(self.driving_factor(), &self.response);
     }
 
     /// Forgets how K has changed and where it aimed: the crack that it ends is another one.
@@ -276,18 +301,21 @@ impl Tip {
 /// below what shows in a life.
 const TWINS: f64 = 1e-4;
 
-/// Gives tips whose factors agree but for their signs the same ones.
-pub fn pair_twins(factors: &mut [Option<[f64; 2]>]) {
+/// Gives tips whose factors agree but for their signs the same ones; of each its own number or that of its twin.
+pub fn pair_twins(factors: &mut [Option<[f64; 2]>]) -> Vec<usize> {
+    let mut twins: Vec<usize> = (0..factors.len()).collect();
     for i in 1..factors.len() {
         let Some(here) = factors[i] else { continue };
         let is_twin = |there: &[f64; 2]| {
             let size = there[0].abs().max(there[1].abs());
             [0, 1].iter().all(|&mode| (here[mode].abs() - there[mode].abs()).abs() <= TWINS * size)
         };
-        if let Some(there) = factors[..i].iter().flatten().copied().find(is_twin) {
+        if let Some((twin, there)) = (0..i).filter_map(|j| Some((j, factors[j]?))).find(|(_, there)| is_twin(there)) {
+            twins[i] = twin;
             factors[i] = Some([0, 1].map(|mode| there[mode].abs().copysign(here[mode])));
         }
     }
+    twins
 }
 
 /// The cracks of a plate and what drives them, as far as it is the same for all engines.

@@ -27,6 +27,7 @@ use overloads::Overloads;
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::units::MM;
 use perilife_laws::growth_law::GrowthLaw;
+use perilife_laws::response::Response;
 use perilife_laws::retardation::Underway;
 use perilife_plate::specimen::geometry::along;
 use perilife_points::crack_tip::TipState;
@@ -225,7 +226,7 @@ impl<'a> PartThroughGrowth<'a> {
             growth,
             factors: Some([factors[1], 0.0]),
             t_stress: None,
-            of_residual: None,
+            response: Response::PROPORTIONAL,
         };
         CurvePoint {
             is_solved: true,
@@ -238,7 +239,7 @@ impl<'a> PartThroughGrowth<'a> {
             broken_bonds: 0,
             tips: case.specimen.tips.iter().map(tip).collect(),
             depth: Some(DepthRecord { depth: axes[0], k_i: Some(factors[0]), growth_rate: Some(rates[0]) }),
-            residual: None,
+            response: Response::PROPORTIONAL,
         }
     }
 

@@ -23,8 +23,6 @@ const SETTLED: f64 = 1e-3 * STEP;
 pub struct Order {
     /// The law of one cycle.
     pub law: Box<dyn GrowthLaw>,
-    /// Least stress ratio that it knows.
-    pub least: f64,
     /// The model of retardation.
     pub model: Retardation,
 }
@@ -141,8 +139,8 @@ impl<'a> Overloads<'a> {
     }
 
     fn march<'b>(&'b self, fronts: &'b Fronts<'_>, end: usize) -> March<'b> {
-        let Order { law, least, .. } = &self.order;
-        let laws = Laws { law: &**law, mean: &*fronts.law, retardation: Some(&self.models[end]), least: *least };
+        let Order { law, .. } = &self.order;
+        let laws = Laws { law: &**law, mean: &*fronts.law, retardation: Some(&self.models[end]) };
         March::new(laws, self.spectrum, self.at[end])
     }
 }

@@ -2,19 +2,22 @@
 
 use rayon::prelude::*;
 
+use super::contact::Contact;
 use super::readings::Sliding;
 use super::ring::{CORE_HORIZONS, RING_HORIZONS, RING_HORIZONS_MIN, TipRings};
-use super::{PointPlate, crack_pressure, heading, released};
+use super::{LowerLoad, PointPlate, heading, released};
 use crate::case::Case;
 use crate::cracks::CrackedPlate;
 use crate::cracks::ahead;
 use crate::cracks::steering::equivalent_factor;
-use crate::cracks::tip::{CracksState, Reading, Tip, pair_twins};
+use crate::cracks::tip::{AtLoad, CracksState, Reading, Tip, pair_twins};
 use perilife_base::units::MM;
-use perilife_plate::loading::residual::{Components, across};
+use perilife_laws::response::Response;
+use perilife_plate::loading::residual::across;
 use perilife_plate::specimen::geometry::distance;
-use perilife_plate::specimen::{CrackLine, LineEnd, Point};
+use perilife_plate::specimen::{CrackLine, LineEnd};
 use perilife_points::body::severed::represented_excess;
+use perilife_points::stress_intensity::ring::FlankPressure;
 
 /// How far ahead of its line a tip may stand, in horizons. Along rows of points it is 0.05 to 0.09 at ν = 0.3, 0.04 at ν = 0.1,
 /// whatever the spacing.
@@ -75,12 +78,13 @@ impl PointPlate {
         let body = &self.body;
         let horizon = body.horizon();
         let active: Vec<LineEnd> = cracks.active().map(|(_, tip)| tip.end).collect();
-        let tractions = |displacement: &[f64], released: &dyn Fn(Point) -> Components| {
-            self.contact.pressures(&self.layout(), displacement, body.thickness, released)
+        let tractions = |contact: &Contact, displacement: &[f64], share: f64| {
+            contact.pressures(&self.layout(), displacement, body.thickness, &|at| released(case, share, at))
         };
-        let pressures = tractions(&self.displacement, &|at| released(case, at));
+        let pressures = tractions(&self.contact, &self.displacement, 1.0);
+        let of_lower = |lower: &LowerLoad| tractions(&lower.contact, &lower.displacement, lower.load);
+        let pressures_of_lower: Vec<_> = self.lower.iter().map(of_lower).collect();
         let residual = case.loading.residual.as_deref();
-        let of_load = residual.map(|_| tractions(&self.of_load, &|_| crack_pressure(case)));
         let share = case.loading.share(self.work);
         let rings = TipRings {
             body,
@@ -93,7 +97,7 @@ impl PointPlate {
             is_new: cracks.tips.iter().all(|tip| tip.growth == 0.0),
             pressures: &pressures,
         };
-        let (contact, memory, under_load) = (&self.contact, &self.memory, &self.of_load[..]);
+        let (contact, memory, under) = (&self.contact, &self.memory, &self.lower);
         let read = |(index, tip): (usize, &Tip)| {
             let (end, of_tip) = (tip.end, &memory[index]);
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
@@ -126,20 +130,24 @@ impl PointPlate {
             });
             let [mut t_stress, of_pressure] = [ring.t_stress, ring.of_pressure].map(|of_load| share * of_load);
             let ahead_of_tip = heading(body, lines, end);
-            let mut of_residual = [0.0; 2];
-            if let (Some(residual), Some(pressures)) = (residual, &of_load) {
-                let of_load = TipRings { displacement: under_load, pressures, ..rings };
-                let of_load = of_load.read(end, excess + ahead).factors;
-                of_residual = [0, 1].map(|i| ring.factors[i] - of_load[i]);
-                // The stress along the crack that the plate had before it.
-                let along = across(residual.at(lines[end.line].end(end.at_last)), ahead_of_tip);
-                t_stress += along[0] * ahead_of_tip[0] + along[1] * ahead_of_tip[1];
-            }
-            let (length_offset, spacing) = (excess + ahead, body.lattice.spacing);
-            (
-                Reading { factors, t_stress, ahead: ahead_of_tip, spacing, length_offset, is_closed, of_pressure, of_residual },
-                sliding,
-            )
+            // The stress along the crack that the plate had before it.
+            let along = residual.map_or([0.0; 2], |residual| across(residual.at(lines[end.line].end(end.at_last)), ahead_of_tip));
+            let along = along[0] * ahead_of_tip[0] + along[1] * ahead_of_tip[1];
+            t_stress += along;
+            let at_load = |(lower, pressures): (&LowerLoad, &Vec<FlankPressure>)| {
+                let of_lower = TipRings { displacement: &lower.displacement, pressures, load: lower.load * rings.load, ..rings };
+                let ring = of_lower.read(end, excess + ahead);
+                let is_closed = lower.contact.is_closed(lines, end, body.lattice.spacing);
+                let factors = [if is_closed { 0.0 } else { ring.factors[0] }, ring.factors[1]];
+                // Superposition with free flanks is not at hand: no K counts as none.
+                let free = (is_closed && residual.is_some()).then_some([0.0; 2]);
+                AtLoad { load: lower.load, factors, t_stress: ring.t_stress + along, is_closed, free }
+            };
+            let lower: Vec<AtLoad> = under.iter().zip(&pressures_of_lower).map(at_load).collect();
+            let (length_offset, spacing, response) = (excess + ahead, body.lattice.spacing, Response::PROPORTIONAL);
+            let reading =
+                Reading { factors, t_stress, ahead: ahead_of_tip, spacing, length_offset, is_closed, of_pressure, response };
+            (reading.with_lower(&lower, Some([0.0; 2]).filter(|_| is_closed && residual.is_some())), sliding)
         };
         let of_tip = |(index, tip): (usize, &Tip)| tip.is_active().then(|| read((index, tip)));
         let read: Vec<_> = cracks.tips.par_iter().enumerate().map(of_tip).collect();

@@ -14,7 +14,6 @@ use crate::nodes::NodePlate;
 use crate::record::{CurvePoint, StopReason, TipRecord};
 use perilife_base::units::MM;
 use perilife_laws::growth_law::GrowthLaw;
-use perilife_plate::loading::Loading;
 use perilife_plate::specimen::handbook::handbook;
 use perilife_points::crack_tip::TipState;
 
@@ -87,12 +86,6 @@ struct Rates<'a> {
 impl Rates<'_> {
     fn at(&self, factor: f64) -> f64 {
         self.law.rate(factor, self.ratio)
-    }
-
-    /// With what residual stress makes of K, Pa√m.
-    fn of(&self, factor: f64, of_residual: Option<f64>, loading: &Loading) -> f64 {
-        let share = of_residual.filter(|_| factor > 0.0).map_or(0.0, |of_residual| of_residual / factor);
-        self.law.rate(factor, loading.ratio_at(share))
     }
 
     /// d ln r / d ln K.
@@ -202,7 +195,7 @@ impl Difference {
             Case { specimen: grown(&case.specimen, &rows[..=row]), model: Model::Nodes(finer_nodes(case)), ..case.clone() };
         let tips = initial_tips::<NodePlate>(&finer).map_err(|error| format!("finer nodes: {error}"))?.tips;
         let rate = |tip: &TipRecord| {
-            tip.factors.map_or(0.0, |factors| rates.of(equivalent_factor(factors), tip.of_residual, &case.loading))
+            tip.factors.map_or(0.0, |factors| rates.law.mean_rate(equivalent_factor(factors), rates.ratio, &tip.response))
         };
         let own = &rows[row].tips;
         let active = |tip: &usize| own[*tip].state == TipState::Active;

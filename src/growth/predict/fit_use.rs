@@ -8,6 +8,7 @@ use crate::case::record::FittedRecord;
 use crate::case::{Case, LawSource, Model};
 use perilife_base::units::MPA_SQRT_M;
 use perilife_laws::growth_law::{Acting, GrowthLaw};
+use perilife_laws::response::Response;
 use perilife_plate::loading::SAME_RATIO;
 
 /// Share of life outside the fitted ΔK range above which a run is warned about, and of a side of the range that is named then.
@@ -122,8 +123,9 @@ fn life_share(case: &Case, curve: &[CurvePoint], of: &dyn Fn(&Acting, [f64; 2]) 
             continue;
         }
         let middle = 0.5 * (from + to);
-        if kept.1.is_empty() || (middle / kept.0 - 1.0_f64).abs() > SHARES_KEPT {
-            kept = (middle, acting(case, &*law, middle));
+        if kept.1.is_empty() || (middle / kept.0 - 1.0_f64).abs() > SHARES_KEPT || !pair[1].response.is_proportional() {
+            let k_max = middle / pair[1].range_share(&case.loading);
+            kept = (middle, law.acting(k_max, case.loading.ratio, &pair[1].response));
         }
         known += cycles;
         let ends = if kept.0 > 0.0 { [from / kept.0, to / kept.0] } else { [1.0; 2] };
@@ -132,9 +134,9 @@ fn life_share(case: &Case, curve: &[CurvePoint], of: &dyn Fn(&Acting, [f64; 2]) 
     (known > 0.0).then(|| counted / known)
 }
 
-/// The cycles that act at a ΔK of the largest, Pa√m.
+/// The cycles that act at a ΔK of the largest, Pa√m, of K in proportion to the load.
 fn acting(case: &Case, law: &dyn GrowthLaw, delta_k: f64) -> Vec<Acting> {
-    law.acting(delta_k / case.loading.range_share(), case.loading.ratio)
+    law.acting(delta_k / case.loading.range_share(), case.loading.ratio, &Response::PROPORTIONAL)
 }
 
 /// Shares of the growth at a ΔK of the largest cycle, Pa√m, by cycles below and above the fitted range of ΔK.

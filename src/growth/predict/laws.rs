@@ -16,33 +16,9 @@ use perilife_laws::spectrum_law::SpectrumLaw;
 /// Errors: a case without law; as [`rate_constant`] where it is one of bonds.
 pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     Ok(match &case.loading.spectrum {
-        Some(spectrum) => Box::new(SpectrumLaw::new(law_of_cycle(case)?, spectrum, least_ratio(case))),
-        None if case.loading.residual.is_some() => Box::new(ShiftedRatios { law: law_of_cycle(case)?, least: least_ratio(case) }),
+        Some(spectrum) => Box::new(SpectrumLaw::new(law_of_cycle(case)?, spectrum)),
         None => law_of_cycle(case)?,
     })
-}
-
-/// A law under the stress ratios that residual stress gives its cycles: below the least ratio that it knows it is held there, and where the
-/// load closes the crack, R ≥ 1, nothing grows.
-#[derive(Debug)]
-struct ShiftedRatios {
-    law: Box<dyn GrowthLaw>,
-    least: f64,
-}
-
-impl GrowthLaw for ShiftedRatios {
-    fn rate(&self, k_max: f64, ratio: f64) -> f64 {
-        if ratio >= 1.0 { 0.0 } else { self.law.rate(k_max, ratio.max(self.least)) }
-    }
-}
-
-/// Least stress ratio that the law of a case knows; where compression counts as nothing there is none.
-pub fn least_ratio(case: &Case) -> f64 {
-    let least = match &case.law {
-        LawSource::Factor(law) => law.least_ratio(),
-        _ => None,
-    };
-    least.unwrap_or(f64::NEG_INFINITY)
 }
 
 /// The law over K of a case for one cycle.
@@ -58,7 +34,7 @@ pub fn law_of_cycle(case: &Case) -> Result<Box<dyn GrowthLaw>> {
 /// Errors: as [`growth_law`].
 pub fn order(case: &Case) -> Result<Option<Order>> {
     let model = case.retardation.clone();
-    model.map(|model| Ok(Order { law: law_of_cycle(case)?, least: least_ratio(case), model })).transpose()
+    model.map(|model| Ok(Order { law: law_of_cycle(case)?, model })).transpose()
 }
 
 /// Refuses growth from a K that lies beyond what the law says, where the law wants that.
@@ -69,7 +45,7 @@ pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
     }
     let Some(law) = growth.law().filter(|law| law.is_refused_beyond()) else { return Ok(()) };
     let now = growth.now();
-    let Some(problem) = beyond(case, law, now.delta_k) else { return Ok(()) };
+    let Some(problem) = law.beyond(now.delta_k / case.loading.range_share(), case.loading.ratio) else { return Ok(()) };
     let at = format!("{problem}, at a crack length of {:.3} mm", now.crack_length / MM);
     Err(input_missing(
         "fatigue.growth_table",
@@ -78,14 +54,10 @@ pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
     ))
 }
 
-fn beyond(case: &Case, law: &dyn GrowthLaw, delta_k: f64) -> Option<String> {
-    law.beyond(delta_k / case.loading.range_share(), case.loading.ratio)
-}
-
 /// What the user should know: how much of a life is growth where the law holds the rate of its end.
 pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) -> Option<String> {
     let life = curve.last()?.cycles;
-    let share = |row: &CurvePoint| law.share_beyond(row.delta_k / case.loading.range_share(), case.loading.ratio);
+    let share = |row: &CurvePoint| law.share_beyond(row.k_max(&case.loading), case.loading.ratio, &row.response);
     let shares: Vec<f64> = curve.iter().map(|row| if row.delta_k.is_nan() { 0.0 } else { share(row) }).collect();
     // Of a single kind of cycle an interval counts that is beyond at one of its ends.
     let of = |ends: &[f64]| if case.loading.spectrum.is_some() { 0.5 * (ends[0] + ends[1]) } else { ends[0].max(ends[1]) };

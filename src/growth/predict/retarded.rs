@@ -4,7 +4,7 @@
 //! is then marched through the spectrum with the zones of its overloads ([`perilife_laws::retardation::March`]); the other tips keep the share of
 //! its growth that they have by the mean rates.
 
-use super::laws::{growth_law, law_of_cycle, least_ratio};
+use super::laws::{growth_law, law_of_cycle};
 use super::plastic_zone::other_plane;
 use super::{CurvePoint, StopReason};
 use crate::case::Case;
@@ -38,7 +38,7 @@ pub(super) fn recount(
     let of_front = curve.iter().take_while(|row| row.is_of_front()).count();
     let Some(first) = curve.get(of_front) else { return Ok(None) };
     let (law, mean): (Box<dyn GrowthLaw>, _) = (law_of_cycle(case)?, growth_law(case)?);
-    let laws = Laws { law: &*law, mean: &*mean, retardation: Some(retardation), least: least_ratio(case) };
+    let laws = Laws { law: &*law, mean: &*mean, retardation: Some(retardation) };
     let mut march = March::new(laws, spectrum, counted.unwrap_or_else(|| Underway::start(spectrum)));
     let mut zones: Vec<Option<Zone>> = vec![march.at.zone; first.tips.len()];
     let mut rows: Vec<CurvePoint> = curve[..=of_front].to_vec();
@@ -57,6 +57,7 @@ pub(super) fn recount(
         let [first, last] = factors(case, [from, to], lead);
         let k = between([first, last], way);
         let before = march.at.cycles;
+        march.response = from.tips[lead].response.between(&to.tips[lead].response, 0.5);
         if !(first > 0.0 && last > 0.0) {
             // Nothing is known of K there: the cycles are those of the run.
             (march.at.a, march.at.cycles) = (way[1], (march.at.cycles + to.cycles - from.cycles).min(case.stop.cycles_max));
@@ -113,7 +114,7 @@ pub(super) fn other_zones(case: &Case, curve: &[CurvePoint], own: &Recounted, en
 /// K of the largest load at a tip at both ends of an interval, Pa√m; what is not read is that of the other end, or of the row.
 fn factors(case: &Case, rows: [&CurvePoint; 2], tip: usize) -> [f64; 2] {
     let read = rows.map(|row| row.tips[tip].factors.map(equivalent_factor).filter(|k| *k > 0.0));
-    let of_row = rows.map(|row| Some(row.delta_k / case.loading.range_share()).filter(|k| k.is_finite() && *k > 0.0));
+    let of_row = rows.map(|row| Some(row.k_max(&case.loading)).filter(|k| k.is_finite() && *k > 0.0));
     let [first, last] = [0, 1].map(|end| read[end].or(of_row[end]));
     let otherwise = first.or(last).unwrap_or(0.0);
     [first.unwrap_or(otherwise), last.unwrap_or(otherwise)]

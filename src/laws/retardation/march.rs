@@ -8,6 +8,7 @@
 
 use super::{Now, Retardation, Zone};
 use crate::growth_law::GrowthLaw;
+use crate::response::Response;
 use perilife_plate::loading::spectrum::{Cycle, Spectrum, WHOLE};
 
 /// Change of the rate over the cycles counted in one go.
@@ -30,7 +31,7 @@ pub enum Marched {
     Arrested,
 }
 
-/// The laws of a march: da/dN of a cycle, of a pass as a mean, and what retards them; ratios below `least` count as that.
+/// The laws of a march: da/dN of a cycle, of a pass as a mean, and what retards them; ratios below the least that the law knows count as that.
 #[derive(Clone, Copy)]
 pub struct Laws<'a> {
     /// Of a cycle at K_max and R.
@@ -39,8 +40,6 @@ pub struct Laws<'a> {
     pub mean: &'a dyn GrowthLaw,
     /// The model of retardation; `None`: every cycle as if alone.
     pub retardation: Option<&'a Retardation>,
-    /// Least stress ratio that the law knows.
-    pub least: f64,
 }
 
 /// Where a tip stands on its way through a spectrum.
@@ -92,6 +91,8 @@ pub struct March<'a> {
     spectrum: &'a Spectrum,
     /// Cycles of the passes that are compared with those before them.
     per_period: f64,
+    /// How its K follows the load.
+    pub response: Response,
     /// Where it stands.
     pub at: Underway,
 }
@@ -105,7 +106,7 @@ pub fn between(ks: [f64; 2], way: [f64; 2]) -> impl Fn(f64) -> f64 {
 impl<'a> March<'a> {
     /// A tip that goes on from where it stands.
     pub fn new(laws: Laws<'a>, spectrum: &'a Spectrum, at: Underway) -> Self {
-        March { laws, spectrum, per_period: spectrum.period * spectrum.per_pass, at }
+        March { laws, spectrum, per_period: spectrum.period * spectrum.per_pass, response: Response::PROPORTIONAL, at }
     }
 
     /// Grows the tip to a way, m, `k` being the K of the largest load at a way, Pa√m; no more than so many cycles in all.
@@ -135,10 +136,11 @@ impl<'a> March<'a> {
 
     /// The cycle at the tip, with what it does there.
     fn now(&self, cycle: &Cycle, a: f64, k: f64) -> Now {
-        let k_max = cycle.max * k;
+        let [largest, smallest] = self.response.cycle([cycle.max, cycle.min]);
+        let k_max = largest * k;
         let size = self.laws.retardation.map_or(0.0, |model| model.zone_size(k_max));
-        let least = self.laws.least;
-        Now { a, k_max, ratio: (cycle.min / cycle.max).max(least), least, size }
+        let least = self.laws.law.least_ratio();
+        Now { a, k_max, ratio: (smallest / largest).max(least), least, size }
     }
 
     /// da/dN of a cycle, m, in the zone of an overload or out of it.
@@ -152,11 +154,11 @@ impl<'a> March<'a> {
 
     /// Counts up to `most` equal cycles; how many they were.
     fn count(&mut self, cycle: &Cycle, most: f64, k: &dyn Fn(f64) -> f64, to: f64) -> f64 {
-        let k_now = k(self.at.a);
+        let (k_now, [largest, smallest]) = (k(self.at.a), self.response.cycle([cycle.max, cycle.min]));
         if let Some(zone) = &mut self.at.zone {
-            zone.k_min = zone.k_min.min(cycle.min * k_now);
+            zone.k_min = zone.k_min.min(smallest * k_now);
         }
-        if cycle.max <= 0.0 {
+        if largest <= 0.0 || largest <= smallest {
             self.at.cycles += most;
             return most;
         }
@@ -238,7 +240,7 @@ impl<'a> March<'a> {
         if is.from <= was.from || left.abs() > ALIKE * is.size {
             return;
         }
-        let mean = |a: f64| self.laws.mean.rate(k(a), 0.0);
+        let mean = |a: f64| self.laws.mean.mean_rate(k(a), 0.0, &self.response);
         let share = growth / (mean(start + 0.5 * growth) * self.per_period);
         let (here, slope) = (k(self.at.a), (k(self.at.a) / k(start)).ln().abs() / growth);
         let way = (JUMP / slope.max(f64::MIN_POSITIVE)).min(0.5 * (to - self.at.a)).min(is.size.max(growth * WORTH) * 50.0);

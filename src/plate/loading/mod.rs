@@ -148,10 +148,14 @@ impl Loading {
         self.spectrum.as_ref().map_or([self.ratio; 2], |spectrum| spectrum.ratios)
     }
 
-    /// Stress ratio of a tip of whose K at maximum load residual stress makes the share s: `(R (K - sK) + sK)/K = R + s (1 - R)`.
-    #[inline]
-    pub fn ratio_at(&self, share_of_residual: f64) -> f64 {
-        self.ratio + share_of_residual * (1.0 - self.ratio)
+    /// Loads over the largest, ascending and below it, at which K is asked for where it does not follow the load in proportion: the least
+    /// one, and of a spectrum some between.
+    pub fn lower_loads(&self) -> Vec<f64> {
+        const BETWEEN: usize = 4;
+        let Some(spectrum) = &self.spectrum else { return vec![self.ratio] };
+        let (least, from) = (spectrum.smallest(), spectrum.smallest().max(0.0));
+        let between = (0..BETWEEN).map(|k| from + (1.0 - from) * k as f64 / BETWEEN as f64);
+        Some(least).filter(|least| *least < 0.0).into_iter().chain(between).collect()
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.

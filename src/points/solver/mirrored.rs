@@ -160,9 +160,9 @@ impl EquilibriumBackend for Mirrored {
         self.inner.work()
     }
 
-    fn set_contact(&mut self, body: &Body, contact: &[GapSpring]) {
+    fn set_contact(&mut self, body: &Body, share_of_load: f64, contact: &[GapSpring]) {
         if self.is_lost {
-            return self.inner.set_contact(body, contact);
+            return self.inner.set_contact(body, share_of_load, contact);
         }
         // All springs of the plate on the displacements of its part, each with the share of the energy that the part has.
         let share = 1.0 / self.part.body.mirror.copies() as f64;
@@ -171,7 +171,7 @@ impl EquilibriumBackend for Mirrored {
             stiffness: share * spring.stiffness,
             force: share * spring.force,
         };
-        self.inner.set_contact(&self.part.body, &contact.iter().map(of_part).collect::<Vec<_>>());
+        self.inner.set_contact(&self.part.body, share_of_load, &contact.iter().map(of_part).collect::<Vec<_>>());
     }
 
     fn reach(

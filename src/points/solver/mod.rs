@@ -82,10 +82,10 @@ impl Equilibrium {
         self.inner.broke(body, bonds, changed);
     }
 
-    /// Puts these springs between flanks in contact, and forces between flanks under pressure, in place of those that were there; places
-    /// are those of the body. Not to be asked of a solver that [`Equilibrium::reach`]ed: a condensed window knows no contact.
-    pub fn set_contact(&mut self, body: &Body, contact: &[GapSpring]) {
-        self.inner.set_contact(body, contact);
+    /// Puts these springs between flanks in contact, and forces between flanks under pressure, in place of those that were there, beside a
+    /// share of the load; places are those of the body. Not to be asked of a solver that [`Equilibrium::reach`]ed: a condensed window knows no contact.
+    pub fn set_contact(&mut self, body: &Body, share: f64, contact: &[GapSpring]) {
+        self.inner.set_contact(body, share, contact);
     }
 
     /// Makes the displacement right at the ends of `watched` bonds, and gets ready for breaks around the tips; returns the

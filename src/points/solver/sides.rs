@@ -189,11 +189,11 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
         self.work
     }
 
-    fn set_contact(&mut self, _: &Body, contact: &[GapSpring]) {
+    fn set_contact(&mut self, _: &Body, share: f64, contact: &[GapSpring]) {
         debug_assert!(contact.is_empty() || self.solver.window().is_none(), "a condensed window knows no contact");
-        if self.without_pressure.is_some() || contact.iter().any(|spring| spring.force != 0.0) {
+        if self.without_pressure.is_some() || share != 1.0 || contact.iter().any(|spring| spring.force != 0.0) {
             let without = self.without_pressure.get_or_insert_with(|| self.f.clone());
-            self.f.clone_from(without);
+            self.f.iter_mut().zip(without).for_each(|(f, without)| *f = share * *without);
             let layout = self.product.layout();
             contact.iter().filter(|spring| spring.force != 0.0).for_each(|spring| spring.add_load(layout, &mut self.f));
             self.product.fixed().iter().for_each(|&index| self.f[index] = 0.0);

@@ -112,7 +112,7 @@ pub(super) trait EquilibriumBackend: Send {
     fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]);
     fn work(&self) -> f64;
-    fn set_contact(&mut self, body: &Body, contact: &[GapSpring]);
+    fn set_contact(&mut self, body: &Body, share: f64, contact: &[GapSpring]);
     fn reach(
         &mut self,
         body: &Body,

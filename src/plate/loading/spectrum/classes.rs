@@ -12,13 +12,13 @@ const WIDTH: f64 = 0.0125;
 /// Order of the mean that a class keeps of the maxima and the ranges in it.
 const ORDER: f64 = 3.5;
 
-/// Cycles of one maximum and one stress ratio.
+/// Cycles of one maximum and one minimum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Class {
     /// Maximum over the largest load.
     pub max: f64,
-    /// Stress ratio.
-    pub ratio: f64,
+    /// Minimum over the largest load.
+    pub min: f64,
     /// How many of the cycles of a pass, over all of them.
     pub share: f64,
 }
@@ -36,29 +36,30 @@ pub(super) fn kinds(cycles: &[Cycle]) -> Vec<Cycle> {
     sorted
 }
 
-/// Classes of the kinds whose maximum opens the crack, few enough for sums over them: every kind by itself up to a thousand, else those
+/// Classes of the kinds, few enough for sums over them: every kind by itself up to a thousand, else those
 /// within 1.25 % in maximum and in range together, which keeps means of powers 2 to 5 of both within 1e-4; `per_pass` are all cycles.
 pub(super) fn classes(kinds: &[Cycle], per_pass: f64) -> Vec<Class> {
-    let class = |max: f64, ratio: f64, count: f64| Class { max, ratio, share: count / per_pass };
+    let class = |max: f64, min: f64, count: f64| Class { max, min, share: count / per_pass };
     if kinds.len() <= EXACT {
-        return kinds.iter().filter_map(|kind| Some(class(kind.max, kind.ratio()?, kind.count))).collect();
+        return kinds.iter().map(|kind| class(kind.max, kind.min, kind.count)).collect();
     }
-    let mut bins: HashMap<[i32; 2], [f64; 3]> = HashMap::new();
+    let mut bins: HashMap<(bool, [i32; 2]), [f64; 3]> = HashMap::new();
     let bin = |value: f64| (value.ln() / WIDTH).floor() as i32;
-    for kind in kinds.iter().filter(|kind| kind.max > 0.0) {
+    for kind in kinds {
         // The whole range, also below zero: laws differ in what compression counts.
-        let sums = bins.entry([bin(kind.max), bin(kind.range())]).or_default();
-        let terms = [1.0, kind.max.powf(ORDER), kind.range().powf(ORDER)];
+        let sums = bins.entry((kind.max > 0.0, [bin(kind.max.abs()), bin(kind.range())])).or_default();
+        let terms = [1.0, kind.max.abs().powf(ORDER), kind.range().powf(ORDER)];
         sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += kind.count * term);
     }
     let mut classes: Vec<Class> = bins
-        .into_values()
-        .map(|[count, max, range]| {
+        .into_iter()
+        .map(|((opens, _), [count, max, range])| {
             let [max, range] = [max, range].map(|sum| (sum / count).powf(1.0 / ORDER));
-            class(max, 1.0 - range / max, count)
+            let max = if opens { max } else { -max };
+            class(max, max - range, count)
         })
         .collect();
     // Sums over them are the same in every run.
-    classes.sort_by(|a, b| a.max.total_cmp(&b.max).then(a.ratio.total_cmp(&b.ratio)));
+    classes.sort_by(|a, b| a.max.total_cmp(&b.max).then(a.min.total_cmp(&b.min)));
     classes
 }
