@@ -110,7 +110,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let Err(error) = self.plate.solve(self.case, &self.state) else {
             return if self.compliance_rise(self.work()) < SEVERED { Ok(()) } else { Err(StopReason::Severed) };
         };
-        if matches!(error, Error::LossOfStiffness) {
+        // What the last tip has met ends the run, whatever can be solved of the pieces that are left.
+        if matches!(error, Error::LossOfStiffness) || self.state.active().next().is_none() {
             return Err(StopReason::Severed);
         }
         let rise = self.compliance_rise(self.last().work);
