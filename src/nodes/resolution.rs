@@ -3,7 +3,8 @@
 //! The spacing is `far` but for halvings: at a tip down to the `hold`-th part of its room, the least of its distance from rims and other
 //! cracks, the length of its crack (half of it with two tips), its growth since a kink and the way over which it is straight; around holes and concave arcs of the
 //! outline to R/2.4; across every ligament to a third of it, between sides of the plate that face each other to a sixth; at sharp re-entrant
-//! corners to an eighth of the shorter side, or of the way to a tip.
+//! corners to an eighth of the shorter side, or of the way to a tip; a loaded stretch of the outline is a spacing long at the least, or what
+//! it sinks in would depend on how nodes lie beside it, and the work of the loads with that.
 
 use super::basis::{BasisKind, Enrichment};
 use super::crack::Tip;
@@ -94,6 +95,8 @@ impl Resolution {
         sources.extend(self.of_rims(specimen, lines));
         sources.extend(self.of_corners(specimen, lines, tips));
         sources.extend(self.of_cracks(specimen, lines, tips));
+        let loaded = specimen.loads.iter().filter_map(Load::on_edge);
+        sources.extend(loaded.map(|(from, to, _)| Source::point(along(from, to, 0.5), distance(from, to), RIM_REACH)));
         let grid = Grid::new(bounds, self.far, &sources, CELLS_MOST);
         let finest = sources.iter().min_by(|a, b| a.spacing.total_cmp(&b.spacing));
         if let Some(finest) = finest.filter(|_| grid.len() > CELLS_MOST) {
