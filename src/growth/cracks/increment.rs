@@ -263,10 +263,6 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     fn rows_between(&self, step: &Increment, next: &CurvePoint, way: &FactorCourse, of_all: f64) -> Vec<CurvePoint> {
         let (course, last) = (&way.course, self.last());
         let (rate, factor) = (step.rate * course.gain.exp(), way.at(1.0));
-        let turn = |(tip, growth): (&Tip, f64)| {
-            if growth > 0.0 { self.state.lines[tip.end.line].last_turn(tip.end.at_last) } else { 0.0 }
-        };
-        let turns: Vec<f64> = self.state.tips.iter().zip(step.growths()).map(turn).collect();
         let row_at = |t: f64| {
             let mut row = next.clone().between(last, t);
             let of_lead = course.growth(t);
@@ -276,13 +272,10 @@ impl<P: CrackedPlate> Cracks<'_, P> {
                 let own = &self.state.tips[index];
                 let share = if index == step.lead { of_lead } else { own.share_at(of_lead, (step.rate, rate)) };
                 let [from, to] = [&last.tips[index], &next.tips[index]];
-                // K was read before the line turned into its new piece.
-                let turned = |factors| factors_across(factors, turns[index]);
-                tip.factors = from
-                    .factors
-                    .map(turned)
-                    .zip(to.factors)
-                    .map(|(a, b)| [0, 1].map(|i| beside_chord * (a[i] + t * (b[i] - a[i]))));
+                // K was read before the line turned into the piece of this increment.
+                let turn = if to.growth > from.growth { self.state.lines[own.end.line].last_turn(own.end.at_last) } else { 0.0 };
+                let ends = from.factors.map(|factors| factors_across(factors, turn)).zip(to.factors);
+                tip.factors = ends.map(|(a, b)| [0, 1].map(|i| beside_chord * (a[i] + t * (b[i] - a[i]))));
                 if own.has_begun_kink() {
                     // K at a corner is that of the crack before it.
                     let of_end = (step.factor / factor).powf(1.0 - t);
