@@ -13,6 +13,7 @@ mod dynamics;
 mod elasticity;
 mod element_free;
 mod error_estimate;
+mod factors_between;
 mod fatigue;
 mod fracture_relaxation;
 mod grips;

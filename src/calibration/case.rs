@@ -189,7 +189,7 @@ impl CalibrationCase {
 fn refuse_spectrum(case: &Case) -> perilife_base::error::Result<()> {
     if let Some(residual) = &case.loading.residual {
         let problem = "does not go with a calibration, which takes ΔK and rate of one stress ratio";
-        return Err(input(residual.key(), residual.words(), problem, "leave it out"));
+        return Err(input(residual.key(), residual.words(), problem, "calibrate on readings of plates without residual stress"));
     }
     if case.loading.spectrum.is_none() {
         return Ok(());

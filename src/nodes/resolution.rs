@@ -4,7 +4,8 @@
 //! cracks, the length of its crack (half of it with two tips), its growth since a kink and the way over which it is straight; around holes and concave arcs of the
 //! outline to R/2.4; across every ligament to a third of it, between sides of the plate that face each other to a sixth; at sharp re-entrant
 //! corners to an eighth of the shorter side, or of the way to a tip; along cracks to the way over which a residual stress changes by a quarter of
-//! its largest.
+//! its largest. A loaded stretch of the outline is a spacing long at the least, or what it sinks in would depend on how nodes lie beside it, and
+//! the work of the loads with that.
 
 use super::basis::{BasisKind, Enrichment};
 use super::crack::Tip;
@@ -107,6 +108,8 @@ impl Resolution {
         sources.extend(self.of_corners(specimen, lines, tips));
         sources.extend(self.of_cracks(specimen, lines, tips));
         sources.extend(residual.into_iter().flat_map(|residual| self.of_residual(lines, residual)));
+        let loaded = specimen.loads.iter().filter_map(Load::on_edge);
+        sources.extend(loaded.map(|(from, to, _)| Source::point(along(from, to, 0.5), distance(from, to), RIM_REACH)));
         let grid = Grid::new(bounds, self.far, &sources, CELLS_MOST);
         let finest = sources.iter().min_by(|a, b| a.spacing.total_cmp(&b.spacing));
         if let Some(finest) = finest.filter(|_| grid.len() > CELLS_MOST) {

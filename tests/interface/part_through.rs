@@ -119,7 +119,9 @@ fn the_example_runs_through_break_through_to_its_end() {
     assert!(number("life_cycles_if_k_is_larger") < life && life < number("life_cycles_if_k_is_smaller"), "{part}");
     assert!(part["outside_range"].as_array().unwrap().iter().any(|range| range["of"] == "a/t"), "{part}");
     assert_eq!(result["model"]["method"], "handbook");
-    assert!(result["solves"].as_u64().unwrap() > 0 && result["no_error_estimate"].as_str().unwrap().contains("±5 %"));
+    assert!(
+        result["solves"].as_u64().unwrap() > 0 && result["no_error_estimate"].as_str().unwrap().contains("after breakthrough")
+    );
     let names: Vec<&str> = result["checks"].as_array().unwrap().iter().map(|check| check["name"].as_str().unwrap()).collect();
     assert!(names.contains(&"part_through_factors") && names.contains(&"part_through_range"), "{names:?}");
     let run = dir.path().join("run");
@@ -134,6 +136,17 @@ fn the_example_runs_through_break_through_to_its_end() {
     for picture in ["section.svg", "plate.svg", "k.svg", "a_n.svg"] {
         assert!(fs::read_to_string(run.join(picture)).unwrap().contains("</svg>"), "{picture}");
     }
+    // Up to breakthrough: the error that ±5 % of K make, and all of the cycles beyond a/t of 0.8.
+    let output =
+        perilife(dir.path(), &["predict", "hole.toml", "--out", "part", "--json", "--set", "stop.at_break_through=true"]);
+    let result: Value = serde_json::from_str(&texts(&output).0).unwrap();
+    let (part, life) = (&result["part_through"], result["life_cycles"].as_f64().unwrap());
+    let longer = part["life_cycles_if_k_is_smaller"].as_f64().unwrap() / life - 1.0;
+    let beyond: Vec<&Value> = part["outside_range"].as_array().unwrap().iter().collect();
+    assert!(beyond.len() == 1 && longer > 0.1, "{part}");
+    let outside = beyond[0]["life_share"].as_f64().unwrap();
+    let stated = result["error_estimate_percent"].as_f64().unwrap();
+    assert!((stated - 100.0 * (longer + outside)).abs() < 0.6, "{stated}: {longer} and {outside}");
     // Page, export and words take it.
     for command in [&["report", "run", "--out", "page.html"][..], &["export", "run", "--points", "20", "--out", "e.csv"]] {
         let output = perilife(dir.path(), command);

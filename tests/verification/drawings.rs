@@ -198,7 +198,11 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
             &["POLYLINE outline 70 1", "VERTEX outline 10 3 20 4", "VERTEX outline 10 3 20 4 30 5", "SEQEND outline"],
             &["layer outline", "POLYLINE on line", "z = 5"],
         ),
-        (4, &[RECTANGLE, "CIRCLE holes 60 1 10 3 20 4 40 1"], &["layer holes", "CIRCLE at (3, 4)", "is hidden", "remove it"]),
+        (
+            4,
+            &[RECTANGLE, "CIRCLE holes 60 1 10 3 20 4 40 1"],
+            &["layer holes", "CIRCLE at (3, 4)", "is hidden", "show it if the plate has it"],
+        ),
         (0, &[RECTANGLE], &["specimen.outline_unit", "is missing"]),
         (3, &[RECTANGLE], &["unit 3"]),
     ];
@@ -222,8 +226,8 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
     let of_keys: [(&str, &str, &str, &[&str]); 8] = [
         (DXF, "part.dxf", "0\nSECTION\n", &["ends before its end mark"]),
         (DXF, "part.dxf", "PK\u{3}\u{4}\nfoo\n", &["is no DXF", "line 1"]),
-        ("outline_file = \"part.svg\"", "part.svg", "<svg><g>", &["no drawing that is read here", "give a file .dxf"]),
-        ("outline_file = \"part.step\"", "part.step", "x", &["no drawing that is read here"]),
+        ("outline_file = \"part.svg\"", "part.svg", "<svg><g>", &["is no DXF drawing", "save it as DXF"]),
+        ("outline_file = \"part.step\"", "part.step", "x", &["is no DXF drawing"]),
         ("outline_file = \"part.dxf\"\nwidth_mm = 9", "part.dxf", &good, &["specimen.width_mm", "beside outline_file"]),
         (
             "outline_file = \"part.dxf\"\noutline_unit = \"inch\"",

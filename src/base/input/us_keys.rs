@@ -33,11 +33,17 @@ pub(super) fn metric(path: &str) -> String {
 }
 
 /// Makes every key in US units the metric one, values and points of lists with it; a table under such a key has the number as `value`.
-/// Errors: a quantity that is given twice, naming both keys; C of a law without its exponent, which both belong to the unit of ΔK.
+/// Errors: a quantity that is given twice, naming both keys; C of a law without its exponent, which both belong to the unit of ΔK; a
+/// formula without unit, which would be a guess.
 pub(super) fn to_metric(table: &mut Table) -> Result<Vec<Written>> {
     let mut written = Vec::new();
     below(table, "", &mut written)?;
-    Ok(written)
+    let formula = table.get("loading").and_then(|loading| loading.get("residual_stress"));
+    let Some((Written { us, .. }, formula)) = written.first().zip(formula) else { return Ok(written) };
+    let problem = format!("has no unit in its name, and stands beside {us}");
+    let remedy =
+        "write loading.residual_stress_ksi for ksi, x and y in inch, or loading.residual_stress_mpa for MPa, x and y in mm";
+    Err(input("loading.residual_stress", shorten(formula), problem, remedy))
 }
 
 fn below(table: &mut Table, above: &str, written: &mut Vec<Written>) -> Result<()> {

@@ -55,8 +55,8 @@ pub const UNITS: [Unit; 11] = [
     unit(["n", "lbf"], ["N", "lbf"], LBF),
 ];
 
-/// Names that end as a unit does and are none: an exponent.
-const NO_QUANTITIES: [&str; 1] = ["nasgro_n"];
+/// Names that end as a unit does and are no number in it: an exponent, and formulas, whose reader knows their units.
+const NO_QUANTITIES: [&str; 3] = ["nasgro_n", "residual_stress_mpa", "residual_stress_ksi"];
 
 impl Unit {
     /// Its end of keys in a system.

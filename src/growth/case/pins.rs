@@ -31,7 +31,7 @@ pub(super) fn settle(case: &mut Case) -> Result<()> {
     if matches!(case.model, Model::Handbook(_)) {
         return refused(
             "is not known to the handbook, whose K is that of its own pins",
-            "use another model.method, or leave the pin out",
+            "use model.method = \"element_free_galerkin\"",
         );
     }
     let (lines, tips) = initial_cracks(&case.specimen);

@@ -1,6 +1,7 @@
 //! One increment of all cracks, call by call ([`crate::predict::increment`]).
 
 use super::meeting::Segment;
+use super::steering::factors_across;
 use super::step::{Counted, Course, FactorCourse};
 use super::tip::{Reading, Tip, pair_twins};
 use super::{CrackedPlate, Cracks, Parted, kink, step};
@@ -110,7 +111,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let Err(error) = self.plate.solve(self.case, &self.state) else {
             return if self.compliance_rise(self.work()) < SEVERED { Ok(()) } else { Err(StopReason::Severed) };
         };
-        if matches!(error, Error::LossOfStiffness) {
+        // What the last tip has met ends the run, whatever can be solved of the pieces that are left.
+        if matches!(error, Error::LossOfStiffness) || self.state.active().next().is_none() {
             return Err(StopReason::Severed);
         }
         let rise = self.compliance_rise(self.last().work);
@@ -273,7 +275,10 @@ impl<P: CrackedPlate> Cracks<'_, P> {
                 let own = &self.state.tips[index];
                 let share = if index == step.lead { of_lead } else { own.share_at(of_lead, (step.rate, rate)) };
                 let [from, to] = [&last.tips[index], &next.tips[index]];
-                tip.factors = tip.factors.map(|factors| factors.map(|k| beside_chord * k));
+                // K was read before the line turned into the piece of this increment.
+                let turn = if to.growth > from.growth { self.state.lines[own.end.line].last_turn(own.end.at_last) } else { 0.0 };
+                let ends = from.factors.map(|factors| factors_across(factors, turn)).zip(to.factors);
+                tip.factors = ends.map(|(a, b)| [0, 1].map(|i| beside_chord * (a[i] + t * (b[i] - a[i]))));
                 if own.has_begun_kink() {
                     // K at a corner is that of the crack before it.
                     let of_end = (step.factor / factor).powf(1.0 - t);

@@ -7,6 +7,7 @@
 use super::Prediction;
 use super::laws::growth_law;
 use super::moment::{grown, rows_before_meeting};
+use super::part_through::PartThroughLife;
 use crate::case::{Case, Engine, Model, finer_nodes};
 use crate::cracks::initial_tips;
 use crate::cracks::steering::{equivalent_factor, kink_angle};
@@ -15,6 +16,7 @@ use crate::record::{CurvePoint, StopReason, TipRecord};
 use perilife_base::units::MM;
 use perilife_laws::growth_law::GrowthLaw;
 use perilife_plate::specimen::handbook::handbook;
+use perilife_plate::specimen::part_through::STATED_ERROR;
 use perilife_points::crack_tip::TipState;
 
 /// Shares of the cycles at which nodes are asked again, of a run on nodes: as many as take half of its time at the most.
@@ -34,6 +36,8 @@ const AFTER_MEETING: f64 = 0.015;
 const CROSS_CHECK_MOST: f64 = 0.02;
 /// Error of a path over the gap between a rim and a crack that passes it, from which nothing is said: K behind a rim falls with the gap.
 const GAP_SHARE: f64 = 0.3;
+/// Percent of the life of a part-through crack at most that K has no stated error for.
+const UNSTATED_MOST: f64 = 25.0;
 /// Share of a life that must be looked at.
 const LOOKED_AT_LEAST: f64 = 0.3;
 
@@ -63,9 +67,7 @@ pub fn error_estimate(case: &Case, prediction: &Prediction) -> Result<ErrorEstim
         Engine::Bonds | Engine::BondsThenPoints => {
             Err("bonds that fail by their own strain have no limit that a finer lattice would tend to".to_owned())
         }
-        Engine::PartThrough => {
-            Err("K of a crack that does not go through is known to ±5 % from its source, see the checks".to_owned())
-        }
+        Engine::PartThrough => of_part_through(case, prediction),
         engine => {
             let law = growth_law(case).map_err(|error| error.to_string())?;
             match engine {
@@ -120,6 +122,25 @@ fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Resu
         path: 0.0,
         basis: format!("formula {}: {}", formula.name, formula.range),
     })
+}
+
+/// What the stated error of K makes of the life before breakthrough. Cycles outside the range of that, and after breakthrough, count in full.
+fn of_part_through(case: &Case, prediction: &Prediction) -> Result<ErrorEstimate, String> {
+    let life = PartThroughLife::of(case, &prediction.curve).ok_or("no K of the crack")?;
+    if case.specimen.part_through.is_some_and(|flaw| case.specimen.holes.len() > flaw.own_holes()) {
+        return Err("the effect of the other holes on K of a part-through crack has no stated error".to_owned());
+    }
+    let cycles = prediction.life_cycles();
+    let [outside, after] = [life.cycles_outside, cycles - life.cycles].map(|part| 100.0 * part / cycles);
+    if outside + after > UNSTATED_MOST {
+        return Err(format!(
+            "K has no stated error for {after:.0} % of life after breakthrough, {outside:.0} % beyond its range"
+        ));
+    }
+    let stated = life.life_factors.iter().map(|factor| 100.0 * (factor - 1.0).abs()).fold(0.0, f64::max);
+    let basis = format!("K ±{:.0} %, {:.1} % of life without a stated error in full", 100.0 * STATED_ERROR, outside + after);
+    let estimate = ErrorEstimate { life_percent: stated + outside + after, path: 0.0, basis };
+    stated.is_finite().then_some(estimate).ok_or_else(|| "within the error of its K the crack stands still".to_owned())
 }
 
 fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, shares: &[f64]) -> Result<ErrorEstimate, String> {

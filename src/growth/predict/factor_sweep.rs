@@ -132,7 +132,7 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
     }
     if specimen.crack_pressure > 0.0 {
         let problem = "goes with --sweep no more than cycles of a displacement: β is K over the stress of a load";
-        return Err(input_missing("loading.crack_pressure_mpa", problem, "leave it out"));
+        return Err(input_missing("loading.crack_pressure_mpa", problem, "leave --sweep out: K under pressure is that of `sif`"));
     }
     if case.loading.displacement().is_some() {
         let problem = "needs a load on rims or holes: β is K over its stress";

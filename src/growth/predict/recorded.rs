@@ -113,7 +113,7 @@ impl Recorded {
         let none = |why: &str| Error::Mechanics(format!("{}: {why}, so there is no K(a) to compute other lives on", case.name));
         if let Some(residual) = &case.loading.residual {
             let problem = "shifts K whatever the load: no other life follows from the K(a) of this run";
-            return Err(input(residual.key(), residual.words(), problem, "leave it out, or run each case by itself"));
+            return Err(input(residual.key(), residual.words(), problem, "run each case by itself"));
         }
         if prediction.phase_one.is_some() {
             return Err(none("phase I is of no K"));

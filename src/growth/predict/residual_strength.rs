@@ -74,7 +74,7 @@ pub fn check_strength(case: &Case) -> Result<()> {
     }
     if let Some(residual) = &case.loading.residual {
         let problem = "does not go with residual stress, which K does not lose in proportion to the load";
-        return Err(input_missing("--residual-strength", problem, format!("leave out {}", residual.key())));
+        return Err(input_missing("--residual-strength", problem, format!("leave the option out, not {}", residual.key())));
     }
     let limit = case.limit_load(case.specimen.crack_length, &case.specimen.crack_lines());
     if case.material.toughness.or(limit).is_some() {

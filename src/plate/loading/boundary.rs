@@ -67,7 +67,8 @@ fn apply_loads(input: &Input, supports: Option<&Value>, specimen: &mut Specimen,
     if parallel_ratio != 0.0 {
         if specimen.load_measure == LoadMeasure::Force {
             let problem = format!("does not go with {kind}");
-            return Err(perilife_base::error::input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out"));
+            let remedy = "give 0 if nothing loads the sides";
+            return Err(perilife_base::error::input("loading.stress_parallel_ratio", parallel_ratio, problem, remedy));
         }
         push_edge_loads(specimen, &[Edge::Left, Edge::Right], parallel_ratio);
     }
@@ -110,7 +111,7 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
         }
         Some((key, _)) if parallel_ratio != 0.0 => {
             let problem = format!("does not go with {key}");
-            return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out"));
+            return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "give 0 if nothing loads the sides"));
         }
         Some((key, _)) => {
             specimen.load_measure = LoadMeasure::Force;
@@ -141,7 +142,7 @@ fn load_edges_and_pins(input_: &Input, held: &[Edge], specimen: &mut Specimen, p
         ("kind", input_.kind == Some(LoadingKind::Displacement)),
     ];
     let problem = "does not go with pins beside loaded edges, whose stress is uniform and whose cycles are of a load";
-    refuse_given("loading", &given, problem, "leave it out, or leave out the pins")?;
+    refuse_given("loading", &given, problem, "compute it by other means: either alone is another plate")?;
     let area = load_edges(input_, held, specimen, parallel_ratio)?;
     let edges = specimen.loads.len();
     forces::read_pins(input_.pins.as_deref().unwrap_or_default(), true, specimen)?;

@@ -74,6 +74,8 @@ struct Input {
     truncation_percent: Option<f64>,
     repeats: Option<f64>,
     residual_stress: Option<Value>,
+    residual_stress_mpa: Option<Value>,
+    residual_stress_ksi: Option<Value>,
     residual_stress_file: Option<String>,
     stress_parallel_ratio: Option<f64>,
     bending_ratio: Option<f64>,

@@ -86,7 +86,7 @@ pub fn from_values(
     read_bending(&input, specimen)?;
     if let Some(flaw) = specimen.part_through.as_ref().filter(|flaw| parallel_ratio != 0.0 && flaw.radius > 0.0) {
         let problem = format!("changes the stress at the hole, by which K of a {} is not known", flaw.kind());
-        let remedy = "leave it out, or describe the crack as one that goes through (crack_at_hole)";
+        let remedy = "leave it out only if nothing loads the sides; K of a through crack (crack_at_hole) is computed with it";
         return Err(error::input("loading.stress_parallel_ratio", parallel_ratio, problem, remedy));
     }
     // A range is maximum - minimum, hence maximum (1 - R), also where R is negative.
@@ -110,7 +110,7 @@ pub fn from_values(
             {
                 if let Some(given) = given.filter(|given| *given != 0.0) {
                     let problem = "does not go with cycles of a displacement, which one load follows";
-                    return Err(error::input(&format!("loading.{key}"), given, problem, "leave it out"));
+                    return Err(error::input(&format!("loading.{key}"), given, problem, "give cycles of the load"));
                 }
             }
             let (unit, section) = match measure {
@@ -164,22 +164,23 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
 /// Puts the bending that goes with the tension on a crack that does not go through.
 fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
     const KEY: &str = "loading.bending_ratio";
+    const UNBENT: &str = "K under bending is known for surface_crack, corner_crack and corner_crack_at_hole";
     let Some(given) = input.bending_ratio else { return Ok(()) };
     let ratio = number("a ratio of stresses", 0.0, 1000.0).read(KEY, given)?;
     let (kind, all_holes) = (specimen.kind, specimen.holes.len());
     match specimen.part_through.as_mut() {
         Some(flaw) if ratio > 0.0 && all_holes > flaw.own_holes() => {
             let problem = "stands beside specimen.holes, whose effect on a crack under bending is not known";
-            return Err(error::input(KEY, given, problem, "leave out the holes or the bending"));
+            return Err(error::input(KEY, given, problem, "compute it by other means: either alone is another plate"));
         }
         Some(flaw) if flaw.knows_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
         Some(_) => {
             let problem = format!("does not go with {kind}, whose K is known under tension alone");
-            return Err(error::input(KEY, given, problem, "leave it out"));
+            return Err(error::input(KEY, given, problem, UNBENT));
         }
         None => {
             let problem = format!("is bending out of the plane of the plate, which {kind}, a through crack, does not know");
-            return Err(error::input(KEY, given, problem, "leave it out"));
+            return Err(error::input(KEY, given, problem, UNBENT));
         }
     }
     Ok(())
@@ -221,7 +222,8 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
     const KEY: &str = "loading.stress_ratio";
     let ratio = ratio.ok_or_else(|| input_missing(KEY, "is missing", "give R = minimum / maximum, 0 for pulsating load"))?;
     if ratio >= 1.0 {
-        return Err(input(KEY, ratio, "must be below 1: at R = 1 nothing changes in a cycle", "give R = minimum / maximum"));
+        let problem = "must be below 1: at R = 1 nothing changes in a cycle, above it all is compression, which is not computed";
+        return Err(input(KEY, ratio, problem, "give R = minimum / maximum, below 0 where the minimum is compression"));
     }
     number("a ratio", -100.0, 0.999).read(KEY, ratio)
 }
@@ -286,6 +288,13 @@ impl Magnitude {
                 if !wanted.split(", ").any(|known| known == key) {
                     let remedy = format!("give exactly one of {wanted}");
                     return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
+                }
+                if given < 0.0 {
+                    let problem =
+                        "must be above zero: cracks grow by the tensile part of a cycle, and compression alone is not computed";
+                    let remedy = "give the largest tension (a range: maximum - minimum; the scale of a file: above zero), and compression by \
+                                  stress_ratio = minimum / maximum below 0, or by the signs of the file";
+                    return Err(input(&path, given, problem, remedy));
                 }
                 let value = quantity.read(&path, given)?;
                 Ok(Magnitude { key: path, given, value, is_range: key.contains("range"), of })

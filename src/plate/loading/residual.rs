@@ -6,6 +6,7 @@
 //! The stress is that in the axes of the plate: σ_y, and σ_x and τ_xy where they are given, else 0. From a file it is linear between its
 //! points: in the triangles of Delaunay, or along a line where all points lie on one, and alike across that.
 
+use std::fmt::Display;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,10 +23,17 @@ use perilife_base::table::names::{Named, quantity};
 use perilife_base::table::quantities::{Words, in_si, numbers};
 use perilife_base::table::units::{LengthUnit, LoadUnit, Unit};
 use perilife_base::table::{self, Fault, whole_file};
-use perilife_base::units::{MM, MPA, place_mm};
+use perilife_base::units::{INCH, KSI, MM, MPA, place_mm};
 
 const FILE: &str = "loading.residual_stress_file";
-const FORMULA: &str = "loading.residual_stress";
+/// A key of formulas, with metres and pascals in their units.
+type Key = (&'static str, [f64; 2]);
+/// Keys of formulas; the last one, without unit, is metric and refused beside keys in US units.
+const FORMULAS: [Key; 3] = [
+    ("loading.residual_stress_mpa", [MM, MPA]),
+    ("loading.residual_stress_ksi", [INCH, KSI]),
+    ("loading.residual_stress", [MM, MPA]),
+];
 /// Distance from a line over its length within which points lie on it, and beyond its ends within which they are at its end.
 const ROUND_OFF: f64 = 1e-6;
 /// Pieces of the initial cracks whose ends are looked at.
@@ -54,14 +62,14 @@ pub struct ResidualStress {
 
 impl PartialEq for ResidualStress {
     fn eq(&self, other: &Self) -> bool {
-        (&self.words, &self.sha256) == (&other.words, &other.sha256)
+        (self.key, &self.words, &self.sha256) == (other.key, &other.words, &other.sha256)
     }
 }
 
 #[derive(Debug, Clone)]
 enum Field {
-    /// Of x and y in mm, giving MPa.
-    Formulas([Option<Formula>; 3]),
+    /// With metres and pascals in their units.
+    Formulas([Option<Formula>; 3], [f64; 2]),
     /// Along a straight line: its ends, then ways from the first one, m, ascending.
     Line([Point; 2], Vec<(f64, Components)>),
     Plane(Box<DelaunayTriangulation<Sample>>),
@@ -83,15 +91,20 @@ impl HasPosition for Sample {
 
 impl ResidualStress {
     /// What `[loading]` says of it, if anything.
-    /// Errors: both keys; a formula or file that cannot be read, by character or line.
+    /// Errors: two keys; a formula or file that cannot be read, by character or line.
     pub(super) fn read(given: &Input, folder: &Folder) -> Result<Option<Arc<ResidualStress>>> {
-        match (&given.residual_stress, &given.residual_stress_file) {
-            (None, None) => Ok(None),
-            (Some(_), Some(file)) => {
-                Err(input(FILE, file, "stands beside residual_stress: one field is given twice", "leave one of them out"))
-            }
-            (Some(formulas), None) => of_formulas(formulas).map(|field| Some(Arc::new(field))),
-            (None, Some(file)) => {
+        let formulas = [&given.residual_stress_mpa, &given.residual_stress_ksi, &given.residual_stress];
+        let mut formulas = FORMULAS.into_iter().zip(formulas).filter_map(|(key, given)| Some((key, given.as_ref()?)));
+        let twice = |key: &str, given: &dyn Display, (other, _): Key| {
+            let problem = format!("stands beside {other}: one field is given twice");
+            Err(input(key, given, problem, "keep the one that is meant"))
+        };
+        match (formulas.next(), formulas.next(), &given.residual_stress_file) {
+            (None, _, None) => Ok(None),
+            (Some((first, _)), Some(((key, _), given)), _) => twice(key, &shorten(given), first),
+            (Some((first, _)), None, Some(file)) => twice(FILE, file, first),
+            (Some((key, given)), None, None) => of_formulas(key, given).map(|field| Some(Arc::new(field))),
+            (None, _, Some(file)) => {
                 let bytes = folder.read(file)?;
                 let field = of_table(&bytes, &folder.path(file))?;
                 let sha256 = perilife_base::input::sha256(&bytes);
@@ -113,9 +126,9 @@ impl ResidualStress {
     /// The stress at a place, m; `None` where it is not known.
     fn known(&self, at: Point) -> Option<Components> {
         let stress = match &self.field {
-            Field::Formulas(formulas) => {
-                let place = at.map(|x| x / MM);
-                formulas.each_ref().map(|formula| formula.as_ref().map_or(0.0, |formula| MPA * formula.at(place)))
+            Field::Formulas(formulas, [length, stress]) => {
+                let place = at.map(|x| x / length);
+                formulas.each_ref().map(|formula| formula.as_ref().map_or(0.0, |formula| stress * formula.at(place)))
             }
             Field::Line([from, to], samples) => {
                 let length = distance(*from, *to);
@@ -157,7 +170,7 @@ impl ResidualStress {
             return Ok(());
         }
         let (problem, remedy) = match &self.field {
-            Field::Formulas(_) => ("is no number".to_owned(), "give a formula that has a value all along the crack"),
+            Field::Formulas(..) => ("is no number".to_owned(), "give a formula that has a value all along the crack"),
             Field::Line([from, to], _) => {
                 (format!("ends at {} and {}", place_mm(*from), place_mm(*to)), "give the stress all along the path of the crack")
             }
@@ -182,18 +195,18 @@ impl ResidualStress {
 }
 
 /// σ_y as a text, or a table of `x`, `y`, `xy`.
-fn of_formulas(given: &Value) -> Result<ResidualStress> {
-    const REMEDY: &str = "give \"formula of x, y in mm\" of σ_y in MPa, or { x = \"...\", y = \"...\", xy = \"...\" }";
+fn of_formulas((own, units): Key, given: &Value) -> Result<ResidualStress> {
+    const REMEDY: &str = "give σ_y as \"formula of x, y\", or { x = \"...\", y = \"...\", xy = \"...\" }";
     let parse = |key: String, text: &str| {
         Formula::parse(text)
             .map_err(|problem| input(&key, shorten(&Value::from(text)), problem, format!("a formula has {KNOWN}")))
     };
     let field = match given {
-        Value::String(text) => [None, Some(parse(FORMULA.to_owned(), text)?), None],
+        Value::String(text) => [None, Some(parse(own.to_owned(), text)?), None],
         Value::Table(table) => {
             let mut formulas = [None, None, None];
             for (name, value) in table {
-                let key = format!("{FORMULA}.{name}");
+                let key = format!("{own}.{name}");
                 let place = ["x", "y", "xy"].iter().position(|known| known == name);
                 let (Some(place), Some(text)) = (place, value.as_str()) else {
                     return Err(input(&key, shorten(value), "is no formula of a component", REMEDY));
@@ -202,12 +215,12 @@ fn of_formulas(given: &Value) -> Result<ResidualStress> {
             }
             formulas
         }
-        other => return Err(input(FORMULA, shorten(other), "is no formula", REMEDY)),
+        other => return Err(input(own, shorten(other), "is no formula", REMEDY)),
     };
     if field.iter().all(Option::is_none) {
-        return Err(input_missing(FORMULA, "gives no component", REMEDY));
+        return Err(input_missing(own, "gives no component", REMEDY));
     }
-    Ok(ResidualStress { field: Field::Formulas(field), words: given.to_string(), sha256: String::new(), key: FORMULA })
+    Ok(ResidualStress { field: Field::Formulas(field, units), words: given.to_string(), sha256: String::new(), key: own })
 }
 
 /// Names of σ_y, σ_x and τ_xy, without the word residual.
@@ -246,7 +259,7 @@ const WORDS: Words<usize> = Words {
     role,
     is_enough: |roles| (0..3).all(|column| roles.contains(&column)),
     columns: 3,
-    remedy: "name the columns x_mm, y_mm, stress_mpa, and stress_x_mpa, shear_xy_mpa where they are known",
+    remedy: "name the columns x_mm, y_mm, stress_mpa (or x_in, y_in, stress_ksi), and stress_x_mpa, shear_xy_mpa where they are known",
 };
 
 /// Rows of places and stresses below a header.
@@ -280,10 +293,10 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
     let to = farthest(from);
     let length = distance(from, to);
     if length <= 0.0 {
-        return Err(fault(Some(samples[1].0), "x_mm", "", "is the place of the point before", "give each place once"));
+        return Err(fault(Some(samples[1].0), "x", "", "is the place of the point before", "give each place once"));
     }
     let beside = |at: Point| ((to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])).abs() / length;
-    let same = |line: usize| fault(Some(line), "x_mm", "", "is the place of another row", "give each place once");
+    let same = |line: usize| fault(Some(line), "x", "", "is the place of another row", "give each place once");
     if samples.iter().all(|(_, sample)| beside(sample.at) < ROUND_OFF * length) {
         let mut ways: Vec<(usize, f64, Components)> =
             samples.iter().map(|(line, sample)| (*line, distance(from, sample.at), sample.stress)).collect();
@@ -298,7 +311,7 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
         let before = triangles.num_vertices();
         triangles
             .insert(sample)
-            .map_err(|error| fault(Some(line), "x_mm", "", &format!("is no place: {error}"), "give it in mm"))?;
+            .map_err(|error| fault(Some(line), "x", "", &format!("is no place: {error}"), "check its unit"))?;
         if triangles.num_vertices() == before {
             return Err(same(line));
         }

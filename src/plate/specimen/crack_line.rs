@@ -1,7 +1,7 @@
 //! A crack as a line of straight pieces.
 
 use super::Point;
-use super::geometry::{direction, distance, distance_to_segment, segments_touch};
+use super::geometry::{direction, distance, distance_to_segment, segments_touch, turn_at};
 
 /// Share of the last piece that is kept where an end is drawn back over it.
 const STUB: f64 = 0.1;
@@ -79,6 +79,12 @@ impl CrackLine {
             (way, last) = (way + distance(a, b), here);
         }
         f64::INFINITY
+    }
+
+    /// Turn into the last piece towards one of its ends, rad, counter-clockwise.
+    pub fn last_turn(&self, at_last: bool) -> f64 {
+        let place = |i: usize| if at_last { self.points.len() - 1 - i } else { i };
+        if self.points.len() < 3 { 0.0 } else { turn_at(self.points[place(2)], self.points[place(1)], self.points[place(0)]) }
     }
 
     /// The line without its corners nearer than `least` to one of its ends, m: a piece that short shows no direction.

@@ -7,6 +7,8 @@ use super::curve::{Arc, Curve, Piece, bulged};
 use super::{Drawing, Drawn, Fault, known_layer, place};
 use crate::specimen::Point;
 
+/// What to do with an entity that is none of these.
+const DRAW_IT: &str = "draw it as one of them; take it out only if the plate does not have it (text, dimensions)";
 /// Entities that say nothing of a shape.
 const SILENT: [&str; 2] = ["SEQEND", "VIEWPORT"];
 /// Flags of a polyline: closed; one fitted by curves or splines; one in space or a mesh.
@@ -134,7 +136,7 @@ impl Entity<'_> {
 
     /// Refuses what a viewer does not show: it might be meant or not.
     fn check_shown(&self, hidden: &[(&str, &str)]) -> Result<(), Fault> {
-        const REMEDY: &str = "show it, or remove it from the drawing";
+        const REMEDY: &str = "show it if the plate has it, else take it out of the file";
         if self.number(60)? == Some(1.0) {
             return Err(self.refused("is hidden (group code 60)", REMEDY));
         }
@@ -235,7 +237,7 @@ impl Entity<'_> {
                 Err(self.refused("is a curve that is no circular arc", "draw it as arcs or as a polyline"))
             }
             "INSERT" => Err(self.refused("is a block", "explode blocks before saving")),
-            _ => Err(self.refused("is no line, arc, circle or polyline", "remove it from the drawing")),
+            _ => Err(self.refused("is no line, arc, circle or polyline", DRAW_IT)),
         }
     }
 
@@ -253,7 +255,7 @@ impl Entity<'_> {
         }
         match corners {
             [(from, _), _, ..] => Ok(Curve { from: *from, pieces }),
-            _ => Err(self.refused("has fewer than two corners", "remove it from the drawing")),
+            _ => Err(self.refused("has fewer than two corners", DRAW_IT)),
         }
     }
 }

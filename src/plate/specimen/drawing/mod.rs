@@ -114,7 +114,8 @@ pub fn read(file: &str, folder: &Folder, unit: Option<DrawingUnit>, symmetry: Op
     let bytes = folder.read(file)?;
     let text = String::from_utf8_lossy(&bytes);
     if !file.to_lowercase().ends_with(".dxf") {
-        return Err(Fault::of("is no drawing that is read here", "give a file .dxf").error(file));
+        let remedy = "save it as DXF: round holes as circles on layer holes, rounded corners as arcs";
+        return Err(Fault::of("is no DXF drawing", remedy).error(file));
     }
     let drawing = dxf::read(&text).map_err(|fault| fault.error(file))?;
     let scale = scale(drawing.millimetres, unit, file)?;
@@ -141,7 +142,7 @@ fn scale(millimetres: Option<f64>, unit: Option<DrawingUnit>, file: &str) -> Res
 
 fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std::result::Result<Shape, Fault> {
     if let Some(line) = lines.iter().find(|line| !LAYERS.contains(&line.layer.as_str())) {
-        let known = format!("known layers are {}: move it to one of them, or remove it", LAYERS.join(", "));
+        let known = format!("move it to one of {} if the plate has it, else out of the file", LAYERS.join(", "));
         return Err(Fault::at(&format!("\"{}\"", line.layer), &line.what, "is on a layer that is not known", known));
     }
     if lines.len() > LINES_MAX {
@@ -196,7 +197,7 @@ fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std:
     }
     if let Some(hole) = holes.iter().find(|hole| hole.radius < RADIUS_LEAST) {
         let what = format!("the circle at {}", place_mm(hole.centre));
-        return Err(Fault::at("holes", &what, "has no radius", "draw it larger, or remove it"));
+        return Err(Fault::at("holes", &what, "has no radius", "draw it as large as the hole is"));
     }
     let crack = |curve: &Curve| match curve.is_closed(tolerance_of_cracks) {
         true => Err(Fault::at(

@@ -88,7 +88,7 @@ fn place_beside(flaw: &mut PartThrough, holes: &[Hole]) -> Result<()> {
                 flaw.to_hole = flaw.to_hole.min(flaw.half_length + way);
             } else if way + 2.0 * half_chord > -flaw.half_length {
                 let (key, problem) = (format!("specimen.holes[{i}]"), "lies on the crack");
-                return Err(input_missing(&key, problem, "move it away, or give a shorter crack"));
+                return Err(input_missing(&key, problem, "describe a crack that starts at a hole as corner_crack_at_hole"));
             }
         }
     }
