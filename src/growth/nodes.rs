@@ -188,7 +188,8 @@ impl CrackedPlate for NodePlate {
                 let at = AtLoad { load: loaded.share, factors, t_stress: found.t_stress + along, is_closed, free };
                 Ok::<_, Error>((at, found.of_faces))
             };
-            let (AtLoad { factors, t_stress, is_closed, free, .. }, of_pressure) = at_load(whole)?;
+            let (own, of_pressure) = at_load(whole)?;
+            let AtLoad { factors, t_stress, is_closed, .. } = own;
             let lower = lower.iter().map(|loaded| Ok(at_load(loaded)?.0)).collect::<Result<Vec<AtLoad>>>()?;
             let reading = Reading {
                 factors,
@@ -201,7 +202,7 @@ impl CrackedPlate for NodePlate {
                 of_pressure,
                 response: Response::PROPORTIONAL,
             };
-            Ok(reading.with_lower(&lower, free))
+            Ok(reading.beside(own, &lower))
         };
         let read = (0..tips.len()).into_par_iter().map(reading).collect::<Result<Vec<Reading>>>()?;
         let mut readings = vec![None; cracks.tips.len()];

@@ -75,7 +75,7 @@ fn fields_on_the_faces_of_a_centre_crack() {
             ];
             for (field, size, [right_ii, right_res]) in fields {
                 let crack = format!("{{ from_mm = [-{a}, 0], to_mm = [{a}, 0] }}");
-                let case = plate(width, &crack, &format!("stress_max_mpa = 100\nstress_ratio = 0\n{field}"), set);
+                let case = plate(width, &crack, &format!("stress_max_mpa = 100\nstress_ratio = 0.5\n{field}"), set);
                 let found = of_kind(points, &case).into_iter().last().unwrap();
                 let off = [(found[1].abs() - right_ii) / (size * root), (found[2] - right_res) / (size * root)];
                 println!(

@@ -51,24 +51,25 @@ pub struct AtLoad {
 }
 
 impl Reading {
-    /// With what was read under lower loads, ascending, and with free flanks under the largest. The load that opens the tip most gives its
-    /// factors. A tip that is closed has the K below zero that superposition gives it, as laws take it for compression.
-    pub fn with_lower(self, lower: &[AtLoad], free: Option<[f64; 2]>) -> Reading {
-        let Reading { factors, t_stress, is_closed, .. } = self;
-        let largest = AtLoad { load: 1.0, factors, t_stress, is_closed, free };
-        let opens =
-            |at: &&AtLoad| !at.is_closed && at.factors[0] > 0.0 && equivalent_factor(at.factors) > equivalent_factor(factors);
-        let by_size = |a: &&AtLoad, b: &&AtLoad| equivalent_factor(a.factors).total_cmp(&equivalent_factor(b.factors));
-        let top = *lower.iter().filter(opens).max_by(by_size).unwrap_or(&largest);
-        let (angle, whole) = (kink_angle(top.factors), equivalent_factor(top.factors));
-        let pair = |at: &AtLoad| {
+    /// With what was read under other loads; `own` is that of the reading itself. The load that opens the tip most gives its factors. A tip that
+    /// is closed has the K below zero that superposition gives it, as laws take it for compression.
+    pub fn beside(self, own: AtLoad, others: &[AtLoad]) -> Reading {
+        if others.is_empty() {
+            return self;
+        }
+        let mut all: Vec<&AtLoad> = others.iter().chain([&own]).collect();
+        let opens = |at: &&&AtLoad| !at.is_closed && at.factors[0] > 0.0;
+        let size = |at: &AtLoad| equivalent_factor(at.factors);
+        let top = *all.iter().copied().filter(|at| opens(&at)).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(&own);
+        let (angle, whole) = (kink_angle(top.factors), size(&top));
+        all.sort_by(|a, b| a.load.total_cmp(&b.load));
+        let pair = |at: &&AtLoad| {
             let across = factor_across(at.factors, angle);
             let formal = || at.free.map_or(at.load / top.load * whole, |free| factor_across(free, angle));
-            [at.load, if at.is_closed && across <= 0.0 { formal().min(0.0) } else { across } / whole]
+            [at.load, if at.is_closed && across <= STANDING * whole { formal().min(0.0) } else { across } / whole]
         };
-        let pairs: Vec<[f64; 2]> = lower.iter().chain((!lower.is_empty()).then_some(&largest)).map(pair).collect();
-        let is_closed = top.is_closed;
-        Reading { factors: top.factors, t_stress: top.t_stress, is_closed, response: Response::new(&pairs), ..self }
+        let response = Response::new(&all.iter().map(pair).collect::<Vec<_>>());
+        Reading { factors: top.factors, t_stress: top.t_stress, is_closed: top.is_closed, response, ..self }
     }
 
     /// Whether the load presses the tip shut, and its flanks do not slide but for the noise of the reading.

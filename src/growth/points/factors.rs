@@ -81,30 +81,35 @@ impl PointPlate {
         let tractions = |contact: &Contact, displacement: &[f64], share: f64| {
             contact.pressures(&self.layout(), displacement, body.thickness, &|at| released(case, share, at))
         };
-        let pressures = tractions(&self.contact, &self.displacement, 1.0);
-        let of_lower = |lower: &LowerLoad| tractions(&lower.contact, &lower.displacement, lower.load);
-        let pressures_of_lower: Vec<_> = self.lower.iter().map(of_lower).collect();
+        let whole = (1.0, &self.contact, &self.displacement[..]);
+        let of_lower = self.lower.iter().map(|LowerLoad { load, contact, displacement }| (*load, contact, &displacement[..]));
+        let loads: Vec<(f64, &Contact, &[f64])> = std::iter::once(whole).chain(of_lower).collect();
+        let pressures: Vec<Vec<FlankPressure>> = loads.iter().map(|(load, contact, u)| tractions(contact, u, *load)).collect();
         let residual = case.loading.residual.as_deref();
         let share = case.loading.share(self.work);
-        let rings = TipRings {
+        let (bonds, geometry) = (&self.bonds, &self.surroundings);
+        let under = |place: usize| TipRings {
             body,
-            bonds: &self.bonds,
-            displacement: &self.displacement,
-            load: case.loading.maximum,
-            geometry: &self.surroundings,
+            bonds,
+            displacement: loads[place].2,
+            load: loads[place].0 * case.loading.maximum,
+            geometry,
             lines,
             active: &active,
             is_new: cracks.tips.iter().all(|tip| tip.growth == 0.0),
-            pressures: &pressures,
+            pressures: &pressures[place],
         };
-        let (contact, memory, under) = (&self.contact, &self.memory, &self.lower);
+        let is_closed = |place: usize, end: LineEnd| loads[place].1.is_closed(lines, end, body.lattice.spacing);
+        let memory = &self.memory;
         let read = |(index, tip): (usize, &Tip)| {
             let (end, of_tip) = (tip.end, &memory[index]);
             let excess = represented_excess(body, &lines[end.line], end.at_last, tip.length + tip.growth);
+            // A tip that the largest load presses shut shows where it is under one that opens it.
+            let own = (0..loads.len()).find(|place| !is_closed(*place, end)).unwrap_or(0);
+            let (rings, is_shut) = (under(own), is_closed(own, end));
             let first = rings.read(end, excess);
-            let is_closed = contact.is_closed(lines, end, body.lattice.spacing);
             let [k_i, k_ii] = first.factors.map(f64::abs);
-            let is_mixed = k_ii > MIXED * k_i && !is_closed && tip.growth == 0.0;
+            let is_mixed = k_ii > MIXED * k_i && !is_shut && tip.growth == 0.0;
             let slides = is_mixed
                 && first.radius >= (1.0 - ROUND_OFF) * RING_HORIZONS * horizon
                 && lines[end.line].last_piece(end.at_last) > first.radius;
@@ -118,7 +123,7 @@ impl PointPlate {
             // Beside a rim what is read as a shift may be something else.
             let ahead = if offset.abs() < AHEAD_HORIZONS * horizon { offset } else { 0.0 };
             let ring = if ahead == 0.0 { first } else { rings.read(end, excess + ahead) };
-            let mut factors = if is_closed { [0.0, ring.factors[1]] } else { ring.factors }.map(|factor| share * factor);
+            let mut factors = if is_shut { [0.0, ring.factors[1]] } else { ring.factors }.map(|factor| share * factor);
             let beyond = ring.tip_offsets[1];
             let is_beyond = slides && (0.0..SLIDING_AHEAD_HORIZONS * horizon).contains(&beyond);
             let sliding = is_beyond.then(|| {
@@ -134,20 +139,35 @@ impl PointPlate {
             let along = residual.map_or([0.0; 2], |residual| across(residual.at(lines[end.line].end(end.at_last)), ahead_of_tip));
             let along = along[0] * ahead_of_tip[0] + along[1] * ahead_of_tip[1];
             t_stress += along;
-            let at_load = |(lower, pressures): (&LowerLoad, &Vec<FlankPressure>)| {
-                let of_lower = TipRings { displacement: &lower.displacement, pressures, load: lower.load * rings.load, ..rings };
-                let ring = of_lower.read(end, excess + ahead);
-                let is_closed = lower.contact.is_closed(lines, end, body.lattice.spacing);
-                let factors = [if is_closed { 0.0 } else { ring.factors[0] }, ring.factors[1]];
-                // Superposition with free flanks is not at hand: no K counts as none.
+            // Superposition with free flanks is not at hand: of a tip that is closed no K counts.
+            let at_load = |place: usize, factors: [f64; 2], t_stress: f64| {
+                let is_closed = is_closed(place, end);
                 let free = (is_closed && residual.is_some()).then_some([0.0; 2]);
-                AtLoad { load: lower.load, factors, t_stress: ring.t_stress + along, is_closed, free }
+                AtLoad {
+                    load: loads[place].0,
+                    factors: [if is_closed { 0.0 } else { factors[0] }, factors[1]],
+                    t_stress,
+                    is_closed,
+                    free,
+                }
             };
-            let lower: Vec<AtLoad> = under.iter().zip(&pressures_of_lower).map(at_load).collect();
+            let at_other = |place: usize| {
+                let ring = under(place).read(end, excess + ahead);
+                at_load(place, ring.factors, ring.t_stress + along)
+            };
+            let others: Vec<AtLoad> = (0..loads.len()).filter(|place| *place != own).map(at_other).collect();
             let (length_offset, spacing, response) = (excess + ahead, body.lattice.spacing, Response::PROPORTIONAL);
-            let reading =
-                Reading { factors, t_stress, ahead: ahead_of_tip, spacing, length_offset, is_closed, of_pressure, response };
-            (reading.with_lower(&lower, Some([0.0; 2]).filter(|_| is_closed && residual.is_some())), sliding)
+            let reading = Reading {
+                factors,
+                t_stress,
+                ahead: ahead_of_tip,
+                spacing,
+                length_offset,
+                is_closed: is_shut,
+                of_pressure,
+                response,
+            };
+            (reading.beside(at_load(own, factors, t_stress), &others), sliding)
         };
         let of_tip = |(index, tip): (usize, &Tip)| tip.is_active().then(|| read((index, tip)));
         let read: Vec<_> = cracks.tips.par_iter().enumerate().map(of_tip).collect();
