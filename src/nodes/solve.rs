@@ -9,7 +9,7 @@ use super::contact::{Pressed, press};
 use super::dissection::{Factor, Matrices, Member};
 use super::field::{Discretisation, Local};
 use super::front::Front;
-use super::pins::press_pins;
+use super::pins::PinColumns;
 use perilife_base::error::Result;
 use perilife_base::raster::PointGrid;
 use perilife_base::watch::{self, Stage};
@@ -134,7 +134,8 @@ pub fn solve_with(
         forces.iter_mut().for_each(|force| *force *= load);
     }
     let mut others = forces.clone();
-    let pins = press_pins(specimen, plate, &factor, &others, load)?;
+    let columns = PinColumns::new(specimen, plate, &factor, others.len())?;
+    let pins = columns.as_ref().map(|columns| columns.press(&others, load)).transpose()?;
     if let Some(pins) = &pins {
         forces.iter_mut().zip(&pins.forces).for_each(|(force, of_pins)| *force += of_pins);
     }
@@ -164,7 +165,7 @@ pub fn solve_with(
     };
     let points = cells.iter().map(|(_, points)| points.len()).sum();
     let area = cells.iter().flat_map(|(_, points)| points).map(|point| point.area).sum();
-    let contacts = pins.map_or_else(Vec::new, |pins| pins.contacts);
+    let contacts = columns.zip(pins).map_or_else(Vec::new, |(columns, pins)| pins.contacts(&columns, &u));
     Ok(Solution { u, work, points, area, pressed, contacts, of_residual })
 }
 
