@@ -1,6 +1,6 @@
 //! Pins in the holes of a plate of nodes: what their forces do to all rims, and where they touch.
 //!
-//! Nodes are a third of a radius apart, far too coarse for the narrow contact of a loose pin. So a plate is taken as a plane with one hole,
+//! Nodes are a fifth of a radius apart, far too coarse for the narrow contact of a loose pin. So a plate is taken as a plane with one hole,
 //! known in closed form ([`super::pin_contact`]), and what it is beyond that, carried by orthonormal functions Q of the angle
 //! ([`super::rim_waves`]). With the factor `K = L Lᵀ` at hand, f_k the forces on nodes of a pressure Q_k and `Y = L⁻¹ f`,
 //! ```text

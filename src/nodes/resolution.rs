@@ -2,7 +2,7 @@
 //!
 //! The spacing is `far` but for halvings: at a tip down to the `hold`-th part of its room, the least of its distance from rims and other
 //! cracks, the length of its crack (half of it with two tips), its growth since a kink and the way over which it is straight; around holes
-//! and concave arcs of the outline to R/2.4, around holes of elastic pins with cracks to R/4.8, at the mouths of these to R/19; across every
+//! and concave arcs of the outline to R/2.4, around holes of elastic pins to R/4.8, at mouths of cracks there to R/19; across every
 //! ligament to a third of it, between sides of the plate that face each other to a sixth; at sharp re-entrant corners to an eighth of the
 //! shorter side, or of the way to a tip.
 
@@ -24,9 +24,9 @@ const CELLS_MOST: usize = 200_000;
 
 /// Spacings in the radius of a hole or fillet that K of a crack nearby asks for.
 pub const IN_RADIUS: f64 = 2.4;
-/// The same over that at a hole from which cracks begin and in which an elastic pin stands: what it does to its rim is read from nodes.
+/// The same over that at a hole in which an elastic pin stands: what it does to its rim is read from nodes.
 const AT_PIN: f64 = 2.0;
-/// The same at their mouths, where a flank that the pin presses is a corner.
+/// The same at mouths of cracks there, where a flank that the pin presses is a corner.
 const AT_MOUTH: f64 = 8.0;
 /// Reach of rims and ligaments, in spacings of the coarser level, that K of a crack nearby asks for.
 pub const RIM_REACH: f64 = 1.5;
@@ -152,7 +152,7 @@ impl Resolution {
         sources
     }
 
-    /// Holes in which elastic pins stand and from which cracks begin, and the mouths of these.
+    /// Holes in which elastic pins stand, and mouths of cracks at them.
     fn of_pins(&self, specimen: &Specimen, lines: &[CrackLine]) -> Vec<Source> {
         let mut sources = Vec::new();
         for load in specimen.loads.iter().filter(|load| load.is_elastic_pin()) {
@@ -160,9 +160,8 @@ impl Resolution {
             let hole = specimen.holes[*hole];
             let spacing = |times: f64| hole.radius / (times * self.in_radius);
             let around = Source { radius: hole.radius, ..Source::point(hole.centre, spacing(AT_PIN), self.rim_reach) };
-            for mouth in lines.iter().flat_map(|line| mouths(&line.points, hole)) {
-                sources.extend([around, Source::point(mouth, spacing(AT_MOUTH), CORNER_REACH)]);
-            }
+            let mouths = lines.iter().flat_map(|line| mouths(&line.points, hole));
+            sources.extend(mouths.map(|mouth| Source::point(mouth, spacing(AT_MOUTH), CORNER_REACH)).chain([around]));
         }
         sources
     }

@@ -9,8 +9,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use perilife_plate::williams::Elasticity;
 
-/// Waves around a rim: at a distance d a load e^(inθ) is felt as (R/d)^n; without cracks from it, and with.
-const WAVES: [i32; 2] = [4, 8];
+/// Waves around a rim: at a distance d a load e^(inθ) is felt as (R/d)^n.
+const WAVES: i32 = 8;
 /// Waves more of finer functions.
 const MORE: i32 = 2;
 /// Places around a rim at which pressure is put on nodes and displacement is read.
@@ -63,7 +63,7 @@ impl Shapes {
         };
         let flank = |&mouth: &f64| [1.0, -1.0].map(|side| Flank { mouth, side, reach: on_way(mouth, side) });
         let flanks: Vec<Flank> = mouths.iter().flat_map(flank).collect();
-        let waves = WAVES[usize::from(!mouths.is_empty())] + if is_finer { MORE } else { 0 };
+        let waves = WAVES + if is_finer { MORE } else { 0 };
         let powers = if is_finer { POWERS.len() } else { POWERS.len() - 1 };
         let (empty, spectrum) = (DMatrix::zeros(0, 0), DMatrix::zeros(0, 0));
         let mut shapes = Shapes { mouths, waves, powers, flanks, weights: empty.clone(), at_places: empty, spectrum };

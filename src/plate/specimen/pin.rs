@@ -72,11 +72,16 @@ pub type PinKeys<'a> = [(&'a str, Option<f64>); 5];
 
 impl Bearing {
     /// What keys at `path` say of the pin in a hole of radius `hole`, m.
-    /// Errors: [`perilife_base::error::Error::Input`]: an arc beside a pin, a pin without diameter or one that is larger than its hole.
+    /// Errors: [`perilife_base::error::Error::Input`]: an arc beside a pin, friction, a pin without diameter or one larger than its hole.
     pub fn read(path: &str, keys: &PinKeys<'_>, hole: f64) -> Result<Self> {
         let [half_angle, diameter, friction, modulus, ratio] = *keys;
         let full = |key: &str| format!("{path}.{key}");
-        if let (Some(angle), Some((key, _))) = (half_angle.1, keys[1..].iter().find(|(_, given)| given.is_some())) {
+        let of_pin = [diameter, modulus, ratio];
+        if let Some(given) = friction.1.filter(|given| *given != 0.0) {
+            let problem = "is not computed: pins press without friction";
+            return Err(input(&full(friction.0), given, problem, "leave it out, or give 0"));
+        }
+        if let (Some(angle), Some((key, _))) = (half_angle.1, of_pin.iter().find(|(_, given)| given.is_some())) {
             let problem = format!("stands beside {key}, from which it follows");
             return Err(input(&full(half_angle.0), angle, problem, "give the arc or the pin"));
         }
@@ -85,7 +90,7 @@ impl Bearing {
             return Ok(Bearing::Cosine(angle.to_radians()));
         }
         let Some(given) = diameter.1 else {
-            return match keys[2..].iter().find(|(_, given)| given.is_some()) {
+            return match of_pin[1..].iter().find(|(_, given)| given.is_some()) {
                 Some((key, _)) => {
                     let problem = format!("is missing beside {key}: where a pin touches depends on its clearance");
                     Err(input_missing(&full(diameter.0), problem, "give the diameter of the pin"))
@@ -97,10 +102,6 @@ impl Bearing {
         if radius > hole * FITS {
             let problem = format!("is more than the hole ({} mm): a pin that is pressed in is not known", 2e3 * hole);
             return Err(input(&full(diameter.0), given, problem, "give a pin that goes into its hole"));
-        }
-        if let Some(given) = friction.1.filter(|given| *given != 0.0) {
-            let problem = "is not computed: pins press without friction";
-            return Err(input(&full(friction.0), given, problem, "leave it out, or give 0"));
         }
         Ok(Bearing::Elastic(Pin {
             radius: radius.min(hole),
