@@ -10,7 +10,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use perilife_plate::williams::Elasticity;
 
 /// Waves around a rim: at a distance d a load e^(inθ) is felt as (R/d)^n.
-const WAVES: i32 = 8;
+const WAVES: i32 = 5;
 /// Waves more of finer functions.
 const MORE: i32 = 2;
 /// Places around a rim at which pressure is put on nodes and displacement is read.
