@@ -8,6 +8,7 @@ mod fracture_scenes;
 mod fuzz_cases;
 mod kept_back;
 mod mechanics5_input;
+mod mechanics5_pins;
 mod median_virkler;
 mod notched_plates;
 mod plate_band;

@@ -109,14 +109,21 @@ impl Segment {
     }
 }
 
-/// Brings flanks that overlap into contact: changes the displacement u of `K u = f`, y being `L⁻¹ f`, and gives the segments in contact.
+/// Brings flanks that overlap into contact: changes the displacement u of `K u = f`, y being `L⁻¹ f`, and gives the segments in contact and their
+/// forces on the unknowns, N.
 /// Errors: [`Error::Mechanics`] where no set of segments is found.
-pub fn press(specimen: &Specimen, plate: &Discretisation, factor: &Factor, y: &[f64], u: &mut [f64]) -> Result<Vec<Pressed>> {
+pub fn press(
+    specimen: &Specimen,
+    plate: &Discretisation,
+    factor: &Factor,
+    y: &[f64],
+    u: &mut [f64],
+) -> Result<(Vec<Pressed>, Vec<f64>)> {
     let segments = segments(specimen, plate);
     let free: Vec<f64> = segments.iter().map(|segment| segment.opening(u)).collect();
     let largest = free.iter().fold(0.0_f64, |largest, opening| largest.max(opening.abs()));
     if free.iter().all(|opening| *opening >= -ROUND_OFF * largest) {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), Vec::new()));
     }
     let mut compliance = Compliance::new(&segments, factor, y.len());
     let mut active: Vec<usize> = (0..segments.len()).filter(|&k| free[k] < 0.0).collect();
@@ -136,7 +143,11 @@ pub fn press(specimen: &Specimen, plate: &Discretisation, factor: &Factor, y: &[
         if wrong.is_empty() {
             u.copy_from_slice(&sum);
             let pressed = |(&k, force): (&usize, &f64)| Pressed { ends: segments[k].ends, pressure: force / segments[k].area };
-            return Ok(active.iter().zip(&forces).map(pressed).collect());
+            let mut on_unknowns = vec![0.0; y.len()];
+            for (&k, force) in active.iter().zip(&forces) {
+                segments[k].row.iter().for_each(|&(unknown, weight)| on_unknowns[unknown as usize] += force * weight);
+            }
+            return Ok((active.iter().zip(&forces).map(pressed).collect(), on_unknowns));
         }
         // Block principal pivoting (Júdice and Pires 1994, Comput. Oper. Res. 21:587): all at once while fewer are wrong, else the last one.
         if wrong.len() < fewest {

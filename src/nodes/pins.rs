@@ -1,34 +1,35 @@
 //! Pins in the holes of a plate of nodes: what their forces do to all rims, and where they touch.
 //!
-//! Nodes are a third of a radius apart, far too coarse for the narrow contact of a loose pin. So a plate is taken as a plane with one hole,
-//! known in closed form ([`super::pin_contact`]), and what it is beyond that: D, which is smooth on the rim, since loads e^(inθ) are felt at
-//! a distance d as (R/d)^n. With the factor at hand, one column for each load H_k = cos nθ, sin nθ up to n = 4, at a hole where cracks begin up
-//! to n = 12 and one that jumps there, gives
+//! Nodes are a fifth of a radius apart, far too coarse for the narrow contact of a loose pin. So a plate is taken as a plane with one hole,
+//! known in closed form ([`super::pin_contact`]), and what it is beyond that, carried by orthonormal functions Q of the angle
+//! ([`super::rim_waves`]). With the factor `K = L Lᵀ` at hand, f_k the forces on nodes of a pressure Q_k and `Y = L⁻¹ f`,
 //! ```text
-//! r_k = u of the plate under H_k - u of the plane with a hole,   N_k = ∫ H_k² dθ
-//! D = Σ_k r_k ⟨H_k, ·⟩/N_k + Σ_k H_k ⟨r_k - P r_k, ·⟩/N_k,       P the projection on all H
+//! D = Σ_kl Q_k (Y_k·Y_l - ⟨Q_k, u of the plane under Q_l⟩) ⟨Q_l, ·⟩
 //! ```
-//! The second sum is the first turned round (Maxwell and Betti). Of what is read on a rim only these waves are kept, and the jump
-//! where a crack begins at the hole, drawn out linearly round the rim: shorter ones are those of the nodes, and would show in the pressure.
+//! is symmetric, as Maxwell and Betti have it. Of what other loads do to a rim the part in Q counts.
 //! A floating plate reacts to a single load at its three held unknowns; the reactions vanish with the sum of all loads.
 
 use std::f64::consts::TAU;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::boundary::motions;
 use super::dissection::Factor;
 use super::field::Discretisation;
-use super::pin_contact::{Borne, PinRim, bear};
-use super::rim_waves::{PLACES, Places, Shape};
+use super::front::dot;
+use super::pin_contact::{PinRim, Search, Solved};
+use super::resolution::mouths;
+use super::rim_waves::{Shapes, on_diagonal};
 use perilife_base::error::Result;
-use perilife_plate::specimen::geometry::circle_crossing;
 use perilife_plate::specimen::pin::{Contact, Pin};
-use perilife_plate::specimen::{Bearing, Hole, Load, Point, Specimen};
+use perilife_plate::specimen::{Bearing, Hole, Load, Specimen};
 
 /// Columns that are solved for together.
 const TOGETHER: usize = 16;
+
+/// Displacement outwards as a row of the unknowns.
+type Row = Vec<(u32, f64)>;
 
 /// An elastic pin among the loads of a plate.
 struct Bore<'a> {
@@ -37,198 +38,157 @@ struct Bore<'a> {
     pin: &'a Pin,
     /// Direction of its force, rad.
     middle: f64,
-    /// Force, N.
+    /// Force, N per N or per Pa.
     force: f64,
-    /// Its rim, angles from its direction.
-    places: Places,
+    /// On its rim, angles from its direction.
+    shapes: Shapes,
+    /// Finer ones, by which contact is checked.
+    finer: Shapes,
+    /// Of the places of its shapes.
+    rows: Vec<Row>,
 }
-
-/// A load on the rim of a pin, 1 Pa, along the radius or the rim.
-struct Mode {
-    bore: usize,
-    shape: Shape,
-    is_tangential: bool,
-}
-
-impl Mode {
-    /// On the plate along radius and rim, Pa.
-    fn traction(&self, angle: f64) -> [f64; 2] {
-        let size = self.shape.at(angle);
-        if self.is_tangential { [0.0, size] } else { [size, 0.0] }
-    }
-}
-
-/// u_r and u_θ, m, at the places of every pin.
-type OnRims = Vec<Vec<[f64; 2]>>;
 
 impl Bore<'_> {
-    fn axes(&self, angle: f64) -> [Point; 2] {
+    /// Displacement outwards at an angle.
+    fn row(&self, plate: &Discretisation, angle: f64) -> Result<Row> {
         let (sin, cos) = (self.middle + angle).sin_cos();
-        [[cos, sin], [-sin, cos]]
+        let at = [self.hole.centre[0] + self.hole.radius * cos, self.hole.centre[1] + self.hole.radius * sin];
+        Ok(motions(plate, at)?.into_iter().map(|(unknown, [x, y])| (unknown, x * cos + y * sin)).collect())
     }
 
-    fn at(&self, angle: f64) -> Point {
-        let [out, _] = self.axes(angle);
-        [0, 1].map(|i| self.hole.centre[i] + self.hole.radius * out[i])
+    /// What unknowns, m, move its rim outwards.
+    fn moved(&self, u: &[f64]) -> DVector<f64> {
+        let moved = |row: &Row| row.iter().map(|&(unknown, by)| by * u[unknown as usize]).sum();
+        DVector::from_iterator(self.rows.len(), self.rows.iter().map(moved))
     }
 }
 
-/// Elastic pins of a plate at a nominal load, Pa or N.
-fn bores<'a>(specimen: &'a Specimen, plate: &Discretisation, nominal: f64) -> Vec<Bore<'a>> {
+/// Elastic pins of a plate.
+fn bores<'a>(specimen: &'a Specimen, plate: &Discretisation) -> Result<Vec<Bore<'a>>> {
     let mut bores = Vec::new();
-    let pieces = || plate.obstacles.cuts[..plate.cracks].iter().flat_map(|cut| cut.points.windows(2));
     for (load, of) in specimen.loads.iter().enumerate() {
-        if let Load::Pin { hole, direction, force, contact: Bearing::Elastic(pin) } = of {
-            let (middle, force, hole) = (direction[1].atan2(direction[0]), force * nominal, specimen.holes[*hole]);
-            let crossing = |piece: &[Point]| {
-                let [x, y] = circle_crossing(piece[0], piece[1], hole.centre, hole.radius)?;
-                Some((y - hole.centre[1]).atan2(x - hole.centre[0]) - middle)
-            };
-            bores.push(Bore { load, hole, pin, middle, force, places: Places::new(pieces().filter_map(crossing).collect()) });
-        }
+        let Load::Pin { hole, direction, force, contact: Bearing::Elastic(pin) } = of else { continue };
+        let (middle, force, hole) = (direction[1].atan2(direction[0]), *force, specimen.holes[*hole]);
+        let mouths = plate.obstacles.cuts[..plate.cracks].iter().flat_map(|cut| mouths(&cut.points, hole));
+        let angles: Vec<f64> = mouths.map(|[x, y]| (y - hole.centre[1]).atan2(x - hole.centre[0]) - middle).collect();
+        let (shapes, finer) = (Shapes::new(angles.clone(), false), Shapes::new(angles, true));
+        let mut bore = Bore { load, hole, pin, middle, force, shapes, finer, rows: Vec::new() };
+        bore.rows = bore.shapes.angles().map(|angle| bore.row(plate, angle)).collect::<Result<_>>()?;
+        bores.push(bore);
     }
-    bores
+    Ok(bores)
+}
+
+fn push(forces: &mut [f64], row: &Row, size: f64) {
+    row.iter().for_each(|&(unknown, by)| forces[unknown as usize] += size * by);
+}
+
+/// Elastic pins of a plate, and what it answers to them, for any load.
+pub struct PinColumns<'a> {
+    plate: &'a Discretisation,
+    factor: &'a Factor,
+    thickness: f64,
+    bores: Vec<Bore<'a>>,
+    /// ∫ of every shape and of u_r of its rim under every one, over the radius of that, 1/Pa; without what the plane does.
+    products: DMatrix<f64>,
 }
 
 /// What elastic pins do on a plate.
 pub struct Pins {
-    /// Contact of each, with the index of its load.
-    pub contacts: Vec<(usize, Contact)>,
     /// Forces on the unknowns, N.
     pub forces: Vec<f64>,
-    /// What they do, see [`Borne::work`], J.
+    /// What they do, see [`Search::work`], J.
     pub work: f64,
+    search: Search,
+    /// Without forces of the pins, of every piece, m.
+    moved: DVector<f64>,
+    solved: Solved,
+    /// ∫ of the finer shapes of every bore and of u_r that contact was found with.
+    assumed: DVector<f64>,
 }
 
-/// Brings the elastic pins of a plate into contact beside `others`, the forces of its other loads, N, at a nominal load, Pa or N; `None`
-/// without such pins.
-/// Errors: [`Error::Mechanics`] where no contact is found, or a hole has too few nodes around it.
-pub fn press_pins(
-    specimen: &Specimen,
-    plate: &Discretisation,
-    factor: &Factor,
-    others: &[f64],
-    nominal: f64,
-) -> Result<Option<Pins>> {
-    let bores = bores(specimen, plate, nominal);
-    if bores.is_empty() {
-        return Ok(None);
-    }
-    let elasticity = plate.elasticity();
-    let places = |bore: &Bore<'_>| bore.places.angles().map(|angle| motions(plate, bore.at(angle))).collect::<Result<Vec<_>>>();
-    let rows = bores.iter().map(places).collect::<Result<Vec<_>>>()?;
-    let modes = modes(&bores);
-    let column = |mode: &Mode| {
-        let (bore, mut column) = (&bores[mode.bore], vec![0.0; others.len()]);
-        let area = bore.hole.radius * specimen.thickness * TAU / PLACES as f64;
-        for (angle, row) in bore.places.angles().zip(&rows[mode.bore]) {
-            push(&mut column, row, bore.axes(angle), mode.traction(angle).map(|size| size * area));
+impl<'a> PinColumns<'a> {
+    /// Those of the elastic pins of a plate; `None` without such pins.
+    /// Errors: a hole has too few nodes around it.
+    pub fn new(specimen: &'a Specimen, plate: &'a Discretisation, factor: &'a Factor, unknowns: usize) -> Result<Option<Self>> {
+        let bores = bores(specimen, plate)?;
+        if bores.is_empty() {
+            return Ok(None);
         }
-        column
-    };
-    let mut columns: Vec<Vec<f64>> = modes.iter().map(column).collect();
-    columns.push(others.to_vec());
-    columns.par_chunks_mut(TOGETHER).for_each(|columns| factor.forward_together(columns));
-    columns.par_iter_mut().for_each(|column| factor.backward(column));
-    let on_rims = |u: &Vec<f64>| -> OnRims {
-        let read = |(bore, rows): (&Bore<'_>, &Vec<Vec<(u32, Point)>>)| {
-            bore.places.smooth(bore.places.angles().zip(rows).map(|(angle, row)| moved(u, row, bore.axes(angle))).collect())
+        let count = |bore: &Bore<'_>| bore.shapes.at_places.ncols();
+        let all: Vec<(&Bore<'_>, usize)> = bores.iter().flat_map(|bore| (0..count(bore)).map(move |k| (bore, k))).collect();
+        let column = |&(bore, k): &(&Bore<'_>, usize)| {
+            let mut column = vec![0.0; unknowns];
+            let places = bore.shapes.at_places.column(k);
+            let width = TAU / bore.rows.len() as f64;
+            bore.rows.iter().zip(places.iter()).for_each(|(row, size)| push(&mut column, row, size * width * specimen.thickness));
+            column
         };
-        bores.iter().zip(&rows).map(read).collect()
-    };
-    let mut fields: Vec<OnRims> = columns.par_iter().map(on_rims).collect();
-    let Some(beside) = fields.pop() else { return Ok(None) };
-    for (mode, field) in modes.iter().zip(&mut fields) {
-        let bore = &bores[mode.bore];
-        for (angle, u) in bore.places.angles().zip(&mut field[mode.bore]) {
-            let plane = mode.shape.plane(angle, mode.is_tangential, bore.hole.radius, elasticity);
-            *u = [u[0] - plane[0], u[1] - plane[1]];
-        }
+        let mut columns: Vec<Vec<f64>> = all.par_iter().map(column).collect();
+        columns.par_chunks_mut(TOGETHER).for_each(|columns| factor.forward_together(columns));
+        let of = |i: usize| columns[..=i].iter().map(|other| dot(other, &columns[i]) / specimen.thickness).collect();
+        let lower: Vec<Vec<f64>> = (0..columns.len()).into_par_iter().map(of).collect();
+        let planes = bores.iter().map(|bore| bore.shapes.of_plane(&bore.shapes.spectrum, 1.0, plate.elasticity()));
+        let products = DMatrix::from_fn(all.len(), all.len(), |i, j| lower[i.max(j)][i.min(j)]) - on_diagonal(planes);
+        Ok(Some(PinColumns { plate, factor, thickness: specimen.thickness, bores, products }))
     }
-    let rims: Vec<PinRim> = bores
-        .iter()
-        .map(|bore| {
+
+    /// Brings pins into contact beside `others`, the forces of other loads, N, at a nominal load, Pa or N.
+    /// Errors: [`perilife_base::error::Error::Mechanics`] where no contact is found.
+    pub fn press(&self, others: &[f64], nominal: f64) -> Result<Pins> {
+        let elasticity = self.plate.elasticity();
+        let rim = |bore: &Bore<'_>| {
             let constants = elasticity.another(bore.pin.youngs_modulus, bore.pin.poisson_ratio);
-            PinRim::new(bore.pin, constants, elasticity, [bore.hole.radius, specimen.thickness, bore.force], bore.places.mouths())
-        })
-        .collect();
-    let places: Vec<&Places> = bores.iter().map(|bore| &bore.places).collect();
-    let on_pieces = |(index, rim): (usize, &PinRim)| -> Vec<f64> {
-        rim.angles.iter().flat_map(|&angle| places[index].between(&beside[index], angle)).collect()
-    };
-    let of_others: Vec<f64> = rims.iter().enumerate().flat_map(on_pieces).collect();
-    let Borne { contacts, work } = bear(&rims, elasticity, &of_others, finite(&rims, &places, &modes, &fields))?;
-    let mut forces = vec![0.0; others.len()];
-    for (bore, contact) in bores.iter().zip(&contacts) {
-        for piece in &contact.pieces {
-            let row = motions(plate, bore.at(piece.angle))?;
-            push(&mut forces, &row, bore.axes(piece.angle), piece.share.map(|share| share * bore.force));
+            let sizes = [bore.hole.radius, self.thickness, bore.force * nominal];
+            PinRim::new(bore.pin, constants, elasticity, sizes, &bore.shapes.mouths)
+        };
+        let rims: Vec<PinRim> = self.bores.iter().map(rim).collect();
+        let mut u = others.to_vec();
+        self.factor.solve(&mut u);
+        let of_others = stacked(self.bores.iter().map(|bore| bore.shapes.parts(&bore.moved(&u))));
+        let shapes = self.on_all(&rims, |bore| &bore.shapes);
+        let compliance = (&shapes * &self.products * shapes.transpose()) / self.thickness;
+        let moved = &shapes * &of_others;
+        let search = Search::new(rims, compliance, elasticity);
+        let solved = search.settle(&moved)?;
+        let smooth = of_others + &self.products * shapes.tr_mul(&solved.force) * (search.scale[0] / self.thickness);
+        let (mut forces, mut assumed, mut rest) = (vec![0.0; others.len()], Vec::new(), smooth.as_slice());
+        for (index, pressed) in search.pressed(&solved).into_iter().enumerate() {
+            let (bore, rim) = (&self.bores[index], &search.rims[index]);
+            for &(own, pressure) in &pressed {
+                push(&mut forces, &bore.row(self.plate, rim.angles[own])?, pressure * rim.area());
+            }
+            let pieces: Vec<(f64, f64)> = pressed.iter().map(|&(own, p)| (rim.angles[own], p * rim.width)).collect();
+            let of_plane = bore.finer.plane_under(&pieces, rim.radius, elasticity);
+            let (own, others) = rest.split_at(bore.shapes.at_places.ncols());
+            rest = others;
+            let own = &bore.shapes.at_places * DVector::from_column_slice(own);
+            assumed.push(bore.finer.parts(&own) + of_plane);
         }
+        Ok(Pins { forces, work: search.work(&solved), search, moved, solved, assumed: stacked(assumed.into_iter()) })
     }
-    Ok(Some(Pins { contacts: bores.iter().map(|bore| bore.load).zip(contacts).collect(), forces, work }))
-}
 
-/// Loads on the rim of every pin.
-fn modes(bores: &[Bore<'_>]) -> Vec<Mode> {
-    let mut modes = Vec::new();
-    for (bore, of) in bores.iter().enumerate() {
-        let shapes = of.places.shapes();
-        for is_tangential in [false, true].into_iter().filter(|is_tangential| !is_tangential || of.pin.friction > 0.0) {
-            modes.extend(shapes.iter().map(|shape| Mode { bore, shape: shape.clone(), is_tangential }));
-        }
+    /// All shapes at all pieces; 0 at those of other rims.
+    fn on_all(&self, rims: &[PinRim], shapes: for<'b> fn(&'b Bore<'a>) -> &'b Shapes) -> DMatrix<f64> {
+        on_diagonal(self.bores.iter().zip(rims).map(|(bore, rim)| shapes(bore).at(&rim.angles)))
     }
-    modes
 }
 
-/// D for all pieces of all rims, m/Pa.
-fn finite(rims: &[PinRim], places: &[&Places], modes: &[Mode], fields: &[OnRims]) -> DMatrix<f64> {
-    let pieces: Vec<(usize, f64)> =
-        rims.iter().enumerate().flat_map(|(rim, of)| of.angles.iter().map(move |&angle| (rim, angle))).collect();
-    let rests: Vec<OnRims> = fields.par_iter().map(|field| rest(field, places, modes)).collect();
-    let table = |of: &dyn Fn(usize, usize, f64) -> [f64; 2]| {
-        DMatrix::from_fn(2 * pieces.len(), modes.len(), |row, k| {
-            let (rim, angle) = pieces[row / 2];
-            of(k, rim, angle)[row % 2]
-        })
-    };
-    let own = table(&|k, rim, angle| if modes[k].bore == rim { modes[k].traction(angle) } else { [0.0; 2] });
-    let field = table(&|k, rim, angle| places[rim].between(&fields[k][rim], angle));
-    let rest = table(&|k, rim, angle| places[rim].between(&rests[k][rim], angle));
-    let weighed = |of: &DMatrix<f64>, weight: &dyn Fn(usize, usize) -> f64| {
-        DMatrix::from_fn(of.nrows(), of.ncols(), |row, k| of[(row, k)] * weight(pieces[row / 2].0, k) / modes[k].shape.norm())
-    };
-    let loaded = weighed(&own, &|rim, _| rims[rim].width);
-    // Work is force by way: lengths of rims of unlike radius count.
-    let turned = weighed(&rest, &|rim, k| rims[rim].width * rims[rim].radius / rims[modes[k].bore].radius);
-    let read = field * loaded.transpose() + own * turned.transpose();
-    // What nodes and places leave of Maxwell's symmetry: in between.
-    let area = |row: usize| rims[pieces[row / 2].0].width * rims[pieces[row / 2].0].radius;
-    DMatrix::from_fn(read.nrows(), read.ncols(), |i, j| 0.5 * (read[(i, j)] + read[(j, i)] * area(j) / area(i)))
-}
-
-/// r - P r.
-fn rest(field: &OnRims, places: &[&Places], modes: &[Mode]) -> OnRims {
-    let mut rest = field.clone();
-    for mode in modes {
-        let tractions: Vec<[f64; 2]> = places[mode.bore].angles().map(|angle| mode.traction(angle)).collect();
-        let sum: f64 = tractions.iter().zip(&field[mode.bore]).map(|(h, u)| h[0] * u[0] + h[1] * u[1]).sum();
-        let size = sum * TAU / PLACES as f64 / mode.shape.norm();
-        rest[mode.bore].iter_mut().zip(tractions).for_each(|(u, h)| *u = [u[0] - size * h[0], u[1] - size * h[1]]);
+impl Pins {
+    /// Contact of every pin, with the index of its load and its residual in the plate whose unknowns are u, m.
+    pub fn contacts(&self, columns: &PinColumns<'_>, u: &[f64]) -> Vec<(usize, Contact)> {
+        let off = stacked(columns.bores.iter().map(|bore| bore.finer.parts(&bore.moved(u)))) - &self.assumed;
+        let moved = &self.moved + columns.on_all(&self.search.rims, |bore| &bore.finer) * off;
+        let shifted = self.search.settle(&moved).map(|other| self.search.shifted(&self.solved, &other));
+        let contact = |(index, pressed): (usize, Vec<(usize, f64)>)| {
+            let residual = shifted.as_ref().map_or(f64::INFINITY, |shares| shares[index]);
+            (columns.bores[index].load, Contact { residual, ..self.search.contact(index, &pressed) })
+        };
+        self.search.pressed(&self.solved).into_iter().enumerate().map(contact).collect()
     }
-    rest
 }
 
-/// Adds a force given in two axes.
-fn push(forces: &mut [f64], row: &[(u32, Point)], axes: [Point; 2], size: [f64; 2]) {
-    let force = [0, 1].map(|i| size[0] * axes[0][i] + size[1] * axes[1][i]);
-    row.iter().for_each(|(unknown, [x, y])| forces[*unknown as usize] += force[0] * x + force[1] * y);
-}
-
-/// Displacement in two axes, m.
-fn moved(u: &[f64], row: &[(u32, Point)], axes: [Point; 2]) -> [f64; 2] {
-    let mut sum = [0.0; 2];
-    for (unknown, motion) in row {
-        (0..2).for_each(|i| sum[i] += u[*unknown as usize] * motion[i]);
-    }
-    axes.map(|axis| axis[0] * sum[0] + axis[1] * sum[1])
+/// Parts of all bores, one below the other.
+fn stacked(parts: impl Iterator<Item = DVector<f64>>) -> DVector<f64> {
+    DVector::from_vec(parts.flat_map(|part| part.data.as_vec().clone()).collect())
 }

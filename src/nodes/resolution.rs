@@ -1,11 +1,12 @@
 //! How fine the nodes are, and where.
 //!
 //! The spacing is `far` but for halvings: at a tip down to the `hold`-th part of its room, the least of its distance from rims and other
-//! cracks, the length of its crack (half of it with two tips), its growth since a kink and the way over which it is straight; around holes and concave arcs of the
-//! outline to R/2.4; across every ligament to a third of it, between sides of the plate that face each other to a sixth; at sharp re-entrant
-//! corners to an eighth of the shorter side, or of the way to a tip; along cracks to the way over which a residual stress changes by a quarter of
-//! its largest. A loaded stretch of the outline is a spacing long at the least, or what it sinks in would depend on how nodes lie beside it, and
-//! the work of the loads with that.
+//! cracks, the length of its crack (half of it with two tips), its growth since a kink and the way over which it is straight; around holes
+//! and concave arcs of the outline to R/2.4, around holes of elastic pins to R/4.8, at mouths of cracks there to R/19; across every
+//! ligament to a third of it, between sides of the plate that face each other to a sixth; at sharp re-entrant corners to an eighth of the
+//! shorter side, or of the way to a tip; along cracks to the way over which a residual stress changes by a quarter of its largest. A loaded
+//! stretch of the outline is a spacing long at the least, or what it sinks in would depend on how nodes lie beside it, and the work of the
+//! loads with that.
 
 use super::basis::{BasisKind, Enrichment};
 use super::crack::Tip;
@@ -15,18 +16,21 @@ use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, place_mm};
 use perilife_plate::loading::residual::{Components, ResidualStress};
 use perilife_plate::specimen::geometry::{
-    along, bounding_box, circle_crossing, circle_shares, direction, distance, edges, meeting_share, point_in_polygon,
-    segments_touch, turn_at,
+    along, bounding_box, circle_shares, direction, distance, edges, meeting_share, point_in_polygon, segments_touch, turn_at,
 };
 use perilife_plate::specimen::{CrackLine, Hole, Load, Point, Specimen};
 
+/// Share of a piece of crack by which it may miss a rim that it begins at: round-off of the input.
+const ON_RIM: f64 = 1e-6;
 /// Cells at the most.
 const CELLS_MOST: usize = 200_000;
 
 /// Spacings in the radius of a hole or fillet that K of a crack nearby asks for.
 pub const IN_RADIUS: f64 = 2.4;
-/// The same over that at a hole from which cracks begin and in which an elastic pin stands: short waves of its rim are read from nodes.
+/// The same over that at a hole in which an elastic pin stands: what it does to its rim is read from nodes.
 const AT_PIN: f64 = 2.0;
+/// The same at mouths of cracks there, where a flank that the pin presses is a corner.
+const AT_MOUTH: f64 = 8.0;
 /// Reach of rims and ligaments, in spacings of the coarser level, that K of a crack nearby asks for.
 pub const RIM_REACH: f64 = 1.5;
 /// Reach of a sharp corner, in spacings of the coarser level: neighbours differ by one level.
@@ -104,7 +108,8 @@ impl Resolution {
             let at = lines[tip.end.line].end(tip.end.at_last);
             sources.push(Source::point(at, spacing, self.reach));
         }
-        sources.extend(self.of_rims(specimen, lines));
+        sources.extend(self.of_rims(specimen));
+        sources.extend(self.of_pins(specimen, lines));
         sources.extend(self.of_corners(specimen, lines, tips));
         sources.extend(self.of_cracks(specimen, lines, tips));
         sources.extend(residual.into_iter().flat_map(|residual| self.of_residual(lines, residual)));
@@ -121,16 +126,10 @@ impl Resolution {
     }
 
     /// Holes by their radius, and ligaments between rims by the way straight into the material.
-    fn of_rims(&self, specimen: &Specimen, lines: &[CrackLine]) -> Vec<Source> {
-        let in_radius = |index: usize| {
-            let is_pin = |load: &Load| matches!(load, Load::Pin { hole, .. } if *hole == index && load.is_elastic_pin());
-            let Hole { centre, radius } = specimen.holes[index];
-            let cuts = |line: &CrackLine| line.points.windows(2).any(|p| circle_crossing(p[0], p[1], centre, radius).is_some());
-            if specimen.loads.iter().any(is_pin) && lines.iter().any(cuts) { AT_PIN * self.in_radius } else { self.in_radius }
-        };
-        let holes = specimen.holes.iter().enumerate().map(|(index, hole)| Source {
+    fn of_rims(&self, specimen: &Specimen) -> Vec<Source> {
+        let holes = specimen.holes.iter().map(|hole| Source {
             radius: hole.radius,
-            ..Source::point(hole.centre, hole.radius / in_radius(index), self.rim_reach)
+            ..Source::point(hole.centre, hole.radius / self.in_radius, self.rim_reach)
         });
         let mut sources: Vec<Source> = holes.collect();
         sources.extend(self.of_arcs(&specimen.outline));
@@ -165,6 +164,20 @@ impl Resolution {
                     sources.push(Source::point(at, width / across, RIM_REACH));
                 }
             }
+        }
+        sources
+    }
+
+    /// Holes in which elastic pins stand, and mouths of cracks at them.
+    fn of_pins(&self, specimen: &Specimen, lines: &[CrackLine]) -> Vec<Source> {
+        let mut sources = Vec::new();
+        for load in specimen.loads.iter().filter(|load| load.is_elastic_pin()) {
+            let Load::Pin { hole, .. } = load else { continue };
+            let hole = specimen.holes[*hole];
+            let spacing = |times: f64| hole.radius / (times * self.in_radius);
+            let around = Source { radius: hole.radius, ..Source::point(hole.centre, spacing(AT_PIN), self.rim_reach) };
+            let mouths = lines.iter().flat_map(|line| mouths(&line.points, hole));
+            sources.extend(mouths.map(|mouth| Source::point(mouth, spacing(AT_MOUTH), CORNER_REACH)).chain([around]));
         }
         sources
     }
@@ -283,6 +296,17 @@ impl Resolution {
         }
         sources
     }
+}
+
+/// Where a crack meets the rim of a hole.
+pub fn mouths(points: &[Point], hole: Hole) -> Vec<Point> {
+    let mut mouths = Vec::new();
+    for piece in points.windows(2) {
+        let shares = circle_shares(piece[0], piece[1], hole.centre, hole.radius).unwrap_or([f64::NAN; 2]);
+        let met = shares.into_iter().filter(|share| (-ON_RIM..1.0 + ON_RIM).contains(share));
+        mouths.extend(met.map(|share| along(piece[0], piece[1], share)));
+    }
+    mouths
 }
 
 /// What is said where a gap asks for more cells than there may be.

@@ -1,185 +1,143 @@
-//! What is loaded and read round the rim of a hole in a plate of nodes: waves, and jumps where cracks begin.
+//! What is loaded and read round the rim of a hole in a plate of nodes: waves, and beside the mouths of cracks what lives on one flank.
+//!
+//! A plate answers to waves of a rim smoothly, but for the mouth of a crack: there each flank is a corner of its own, whose answer has no
+//! length but the way s to the mouth. Decays `(1 - s/ℓ)^m` of one flank, m doubled again and again, have all lengths.
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix, DVector};
 
 use perilife_plate::williams::Elasticity;
 
-/// Waves around a rim that are loaded and read: without cracks from it, and with, where nodes are finer ([`super::resolution`]). Where contact ends
-/// near the mouth of a crack, 12, 24 and 36 leave K 0.5, 0.14 and 0.12 % off finite elements.
-const HARMONICS: [i32; 2] = [4, 24];
-/// Places around a rim where displacement is read and harmonics are loaded.
-pub const PLACES: usize = 180;
-/// Share of an orthogonal jump in a whole one below which there is no other: cracks that begin at one place jump as one.
-const ANOTHER: f64 = 1e-3;
+/// Waves around a rim: at a distance d a load e^(inθ) is felt as (R/d)^n.
+const WAVES: i32 = 5;
+/// Waves more of finer functions.
+const MORE: i32 = 2;
+/// Places around a rim at which pressure is put on nodes and displacement is read.
+const PLACES: usize = 720;
+/// Waves of which the answer of a plane is summed.
+const SUMMED: usize = 180;
+/// Reach ℓ of what lives on one flank, rad, no further than to the next mouth.
+const REACH: f64 = 1.0;
+/// Powers m, the last of finer functions alone.
+const POWERS: [i32; 6] = [2, 4, 8, 16, 32, 64];
+/// Mouths that are one, rad.
+const SAME: f64 = 1e-3;
+/// Share of a function that is left by others below which there is no other.
+const ANOTHER: f64 = 1e-8;
 
-/// The course of a load round a rim; all those of a rim are orthogonal.
+/// What is on one side of the mouth of a crack.
+#[derive(Debug, Clone, Copy)]
+struct Flank {
+    mouth: f64,
+    /// 1 of what lies counter-clockwise of the mouth, else -1.
+    side: f64,
+    reach: f64,
+}
+
+/// Orthonormal functions of the angle.
 #[derive(Debug, Clone)]
-pub enum Shape {
-    /// e^(inθ), its real part or its imaginary one.
-    Wave { waves: i32, is_sine: bool },
-    /// Sum of jumps ([`jump`]) at angles, each by its weight, without waves up to a number.
-    Jumps { jumps: Vec<[f64; 2]>, without: i32 },
-}
-
-/// What waves up to a number leave of a jump by 1 at x = 0 that is drawn out linearly round the rim: Σ sin nx / πn of all shorter waves.
-fn jump(x: f64, without: i32) -> f64 {
-    let waves: f64 = (1..=without).map(f64::from).map(|n| (n * x).sin() / n).sum();
-    0.5 - x.rem_euclid(TAU) / TAU - waves / PI
-}
-
-/// ∫ of the product of two such jumps that are x apart: Σ cos nx / πn², all waves of which make a parabola.
-fn jumps_product(x: f64, without: i32) -> f64 {
-    let x = x.rem_euclid(TAU);
-    let waves: f64 = (1..=without).map(f64::from).map(|n| (n * x).cos() / (n * n)).sum();
-    (PI * PI / 6.0 - 0.5 * PI * x + 0.25 * x * x - waves) / PI
-}
-
-impl Shape {
-    /// Its size at an angle.
-    pub fn at(&self, angle: f64) -> f64 {
-        match self {
-            Shape::Wave { waves, is_sine: false } => (f64::from(*waves) * angle).cos(),
-            Shape::Wave { waves, .. } => (f64::from(*waves) * angle).sin(),
-            Shape::Jumps { jumps, without } => jumps.iter().map(|[weight, place]| weight * jump(angle - place, *without)).sum(),
-        }
-    }
-
-    /// ∫ of its square.
-    pub fn norm(&self) -> f64 {
-        match self {
-            Shape::Wave { waves: 0, .. } => TAU,
-            Shape::Wave { .. } => 0.5 * TAU,
-            Shape::Jumps { jumps, without } => product(jumps, jumps, *without),
-        }
-    }
-
-    /// u_r and u_θ, m, of a plane with a hole of this radius: F_n e^(inθ) moves it by R/2G F_n/(n+1) and R/2G κ F₋ₙ/(n-1). Of what jumps
-    /// there are shorter waves only, which are not kept.
-    pub fn plane(&self, angle: f64, is_tangential: bool, radius: f64, plate: Elasticity) -> [f64; 2] {
-        let Shape::Wave { waves, is_sine } = *self else { return [0.0; 2] };
-        let n = f64::from(waves);
-        let half = if is_sine { Complex::new(0.0, -0.5) } else { Complex::new(0.5, 0.0) };
-        let turned = if is_tangential { Complex::i() } else { Complex::new(1.0, 0.0) };
-        let (forth, back) = (half * turned * Complex::cis(n * angle), half.conj() * turned * Complex::cis(-n * angle));
-        let moved = match waves {
-            0 => turned,
-            1 => 0.5 * forth,
-            _ => forth / (n + 1.0) + back * (plate.kappa / (n - 1.0)),
-        };
-        let u = moved * (0.5 * radius / plate.shear_modulus);
-        [u.re, u.im]
-    }
-}
-
-/// ∫ of the product of two sums of jumps.
-fn product(a: &[[f64; 2]], b: &[[f64; 2]], without: i32) -> f64 {
-    a.iter().flat_map(|[w, x]| b.iter().map(move |[v, y]| w * v * jumps_product(x - y, without))).sum()
-}
-
-/// Places around a rim, evenly spaced, the first mouth of a crack between the last and the first of them.
-#[derive(Debug, Clone)]
-pub struct Places {
-    mouths: Vec<f64>,
-    /// Number of the place after every mouth.
-    after: Vec<usize>,
-}
-
-impl Places {
-    /// Those of a rim with mouths of cracks at angles, rad.
-    pub fn new(mouths: Vec<f64>) -> Self {
-        let mut places = Places { mouths, after: Vec::new() };
-        places.after =
-            places.mouths.iter().map(|mouth| (places.at(*mouth) + 0.5).rem_euclid(PLACES as f64) as usize % PLACES).collect();
-        places
-    }
-
+pub struct Shapes {
     /// Where cracks begin, rad.
-    pub fn mouths(&self) -> &[f64] {
-        &self.mouths
-    }
+    pub mouths: Vec<f64>,
+    waves: i32,
+    powers: usize,
+    flanks: Vec<Flank>,
+    /// Of waves and decays.
+    weights: DMatrix<f64>,
+    /// At all places.
+    pub at_places: DMatrix<f64>,
+    /// ∫ e^(-inθ) of each of them.
+    pub spectrum: DMatrix<Complex<f64>>,
+}
 
-    /// Boundary before the first place, rad.
-    fn first(&self) -> f64 {
-        self.mouths.first().copied().unwrap_or(0.0)
-    }
-
-    /// An angle counted in places from that boundary.
-    fn at(&self, angle: f64) -> f64 {
-        (angle - self.first()) / TAU * PLACES as f64
-    }
-
-    fn angle(&self, place: usize) -> f64 {
-        self.first() + TAU * (place as f64 + 0.5) / PLACES as f64
-    }
-
-    /// Of all places, rad.
-    pub fn angles(&self) -> impl Iterator<Item = f64> {
-        (0..PLACES).map(|place| self.angle(place))
-    }
-
-    fn waves(&self) -> i32 {
-        HARMONICS[usize::from(!self.mouths.is_empty())]
-    }
-
-    /// Between the places, in a straight line; on from the last one before a mouth.
-    pub fn between(&self, values: &[[f64; 2]], angle: f64) -> [f64; 2] {
-        let at = (self.at(angle) - 0.5).rem_euclid(PLACES as f64);
-        let (low, share) = (at as usize % PLACES, at.fract());
-        let next = |place: usize, by: usize| (place + by) % PLACES;
-        let (a, b, share) = match self.after.contains(&next(low, 1)) {
-            false => (low, next(low, 1), share),
-            true if share < 0.5 => (next(low, PLACES - 1), low, 1.0 + share),
-            true => (next(low, 1), next(low, 2), share - 1.0),
+impl Shapes {
+    /// Those of a rim with mouths of cracks at angles, rad, or finer ones.
+    pub fn new(mut mouths: Vec<f64>, is_finer: bool) -> Self {
+        mouths.iter_mut().for_each(|mouth| *mouth = (*mouth + PI).rem_euclid(TAU) - PI);
+        mouths.sort_by(f64::total_cmp);
+        mouths.dedup_by(|b, a| *b - *a < SAME);
+        let on_way = |from: f64, side: f64| {
+            let ways = mouths.iter().map(|to| (side * (to - from)).rem_euclid(TAU)).filter(|way| *way > SAME);
+            ways.fold(REACH, f64::min)
         };
-        [0, 1].map(|part| (1.0 - share) * values[a][part] + share * values[b][part])
+        let flank = |&mouth: &f64| [1.0, -1.0].map(|side| Flank { mouth, side, reach: on_way(mouth, side) });
+        let flanks: Vec<Flank> = mouths.iter().flat_map(flank).collect();
+        let waves = WAVES + if is_finer { MORE } else { 0 };
+        let powers = if is_finer { POWERS.len() } else { POWERS.len() - 1 };
+        let (empty, spectrum) = (DMatrix::zeros(0, 0), DMatrix::zeros(0, 0));
+        let mut shapes = Shapes { mouths, waves, powers, flanks, weights: empty.clone(), at_places: empty, spectrum };
+        let angles: Vec<f64> = shapes.angles().collect();
+        let raw = shapes.raw(&angles);
+        let step = TAU / PLACES as f64;
+        let found = (raw.tr_mul(&raw) * step).symmetric_eigen();
+        let kept: Vec<usize> = (0..found.eigenvalues.len()).filter(|&k| found.eigenvalues[k] > ANOTHER).collect();
+        let column = |&k: &usize| found.eigenvectors.column(k) / found.eigenvalues[k].sqrt();
+        shapes.weights = DMatrix::from_columns(&kept.iter().map(column).collect::<Vec<_>>());
+        shapes.at_places = raw * &shapes.weights;
+        let wave = DMatrix::from_fn(SUMMED, PLACES, |n, place| Complex::cis(-(n as f64) * angles[place]) * step);
+        shapes.spectrum = wave * shapes.at_places.map(Complex::from);
+        shapes
     }
 
-    /// What is read at the places, without shorter waves than are kept, but for jumps where cracks begin.
-    pub fn smooth(&self, mut read: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-        let mut jumps = vec![[0.0; 2]; PLACES];
-        for &after in &self.after {
-            let before = (after + PLACES - 1) % PLACES;
-            let jump = [0, 1].map(|part| read[after][part] - read[before][part]);
-            for (k, sum) in jumps.iter_mut().enumerate() {
-                let way = ((k + PLACES - after) % PLACES) as f64 + 0.5;
-                (0..2).for_each(|part| sum[part] += jump[part] * (0.5 - way / PLACES as f64));
-            }
-        }
-        read.iter_mut().zip(&jumps).for_each(|(u, jump)| *u = [u[0] - jump[0], u[1] - jump[1]]);
-        let mut kept = jumps;
-        for waves in 0..=self.waves() {
-            let size = if waves == 0 { 1.0 } else { 2.0 } / PLACES as f64;
-            for shape in [f64::cos, f64::sin] {
-                let wave: Vec<f64> = self.angles().map(|angle| shape(f64::from(waves) * angle)).collect();
-                let sums = [0, 1].map(|part| read.iter().zip(&wave).map(|(u, wave)| wave * u[part]).sum::<f64>());
-                kept.iter_mut().zip(&wave).for_each(|(u, wave)| (0..2).for_each(|part| u[part] += size * wave * sums[part]));
-            }
-        }
-        kept
+    /// All places, rad; a mouth lies between the last and the first of them.
+    pub fn angles(&self) -> impl Iterator<Item = f64> {
+        let first = self.mouths.first().copied().unwrap_or(0.0);
+        (0..PLACES).map(move |place| first + TAU * (place as f64 + 0.5) / PLACES as f64)
     }
 
-    /// Waves, and jumps between the places where cracks begin.
-    pub fn shapes(&self) -> Vec<Shape> {
-        let without = self.waves();
-        let waves = (0..=without).flat_map(|waves| {
-            [false, true]
-                .into_iter()
-                .filter(move |is_sine| !is_sine || waves > 0)
-                .map(move |is_sine| Shape::Wave { waves, is_sine })
-        });
-        let mut jumps: Vec<Vec<[f64; 2]>> = Vec::new();
-        for &after in &self.after {
-            let mut next = vec![[1.0, self.angle(after) - 0.5 * TAU / PLACES as f64]];
-            for other in &jumps {
-                let share = product(&next, other, without) / product(other, other, without);
-                next.extend(other.iter().map(|[weight, place]| [-share * weight, *place]));
-            }
-            if product(&next, &next, without) > ANOTHER * jumps_product(0.0, without) {
-                jumps.push(next);
+    /// Waves and decays at angles, each of norm 1.
+    fn raw(&self, angles: &[f64]) -> DMatrix<f64> {
+        let mut columns = vec![DVector::from_element(angles.len(), TAU.sqrt().recip())];
+        let mut add = |of: &dyn Fn(f64) -> f64| columns.push(DVector::from_iterator(angles.len(), angles.iter().map(|x| of(*x))));
+        for n in (1..=self.waves).map(f64::from) {
+            add(&|x| (n * x).cos() / PI.sqrt());
+            add(&|x| (n * x).sin() / PI.sqrt());
+        }
+        for Flank { mouth, side, reach } in &self.flanks {
+            let left = |x: f64| (1.0 - (side * (x - mouth)).rem_euclid(TAU) / reach).max(0.0);
+            for &power in &POWERS[..self.powers] {
+                add(&|x| (f64::from(2 * power + 1) / reach).sqrt() * left(x).powi(power));
             }
         }
-        waves.chain(jumps.into_iter().map(|jumps| Shape::Jumps { jumps, without })).collect()
+        DMatrix::from_columns(&columns)
     }
+
+    /// All of them at angles.
+    pub fn at(&self, angles: &[f64]) -> DMatrix<f64> {
+        self.raw(angles) * &self.weights
+    }
+
+    /// ∫ of each of them and of the way u_r, m, at all places.
+    pub fn parts(&self, moved: &DVector<f64>) -> DVector<f64> {
+        self.at_places.tr_mul(moved) * (TAU / PLACES as f64)
+    }
+
+    /// ∫ of each of them and of u_r, m/Pa, of a plane with a hole of this radius under a pressure with these ∫ p e^(-inθ): cos nθ moves it by
+    /// R/4G (1/(n+1) + κ/(n-1)).
+    pub fn of_plane(&self, pressure: &DMatrix<Complex<f64>>, radius: f64, plate: Elasticity) -> DMatrix<f64> {
+        let size = |n: usize| match n {
+            0 => 1.0 / TAU,
+            1 => 0.25 / PI,
+            _ => 0.5 / PI * (1.0 / (n as f64 + 1.0) + plate.kappa / (n as f64 - 1.0)),
+        };
+        let moved = DMatrix::from_fn(SUMMED, pressure.ncols(), |n, k| pressure[(n, k)] * size(n));
+        self.spectrum.ad_mul(&moved).map(|part| 0.5 * radius / plate.shear_modulus * part.re)
+    }
+
+    /// The same under ∫ p dθ at angles.
+    pub fn plane_under(&self, pressed: &[(f64, f64)], radius: f64, plate: Elasticity) -> DVector<f64> {
+        let wave = |n: usize| pressed.iter().map(|(angle, size)| Complex::cis(-(n as f64) * angle) * *size).sum();
+        self.of_plane(&DMatrix::from_fn(SUMMED, 1, |n, _| wave(n)), radius, plate).column(0).into_owned()
+    }
+}
+
+/// Matrices one after the other on the diagonal of one.
+pub fn on_diagonal(blocks: impl Iterator<Item = DMatrix<f64>>) -> DMatrix<f64> {
+    blocks.fold(DMatrix::zeros(0, 0), |before, block| {
+        let (rows, columns) = before.shape();
+        let mut all = before.resize(rows + block.nrows(), columns + block.ncols(), 0.0);
+        all.view_mut((rows, columns), block.shape()).copy_from(&block);
+        all
+    })
 }

@@ -9,7 +9,7 @@ use super::contact::{Pressed, press};
 use super::dissection::{Factor, Matrices, Member};
 use super::field::{Discretisation, Local};
 use super::front::Front;
-use super::pins::press_pins;
+use super::pins::PinColumns;
 use perilife_base::error::Result;
 use perilife_base::raster::PointGrid;
 use perilife_base::watch::{self, Stage};
@@ -17,7 +17,7 @@ use perilife_plate::loading::residual::ResidualStress;
 use perilife_plate::material::Plane;
 use perilife_plate::specimen::geometry::bounding_box;
 use perilife_plate::specimen::pin::Contact;
-use perilife_plate::specimen::{Load, Point, Specimen};
+use perilife_plate::specimen::{Point, Specimen};
 use perilife_plate::williams::Elasticity;
 
 /// A plate in equilibrium with a load.
@@ -146,9 +146,10 @@ pub fn solve_with(
     if let Some(residual) = residual {
         press_cracks(&mut released, specimen, plate, &|at| residual.at(at))?;
     }
-    let balance = Balance { specimen, plate, factor: &factor, held: &held, forces, released, load };
+    let pins = PinColumns::new(specimen, plate, &factor, forces.len())?;
+    let balance = Balance { specimen, plate, factor: &factor, held: &held, pins, forces, released, load };
     let whole = balance.at(1.0)?;
-    let lower = if residual.is_some() || specimen.loads.iter().any(Load::is_elastic_pin) || !whole.pressed.is_empty() {
+    let lower = if residual.is_some() || balance.pins.is_some() || !whole.pressed.is_empty() {
         balance.lower(&whole, residual.is_some(), lower)?
     } else {
         Vec::new()
@@ -157,12 +158,17 @@ pub fn solve_with(
     Ok(Solution { whole, lower, area })
 }
 
+/// Turns in which pins and flanks settle on each other at the most, and the change of the forces of flanks, over the largest, that is none.
+const COUPLED_MOST: usize = 20;
+const COUPLED: f64 = 1e-3;
+
 /// The equilibrium of a plate whose stiffness is factored.
 struct Balance<'a> {
     specimen: &'a Specimen,
     plate: &'a Discretisation,
     factor: &'a Factor,
     held: &'a [Square],
+    pins: Option<PinColumns<'a>>,
     /// Of the nominal load but for elastic pins, N; of a displacement those that move its places by 1 m.
     forces: Vec<f64>,
     /// What the residual stress releases on the cracks, N.
@@ -179,19 +185,33 @@ impl Balance<'_> {
         let size = if section.is_some() { share.signum() } else { share };
         let others: Vec<f64> = self.forces.iter().zip(&self.released).map(|(force, released)| size * force + released).collect();
         // Without load there are no pins.
-        let pins = if share > 0.0 { press_pins(specimen, plate, factor, &others, share * self.load)? } else { None };
-        let mut y = others.clone();
-        if let Some(pins) = &pins {
-            y.iter_mut().zip(&pins.forces).for_each(|(y, of_pins)| *y += of_pins);
-        }
-        factor.forward(&mut y);
-        let mut u = y.clone();
-        factor.backward(&mut u);
-        let mut free = u.clone();
-        let mut pressed = press(specimen, plate, factor, &y, &mut u)?;
-        if pressed.is_empty() {
-            free = Vec::new();
-        }
+        let columns = self.pins.as_ref().filter(|_| share > 0.0);
+        let (mut beside, mut of_flanks) = (others.clone(), vec![0.0; others.len()]);
+        let mut turns = if columns.is_some() { COUPLED_MOST } else { 1 };
+        let (mut u, mut free, mut pressed, pins) = loop {
+            let pins = columns.map(|columns| columns.press(&beside, share * self.load)).transpose()?;
+            let mut y = others.clone();
+            if let Some(pins) = &pins {
+                y.iter_mut().zip(&pins.forces).for_each(|(y, of_pins)| *y += of_pins);
+            }
+            factor.forward(&mut y);
+            let mut u = y.clone();
+            factor.backward(&mut u);
+            let mut free = u.clone();
+            let (pressed, forces) = press(specimen, plate, factor, &y, &mut u)?;
+            if pressed.is_empty() {
+                free = Vec::new();
+            }
+            // Flanks that a pin presses together bear on it in turn.
+            let change = forces.iter().zip(&of_flanks).map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
+            of_flanks = forces;
+            let largest = of_flanks.iter().map(|force| force.abs()).fold(0.0, f64::max);
+            turns -= 1;
+            if turns == 0 || change <= COUPLED * largest {
+                break (u, free, pressed, pins);
+            }
+            beside = others.iter().zip(&of_flanks).map(|(other, of_flank)| other + of_flank).collect();
+        };
         let work = match section {
             None => others.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() + pins.as_ref().map_or(0.0, |pins| pins.work),
             // Moved by 1 m, then scaled to the force of the load: contact of flanks changes with it in proportion.
@@ -202,7 +222,8 @@ impl Balance<'_> {
                 share.abs() * self.load * section * scale
             }
         };
-        Ok(Loaded { share, u, work, pressed, free, contacts: pins.map_or_else(Vec::new, |pins| pins.contacts) })
+        let contacts = columns.zip(pins).map_or_else(Vec::new, |(columns, pins)| pins.contacts(columns, &u));
+        Ok(Loaded { share, u, work, pressed, free, contacts })
     }
 
     /// Under lower loads, ascending, if it does not follow the load in proportion.

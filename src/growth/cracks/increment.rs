@@ -11,7 +11,6 @@ use crate::record::{CurvePoint, StopReason};
 use perilife_base::error::Error;
 use perilife_base::units::MM;
 use perilife_laws::response::Response;
-use perilife_plate::specimen::Load;
 use perilife_points::crack_tip::TipState;
 
 /// Compliance over that at the start from which a plate without equilibrium is as good as severed: what one side of it has let go turns
@@ -320,9 +319,6 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     /// Compares the energy that the new segments released by their K with what the plate did.
     /// `beside_chord` is what K² of the lead is on its way over its chord.
     fn compare_energies(&mut self, step: &Increment, growths: &[f64], beside_chord: f64, cycles: f64) {
-        if self.case.specimen.loads.iter().any(Load::has_friction) {
-            return;
-        }
         let ((now, work_now), (before, work)) = (self.energies(), &step.before);
         let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
         let (block, length) = ReleasedEnergy::of_block(self.case, [before, &now], growths, &grown, [*work, work_now], cycles);

@@ -58,6 +58,12 @@ fn apply_loads(input: &Input, supports: Option<&Value>, specimen: &mut Specimen,
     }
     let kind = specimen.kind;
     let problem = format!("does not go with {kind}, which brings its own loads and grips");
+    if input.pins.is_some() && specimen.part_through.is_some() {
+        let problem = "press beside a crack that does not go through, whose K under a pin is not known";
+        let remedy =
+            "describe a through crack as long as the larger side of it, with the pins, as kind = \"plate\": its life is shorter";
+        return Err(input_missing("loading.pins", problem, remedy));
+    }
     let remedy = "leave it out, or describe the specimen as kind = \"plate\"";
     let bent = [("edge_bending_ratio", input.edge_bending_ratio.is_some())];
     refuse_given("loading", &[&input.places()[..], &bent].concat(), &problem, remedy)?;

@@ -47,12 +47,12 @@ fn rim_forces(hole: &Hole, direction: Point, found: &Contact, spacing: f64, forc
     let middle = direction[1].atan2(direction[0]);
     let of_piece = |piece: &RimForce| {
         let count = (hole.radius * piece.width * PER_SPACING / spacing).ceil();
-        let (length, [out, around]) = (hole.radius * piece.width / count, piece.share.map(|share| force * share / count));
+        let (length, size) = (hole.radius * piece.width / count, force * piece.share / count);
         let (angle, width) = (middle + piece.angle, piece.width);
         (0..count as usize).map(move |i| {
             let (y, x) = (angle + width * ((i as f64 + 0.5) / count - 0.5)).sin_cos();
             let at = [hole.centre[0] + hole.radius * x, hole.centre[1] + hole.radius * y];
-            LoadPiece { facet: Facet { at, normal: [-x, -y], length }, force: [out * x - around * y, out * y + around * x] }
+            LoadPiece { facet: Facet { at, normal: [-x, -y], length }, force: [size * x, size * y] }
         })
     };
     found.pieces.iter().flat_map(of_piece).collect()

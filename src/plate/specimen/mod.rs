@@ -168,12 +168,6 @@ impl Load {
         matches!(self, Load::Pin { contact: Bearing::Elastic(_), .. })
     }
 
-    /// Whether it is a pin with friction, which takes a part of the energy that cracks release.
-    #[inline]
-    pub fn has_friction(&self) -> bool {
-        matches!(self, Load::Pin { contact: Bearing::Elastic(pin), .. } if pin.friction > 0.0)
-    }
-
     /// The stretch of the outline that it loads, with the tractions at both ends; `None` of a pin.
     #[inline]
     pub fn on_edge(&self) -> Option<(Point, Point, [Point; 2])> {

@@ -39,8 +39,6 @@ pub struct Pin {
     pub youngs_modulus: f64,
     /// Poisson's ratio.
     pub poisson_ratio: f64,
-    /// Coefficient of friction.
-    pub friction: f64,
     /// Forces of contact at maximum load on the plate with its initial cracks, once they are found.
     pub found: Option<Arc<Contact>>,
 }
@@ -52,8 +50,8 @@ pub struct Contact {
     pub ends: [f64; 2],
     /// Largest pressure, Pa.
     pub pressure: f64,
-    /// Share of the contact that sticks.
-    pub sticking: f64,
+    /// Share of the force of the pin that bears elsewhere once contact is sought with the displacement of the solved plate.
+    pub residual: f64,
     /// Pieces of rim of equal size with their forces.
     pub pieces: Vec<RimForce>,
 }
@@ -65,8 +63,8 @@ pub struct RimForce {
     pub angle: f64,
     /// Its length over the radius of the hole, rad.
     pub width: f64,
-    /// Force on the plate along the radius, outwards, and along the rim, counter-clockwise, over that of the pin.
-    pub share: [f64; 2],
+    /// Force on the plate along the radius, outwards, over that of the pin.
+    pub share: f64,
 }
 
 /// Keys of a pin with their values: half angle, diameter, friction, Young's modulus, Poisson's ratio.
@@ -74,11 +72,16 @@ pub type PinKeys<'a> = [(&'a str, Option<f64>); 5];
 
 impl Bearing {
     /// What keys at `path` say of the pin in a hole of radius `hole`, m.
-    /// Errors: [`perilife_base::error::Error::Input`]: an arc beside a pin, a pin without diameter or one that is larger than its hole.
+    /// Errors: [`perilife_base::error::Error::Input`]: an arc beside a pin, friction, a pin without diameter or one larger than its hole.
     pub fn read(path: &str, keys: &PinKeys<'_>, hole: f64) -> Result<Self> {
         let [half_angle, diameter, friction, modulus, ratio] = *keys;
         let full = |key: &str| format!("{path}.{key}");
-        if let (Some(angle), Some((key, _))) = (half_angle.1, keys[1..].iter().find(|(_, given)| given.is_some())) {
+        let of_pin = [diameter, modulus, ratio];
+        if let Some(given) = friction.1.filter(|given| *given != 0.0) {
+            let problem = "is not computed: pins press without friction";
+            return Err(input(&full(friction.0), given, problem, "leave it out, or give 0"));
+        }
+        if let (Some(angle), Some((key, _))) = (half_angle.1, of_pin.iter().find(|(_, given)| given.is_some())) {
             let problem = format!("stands beside {key}, from which it follows");
             return Err(input(&full(half_angle.0), angle, problem, "give the arc or the pin"));
         }
@@ -87,7 +90,7 @@ impl Bearing {
             return Ok(Bearing::Cosine(angle.to_radians()));
         }
         let Some(given) = diameter.1 else {
-            return match keys[2..].iter().find(|(_, given)| given.is_some()) {
+            return match of_pin[1..].iter().find(|(_, given)| given.is_some()) {
                 Some((key, _)) => {
                     let problem = format!("is missing beside {key}: where a pin touches depends on its clearance");
                     Err(input_missing(&full(diameter.0), problem, "give the diameter of the pin"))
@@ -100,12 +103,10 @@ impl Bearing {
             let problem = format!("is more than the hole ({} mm): a pin that is pressed in is not known", 2e3 * hole);
             return Err(input(&full(diameter.0), given, problem, "give a pin that goes into its hole"));
         }
-        let friction_of = number("a coefficient of friction", 0.0, 1.0);
         Ok(Bearing::Elastic(Pin {
             radius: radius.min(hole),
             youngs_modulus: MODULUS.read(&full(modulus.0), modulus.1.unwrap_or(YOUNGS_MODULUS))?,
             poisson_ratio: number("a Poisson's ratio", 0.0, 0.499).read(&full(ratio.0), ratio.1.unwrap_or(POISSON_RATIO))?,
-            friction: friction_of.read(&full(friction.0), friction.1.unwrap_or(0.0))?,
             found: None,
         }))
     }
@@ -130,13 +131,12 @@ impl Bearing {
 
 impl Pin {
     fn words(&self) -> String {
-        let Pin { radius, youngs_modulus, friction, found, .. } = self;
-        let pin = format!("{:.4} mm, E {:.0} GPa, friction {friction}", 2e3 * radius, youngs_modulus / GPA);
+        let Pin { radius, youngs_modulus, found, .. } = self;
+        let pin = format!("{:.4} mm, E {:.0} GPa", 2e3 * radius, youngs_modulus / GPA);
         let Some(contact) = found else { return pin };
         let [from, to] = contact.ends.map(f64::to_degrees);
-        let sticks = if *friction > 0.0 { format!(", {:.0} % of it sticks", 100.0 * contact.sticking) } else { String::new() };
         format!(
-            "{pin}: touches from {from:.1}° to {to:+.1}° at N = 0{sticks}, at most {:.0} MPa",
+            "{pin}: touches from {from:.1}° to {to:+.1}° at N = 0, at most {:.0} MPa",
             contact.pressure / perilife_base::units::MPA
         )
     }

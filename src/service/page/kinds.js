@@ -25,7 +25,6 @@ export const SIZES = {
   span_mm: ["Span", "mm", "of the outer rollers; 4 W where it is left out"],
   inner_span_mm: ["Inner span", "mm", "between two rollers; one in the middle where it is left out"],
   pin_diameter_mm: ["Pin diameter", "mm", "its clearance decides where it touches the hole; left out, an arc is assumed and what it matters is said"],
-  pin_friction: ["Friction of the pin", "", "coefficient; 0 where it is left out"],
 };
 
 /** Keys of several numbers, in the place of the one length of all cracks. */
@@ -46,7 +45,7 @@ const THREE_WIDTHS = "along the load; left out: three widths";
 const FLAW = ["width_mm", "thickness_mm", "crack_depth_mm", "crack_half_length_mm"];
 const ALONG = { length_mm: "along the load" };
 const UNLIKE = "crack_lengths_mm";
-const PIN = ["pin_diameter_mm", "pin_friction"];
+const PIN = ["pin_diameter_mm"];
 const PLATE = ["width_mm", "length_mm", "thickness_mm"];
 
 /** Of every kind: keys that it needs, those that it may have, hints of its own, `force` where it bears forces alone, `flaw` where its crack is not through, `initiation` where a crack has to form first. */

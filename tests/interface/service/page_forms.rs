@@ -204,7 +204,7 @@ fn fill_forms_of(forms: &Forms, kinds: &[&str]) {
         ("single_edge_bend", &[("length_mm", "240"), ("crack_length_mm", "20")]),
         ("eccentric_single_edge_tension", &[("crack_length_mm", "12")]),
         ("wedge_opening", &[("crack_length_mm", "20")]),
-        ("lug", &[("hole_diameter_mm", "20"), ("pin_diameter_mm", "19.95"), ("pin_friction", "0.1")]),
+        ("lug", &[("hole_diameter_mm", "20"), ("pin_diameter_mm", "19.95")]),
     ]
     .into_iter()
     .filter(|(kind, _)| kinds.is_empty() || kinds.contains(kind))
