@@ -5,6 +5,7 @@
 
 use super::basis::Value;
 use super::cells::QuadraturePoint;
+use super::dilatation::pointwise;
 use super::field::{Discretisation, Local, TipFields, singular};
 use super::front::{Front, lower_product, whole_product};
 use perilife_base::error::Result;
@@ -100,7 +101,7 @@ impl Scratch {
         }
         let [of_points, weighted] = gradients;
         let [of_nodes, of_fields] = strains;
-        let elasticity = plate.elasticity();
+        let elasticity = pointwise(plate.elasticity());
         let mut first_value = 0;
         for (index, &(end, area)) in ends.iter().enumerate() {
             let factor = thickness * area;
@@ -194,12 +195,14 @@ pub fn add_cell(
         }
     }
     nodes.iter().for_each(|&(node, _)| numbers[node as usize] = u32::MAX);
+    let place = |(node, unknown): (u32, u32)| (places[node as usize] + unknown - plate.first[node as usize]) as usize;
+    plate.dilatation.each_pair(leaf, |[a, b], stiffness| front.add(place(a), place(b), thickness * stiffness));
     Ok(())
 }
 
 /// Adds the matrix of the unknowns without fields, of which those of each node begin at one of the ascending `places`.
 fn add_nodes(plate: &Discretisation, places: &[usize], product: &[f64], front: &mut Front) {
-    let elasticity = plate.elasticity();
+    let elasticity = pointwise(plate.elasticity());
     // Stress of unit strains.
     let [direct, lateral, _] = elasticity.stress(&[[1.0, 0.0], [0.0, 0.0]]);
     let shear = elasticity.shear_modulus;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::basis::{AnyBasis, Enrichment, Value};
 use super::crack::{Tip, TipAxes, cracks};
 use super::cuts::{Near, Obstacles};
+use super::dilatation::Dilatation;
 use super::grid::Grid;
 use super::linear;
 use super::nodes::Nodes;
@@ -60,6 +61,8 @@ pub struct Discretisation {
     pub first: Vec<u32>,
     /// Tips whose fields a node carries.
     pub enriched: Vec<Vec<u32>>,
+    /// Means of dilatation over cells.
+    pub dilatation: Dilatation,
     elasticity: Elasticity,
     basis: AnyBasis,
     leaves: Vec<Neighbourhood>,
@@ -118,9 +121,11 @@ impl Discretisation {
             axes,
             first,
             enriched,
+            dilatation: Dilatation::default(),
             elasticity,
         };
         plate.find_neighbours();
+        plate.dilatation = Dilatation::of(specimen, &plate);
         Ok(plate)
     }
 
@@ -244,7 +249,24 @@ impl Discretisation {
             add(&mut sum, value.value, &of_node);
             slope.iter_mut().zip(of_node).for_each(|(row, u)| add(row, u, &value.gradient));
         }
+        self.dilatation.project(leaf, u, at, &mut slope);
         Some((sum, slope))
+    }
+
+    /// Calls with node, unknown and gradient ∂u_i/∂x_j of every unknown at the point that was read last.
+    pub fn each_gradient(&self, local: &Local, mut call: impl FnMut(u32, u32, [[f64; 2]; 2])) {
+        for &Value { node, value, gradient } in &local.values {
+            let first = self.first[node as usize];
+            call(node, first, [gradient, [0.0; 2]]);
+            call(node, first + 1, [[0.0; 2], gradient]);
+            for (k, &tip) in (0..).zip(&self.enriched[node as usize]) {
+                let Some(fields) = &local.fields[tip as usize] else { continue };
+                for (mode, (field, slope)) in (0..).zip(fields) {
+                    let part = |i: usize, j: usize| field[i] * gradient[j] + value * slope[i][j];
+                    call(node, first + 2 + 2 * k + mode, [[part(0, 0), part(0, 1)], [part(1, 0), part(1, 1)]]);
+                }
+            }
+        }
     }
 
     /// Larger side of the box around a plate, m.
