@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::basis::{AnyBasis, Enrichment, Value};
 use super::crack::{Tip, TipAxes, cracks};
 use super::cuts::{Near, Obstacles};
-use super::dilatation::Dilatation;
+use super::dilatation::{Dilatation, influence_radius};
 use super::grid::Grid;
 use super::linear;
 use super::nodes::Nodes;
@@ -96,7 +96,8 @@ impl Discretisation {
         let (cuts, axes) = cracks(specimen, lines, &ends, resolution.far);
         let sides = sides(specimen, &grid);
         let nodes = Nodes::place(specimen, &grid, &sides, &cuts, &axes);
-        let supports: Vec<f64> = nodes.spacing.iter().map(|spacing| resolution.support * spacing).collect();
+        let support = influence_radius(elasticity, resolution.support);
+        let supports: Vec<f64> = nodes.spacing.iter().map(|spacing| support * spacing).collect();
         let obstacles = Obstacles::new(specimen, cuts);
         let enriched: Vec<Vec<u32>> = nodes
             .at
@@ -235,35 +236,26 @@ impl Discretisation {
             return None;
         }
         let (mut sum, mut slope) = ([0.0; 2], [[0.0; 2]; 2]);
-        for value in &local.values {
-            let first = self.first[value.node as usize] as usize;
-            let mut of_node = [u[first], u[first + 1]];
-            for (k, &tip) in self.enriched[value.node as usize].iter().enumerate() {
-                let Some(fields) = &local.fields[tip as usize] else { continue };
-                for (mode, (field, gradient)) in fields.iter().enumerate() {
-                    let size = u[first + 2 + 2 * k + mode];
-                    add(&mut of_node, size, field);
-                    slope.iter_mut().zip(gradient).for_each(|(row, gradient)| add(row, value.value * size, gradient));
-                }
-            }
-            add(&mut sum, value.value, &of_node);
-            slope.iter_mut().zip(of_node).for_each(|(row, u)| add(row, u, &value.gradient));
-        }
+        self.each_unknown(local, |_, unknown, (field, gradient)| {
+            let size = u[unknown as usize];
+            add(&mut sum, size, &field);
+            slope.iter_mut().zip(&gradient).for_each(|(row, gradient)| add(row, size, gradient));
+        });
         self.dilatation.project(leaf, u, at, &mut slope);
         Some((sum, slope))
     }
 
-    /// Calls with node, unknown and gradient ∂u_i/∂x_j of every unknown at the point that was read last.
-    pub fn each_gradient(&self, local: &Local, mut call: impl FnMut(u32, u32, [[f64; 2]; 2])) {
+    /// Calls with node, unknown, and its displacement and gradient ∂u_i/∂x_j, for all unknowns at the point that was read last.
+    pub fn each_unknown(&self, local: &Local, mut call: impl FnMut(u32, u32, (Point, [[f64; 2]; 2]))) {
         for &Value { node, value, gradient } in &local.values {
             let first = self.first[node as usize];
-            call(node, first, [gradient, [0.0; 2]]);
-            call(node, first + 1, [[0.0; 2], gradient]);
+            call(node, first, ([value, 0.0], [gradient, [0.0; 2]]));
+            call(node, first + 1, ([0.0, value], [[0.0; 2], gradient]));
             for (k, &tip) in (0..).zip(&self.enriched[node as usize]) {
                 let Some(fields) = &local.fields[tip as usize] else { continue };
                 for (mode, (field, slope)) in (0..).zip(fields) {
-                    let part = |i: usize, j: usize| field[i] * gradient[j] + value * slope[i][j];
-                    call(node, first + 2 + 2 * k + mode, [[part(0, 0), part(0, 1)], [part(1, 0), part(1, 1)]]);
+                    let slope = [0, 1].map(|i| [0, 1].map(|j| field[i] * gradient[j] + value * slope[i][j]));
+                    call(node, first + 2 + 2 * k + mode, (field.map(|u| value * u), slope));
                 }
             }
         }
