@@ -7,6 +7,7 @@ mod fit_virkler;
 mod fracture_scenes;
 mod fuzz_cases;
 mod kept_back;
+mod mechanics5_plates;
 mod median_virkler;
 mod notched_plates;
 mod plate_band;

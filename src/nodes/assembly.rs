@@ -195,8 +195,7 @@ pub fn add_cell(
         }
     }
     nodes.iter().for_each(|&(node, _)| numbers[node as usize] = u32::MAX);
-    let place = |(node, unknown): (u32, u32)| (places[node as usize] + unknown - plate.first[node as usize]) as usize;
-    plate.dilatation.each_pair(leaf, |[a, b], stiffness| front.add(place(a), place(b), thickness * stiffness));
+    plate.dilatation.add(leaf, thickness, [&plate.first, places], front);
     Ok(())
 }
 

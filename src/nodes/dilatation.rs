@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::cells::{Dividers, QuadraturePoint, quadrature};
 use super::field::{Discretisation, Local};
+use super::front::Front;
 use perilife_plate::specimen::geometry::turn;
 use perilife_plate::specimen::{Point, Specimen};
 use perilife_plate::williams::Elasticity;
@@ -20,7 +21,7 @@ use perilife_plate::williams::Elasticity;
 const KAPPA_LEAST: f64 = 1.4;
 /// Radius of influence of a node in its spacings, at least, of an incompressible plate: with 2.2 K is up to 0.8 % high beside cracks that lie on
 /// the edges of cells.
-const INFLUENCE_LEAST: f64 = 3.0;
+const INFLUENCE_LEAST: f64 = 2.75;
 
 /// A part of a cell.
 #[derive(Debug, Clone)]
@@ -116,12 +117,16 @@ impl Dilatation {
         Dilatation { modulus: share * whole * elasticity.shear_modulus, share, cells }
     }
 
-    /// Calls for every pair of unknowns of a leaf, as (node, unknown), with `(λ - λ₀) A m_a m_b`.
-    pub fn each_pair(&self, leaf: usize, mut call: impl FnMut([(u32, u32); 2], f64)) {
+    /// Adds `h (λ - λ₀) Σ A m_a m_b` of a leaf to a front in which a node has its unknowns, the first of which is `first[node]`, from
+    /// `places[node]` on.
+    pub fn add(&self, leaf: usize, thickness: f64, [first, places]: [&[u32]; 2], front: &mut Front) {
         for Patch { area, means, .. } in self.cells.get(leaf).iter().flat_map(|(_, patches)| patches) {
-            for (k, &(node, unknown, mean)) in means.iter().enumerate() {
-                let stress = self.modulus * area * mean;
-                means[..=k].iter().for_each(|&(other, of_other, mean)| call([(node, unknown), (other, of_other)], stress * mean));
+            let place = |&(node, unknown, mean)| ((places[node as usize] + unknown - first[node as usize]) as usize, mean);
+            let mut placed: Vec<(usize, f64)> = means.iter().map(place).collect();
+            placed.sort_unstable_by_key(|(place, _)| *place);
+            for (k, &(column, mean)) in placed.iter().enumerate() {
+                let ((sums, first), stress) = (front.column(column), thickness * self.modulus * area * mean);
+                placed[k..].iter().for_each(|(row, mean)| sums[row - first] += stress * mean);
             }
         }
     }

@@ -44,10 +44,13 @@ pub(super) fn lines(case: &Case) -> Vec<String> {
     lines
 }
 
+/// Bond law of a case that gives none, as the sweeps over Poisson's ratio name it.
+const BY_PROGRAM: &str = "law chosen by the program";
+
 /// The law of a case as the sweeps over Poisson's ratio name it.
 fn law_name(case: &Case) -> Option<&'static str> {
     match case.choices.bond_law {
-        None => Some("law chosen by the program"),
+        None => Some(BY_PROGRAM),
         Some(BondLawKind::TwoParameter) => Some("two_parameter"),
         Some(BondLawKind::StateBased) => Some("state_based"),
         Some(BondLawKind::OneBondTwoParameter) => Some("one_bond_two_parameter"),
@@ -138,17 +141,27 @@ fn ratio_line(case: &Case, method: &str) -> Option<String> {
     Some(format!("model.horizon_ratio {ratio}: beyond {end} the life errs by more than {} %; give 3.015", limit.bound_percent))
 }
 
-/// Poisson's ratio.
-fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
-    let nu = case.material.poisson_ratio;
-    let (sweep, plane) = match case.material.plane {
+/// Sweep over Poisson's ratio in the plane state of a case, and that state.
+fn poisson_sweep(case: &Case) -> (&'static str, &'static str) {
+    match case.material.plane {
         Plane::Stress => ("nu_plane_stress", "stress"),
         Plane::Strain => ("nu_plane_strain", "strain"),
-    };
+    }
+}
+
+/// Poisson's ratio.
+fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
+    let (nu, (sweep, plane)) = (case.material.poisson_ratio, poisson_sweep(case));
     let limit = limits::of(sweep, method?)?;
     let end = limit.passed(nu)?;
     let what = if case.model.method() == Method::ElementFreeGalerkin { "K errs" } else { "the life at m = 3 errs" };
     Some(format!("nu {nu} in plane {plane}: beyond {end} {what} by more than {} %", limit.bound_percent))
+}
+
+/// Whether the Poisson's ratio of a case is within the safe range of peridynamics, so that it can serve as a cross-check.
+pub fn suits_points(case: &Case) -> bool {
+    let limit = limits::of(poisson_sweep(case).0, BY_PROGRAM);
+    limit.is_none_or(|limit| limit.passed(case.material.poisson_ratio).is_none())
 }
 
 /// Length of cycle blocks.
