@@ -1,12 +1,13 @@
 //! Dilatation of nearly incompressible plates (plane strain, ν above 0.4): stress beyond that of ν = 0.4 comes from means over cells.
 //!
 //! Moving least squares lock as λ/G grows (Dolbow and Belytschko 1999, Comput. Mech. 23:30; Huerta and Fernández-Méndez 2001, IJNME 51:1361):
-//! with full integration every point of it asks for no dilatation. With means (B-bar: Hughes 1980, IJNME 15:1413) about one condition is left
+//! with full integration every point requires no dilatation. With means (B-bar: Hughes 1980, IJNME 15:1413) about one condition is left
 //! for each node:
 //! ```text
 //! K_ab = h ∫ e_aᵀ D(λ₀) e_b dA + h (λ - λ₀) Σ A m_a m_b,   m_a = 1/A ∫ div φ_a dA,   λ₀ = min(λ, 4 G)
 //! ```
-//! over the parts A into which cracks divide cells. K of two plates at ν = 0.499 is within 0.3 % of finite elements; 4 % low without means.
+//! over the parts A into which cracks divide cells. K of a pulled plate and a lug is within 0.2 % of finite elements at ν = 0.48 to 0.499; without
+//! means it is 4 % low.
 
 use rayon::prelude::*;
 

@@ -34,7 +34,7 @@ fn cycles_at_gap(run: &Prediction, gap: f64) -> f64 {
 
 /// File, right life, bound of its error and of the error that is stated, percent.
 const LIVES: [(&str, f64, f64, f64); 13] = [
-    ("nu_near_half/mt499", 177_790.0, 0.7, 2.0),
+    ("nu_near_half/mt499", 177_790.0, 1.0, 2.0),
     ("nu_near_half/guard_mt_03", 177_790.0, 0.3, 1.5),
     ("slot_chosen/slot_02", 50_208.0, 0.8, 2.0),
     ("slot_chosen/slot_1", 33_275.0, 0.4, 1.5),
@@ -90,7 +90,7 @@ const FACTORS: [Factors; 9] = [
     ("nu_near_half/guard_lug_arc_49", "", &[[16.598, 0.03, 0.0, f64::INFINITY]]),
     ("nu_near_half/guard_lug_arc_49", "material.poisson_ratio=0.48", &[[16.582, 0.03, 0.0, f64::INFINITY]]),
     ("guards/drawing_arcs", "", &[[9.122, 0.03, 0.022, 0.02]]),
-    ("guards/overlap", "", &[[1.187, 0.02, -1.158, 0.02], [22.387, 0.05, -0.326, 0.02]]),
+    ("guards/overlap", "", &[[22.387, 0.05, -0.326, 0.02], [1.187, 0.02, -1.158, 0.02]]),
     ("guards/bent_edge_pressed", "", &[[2.559, 0.02, 0.0, 0.02]]),
 ];
 
