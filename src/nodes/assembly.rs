@@ -5,7 +5,7 @@
 
 use super::basis::Value;
 use super::cells::QuadraturePoint;
-use super::dilatation::pointwise;
+use super::dilatation::split;
 use super::field::{Discretisation, Local, TipFields, singular};
 use super::front::{Front, lower_product, whole_product};
 use perilife_base::error::Result;
@@ -95,13 +95,13 @@ impl Scratch {
         let [of_points, weighted] = gradients;
         let [of_nodes, of_fields] = strains;
         let sizes = [points * n, points * n, 3 * points * n * is_enriched, 3 * points * m, 3 * points * m];
-        for (rows, size) in [of_points, weighted, of_nodes, of_fields, stresses].into_iter().zip(sizes) {
+        for (rows, size) in
+            [&mut *of_points, &mut *weighted, &mut *of_nodes, &mut *of_fields, &mut *stresses].into_iter().zip(sizes)
+        {
             rows.clear();
             rows.resize(size, 0.0);
         }
-        let [of_points, weighted] = gradients;
-        let [of_nodes, of_fields] = strains;
-        let elasticity = pointwise(plate.elasticity());
+        let (elasticity, _) = split(plate.elasticity());
         let mut first_value = 0;
         for (index, &(end, area)) in ends.iter().enumerate() {
             let factor = thickness * area;
@@ -201,7 +201,7 @@ pub fn add_cell(
 
 /// Adds the matrix of the unknowns without fields, of which those of each node begin at one of the ascending `places`.
 fn add_nodes(plate: &Discretisation, places: &[usize], product: &[f64], front: &mut Front) {
-    let elasticity = pointwise(plate.elasticity());
+    let (elasticity, _) = split(plate.elasticity());
     // Stress of unit strains.
     let [direct, lateral, _] = elasticity.stress(&[[1.0, 0.0], [0.0, 0.0]]);
     let shear = elasticity.shear_modulus;

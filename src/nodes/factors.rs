@@ -6,7 +6,7 @@
 
 use super::cells::EIGHT;
 use super::crack::TipAxes;
-use super::dilatation::is_by_cells;
+use super::dilatation::split;
 use super::field::{Discretisation, Local};
 use perilife_base::error::{Error, Result};
 use perilife_base::units::place_mm;
@@ -78,7 +78,7 @@ pub fn integral(
 ) -> Result<TipFactors> {
     let [inner, outer] = RING.map(|share| share * radius);
     let mut sums = [0.0; 3];
-    let [radial, angular] = PANELS[usize::from(is_by_cells(elasticity))];
+    let [radial, angular] = PANELS[usize::from(split(elasticity).1[1] > 0.0)];
     for (share, of_radius) in
         (0..radial).flat_map(|k| EIGHT.map(|(share, of)| ((k as f64 + share) / radial as f64, of / radial as f64)))
     {

@@ -141,17 +141,13 @@ fn ratio_line(case: &Case, method: &str) -> Option<String> {
     Some(format!("model.horizon_ratio {ratio}: beyond {end} the life errs by more than {} %; give 3.015", limit.bound_percent))
 }
 
-/// Sweep over Poisson's ratio in the plane state of a case, and that state.
-fn poisson_sweep(case: &Case) -> (&'static str, &'static str) {
-    match case.material.plane {
-        Plane::Stress => ("nu_plane_stress", "stress"),
-        Plane::Strain => ("nu_plane_strain", "strain"),
-    }
-}
-
 /// Poisson's ratio.
 fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
-    let (nu, (sweep, plane)) = (case.material.poisson_ratio, poisson_sweep(case));
+    let nu = case.material.poisson_ratio;
+    let (sweep, plane) = match case.material.plane {
+        Plane::Stress => ("nu_plane_stress", "stress"),
+        Plane::Strain => ("nu_plane_strain", "strain"),
+    };
     let limit = limits::of(sweep, method?)?;
     let end = limit.passed(nu)?;
     let what = if case.model.method() == Method::ElementFreeGalerkin { "K errs" } else { "the life at m = 3 errs" };
@@ -160,8 +156,7 @@ fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
 
 /// Whether the Poisson's ratio of a case is within the safe range of peridynamics, so that it can serve as a cross-check.
 pub fn suits_points(case: &Case) -> bool {
-    let limit = limits::of(poisson_sweep(case).0, BY_PROGRAM);
-    limit.is_none_or(|limit| limit.passed(case.material.poisson_ratio).is_none())
+    poisson_line(case, Some(BY_PROGRAM)).is_none()
 }
 
 /// Length of cycle blocks.
