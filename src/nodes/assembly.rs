@@ -3,9 +3,11 @@
 //! `K_ab = h ∫ e_aᵀ D e_b dA` with e the strain of an unknown. The matrix of a cell is one of all unknowns in reach, and goes straight
 //! to the dense matrix of the part of the plate that the cell lies in ([`super::dissection`]).
 
+use rayon::prelude::*;
+
 use super::basis::Value;
-use super::cells::QuadraturePoint;
-use super::dilatation::split;
+use super::cells::{Dividers, QuadraturePoint};
+use super::dilatation::{Dilatation, Patch, side, split};
 use super::field::{Discretisation, Local, TipFields, singular};
 use super::front::{Front, lower_product, whole_product};
 use perilife_base::error::Result;
@@ -137,6 +139,42 @@ impl Scratch {
     }
 }
 
+/// Means of dilatation over the cells of a plate; none where all of λ counts point by point.
+pub fn dilatation(plate: &Discretisation, cells: &[(usize, Vec<QuadraturePoint>)]) -> Option<Dilatation> {
+    if split(plate.elasticity()).1[1] == 0.0 {
+        return None;
+    }
+    let dividers = Dividers::of(plate);
+    let of_cell = |(local, sums): &mut (Local, Vec<f64>), (leaf, points): &(usize, Vec<QuadraturePoint>)| {
+        let (cracks, mut points) = (dividers.of_cell(*leaf).cracks, points.clone());
+        let of_point = |point: &QuadraturePoint| side(&cracks, point.at);
+        plate.load(*leaf, local);
+        points.sort_by_key(of_point);
+        let of_side = |points: &[QuadraturePoint]| {
+            let (mut area, mut means) = (0.0, Vec::new());
+            for point in points {
+                // Where nodes do not span the basis, `add_cell` decides.
+                if plate.at_loaded(*leaf, point.at, local) {
+                    area += point.area;
+                    plate.each_unknown(local, |node, unknown, (_, [[xx, _], [_, yy]])| {
+                        let sum = &mut sums[unknown as usize];
+                        if *sum == 0.0 {
+                            means.push((node, unknown, 0.0));
+                        }
+                        *sum += point.area * (xx + yy);
+                    });
+                }
+            }
+            means.iter_mut().for_each(|mean| mean.2 = std::mem::take(&mut sums[mean.1 as usize]) / area);
+            Patch { side: of_point(&points[0]), area, means }
+        };
+        let patches: Vec<Patch> = points.chunk_by(|a, b| of_point(a) == of_point(b)).map(of_side).collect();
+        (*leaf, (cracks, patches))
+    };
+    let room = || (Local::default(), vec![0.0; plate.unknowns()]);
+    Some(Dilatation::new(plate.elasticity(), cells.par_iter().map_init(room, of_cell).collect()))
+}
+
 /// Adds the matrix of a cell to a front in which the unknowns of a node begin at `places[node]`.
 ///
 /// With `P = Σ ∇Φ ∇Φᵀ dA` of all pairs of gradients that of unknowns without fields is made of its entries; those with fields take all
@@ -195,7 +233,9 @@ pub fn add_cell(
         }
     }
     nodes.iter().for_each(|&(node, _)| numbers[node as usize] = u32::MAX);
-    plate.dilatation.add(leaf, thickness, [&plate.first, places], front);
+    if let Some(dilatation) = plate.dilatation() {
+        dilatation.add(leaf, thickness, [&plate.first, places], front);
+    }
     Ok(())
 }
 

@@ -11,13 +11,9 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
-
-use super::cells::{Dividers, QuadraturePoint, quadrature};
-use super::field::{Discretisation, Local};
 use super::front::Front;
+use perilife_plate::specimen::Point;
 use perilife_plate::specimen::geometry::turn;
-use perilife_plate::specimen::{Point, Specimen};
 use perilife_plate::williams::Elasticity;
 
 /// Kolosov's constant at ν = 0.4 in plane strain; in plane stress it is always above.
@@ -26,21 +22,26 @@ const KAPPA_LEAST: f64 = 1.4;
 /// the edges of cells.
 const INFLUENCE_LEAST: f64 = 2.75;
 
-/// A part of a cell: sides of the cracks that it is on, area, m², and node, unknown and its mean dilatation, 1/m.
+/// A part of a cell.
 #[derive(Debug, Clone)]
-struct Patch {
-    side: u64,
-    area: f64,
-    means: Vec<(u32, u32, f64)>,
+pub struct Patch {
+    /// Sides of the cracks that it is on.
+    pub side: u64,
+    /// Area, m².
+    pub area: f64,
+    /// Node, unknown and its mean dilatation, 1/m.
+    pub means: Vec<(u32, u32, f64)>,
 }
 
-/// Means over the cells of a plate: λ - λ₀, Pa, that over λ, and by leaf the pieces of cracks near a cell and its parts, none where all of λ counts
-/// point by point.
-#[derive(Debug, Clone, Default)]
+/// Pieces of cracks near a cell, and its parts.
+pub type Cell = (Vec<[Point; 2]>, Vec<Patch>);
+
+/// Means over the cells of a plate: λ - λ₀, Pa, that over λ, and cells by leaf.
+#[derive(Debug, Clone)]
 pub struct Dilatation {
     modulus: f64,
     share: f64,
-    cells: HashMap<usize, (Vec<[Point; 2]>, Vec<Patch>)>,
+    cells: HashMap<usize, Cell>,
 }
 
 /// Elastic constants that count point by point, λ - λ₀, Pa, and that over λ.
@@ -58,48 +59,14 @@ pub fn influence_radius(elasticity: Elasticity, usual: f64) -> f64 {
 }
 
 /// Sides of these lines that a point is on.
-fn side(cracks: &[[Point; 2]], at: Point) -> u64 {
+pub fn side(cracks: &[[Point; 2]], at: Point) -> u64 {
     cracks.iter().fold(0, |sides, &[a, b]| 2 * sides + u64::from(turn(a, b, at) > 0.0))
 }
 
 impl Dilatation {
-    /// Means over the cells of a plate.
-    pub fn of(specimen: &Specimen, plate: &Discretisation) -> Self {
-        let (_, [modulus, share]) = split(plate.elasticity());
-        if share == 0.0 {
-            return Dilatation::default();
-        }
-        let dividers = Dividers::of(plate);
-        let of_cell = |(local, sums): &mut (Local, Vec<f64>), (leaf, mut points): (usize, Vec<QuadraturePoint>)| {
-            let cracks = dividers.of_cell(leaf).cracks;
-            let of_point = |point: &QuadraturePoint| side(&cracks, point.at);
-            plate.load(leaf, local);
-            points.sort_by_key(of_point);
-            let patches: Vec<Patch> = points
-                .chunk_by(|a, b| of_point(a) == of_point(b))
-                .map(|points| {
-                    let (mut area, mut means) = (0.0, Vec::new());
-                    for point in points {
-                        // Where nodes do not span the basis, `assembly` decides.
-                        if plate.at_loaded(leaf, point.at, local) {
-                            area += point.area;
-                            plate.each_unknown(local, |node, unknown, (_, [[xx, _], [_, yy]])| {
-                                let sum = &mut sums[unknown as usize];
-                                if *sum == 0.0 {
-                                    means.push((node, unknown, 0.0));
-                                }
-                                *sum += point.area * (xx + yy);
-                            });
-                        }
-                    }
-                    means.iter_mut().for_each(|mean| mean.2 = std::mem::take(&mut sums[mean.1 as usize]) / area);
-                    Patch { side: of_point(&points[0]), area, means }
-                })
-                .collect();
-            (leaf, (cracks, patches))
-        };
-        let room = || (Local::default(), vec![0.0; plate.unknowns()]);
-        let cells = quadrature(specimen, plate).into_par_iter().map_init(room, of_cell).collect();
+    /// By leaf, where not all of λ counts point by point.
+    pub fn new(elasticity: Elasticity, cells: HashMap<usize, Cell>) -> Self {
+        let (_, [modulus, share]) = split(elasticity);
         Dilatation { modulus, share, cells }
     }
 
