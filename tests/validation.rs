@@ -9,6 +9,7 @@ mod fuzz_cases;
 mod kept_back;
 mod mechanics5_input;
 mod mechanics5_pins;
+mod mechanics5_plates;
 mod median_virkler;
 mod notched_plates;
 mod plate_band;

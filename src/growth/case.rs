@@ -15,7 +15,7 @@ mod read;
 pub mod record;
 mod residual;
 
-pub use boundaries::first_load;
+pub use boundaries::{first_load, suits_points};
 pub use fatigue_keys::{Lot, remove_law};
 pub use fleet::{Fleet, InitialLength};
 pub(crate) use law_source::ratio_line;

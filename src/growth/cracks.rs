@@ -95,6 +95,11 @@ pub trait CrackedPlate: Sized {
     /// Whether flanks are in contact anywhere.
     fn is_in_contact(&self) -> bool;
 
+    /// Share of the load of a pin by which its contact is off, at the most.
+    fn contact_residual(&self) -> f64 {
+        0.0
+    }
+
     /// What the next increments depend on.
     fn save(&self) -> Self::Saved;
 
@@ -217,6 +222,8 @@ pub struct InitialTips {
     pub tips: Vec<TipRecord>,
     /// Whether the load presses flanks together anywhere.
     pub in_contact: bool,
+    /// Share of the load of a pin by which its contact is off, at the most.
+    pub contact_residual: f64,
     /// What the user should know of them.
     pub warnings: Vec<String>,
 }
@@ -226,5 +233,6 @@ pub fn initial_tips<P: CrackedPlate>(case: &Case) -> Result<InitialTips> {
     let law = Walker { paris: ParisLaw { c: 1.0, m: 1.0 }, gamma: 1.0, threshold: 0.0 };
     let mut cracks = Cracks::<P>::start(case, Box::new(law))?;
     cracks.open()?;
-    Ok(InitialTips { tips: cracks.now().tips.to_vec(), in_contact: cracks.plate.is_in_contact(), warnings: cracks.warnings() })
+    let (in_contact, contact_residual) = (cracks.plate.is_in_contact(), cracks.plate.contact_residual());
+    Ok(InitialTips { tips: cracks.now().tips.to_vec(), in_contact, contact_residual, warnings: cracks.warnings() })
 }

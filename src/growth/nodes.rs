@@ -8,7 +8,7 @@ use super::cracks::scales::Scales;
 use super::cracks::tip::{AtLoad, CracksState, Reading};
 use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment};
 use super::{Fields, SolverStatistics, State};
-use crate::case::Case;
+use crate::case::{Case, suits_points};
 use crate::cross_check::largest_difference;
 use perilife_base::error::{Error, Result};
 use perilife_base::raster::PointGrid;
@@ -124,9 +124,9 @@ impl CrackedPlate for NodePlate {
                 break;
             }
             if is_last {
+                let other = if suits_points(case) { "; model.method = \"peridynamics\" is another look at it" } else { "" };
                 self.state.warnings.push(format!(
-                    "K of tip {tip} changes by {:.1} % when nodes get {FINER} times finer, to {nodes} nodes: it may err by as much; \
-                     model.method = \"peridynamics\" is another look at it",
+                    "K of tip {tip} changes by {:.1} % when nodes get {FINER} times finer, to {nodes} nodes: it may err by as much{other}",
                     100.0 * change,
                 ));
                 break;
@@ -216,6 +216,11 @@ impl CrackedPlate for NodePlate {
 
     fn is_in_contact(&self) -> bool {
         self.solved.as_ref().is_some_and(|(_, solution)| !solution.whole.pressed.is_empty())
+    }
+
+    fn contact_residual(&self) -> f64 {
+        let contacts = self.solved.iter().flat_map(|(_, solution)| &solution.whole.contacts);
+        contacts.map(|(_, contact)| contact.residual).fold(0.0, f64::max)
     }
 
     fn save(&self) -> NodeState {

@@ -3,8 +3,11 @@
 //! `K_ab = h ∫ e_aᵀ D e_b dA` with e the strain of an unknown. The matrix of a cell is one of all unknowns in reach, and goes straight
 //! to the dense matrix of the part of the plate that the cell lies in ([`super::dissection`]).
 
+use rayon::prelude::*;
+
 use super::basis::Value;
-use super::cells::QuadraturePoint;
+use super::cells::{Dividers, QuadraturePoint};
+use super::dilatation::{Dilatation, Patch, side, split};
 use super::field::{Discretisation, Local, TipFields, singular};
 use super::front::{Front, lower_product, whole_product};
 use perilife_base::error::Result;
@@ -94,13 +97,13 @@ impl Scratch {
         let [of_points, weighted] = gradients;
         let [of_nodes, of_fields] = strains;
         let sizes = [points * n, points * n, 3 * points * n * is_enriched, 3 * points * m, 3 * points * m];
-        for (rows, size) in [of_points, weighted, of_nodes, of_fields, stresses].into_iter().zip(sizes) {
+        for (rows, size) in
+            [&mut *of_points, &mut *weighted, &mut *of_nodes, &mut *of_fields, &mut *stresses].into_iter().zip(sizes)
+        {
             rows.clear();
             rows.resize(size, 0.0);
         }
-        let [of_points, weighted] = gradients;
-        let [of_nodes, of_fields] = strains;
-        let elasticity = plate.elasticity();
+        let (elasticity, _) = split(plate.elasticity());
         let mut first_value = 0;
         for (index, &(end, area)) in ends.iter().enumerate() {
             let factor = thickness * area;
@@ -134,6 +137,42 @@ impl Scratch {
             first_value = end;
         }
     }
+}
+
+/// Means of dilatation over the cells of a plate; none where all of λ counts point by point.
+pub fn dilatation(plate: &Discretisation, cells: &[(usize, Vec<QuadraturePoint>)]) -> Option<Dilatation> {
+    if split(plate.elasticity()).1[1] == 0.0 {
+        return None;
+    }
+    let dividers = Dividers::of(plate);
+    let of_cell = |(local, sums): &mut (Local, Vec<f64>), (leaf, points): &(usize, Vec<QuadraturePoint>)| {
+        let (cracks, mut points) = (dividers.of_cell(*leaf).cracks, points.clone());
+        let of_point = |point: &QuadraturePoint| side(&cracks, point.at);
+        plate.load(*leaf, local);
+        points.sort_by_key(of_point);
+        let of_side = |points: &[QuadraturePoint]| {
+            let (mut area, mut means) = (0.0, Vec::new());
+            for point in points {
+                // Where nodes do not span the basis, `add_cell` decides.
+                if plate.at_loaded(*leaf, point.at, local) {
+                    area += point.area;
+                    plate.each_unknown(local, |node, unknown, (_, [[xx, _], [_, yy]])| {
+                        let sum = &mut sums[unknown as usize];
+                        if *sum == 0.0 {
+                            means.push((node, unknown, 0.0));
+                        }
+                        *sum += point.area * (xx + yy);
+                    });
+                }
+            }
+            means.iter_mut().for_each(|mean| mean.2 = std::mem::take(&mut sums[mean.1 as usize]) / area);
+            Patch { side: of_point(&points[0]), area, means }
+        };
+        let patches: Vec<Patch> = points.chunk_by(|a, b| of_point(a) == of_point(b)).map(of_side).collect();
+        (*leaf, (cracks, patches))
+    };
+    let room = || (Local::default(), vec![0.0; plate.unknowns()]);
+    Some(Dilatation::new(plate.elasticity(), cells.par_iter().map_init(room, of_cell).collect()))
 }
 
 /// Adds the matrix of a cell to a front in which the unknowns of a node begin at `places[node]`.
@@ -194,12 +233,15 @@ pub fn add_cell(
         }
     }
     nodes.iter().for_each(|&(node, _)| numbers[node as usize] = u32::MAX);
+    if let Some(dilatation) = plate.dilatation() {
+        dilatation.add(leaf, thickness, [&plate.first, places], front);
+    }
     Ok(())
 }
 
 /// Adds the matrix of the unknowns without fields, of which those of each node begin at one of the ascending `places`.
 fn add_nodes(plate: &Discretisation, places: &[usize], product: &[f64], front: &mut Front) {
-    let elasticity = plate.elasticity();
+    let (elasticity, _) = split(plate.elasticity());
     // Stress of unit strains.
     let [direct, lateral, _] = elasticity.stress(&[[1.0, 0.0], [0.0, 0.0]]);
     let shear = elasticity.shear_modulus;

@@ -17,6 +17,7 @@ mod cells;
 pub mod contact;
 pub mod crack;
 pub mod cuts;
+mod dilatation;
 mod dissection;
 pub mod factors;
 pub mod field;

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::assembly::{Scratch, add_cell};
+use super::assembly::{Scratch, add_cell, dilatation};
 use super::boundary::{Boundary, Square, UNKNOWNS_OF_GRIP, press_cracks};
 use super::cells::{QuadraturePoint, quadrature};
 use super::contact::{Pressed, press};
@@ -134,6 +134,7 @@ pub fn solve_with(
 ) -> Result<Solution> {
     watch::at(Stage::Equilibrium, 0.0)?;
     let cells = quadrature(specimen, plate);
+    plate.with_dilatation(|| dilatation(plate, &cells));
     let Boundary { mut forces, held, of_grips } = Boundary::new(specimen, plate, far)?;
     let grips = (plate.unknowns()..plate.unknowns() + of_grips).step_by(UNKNOWNS_OF_GRIP);
     let first: Vec<u32> = plate.first.iter().copied().chain(grips.map(|first| (first + UNKNOWNS_OF_GRIP) as u32)).collect();

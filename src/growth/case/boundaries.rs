@@ -44,10 +44,13 @@ pub(super) fn lines(case: &Case) -> Vec<String> {
     lines
 }
 
+/// Bond law of a case that gives none, as the sweeps over Poisson's ratio name it.
+const BY_PROGRAM: &str = "law chosen by the program";
+
 /// The law of a case as the sweeps over Poisson's ratio name it.
 fn law_name(case: &Case) -> Option<&'static str> {
     match case.choices.bond_law {
-        None => Some("law chosen by the program"),
+        None => Some(BY_PROGRAM),
         Some(BondLawKind::TwoParameter) => Some("two_parameter"),
         Some(BondLawKind::StateBased) => Some("state_based"),
         Some(BondLawKind::OneBondTwoParameter) => Some("one_bond_two_parameter"),
@@ -149,6 +152,11 @@ fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
     let end = limit.passed(nu)?;
     let what = if case.model.method() == Method::ElementFreeGalerkin { "K errs" } else { "the life at m = 3 errs" };
     Some(format!("nu {nu} in plane {plane}: beyond {end} {what} by more than {} %", limit.bound_percent))
+}
+
+/// Whether the Poisson's ratio of a case is within the safe range of peridynamics, so that it can serve as a cross-check.
+pub fn suits_points(case: &Case) -> bool {
+    poisson_line(case, Some(BY_PROGRAM)).is_none()
 }
 
 /// Length of cycle blocks.

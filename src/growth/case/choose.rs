@@ -42,8 +42,8 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
     if value_at(asked.fatigue, "driver").and_then(Value::as_str) == Some("bond_strain") {
         return (Method::Peridynamics, "fatigue.driver = \"bond_strain\" asks for fatigue bonds".to_owned());
     }
-    if !specimen.has_sharp_tips() || !specimen.slots.is_empty() {
-        return (Method::Peridynamics, "cracks start from a slot or notch".to_owned());
+    if !specimen.has_sharp_tips() {
+        return (Method::Peridynamics, "the end of a slot or notch has no crack yet".to_owned());
     }
     let has_own_pins =
         specimen.loads.iter().any(|load| matches!(load, Load::Pin { contact: Bearing::Cosine(_) | Bearing::Elastic(_), .. }));

@@ -9,8 +9,8 @@ use super::laws::growth_law;
 use super::moment::{grown, rows_before_meeting};
 use super::part_through::PartThroughLife;
 use crate::case::{Case, Engine, Model, finer_nodes};
-use crate::cracks::initial_tips;
 use crate::cracks::steering::{equivalent_factor, kink_angle};
+use crate::cracks::{InitialTips, initial_tips};
 use crate::nodes::NodePlate;
 use crate::record::{CurvePoint, StopReason, TipRecord};
 use perilife_base::units::MM;
@@ -34,6 +34,8 @@ const WAY: f64 = 2e-3;
 const AFTER_MEETING: f64 = 0.015;
 /// Difference of K from the energy released from which nothing is said of the error of a life.
 const CROSS_CHECK_MOST: f64 = 0.02;
+/// Share of the load of a pin by which its contact may be off, beyond which nothing is said.
+const CONTACT_MOST: f64 = 0.005;
 /// Error of a path over the gap between a rim and a crack that passes it, from which nothing is said: K behind a rim falls with the gap.
 const GAP_SHARE: f64 = 0.3;
 /// Percent of the life of a part-through crack at most that K has no stated error for.
@@ -214,7 +216,11 @@ impl Difference {
     fn at(case: &Case, rows: &[CurvePoint], row: usize, rates: &Rates<'_>) -> Result<Difference, String> {
         let finer =
             Case { specimen: grown(&case.specimen, &rows[..=row]), model: Model::Nodes(finer_nodes(case)), ..case.clone() };
-        let tips = initial_tips::<NodePlate>(&finer).map_err(|error| format!("finer nodes: {error}"))?.tips;
+        let InitialTips { tips, contact_residual, .. } =
+            initial_tips::<NodePlate>(&finer).map_err(|error| format!("finer nodes: {error}"))?;
+        if contact_residual > CONTACT_MOST {
+            return Err(format!("the contact of a pin is off by {:.2} % of its load", 100.0 * contact_residual));
+        }
         let rate = |tip: &TipRecord| {
             tip.factors.map_or(0.0, |factors| rates.law.mean_rate(equivalent_factor(factors), rates.ratio, &tip.response))
         };

@@ -148,8 +148,8 @@ pub(super) fn place_cracks(
         check_corners(&corners, &key, notes)?;
         // A crack that starts from the end face of a slot takes the place of that face's seed.
         slot_seeds.retain(|seed| {
-            distance(seed.position, from) > half_width_at(specimen, seed)
-                && distance(seed.position, to) > half_width_at(specimen, seed)
+            let reach = half_width_at(specimen, seed) + TOUCH;
+            distance(seed.position, from) > reach && distance(seed.position, to) > reach
         });
         for (end, other, open) in [(from, corners[1], from_open), (to, corners[corners.len() - 2], to_open)] {
             if !open {
