@@ -7,6 +7,7 @@ mod fit_virkler;
 mod fracture_scenes;
 mod fuzz_cases;
 mod kept_back;
+mod mechanics5_contact;
 mod mechanics5_input;
 mod mechanics5_pins;
 mod mechanics5_plates;

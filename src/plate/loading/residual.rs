@@ -1,7 +1,7 @@
 //! Residual stress of a plate without its cracks, by which K is shifted (superposition: Bueckner 1958, Trans. ASME 80:1225).
 //!
 //! A crack releases the tractions that the residual stress σ_res had across its line: on a face with outward normal m the plate gets
-//! `t = -σ_res m`, as under a pressure σ_res·I. K of these is K_res; a cycle then runs from `R K + K_res` to `K + K_res`.
+//! `t = -σ_res m`, as under a pressure σ_res·I. K of these is K_res; with free flanks a cycle then runs from `R K + K_res` to `K + K_res`.
 //!
 //! The stress is that in the axes of the plate: σ_y, and σ_x and τ_xy where they are given, else 0. From a file it is linear between its
 //! points: in the triangles of Delaunay, or along a line where all points lie on one, and alike across that.

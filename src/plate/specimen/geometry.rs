@@ -76,13 +76,6 @@ pub fn circle_shares(a: Point, b: Point, centre: Point, radius: f64) -> Option<[
     (square >= 0.0).then(|| [-1.0, 1.0].map(|sign| (sign * square.sqrt() - df) / dd))
 }
 
-/// Where the piece from `a` to `b` first crosses a circle.
-#[inline]
-pub fn circle_crossing(a: Point, b: Point, centre: Point, radius: f64) -> Option<Point> {
-    let shares = circle_shares(a, b, centre, radius)?;
-    shares.into_iter().find(|share| (0.0..=1.0).contains(share)).map(|share| along(a, b, share))
-}
-
 /// Share of the way from `a` to `b` at which the closed segment ab is nearest to `p`.
 #[inline]
 pub fn nearest_share(p: Point, a: Point, b: Point) -> f64 {
