@@ -202,7 +202,7 @@ impl CrackedPlate for NodePlate {
                 of_pressure,
                 response: Response::PROPORTIONAL,
             };
-            Ok(reading.beside(own, &lower))
+            Ok(reading.beside(own, &lower, !has_residual))
         };
         let read = (0..tips.len()).into_par_iter().map(reading).collect::<Result<Vec<Reading>>>()?;
         let mut readings = vec![None; cracks.tips.len()];

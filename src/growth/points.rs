@@ -23,7 +23,7 @@ use perilife_base::raster::PointGrid;
 use perilife_laws::ZONE_RADIUS_HORIZONS;
 use perilife_plate::loading::residual::Components;
 use perilife_plate::specimen::geometry::{along, direction, distance, meeting_share};
-use perilife_plate::specimen::{CrackLine, LineEnd, Point};
+use perilife_plate::specimen::{CrackLine, LineEnd, Load, Point};
 use perilife_points::body::balanced::flanks::{self, FlankRange};
 use perilife_points::body::pre_crack::bonds_across;
 use perilife_points::body::{Body, Bond};
@@ -80,6 +80,9 @@ pub struct PointPlate {
     iterations: usize,
 }
 
+/// What is said of pins with clearance.
+const PINS: &str = "K at the lower end of a cycle is in proportion to the load on points, though the contact of pins changes with it: ΔK is too large; \
+                    use model.method = \"element_free_galerkin\"";
 /// What is said where the least displacement may open what the largest presses shut.
 const REVERSED: &str = "the largest displacement presses flanks together that the least one may open: growth by that is not counted on points, \
                         which is unsafe: use model.method = \"element_free_galerkin\"";
@@ -150,7 +153,9 @@ impl PointPlate {
         let work = self.work;
         for load in loads {
             let (mut contact, mut displacement) = (self.contact.clone(), self.displacement.clone());
-            self.settle_at(case, load, &mut contact, &mut displacement)?;
+            let settled = self.settle_at(case, load, &mut contact, &mut displacement);
+            self.work = work;
+            settled?;
             let is_free = !self.is_in_contact() && contact.closed_places().next().is_none();
             self.lower.push(LowerLoad { load, contact, displacement });
             if is_free || !has_residual {
@@ -158,7 +163,6 @@ impl PointPlate {
                 break;
             }
         }
-        self.work = work;
         Ok(())
     }
 
@@ -231,6 +235,9 @@ impl CrackedPlate for PointPlate {
             body,
         };
         plate.warnings = plate.ring_warnings(case, cracks);
+        if case.loading.ratios()[1] > 0.0 && case.specimen.loads.iter().any(Load::is_elastic_pin) {
+            plate.warnings.push(PINS.to_owned());
+        }
         Ok(plate)
     }
 

@@ -146,7 +146,7 @@ impl CurvePoint {
 
     /// Share of K_max that counts as range, as [`Loading::range_share`], of the largest cycle.
     pub fn range_share(&self, loading: &Loading) -> f64 {
-        (1.0 - self.response.ratio(loading.ratio).max(0.0)).max(0.0)
+        self.response.range_share(loading.ratio)
     }
 
     /// K at maximum load that leads, Pa√m; NaN where unknown.
@@ -156,8 +156,7 @@ impl CurvePoint {
 
     /// That of cycles whose loads are larger by a factor.
     pub fn k_max_at(&self, load: f64, loading: &Loading) -> f64 {
-        let [largest, _] = self.response.cycle([load * loading.ratio, load]);
-        largest * self.k_max(loading)
+        self.response.largest_at(load, loading.ratio) * self.k_max(loading)
     }
 
     /// Length of the crack that a tip ends, with the growth of all its tips, m; `None` of the end of a slot.

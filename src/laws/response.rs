@@ -7,7 +7,12 @@
 use serde::{Deserialize, Serialize};
 
 /// Loads of a cycle for which K is known, at the most.
-pub const LOADS_MOST: usize = 6;
+pub const LOADS_MOST: usize = 8;
+
+/// Difference from the largest K that is round-off.
+const ROUND_OFF: f64 = 1e-9;
+/// Difference of K over K_max between mirror twins at the most.
+const NEAR: f64 = 0.01;
 
 /// K over the K_max of a tip by the load over the largest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -62,13 +67,43 @@ impl Response {
         [a.max(b), a.min(b)]
     }
 
-    /// K_min/K_max of cycles from R times the largest load to that.
+    /// The least load of the cycle that counts of those with this ratio at the largest load: where that cycle does not reach K_max, which the least
+    /// load of all makes, it is the one.
+    fn least_load(&self, ratio: f64) -> f64 {
+        let reaches = self.cycle([ratio, 1.0])[0] >= 1.0 - ROUND_OFF;
+        if reaches || self.is_proportional() { ratio } else { self.loads[0] }
+    }
+
+    /// K_min/K_max of cycles from R times the largest load to that; of a tip that the least load of a spectrum opens most, from that.
     pub fn ratio(&self, ratio: f64) -> f64 {
         if self.is_proportional() {
             return ratio;
         }
-        let [largest, least] = self.cycle([ratio, 1.0]);
+        let [largest, least] = self.cycle([self.least_load(ratio), 1.0]);
         least / largest
+    }
+
+    /// Share of K_max that counts as range at this ratio of the load (ASTM E647).
+    pub fn range_share(&self, ratio: f64) -> f64 {
+        (1.0 - self.ratio(ratio).max(0.0)).max(0.0)
+    }
+
+    /// Largest K over K_max of cycles whose loads are larger by a factor.
+    pub fn largest_at(&self, load: f64, ratio: f64) -> f64 {
+        self.cycle([load * self.least_load(ratio), load])[0]
+    }
+
+    /// Without every second load between the ends: what that changes is three times the error of straight lines between all of them.
+    pub fn coarser(&self) -> Response {
+        let is_kept = |place: &usize| place.is_multiple_of(2) || place + 1 == self.count;
+        Response::new(&(0..self.count).filter(is_kept).map(|place| [self.loads[place], self.factors[place]]).collect::<Vec<_>>())
+    }
+
+    /// Whether it is the other one but for what is read.
+    pub fn is_near(&self, other: &Response) -> bool {
+        let knots = |of: &Response| of.loads[..of.count].to_vec();
+        let apart = |load: &f64| (self.at(*load) - other.at(*load)).abs();
+        knots(self).iter().chain(&knots(other)).all(|load| apart(load) <= NEAR)
     }
 
     /// The one at a share of the way to another.

@@ -26,6 +26,8 @@ const BEYOND: f64 = 0.01;
 pub struct SpectrumLaw {
     law: Box<dyn GrowthLaw>,
     classes: Vec<Class>,
+    /// Least stress ratio that the law knows.
+    least: f64,
     /// ln of mean rates at K in equal steps of ln K, computed when they are asked for; empty where sums are short.
     table: Vec<OnceLock<f64>>,
 }
@@ -33,9 +35,13 @@ pub struct SpectrumLaw {
 impl SpectrumLaw {
     /// The law of the cycles of a spectrum; ratios below the least that it knows count as that.
     pub fn new(law: Box<dyn GrowthLaw>, spectrum: &Spectrum) -> Self {
-        let classes = spectrum.classes.clone();
-        let nodes = if classes.len() > SUMMED { ((ENDS[1] - ENDS[0]) / STEP) as usize } else { 0 };
-        SpectrumLaw { law, classes, table: (0..nodes).map(|_| OnceLock::new()).collect() }
+        let (classes, least) = (spectrum.classes.clone(), law.least_ratio());
+        let nodes = if classes.iter().filter(|class| class.max > 0.0).count() > SUMMED {
+            ((ENDS[1] - ENDS[0]) / STEP) as usize
+        } else {
+            0
+        };
+        SpectrumLaw { law, classes, least, table: (0..nodes).map(|_| OnceLock::new()).collect() }
     }
 
     /// The mean itself.
@@ -51,7 +57,7 @@ impl SpectrumLaw {
     /// Largest K, Pa√m, and stress ratio of the cycles of a class; `None` of those that do not open the crack.
     fn felt(&self, k_max: f64, class: &Class, response: &Response) -> Option<[f64; 2]> {
         let [largest, least] = response.cycle([class.max, class.min]);
-        (largest > 0.0 && largest > least).then(|| [k_max * largest, (least / largest).max(self.law.least_ratio())])
+        (largest > 0.0 && largest > least).then(|| [k_max * largest, (least / largest).max(self.least)])
     }
 
     fn node(&self, place: usize) -> f64 {

@@ -109,21 +109,24 @@ impl Segment {
     }
 }
 
-/// Brings flanks that overlap into contact: changes the displacement u of `K u = f`, y being `L⁻¹ f`, and gives the segments in contact and their
-/// forces on the unknowns, N.
+/// Flanks in contact.
+pub struct Contact {
+    /// Segments in contact.
+    pub pressed: Vec<Pressed>,
+    /// Their forces on the unknowns, N.
+    pub forces: Vec<f64>,
+    /// Displacement with them, m.
+    pub u: Vec<f64>,
+}
+
+/// Brings flanks that overlap into contact, u being the displacement of `K u = f` and y `L⁻¹ f`; `None` where none do.
 /// Errors: [`Error::Mechanics`] where no set of segments is found.
-pub fn press(
-    specimen: &Specimen,
-    plate: &Discretisation,
-    factor: &Factor,
-    y: &[f64],
-    u: &mut [f64],
-) -> Result<(Vec<Pressed>, Vec<f64>)> {
+pub fn press(specimen: &Specimen, plate: &Discretisation, factor: &Factor, y: &[f64], u: &[f64]) -> Result<Option<Contact>> {
     let segments = segments(specimen, plate);
     let free: Vec<f64> = segments.iter().map(|segment| segment.opening(u)).collect();
     let largest = free.iter().fold(0.0_f64, |largest, opening| largest.max(opening.abs()));
     if free.iter().all(|opening| *opening >= -ROUND_OFF * largest) {
-        return Ok((Vec::new(), Vec::new()));
+        return Ok(None);
     }
     let mut compliance = Compliance::new(&segments, factor, y.len());
     let mut active: Vec<usize> = (0..segments.len()).filter(|&k| free[k] < 0.0).collect();
@@ -141,13 +144,13 @@ pub fn press(
         };
         let mut wrong: Vec<usize> = (0..segments.len()).filter(is_wrong).collect();
         if wrong.is_empty() {
-            u.copy_from_slice(&sum);
             let pressed = |(&k, force): (&usize, &f64)| Pressed { ends: segments[k].ends, pressure: force / segments[k].area };
             let mut on_unknowns = vec![0.0; y.len()];
             for (&k, force) in active.iter().zip(&forces) {
                 segments[k].row.iter().for_each(|&(unknown, weight)| on_unknowns[unknown as usize] += force * weight);
             }
-            return Ok((active.iter().zip(&forces).map(pressed).collect(), on_unknowns));
+            let pressed = active.iter().zip(&forces).map(pressed).collect();
+            return Ok(Some(Contact { pressed, forces: on_unknowns, u: sum }));
         }
         // Block principal pivoting (Júdice and Pires 1994, Comput. Oper. Res. 21:587): all at once while fewer are wrong, else the last one.
         if wrong.len() < fewest {

@@ -187,9 +187,9 @@ impl Balance<'_> {
         let others: Vec<f64> = self.forces.iter().zip(&self.released).map(|(force, released)| size * force + released).collect();
         // Without load there are no pins.
         let columns = self.pins.as_ref().filter(|_| share > 0.0);
-        let (mut beside, mut of_flanks) = (others.clone(), vec![0.0; others.len()]);
+        let (mut beside, mut of_flanks) = (others.clone(), Vec::new());
         let mut turns = if columns.is_some() { COUPLED_MOST } else { 1 };
-        let (mut u, mut free, mut pressed, pins) = loop {
+        let (mut u, mut contact, pins) = loop {
             let pins = columns.map(|columns| columns.press(&beside, share * self.load)).transpose()?;
             let mut y = others.clone();
             if let Some(pins) = &pins {
@@ -198,21 +198,25 @@ impl Balance<'_> {
             factor.forward(&mut y);
             let mut u = y.clone();
             factor.backward(&mut u);
-            let mut free = u.clone();
-            let (pressed, forces) = press(specimen, plate, factor, &y, &mut u)?;
-            if pressed.is_empty() {
-                free = Vec::new();
-            }
+            let contact = press(specimen, plate, factor, &y, &u)?;
             // Flanks that a pin presses together bear on it in turn.
-            let change = forces.iter().zip(&of_flanks).map(|(now, before)| (now - before).abs()).fold(0.0, f64::max);
-            of_flanks = forces;
-            let largest = of_flanks.iter().map(|force| force.abs()).fold(0.0, f64::max);
+            let forces = contact.as_ref().map_or_else(Vec::new, |contact| contact.forces.clone());
+            let change =
+                forces.iter().zip(&of_flanks).map(|(now, before): (&f64, &f64)| (now - before).abs()).fold(0.0, f64::max);
+            let largest = forces.iter().map(|force| force.abs()).fold(0.0, f64::max);
             turns -= 1;
-            if turns == 0 || change <= COUPLED * largest {
-                break (u, free, pressed, pins);
+            if turns == 0 || forces.len() == of_flanks.len() && change <= COUPLED * largest {
+                break (u, contact, pins);
             }
-            beside = others.iter().zip(&of_flanks).map(|(other, of_flank)| other + of_flank).collect();
+            beside = others.clone();
+            beside.iter_mut().zip(&forces).for_each(|(other, of_flank)| *other += of_flank);
+            of_flanks = forces;
         };
+        let mut free = Vec::new();
+        if let Some(contact) = &mut contact {
+            free = std::mem::replace(&mut u, std::mem::take(&mut contact.u));
+        }
+        let mut pressed = contact.map_or_else(Vec::new, |contact| contact.pressed);
         let work = match section {
             None => others.iter().zip(&u).map(|(f, u)| f * u).sum::<f64>() + pins.as_ref().map_or(0.0, |pins| pins.work),
             // Moved by 1 m, then scaled to the force of the load: contact of flanks changes with it in proportion.
@@ -223,7 +227,9 @@ impl Balance<'_> {
                 share.abs() * self.load * section * scale
             }
         };
-        let contacts = columns.zip(pins).map_or_else(Vec::new, |(columns, pins)| pins.contacts(columns, &u));
+        // Of lower loads nobody asks.
+        let asked = columns.zip(pins).filter(|_| share == 1.0);
+        let contacts = asked.map_or_else(Vec::new, |(columns, pins)| pins.contacts(columns, &u));
         Ok(Loaded { share, u, work, pressed, free, contacts })
     }
 

@@ -98,9 +98,8 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>, ratio: f64) -> St
             text.push_str(&depth_fields(point.depth));
         }
         if is_shifted {
-            let ratio = point.response.ratio(ratio);
-            let without_load = point.delta_k / (1.0 - ratio.max(0.0)) * point.response.at(0.0) / MPA_SQRT_M;
-            let _ = write!(text, ",{},{}", number(without_load), number(ratio));
+            let without_load = point.delta_k / point.response.range_share(ratio) * point.response.at(0.0) / MPA_SQRT_M;
+            let _ = write!(text, ",{},{}", number(without_load), number(point.response.ratio(ratio)));
         }
         for tip in &point.tips {
             for length in [tip.position[0], tip.position[1], tip.growth] {

@@ -112,11 +112,11 @@ pub fn factors(case: &Case, prediction: &Prediction) -> Result<String> {
         for point in &prediction.curve {
             let record = &point.tips[tip];
             let k_eq = Factors::equivalent(point, tip);
-            let ratio = record.response.ratio(case.loading.ratio);
+            let range_share = record.response.range_share(case.loading.ratio);
             let rate = if k_eq.is_nan() { k_eq } else { law.mean_rate(k_eq, case.loading.ratio, &record.response) };
             let lengths = [point.crack_length, record.growth].map(|length| number(length / MM)).join(",");
             let [k_i, k_ii] = record.factors.unwrap_or([f64::NAN; 2]);
-            let known = [k_i, k_ii, k_eq, (1.0 - ratio.max(0.0)) * k_eq].map(|k| number(k / MPA_SQRT_M)).join(",");
+            let known = [k_i, k_ii, k_eq, range_share * k_eq].map(|k| number(k / MPA_SQRT_M)).join(",");
             let beta = [of_case.length(point, tip) / MM, of_case.beta(point, tip)].map(number).join(",");
             // Writing to a String cannot fail.
             let _ = writeln!(text, "{tip},{},{lengths},{known},{beta},{}", exact(point.cycles), number(rate / MM_PER_CYCLE));

@@ -143,9 +143,12 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let twins = pair_twins(&mut factors);
         let pairs = readings.iter_mut().zip(factors).filter_map(|(reading, factors)| reading.as_mut().zip(factors));
         pairs.for_each(|(reading, factors)| reading.factors = factors);
+        // Tips that open under unlike loads, as on both sides of a bent plate, are no twins in that.
         let responses: Vec<Option<Response>> = readings.iter().map(|reading| reading.map(|reading| reading.response)).collect();
         let of_twins = readings.iter_mut().zip(twins).filter_map(|(reading, twin)| reading.as_mut().zip(responses[twin]));
-        of_twins.for_each(|(reading, response)| reading.response = response);
+        of_twins
+            .filter(|(reading, response)| reading.response.is_near(response))
+            .for_each(|(reading, response)| reading.response = response);
         Ok(readings)
     }
 

@@ -56,6 +56,15 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         }
     }
 
+    /// What the user should know of tips that the least load opens most.
+    fn reversed_warning(&self) -> Option<String> {
+        let is_reversed = |tip: &Tip| tip.response.at(1.0) < 1.0 - 1e-9 && tip.equivalent() > 0.0;
+        let tips = self.state.tips.iter().enumerate().filter(|(_, tip)| is_reversed(tip));
+        let tips = tips.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
+        (!tips.is_empty())
+            .then(|| format!("the least load opens tip {tips} more than the largest does: its K is that of the least load"))
+    }
+
     /// What the user should know of tips that the load presses shut.
     fn contact_warning(&self) -> Option<String> {
         let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.was_closed);
@@ -152,6 +161,7 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.plate.warnings().into_iter().chain(self.warnings.iter().cloned()).chain(self.contact_warning()).collect()
+        let of_contact = self.contact_warning().into_iter().chain(self.reversed_warning());
+        self.plate.warnings().into_iter().chain(self.warnings.iter().cloned()).chain(of_contact).collect()
     }
 }

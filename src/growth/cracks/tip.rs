@@ -53,7 +53,8 @@ pub struct AtLoad {
 impl Reading {
     /// With what was read under other loads; `own` is that of the reading itself. The load that opens the tip most gives its factors. A tip that
     /// is closed has the K below zero that superposition gives it, as laws take it for compression.
-    pub fn beside(self, own: AtLoad, others: &[AtLoad]) -> Reading {
+    /// `by_load` says whether K follows every load of one sign in proportion.
+    pub fn beside(self, own: AtLoad, others: &[AtLoad], by_load: bool) -> Reading {
         if others.is_empty() {
             return self;
         }
@@ -68,7 +69,19 @@ impl Reading {
             let formal = || at.free.map_or(at.load / top.load * whole, |free| factor_across(free, angle));
             [at.load, if at.is_closed && across <= STANDING * whole { formal().min(0.0) } else { across } / whole]
         };
-        let response = Response::new(&all.iter().map(pair).collect::<Vec<_>>());
+        let mut pairs: Vec<[f64; 2]> = all.iter().map(pair).collect();
+        if let Some(place) = pairs.windows(2).position(|pair| pair[0][1] < 0.0 && pair[1][1] > 0.0) {
+            // On the branch of the open tip down to the load that opens it.
+            let [from, to] = [pairs[place + 1], *pairs.get(place + 2).unwrap_or(&pairs[place + 1])];
+            let opens = from[0] - from[1] * (to[0] - from[0]) / (to[1] - from[1]);
+            let opens = if by_load { 0.0 } else { opens };
+            if opens > pairs[place][0] && opens < from[0] {
+                pairs.insert(place + 1, [opens, 0.0]);
+            }
+        } else if let Some(place) = pairs.windows(2).position(|pair| by_load && pair[0][0] < 0.0 && pair[1][0] > 0.0) {
+            pairs.insert(place + 1, [0.0, 0.0]);
+        }
+        let response = Response::new(&pairs);
         Reading { factors: top.factors, t_stress: top.t_stress, is_closed: top.is_closed, response, ..self }
     }
 

@@ -167,7 +167,7 @@ impl PointPlate {
                 of_pressure,
                 response,
             };
-            (reading.beside(at_load(own, factors, t_stress), &others), sliding)
+            (reading.beside(at_load(own, factors, t_stress), &others, residual.is_none()), sliding)
         };
         let of_tip = |(index, tip): (usize, &Tip)| tip.is_active().then(|| read((index, tip)));
         let read: Vec<_> = cracks.tips.par_iter().enumerate().map(of_tip).collect();

@@ -157,6 +157,10 @@ fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, sha
         (0..rows.len()).filter(|row| rows[*row].is_solved).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap_or(0)
     };
     let mut asked: Vec<usize> = shares.iter().map(|share| nearest(*share)).collect();
+    // Where a crack passes a rim, K of points is worst.
+    let passed = rim_passed(case, &prediction.curve).filter(|_| case.engine() != Engine::Nodes);
+    asked.extend(passed.filter(|(row, _)| *row < rows.len()).map(|(row, _)| nearest(rows[row].cycles / life)));
+    asked.sort_unstable();
     asked.dedup();
     let mut found = Vec::with_capacity(asked.len());
     for &row in &asked {
@@ -169,7 +173,7 @@ fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, sha
         let from = if i == 0 { 0.0 } else { 0.5 * (found[i - 1].0 + cycles) };
         let to = found.get(i + 1).map_or(end, |next| 0.5 * (next.0 + cycles));
         let share = (to - from) / life;
-        of_life += share * difference.rate.abs();
+        of_life += share * difference.rate;
         of_angle += difference.angle.abs() / found.len() as f64;
         largest_exponent = largest_exponent.max(difference.exponent.abs());
     }
@@ -177,7 +181,7 @@ fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, sha
     let steps = 0.02 * case.fatigue.step_error_percent;
     let growth = prediction.curve.last().map_or(0.0, |row| row.tips.iter().map(|tip| tip.growth).fold(0.0, f64::max));
     let path = growth * (of_angle + WAY);
-    if let Some(gap) = rim_passed(case, &prediction.curve).filter(|gap| path > GAP_SHARE * gap) {
+    if let Some((_, gap)) = rim_passed(case, &prediction.curve).filter(|(_, gap)| path > GAP_SHARE * gap) {
         return Err(format!(
             "the crack passes a rim at {:.2} mm, and its path is known to {:.2} mm: small causes decide its K there",
             gap / MM,
@@ -191,20 +195,21 @@ fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, sha
     })
 }
 
-/// The least distance at which a tip passes a rim, m: from where the way to the rim gets longer again.
-fn rim_passed(case: &Case, curve: &[CurvePoint]) -> Option<f64> {
+/// The row in which a tip passes a rim at the least distance, and that, m: from there the way to the rim gets longer again.
+fn rim_passed(case: &Case, curve: &[CurvePoint]) -> Option<(usize, f64)> {
     let tips = curve.first().map_or(0, |row| row.tips.len());
     let passed = |tip: usize| {
         let gaps: Vec<f64> = curve.iter().map(|row| case.specimen.rim_distance(row.tips[tip].position)).collect();
-        let least = gaps.windows(3).filter(|gap| gap[1] < gap[0] && gap[1] < gap[2]).map(|gap| gap[1]);
-        least.fold(f64::INFINITY, f64::min)
+        let is_least = |row: &usize| gaps[*row] < gaps[row - 1] && gaps[*row] < gaps[row + 1];
+        let least = (1..gaps.len().saturating_sub(1)).filter(is_least).min_by(|a, b| gaps[*a].total_cmp(&gaps[*b]));
+        least.map(|row| (row, gaps[row]))
     };
-    Some((0..tips).map(passed).fold(f64::INFINITY, f64::min)).filter(|gap| gap.is_finite())
+    (0..tips).filter_map(passed).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// What finer nodes say at the cracks of a row.
 struct Difference {
-    /// ln of the rate of the leading tip by them over that of the run.
+    /// ln of the rate of the leading tip by them over that of the run, and of that by the loads between which K is linear; without sign.
     rate: f64,
     /// Direction of growth of that tip by them less that of the run, rad.
     angle: f64,
@@ -231,8 +236,10 @@ impl Difference {
         let (Some(before), Some(now)) = (own[lead].factors, tips[lead].factors) else {
             return Err("K of the leading tip is not known on finer nodes".to_owned());
         };
+        let coarser = TipRecord { response: tips[lead].response.coarser(), ..tips[lead] };
+        let (off, of_loads) = ((rate(&tips[lead]) / rate(&own[lead])).ln(), (rate(&coarser) / rate(&tips[lead])).ln() / 3.0);
         let difference = Difference {
-            rate: (rate(&tips[lead]) / rate(&own[lead])).ln(),
+            rate: off.abs() + of_loads.abs(),
             angle: kink_angle(now) - kink_angle(before),
             exponent: rates.exponent(equivalent_factor(before)),
         };

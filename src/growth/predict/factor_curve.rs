@@ -20,7 +20,7 @@ pub const EXPONENT_USUAL: f64 = 3.0;
 /// Difference of ln K between tips that grow alike.
 const ALIKE: f64 = 0.01;
 
-/// K_eq at maximum load over crack length.
+/// K_eq at maximum load over crack length; where K does not follow the load in proportion, the one whose range at the ratio of the load is ΔK.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FactorCurve {
     /// Of every tip whose growth adds to the length; of a standard specimen the fastest stands for all.
@@ -50,9 +50,9 @@ impl FactorCurve {
         let done = unit_growth(case, m, observer)?;
         let tips = match case.specimen.convention {
             LengthConvention::MeanOfTips => {
-                vec![TipFactors::new(solved(&done.curve).map(|row| (row.crack_length, row.k_max(&case.loading))))]
+                vec![TipFactors::new(solved(&done.curve).map(|row| (row.crack_length, row.delta_k / case.loading.range_share())))]
             }
-            LengthConvention::SumOfTips => of_every_tip(&done.curve),
+            LengthConvention::SumOfTips => of_every_tip(&done.curve, case.loading.ratio),
         };
         Ok(FactorCurve { tips, figures: done.figures, warnings: done.warnings })
     }
@@ -110,12 +110,13 @@ pub(super) fn solved(curve: &[CurvePoint]) -> impl Iterator<Item = &CurvePoint> 
 }
 
 /// K of every tip over the rows in which it grows.
-fn of_every_tip(curve: &[CurvePoint]) -> Vec<TipFactors> {
+fn of_every_tip(curve: &[CurvePoint], ratio: f64) -> Vec<TipFactors> {
     let count = curve.first().map_or(0, |row| row.tips.len());
     let of_tip = |tip: usize| {
         let factor = |row: &CurvePoint| {
             let record = &row.tips[tip];
             let factor = equivalent_factor(record.factors.filter(|_| record.state == TipState::Active)?);
+            let factor = factor * record.response.range_share(ratio) / (1.0 - ratio.max(0.0));
             (factor > 0.0).then_some((row.crack_length, factor))
         };
         TipFactors::new(solved(curve).filter_map(factor))

@@ -91,6 +91,8 @@ pub struct March<'a> {
     spectrum: &'a Spectrum,
     /// Cycles of the passes that are compared with those before them.
     per_period: f64,
+    /// Least stress ratio that the law knows.
+    least: f64,
     /// How its K follows the load.
     pub response: Response,
     /// Where it stands.
@@ -106,7 +108,8 @@ pub fn between(ks: [f64; 2], way: [f64; 2]) -> impl Fn(f64) -> f64 {
 impl<'a> March<'a> {
     /// A tip that goes on from where it stands.
     pub fn new(laws: Laws<'a>, spectrum: &'a Spectrum, at: Underway) -> Self {
-        March { laws, spectrum, per_period: spectrum.period * spectrum.per_pass, response: Response::PROPORTIONAL, at }
+        let (per_period, least) = (spectrum.period * spectrum.per_pass, laws.law.least_ratio());
+        March { laws, spectrum, per_period, least, response: Response::PROPORTIONAL, at }
     }
 
     /// Grows the tip to a way, m, `k` being the K of the largest load at a way, Pa√m; no more than so many cycles in all.
@@ -139,7 +142,7 @@ impl<'a> March<'a> {
         let [largest, smallest] = self.response.cycle([cycle.max, cycle.min]);
         let k_max = largest * k;
         let size = self.laws.retardation.map_or(0.0, |model| model.zone_size(k_max));
-        let least = self.laws.law.least_ratio();
+        let least = self.least;
         Now { a, k_max, ratio: (smallest / largest).max(least), least, size }
     }
 
