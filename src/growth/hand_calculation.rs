@@ -206,6 +206,23 @@ impl<'a> HandCalculation<'a> {
     }
 }
 
+impl HandCalculation<'_> {
+    /// What the user should know where residual stress outweighs the least load along the crack.
+    fn overlap(&self) -> Option<String> {
+        const LOOKED_AT: usize = 200;
+        let Case { loading, .. } = self.case;
+        let (residual, longest) = (loading.residual.as_ref()?, self.last().crack_length);
+        let least = loading.maximum * loading.lower_loads().first()?.max(0.0);
+        let presses = |x: &f64| residual.at([*x, 0.0])[1] + least < 0.0;
+        let at = (0..=LOOKED_AT).map(|k| longest * k as f64 / LOOKED_AT as f64).find(presses)?;
+        Some(format!(
+            "residual stress presses flanks together at x = {:.3} mm under the least load; by hand calculation they overlap there: \
+             model.method = \"element_free_galerkin\" takes their contact",
+            at / MM
+        ))
+    }
+}
+
 impl CrackGrowth for HandCalculation<'_> {
     fn open(&mut self) -> Result<()> {
         self.curve = vec![self.point(0.0, self.case.specimen.crack_length)];
@@ -248,6 +265,6 @@ impl CrackGrowth for HandCalculation<'_> {
         let HandbookFormula { name, range, .. } = &self.formula;
         let words = || format!("{:.2} % of the life lies outside the range of {name} ({range})", 100.0 * outside / life);
         // A share that shows in no life is not worth a word.
-        (outside > 1e-3 * life).then(words).into_iter().collect()
+        (outside > 1e-3 * life).then(words).into_iter().chain(self.overlap()).collect()
     }
 }

@@ -40,6 +40,8 @@ const UNSEEN: f64 = 1e-3;
 pub struct NodePlate {
     settings: ElementFreeSettings,
     elasticity: Elasticity,
+    /// Loads over the largest, below it, at which K is asked for where it does not follow the load in proportion.
+    lower: Vec<f64>,
     /// The nodes of the last equilibrium, and that.
     solved: Option<(Discretisation, Solution)>,
     state: NodeState,
@@ -100,7 +102,13 @@ impl CrackedPlate for NodePlate {
     fn build(case: &Case, _cracks: &CracksState) -> Result<Self> {
         let state = NodeState { fineness: 1.0, work: 0.0, solves: 0, nodes: 0, warnings: Vec::new() };
         let settings = case.nodes();
-        Ok(NodePlate { settings, elasticity: Elasticity::of(&case.material), solved: None, state })
+        Ok(NodePlate {
+            settings,
+            elasticity: Elasticity::of(&case.material),
+            lower: case.loading.lower_loads(),
+            solved: None,
+            state,
+        })
     }
 
     fn scales(&self, case: &Case) -> Scales {
@@ -147,7 +155,7 @@ impl CrackedPlate for NodePlate {
         let (lines, tips) = NodePlate::cracks(case, cracks);
         let resolution = self.resolution();
         let plate = Discretisation::new(specimen, self.elasticity, &lines, &tips, &resolution, case.loading.residual.as_deref())?;
-        let lower = (case.loading.residual.as_deref(), &case.loading.lower_loads()[..]);
+        let lower = (case.loading.residual.as_deref(), &self.lower[..]);
         let solution = solve_with(specimen, &plate, resolution.far, case.loading.maximum, lower)?;
         self.state.solves += 1;
         self.state.nodes = self.state.nodes.max(plate.nodes.at.len());

@@ -68,7 +68,8 @@ pub struct PointPlate {
     contact: Contact,
     /// In the layout of the equilibrium, m.
     displacement: Vec<f64>,
-    /// Under lower loads, where K does not follow the load in proportion.
+    /// Loads over the largest, below it, that are asked for where K does not follow the load in proportion, and the plate under them.
+    lower_loads: Vec<f64>,
     lower: Vec<LowerLoad>,
     /// Work of the loads of the last equilibrium, J.
     work: f64,
@@ -149,7 +150,7 @@ impl PointPlate {
         }
         // Flanks alone are in contact as they are at every load of the same sign.
         let loads: Vec<f64> =
-            case.loading.lower_loads().into_iter().filter(|load| has_residual || is_in_contact && *load < 0.0).collect();
+            self.lower_loads.iter().copied().filter(|load| has_residual || is_in_contact && *load < 0.0).collect();
         let work = self.work;
         for load in loads {
             let (mut contact, mut displacement) = (self.contact.clone(), self.displacement.clone());
@@ -226,6 +227,7 @@ impl CrackedPlate for PointPlate {
             bonds,
             contact: Contact::default(),
             displacement: Vec::new(),
+            lower_loads: case.loading.lower_loads(),
             lower: Vec::new(),
             work: 0.0,
             memory: vec![Memory::default(); cracks.tips.len()],

@@ -233,7 +233,7 @@ pub fn loading(case: &Case) -> String {
     match &loading.spectrum {
         Some(spectrum) => {
             let [low, high] = spectrum.ratios.map(short);
-            format!("spectrum, {cycles}{sides}{bending}, R = {low} to {high}, {} at the largest", short(loading.ratio))
+            format!("spectrum, {cycles}{sides}{bending}, R = {low} to {high}, {} at the largest{residual}", short(loading.ratio))
         }
         None => format!("{cycles}{sides}{bending}, R = {}{residual}", short(loading.ratio)),
     }

@@ -56,13 +56,13 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         }
     }
 
-    /// What the user should know of tips that the least load opens most.
+    /// What the user should know of tips that a lower load drives most.
     fn reversed_warning(&self) -> Option<String> {
         let is_reversed = |tip: &Tip| tip.response.at(1.0) < 1.0 - 1e-9 && tip.equivalent() > 0.0;
         let tips = self.state.tips.iter().enumerate().filter(|(_, tip)| is_reversed(tip));
         let tips = tips.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
         (!tips.is_empty())
-            .then(|| format!("the least load opens tip {tips} more than the largest does: its K is that of the least load"))
+            .then(|| format!("a lower load drives tip {tips} more than the largest does: its K is that of the lower one"))
     }
 
     /// What the user should know of tips that the load presses shut.

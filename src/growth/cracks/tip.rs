@@ -51,7 +51,7 @@ pub struct AtLoad {
 }
 
 impl Reading {
-    /// With what was read under other loads; `own` is that of the reading itself. The load that opens the tip most gives its factors. A tip that
+    /// With what was read under other loads; `own` is that of the reading itself. The load that drives the tip most gives its factors, by K_II alone where flanks slide. A tip that
     /// is closed has the K below zero that superposition gives it, as laws take it for compression.
     /// `by_load` says whether K follows every load of one sign in proportion.
     pub fn beside(self, own: AtLoad, others: &[AtLoad], by_load: bool) -> Reading {
@@ -59,9 +59,8 @@ impl Reading {
             return self;
         }
         let mut all: Vec<&AtLoad> = others.iter().chain([&own]).collect();
-        let opens = |at: &&&AtLoad| !at.is_closed && at.factors[0] > 0.0;
         let size = |at: &AtLoad| equivalent_factor(at.factors);
-        let top = *all.iter().copied().filter(|at| opens(&at)).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(&own);
+        let top = *all.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(&own);
         let (angle, whole) = (kink_angle(top.factors), size(&top));
         all.sort_by(|a, b| a.load.total_cmp(&b.load));
         let pair = |at: &&AtLoad| {

@@ -34,6 +34,8 @@ const WAY: f64 = 2e-3;
 const AFTER_MEETING: f64 = 0.015;
 /// Difference of K from the energy released from which nothing is said of the error of a life.
 const CROSS_CHECK_MOST: f64 = 0.02;
+/// Kinds of cycles of a spectrum up to which K of both ends of all is solved for.
+const ENDS_ASKED: usize = 2;
 /// Share of the load of a pin by which its contact may be off, beyond which nothing is said.
 const CONTACT_MOST: f64 = 0.005;
 /// Error of a path over the gap between a rim and a crack that passes it, from which nothing is said: K behind a rim falls with the gap.
@@ -236,7 +238,10 @@ impl Difference {
         let (Some(before), Some(now)) = (own[lead].factors, tips[lead].factors) else {
             return Err("K of the leading tip is not known on finer nodes".to_owned());
         };
-        let coarser = TipRecord { response: tips[lead].response.coarser(), ..tips[lead] };
+        // Of few kinds of cycles K of every end is solved for.
+        let is_between = case.loading.spectrum.as_ref().is_some_and(|spectrum| spectrum.kinds > ENDS_ASKED);
+        let response = tips[lead].response;
+        let coarser = TipRecord { response: if is_between { response.coarser() } else { response }, ..tips[lead] };
         let (off, of_loads) = ((rate(&tips[lead]) / rate(&own[lead])).ln(), (rate(&coarser) / rate(&tips[lead])).ln() / 3.0);
         let difference = Difference {
             rate: off.abs() + of_loads.abs(),

@@ -13,8 +13,9 @@ use super::laws::growth_law;
 use super::{CurvePoint, Prediction, StopReason};
 use crate::case::Case;
 use crate::end_of_life::{demands, strength_reason};
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_laws::growth_law::GrowthLaw;
+use perilife_laws::response::Response;
 use perilife_plate::specimen::LengthConvention;
 use perilife_plate::specimen::handbook::handbook;
 
@@ -111,6 +112,11 @@ impl Recorded {
     /// Errors: a run in which no crack grew, or of which no K is known; a case without law.
     pub fn of(case: &Case, prediction: &Prediction) -> Result<Self> {
         let none = |why: &str| Error::Mechanics(format!("{}: {why}, so there is no K(a) to compute other lives on", case.name));
+        let is_bent = |row: &CurvePoint| !row.response.is_near(&Response::PROPORTIONAL);
+        if case.loading.residual.is_none() && prediction.curve.iter().any(is_bent) {
+            let problem = "change their contact with the load, and K with it out of proportion: no other life follows from the K(a) of this run";
+            return Err(input_missing("loading.pins", problem, "run each case by itself"));
+        }
         if let Some(residual) = &case.loading.residual {
             let problem = "shifts K whatever the load: no other life follows from the K(a) of this run";
             return Err(input(residual.key(), residual.words(), problem, "run each case by itself"));

@@ -19,7 +19,7 @@ use toml::Value;
 
 use crate::specimen::Edge;
 use residual::ResidualStress;
-use spectrum::{Spectrum, SpectrumFormat};
+use spectrum::{Class, Spectrum, SpectrumFormat};
 
 /// Stress ratios that differ by less are one: tests are run, and rates stated, to two digits.
 pub const SAME_RATIO: f64 = 0.02;
@@ -150,14 +150,28 @@ impl Loading {
         self.spectrum.as_ref().map_or([self.ratio; 2], |spectrum| spectrum.ratios)
     }
 
-    /// Loads over the largest, ascending and below it, at which K is asked for where it does not follow the load in proportion: the least
-    /// one, and of a spectrum some between.
+    /// Loads over the largest, ascending and below it, at which K is asked for where it does not follow the load in proportion: the ends of all
+    /// cycles, or where these are many the least one and those between which the ends have equal parts of `Σ n ΔK³` in proportion.
     pub fn lower_loads(&self) -> Vec<f64> {
-        const BETWEEN: usize = 4;
+        const MOST: usize = 5;
         let Some(spectrum) = &self.spectrum else { return vec![self.ratio] };
-        let (least, from) = (spectrum.smallest(), spectrum.smallest().max(0.0));
-        let between = (0..BETWEEN).map(|k| from + (1.0 - from) * k as f64 / BETWEEN as f64);
-        Some(least).filter(|least| *least < 0.0).into_iter().chain(between).collect()
+        let weighed = |class: &Class| [class.max, class.min].map(|load| (load, class.share * (class.max - class.min).powi(3)));
+        let mut ends: Vec<(f64, f64)> = spectrum.classes.iter().flat_map(weighed).filter(|(load, _)| *load < 1.0).collect();
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut loads: Vec<f64> = ends.iter().map(|(load, _)| *load).collect();
+        loads.dedup();
+        if loads.len() > MOST {
+            let whole: f64 = ends.iter().map(|(_, weight)| weight).sum();
+            let mut below = ends.iter().scan(0.0, |sum, (load, weight)| {
+                *sum += weight;
+                Some((*load, *sum))
+            });
+            let part =
+                |k: usize| below.find(|(_, sum)| *sum >= (k as f64 - 0.5) / (MOST - 1) as f64 * whole).map(|(load, _)| load);
+            loads = std::iter::once(loads[0]).chain((1..MOST).filter_map(part)).collect();
+            loads.dedup();
+        }
+        loads
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.
