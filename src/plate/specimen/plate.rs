@@ -213,13 +213,17 @@ fn disc(radius: f64) -> Vec<Point> {
         let (sin, cos) = (std::f64::consts::TAU * (first as f64 + 0.5) / DISC_SIDES as f64).sin_cos();
         if swapped { [radius * sin, radius * cos] } else { [radius * cos, radius * sin] }
     };
-    let turned = |[x, y]: Point, quarters: usize| match quarters {
+    (0..4).flat_map(|quarters| (0..quarter).map(move |k| turned(corner(k), quarters))).collect()
+}
+
+/// A point turned about the origin by quarters of a turn, to the last bit.
+pub(super) fn turned([x, y]: Point, quarters: usize) -> Point {
+    match quarters {
         0 => [x, y],
         1 => [-y, x],
         2 => [-x, -y],
         _ => [y, -x],
-    };
-    (0..4).flat_map(|quarters| (0..quarter).map(move |k| turned(corner(k), quarters))).collect()
+    }
 }
 
 fn polygon(corners: &[Value]) -> Result<Vec<Point>> {
