@@ -129,13 +129,8 @@ pub(super) fn compact_from_value(value: &Value) -> Result<Specimen> {
     let [w, thickness, a] = lengths!(input: width_mm, thickness_mm, crack_length_mm);
     check_crack(input.crack_length_mm, input.width_mm, "the width W from the load line")?;
     let hole = |sign: f64| Hole { centre: [0.0, sign * 0.275 * w], radius: 0.125 * w };
-    let keys: PinKeys<'_> = [
-        ("pin_half_angle_deg", input.pin_half_angle_deg),
-        ("pin_diameter_mm", input.pin_diameter_mm),
-        ("pin_friction", input.pin_friction),
-        ("pin_youngs_modulus_gpa", input.pin_youngs_modulus_gpa),
-        ("pin_poisson_ratio", input.pin_poisson_ratio),
-    ];
+    let keys: PinKeys<'_> = perilife_base::keyed!(
+        input: pin_half_angle_deg, pin_diameter_mm, pin_friction, pin_youngs_modulus_gpa, pin_poisson_ratio);
     let contact = Bearing::read("specimen", &keys, 0.125 * w)?;
     let pin = |hole: usize, sign: f64| Load::Pin { hole, direction: [0.0, sign], force: 1.0, contact: contact.clone() };
     let (front, half_height) = (-0.25 * w, 0.6 * w);

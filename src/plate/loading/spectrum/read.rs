@@ -16,14 +16,7 @@ use perilife_base::table::{decoded, is_workbook};
 
 /// Keys that belong to a spectrum, beside its scale.
 fn given(input: &Input) -> [(&'static str, bool); 5] {
-    let Input { spectrum_file, spectrum_format, omission_percent, truncation_percent, repeats, .. } = input;
-    [
-        ("spectrum_file", spectrum_file.is_some()),
-        ("spectrum_format", spectrum_format.is_some()),
-        ("omission_percent", omission_percent.is_some()),
-        ("truncation_percent", truncation_percent.is_some()),
-        ("repeats", repeats.is_some()),
-    ]
+    perilife_base::given!(input: spectrum_file, spectrum_format, omission_percent, truncation_percent, repeats)
 }
 
 /// Refuses the keys of spectra where the loads are none.

@@ -51,13 +51,8 @@ fn layout(value: &Value) -> Result<Layout> {
     below("hole_diameter_mm", 2.0 * radius, (2.0 * half_width).min(2.0 * length), "width and twice the length")?;
     let key = if cracks.shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
     below(key, cracks.lengths[0].max(cracks.lengths[1]), half_width - radius, "the way from the rim to the side")?;
-    let keys: PinKeys<'_> = [
-        ("pin_half_angle_deg", input_.pin_half_angle_deg),
-        ("pin_diameter_mm", input_.pin_diameter_mm),
-        ("pin_friction", input_.pin_friction),
-        ("pin_youngs_modulus_gpa", input_.pin_youngs_modulus_gpa),
-        ("pin_poisson_ratio", input_.pin_poisson_ratio),
-    ];
+    let keys: PinKeys<'_> = perilife_base::keyed!(
+        input_: pin_half_angle_deg, pin_diameter_mm, pin_friction, pin_youngs_modulus_gpa, pin_poisson_ratio);
     let contact = Bearing::read("specimen", &keys, radius)?;
     let mut outline: Vec<Point> = vec![[-half_width, -length], [half_width, -length]];
     match (input_.head, distance) {
