@@ -6,7 +6,7 @@ use toml::Value;
 use super::shapes::{SLACK, below, in_mm, length_or_none};
 use super::{Description, Layout};
 use crate::specimen::plate::{Drawing, rectangle};
-use crate::specimen::read::lengths as read_lengths;
+use crate::specimen::read::lengths;
 use crate::specimen::{Hole, Point, SpecimenKind};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{LENGTH, slice};
@@ -37,7 +37,7 @@ struct Input {
 fn layout(value: &Value) -> Result<Layout> {
     let input_: Input = slice(value, "specimen")?;
     let [width, length, thickness, pitch, diameter] =
-        read_lengths!(input_: width_mm, length_mm, thickness_mm, pitch_mm, hole_diameter_mm);
+        lengths!(input_: width_mm, length_mm, thickness_mm, pitch_mm, hole_diameter_mm);
     let count = input_.holes;
     if !(2..=HOLES_MAX).contains(&count) {
         let remedy = format!("give 2 to {HOLES_MAX}, or use kind = \"{}\"", SpecimenKind::CrackAtHole);
