@@ -16,6 +16,7 @@ mod support {
     pub mod hand_cases;
     pub mod made_up_case;
     pub mod made_up_run;
+    pub mod median;
     pub mod nginx;
     pub mod noise;
     pub mod plates;

@@ -25,11 +25,8 @@ pub const SMALLER: &str = "give the columns and rows of the readings alone, or s
 /// Whether a spreadsheet would read the text as a formula, or takes it for text only because of the apostrophe in front.
 fn is_formula(text: &str) -> bool {
     let signs = text.trim_start_matches('\'');
-    signs.starts_with(['=', '+', '-', '@', '\t', '\r']) && !(signs.len() == text.len() && is_number(text))
-}
-
-fn is_number(text: &str) -> bool {
-    text.parse::<f64>().is_ok_and(f64::is_finite)
+    signs.starts_with(['=', '+', '-', '@', '\t', '\r'])
+        && !(signs.len() == text.len() && text.parse::<f64>().is_ok_and(f64::is_finite))
 }
 
 /// Text that no spreadsheet runs as a formula: an apostrophe stands in front of `=`, `+`, `-`, `@`, tab or carriage return unless all of it

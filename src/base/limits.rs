@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 
 use crate::error::{Result, input};
 
-/// The committed table.
-const TABLE: &str = include_str!("../../data/boundaries.csv");
+/// The committed table as text.
+pub const TABLE: &str = include_str!("../../data/boundaries.csv");
 /// Its columns.
 pub const COLUMNS: &str = "sweep,method,parameter,is_safe,low,high,bound_percent,version,date";
 
@@ -60,11 +60,6 @@ pub fn parse(text: &str) -> Result<Vec<Limit>> {
         Ok(Limit { sweep, method, parameter, is_safe, ends: [low, high], bound_percent, version, date })
     };
     reader.into_deserialize().map(limit).collect()
-}
-
-/// The committed table as text.
-pub fn committed() -> &'static str {
-    TABLE
 }
 
 /// The committed limits, read once. `tests/unit/limits.rs` reads the table with its errors.

@@ -252,7 +252,7 @@ fn assess(
     // Under changing loads an interval must not reach over two of them.
     let loads = curve.load_history();
     let lengths = match curve.is_plain() {
-        true => paris::lengths(curve.crack_length[0], longest(curve)),
+        true => paris::lengths(curve.crack_length[0], curve.crack_length.iter().copied().fold(0.0, f64::max)),
         false => loads.lengths.clone(),
     };
     let delta_k = |length: f64| (task.delta_k)(length) * loads.at(length);
@@ -305,10 +305,6 @@ fn short_steps_warning(lengths: &[f64]) -> Option<String> {
             STEP_MIN / MM
         )
     })
-}
-
-fn longest(curve: &MeasuredCurve) -> f64 {
-    curve.crack_length.iter().copied().fold(0.0, f64::max)
 }
 
 impl Fit {

@@ -74,7 +74,8 @@ pub fn common_lengths(curves: &[MeasuredCurve]) -> Result<Vec<f64>> {
         curve.crack_length.len() == first.crack_length.len()
             && curve.crack_length.iter().zip(&first.crack_length).all(|(a, b)| (a - b).abs() <= SAME_LENGTH)
     };
-    if rises(&first.crack_length) && curves.iter().all(same) {
+    let rises = first.crack_length.windows(2).all(|pair| pair[1] > pair[0]);
+    if rises && curves.iter().all(same) {
         return Ok(first.crack_length.clone());
     }
     let start = curves.iter().filter_map(|curve| curve.crack_length.first().copied()).fold(0.0, f64::max);
@@ -116,18 +117,6 @@ pub fn pointwise_median_at(curves: &[MeasuredCurve], lengths: &[f64]) -> Result<
         cycles.push(median(&since_start));
     }
     Ok(MeasuredCurve::new("median", cycles, lengths.to_vec()))
-}
-
-/// Pointwise median at the common lengths; of one curve, the curve itself.
-pub fn pointwise_median(curves: &[MeasuredCurve]) -> Result<MeasuredCurve> {
-    match curves {
-        [only] => Ok(only.clone()),
-        _ => pointwise_median_at(curves, &common_lengths(curves)?),
-    }
-}
-
-fn rises(lengths: &[f64]) -> bool {
-    lengths.windows(2).all(|pair| pair[1] > pair[0])
 }
 
 /// Slack of the ends of a run against readings, m.

@@ -119,17 +119,13 @@ pub fn fatigue_bonds(body: &Body, candidates: &[Bond], displacement: &[f64], (sh
 pub fn stuck(body: &Body, bonds: &Bonds, tips: &[CrackTip], settings: &FatigueSettings) -> Vec<usize> {
     // Where all bonds age, growth of one tip is still told by the bonds around it.
     let near = FatigueSettings { ageing: Ageing::CrackTip, ..*settings };
+    let reach = (0.5 + settings.zone_radius_horizons) * body.horizon();
     let is_stuck = |tip: &CrackTip| {
-        let zone = std::slice::from_ref(tip);
-        tip.is_active() && candidates(body, bonds, zone, &near).is_empty() && touches_no_fail(body, tip, &near)
+        tip.is_active()
+            && candidates(body, bonds, std::slice::from_ref(tip), &near).is_empty()
+            && places_near(body, tip.position, tip.position, reach).any(|place| body.no_fail[place])
     };
     (0..tips.len()).filter(|&tip| is_stuck(&tips[tip])).collect()
-}
-
-/// Whether a no-fail place lies so near a tip that it takes bonds of its ageing zone.
-fn touches_no_fail(body: &Body, tip: &CrackTip, settings: &FatigueSettings) -> bool {
-    let reach = (0.5 + settings.zone_radius_horizons) * body.horizon();
-    places_near(body, tip.position, tip.position, reach).any(|place| body.no_fail[place])
 }
 
 /// Share of a bond's whole life within which bonds break together: mirror twins differ by round-off only.

@@ -224,7 +224,9 @@ impl<'a> BondStrain<'a> {
         let records = self.records();
         let run = &mut self.run;
         run.track.record(records, run.broken_bonds, work);
-        let reason = reason.or_else(|| stop::after_block(case, self.end, &run.track));
+        // The length averaged over a spacing of growth is known up to a known end once the run is a spacing further; the curve stops there.
+        let is_past = |end: &End| run.track.last().crack_length >= end.crack_length + case.points().spacing;
+        let reason = reason.or_else(|| self.end.filter(is_past).map(|end| end.reason));
         if reason.is_none() {
             self.look_around();
         }
@@ -310,7 +312,7 @@ impl CrackGrowth for BondStrain<'_> {
         state.broken.iter().for_each(|&bond| run.bonds.cut(&body, bond));
         state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
         (run.tips, run.near_limit) = (state.tips, state.near_limit);
-        run.track.go_on_from(state.past);
+        run.track.past = state.past;
         (run.broken_bonds, run.solves, run.iterations) =
             (state.broken_bonds, state.statistics.solves, state.statistics.iterations);
         run.had_window = state.statistics.solver == Some(SolverUsed::Window);

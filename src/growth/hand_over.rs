@@ -66,7 +66,11 @@ impl<'a> HandOver<'a> {
             return Ok(reason);
         }
         let reason = self.bonds.next_break()?;
-        if reason.is_none() && self.is_due() {
+        // K takes over once all tips are active, and those from slots have grown far enough.
+        let least = HAND_OVER_HORIZONS * self.case.points().horizon_ratio * self.case.points().spacing;
+        let is_ready =
+            |(tip, seed): (&TipRecord, &TipSeed)| tip.state == TipState::Active && (!seed.from_slot || tip.growth >= least);
+        if reason.is_none() && self.bonds.now().tips.iter().zip(&self.case.specimen.tips).all(is_ready) {
             let (before, took) = (self.bonds.curve(), self.bonds.statistics());
             if let Some(mut tips) = self.tips_after(before, took)? {
                 tips.open()?;
@@ -74,14 +78,6 @@ impl<'a> HandOver<'a> {
             }
         }
         Ok(reason)
-    }
-
-    /// Whether all tips are active, and those from slots have grown far enough.
-    fn is_due(&self) -> bool {
-        let least = HAND_OVER_HORIZONS * self.case.points().horizon_ratio * self.case.points().spacing;
-        let is_ready =
-            |(tip, seed): (&TipRecord, &TipSeed)| tip.state == TipState::Active && (!seed.from_slot || tip.growth >= least);
-        self.bonds.now().tips.iter().zip(&self.case.specimen.tips).all(is_ready)
     }
 
     /// The run from the last of some rows on, before its first equilibrium; `None` where it was begun before, or there are no rows.

@@ -224,10 +224,6 @@ impl MeasuredCurve {
         self.source.is_named_by_file.then(|| self.source.file.file_stem().unwrap_or_default().to_string_lossy().into_owned())
     }
 
-    fn named_by_file(&self) -> Option<String> {
-        self.file_stem().filter(|stem| *stem == self.specimen)
-    }
-
     fn folder_name(&self) -> Option<String> {
         Some(self.source.file.parent()?.file_name()?.to_string_lossy().into_owned())
     }
@@ -286,7 +282,7 @@ impl Measured {
     pub fn add(&mut self, other: Measured) -> Result<()> {
         let mut other = other;
         for curve in &mut other.curves {
-            let Some(stem) = curve.named_by_file() else { continue };
+            let Some(stem) = curve.file_stem().filter(|stem| *stem == curve.specimen) else { continue };
             if !self.curves.iter().any(|earlier| earlier.specimen == stem || earlier.file_stem() == Some(stem.clone())) {
                 continue;
             }

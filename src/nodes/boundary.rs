@@ -83,7 +83,7 @@ impl Boundary {
         // Where elastic pins touch depends on the plate: `pins`.
         let known = specimen.loads.iter().filter(|load| !is_moved && !load.is_elastic_pin());
         for piece in known.flat_map(|load| pieces_of(load, specimen, far / PIECES_IN_SPACING)) {
-            match grips.iter().find(|grip| is_on(grip, specimen, piece.facet.at)) {
+            match grips.iter().find(|grip| (piece.facet.at[1] - grip.middle[1]).abs() < 1e-9 * specimen.length()) {
                 // A rigid end takes up all that is on it.
                 Some(grip) => {
                     let arm = piece.facet.at[0] - grip.middle[0];
@@ -231,10 +231,6 @@ pub fn press_cracks(
 
 /// Spring of a pinned unknown over E', m; what it is does not matter.
 const PIN: f64 = 1e-3;
-
-fn is_on(grip: &Grip, specimen: &Specimen, at: Point) -> bool {
-    (at[1] - grip.middle[1]).abs() < 1e-9 * specimen.length()
-}
 
 fn penalty(specimen: &Specimen, plate: &Discretisation, at: Point) -> f64 {
     PENALTY * plate.elasticity().plane_modulus * specimen.thickness / plate.grid.spacing(plate.grid.leaf(at))

@@ -58,14 +58,13 @@ pub fn read(
     let axes = &plate.axes[tip];
     let mut local = Local::default();
     let field = |at: Point| {
-        plate.displacement(u, at, &mut local).map(|(_, gradient)| axes.gradient_to_axes(gradient)).ok_or_else(|| unknown(at))
+        plate
+            .displacement(u, at, &mut local)
+            .map(|(_, gradient)| axes.gradient_to_axes(gradient))
+            .ok_or_else(|| Error::Mechanics(format!("no displacement is known at {}: too few nodes are in reach", place_mm(at))))
     };
     let radius = room.min(RADIUS_SPACINGS * axes.spacing);
     integral(axes, plate.elasticity(), radius, stress, field)
-}
-
-fn unknown(at: Point) -> Error {
-    Error::Mechanics(format!("no displacement is known at {}: too few nodes are in reach", place_mm(at)))
 }
 
 /// The integral over a ring of this outer radius, m, around a tip, of a displacement with the gradient `field` at a point.

@@ -77,7 +77,11 @@ impl Nodes {
                 let spacing = grid.spacing(grid.leaf(at));
                 // Where the wall of a slot meets the outline both have a node.
                 let is_alone = nodes.at[inside..].iter().all(|other| distance(*other, at) > TWIN_SHARE * spacing);
-                if is_alone && is_on_plate(specimen, at, stretch.inward(*share), grid) {
+                // Slots and holes may cover others' rims, and slots reach beyond the outline.
+                // At a corner the way inwards of one side may lie on the other.
+                let ([x, y], step) = (stretch.inward(*share), 1e-6 * spacing);
+                let mut ways = [[x, y], [x - y, x + y], [x + y, y - x]].into_iter();
+                if is_alone && ways.any(|[x, y]| specimen.contains([at[0] + step * x, at[1] + step * y])) {
                     nodes.push(at, spacing);
                 }
             }
@@ -125,13 +129,6 @@ impl Nodes {
         }
         parted
     }
-}
-
-/// Whether a place on a rim belongs to the plate: slots and holes may cover others' rims, and slots reach beyond the outline.
-fn is_on_plate(specimen: &Specimen, at: Point, [x, y]: Point, grid: &Grid) -> bool {
-    let step = 1e-6 * grid.spacing(grid.leaf(at));
-    // At a corner the way inwards of one side may lie on the other.
-    [[x, y], [x - y, x + y], [x + y, y - x]].iter().any(|[x, y]| specimen.contains([at[0] + step * x, at[1] + step * y]))
 }
 
 /// The point of a rim nearest to a place.

@@ -92,7 +92,11 @@ pub fn rim_stresses(specimen: &Specimen, plate: &Discretisation, u: &[f64], shar
         rims.push(extremes(Rim::Slot(index), found, [true, false])?);
     }
     let found = outline(specimen, plate).iter().flat_map(|stretch| reader.stresses(stretch, None)).collect();
-    rims.push(extremes(Rim::Outline, found, corners_of(&specimen.outline))?);
+    let (corners, count) = (&specimen.outline, specimen.outline.len());
+    let turn = |k: usize| turn_at(corners[(k + count - 1) % count], corners[k], corners[(k + 1) % count]);
+    let [is_sharp, has_arcs] =
+        [(0..count).any(|k| turn(k) < -ARC_TURN), (0..count).any(|k| (-ARC_TURN..-1e-6).contains(&turn(k)))];
+    rims.push(extremes(Rim::Outline, found, [is_sharp, has_arcs])?);
     Ok(rims)
 }
 
@@ -287,11 +291,4 @@ fn extremes(rim: Rim, places: Vec<StressAt>, [is_sharp, is_round]: [bool; 2]) ->
                 .to_owned(),
         )),
     }
-}
-
-/// Whether an outline has sharp re-entrant corners, and concave arcs.
-fn corners_of(outline: &[Point]) -> [bool; 2] {
-    let count = outline.len();
-    let turn = |k: usize| turn_at(outline[(k + count - 1) % count], outline[k], outline[(k + 1) % count]);
-    [(0..count).any(|k| turn(k) < -ARC_TURN), (0..count).any(|k| (-ARC_TURN..-1e-6).contains(&turn(k)))]
 }

@@ -225,19 +225,12 @@ pub fn share_out(body: &Body, tips: &[CrackTip], broken: &[Bond]) -> Vec<Vec<Bon
             let [x, y] = [0, 1].map(|i| tip.position[i] - middle[i]);
             x * tip.direction[0] + y * tip.direction[1] > BEHIND_HORIZONS * body.horizon() * (1.0 + ROUND_OFF)
         };
-        if let Some(nearest) = nearest_tip(body, tips, bond).filter(|&t| !behind(&tips[t])) {
+        let away = |t: usize| distance(tips[t].position, middle);
+        let near =
+            (0..tips.len()).filter(|&t| tips[t].is_active() && away(t) <= REACH_HORIZONS * body.horizon() * (1.0 + ROUND_OFF));
+        if let Some(nearest) = near.min_by(|&a, &b| away(a).total_cmp(&away(b))).filter(|&t| !behind(&tips[t])) {
             shares[nearest].push(bond);
         }
     }
     shares
-}
-
-/// The nearest active tip that a bond is near to.
-pub fn nearest_tip(body: &Body, tips: &[CrackTip], bond: Bond) -> Option<usize> {
-    let middle = body.middle(bond);
-    (0..tips.len())
-        .filter(|&t| {
-            tips[t].is_active() && distance(tips[t].position, middle) <= REACH_HORIZONS * body.horizon() * (1.0 + ROUND_OFF)
-        })
-        .min_by(|&a, &b| distance(tips[a].position, middle).total_cmp(&distance(tips[b].position, middle)))
 }

@@ -71,7 +71,11 @@ pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
         let ninth = format!("give a ninth of the crack or less, {} mm", round_mm(flaw / 9.0));
         return Err(input(KEY, given, problem, if flaw / 9.0 < finest { NODES.to_owned() } else { ninth }));
     }
-    check_columns(spacing, specimen)?;
+    let thinnest = specimen.gross_width.min(specimen.length());
+    if thinnest < COLUMNS_MIN * spacing {
+        let problem = format!("leaves fewer than {COLUMNS_MIN} points across the plate ({} mm)", round_mm(thinnest));
+        return Err(input(KEY, given, problem, format!("give {} mm or less", round_mm(thinnest / 100.0))));
+    }
     let tips = specimen.tips.iter().filter(|tip| !tip.from_slot && specimen.kind.is_plate());
     let gap = tips.map(|tip| specimen.rim_distance(tip.position)).fold(f64::INFINITY, f64::min);
     if spacing > gap * (1.0 + 1e-9) {
@@ -89,14 +93,4 @@ pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
         return Err(input(KEY, given, problem, remedy));
     }
     Ok(())
-}
-
-/// The plate has some points of this spacing across, whatever lies in it.
-fn check_columns(spacing: f64, specimen: &Specimen) -> Result<()> {
-    let thinnest = specimen.gross_width.min(specimen.length());
-    if thinnest >= COLUMNS_MIN * spacing {
-        return Ok(());
-    }
-    let problem = format!("leaves fewer than {COLUMNS_MIN} points across the plate ({} mm)", round_mm(thinnest));
-    Err(input("model.spacing_mm", round_mm(spacing), problem, format!("give {} mm or less", round_mm(thinnest / 100.0))))
 }

@@ -13,7 +13,7 @@ pub struct Bonds {
     pub multiplier: Vec<f32>,
     /// Whether all bonds of all points of a chunk of [`LANES`] places are interior and intact (row by row).
     pub regular: Vec<bool>,
-    chunks: usize,
+    pub(crate) chunks: usize,
     /// For every row the chunks that hold points: of a plate that lies turned on its lattice half of them hold none.
     inhabited: Vec<Range<usize>>,
 }
@@ -75,12 +75,6 @@ impl Bonds {
     #[inline]
     pub fn chunk_is_regular(&self, row: usize, chunk: usize) -> bool {
         self.regular[row * self.chunks + chunk]
-    }
-
-    /// Whether the chunks of a row are regular.
-    #[inline]
-    pub fn row_is_regular(&self, row: usize) -> &[bool] {
-        &self.regular[row * self.chunks..(row + 1) * self.chunks]
     }
 
     /// Chunks of a row from the first to the last one that holds points.

@@ -244,11 +244,6 @@ pub fn digits([low, middle, high]: &Quantiles) -> usize {
     DIGITS.iter().find(|(width, _)| half > *width).map_or(DIGITS_MOST, |(_, digits)| *digits)
 }
 
-/// A number of cycles rounded to some significant digits, thousands grouped.
-fn rounded(cycles: f64, digits: usize) -> String {
-    written(cycles, digits, f64::round)
-}
-
 /// An interval rounded down, since it is a promise, to the digits that a band deserves, and its passes under a spectrum.
 pub fn every_words(cycles: f64, band: Option<&Quantiles>, per_pass: Option<f64>) -> String {
     let whole = band.map_or_else(|| grouped(cycles.floor()), |band| written(cycles, digits(band), f64::floor));
@@ -299,6 +294,6 @@ pub fn band_words(quantiles: &Quantiles) -> String {
 
 fn words_of(quantiles: &Quantiles, whose: &str) -> String {
     let digits = digits(quantiles);
-    let [low, middle, high] = quantiles.map(|cycles| rounded(cycles, digits));
+    let [low, middle, high] = quantiles.map(|cycles| written(cycles, digits, f64::round));
     format!("{middle} cycles (median; {whose} {low} to {high})")
 }

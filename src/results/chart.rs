@@ -66,11 +66,6 @@ pub fn crack_length(path: &Path, title: &str, series: &[Series]) -> Result<()> {
     linear(path, title, ["Cycles N", "Crack length a, mm"], series)
 }
 
-/// Loads against crack length in mm, both linear; `y_name` says which load in which unit.
-pub fn over_crack_length(path: &Path, title: &str, y_name: &str, series: &[Series]) -> Result<()> {
-    linear(path, title, ["Crack length a, mm", y_name], series)
-}
-
 /// Any quantities, both linear; `names` says what stands along x and y in which units.
 pub fn linear(path: &Path, title: &str, names: [&str; 2], series: &[Series]) -> Result<()> {
     let axes = [Axis::linear(values(series, |p| p.0)), Axis::linear(values(series, |p| p.1))];

@@ -117,7 +117,8 @@ impl DamagePicture<'_> {
         }
         let (bar, thick, parts, start) = (150.0, 20.0, 50, top + 44.0);
         for part in 0..parts {
-            let colour = hex(of_share(1.0 - (f64::from(part) + 0.5) / f64::from(parts)));
+            let [r, g, b] = of_share(1.0 - (f64::from(part) + 0.5) / f64::from(parts));
+            let colour = format!("#{r:02x}{g:02x}{b:02x}");
             let [y, below] = [part, part + 1].map(|part| start + bar * f64::from(part) / f64::from(parts));
             sketch.area(&[[left, y], [left + thick, y], [left + thick, below + 0.4], [left, below + 0.4]], &colour, 1.0);
         }
@@ -138,10 +139,6 @@ impl DamagePicture<'_> {
             sketch.name([left, y], line, "start", TEXT, INK);
         }
     }
-}
-
-fn hex([r, g, b]: [u8; 3]) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 /// Position of a lattice place, m.

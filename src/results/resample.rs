@@ -26,22 +26,16 @@ impl Sampling {
     pub fn of(self, curve: &[Row], option: &str) -> Result<Vec<Row>> {
         let (first, last) = (curve[0].cycles, curve[curve.len() - 1].cycles);
         let cycles = match self {
-            Sampling::Points(count) => equally_spaced(first, last, count),
+            Sampling::Points(_) if first == last => vec![first],
+            Sampling::Points(count) => {
+                let inner = (1..count - 1).map(|i| first + (last - first) * (i as f64 / (count - 1) as f64));
+                std::iter::once(first).chain(inner).chain([last]).collect()
+            }
             Sampling::EveryCycles(step) => every(first, last, step, option)?,
         };
         let table = cycles_over_length(curve);
         Ok(cycles.iter().map(|n| at(curve, &table, *n)).collect())
     }
-}
-
-/// `count` cycles from `first` to `last`, both exact.
-fn equally_spaced(first: f64, last: f64, count: u64) -> Vec<f64> {
-    if first == last {
-        return vec![first];
-    }
-    let gaps = (count - 1) as f64;
-    let inner = (1..count - 1).map(|i| first + (last - first) * (i as f64 / gaps));
-    std::iter::once(first).chain(inner).chain(std::iter::once(last)).collect()
 }
 
 /// `first`, then every `step` cycles, then `last`.

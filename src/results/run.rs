@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
-use toml::Table;
 
 use super::answers::Answers;
 use super::band::Lives;
@@ -33,10 +32,9 @@ use perilife_growth::predict::part_through::PartThroughLife;
 use perilife_growth::predict::plastic_zone::{self, PlasticZone};
 use perilife_growth::predict::residual_strength::Strength;
 use perilife_growth::predict::{Prediction, StopReason};
-use perilife_growth::record::DepthRecord;
 use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::part_through::{SOURCE, STATED_ERROR};
-use perilife_plate::specimen::{LengthConvention, LoadMeasure, PartThrough, Point};
+use perilife_plate::specimen::{LengthConvention, LoadMeasure, Point};
 
 /// Table of the ways of the tips.
 pub const CRACK_PATH_FILE: &str = "crack_path.csv";
@@ -118,20 +116,16 @@ pub fn write(folder: &Path, case: &Case, prediction: &Prediction, answers: &Answ
         }
     }
     write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
-    provenance::write(folder, "predict", input_of(case), &case.provenance)?;
-    answers.write(folder, case)?;
-    draw(folder, case, prediction, result, [a_n, crack_path])?;
-    vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)
-}
-
-/// The input of a case, with a record that came with no file as a file.
-fn input_of(case: &Case) -> Table {
     let mut input = provenance::table_of(&case.echo);
     let fitted = input.get_mut("fatigue").and_then(|fatigue| fatigue.as_table_mut()?.get_mut("fitted"));
     if let Some(record) = fitted.filter(|record| record.is_table()) {
+        // A record that came with no file stands in one beside it.
         *record = RECORD.into();
     }
-    input
+    provenance::write(folder, "predict", input, &case.provenance)?;
+    answers.write(folder, case)?;
+    draw(folder, case, prediction, result, [a_n, crack_path])?;
+    vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)
 }
 
 /// Bytes that a run of this case will write, roughly.
@@ -150,7 +144,11 @@ fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_
     if let Some(k) = k_svg(result, &tables, LARGE) {
         put("k.svg", &k)?;
     }
-    draw_rates(folder, case, &tables)?;
+    let points: Vec<(f64, f64)> = tables.rows.iter().map(|row| (row.delta_k_mpa_sqrt_m, row.da_dn_mm_per_cycle)).collect();
+    if points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
+        let rates = Series { name: "predicted, one point per cycle block".to_owned(), mark: Mark::Dots, points };
+        chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
+    }
     if let Some(spectrum) = &case.loading.spectrum {
         put("spectrum.svg", &spectrum_svg(spectrum, LARGE))?;
     }
@@ -184,16 +182,6 @@ fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_
         }
     }
     Ok(())
-}
-
-/// `da_dn.svg` where ΔK and da/dN are known.
-fn draw_rates(folder: &Path, case: &Case, tables: &RunTables) -> Result<()> {
-    let points: Vec<(f64, f64)> = tables.rows.iter().map(|row| (row.delta_k_mpa_sqrt_m, row.da_dn_mm_per_cycle)).collect();
-    if !points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
-        return Ok(());
-    }
-    let rates = Series { name: "predicted, one point per cycle block".to_owned(), mark: Mark::Dots, points };
-    chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])
 }
 
 /// What came of a run, in words.
@@ -255,7 +243,9 @@ pub fn told_by_checks(case: &Case, prediction: &Prediction) -> Vec<String> {
 /// How far the crack grew: by the length of the standard of the specimen, or that of the crack whose tip leads, and what all of them sum to.
 fn length_words(case: &Case, prediction: &Prediction) -> String {
     let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
-    let of_standard = || format!("{from:.3} mm to {to:.3} mm{}", depth_words(case, prediction));
+    let depths = case.specimen.part_through.zip(prediction.curve.last().and_then(|row| row.depth));
+    let depths = depths.map(|(flaw, last)| format!(", depth {:.3} mm to {:.3} mm", flaw.depth / MM, last.depth / MM));
+    let of_standard = || format!("{from:.3} mm to {to:.3} mm{}", depths.as_deref().unwrap_or_default());
     match prediction.leading_tip(&case.specimen) {
         // Of one crack the length is that from where its specimen counts it.
         Some(_) if case.specimen.convention == LengthConvention::MeanOfTips && case.specimen.tips.len() == 1 => of_standard(),
@@ -269,14 +259,6 @@ fn length_words(case: &Case, prediction: &Prediction) -> String {
         }
         None => of_standard(),
     }
-}
-
-/// The same in the thickness, of a crack that did not go through at the start.
-fn depth_words(case: &Case, prediction: &Prediction) -> String {
-    let ends = case.specimen.part_through.zip(prediction.curve.last().and_then(|row| row.depth));
-    let words =
-        |(flaw, last): (PartThrough, DepthRecord)| format!(", depth {:.3} mm to {:.3} mm", flaw.depth / MM, last.depth / MM);
-    ends.map_or_else(String::new, words)
 }
 
 /// When a crack was through, and what the error of its K does to the life.
@@ -376,5 +358,6 @@ pub fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<
         series("load to bear", Mark::Dashes, &|_| case.stop.required.map(|factor| factor * case.loading.maximum)),
     ];
     let known: Vec<Series> = all.into_iter().filter(|series| !series.points.is_empty()).collect();
-    chart::over_crack_length(&folder.join("residual_strength.svg"), &format!("{}: residual strength", case.name), axis, &known)
+    let title = format!("{}: residual strength", case.name);
+    chart::linear(&folder.join("residual_strength.svg"), &title, ["Crack length a, mm", axis], &known)
 }

@@ -139,18 +139,14 @@ impl Boundary {
         if size > 0.0 { vector.map(|v| v / size) } else { [0.0, 0.0] }
     }
 
-    /// [`measure_at`](Self::measure_at) where all loads have grown in proportion to a share of the full one.
+    /// [`measured`](Self::measured) where all loads have grown in proportion to a share of the full one.
     pub fn measure(&self, unknowns: usize, level: f64, u: &[f64], pull: &[f64]) -> (f64, f64) {
         self.measured(unknowns, |_| level, u, pull)
     }
 
-    /// Displacement of the loads along their direction, summed, and their mean force at a time, s, in m and N; `pull` is what the
-    /// points' bonds do to them. Where some loads are prescribed motions, given forces beside them do not count.
-    pub fn measure_at(&self, unknowns: usize, time: f64, u: &[f64], pull: &[f64]) -> (f64, f64) {
-        self.measured(unknowns, |group| group.rise.share(time), u, pull)
-    }
-
-    fn measured(&self, unknowns: usize, level: impl Fn(&Group) -> f64, u: &[f64], pull: &[f64]) -> (f64, f64) {
+    /// Displacement of the loads along their direction, summed, and their mean force at the `level` of each group, in m and N; `pull` is what
+    /// the points' bonds do to them. Where some loads are prescribed motions, given forces beside them do not count.
+    pub fn measured(&self, unknowns: usize, level: impl Fn(&Group) -> f64, u: &[f64], pull: &[f64]) -> (f64, f64) {
         let (mut displacement, mut load) = (0.0, 0.0);
         let moving = |group: &&Group| group.direction != [0.0, 0.0];
         let driven = self.groups.iter().filter(moving).any(|group| group.force.is_none());

@@ -170,7 +170,7 @@ impl Run<'_> {
             let look = step % WATCH == 0 || step % stride == 0 || step == self.steps;
             if look {
                 let all_work = at.work + platens.map_or(0.0, |driven| driven.work);
-                let of_points = || boundary.measure_at(unknowns, time, &at.motion.u, &at.motion.force);
+                let of_points = || boundary.measured(unknowns, |group| group.rise.share(time), &at.motion.u, &at.motion.force);
                 let (displacement, load) = platens.map_or_else(of_points, |driven| (driven.displacement, driven.load));
                 let (kinetic, strain, fracture) = (self.kinetic(&at.motion.v), reaction.strain, at.fracture);
                 let row =

@@ -35,7 +35,10 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
                 horizon_ratio: model.horizon_ratio,
                 lattice_angle: model.lattice_angle,
                 refinement: scene.refinement.as_ref(),
-                floating: is_floating(scene),
+                // Where nothing holds the plate its loads must balance.
+                floating: scene.specimen.supports.is_empty()
+                    && scene.holds.is_empty()
+                    && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_))),
             };
             Ok((dual_horizon::build(&ask)?, None))
         }
@@ -44,13 +47,6 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
             Err(input("model.discretisation", format!("\"{arrangement}\""), problem, "use \"lattice\""))
         }
     }
-}
-
-/// Whether nothing holds the plate, so that its loads must balance.
-fn is_floating(scene: &Scene) -> bool {
-    scene.specimen.supports.is_empty()
-        && scene.holds.is_empty()
-        && scene.drives.iter().all(|drive| matches!(drive.action, Action::Traction(_)))
 }
 
 impl Region {

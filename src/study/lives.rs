@@ -144,7 +144,7 @@ pub fn blocks(table: &mut Table) -> Result<()> {
         let off = |tip: usize| {
             let until = COMPARED * coarse.life_cycles();
             // The whole of the fine path: where a tip stands at one share of life may differ by a step along it.
-            Curve::of_tip(&coarse, tip).until(until).largest_off(&Curve::of_tip(&fine, tip))
+            Curve::of_tip(&coarse, tip).until(until).off(&Curve::of_tip(&fine, tip)).fold(0.0, f64::max)
         };
         let off = (0..fine.curve[0].tips.len()).map(off).fold(0.0, f64::max) / MM;
         let quantity =

@@ -103,16 +103,11 @@ impl Curve {
     }
 
     /// Distances of its places from the path of another, m.
-    fn off(&self, other: &Curve) -> impl Iterator<Item = f64> {
+    pub fn off(&self, other: &Curve) -> impl Iterator<Item = f64> {
         let off = |at: Point| {
             other.0.windows(2).map(|pair| distance_to_segment(at, pair[0].1, pair[1].1)).fold(f64::INFINITY, f64::min)
         };
         self.0.iter().map(move |(_, at)| off(*at))
-    }
-
-    /// The largest of these, m.
-    pub fn largest_off(&self, other: &Curve) -> f64 {
-        self.off(other).fold(0.0, f64::max)
     }
 
     /// Their root mean square over the length that both have, m: what lies beyond the other's end is no distance from it.

@@ -55,7 +55,8 @@ pub fn rows(table: &mut Table) -> Result<()> {
     table.compare(name, growth_load(keys)?, GRIFFITH[1], 10.0, GRIFFITH_SOURCE);
     let found = perilife_scenes::run(&Scene::from_toml(BRANCHING, "branching", Path::new("."), &[])?, &Silent)?;
     // Well beyond the published split at 21 mm.
-    let branches = bands(&cracked_rows(&found, 40.0 * MM), 3.0 * MM);
+    let heights = cracked_rows(&found, 40.0 * MM);
+    let branches = usize::from(!heights.is_empty()) + heights.windows(2).filter(|pair| pair[1] - pair[0] > 3.0 * MM).count();
     table.compare("plate under 1 MPa: branches at x = 40 mm", branches as f64, 2.0, 0.1, "Borden et al. 2012, figure 12");
     Ok(())
 }
@@ -106,9 +107,4 @@ pub fn cracked_rows(run: &Fracture, x: f64) -> Vec<f64> {
     let damage = |row: usize| grid.point_at[row * grid.columns + column].zip(last).map(|(p, last)| last.damage[p as usize]);
     let is_cracked = |row: &usize| damage(*row).is_some_and(|damage| damage >= CRACKED);
     (0..grid.rows).filter(is_cracked).map(|row| grid.origin[1] + row as f64 * grid.spacing).collect()
-}
-
-/// Groups of heights farther apart than a gap.
-fn bands(heights: &[f64], gap: f64) -> usize {
-    usize::from(!heights.is_empty()) + heights.windows(2).filter(|pair| pair[1] - pair[0] > gap).count()
 }

@@ -68,7 +68,7 @@ pub fn csv(records: &[Record]) -> String {
                 field(sweep.parameter),
                 number(*value),
                 sweep.status(outcome).name(),
-                record.end_beside(*value).map_or_else(String::new, number),
+                record.ends[usize::from(*value >= record.sweep.usual)].map_or_else(String::new, number),
                 field(reason),
                 env!("CARGO_PKG_VERSION"),
             );

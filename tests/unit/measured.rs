@@ -4,10 +4,11 @@ use std::path::Path;
 
 use perilife_base::table::units::{CycleUnit, LengthUnit};
 use perilife_base::units::MM;
-use perilife_calibration::median::{common_lengths, cycles_at, median, pointwise_median, pointwise_median_at};
+use perilife_calibration::median::{common_lengths, cycles_at, median, pointwise_median_at};
 use perilife_measured::{Import, LeaveOut, Measured, MeasuredCurve, PROBLEMS_MAX, parse, read, survey};
 use proptest::prelude::*;
 
+use crate::support::median::pointwise_median;
 use crate::support::shared::shared;
 
 fn parsed(text: &str) -> Measured {

@@ -7,13 +7,14 @@
 use perilife_base::units::MM;
 use perilife_calibration::criterion::Criterion;
 use perilife_calibration::fit::{Fit, FitTask, fit};
-use perilife_calibration::median::{cycles_at, pointwise_median};
+use perilife_calibration::median::cycles_at;
 use perilife_calibration::power_law::PowerLaw;
 use perilife_calibration::search::FittedCurve;
 use perilife_measured::{Import, MeasuredCurve, read};
 
 use super::fit_engine;
 use super::fit_virkler::delta_k;
+use crate::support::median::pointwise_median;
 use crate::support::shared::shared;
 
 /// Largest deviation asked for at a crack length, as a share of life to there.

@@ -4,9 +4,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use perilife_base::units::MM;
-use perilife_calibration::median::{pointwise_median, pointwise_median_at};
+use perilife_calibration::median::pointwise_median_at;
 use perilife_measured::{Import, MeasuredCurve, read};
 
+use crate::support::median::pointwise_median;
 use crate::support::shared::shared;
 
 const TABLE: &str = "calibration/al2024-t3/measured/virkler_median.csv";

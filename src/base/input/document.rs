@@ -137,7 +137,9 @@ impl Document {
         if let Some(other) = other.filter(|other| self.overridden.contains(&metric(key)) && is_set(other)) {
             return Err(refuse(&format!("stands beside {other}: one quantity is given twice")));
         }
-        self.put_as_given(key, plain_value(value)).map_err(refuse)?;
+        // TOML where it is TOML, else text, so that names need no quotes in a shell.
+        let parsed = toml::de::ValueDeserializer::parse(value).and_then(Value::deserialize);
+        self.put_as_given(key, parsed.unwrap_or_else(|_| Value::String(value.to_owned()))).map_err(refuse)?;
         self.overridden.push(metric(key));
         self.folder.opened().add_override(text);
         Ok(())
@@ -181,12 +183,6 @@ fn child<'v>(value: &'v mut Value, step: &str) -> Option<&'v mut Value> {
         Value::Array(items) => items.get_mut(step.parse::<usize>().ok()?),
         _ => None,
     }
-}
-
-/// The value of an override: TOML where it is TOML, else text, so that names need no quotes in a shell.
-fn plain_value(text: &str) -> Value {
-    let parsed = toml::de::ValueDeserializer::parse(text).and_then(Value::deserialize);
-    parsed.unwrap_or_else(|_| Value::String(text.to_owned()))
 }
 
 fn syntax_error(error: &toml::de::Error, text: &str, file: Option<&Path>) -> Error {

@@ -43,6 +43,18 @@ pub fn slice_beside<T: DeserializeOwned>(value: &Value, path: &str, beside: &[&s
     own.try_into().map_err(|error| explain(&error, value, path, beside))
 }
 
+/// Keys with what an input has for them, from the fields of their names: `keyed!(input: mean, median)`.
+#[macro_export]
+macro_rules! keyed {
+    ($input:ident: $($key:ident),+) => { [$((stringify!($key), $input.$key)),+] };
+}
+
+/// Keys with whether they are given, from the fields of their names, as [`refuse_given`](crate::input::refuse_given) takes them.
+#[macro_export]
+macro_rules! given {
+    ($input:ident: $($key:ident),+) => { [$((stringify!($key), $input.$key.is_some())),+] };
+}
+
 /// Refuses the first key of a section that is given, though it has no use there.
 pub fn refuse_given(section: &str, keys: &[(&str, bool)], problem: &str, remedy: &str) -> Result<()> {
     match keys.iter().find(|(_, is_given)| *is_given) {

@@ -43,7 +43,8 @@ struct Merit(bool, bool, f64);
 /// Errors: no table, or rows that are not as wide as its header.
 pub(super) fn text(text: &str, file: &Path, words: &dyn Vocabulary) -> Result<Table> {
     check_size(text, file)?;
-    let (lines, comments) = kept_lines(text);
+    let is_comment = |line: &str| ["#", "%", "//"].iter().any(|sign| line.trim_start().starts_with(sign));
+    let (lines, comments): (Vec<Line<'_>>, Vec<Line<'_>>) = written_lines(text).partition(|(_, line)| !is_comment(line));
     if lines.is_empty() {
         return Err(whole_file(file).error("is empty", words.remedy()));
     }
@@ -88,15 +89,6 @@ fn written_lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let end = if text.contains('\n') { '\n' } else { '\r' };
     let lines = text.split(end).enumerate().map(|(index, line)| (index + 1, line.trim_end_matches('\r')));
     lines.filter(|(_, line)| !line.trim().is_empty())
-}
-
-/// Lines that are neither blank nor comments, and the comments.
-fn kept_lines(text: &str) -> (Vec<Line<'_>>, Vec<Line<'_>>) {
-    written_lines(text).partition(|(_, line)| !is_comment(line))
-}
-
-fn is_comment(line: &str) -> bool {
-    ["#", "%", "//"].iter().any(|sign| line.trim_start().starts_with(sign))
 }
 
 /// Whether a row has as many numbers as a table has columns at least.

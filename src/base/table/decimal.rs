@@ -38,7 +38,7 @@ pub fn decide(table: &Table, columns: &[Numbers], given: Option<Decimal>) -> Res
     };
     for (seen, column) in seen.iter().zip(columns) {
         // Whole thousands beside decimals of the same sign, and thousands where none can be: one of two programs wrote the column.
-        let own_sign = column.counts && seen.is_open_alone(decided);
+        let own_sign = column.counts && seen.open[decided as usize].is_some() && seen.proofs[decided as usize].is_none();
         let other_sign = !column.counts && seen.open[decided.other() as usize].is_some();
         if own_sign || other_sign {
             return Err(open(seen).unwrap_or_else(|| table.header_fault(seen.column).error("is open", "")));
@@ -96,11 +96,6 @@ impl<'t> Seen<'t> {
 
     fn proof(&self, decimal: Decimal) -> Option<(&'t Row, usize)> {
         self.proofs[decimal as usize].map(|row| (row, self.column))
-    }
-
-    /// Whether every sign in the column is this one, with three digits behind it.
-    fn is_open_alone(&self, decimal: Decimal) -> bool {
-        self.open[decimal as usize].is_some() && self.proofs[decimal as usize].is_none()
     }
 }
 

@@ -27,7 +27,7 @@ pub struct Unit {
     /// End of keys and columns.
     suffix: [&'static str; 2],
     /// Name in words, pictures and messages.
-    word: [&'static str; 2],
+    pub(super) word: [&'static str; 2],
     /// Metric units in one of the US.
     size: f64,
 }
@@ -77,11 +77,6 @@ impl Unit {
     /// The one that a word names.
     pub fn named(word: &str, of: System) -> Option<&'static Unit> {
         UNITS.iter().find(|unit| unit.word(of) == word)
-    }
-
-    /// Whether it stands in tables and messages for nothing else: N is also a number of cycles.
-    pub(super) fn is_unmistakable(&self) -> bool {
-        self.word[0].len() > 1
     }
 }
 

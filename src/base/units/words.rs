@@ -39,8 +39,9 @@ pub fn in_units(text: &str, to: System) -> String {
     // What is replaced, in order.
     let mut parts: Vec<(usize, usize, String)> = places
         .iter()
+        // A unit of one letter may stand for something else: N is also a number of cycles.
         .filter(|(place, unit)| {
-            unit.is_unmistakable() || before(text, &numbers, *place).is_some_and(|[_, last]| numbers[last].factor != 1.0)
+            unit.word[0].len() > 1 || before(text, &numbers, *place).is_some_and(|[_, last]| numbers[last].factor != 1.0)
         })
         .map(|(place, unit)| (*place, place + unit.word(from).len(), unit.word(to).to_owned()))
         .collect();

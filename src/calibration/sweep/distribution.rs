@@ -157,17 +157,14 @@ pub fn hypercube(samples: usize, columns: usize, seed: u64) -> Vec<Vec<f64>> {
         let mut strata: Vec<usize> = (0..samples).collect();
         shuffle(&mut strata, &mut stream);
         for (row, stratum) in rows.iter_mut().zip(strata) {
-            let probability = (stratum as f64 + open_unit(&mut stream)) / samples as f64;
+            // In (0, 1): the middle of one of 2⁵² equal parts.
+            let open_unit = ((stream.next_u64() >> 12) as f64 + 0.5) / (1u64 << 52) as f64;
+            let probability = (stratum as f64 + open_unit) / samples as f64;
             // The last stratum may round up to 1, of which no quantile is finite.
             row.push(probability.min(1.0 - 0.5 * f64::EPSILON));
         }
     }
     rows
-}
-
-/// A number in (0, 1): the middle of one of 2⁵² equal parts.
-fn open_unit(stream: &mut ChaCha8Rng) -> f64 {
-    ((stream.next_u64() >> 12) as f64 + 0.5) / (1u64 << 52) as f64
 }
 
 /// Every order is equally likely (Fisher and Yates; Durstenfeld 1964, Commun. ACM 7:420).

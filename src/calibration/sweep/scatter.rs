@@ -71,7 +71,9 @@ impl LawScatter {
             let remedy = "calibrate on more specimens, or use design.scatter = \"constants\"";
             return Err(input("specimens", format!("{n} specimens"), problem, remedy));
         }
-        let (of_record, slope) = (constant(&record), slope(&record)?);
+        // In the unit of the specimens' own.
+        let of_record = if record.a.is_finite() { record.a } else { record.paris_c_mm_per_cycle * MM_PER_CYCLE };
+        let slope = slope(&record)?;
         let rate =
             |fit: &SpecimenFit| record.rate_at_pivot_mm_per_cycle.ln() + (fit.a / of_record).ln() + slope * (fit.p - record.p);
         let pairs: Vec<[f64; 2]> = fits.specimens.iter().map(|fit| [rate(fit), fit.p]).collect();
@@ -154,11 +156,6 @@ pub fn read(record: FittedRecord, fitted: &str, folder: &Folder, scatter: Scatte
         input_missing("file", problem, "calibrate again").in_file(&path)
     })?;
     LawScatter::of_specimens(record, &fits).map_err(|error| error.in_file(&path))
-}
-
-/// A of the record in the unit of the specimens' own.
-fn constant(record: &FittedRecord) -> f64 {
-    if record.a.is_finite() { record.a } else { record.paris_c_mm_per_cycle * MM_PER_CYCLE }
 }
 
 /// s = ∂ ln R / ∂p at fixed A and the pivot ΔK.

@@ -161,7 +161,7 @@ impl Reader<'_> {
 
     fn random(&self, kind: DesignKind) -> Result<Spread> {
         let input = self.input;
-        let of_grids = [("values", input.values.is_some()), ("count", input.count.is_some()), ("scale", input.scale.is_some())];
+        let of_grids = perilife_base::given!(input: values, count, scale);
         self.refuse(&of_grids, &format!("belongs to a grid, and this is a design of kind \"{kind}\""), "give a distribution")?;
         let shape = input.distribution.ok_or_else(|| self.missing("distribution"))?;
         let own: &[&str] = match shape {
@@ -260,23 +260,11 @@ impl Reader<'_> {
 
     fn of_distributions(&self) -> [(&'static str, bool); 6] {
         let input = self.input;
-        [
-            ("distribution", input.distribution.is_some()),
-            ("mean", input.mean.is_some()),
-            ("standard_deviation", input.standard_deviation.is_some()),
-            ("median", input.median.is_some()),
-            ("factor", input.factor.is_some()),
-            ("standard_deviation_ln", input.standard_deviation_ln.is_some()),
-        ]
+        perilife_base::given!(input: distribution, mean, standard_deviation, median, factor, standard_deviation_ln)
     }
 
     fn of_spacing(&self) -> [(&'static str, bool); 4] {
         let input = self.input;
-        [
-            ("from", input.from.is_some()),
-            ("to", input.to.is_some()),
-            ("count", input.count.is_some()),
-            ("scale", input.scale.is_some()),
-        ]
+        perilife_base::given!(input: from, to, count, scale)
     }
 }

@@ -51,7 +51,7 @@ impl Row {
 
 /// All rows of a run so far.
 pub struct GrowthHistory {
-    past: History,
+    pub past: History,
     formula: Option<HandbookFormula>,
     specimen: Specimen,
     /// Cycles at which the run was ended without a break.
@@ -89,11 +89,6 @@ impl GrowthHistory {
                 LengthConvention::SumOfTips => f64::INFINITY,
             },
         }
-    }
-
-    /// Goes on from what was taken down before.
-    pub(super) fn go_on_from(&mut self, past: History) {
-        self.past = past;
     }
 
     /// What was taken down so far.

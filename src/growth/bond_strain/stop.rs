@@ -38,12 +38,6 @@ pub(super) fn before_block(
     ageing.is_empty().then_some(StopReason::NothingAges)
 }
 
-/// Reasons that show after a block: a known end is passed. The run goes on for a spacing more, so that the length averaged over
-/// a spacing of growth is known up to the end; the curve stops there.
-pub(super) fn after_block(case: &Case, end: Option<End>, track: &GrowthHistory) -> Option<StopReason> {
-    end.filter(|end| track.last().crack_length >= end.crack_length + case.points().spacing).map(|end| end.reason)
-}
-
 /// Where on its curve a plate no longer bears its load.
 pub(super) fn at_section(case: &Case, curve: &[CurvePoint]) -> Option<End> {
     curve.windows(2).find_map(|rows| {

@@ -12,7 +12,7 @@ use perilife_plate::material::Plane;
 use perilife_plate::specimen::LoadMeasure;
 use perilife_plate::specimen::geometry::{distance, edges, meeting_share, segments_touch};
 use perilife_plate::specimen::handbook::handbook;
-use perilife_plate::specimen::{CrackLine, FrontTip, Hole, PartThrough, Point, Specimen};
+use perilife_plate::specimen::{FrontTip, PartThrough, Point, Specimen};
 use perilife_points::bond_law::BondLawKind;
 
 /// A line for every safe range that the case lies beyond.
@@ -113,16 +113,13 @@ impl Gaps {
             gaps.ligament = gaps.ligament.min(ahead(specimen, at, specimen.tips[tip].direction));
             let others = lines.iter().enumerate().filter(|(other, _)| *other != end.line);
             gaps.crack = others.map(|(_, other)| other.distance(at)).fold(gaps.crack, f64::min);
-            let holes = specimen.holes.iter().filter(|hole| !starts_at(line, !end.at_last, hole));
+            // The mouth of the crack may lie on a hole.
+            let mouth = line.end(!end.at_last);
+            let holes = specimen.holes.iter().filter(|hole| distance(mouth, hole.centre) >= hole.radius * (1.0 + 1e-6));
             gaps.hole = holes.map(|hole| distance(at, hole.centre) - hole.radius).fold(gaps.hole, f64::min);
         }
         gaps
     }
-}
-
-/// Whether an end of a crack is its mouth on a hole.
-fn starts_at(line: &CrackLine, at_last: bool, hole: &Hole) -> bool {
-    distance(line.end(at_last), hole.centre) < hole.radius * (1.0 + 1e-6)
 }
 
 /// Way from a tip to the outline straight ahead, m.

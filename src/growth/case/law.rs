@@ -101,12 +101,8 @@ fn check_stress_ratio(case: &Case, record: &FittedRecord) -> Result<()> {
     let problem = format!("is another stress ratio than the calibrated one, {}", record.stress_ratio);
     let remedy =
         "give fatigue.walker_gamma (strain range = s_max (1-R)^gamma; 1 = no mean-stress effect), or a record of this ratio";
-    Err(input(ratio_key(case), other, problem, remedy))
-}
-
-/// The key that gives the stress ratios of a case.
-fn ratio_key(case: &Case) -> &'static str {
-    if case.loading.spectrum.is_some() { "loading.spectrum_file" } else { "loading.stress_ratio" }
+    let key = if case.loading.spectrum.is_some() { "loading.spectrum_file" } else { "loading.stress_ratio" };
+    Err(input(key, other, problem, remedy))
 }
 
 /// A and p as recorded.

@@ -2,7 +2,6 @@
 
 use super::{Case, Model, PointSettings};
 use perilife_nodes::resolution::ElementFreeSettings;
-use perilife_plate::specimen::Specimen;
 use perilife_points::budget::{Budget, PointPlate};
 use perilife_points::solver::SolverKind;
 
@@ -23,12 +22,7 @@ pub fn of_case(case: &Case) -> Budget {
 pub fn on_points(case: &Case) -> Budget {
     let points = case.points();
     let is_direct = points.solver == SolverKind::Direct;
-    let plate = plate_of(&case.specimen, &points);
+    let PointSettings { spacing, horizon_ratio, lattice_angle, .. } = points;
+    let plate = PointPlate { specimen: &case.specimen, spacing, horizon_ratio, lattice_angle, refinement: None };
     plate.budget(points.bond_law.surface_correction, 0.0, is_direct).with_files(case.output)
-}
-
-/// Points and bonds of a case.
-fn plate_of<'a>(specimen: &'a Specimen, points: &PointSettings) -> PointPlate<'a> {
-    let PointSettings { spacing, horizon_ratio, lattice_angle, .. } = *points;
-    PointPlate { specimen, spacing, horizon_ratio, lattice_angle, refinement: None }
 }

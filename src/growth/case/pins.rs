@@ -1,13 +1,11 @@
 //! Where elastic pins touch their holes when a case begins.
 
 use super::{Case, Model};
+use crate::nodes::initial_plate;
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::MM;
-use perilife_nodes::crack::initial_cracks;
-use perilife_nodes::field::Discretisation;
 use perilife_nodes::solve::solve;
 use perilife_plate::specimen::{Bearing, Load, SpecimenKind};
-use perilife_plate::williams::Elasticity;
 
 /// Finds where the elastic pins of a case touch at maximum load, on nodes with the initial cracks, and puts that on its loads. Points keep
 /// it as the cracks grow; nodes find contact anew in every equilibrium.
@@ -34,20 +32,12 @@ pub(super) fn settle(case: &mut Case) -> Result<()> {
             "use model.method = \"element_free_galerkin\"",
         );
     }
-    let (lines, tips) = initial_cracks(&case.specimen);
-    let resolution = case.nodes().resolution;
-    let plate = Discretisation::new(
-        &case.specimen,
-        Elasticity::of(&case.material),
-        &lines,
-        &tips,
-        &resolution,
-        case.loading.residual.as_deref(),
-    )?;
-    let solution = solve(&case.specimen, &plate, resolution.far, case.loading.maximum).map_err(|error| match error {
-        Error::LossOfStiffness => Error::Mechanics("what is left of the plate cannot carry the load of its pins".to_owned()),
-        other => other,
-    })?;
+    let plate = initial_plate(case)?;
+    let solution =
+        solve(&case.specimen, &plate, case.nodes().resolution.far, case.loading.maximum).map_err(|error| match error {
+            Error::LossOfStiffness => Error::Mechanics("what is left of the plate cannot carry the load of its pins".to_owned()),
+            other => other,
+        })?;
     for (load, contact) in solution.contacts {
         if let Load::Pin { contact: Bearing::Elastic(pin), .. } = &mut case.specimen.loads[load] {
             pin.found = Some(contact.into());

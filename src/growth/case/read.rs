@@ -173,7 +173,11 @@ impl Case {
         }
         model::check_law(&case)?;
         check_load(&case)?;
-        check_spectrum(&case)?;
+        if case.loading.spectrum.is_some() && case.spends_bond_life() {
+            let problem = "is counted by da/dN of K, and bonds that lose life by their own strain have none";
+            let remedy = "use fatigue.driver = \"tip_field\", with sharp cracks, or model.method = \"handbook\"";
+            return Err(input("loading.kind", "\"spectrum\"", problem, remedy));
+        }
         residual::check(&case)?;
         case.warnings.extend(boundaries::first_load_warning(&case));
         let lines = law_lines(&case)?;
@@ -249,16 +253,6 @@ fn check_load(case: &Case) -> Result<()> {
         // K of a strip with twenty points over its height is off by 1 to 3 %, and the error falls with the spacing only.
         let problem = "does not know where an edge is that loading.grip = \"straight\" moves: loads act half a spacing inside";
         return Err(input("model.surface_correction", correction, problem, "give \"balanced\", or loading.grip = \"mean\""));
-    }
-    Ok(())
-}
-
-/// Spectra are counted by da/dN of K alone.
-fn check_spectrum(case: &Case) -> Result<()> {
-    if case.loading.spectrum.is_some() && case.spends_bond_life() {
-        let problem = "is counted by da/dN of K, and bonds that lose life by their own strain have none";
-        let remedy = "use fatigue.driver = \"tip_field\", with sharp cracks, or model.method = \"handbook\"";
-        return Err(input("loading.kind", "\"spectrum\"", problem, remedy));
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use super::{Case, Engine, LawSource};
 use perilife_base::error::{Result, input};
 use perilife_plate::loading::residual::ResidualStress;
+use perilife_plate::specimen::SpecimenKind;
 
 /// Places on half a centre crack's line at which a field is looked at for symmetry.
 const LOOKED_AT: usize = 200;
@@ -20,7 +21,7 @@ pub(super) fn check(case: &Case) -> Result<()> {
     }
     match case.engine() {
         Engine::Nodes | Engine::Points => {}
-        Engine::Handbook if !case.specimen.has_green_function() => {
+        Engine::Handbook if case.specimen.kind != SpecimenKind::MiddleTension => {
             let problem = "needs the K of forces on the faces of the crack, which the handbook has for middle_tension alone";
             return refuse(problem, "use model.method = \"element_free_galerkin\" or \"peridynamics\"");
         }

@@ -8,7 +8,6 @@
 //! ([`super::kink::cycles`]).
 
 use super::ahead;
-use super::scales::Scales;
 use super::{CrackedPlate, Cracks, Tip};
 use perilife_base::quadrature::integrate;
 
@@ -67,14 +66,11 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         if tip.begins_kink() {
             most = most.min(scales.first_of_kink * tip.spacing);
         }
-        most.min(self.growth_in_turn(tip).max(scales.turn_unless))
-    }
-
-    /// Growth of a tip in which its aim turns by as much as it may in an increment, m.
-    fn growth_in_turn(&self, tip: &Tip) -> f64 {
-        let Scales { by_root, ref steering, ref step, .. } = self.scales;
-        let way = step.turn / tip.steering.slope(steering, tip.smooth_in(by_root)).abs();
-        if by_root { way * (way + 2.0 * tip.root(tip.growth)) } else { way }
+        let by_root = self.scales.by_root;
+        // Growth in which its aim turns by as much as it may in an increment.
+        let way = scales.turn / tip.steering.slope(steering, tip.smooth_in(by_root)).abs();
+        let in_turn = if by_root { way * (way + 2.0 * tip.root(tip.growth)) } else { way };
+        most.min(in_turn.max(scales.turn_unless))
     }
 
     /// Step of the lead in the first increment after a start, a joint or a kink, m.

@@ -100,7 +100,11 @@ impl<'a> PartThroughGrowth<'a> {
         if let Some(ending) = self.ending(from) {
             return Ok(Some(ending));
         }
-        let Some((mut to, mut taken)) = self.place_after(from) else { return self.standstill(from).map(Some) };
+        let next = match &mut self.overloads {
+            Some(overloads) => overloads.next(&self.fronts, from),
+            None => self.fronts.next(from, &mut self.step),
+        };
+        let Some((mut to, mut taken)) = next else { return self.standstill(from).map(Some) };
         let mut ending = self.ending(to);
         if ending.is_some() {
             (to, ending, taken) = self.first_ending(from, taken);
@@ -114,14 +118,6 @@ impl<'a> PartThroughGrowth<'a> {
         };
         self.curve.push(row);
         Ok(ending)
-    }
-
-    /// The next place, and the step to it.
-    fn place_after(&mut self, from: Grown) -> Option<(Grown, f64)> {
-        match &mut self.overloads {
-            Some(overloads) => overloads.next(&self.fronts, from),
-            None => self.fronts.next(from, &mut self.step),
-        }
     }
 
     /// The place after a step.
@@ -193,20 +189,17 @@ impl<'a> PartThroughGrowth<'a> {
             _ if case.yield_strength_at_end().is_some_and(|strength| flaw.limit_stress(axes, strength) <= load) => {
                 breaks(StopReason::NetSectionYield)
             }
-            [a, _] if a >= flaw.through_depth() => Some(self.through_or_end()),
+            // Under bending no plate in its plane can go on.
+            [a, _] if a >= flaw.through_depth() && (case.stop.at_break_through || flaw.bending_ratio != 0.0) => {
+                Some(Ending::Stop(StopReason::BrokenThrough))
+            }
+            [a, _] if a >= flaw.through_depth() => Some(Ending::Through),
             [_, c] if c >= flaw.to_hole => Some(Ending::Stop(StopReason::EnteredHole)),
             // K of most formulas is infinite where the crack takes the whole width.
             [_, c] if c >= flaw.room() || factor.is_infinite() => Some(Ending::Stop(StopReason::Severed)),
             _ if cycles >= case.stop.cycles_max => Some(Ending::Stop(StopReason::RunOut)),
             _ => None,
         }
-    }
-
-    /// What comes after break-through: nothing where that is asked for, and under bending, which a plate in its plane does not know.
-    fn through_or_end(&self) -> Ending {
-        let Fronts { case, flaw, .. } = &self.fronts;
-        let goes_on = !case.stop.at_break_through && flaw.bending_ratio == 0.0;
-        if goes_on { Ending::Through } else { Ending::Stop(StopReason::BrokenThrough) }
     }
 
     fn place(&self, row: &CurvePoint) -> Grown {
@@ -276,12 +269,6 @@ impl<'a> PartThroughGrowth<'a> {
         self.curve = rows;
         Ok(true)
     }
-
-    /// Depth of rows of the through crack.
-    fn as_through(&self, row: CurvePoint) -> CurvePoint {
-        let depth = DepthRecord { depth: self.fronts.flaw.through_depth(), k_i: None, growth_rate: None };
-        CurvePoint { depth: row.depth.or(Some(depth)), ..row }
-    }
 }
 
 impl CrackGrowth for PartThroughGrowth<'_> {
@@ -305,8 +292,8 @@ impl CrackGrowth for PartThroughGrowth<'_> {
 
     fn curve(&mut self) -> Vec<CurvePoint> {
         let Some(through) = &mut self.through else { return std::mem::take(&mut self.curve) };
-        let rows = through.curve();
-        rows.into_iter().map(|row| self.as_through(row)).collect()
+        let depth = DepthRecord { depth: self.fronts.flaw.through_depth(), k_i: None, growth_rate: None };
+        through.curve().into_iter().map(|row| CurvePoint { depth: row.depth.or(Some(depth)), ..row }).collect()
     }
 
     fn state(&self) -> State {
@@ -351,7 +338,7 @@ impl CrackGrowth for PartThroughGrowth<'_> {
     }
 
     fn overload(&self) -> Option<Underway> {
-        self.overloads.as_ref().map(Overloads::at_face)
+        self.overloads.as_ref().map(|overloads| overloads.at[1])
     }
 
     fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {

@@ -33,8 +33,8 @@ pub(super) struct Overloads<'a> {
     order: Order,
     /// The model at the ends of a and c.
     models: [Retardation; 2],
-    /// Where both ends stand after the last step.
-    at: [Underway; 2],
+    /// Where both ends stand after the last step, that at the face last.
+    pub at: [Underway; 2],
     /// Which end leads, and what the other axis grew over it in the last step, each over its axis.
     lead: usize,
     share: f64,
@@ -62,11 +62,6 @@ impl<'a> Overloads<'a> {
         let (lead, share) = if of_a >= of_c { (0, of_c / of_a) } else { (1, of_a / of_c) };
         let share = if share.is_finite() { share } else { 1.0 };
         Overloads { spectrum, order, models, at: [Underway::start(spectrum); 2], lead, share }
-    }
-
-    /// Where the end at the face stands.
-    pub fn at_face(&self) -> Underway {
-        self.at[1]
     }
 
     /// The place after the next step, and its length; `None` where nothing grows or K is infinite.

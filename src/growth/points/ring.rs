@@ -43,16 +43,11 @@ impl TipRings<'_> {
     /// The field around the same place; where there is no room for a ring, off the least one.
     pub(crate) fn read(&self, end: LineEnd, offset: f64) -> RingFactors {
         let TipRings { body, bonds, displacement, load, geometry, pressures, .. } = *self;
-        let lines = self.stretched(end, offset);
+        let mut lines = self.lines.to_vec();
+        lines[end.line] = lines[end.line].blunted(end.at_last, DIRECTION_SPACINGS * body.lattice.spacing);
+        lines[end.line].stretch(end.at_last, offset);
         let radius = self.radius(&lines, end).max(RING_HORIZONS_MIN * body.horizon());
         geometry.factors(Balanced { body, bonds, displacement, load, lines: &lines, pressures }, end, radius)
-    }
-
-    fn stretched(&self, end: LineEnd, offset: f64) -> Vec<CrackLine> {
-        let mut lines = self.lines.to_vec();
-        lines[end.line] = lines[end.line].blunted(end.at_last, DIRECTION_SPACINGS * self.body.lattice.spacing);
-        lines[end.line].stretch(end.at_last, offset);
-        lines
     }
 
     /// Outer radius that the surroundings leave, m.

@@ -66,7 +66,10 @@ impl FactorCurve {
     pub fn of_tips(&self, length: f64) -> Vec<f64> {
         let last = self.tips.iter().filter_map(|tip| tip.lengths().last()).copied().fold(0.0, f64::max);
         // Beyond the last row by a rounding, K goes on.
-        let grows = |tip: &&TipFactors| tip.grows_at(length.min(last));
+        let grows = |tip: &&TipFactors| {
+            let lengths = tip.lengths();
+            (lengths[0] * (1.0 - 1e-9)..=lengths[lengths.len() - 1] * (1.0 + 1e-9)).contains(&length.min(last))
+        };
         self.tips.iter().filter(grows).map(|tip| tip.at(length)).collect()
     }
 
@@ -132,12 +135,6 @@ impl TipFactors {
 
     fn lengths(&self) -> &[f64] {
         self.logarithms.x()
-    }
-
-    fn grows_at(&self, length: f64) -> bool {
-        let lengths = self.lengths();
-        let [first, last] = [lengths[0], lengths[lengths.len() - 1]];
-        (first * (1.0 - 1e-9)..=last * (1.0 + 1e-9)).contains(&length)
     }
 
     /// K at a length: its logarithm is smooth between rows ([`Blended`]).

@@ -40,7 +40,10 @@ pub struct PhaseOne {
 pub fn phase_one(case: &Case) -> Result<Option<PhaseOne>> {
     let Some(law) = case.fatigue.initiation else { return Ok(None) };
     let mouths = mouths(&case.specimen)?;
-    let before = Case { specimen: without_growing_cracks(&case.specimen), ..case.clone() };
+    let mut before = case.clone();
+    let cuts: Vec<CrackLine> = case.specimen.crack_lines().into_iter().filter(|line| case.specimen.tips_of(line) == 0).collect();
+    before.specimen.set_crack_lines(&cuts);
+    before.specimen.tips.clear();
     let found = stressed(&before)?;
     let of_hole = |hole: usize| found.rims.iter().find(|rim| rim.rim == Rim::Hole(hole)).map(|rim| (hole, rim.largest));
     let largest = mouths.iter().filter_map(|(hole, _)| of_hole(*hole)).max_by(|a, b| a.1.stress.total_cmp(&b.1.stress));
@@ -80,15 +83,6 @@ fn mouths(specimen: &Specimen) -> Result<Vec<(usize, Point)>> {
         })
     };
     growing.map(start).collect()
-}
-
-/// The plate before the cracks that grow have formed.
-fn without_growing_cracks(specimen: &Specimen) -> Specimen {
-    let mut before = specimen.clone();
-    let cuts: Vec<CrackLine> = specimen.crack_lines().into_iter().filter(|line| specimen.tips_of(line) == 0).collect();
-    before.set_crack_lines(&cuts);
-    before.tips.clear();
-    before
 }
 
 impl PhaseOne {

@@ -4,7 +4,6 @@
 use super::CurvePoint;
 use super::laws::growth_law;
 use crate::case::Case;
-use perilife_laws::growth_law::GrowthLaw;
 use perilife_plate::specimen::part_through::{Limit, STATED_ERROR};
 
 /// The part of a life before break-through.
@@ -46,7 +45,10 @@ impl PartThroughLife {
             let cycles = rows[1].cycles - rows[0].cycles;
             // The last of these rows has K of the through crack.
             let k_max = rows[0].delta_k / case.loading.range_share();
-            let factors = slowed(&*law, k_max, case.loading.ratio);
+            let (own, ratio) = (law.rate(k_max, case.loading.ratio), case.loading.ratio);
+            // Where K is larger and smaller by its stated error.
+            let factors = [1.0 + STATED_ERROR, 1.0 - STATED_ERROR]
+                .map(|error| if own > 0.0 { own / law.rate(k_max * error, ratio) } else { 1.0 });
             scaled = [0, 1].map(|i| scaled[i] + cycles * factors[i]);
             found.count_outside(&flaw.limits_left(axes(&rows[0])?), cycles);
         }
@@ -66,10 +68,4 @@ impl PartThroughLife {
         }
         self.cycles_outside += if left.is_empty() { 0.0 } else { cycles };
     }
-}
-
-/// Cycles over those of K, where K is larger and smaller by its stated error.
-fn slowed(law: &dyn GrowthLaw, k_max: f64, ratio: f64) -> [f64; 2] {
-    let own = law.rate(k_max, ratio);
-    [1.0 + STATED_ERROR, 1.0 - STATED_ERROR].map(|error| if own > 0.0 { own / law.rate(k_max * error, ratio) } else { 1.0 })
 }

@@ -53,16 +53,6 @@ fn sharp(case: &Case) -> Case {
     sharp
 }
 
-/// K of every sharp tip off its ring, with T: those of the first row of a prediction driven by K; `alone` where nodes are not asked, too.
-fn by_ring(case: &Case, alone: bool) -> Result<Vec<MethodResult>> {
-    let started = Instant::now();
-    let InitialTips { tips, mut warnings, .. } = initial_tips::<PointPlate>(&sharp(case))?;
-    if alone {
-        warnings.extend(beside_nodes(case, &tips));
-    }
-    Ok(of_tips(StressIntensityMethod::Ring, started, &tips, warnings))
-}
-
 /// Difference from K on nodes, over K, from which points are not fine enough.
 const BESIDE_NODES: f64 = 0.02;
 
@@ -197,7 +187,15 @@ pub fn stress_intensity(case: &Case, methods: &[StressIntensityMethod]) -> Resul
         .collect();
     for &method in methods {
         let columns = match method {
-            StressIntensityMethod::Ring => by_ring(case, !methods.contains(&StressIntensityMethod::ElementFreeGalerkin))?,
+            // Off its ring, with T: those of the first row of a prediction driven by K.
+            StressIntensityMethod::Ring => {
+                let started = Instant::now();
+                let InitialTips { tips, mut warnings, .. } = initial_tips::<PointPlate>(&sharp(case))?;
+                if !methods.contains(&StressIntensityMethod::ElementFreeGalerkin) {
+                    warnings.extend(beside_nodes(case, &tips));
+                }
+                of_tips(method, started, &tips, warnings)
+            }
             // Other looks at K: what they cannot tell does not hide the first.
             StressIntensityMethod::ElementFreeGalerkin => by_nodes(case).or_else(|error| match methods {
                 [StressIntensityMethod::ElementFreeGalerkin] => Err(error),

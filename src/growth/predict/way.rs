@@ -59,15 +59,14 @@ fn until_toughness(case: &Case, now: &GrowthStatus<'_>) -> Option<f64> {
 /// Growth of all tips until each has met a rim straight on, m.
 fn until_rims(specimen: &Specimen, now: &GrowthStatus<'_>) -> f64 {
     let of_tip = |(tip, seed): (&TipRecord, &TipSeed)| match tip.state {
-        TipState::Active => to_rim(specimen, tip.position, straight_on(seed, tip.position)),
+        // On from where it began; in its first direction while it stands there.
+        TipState::Active if distance(seed.position, tip.position) > 0.0 => {
+            to_rim(specimen, tip.position, direction(seed.position, tip.position))
+        }
+        TipState::Active => to_rim(specimen, tip.position, seed.direction),
         _ => 0.0,
     };
     now.tips.iter().zip(&specimen.tips).map(of_tip).sum()
-}
-
-/// Unit vector from where a tip began to where it is; its first direction while it stands there.
-fn straight_on(seed: &TipSeed, position: Point) -> Point {
-    if distance(seed.position, position) > 0.0 { direction(seed.position, position) } else { seed.direction }
 }
 
 /// Way straight on to the outline or a hole, m; 0 where none lies ahead.

@@ -330,12 +330,7 @@ fn read_edge_bending(input_: &Input, loaded: &[Edge]) -> Result<Option<[f64; 2]>
         return Err(input(KEY, shorten(given), problem, "leave it out, or give cycles of a load"));
     }
     if given.as_str() == Some("pure") {
-        let forces = [
-            ("force_max_n", input_.force_max_n.is_some()),
-            ("force_range_n", input_.force_range_n.is_some()),
-            ("force_max_kn", input_.force_max_kn.is_some()),
-            ("force_range_kn", input_.force_range_kn.is_some()),
-        ];
+        let forces = perilife_base::given!(input_: force_max_n, force_range_n, force_max_kn, force_range_kn);
         refuse_given("loading", &forces, "is none in pure bending", "give loading.stress_max_mpa, that at the end of the edge")?;
         return Ok(Some([-1.0, 1.0]));
     }

@@ -59,13 +59,8 @@ pub(super) fn read_pins(pins: &[Value], beside_edges: bool, specimen: &mut Speci
         }
         let force = force_of(&path, &pin, beside_edges, specimen)?;
         let direction = direction_of(&path, pin.direction)?;
-        let keys = [
-            ("contact_half_angle_deg", pin.contact_half_angle_deg),
-            ("pin_diameter_mm", pin.pin_diameter_mm),
-            ("friction", pin.friction),
-            ("pin_youngs_modulus_gpa", pin.pin_youngs_modulus_gpa),
-            ("pin_poisson_ratio", pin.pin_poisson_ratio),
-        ];
+        let keys = perilife_base::keyed!(
+            pin: contact_half_angle_deg, pin_diameter_mm, friction, pin_youngs_modulus_gpa, pin_poisson_ratio);
         let contact = Bearing::read(&path, &keys, specimen.holes[pin.hole].radius)?;
         specimen.loads.push(Load::Pin { hole: pin.hole, direction, force, contact });
     }

@@ -8,7 +8,7 @@ use perilife_base::input::refuse_given;
 
 /// Refuses the keys of grips where nothing is gripped.
 pub(super) fn refuse(input: &Input) -> Result<()> {
-    let given = [("grip", input.grip.is_some()), ("transverse", input.transverse.is_some())];
+    let given = perilife_base::given!(input: grip, transverse);
     if input.kind != Some(LoadingKind::Displacement) {
         let remedy = "leave it out, or give kind = \"displacement\"";
         return refuse_given("loading", &given, "says how a moved edge is gripped, and the cycles are of a load", remedy);
@@ -26,7 +26,7 @@ pub(super) fn apply(given: &Input, specimen: &mut Specimen) -> Result<()> {
     let mut across = given.transverse == Some(Transverse::Held);
     match (specimen.kind, given.grip) {
         (SpecimenKind::SingleEdgeTension, _) => {
-            let given = [("grip", given.grip.is_some()), ("transverse", given.transverse.is_some())];
+            let given = perilife_base::given!(given: grip, transverse);
             refuse_given("loading", &given, "is said by specimen.ends of a single_edge_tension", "leave it out")?;
             if !specimen.supports.contains(&Support::ClampedEnds) {
                 return Ok(());

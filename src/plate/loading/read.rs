@@ -76,7 +76,8 @@ pub fn from_values(
         None => read_ratio(input.stress_ratio)?,
     };
     let residual = ResidualStress::read(&input, folder)?;
-    if input.is_of_cracks_alone() {
+    let is_of_load = input.kind.is_none_or(|kind| kind == LoadingKind::ConstantAmplitude);
+    if is_of_load && input.crack_pressure_mpa.is_some() && input.magnitudes().all(|(_, given, ..)| given.is_none()) {
         return Ok(Loading { residual, ..pressure_alone(&input, supports, specimen, ratio)? });
     }
     let magnitude = Magnitude::read(&input)?;
@@ -102,12 +103,10 @@ pub fn from_values(
             let is_plate = specimen.kind.is_plate();
             let who = if is_plate { "a plate loaded by pins or rollers" } else { specimen.kind.name() };
             let problem = format!("is a stress, but {who} takes a force");
-            return Err(input_error(&magnitude, problem, "give force_max_n or force_range_n (or _kn)"));
+            return Err(error::input(&magnitude.key, magnitude.given, problem, "give force_max_n or force_range_n (or _kn)"));
         }
         (measure, Of::Displacement) => {
-            for (key, given) in
-                [("stress_parallel_ratio", input.stress_parallel_ratio), ("crack_pressure_mpa", input.crack_pressure_mpa)]
-            {
+            for (key, given) in perilife_base::keyed!(input: stress_parallel_ratio, crack_pressure_mpa) {
                 if let Some(given) = given.filter(|given| *given != 0.0) {
                     let problem = "does not go with cycles of a displacement, which one load follows";
                     return Err(error::input(&format!("loading.{key}"), given, problem, "give cycles of the load"));
@@ -132,10 +131,7 @@ pub fn from_values(
 /// Pressure on the cracks and no other load: the nominal load is the pressure.
 fn pressure_alone(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, ratio: f64) -> Result<Loading> {
     let problem = "says where a load acts, and none is given beside crack_pressure_mpa";
-    let beside = [
-        ("stress_parallel_ratio", input.stress_parallel_ratio.is_some()),
-        ("edge_bending_ratio", input.edge_bending_ratio.is_some()),
-    ];
+    let beside = perilife_base::given!(input: stress_parallel_ratio, edge_bending_ratio);
     let given = [&input.places()[..], &beside].concat();
     refuse_given("loading", &given, problem, &format!("leave it out, or give one of {MAGNITUDES}"))?;
     boundary::read_supports(supports, specimen)?;
@@ -186,10 +182,6 @@ fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
     Ok(())
 }
 
-fn input_error(magnitude: &Magnitude, problem: String, remedy: &str) -> perilife_base::error::Error {
-    input(&magnitude.key, magnitude.given, problem, remedy)
-}
-
 /// Keys that are refused before anything else, since "unknown key" would not tell the user what to do.
 fn refuse_by_name(loading: &Value) -> Result<()> {
     let table = table_of(loading, "loading")?;
@@ -211,7 +203,9 @@ fn refuse_by_name(loading: &Value) -> Result<()> {
 
 /// R of the largest cycle of a spectrum, beside which none is given.
 fn ratio_of(spectrum: &Spectrum, given: Option<f64>) -> Result<f64> {
-    let of_largest = spectrum.ratio_of_largest();
+    // Of the cycle with the largest load; of several the least.
+    let largest = spectrum.cycles.iter().filter(|cycle| cycle.max == 1.0);
+    let of_largest = largest.map(|cycle| cycle.min).fold(f64::INFINITY, f64::min);
     given.map_or(Ok(of_largest), |given| {
         let problem = "stands beside a spectrum, whose cycles have their own";
         Err(input("loading.stress_ratio", given, problem, "leave it out"))
@@ -229,12 +223,6 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
 }
 
 impl Input {
-    /// Whether the pressure on the cracks is the only load.
-    fn is_of_cracks_alone(&self) -> bool {
-        let is_of_load = self.kind.is_none_or(|kind| kind == LoadingKind::ConstantAmplitude);
-        is_of_load && self.crack_pressure_mpa.is_some() && self.magnitudes().all(|(_, given, ..)| given.is_none())
-    }
-
     /// Keys of a load with what is given.
     fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<f64>, Quantity, Of)> {
         [

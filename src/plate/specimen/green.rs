@@ -2,8 +2,6 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::{Specimen, SpecimenKind};
-
 /// Points of integration; in the angle φ of x = a sin φ a smooth stress is exact to round-off.
 const POINTS: usize = 128;
 
@@ -21,11 +19,4 @@ pub fn centre_crack(a: f64, width: f64, stress: impl Fn(f64) -> f64) -> f64 {
         stress(a * sin) * (1.0 + 0.297 * cos * (1.0 - angle.cos())) * a * cos / (1.0 - within * within).sqrt()
     };
     scale * FRAC_PI_2 / POINTS as f64 * (0..POINTS).map(at).sum::<f64>()
-}
-
-impl Specimen {
-    /// Whether [`centre_crack`] is of it.
-    pub fn has_green_function(&self) -> bool {
-        self.kind == SpecimenKind::MiddleTension
-    }
 }

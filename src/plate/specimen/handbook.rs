@@ -109,7 +109,6 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
         _ => return None,
     };
     let is_of_pins = specimen.kind == SpecimenKind::CompactTension;
-    let (width, thickness) = (specimen.width, specimen.thickness);
     let cracks = specimen.kind.sharing()?.0;
     Some(HandbookFormula {
         name,
@@ -120,11 +119,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
         error,
         cracks,
         is_of_pins,
-        width,
-        thickness,
-        shape: 0.0,
-        limit: 1.0,
-        table: None,
+        ..HandbookFormula::unstated(specimen.width, specimen.thickness)
     })
 }
 
@@ -136,15 +131,8 @@ fn of_table(specimen: &Specimen, table: &BetaTable) -> HandbookFormula {
         source: "specimen.beta_file of the case",
         range: "from its first to its last row",
         bounds: table.bounds().map(|length| length / width),
-        of: |_, _| f64::NAN,
-        error: |_| f64::NAN,
-        cracks: 1.0,
-        is_of_pins: false,
-        width,
-        thickness,
-        shape: 0.0,
-        limit: 1.0,
         table: Some(table.clone()),
+        ..HandbookFormula::unstated(width, thickness)
     }
 }
 
@@ -177,6 +165,25 @@ pub fn handbook_tada(specimen: &Specimen) -> Option<HandbookFormula> {
 }
 
 impl HandbookFormula {
+    /// One of a single crack that states nothing yet, for a plate of a width and thickness, m.
+    pub(super) fn unstated(width: f64, thickness: f64) -> Self {
+        HandbookFormula {
+            name: "",
+            source: "",
+            range: "",
+            bounds: [0.0, 1.0],
+            of: |_, _| f64::NAN,
+            error: |_| f64::NAN,
+            cracks: 1.0,
+            is_of_pins: false,
+            width,
+            thickness,
+            shape: 0.0,
+            limit: 1.0,
+            table: None,
+        }
+    }
+
     /// K_I at crack length `crack_length` (m, the specimen's convention) under `load_max`: gross stress in Pa, or pin force
     /// in N for C(T). Pa√m; NaN for a length at or beyond the plate's end.
     pub fn k_i(&self, crack_length: f64, load_max: f64) -> f64 {

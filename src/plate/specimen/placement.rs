@@ -80,7 +80,9 @@ pub(super) fn place_slots(specimen: &mut Specimen, slots: Vec<Slot>) -> Result<V
             }
             _ => {}
         }
-        if let Some(j) = specimen.holes.iter().position(|hole| slot_meets_hole(&slot, hole)) {
+        let meets_hole =
+            |hole: &Hole| slot.contains(hole.centre) || distance_to_polygon(hole.centre, &slot.corners()) < hole.radius + TOUCH;
+        if let Some(j) = specimen.holes.iter().position(meets_hole) {
             return Err(input_missing(&key, format!("overlaps holes[{j}]"), "move them apart"));
         }
         if let Some(j) = specimen.slots.iter().position(|other| slots_meet(&slot, other)) {
@@ -148,7 +150,8 @@ pub(super) fn place_cracks(
         check_corners(&corners, &key, notes)?;
         // A crack that starts from the end face of a slot takes the place of that face's seed.
         slot_seeds.retain(|seed| {
-            let reach = half_width_at(specimen, seed) + TOUCH;
+            let slot = specimen.slots.iter().find(|slot| slot.from == seed.position || slot.to == seed.position);
+            let reach = slot.map_or(0.0, |slot| slot.width / 2.0 + TOUCH) + TOUCH;
             distance(seed.position, from) > reach && distance(seed.position, to) > reach
         });
         for (end, other, open) in [(from, corners[1], from_open), (to, corners[corners.len() - 2], to_open)] {
@@ -306,12 +309,14 @@ fn set_ends(corners: &mut [Point], [from, to]: [Point; 2]) {
 /// not a tip.
 fn cut_end(specimen: &Specimen, [end, other]: [Point; 2], key: &str, notes: &mut Vec<String>) -> Result<(Point, bool)> {
     if let Some(hole) = specimen.holes.iter().find(|hole| distance(end, hole.centre) <= hole.radius + TOUCH) {
-        return Ok((leave_hole(hole, end, other), true));
+        let leaves = circle_shares(end, other, hole.centre, hole.radius).map_or(0.0, |[_, leaves]| leaves.max(0.0));
+        return Ok((along(end, other, leaves), true));
     }
     if let Some(slot) =
         specimen.slots.iter().find(|slot| slot.contains(end) || distance_to_polygon(end, &slot.corners()) <= TOUCH)
     {
-        return Ok((leave_slot(slot, end, other), true));
+        let share = edges(&slot.corners()).filter_map(|(a, b)| share_of_meeting(end, other, a, b)).fold(0.0, f64::max);
+        return Ok((along(end, other, share.min(1.0)), true));
     }
     if distance_to_polygon(end, &specimen.outline) <= TOUCH {
         return Ok((end, true));
@@ -363,18 +368,6 @@ fn share_of_meeting(from: Point, to: Point, a: Point, b: Point) -> Option<f64> {
     segments_touch(from, to, a, b).then(|| meeting_share(from, to, a, b))?
 }
 
-/// Point where the way from `end`, in the hole, to `other` leaves the circle.
-fn leave_hole(hole: &Hole, end: Point, other: Point) -> Point {
-    let leaves = circle_shares(end, other, hole.centre, hole.radius).map_or(0.0, |[_, leaves]| leaves.max(0.0));
-    along(end, other, leaves)
-}
-
-/// Point where the way from `end`, in the slot, to `other` leaves the slot.
-fn leave_slot(slot: &Slot, end: Point, other: Point) -> Point {
-    let share = edges(&slot.corners()).filter_map(|(a, b)| share_of_meeting(end, other, a, b)).fold(0.0, f64::max);
-    along(end, other, share.min(1.0))
-}
-
 /// Between its ends a crack stays in the material.
 fn check_path(specimen: &Specimen, crack: Crack, key: &str) -> Result<()> {
     // Ends may touch what they start from.
@@ -396,20 +389,7 @@ fn check_path(specimen: &Specimen, crack: Crack, key: &str) -> Result<()> {
     Ok(())
 }
 
-fn slot_meets_hole(slot: &Slot, hole: &Hole) -> bool {
-    slot.contains(hole.centre) || distance_to_polygon(hole.centre, &slot.corners()) < hole.radius + TOUCH
-}
-
 fn slots_meet(a: &Slot, b: &Slot) -> bool {
     let (of_a, of_b) = (a.corners(), b.corners());
     a.contains(b.from) || b.contains(a.from) || edges(&of_a).any(|(p, q)| edges(&of_b).any(|(r, s)| segments_touch(p, q, r, s)))
-}
-
-/// Half the width of the slot whose end face carries this seed, m.
-fn half_width_at(specimen: &Specimen, seed: &TipSeed) -> f64 {
-    specimen
-        .slots
-        .iter()
-        .find(|slot| slot.from == seed.position || slot.to == seed.position)
-        .map_or(0.0, |slot| slot.width / 2.0 + TOUCH)
 }

@@ -22,7 +22,7 @@ use toml::Value;
 use super::drawing::{self, DrawingUnit, Shape, SymmetryPlane};
 use super::geometry::{bounding_box, distance, polygon_area, segments_touch, self_intersection, turn};
 use super::placement::{check_holes, place_cracks, place_slots};
-use super::{Crack, Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
+use super::{Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Folder, LENGTH, point, refuse_given, slice};
 use perilife_base::units::place_mm;
@@ -127,7 +127,11 @@ impl Drawing {
         check_holes(&specimen)?;
         let slot_tips = place_slots(&mut specimen, self.slots)?;
         place_cracks(&mut specimen, self.cracks, slot_tips, notes)?;
-        [specimen.crack_plane_x, specimen.crack_plane_y] = [0, 1].map(|axis| common_line(&specimen.cracks, axis));
+        // Where all cracks lie on one line along an axis it must fall between two columns or rows of points.
+        [specimen.crack_plane_x, specimen.crack_plane_y] = [0, 1].map(|axis| {
+            let first = specimen.cracks.first()?.from[axis];
+            specimen.cracks.iter().all(|crack| crack.from[axis] == first && crack.to[axis] == first).then_some(first)
+        });
         Ok(specimen)
     }
 }
@@ -146,16 +150,10 @@ pub(super) fn read_holes(list: &[Value]) -> Result<Vec<Hole>> {
     })
 }
 
-/// x (axis 0) or y of the cracks if all lie on one line along the other axis: it must fall between two columns or rows of points.
-fn common_line(cracks: &[Crack], axis: usize) -> Option<f64> {
-    let first = cracks.first()?.from[axis];
-    cracks.iter().all(|crack| crack.from[axis] == first && crack.to[axis] == first).then_some(first)
-}
-
 /// What the drawing of a plate says, where it has one.
 fn drawn(input: &Input, folder: &Folder) -> Result<Option<Shape>> {
     let Some(file) = &input.outline_file else {
-        let keys = [("outline_unit", input.outline_unit.is_some()), ("outline_symmetry", input.outline_symmetry.is_some())];
+        let keys = perilife_base::given!(input: outline_unit, outline_symmetry);
         refuse_given(
             "specimen",
             &keys,
@@ -164,12 +162,7 @@ fn drawn(input: &Input, folder: &Folder) -> Result<Option<Shape>> {
         )?;
         return Ok(None);
     };
-    let keys = [
-        ("outline_mm", input.outline_mm.is_some()),
-        ("width_mm", input.width_mm.is_some()),
-        ("length_mm", input.length_mm.is_some()),
-        ("diameter_mm", input.diameter_mm.is_some()),
-    ];
+    let keys = perilife_base::given!(input: outline_mm, width_mm, length_mm, diameter_mm);
     refuse_given("specimen", &keys, "stands beside outline_file", "leave one of both out")?;
     drawing::read(file, folder, input.outline_unit, input.outline_symmetry).map(Some)
 }
@@ -213,13 +206,17 @@ fn disc(radius: f64) -> Vec<Point> {
         let (sin, cos) = (std::f64::consts::TAU * (first as f64 + 0.5) / DISC_SIDES as f64).sin_cos();
         if swapped { [radius * sin, radius * cos] } else { [radius * cos, radius * sin] }
     };
-    let turned = |[x, y]: Point, quarters: usize| match quarters {
+    (0..4).flat_map(|quarters| (0..quarter).map(move |k| turned(corner(k), quarters))).collect()
+}
+
+/// A point turned about the origin by quarters of a turn, to the last bit.
+pub(super) fn turned([x, y]: Point, quarters: usize) -> Point {
+    match quarters {
         0 => [x, y],
         1 => [-y, x],
         2 => [-x, -y],
         _ => [y, -x],
-    };
-    (0..4).flat_map(|quarters| (0..quarter).map(move |k| turned(corner(k), quarters))).collect()
+    }
 }
 
 fn polygon(corners: &[Value]) -> Result<Vec<Point>> {

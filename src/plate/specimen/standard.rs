@@ -30,9 +30,10 @@ use toml::Value;
 
 use super::net_section::check_crack;
 use super::pin::PinKeys;
+use super::read::lengths;
 use super::{Bearing, Crack, Ends, Hole, Load, LoadMeasure, Specimen, SpecimenKind, Support, TipSeed};
 use perilife_base::error::{Result, input_missing};
-use perilife_base::input::{LENGTH, slice};
+use perilife_base::input::slice;
 
 /// Keys of `[specimen]` of M(T) and DE(T).
 #[derive(Deserialize)]
@@ -65,9 +66,10 @@ struct SingleEdgeInput {
 
 /// A central crack, or two edge cracks.
 pub(super) fn from_value(kind: SpecimenKind, value: &Value) -> Result<Specimen> {
-    let Input { width_mm, length_mm, thickness_mm, crack_length_mm, .. } = slice(value, "specimen")?;
-    let (strip, a) = sizes(kind, [width_mm, length_mm, thickness_mm, crack_length_mm])?;
-    check_crack(crack_length_mm, width_mm / 2.0, "the half width")?;
+    let input: Input = slice(value, "specimen")?;
+    let [width, length, thickness, a] = lengths!(input: width_mm, length_mm, thickness_mm, crack_length_mm);
+    let strip = Specimen::strip(kind, width, length, thickness);
+    check_crack(input.crack_length_mm, input.width_mm / 2.0, "the half width")?;
     if kind == SpecimenKind::DoubleEdgeTension {
         let ((left, left_tip), (right, right_tip)) = (edge_crack(strip.width, a, -1.0), edge_crack(strip.width, a, 1.0));
         return Ok(Specimen { cracks: vec![left, right], tips: vec![left_tip, right_tip], crack_length: a, ..strip });
@@ -79,10 +81,11 @@ pub(super) fn from_value(kind: SpecimenKind, value: &Value) -> Result<Specimen> 
 
 /// One edge crack.
 pub(super) fn single_edge_from_value(value: &Value) -> Result<Specimen> {
-    let SingleEdgeInput { width_mm, length_mm, thickness_mm, crack_length_mm, ends, .. } = slice(value, "specimen")?;
-    let (strip, a) = sizes(SpecimenKind::SingleEdgeTension, [width_mm, length_mm, thickness_mm, crack_length_mm])?;
-    check_crack(crack_length_mm, width_mm, "the width")?;
-    let supports = match ends {
+    let input: SingleEdgeInput = slice(value, "specimen")?;
+    let [width, length, thickness, a] = lengths!(input: width_mm, length_mm, thickness_mm, crack_length_mm);
+    let strip = Specimen::strip(SpecimenKind::SingleEdgeTension, width, length, thickness);
+    check_crack(input.crack_length_mm, input.width_mm, "the width")?;
+    let supports = match input.ends {
         Some(Ends::UniformStress) => vec![],
         Some(Ends::Pinned) => vec![Support::RigidEnds],
         Some(Ends::Clamped) => vec![Support::ClampedEnds],
@@ -94,15 +97,6 @@ pub(super) fn single_edge_from_value(value: &Value) -> Result<Specimen> {
     };
     let (crack, tip) = edge_crack(strip.width, a, -1.0);
     Ok(Specimen { cracks: vec![crack], tips: vec![tip], crack_length: a, supports, ..strip })
-}
-
-/// Plate without cracks, and the crack length, m, from width, length, thickness and crack length in mm.
-fn sizes(kind: SpecimenKind, [width, length, thickness, crack]: [f64; 4]) -> Result<(Specimen, f64)> {
-    let width = LENGTH.read("specimen.width_mm", width)?;
-    let length = LENGTH.read("specimen.length_mm", length)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", thickness)?;
-    let crack = LENGTH.read("specimen.crack_length_mm", crack)?;
-    Ok((Specimen::strip(kind, width, length, thickness), crack))
 }
 
 /// Crack of length `a` from the edge x = side W/2 inwards.
@@ -132,18 +126,11 @@ struct CompactInput {
 /// C(T).
 pub(super) fn compact_from_value(value: &Value) -> Result<Specimen> {
     let input: CompactInput = slice(value, "specimen")?;
-    let w = LENGTH.read("specimen.width_mm", input.width_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let a = LENGTH.read("specimen.crack_length_mm", input.crack_length_mm)?;
+    let [w, thickness, a] = lengths!(input: width_mm, thickness_mm, crack_length_mm);
     check_crack(input.crack_length_mm, input.width_mm, "the width W from the load line")?;
     let hole = |sign: f64| Hole { centre: [0.0, sign * 0.275 * w], radius: 0.125 * w };
-    let keys: PinKeys<'_> = [
-        ("pin_half_angle_deg", input.pin_half_angle_deg),
-        ("pin_diameter_mm", input.pin_diameter_mm),
-        ("pin_friction", input.pin_friction),
-        ("pin_youngs_modulus_gpa", input.pin_youngs_modulus_gpa),
-        ("pin_poisson_ratio", input.pin_poisson_ratio),
-    ];
+    let keys: PinKeys<'_> = perilife_base::keyed!(
+        input: pin_half_angle_deg, pin_diameter_mm, pin_friction, pin_youngs_modulus_gpa, pin_poisson_ratio);
     let contact = Bearing::read("specimen", &keys, 0.125 * w)?;
     let pin = |hole: usize, sign: f64| Load::Pin { hole, direction: [0.0, sign], force: 1.0, contact: contact.clone() };
     let (front, half_height) = (-0.25 * w, 0.6 * w);
@@ -156,7 +143,6 @@ pub(super) fn compact_from_value(value: &Value) -> Result<Specimen> {
         crack_length: a,
         loads: vec![pin(0, 1.0), pin(1, -1.0)],
         load_measure: LoadMeasure::Force,
-        crack_pressure: 0.0,
         ..Specimen::strip(SpecimenKind::CompactTension, w, 1.2 * w, thickness)
     })
 }

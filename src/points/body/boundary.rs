@@ -34,7 +34,7 @@ pub struct Boundary {
     /// them part the plate.
     pub corners: Vec<u32>,
     /// Force of the grips at unit nominal load, N.
-    through: f64,
+    pub through: f64,
     /// Pieces of edges that are moved straight, or held beside such an edge.
     pub ties: Vec<Tie>,
     /// Held places with what is held: the components in lattice axes, and the rotation.
@@ -182,11 +182,6 @@ impl Boundary {
             rigid: self.rigid.iter().filter_map(here).collect(),
             floating: self.floating,
         }
-    }
-
-    /// Force of clamped ends, or of sides that are moved straight, at unit nominal load, N.
-    pub fn force_through(&self) -> f64 {
-        self.through
     }
 
     /// Places within one horizon of a loaded or held place.

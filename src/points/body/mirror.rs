@@ -260,7 +260,11 @@ impl Part {
         let mut part = Part { body, first, reflections };
         part.body.multiplier = part.multiplier(whole, &whole.multiplier);
         part.body.bond_count = part.body.multiplier.iter().filter(|&&m| m > 0.0).count();
-        part.body.boundary = whole.boundary.of_part(&part.axis_points(), |place| part.place(whole, place));
+        let seat = |place: u32| <[usize; 2]>::from(part.body.lattice.column_row(place as usize));
+        let through = (0..2).filter(|&axis| part.body.mirror.lines[axis] == Some(Line::Through));
+        let on = |axis: usize| part.body.points.iter().filter(move |&&p| seat(p)[axis] == 0).map(move |&p| (p, axis));
+        let on_axes: Vec<(u32, usize)> = through.flat_map(on).collect();
+        part.body.boundary = whole.boundary.of_part(&on_axes, |place| part.place(whole, place));
         part.body.pre_cut = whole.pre_cut.iter().filter_map(|&bond| part.bond(whole, bond)).collect();
         Some(part)
     }
@@ -270,12 +274,6 @@ impl Part {
         let (column, row) = whole.lattice.column_row(place);
         let (column, row) = (column.checked_sub(self.first[0])?, row.checked_sub(self.first[1])?);
         Some(self.body.lattice.place(column, row))
-    }
-
-    /// The plate's place that a place of the part is.
-    pub fn place_in(&self, whole: &Body, place: usize) -> usize {
-        let (column, row) = self.body.lattice.column_row(place);
-        whole.lattice.place(column + self.first[0], row + self.first[1])
     }
 
     /// The place of the part that a place of the plate is or is the image of, and what weights on the displacements of the latter are on
@@ -294,7 +292,9 @@ impl Part {
 
     /// Places of the plate that a point of the part stands for, itself among them, with how each is mirrored.
     pub fn images(&self, whole: &Body, place: usize) -> impl Iterator<Item = (usize, Flips)> + use<> {
-        self.orbit((self.place_in(whole, place), [false; 2]), |reflection, (place, mut flips)| {
+        let (column, row) = self.body.lattice.column_row(place);
+        let own = whole.lattice.place(column + self.first[0], row + self.first[1]);
+        self.orbit((own, [false; 2]), |reflection, (place, mut flips)| {
             flips[reflection.axis] = true;
             (reflection.place(place), flips)
         })
@@ -402,12 +402,5 @@ impl Part {
             }
         }
         if images == [true; 2] { 0.0 } else { share }
-    }
-
-    /// Points that lie on a line of symmetry, with its axis.
-    fn axis_points(&self) -> Vec<(u32, usize)> {
-        let through = (0..2).filter(|&axis| self.body.mirror.lines[axis] == Some(Line::Through));
-        let seat = |place: u32| <[usize; 2]>::from(self.body.lattice.column_row(place as usize));
-        through.flat_map(|axis| self.body.points.iter().filter(move |&&p| seat(p)[axis] == 0).map(move |&p| (p, axis))).collect()
     }
 }

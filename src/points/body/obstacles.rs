@@ -26,7 +26,9 @@ pub struct Obstacles<'a> {
 impl<'a> Obstacles<'a> {
     /// Obstacles of a specimen.
     pub fn of(specimen: &'a Specimen, spacing: f64, horizon: f64) -> Self {
-        let outline: &[Point] = if is_convex(&specimen.outline) { &[] } else { &specimen.outline };
+        let (corners, count) = (&specimen.outline, specimen.outline.len());
+        let is_convex = (0..count).all(|i| turn(corners[i], corners[(i + 1) % count], corners[(i + 2) % count]) >= 0.0);
+        let outline: &[Point] = if is_convex { &[] } else { corners };
         let slots = specimen.slots.iter().map(|slot| (*slot, drawn_in(slot, GRAZE * spacing).corners())).collect();
         Obstacles { holes: &specimen.holes, slots, outline, spacing, horizon }
     }
@@ -57,12 +59,6 @@ impl<'a> Obstacles<'a> {
         let middle = along(a, b, 0.5);
         crossed || (!point_in_polygon(middle, self.outline) && distance_to_polygon(middle, self.outline) > slack)
     }
-}
-
-/// Whether a counter-clockwise polygon turns left at every corner.
-fn is_convex(polygon: &[Point]) -> bool {
-    let count = polygon.len();
-    (0..count).all(|i| turn(polygon[i], polygon[(i + 1) % count], polygon[(i + 2) % count]) >= 0.0)
 }
 
 /// The slot with all its walls moved inwards, at the most to its middle line: a thin slot stays an obstacle.

@@ -4,8 +4,8 @@
 //! bond with its spring stiffness times length, g_k, the bonds it severs weigh `ρ(n) Δa`, `ρ(n) = Σ_k g_k |ξ_k·n| / Δ²`
 //! over the half stencil. Severed bonds of weight G therefore stand for the length `G / ρ(n)`.
 
+use super::Body;
 use super::pre_crack::bonds_across;
-use super::{Body, Bond};
 use perilife_plate::specimen::geometry::{along, direction, distance, meeting_share};
 use perilife_plate::specimen::{CrackLine, Point};
 
@@ -73,23 +73,13 @@ pub fn represented_excess(body: &Body, line: &CrackLine, at_last: bool, length: 
         let per_length = severed_per_length(body, [-ahead[1], ahead[0]]);
         for bond in bonds_across(body, from, to).into_iter().filter(|&bond| seen.insert(bond)) {
             let (tip, start) = if at_last { (to, from) } else { (from, to) };
-            let share = 1.0 - crossing(body, bond, start, tip);
+            let (_, one, other) = body.ends(bond);
+            // A bond along the crack cannot cross it; round-off may call one crossing, which then stands at the tip.
+            let share = 1.0 - meeting_share(start, tip, body.lattice.position(one), body.lattice.position(other)).unwrap_or(1.0);
             let left = 1.0 - (back + share.clamp(0.0, 1.0) * kept) / window;
-            counted += severed_weight(body, body.ends(bond).0) * smooth_step(left / FADE) / per_length;
+            let t = (left / FADE).clamp(0.0, 1.0);
+            counted += severed_weight(body, body.ends(bond).0) * (t * t * (3.0 - 2.0 * t)) / per_length;
         }
     }
     counted - (1.0 - 0.5 * FADE) * window
-}
-
-/// Where a bond crosses the crack, as share of the way from `start` to `tip`.
-fn crossing(body: &Body, bond: Bond, start: Point, tip: Point) -> f64 {
-    let (_, from, to) = body.ends(bond);
-    // A bond along the crack cannot cross it; round-off may call one crossing, which then stands at the tip.
-    meeting_share(start, tip, body.lattice.position(from), body.lattice.position(to)).unwrap_or(1.0)
-}
-
-/// 0 below 0, 1 above 1, `3t² - 2t³` between.
-fn smooth_step(t: f64) -> f64 {
-    let t = t.clamp(0.0, 1.0);
-    t * t * (3.0 - 2.0 * t)
 }

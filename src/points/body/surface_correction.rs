@@ -1,15 +1,8 @@
 //! Surface corrections: bonds near a free boundary carry more, since the bonds that the boundary cut off are missing.
 
 use super::Body;
-use crate::bond_law::stencil::{Stencil, StencilBond, plane_stiffness};
+use crate::bond_law::stencil::{StencilBond, plane_stiffness};
 use perilife_plate::material::Material;
-
-/// Factor by which springs of the stencil fall short of the material's energy `C₁₁ e² V/2` under uniaxial strain e along the rows:
-/// what the sum over the lattice differs from the integral by.
-fn interior_gain(stencil: &Stencil, c11: f64, volume: f64) -> f64 {
-    let interior: f64 = stencil.bonds.iter().map(|bond| 2.0 * shares(bond)[0]).sum();
-    0.5 * c11 * volume / interior
-}
 
 /// Energy that each end of a bond stores under unit strain along rows and columns: half of the bond's.
 fn shares(bond: &StencilBond) -> [f64; 2] {
@@ -50,7 +43,9 @@ pub fn volume_and_surface(body: &mut Body, material: &Material) {
         }
     }
     let exact = 0.5 * c11 * volume;
-    let inside = interior_gain(&body.stencil, c11, volume);
+    // What the sum over the lattice differs from the integral by.
+    let interior: f64 = body.stencil.bonds.iter().map(|bond| 2.0 * shares(bond)[0]).sum();
+    let inside = exact / interior;
     let gain = energy.map(|axis| axis.into_iter().map(|w| if w > 0.0 { exact / w } else { inside }).collect::<Vec<f64>>());
     for (k, bond) in body.stencil.bonds.iter_mut().enumerate() {
         let [nx, ny] = bond.normal;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::field::{Layout, dot, dots, lane_sum};
-use super::multigrid::Multigrid;
+use super::multigrid::{Depth, Multigrid};
 use super::product::{Into, Product};
 use super::rigid_motion::RigidMotion;
 use super::system::{LinearSolver, Solved, SolverUsed, System};
@@ -94,7 +94,8 @@ impl<const N: usize> MultigridSolver<N> {
         let mut spent = self.iterate(tolerance, system, u, work_before)?;
         if spent.is_none() {
             // The hierarchy belongs to an older crack, or to a plate that is nearly a mechanism: once more with a new one, from rest.
-            self.multigrid = Multigrid::new(body, bonds, product).cautious();
+            self.multigrid = Multigrid::new(body, bonds, product);
+            self.multigrid.depth = Depth::Cautious;
             self.broken_since = 0;
             u.fill(0.0);
             spent = self.iterate(tolerance, system, u, work_before)?;

@@ -69,7 +69,7 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
         let (stride, padding) = (self.layout.stride, self.layout.padding);
         let first = (row + padding) * self.layout.row_len() + padding;
         let place = (row + padding) * stride + padding;
-        let regular = bonds.row_is_regular(row);
+        let regular = &bonds.regular[row * bonds.chunks..(row + 1) * bonds.chunks];
         let shares = Shares { multiplier: &bonds.multiplier, places: bonds.multiplier.len() / self.springs.len() };
         let inhabited = bonds.inhabited(row);
         if into == Into::Set {

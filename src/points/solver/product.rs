@@ -59,7 +59,7 @@ pub struct Product<const N: usize> {
     /// Springs between flanks in contact.
     contact: Vec<GapSpring>,
     /// Held sums of displacements.
-    ties: Ties,
+    pub(super) ties: Ties,
 }
 
 impl<const N: usize> Product<N> {
@@ -116,11 +116,6 @@ impl<const N: usize> Product<N> {
         &self.ties
     }
 
-    /// Puts other held sums.
-    pub(super) fn set_ties(&mut self, ties: Ties) {
-        self.ties = ties;
-    }
-
     /// Puts the mirror images of a field into its padding.
     pub(super) fn mirror<T: Real>(&self, x: &mut [T]) {
         self.ghosts.fill(x);
@@ -140,7 +135,7 @@ impl<const N: usize> Product<N> {
             dilatation.apply(bonds, x, y, into);
         }
         let sign = if into == Into::Set { 1.0 } else { -1.0 };
-        self.contact.iter().for_each(|spring| spring.add_force(&self.layout, sign, x, y));
+        self.contact.iter().for_each(|spring| spring.add(&self.layout, sign * spring.stiffness * spring.gap(&self.layout, x), y));
         self.ties.fold(y);
         self.fixed.iter().for_each(|&index| y[index] = 0.0);
     }

@@ -78,7 +78,7 @@ impl<const N: usize> ConstrainedSystem<N> {
                 field[at + layout.stride] = side * up[1] * body.lattice.spacing;
             }
             let way = if is_tied { body.lattice.spacing } else { 2.0 * body.lattice.spacing };
-            Grips { field, way, force: load * body.boundary.force_through(), drag: Vec::new(), constant: f64::NAN, scale: 1.0 }
+            Grips { field, way, force: load * body.boundary.through, drag: Vec::new(), constant: f64::NAN, scale: 1.0 }
         });
         if grips.is_none() {
             for &(place, force) in &body.boundary.forces {
@@ -96,7 +96,7 @@ impl<const N: usize> ConstrainedSystem<N> {
             }
         }
         let mut product = Product::<N>::new(body, fixed);
-        product.set_ties(ties);
+        product.ties = ties;
         let solver: Box<dyn LinearSolver<N>> = match kind {
             // A window is condensed bond by bond, and knows no held sums.
             SolverKind::Window if is_tied => Box::new(MultigridSolver::for_few_solves(body, bonds, &product)),
@@ -195,7 +195,7 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
             let without = self.without_pressure.get_or_insert_with(|| self.f.clone());
             self.f.iter_mut().zip(without).for_each(|(f, without)| *f = share * *without);
             let layout = self.product.layout();
-            contact.iter().filter(|spring| spring.force != 0.0).for_each(|spring| spring.add_load(layout, &mut self.f));
+            contact.iter().filter(|spring| spring.force != 0.0).for_each(|spring| spring.add(layout, spring.force, &mut self.f));
             self.product.fixed().iter().for_each(|&index| self.f[index] = 0.0);
         }
         self.product.set_contact(contact.iter().filter(|spring| spring.stiffness > 0.0).cloned().collect());

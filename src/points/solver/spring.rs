@@ -101,17 +101,7 @@ impl GapSpring {
         self.weights.iter().map(of_place).sum()
     }
 
-    /// y += sign × k w g.
-    pub(super) fn add_force(&self, layout: &Layout, sign: f64, displacement: &[f64], y: &mut [f64]) {
-        self.add(layout, sign * self.stiffness * self.gap(layout, displacement), y);
-    }
-
-    /// f += F w.
-    pub(super) fn add_load(&self, layout: &Layout, f: &mut [f64]) {
-        self.add(layout, self.force, f);
-    }
-
-    fn add(&self, layout: &Layout, force: f64, y: &mut [f64]) {
+    pub(super) fn add(&self, layout: &Layout, force: f64, y: &mut [f64]) {
         for &(place, weights) in &self.weights {
             let at = layout.index(place as usize);
             y[at] += force * weights[0];

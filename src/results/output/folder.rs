@@ -111,7 +111,9 @@ impl OutputFolder {
             Ok(done) => return Ok(done),
             Err(error) => error,
         };
-        if !has_files(&self.partial) {
+        // More than its marker: tables that hold something.
+        let size = |file: &String| fs::metadata(self.partial.join(file)).map_or(0, |there| there.len());
+        if !Marker::of(RunKind::Predict, &self.partial).is_ok_and(|marker| marker.files.iter().any(|file| size(file) > 0)) {
             return Err(error);
         }
         Err(match self.show() {
@@ -209,12 +211,6 @@ impl Drop for OutputFolder {
             let _ = fs::remove_dir(parent);
         }
     }
-}
-
-/// Whether a folder of results has more than its marker: tables that hold something.
-fn has_files(folder: &Path) -> bool {
-    let size = |file: &String| fs::metadata(folder.join(file)).map_or(0, |there| there.len());
-    Marker::of(RunKind::Predict, folder).is_ok_and(|marker| marker.files.iter().any(|file| size(file) > 0))
 }
 
 /// The folder of a sweep, filled run by run; locked while this lives.

@@ -64,7 +64,8 @@ pub(super) fn folder_for(path: &Path, kind: RunKind, read: &Provenance) -> Resul
     if target.is_dir() && is_mounted(&target) {
         return refuse("is a mount point, which results that are whole cannot replace", "give a folder below it");
     }
-    if let Some(file) = read_below(&target, read) {
+    let is_below = |path: &&PathBuf| fs::canonicalize(path).is_ok_and(|real| real.starts_with(&target));
+    if let Some(file) = read.files.iter().filter_map(|file| file.path.as_ref()).find(is_below) {
         let problem = format!("holds an input of this run, {}", file.display());
         return refuse(&problem, "give another folder for the results, or move the input out of it");
     }
@@ -72,12 +73,6 @@ pub(super) fn folder_for(path: &Path, kind: RunKind, read: &Provenance) -> Resul
         Some((problem, remedy)) => refuse(&problem, remedy),
         None => Ok(target),
     }
-}
-
-/// The first file that was read from below a folder.
-fn read_below(folder: &Path, read: &Provenance) -> Option<PathBuf> {
-    let paths = read.files.iter().filter_map(|file| file.path.as_ref());
-    paths.into_iter().find(|path| fs::canonicalize(path).is_ok_and(|real| real.starts_with(folder))).cloned()
 }
 
 /// Why a folder must not be replaced by a run of this kind, and what to do.

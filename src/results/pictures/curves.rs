@@ -186,7 +186,11 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
     if read.is_empty() {
         return None;
     }
-    let (most, largest) = drawn_to(&read);
+    let mut sizes: Vec<f64> = read.iter().map(|point| point[1].abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let [usual, largest] = [sizes[(sizes.len() - 1) * USUAL_PERCENT / 100], sizes[sizes.len() - 1]];
+    // Where the last of a section goes K grows beyond bounds, and would hide all before it.
+    let most = if largest > BEYOND * usual && usual > 0.0 { BEYOND * usual } else { largest };
     let points = |tip: usize, mode: usize| -> Vec<Point> {
         points(tip, mode).into_iter().map(|[x, k]| [x, if k.abs() <= most { k } else { f64::NAN }]).collect()
     };
@@ -218,15 +222,6 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
         }
     }
     Some(frame.finish(&format!("{} over {}", names[1], names[0])))
-}
-
-/// Size of K up to which it is drawn, and the largest: where the last of a section goes K grows beyond bounds, and would hide all before it.
-fn drawn_to(read: &[Point]) -> (f64, f64) {
-    let mut sizes: Vec<f64> = read.iter().map(|point| point[1].abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let usual = sizes[(sizes.len() - 1) * USUAL_PERCENT / 100];
-    let largest = sizes[sizes.len() - 1];
-    (if largest > BEYOND * usual && usual > 0.0 { BEYOND * usual } else { largest }, largest)
 }
 
 /// K at maximum load between which the law was fitted, MPa√m; `None` where that is not known.

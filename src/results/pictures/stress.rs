@@ -214,12 +214,6 @@ impl Bands {
         Bands { of, colours: (0..=levels.len()).map(colour).collect(), levels, seen: [0.0; 2] }
     }
 
-    /// Bounds of a band.
-    fn ends(&self, band: usize) -> [f64; 2] {
-        let at = |level: Option<usize>, beyond: f64| level.and_then(|level| self.levels.get(level)).copied().unwrap_or(beyond);
-        [at(band.checked_sub(1), f64::NEG_INFINITY), at(Some(band), f64::INFINITY)]
-    }
-
     /// The colours, each boundary named.
     fn bar(&self, sketch: &mut Sketch, [x, top]: Point, height: f64) {
         let step = height / self.colours.len() as f64;
@@ -253,7 +247,8 @@ fn draw(sketch: &mut Sketch, field: &StressField, moved: &[Vec<Point>], bands: &
         let [least, largest] =
             corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (_, v)| [low.min(*v), high.max(*v)]);
         for (band, polygons) in of_band.iter_mut().enumerate() {
-            let [low, high] = bands.ends(band);
+            let bound = |level: Option<usize>, beyond: f64| level.and_then(|at| bands.levels.get(at)).copied().unwrap_or(beyond);
+            let [low, high] = [bound(band.checked_sub(1), f64::NEG_INFINITY), bound(Some(band), f64::INFINITY)];
             if largest < low || least >= high {
                 continue;
             }

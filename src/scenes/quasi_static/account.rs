@@ -97,7 +97,7 @@ pub struct Account {
     /// Rows so far.
     pub rows: usize,
     /// Largest work so far, J.
-    largest: f64,
+    pub largest: f64,
 }
 
 impl Account {
@@ -114,11 +114,6 @@ impl Account {
     pub fn excess(&self) -> f64 {
         let nowhere = self.work - self.state.strain - self.fracture;
         if self.largest > 0.0 { nowhere / self.largest } else { 0.0 }
-    }
-
-    /// Whether the strain energy is not finite, or exceeds so many times all the work there ever was.
-    pub fn is_impossible(&self, times: f64) -> bool {
-        self.state.strain.is_nan() || self.state.strain > times * self.largest
     }
 
     /// Takes down a row with this displacement and forces of the bonds.

@@ -145,7 +145,9 @@ impl Walk<'_, '_> {
         self.control.look(&self.at.shape.u, bonds);
         let next = self.control.next(bonds);
         // On an elastic way no further than the next nominal step.
-        let nominal = if self.at.elastic { self.nominal_level() } else { f64::INFINITY };
+        let now = self.at.account.state.level;
+        let nominal =
+            if self.at.elastic { ((now * self.steps * (1.0 + 1e-12)).floor() + 1.0) / self.steps } else { f64::INFINITY };
         let level = next.level.min(nominal).min(1.0);
         self.at.account.go(self.state(level));
         self.row(level == nominal || level >= 1.0, bonds)?;
@@ -226,11 +228,6 @@ impl Walk<'_, '_> {
             self.control.look(&self.at.shape.u, bonds);
         }
         Err(Error::Mechanics("a step found no quiet damage".to_owned()))
-    }
-
-    /// The next nominal load step.
-    fn nominal_level(&self) -> f64 {
-        ((self.at.account.state.level * self.steps * (1.0 + 1e-12)).floor() + 1.0) / self.steps
     }
 
     /// Generalised load of the driven and the pushed together.

@@ -195,7 +195,7 @@ pub fn march(
             course.log.broke(step, reaction.broken);
             at.account.go(State::new(full, level, &at.u, &force, reaction.strain));
             let sums = at.swing.take(loads, &mobility, &force);
-            if at.account.is_impossible(BLOWN_UP) {
+            if at.account.state.strain.is_nan() || at.account.state.strain > BLOWN_UP * at.account.largest {
                 end = SceneEnd::Unstable;
                 break 'march;
             }

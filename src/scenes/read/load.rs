@@ -217,7 +217,7 @@ fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Reg
             edges.iter().map(of_edge).collect()
         }
         (None, Some(regions)) => {
-            let given = [("grip_mm", load.grip_mm.is_some()), ("range_mm", load.range_mm.is_some())];
+            let given = perilife_base::given!(load: grip_mm, range_mm);
             refuse_given(path, &given, "goes with edges, not with regions", "leave it out")?;
             if regions.is_empty() || regions.len() > REGIONS_MAX {
                 let remedy = format!("give 1 to {REGIONS_MAX} boxes {{ from_mm = [x, y], to_mm = [x, y] }}");

@@ -88,10 +88,7 @@ fn bonds(name: Option<&str>, given: &Input, material: &Material) -> Result<Scene
             }
         }
     };
-    let controls = [
-        ("zero_energy_control", given.zero_energy_control.is_some()),
-        ("zero_energy_factor", given.zero_energy_factor.is_some()),
-    ];
+    let controls = perilife_base::given!(given: zero_energy_control, zero_energy_factor);
     let problem = format!("goes with bond_law = \"correspondence\"; {kind} has no zero-energy modes");
     refuse_given("model", &controls, &problem, "leave it out")?;
     let kernel = match kind {
@@ -121,12 +118,7 @@ fn beyond_springs(error: Error, law: &BondLaw, material: &Material) -> Error {
 }
 
 fn correspondence(given: &Input) -> Result<SceneLaw> {
-    let of_bonds = [
-        ("kernel", given.kernel.is_some()),
-        ("rotation", given.rotation.is_some()),
-        ("surface_correction", given.surface_correction.is_some()),
-        ("kinematics", given.kinematics.is_some()),
-    ];
+    let of_bonds = perilife_base::given!(given: kernel, rotation, surface_correction, kinematics);
     let problem = "goes with laws of bonds, not with bond_law = \"correspondence\"";
     refuse_given("model", &of_bonds, problem, "leave it out")?;
     const FACTOR: &str = "model.zero_energy_factor";

@@ -122,7 +122,7 @@ fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -
     let (mut untold, mut beaten) = (Told::default(), Instant::now());
     let mut memory = 0;
     let end = loop {
-        match process.news_within(BEAT.saturating_sub(beaten.elapsed())) {
+        match process.news.recv_timeout(BEAT.saturating_sub(beaten.elapsed())) {
             Ok(News::Progress(progress)) => untold.progress = Some(progress),
             Ok(News::Growth(growth)) => add(&mut untold.growth, growth),
             Ok(News::Picture(about, picture)) => untold.picture = Some((about, picture)),

@@ -10,7 +10,7 @@ use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -32,7 +32,8 @@ const TAIL: usize = 4096;
 #[derive(Debug)]
 pub struct JobProcess {
     child: Child,
-    news: Receiver<News>,
+    /// What it tells; none will come any more where its end is disconnected.
+    pub news: Receiver<News>,
     said: Option<JoinHandle<Vec<u8>>>,
 }
 
@@ -89,11 +90,6 @@ impl JobProcess {
 
     fn group(&self) -> Pid {
         Pid::from_child(&self.child)
-    }
-
-    /// The next news within a time; none will come any more where its end is disconnected.
-    pub fn news_within(&self, time: Duration) -> Result<News, RecvTimeoutError> {
-        self.news.recv_timeout(time)
     }
 
     /// Most memory that it has had, bytes; `None` where the system does not tell.

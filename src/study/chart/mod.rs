@@ -166,11 +166,6 @@ impl Chart {
     pub fn of<'c>(&'c self, panel: &'c Panel) -> impl Iterator<Item = &'c Point> {
         self.points.iter().filter(|point| point.panel.name == panel.name)
     }
-
-    /// Families that have points, in the order of the legend.
-    pub fn families(&self) -> Vec<Family> {
-        Family::ALL.iter().copied().filter(|family| self.points.iter().any(|point| point.choice.family == *family)).collect()
-    }
 }
 
 /// Relative gain of error that earns a slower run its place on a front: less is round-off between solvers that are equally exact.

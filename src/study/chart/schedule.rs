@@ -66,11 +66,6 @@ pub type Isolated<'a> = &'a dyn Fn(&Request, f64) -> Result<Outcome<Run>>;
 /// Keeps every run as it ends.
 pub type Keep<'a> = &'a mut dyn FnMut(&Record) -> Result<()>;
 
-/// The default run of the first scene, which all times are compared with.
-fn reference_request() -> Request {
-    Request { scene: SCENES[0].name.to_owned(), set: Vec::new() }
-}
-
 struct Measuring<'a> {
     isolated: Isolated<'a>,
     keep: Keep<'a>,
@@ -86,7 +81,11 @@ impl Measuring<'_> {
         let fresh = self.reference.filter(|(_, at)| at.elapsed().as_secs_f64() < REFERENCE_FRESH_S);
         let wall = match fresh {
             Some((wall, _)) => return Ok(wall),
-            None => (self.isolated)(&reference_request(), f64::INFINITY)?.done().map_or(f64::NAN, |run| run.wall_s),
+            None => {
+                // The default run of the first scene.
+                let request = Request { scene: SCENES[0].name.to_owned(), set: Vec::new() };
+                (self.isolated)(&request, f64::INFINITY)?.done().map_or(f64::NAN, |run| run.wall_s)
+            }
         };
         self.reference = Some((wall, Instant::now()));
         self.references.push(wall);

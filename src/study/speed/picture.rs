@@ -51,7 +51,8 @@ pub fn svg(chart: &Chart, origin: &Origin) -> String {
 fn head(sketch: &mut Sketch, chart: &Chart) {
     sketch.name([16.0, 26.0], "What a result costs, and how far off it is", "start", 18.0, INK);
     let mut x = 16.0;
-    for family in chart.families().into_iter().filter(|family| *family != Family::Solver) {
+    let has_points = |family: &Family| chart.points.iter().any(|point| point.choice.family == *family);
+    for family in Family::ALL.iter().copied().filter(|family| *family != Family::Solver && has_points(family)) {
         mark(sketch, "window", [x + 5.0, 48.0], 5.0, colour(family), colour(family));
         sketch.name([x + 15.0, 52.0], family.name(), "start", 12.0, INK);
         x += 34.0 + width_of(family.name(), 12.0);

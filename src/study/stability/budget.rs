@@ -1,6 +1,5 @@
 //! What a run of a sweep may take, and what becomes of one that takes more, fails or panics.
 
-use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -81,16 +80,14 @@ pub fn within(budget: Budget, work: impl FnOnce(&Run) -> Result<f64>) -> Outcome
         done
     });
     match done {
-        Err(panic) => Outcome::Failed(format!("panic: {}", words_of(panic.as_ref()))),
+        Err(panic) => {
+            let owned = panic.downcast_ref::<String>().map(String::as_str);
+            let words = owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without words");
+            Outcome::Failed(format!("panic: {words}"))
+        }
         Ok(_) if ran_out.load(Ordering::Relaxed) => Outcome::Stopped(format!("not done within {} s", budget.seconds)),
         Ok(_) if run.watch.is_cancelled() => Outcome::Stopped(format!("not done within {} blocks", budget.blocks)),
         Ok(Ok(error)) if !error.is_finite() => Outcome::Failed(format!("the result is {error}")),
         Ok(result) => Outcome::of(result),
     }
-}
-
-/// What a panic said.
-fn words_of(panic: &(dyn Any + Send)) -> &str {
-    let owned = panic.downcast_ref::<String>().map(String::as_str);
-    owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without words")
 }

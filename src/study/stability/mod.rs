@@ -143,13 +143,7 @@ pub struct Record {
     pub wall_s: f64,
 }
 
-impl Record {
-    /// End of the safe range on the side of a value.
-    pub fn end_beside(&self, value: f64) -> Option<f64> {
-        let [low, high] = self.ends;
-        if value < self.sweep.usual { low } else { high }
-    }
-}
+impl Record {}
 
 /// How thorough.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -218,7 +212,8 @@ fn walk(sweep: &'static Sweep, (method, error): Method, effort: Effort) -> Recor
                 if !sweep.is_continuous || (beyond - inside).abs() <= effort.resolution * beyond.abs().max(inside.abs()) {
                     break;
                 }
-                let point = measure(between(inside, beyond));
+                let point =
+                    measure(if inside > 0.0 && beyond > 0.0 { (inside * beyond).sqrt() } else { 0.5 * (inside + beyond) });
                 if is_stable(&point) {
                     inside = point.0;
                 } else {
@@ -242,9 +237,4 @@ fn values(sweep: &Sweep, stride: usize) -> Vec<f64> {
     let last = sweep.values.len() - 1;
     let is_chosen = |(at, value): &(usize, &f64)| at % stride == 0 || *at == last || **value == sweep.usual;
     sweep.values.iter().enumerate().filter(is_chosen).map(|(_, value)| *value).collect()
-}
-
-/// The middle, of ratios where both are above zero.
-fn between(a: f64, b: f64) -> f64 {
-    if a > 0.0 && b > 0.0 { (a * b).sqrt() } else { 0.5 * (a + b) }
 }

@@ -122,7 +122,9 @@ impl Column {
             if any_in(words, SPECIMEN) && all_in(words, &[SPECIMEN, SPECIMEN_MORE]) {
                 return column(Role::Specimen, Named::No);
             }
-            if any_marks(words) && all_in(words, &[MARKS, MARKS_KEEP, MARKS_OUT, MARKS_MORE]) {
+            if [MARKS, MARKS_KEEP, MARKS_OUT].iter().any(|list| any_in(words, list))
+                && all_in(words, &[MARKS, MARKS_KEEP, MARKS_OUT, MARKS_MORE])
+            {
                 return column(Role::Mark, Named::No);
             }
             let known = cycles(words, bracket).or_else(|| load(words, bracket)).or_else(|| length(words, bracket));
@@ -383,10 +385,6 @@ pub fn says_tip_to_tip(name: &str) -> Option<bool> {
 /// Whether a name is a word and perhaps a unit of length.
 pub fn is_length_of(name: &str, word: &str) -> bool {
     of_words(name, |words, bracket| unit_of(words, bracket, length_unit).iter().any(|(words, _)| *words == [word]))
-}
-
-fn any_marks(words: &[&str]) -> bool {
-    [MARKS, MARKS_KEEP, MARKS_OUT].iter().any(|list| any_in(words, list))
 }
 
 /// Characters of a cell in a row of units that is as good as blank.

@@ -99,12 +99,6 @@ impl Spectrum {
         self.cycles.iter().filter(|cycle| cycle.count * self.period < OFTEN && !is_whole(cycle.count, self.period))
     }
 
-    /// Stress ratio of the cycle with the largest load; of several the least.
-    pub fn ratio_of_largest(&self) -> f64 {
-        let most = self.cycles.iter().filter(|cycle| cycle.max == 1.0);
-        most.map(|cycle| cycle.min).fold(f64::INFINITY, f64::min)
-    }
-
     /// Smallest load over the largest.
     pub fn smallest(&self) -> f64 {
         self.cycles.iter().map(|cycle| cycle.min).fold(f64::INFINITY, f64::min)

@@ -10,31 +10,16 @@ use super::rows::{fault, rows};
 use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, is_whole, spx, sub};
 use crate::loading::Input;
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{Folder, number};
+use perilife_base::given;
+use perilife_base::input::{Folder, number, refuse_given};
 use perilife_base::table::units::{LoadUnit, Unit};
 use perilife_base::table::{decoded, is_workbook};
-
-/// Keys that belong to a spectrum, beside its scale.
-fn given(input: &Input) -> [(&'static str, bool); 5] {
-    let Input { spectrum_file, spectrum_format, omission_percent, truncation_percent, repeats, .. } = input;
-    [
-        ("spectrum_file", spectrum_file.is_some()),
-        ("spectrum_format", spectrum_format.is_some()),
-        ("omission_percent", omission_percent.is_some()),
-        ("truncation_percent", truncation_percent.is_some()),
-        ("repeats", repeats.is_some()),
-    ]
-}
 
 /// Refuses the keys of spectra where the loads are none.
 pub(in crate::loading) fn refuse(input: &Input) -> Result<()> {
     let remedy = "give kind = \"spectrum\", or leave it out";
-    perilife_base::input::refuse_given(
-        "loading",
-        &given(input),
-        "belongs to a spectrum, and the kind of loading is another",
-        remedy,
-    )
+    let given = given!(input: spectrum_file, spectrum_format, omission_percent, truncation_percent, repeats);
+    refuse_given("loading", &given, "belongs to a spectrum, and the kind of loading is another", remedy)
 }
 
 impl Spectrum {

@@ -106,7 +106,9 @@ impl Curve {
             if let Some(Arc { centre, sweep }) = piece.arc {
                 let radius = distance(centre, from);
                 let met = cracks.iter().flat_map(|crack| crack.meets(centre, radius, tolerance));
-                let mut cuts: Vec<(f64, Point)> = met.map(|at| (turned(centre, from, at, sweep), at)).collect();
+                let angle = |at: Point| (at[1] - centre[1]).atan2(at[0] - centre[0]);
+                let turned = |to: Point| ((angle(to) - angle(from)) * sweep.signum()).rem_euclid(TAU);
+                let mut cuts: Vec<(f64, Point)> = met.map(|at| (turned(at), at)).collect();
                 cuts.retain(|(angle, _)| (tolerance / radius..sweep.abs() - tolerance / radius).contains(angle));
                 cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
                 cuts.dedup_by(|next, before| next.0 - before.0 < tolerance / radius);
@@ -166,12 +168,6 @@ impl Curve {
         }
         parts
     }
-}
-
-/// Angle about `centre` from one place to another in the sense of `sweep`, rad, 0 to 2π.
-fn turned(centre: Point, from: Point, to: Point, sweep: f64) -> f64 {
-    let angle = |at: Point| (at[1] - centre[1]).atan2(at[0] - centre[0]);
-    ((angle(to) - angle(from)) * sweep.signum()).rem_euclid(TAU)
 }
 
 /// The arc from one place to another that turns by `4 atan(bulge)`, as DXF has it; straight without a bulge.

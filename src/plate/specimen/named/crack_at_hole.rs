@@ -9,9 +9,10 @@ use super::shapes::{AtHole, below};
 use super::{Description, Layout};
 use crate::specimen::handbook::{HandbookFormula, half};
 use crate::specimen::plate::{Drawing, rectangle};
+use crate::specimen::read::lengths;
 use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
-use perilife_base::input::{COORDINATE, LENGTH, slice};
+use perilife_base::input::{COORDINATE, slice};
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::CrackAtHole, layout };
 
@@ -34,10 +35,8 @@ struct Input {
 
 fn layout(value: &Value) -> Result<Layout> {
     let input: Input = slice(value, "specimen")?;
-    let width = LENGTH.read("specimen.width_mm", input.width_mm)?;
-    let length = LENGTH.read("specimen.length_mm", input.length_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let radius = LENGTH.read("specimen.hole_diameter_mm", input.hole_diameter_mm)? / 2.0;
+    let [width, length, thickness, diameter] = lengths!(input: width_mm, length_mm, thickness_mm, hole_diameter_mm);
+    let radius = diameter / 2.0;
     let x = COORDINATE.read("specimen.hole_offset_mm", input.hole_offset_mm)?;
     let cracks = AtHole::read(input.crack_length_mm, input.cracks, input.crack_lengths_mm)?;
     below("hole_diameter_mm", 2.0 * radius, width - 2.0 * x.abs(), "the width that the plate has there")?;
@@ -67,13 +66,9 @@ fn formula(count: usize, [width, radius]: [f64; 2], thickness: f64) -> HandbookF
         bounds: [0.01 * shape, 0.15 - shape],
         of: |x, shape| of_two(x / shape) * in_width(x, shape, 2.0),
         error: |_| 0.01,
-        cracks: 1.0,
-        is_of_pins: false,
-        width,
-        thickness,
         shape,
         limit: 0.5 - shape,
-        table: None,
+        ..HandbookFormula::unstated(width, thickness)
     };
     if count == 2 {
         return two;

@@ -8,10 +8,11 @@ use toml::Value;
 
 use super::shapes::{arc, below};
 use super::{Description, Layout};
-use crate::specimen::plate::Drawing;
+use crate::specimen::plate::{Drawing, turned};
+use crate::specimen::read::lengths;
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
-use perilife_base::input::{LENGTH, number, slice};
+use perilife_base::input::{number, slice};
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::Cruciform, layout };
 
@@ -35,23 +36,15 @@ struct Input {
 
 fn layout(value: &Value) -> Result<Layout> {
     let input: Input = slice(value, "specimen")?;
-    let end = LENGTH.read("specimen.length_mm", input.length_mm)? / 2.0;
-    let arm = LENGTH.read("specimen.arm_width_mm", input.arm_width_mm)? / 2.0;
-    let radius = LENGTH.read("specimen.fillet_radius_mm", input.fillet_radius_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let a = LENGTH.read("specimen.crack_length_mm", input.crack_length_mm)?;
+    let [length, arm_width, radius, thickness, a] =
+        lengths!(input: length_mm, arm_width_mm, fillet_radius_mm, thickness_mm, crack_length_mm);
+    let (end, arm) = (length / 2.0, arm_width / 2.0);
     let angle = number("an angle in degrees", -180.0, 180.0).read("specimen.crack_angle_deg", input.crack_angle_deg)?;
     below("fillet_radius_mm", radius, end - arm, "what an arm is long")?;
     below("crack_length_mm", a, arm, "half the width of an arm")?;
     // One inner corner, turned into all four; built so that the cross is its own mirror image but for round-off.
     let quarter: Vec<Point> =
         [[end, -arm], [end, arm]].into_iter().chain(arc([arm + radius, arm + radius], radius, [1.5 * PI, PI])).collect();
-    let turned = |[x, y]: Point, quarters: usize| match quarters {
-        0 => [x, y],
-        1 => [-y, x],
-        2 => [-x, -y],
-        _ => [y, -x],
-    };
     let outline = (0..4).flat_map(|quarters| quarter.iter().map(move |&corner| turned(corner, quarters))).collect();
     let (sin, cos) = match angle {
         // Exactly along the axes, where sin and cos would leave a rounding.

@@ -8,6 +8,7 @@ use toml::Value;
 use super::shapes::{arc, below};
 use super::{Description, Layout};
 use crate::specimen::plate::Drawing;
+use crate::specimen::read::lengths;
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::input::{LENGTH, slice};
@@ -32,11 +33,8 @@ struct Input {
 
 fn layout(value: &Value) -> Result<Layout> {
     let input: Input = slice(value, "specimen")?;
-    let width = LENGTH.read("specimen.width_mm", input.width_mm)?;
-    let length = LENGTH.read("specimen.length_mm", input.length_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let depth = LENGTH.read("specimen.notch_depth_mm", input.notch_depth_mm)?;
-    let radius = LENGTH.read("specimen.notch_radius_mm", input.notch_radius_mm)?;
+    let [width, length, thickness, depth, radius] =
+        lengths!(input: width_mm, length_mm, thickness_mm, notch_depth_mm, notch_radius_mm);
     let crack_length = LENGTH.read_optional("specimen.crack_length_mm", input.crack_length_mm)?;
     below("notch_radius_mm", radius, (depth * (1.0 + 1e-9)).min(length / 2.0), "depth of the notch and half the length")?;
     below("notch_depth_mm", depth, width, "the width")?;

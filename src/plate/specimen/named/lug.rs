@@ -13,6 +13,7 @@ use super::shapes::{AtHole, arc, below, pin};
 use super::{Description, Layout};
 use crate::specimen::pin::PinKeys;
 use crate::specimen::plate::Drawing;
+use crate::specimen::read::lengths;
 use crate::specimen::{Bearing, Head, Hole, Point, SpecimenKind, Support};
 use perilife_base::error::{Result, input};
 use perilife_base::input::{LENGTH, slice};
@@ -43,22 +44,15 @@ struct Input {
 
 fn layout(value: &Value) -> Result<Layout> {
     let input_: Input = slice(value, "specimen")?;
-    let half_width = LENGTH.read("specimen.width_mm", input_.width_mm)? / 2.0;
-    let length = LENGTH.read("specimen.length_mm", input_.length_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input_.thickness_mm)?;
-    let radius = LENGTH.read("specimen.hole_diameter_mm", input_.hole_diameter_mm)? / 2.0;
+    let [width, length, thickness, diameter] = lengths!(input_: width_mm, length_mm, thickness_mm, hole_diameter_mm);
+    let (half_width, radius) = (width / 2.0, diameter / 2.0);
     let distance = LENGTH.read_optional("specimen.edge_distance_mm", input_.edge_distance_mm)?;
     let cracks = AtHole::read(input_.crack_length_mm, input_.cracks, input_.crack_lengths_mm)?;
     below("hole_diameter_mm", 2.0 * radius, (2.0 * half_width).min(2.0 * length), "width and twice the length")?;
     let key = if cracks.shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
     below(key, cracks.lengths[0].max(cracks.lengths[1]), half_width - radius, "the way from the rim to the side")?;
-    let keys: PinKeys<'_> = [
-        ("pin_half_angle_deg", input_.pin_half_angle_deg),
-        ("pin_diameter_mm", input_.pin_diameter_mm),
-        ("pin_friction", input_.pin_friction),
-        ("pin_youngs_modulus_gpa", input_.pin_youngs_modulus_gpa),
-        ("pin_poisson_ratio", input_.pin_poisson_ratio),
-    ];
+    let keys: PinKeys<'_> = perilife_base::keyed!(
+        input_: pin_half_angle_deg, pin_diameter_mm, pin_friction, pin_youngs_modulus_gpa, pin_poisson_ratio);
     let contact = Bearing::read("specimen", &keys, radius)?;
     let mut outline: Vec<Point> = vec![[-half_width, -length], [half_width, -length]];
     match (input_.head, distance) {

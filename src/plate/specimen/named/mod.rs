@@ -11,14 +11,13 @@
 
 mod crack_at_hole;
 mod cruciform;
-mod eccentric_single_edge;
 mod edge_notch;
 mod lug;
 mod row_of_holes;
 mod shapes;
 mod single_edge_bend;
 mod stop_hole;
-mod wedge_opening;
+mod two_pins;
 
 use toml::Value;
 
@@ -36,8 +35,8 @@ const KINDS: &[&Description] = &[
     &edge_notch::KIND,
     &stop_hole::KIND,
     &single_edge_bend::KIND,
-    &eccentric_single_edge::KIND,
-    &wedge_opening::KIND,
+    &two_pins::ECCENTRIC,
+    &two_pins::WEDGE,
     &cruciform::KIND,
 ];
 

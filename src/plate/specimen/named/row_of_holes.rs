@@ -6,6 +6,7 @@ use toml::Value;
 use super::shapes::{SLACK, below, in_mm, length_or_none};
 use super::{Description, Layout};
 use crate::specimen::plate::{Drawing, rectangle};
+use crate::specimen::read::lengths;
 use crate::specimen::{Hole, Point, SpecimenKind};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{LENGTH, slice};
@@ -35,11 +36,8 @@ struct Input {
 
 fn layout(value: &Value) -> Result<Layout> {
     let input_: Input = slice(value, "specimen")?;
-    let width = LENGTH.read("specimen.width_mm", input_.width_mm)?;
-    let length = LENGTH.read("specimen.length_mm", input_.length_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input_.thickness_mm)?;
-    let pitch = LENGTH.read("specimen.pitch_mm", input_.pitch_mm)?;
-    let diameter = LENGTH.read("specimen.hole_diameter_mm", input_.hole_diameter_mm)?;
+    let [width, length, thickness, pitch, diameter] =
+        lengths!(input_: width_mm, length_mm, thickness_mm, pitch_mm, hole_diameter_mm);
     let count = input_.holes;
     if !(2..=HOLES_MAX).contains(&count) {
         let remedy = format!("give 2 to {HOLES_MAX}, or use kind = \"{}\"", SpecimenKind::CrackAtHole);

@@ -12,6 +12,7 @@ use super::shapes::{below, in_mm, roller};
 use super::{Description, Layout};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::plate::Drawing;
+use crate::specimen::read::lengths;
 use crate::specimen::{Load, SpecimenKind};
 use perilife_base::error::{Result, input as error};
 use perilife_base::input::{LENGTH, slice};
@@ -41,9 +42,7 @@ struct Input {
 
 fn layout(value: &Value) -> Result<Layout> {
     let input: Input = slice(value, "specimen")?;
-    let w = LENGTH.read("specimen.width_mm", input.width_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let a = LENGTH.read("specimen.crack_length_mm", input.crack_length_mm)?;
+    let [w, thickness, a] = lengths!(input: width_mm, thickness_mm, crack_length_mm);
     let span = LENGTH.read_optional("specimen.span_mm", input.span_mm)?.unwrap_or(SPAN * w);
     let inner = LENGTH.read_optional("specimen.inner_span_mm", input.inner_span_mm)?;
     let length = LENGTH.read_optional("specimen.length_mm", input.length_mm)?.unwrap_or(span + OVERHANG * w);
@@ -95,13 +94,9 @@ fn formula([w, span]: [f64; 2], inner: Option<f64>, thickness: f64) -> Option<Ha
             1.5 * span * x.sqrt() * f / ((1.0 + 2.0 * x) * (1.0 - x).powf(1.5))
         },
         error: |_| 0.005,
-        cracks: 1.0,
         is_of_pins: true,
-        width: w,
-        thickness,
         shape: span / w,
-        limit: 1.0,
-        table: None,
+        ..HandbookFormula::unstated(w, thickness)
     };
     let Some(inner) = inner else { return is_standard.then_some(three) };
     (inner >= 2.0 * w).then_some(HandbookFormula {

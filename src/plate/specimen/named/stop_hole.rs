@@ -9,9 +9,10 @@ use toml::Value;
 use super::shapes::below;
 use super::{Description, Layout};
 use crate::specimen::plate::{Drawing, rectangle};
+use crate::specimen::read::lengths;
 use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
-use perilife_base::input::{LENGTH, slice};
+use perilife_base::input::slice;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::StopHole, layout };
 
@@ -31,12 +32,9 @@ struct Input {
 
 fn layout(value: &Value) -> Result<Layout> {
     let input: Input = slice(value, "specimen")?;
-    let width = LENGTH.read("specimen.width_mm", input.width_mm)?;
-    let length = LENGTH.read("specimen.length_mm", input.length_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let centre = LENGTH.read("specimen.stopped_crack_length_mm", input.stopped_crack_length_mm)?;
-    let radius = LENGTH.read("specimen.hole_diameter_mm", input.hole_diameter_mm)? / 2.0;
-    let formed = LENGTH.read("specimen.formed_length_mm", input.formed_length_mm)?;
+    let [width, length, thickness, centre, diameter, formed] = lengths!(
+        input: width_mm, length_mm, thickness_mm, stopped_crack_length_mm, hole_diameter_mm, formed_length_mm);
+    let radius = diameter / 2.0;
     below("hole_diameter_mm", 2.0 * radius, (2.0 * centre).min(length), "the length of the crack and of the plate")?;
     below("formed_length_mm", formed, width / 2.0 - centre - radius, "the way from the rim to the edge")?;
     let line = |from: f64, to: f64| vec![[from, 0.0], [to, 0.0]];

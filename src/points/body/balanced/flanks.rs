@@ -56,8 +56,10 @@ pub fn multipliers(
     let beside = Beside::new(body, now, lines, tips, ends, range);
     // What is sought counts as a change of the body's own multiplier.
     let (links, sought) = beside.sought(body, now);
-    let own = |bond: &usize| (*bond, body.multiplier[*bond]);
-    let mut new: HashMap<usize, f32> = sought.iter().chain(&beside.cores(body, now)).map(own).collect();
+    let own = |bond: usize| (bond, body.multiplier[bond]);
+    // Those at a tip may not have been there when the crack was shorter.
+    let cores = beside.bonds(body, now).filter(|(link, _)| beside.is_of_core(link)).map(|(_, bond)| bond);
+    let mut new: HashMap<usize, f32> = sought.iter().copied().chain(cores).map(own).collect();
     let gains = gains(body);
     let missing = beside.missing(body, &gains, |bond| new.get(&bond).copied().unwrap_or(now[bond]));
     let bounds = BOUNDS.map(|bound| bound - 1.0);
@@ -148,11 +150,6 @@ impl Beside {
     fn sought(&self, body: &Body, now: &[f32]) -> (Vec<Link>, Vec<usize>) {
         let changes = |link: &Link| [link.from, link.to].into_iter().any(|end| self.changes[end as usize]);
         self.bonds(body, now).filter(|(link, _)| !self.is_of_core(link) && changes(link)).unzip()
-    }
-
-    /// Bonds at a tip, which may not have been there when the crack was shorter.
-    fn cores(&self, body: &Body, now: &[f32]) -> Vec<usize> {
-        self.bonds(body, now).filter(|(link, _)| self.is_of_core(link)).map(|(_, bond)| bond).collect()
     }
 
     /// What is asked of the members, less what bonds carry whose multiplier is another one than the body's.

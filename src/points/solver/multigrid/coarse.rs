@@ -36,7 +36,7 @@ pub struct CoarseOperator<const N: usize> {
     chunks: usize,
     /// For every chunk of a row where its stencils stand, [`COMMON`] if they are the common one.
     slots: Vec<u32>,
-    common: Option<CoarseRow<N>>,
+    pub(super) common: Option<CoarseRow<N>>,
     /// For each chunk with its own stencils, block, component pair: the values along the row.
     values: Vec<f64>,
     /// Both in single precision: what products read. They are bound by memory, and only smoothing uses them; coarser operators, in
@@ -58,11 +58,6 @@ impl<const N: usize> CoarseOperator<N> {
     /// Layout of its vectors.
     pub fn layout(&self) -> &Layout {
         &self.layout
-    }
-
-    /// The common stencil's block of a place with itself.
-    pub fn common_diagonal(&self) -> Option<[[f64; N]; N]> {
-        self.common.as_ref().map(|common| common[block_of(0, 0)])
     }
 
     /// Whether all places of a chunk of a row have the common stencil.

@@ -62,7 +62,7 @@ pub struct Multigrid<const N: usize> {
     levels: Vec<Level<N>>,
     coarsest: Coarsest,
     work: Work,
-    depth: Depth,
+    pub(super) depth: Depth,
 }
 
 /// Coarsening factor of the first level for bonds of a reach: the coarse stencil must not outgrow five by five, and the
@@ -108,12 +108,6 @@ impl<const N: usize> Multigrid<N> {
         }
         let coarsest = Coarsest::new(&levels[levels.len() - 1]);
         Multigrid { smoother, levels, coarsest, work, depth: Depth::First }
-    }
-
-    /// With one cycle on every level: two are no positive operator where one makes a motion more than twice as large as it is, as it can
-    /// where a plate is nearly a mechanism.
-    pub fn cautious(self) -> Self {
-        Multigrid { depth: Depth::Cautious, ..self }
     }
 
     /// Takes over the changed diagonal of a few points without rebuilding coarse levels.
@@ -210,10 +204,11 @@ fn cycle<const N: usize>(
 
 /// Where a cycle stands, for the number of cycles.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Depth {
+pub(super) enum Depth {
     First,
     Below,
-    /// One cycle everywhere.
+    /// One cycle on every level: two are no positive operator where one makes a motion more than twice as large as it is, as it can where
+    /// a plate is nearly a mechanism.
     Cautious,
 }
 
@@ -250,7 +245,7 @@ impl<const N: usize> Level<N> {
         let mut work = Work::new(&layout);
         let mut smoother = Smoother::new(
             layout,
-            operator.common_diagonal(),
+            operator.common.as_ref().map(|common| common[coarse::block_of(0, 0)]),
             |row, chunk| operator.is_common(row, chunk),
             |column, row| Some(operator.block(column, row, 0, 0)),
         );

@@ -59,11 +59,6 @@ struct Weights {
     rigid: bool,
 }
 
-/// Offset that lays the coarse places symmetrically over `count` fine ones where that is possible.
-fn symmetric_offset(count: usize, factor: usize) -> usize {
-    (0..factor).find(|o| 2 * o < count && (count - 1 - 2 * o).is_multiple_of(factor)).unwrap_or(0)
-}
-
 impl<const N: usize> Transfer<N> {
     /// Lays a coarse lattice over a fine one of `columns` x `rows` places. `link(place, coarse place)` in (column, row)
     /// says whether a fine place may use a coarse one; `is_point` whether a fine place is in use, `is_regular` whether
@@ -78,10 +73,11 @@ impl<const N: usize> Transfer<N> {
         link: impl Fn([usize; 2], [usize; 2]) -> Link + Sync,
     ) -> Self {
         let columns = fine.columns;
-        // Where fine places lie before the first regular coarse one, a further coarse place stands outside.
-        let offset = [columns, rows].map(|count| match symmetric_offset(count, factor) {
-            0 => 0,
-            first => factor - first,
+        // Coarse places lie symmetrically where that is possible. Where fine ones lie before the first of them, a further one stands outside.
+        let is_symmetric = |first: usize, count: usize| 2 * first < count && (count - 1 - 2 * first).is_multiple_of(factor);
+        let offset = [columns, rows].map(|count| match (0..factor).find(|&first| is_symmetric(first, count)) {
+            None | Some(0) => 0,
+            Some(first) => factor - first,
         });
         let count = |fine: usize, offset: usize| (fine - 1 + offset).div_ceil(factor) + 1;
         let (coarse_columns, coarse_rows) = (count(columns, offset[0]), count(rows, offset[1]));

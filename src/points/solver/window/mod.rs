@@ -104,7 +104,11 @@ impl<const N: usize> WindowSolver<N> {
         self.is_whole = true;
         self.work = solved.work;
         if let Some(window) = &mut self.window {
-            window.renew(system, u, solved.work);
+            // It starts anew from a plate in equilibrium, all breaks taken in.
+            window.update.fold(&mut window.condensed.inverse);
+            window.base = unknowns(system, u, &window.condensed.places);
+            window.base_work = solved.work;
+            window.springs = 0;
         }
         Ok(solved)
     }
@@ -155,7 +159,9 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
                 self.window = None;
             } else {
                 self.is_whole = false;
-                self.work = window.move_points(system.product, u);
+                let (displacement, gain) = window.update.displacement(&window.condensed.inverse, &window.base);
+                give(system.product, &window.condensed.places, &displacement, u);
+                self.work = window.base_work + gain;
                 if window.springs <= RANK_MAX {
                     if window.update.rank() > RANK_FOLD {
                         window.fold();
@@ -235,27 +241,12 @@ impl Window {
         Window { condensed, base, base_work: work, update: Update::default(), springs: 0 }
     }
 
-    /// Starts anew from a plate in equilibrium, all breaks taken in.
-    fn renew<const N: usize>(&mut self, system: System<'_, N>, u: &[f64], work: f64) {
-        self.update.fold(&mut self.condensed.inverse);
-        self.base = unknowns(system, u, &self.condensed.places);
-        self.base_work = work;
-        self.springs = 0;
-    }
-
     /// Puts all breaks into the inverse and starts from the displacement after them.
     fn fold(&mut self) {
         let (displacement, gain) = self.update.displacement(&self.condensed.inverse, &self.base);
         self.update.fold(&mut self.condensed.inverse);
         self.base = displacement;
         self.base_work += gain;
-    }
-
-    /// Moves the window's points to where the breaks let them go; the work of the loads then.
-    fn move_points<const N: usize>(&self, product: &Product<N>, u: &mut [f64]) -> f64 {
-        let (displacement, gain) = self.update.displacement(&self.condensed.inverse, &self.base);
-        give(product, &self.condensed.places, &displacement, u);
-        self.base_work + gain
     }
 
     /// Takes in broken bonds; `false` if that cannot be done.
