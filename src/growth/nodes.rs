@@ -13,7 +13,7 @@ use crate::cross_check::largest_difference;
 use perilife_base::error::{Error, Result};
 use perilife_base::raster::PointGrid;
 use perilife_laws::response::Response;
-use perilife_nodes::crack::{Tip, initial_cracks};
+use perilife_nodes::crack::Tip;
 use perilife_nodes::factors::{self, TipFactors};
 use perilife_nodes::field::{Discretisation, Local};
 use perilife_nodes::resolution::{ElementFreeSettings, Resolution, room};
@@ -283,12 +283,4 @@ impl CrackedPlate for NodePlate {
 /// What a plate that was solved under a load is multiplied by for that load of a cycle.
 fn share_of_cycle(case: &Case, loaded: &Loaded) -> f64 {
     case.loading.share(loaded.work / (loaded.share * loaded.share))
-}
-
-/// The nodes of a case with its initial cracks.
-/// Errors: too many cells.
-pub fn initial_plate(case: &Case) -> Result<Discretisation> {
-    let (lines, tips) = initial_cracks(&case.specimen);
-    let (resolution, residual) = (case.nodes().resolution, case.loading.residual.as_deref());
-    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &resolution, residual)
 }

@@ -134,6 +134,15 @@ fn the_strip_of_the_handbook_and_tables() {
     }
 }
 
+/// What a checkpoint knows its case by says the formula, and nothing that another process has elsewhere.
+#[test]
+fn a_formula_is_known_by_its_words() {
+    let case =
+        plate(100.0, "{ from_mm = [-5, 0], to_mm = [5, 0] }", &format!("stress_max_mpa = 100\nstress_ratio = 0\n{WELD}"), &[]);
+    let words = format!("{:?}", case.loading);
+    assert!(words.contains("exp") && !words.contains("0x"), "{words}");
+}
+
 fn run(case: &Case) -> Prediction {
     predict(case, &Silent).unwrap()
 }

@@ -1,11 +1,13 @@
 //! Where elastic pins touch their holes when a case begins.
 
 use super::{Case, Model};
-use crate::nodes::initial_plate;
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::MM;
+use perilife_nodes::crack::initial_cracks;
+use perilife_nodes::field::Discretisation;
 use perilife_nodes::solve::solve;
 use perilife_plate::specimen::{Bearing, Load, SpecimenKind};
+use perilife_plate::williams::Elasticity;
 
 /// Finds where the elastic pins of a case touch at maximum load, on nodes with the initial cracks, and puts that on its loads. Points keep
 /// it as the cracks grow; nodes find contact anew in every equilibrium.
@@ -44,4 +46,12 @@ pub(super) fn settle(case: &mut Case) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The nodes of a case with its initial cracks.
+/// Errors: too many cells.
+pub fn initial_plate(case: &Case) -> Result<Discretisation> {
+    let (lines, tips) = initial_cracks(&case.specimen);
+    let (resolution, residual) = (case.nodes().resolution, case.loading.residual.as_deref());
+    Discretisation::new(&case.specimen, Elasticity::of(&case.material), &lines, &tips, &resolution, residual)
 }

@@ -1,8 +1,7 @@
 //! A plate as it stood at a row of its run: its cracks as they had grown, and its stress there.
 
 use super::Prediction;
-use crate::case::{Case, Engine};
-use crate::nodes::initial_plate;
+use crate::case::{Case, Engine, initial_plate};
 use crate::record::{CurvePoint, TipRecord};
 use perilife_base::error::Result;
 use perilife_nodes::field::Discretisation;

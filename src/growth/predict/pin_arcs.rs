@@ -1,7 +1,6 @@
 //! What the arc over which pins press does to K, where nobody has said how wide it is.
 
-use crate::case::{Case, Engine};
-use crate::nodes::initial_plate;
+use crate::case::{Case, Engine, initial_plate};
 use perilife_base::error::Result;
 use perilife_nodes::crack::initial_cracks;
 use perilife_nodes::factors;

@@ -4,8 +4,7 @@ use super::drawing;
 use super::sketch::{CRACK, Sketch};
 use perilife_base::error::Result;
 use perilife_base::units::MM;
-use perilife_growth::case::Case;
-use perilife_growth::nodes::initial_plate;
+use perilife_growth::case::{Case, initial_plate};
 use perilife_nodes::field::Discretisation;
 use perilife_plate::specimen::Point;
 
