@@ -55,6 +55,14 @@ macro_rules! given {
     ($input:ident: $($key:ident),+) => { [$((stringify!($key), $input.$key.is_some())),+] };
 }
 
+/// Lengths of `[specimen]` by their keys in mm, each read in turn; m.
+#[macro_export]
+macro_rules! lengths {
+    ($input:ident: $($key:ident),+) => {
+        [$($crate::input::LENGTH.read(concat!("specimen.", stringify!($key)), $input.$key)?),+]
+    };
+}
+
 /// Refuses the first key of a section that is given, though it has no use there.
 pub fn refuse_given(section: &str, keys: &[(&str, bool)], problem: &str, remedy: &str) -> Result<()> {
     match keys.iter().find(|(_, is_given)| *is_given) {

@@ -6,14 +6,6 @@ use super::{LengthConvention, Specimen, SpecimenKind, named, part_through, plate
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Folder, shorten, table_of};
 
-/// Lengths of `[specimen]` by their keys in mm, each read in turn; m.
-macro_rules! lengths {
-    ($input:ident: $($key:ident),+) => {
-        [$(perilife_base::input::LENGTH.read(concat!("specimen.", stringify!($key)), $input.$key)?),+]
-    };
-}
-pub(super) use lengths;
-
 /// Other names of flaws that do not go through the thickness, never treated as through cracks.
 pub const PART_THROUGH: &[&str] = &[
     "part_through",

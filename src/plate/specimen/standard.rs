@@ -30,10 +30,10 @@ use toml::Value;
 
 use super::net_section::check_crack;
 use super::pin::PinKeys;
-use super::read::lengths;
 use super::{Bearing, Crack, Ends, Hole, Load, LoadMeasure, Specimen, SpecimenKind, Support, TipSeed};
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::slice;
+use perilife_base::lengths;
 
 /// Keys of `[specimen]` of M(T) and DE(T).
 #[derive(Deserialize)]

@@ -9,10 +9,10 @@ use super::shapes::{AtHole, below};
 use super::{Description, Layout};
 use crate::specimen::handbook::{HandbookFormula, half};
 use crate::specimen::plate::{Drawing, rectangle};
-use crate::specimen::read::lengths;
 use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::input::{COORDINATE, slice};
+use perilife_base::lengths;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::CrackAtHole, layout };
 

@@ -9,10 +9,10 @@ use toml::Value;
 use super::shapes::{arc, below};
 use super::{Description, Layout};
 use crate::specimen::plate::{Drawing, turned};
-use crate::specimen::read::lengths;
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::input::{number, slice};
+use perilife_base::lengths;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::Cruciform, layout };
 

@@ -8,10 +8,10 @@ use toml::Value;
 use super::shapes::{arc, below};
 use super::{Description, Layout};
 use crate::specimen::plate::Drawing;
-use crate::specimen::read::lengths;
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::input::{LENGTH, slice};
+use perilife_base::lengths;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::EdgeNotch, layout };
 

@@ -13,10 +13,10 @@ use super::shapes::{AtHole, arc, below, pin};
 use super::{Description, Layout};
 use crate::specimen::pin::PinKeys;
 use crate::specimen::plate::Drawing;
-use crate::specimen::read::lengths;
 use crate::specimen::{Bearing, Head, Hole, Point, SpecimenKind, Support};
 use perilife_base::error::{Result, input};
 use perilife_base::input::{LENGTH, slice};
+use perilife_base::lengths;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::Lug, layout };
 

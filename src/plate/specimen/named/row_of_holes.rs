@@ -6,10 +6,10 @@ use toml::Value;
 use super::shapes::{SLACK, below, in_mm, length_or_none};
 use super::{Description, Layout};
 use crate::specimen::plate::{Drawing, rectangle};
-use crate::specimen::read::lengths;
 use crate::specimen::{Hole, Point, SpecimenKind};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{LENGTH, slice};
+use perilife_base::lengths;
 use perilife_base::units::MM;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::RowOfHoles, layout };

@@ -12,10 +12,10 @@ use super::shapes::{below, in_mm, roller};
 use super::{Description, Layout};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::plate::Drawing;
-use crate::specimen::read::lengths;
 use crate::specimen::{Load, SpecimenKind};
 use perilife_base::error::{Result, input as error};
 use perilife_base::input::{LENGTH, slice};
+use perilife_base::lengths;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::SingleEdgeBend, layout };
 

@@ -9,10 +9,10 @@ use toml::Value;
 use super::shapes::below;
 use super::{Description, Layout};
 use crate::specimen::plate::{Drawing, rectangle};
-use crate::specimen::read::lengths;
 use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::input::slice;
+use perilife_base::lengths;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::StopHole, layout };
 

@@ -16,10 +16,10 @@ use super::{Description, Layout};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::pin::LOOSE_PIN;
 use crate::specimen::plate::Drawing;
-use crate::specimen::read::lengths;
 use crate::specimen::{Bearing, Hole, Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::input::slice;
+use perilife_base::lengths;
 
 pub(super) const ECCENTRIC: Description =
     Description { kind: SpecimenKind::EccentricSingleEdgeTension, layout: |value| layout(value, &ESE) };
