@@ -51,6 +51,7 @@ mod reading_columns;
 mod record;
 mod report;
 mod residual_strength;
+mod response;
 mod scene;
 mod scene_results;
 mod specimen;

@@ -248,7 +248,7 @@ impl CrackGrowth for BondStrain<'_> {
         let row = track.last();
         let cycles = track.cycles();
         let (crack_length, tips) = (row.crack_length, row.tips());
-        GrowthStatus { cycles, crack_length, delta_k: f64::NAN, limit_load: None, tips }
+        GrowthStatus { cycles, crack_length, delta_k: f64::NAN, response: Response::PROPORTIONAL, limit_load: None, tips }
     }
 
     fn body(&self) -> Option<Arc<Body>> {

@@ -212,12 +212,12 @@ impl HandCalculation<'_> {
         const LOOKED_AT: usize = 200;
         let Case { loading, .. } = self.case;
         let (residual, longest) = (loading.residual.as_ref()?, self.last().crack_length);
-        let least = loading.maximum * loading.lower_loads().first()?.max(0.0);
+        let least = loading.maximum * loading.lower_loads().0.first()?.max(0.0);
         let presses = |x: &f64| residual.at([*x, 0.0])[1] + least < 0.0;
         let at = (0..=LOOKED_AT).map(|k| longest * k as f64 / LOOKED_AT as f64).find(presses)?;
         Some(format!(
-            "residual stress presses flanks together at x = {:.3} mm under the least load; by hand calculation they overlap there: \
-             model.method = \"element_free_galerkin\" takes their contact",
+            "residual stress closes crack faces at x = {:.3} mm at minimum load; handbook K ignores their contact; use \
+             model.method = \"element_free_galerkin\"",
             at / MM
         ))
     }
@@ -230,8 +230,7 @@ impl CrackGrowth for HandCalculation<'_> {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.last();
-        GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
+        self.last().status()
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {

@@ -37,7 +37,9 @@ use cross_check::CrossCheck;
 use perilife_base::error::Result;
 use perilife_base::raster::PointGrid;
 use perilife_laws::growth_law::GrowthLaw;
+use perilife_laws::response::Response;
 use perilife_laws::retardation::Underway;
+use perilife_plate::loading::Loading;
 use perilife_points::body::Body;
 use perilife_points::solver::SolverUsed;
 use record::{CurvePoint, StopReason, TipRecord};
@@ -128,6 +130,8 @@ pub struct GrowthStatus<'a> {
     pub crack_length: f64,
     /// Range of the stress intensity factor, Pa√m; NaN where it is known at the end only.
     pub delta_k: f64,
+    /// How K of the tip that leads follows the load.
+    pub response: Response,
     /// Nominal load at which the weakest section is fully plastic, Pa or N; `None` where it is not known on the way.
     pub limit_load: Option<f64>,
     /// Tips, in the order of `Specimen::tips`.
@@ -135,6 +139,11 @@ pub struct GrowthStatus<'a> {
 }
 
 impl GrowthStatus<'_> {
+    /// Largest K of the tip that leads, Pa√m.
+    pub fn k_max(&self, loading: &Loading) -> f64 {
+        self.delta_k / self.response.range_share(loading.ratio)
+    }
+
     /// Growth of all tips together, m.
     pub fn growth(&self) -> f64 {
         self.tips.iter().map(|tip| tip.growth).sum()

@@ -18,7 +18,6 @@ use perilife_nodes::factors::{self, TipFactors};
 use perilife_nodes::field::{Discretisation, Local};
 use perilife_nodes::resolution::{ElementFreeSettings, Resolution, room};
 use perilife_nodes::solve::{Loaded, Solution, raster, raster_fields, solve_with};
-use perilife_plate::loading::residual::across;
 use perilife_plate::specimen::{CrackLine, Point};
 use perilife_plate::williams::Elasticity;
 use perilife_points::solver::SolverUsed;
@@ -105,7 +104,7 @@ impl CrackedPlate for NodePlate {
         Ok(NodePlate {
             settings,
             elasticity: Elasticity::of(&case.material),
-            lower: case.loading.lower_loads(),
+            lower: case.loading.lower_loads().0,
             solved: None,
             state,
         })
@@ -185,8 +184,7 @@ impl CrackedPlate for NodePlate {
                 Ok::<_, Error>(TipFactors { factors, t_stress: share * read.t_stress, of_faces: share * read.of_faces, ..read })
             };
             // The stress along the crack that the plate had before it.
-            let along = across(released(axes.at), axes.ahead);
-            let along = along[0] * axes.ahead[0] + along[1] * axes.ahead[1];
+            let along = case.loading.residual.as_ref().map_or(0.0, |residual| residual.along(axes.at, axes.ahead));
             let at_load = |loaded: &Loaded| {
                 let (found, is_closed) = (read(loaded, &loaded.u, false)?, loaded.is_closed(axes.at));
                 let [k_i, k_ii] = found.factors;

@@ -4,6 +4,7 @@ mod contact;
 mod factors;
 mod readings;
 pub(crate) mod ring;
+mod settle;
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -11,7 +12,6 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::cracks::scales::Scales;
-
 use super::cracks::steering::equivalent_factor;
 use super::cracks::tip::{CracksState, Reading, Tip};
 use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment, initial_tips};
@@ -21,7 +21,6 @@ use contact::{ClosedPlace, Contact};
 use perilife_base::error::{Error, Result};
 use perilife_base::raster::PointGrid;
 use perilife_laws::ZONE_RADIUS_HORIZONS;
-use perilife_plate::loading::residual::Components;
 use perilife_plate::specimen::geometry::{along, direction, distance, meeting_share};
 use perilife_plate::specimen::{CrackLine, LineEnd, Load, Point};
 use perilife_points::body::balanced::flanks::{self, FlankRange};
@@ -36,6 +35,7 @@ use perilife_points::state::Bonds;
 use perilife_points::stress_intensity::ring::RingGeometry;
 use readings::Memory;
 use ring::DIRECTION_SPACINGS;
+use settle::LowerLoad;
 
 /// Length, in horizons, by which cracks are shorter at first, to see how K changes with it; a quarter of a crack at the most.
 const PROBE_HORIZONS: f64 = 0.5;
@@ -43,12 +43,6 @@ const PROBE_HORIZONS: f64 = 0.5;
 const CORNER: f64 = 0.35;
 /// Distance between cracks that meet, m: round-off of their points.
 const JOINED: f64 = 1e-9;
-/// Solves of an increment in which flanks come into contact or part; the last set of places is taken then. Where little is left of a
-/// plate a few places flicker.
-const CONTACT_SOLVES_MOST: usize = 20;
-/// Overlap of flanks, in spacings times the mean strain of the plate, that is round-off.
-const CONTACT_LEAST: f64 = 1e-3;
-
 /// A plate of points and bonds.
 pub struct PointPlate {
     body: Arc<Body>,
@@ -82,20 +76,7 @@ pub struct PointPlate {
 }
 
 /// What is said of pins with clearance.
-const PINS: &str = "K at the lower end of a cycle is in proportion to the load on points, though the contact of pins changes with it: ΔK is too large; \
-                    use model.method = \"element_free_galerkin\"";
-/// What is said where the least displacement may open what the largest presses shut.
-const REVERSED: &str = "the largest displacement presses flanks together that the least one may open: growth by that is not counted on points, \
-                        which is unsafe: use model.method = \"element_free_galerkin\"";
-
-/// A plate of points under a load below the largest.
-struct LowerLoad {
-    /// Over the largest.
-    load: f64,
-    contact: Contact,
-    displacement: Vec<f64>,
-}
-
+const PINS: &str = "points: pin contact is that of the largest load, ΔK is too large (conservative); use model.method = \"element_free_galerkin\"";
 /// Growth by the field of every tip on points.
 pub type TipField<'a> = Cracks<'a, PointPlate>;
 
@@ -128,61 +109,6 @@ impl PointPlate {
         changed.into_iter().map(|(bond, _)| bond).collect()
     }
 
-    /// Equilibrium after bonds were cut or corrected, with flanks that do not overlap; the displacement stays as it was where there is
-    /// none.
-    fn settle(&mut self, case: &Case, cracks: &CracksState, lines: &[CrackLine]) -> Result<()> {
-        let body = &self.body.clone();
-        self.equilibrium.bonds_changed(body, &self.bonds, &std::mem::take(&mut self.changed));
-        self.contact.follow(body, &self.blunted(cracks, lines), case.material.plane_modulus());
-        let (mut contact, mut displacement) = (std::mem::take(&mut self.contact), self.displacement.clone());
-        let settled = self.settle_at(case, 1.0, &mut contact, &mut displacement);
-        self.contact = contact;
-        settled?;
-        self.displacement = displacement;
-        self.lower.clear();
-        let has_residual = case.loading.residual.is_some();
-        let mut is_in_contact = self.is_in_contact();
-        if is_in_contact && case.loading.displacement().is_some() {
-            is_in_contact = false;
-            if case.loading.ratio < 0.0 && !self.warnings.iter().any(|warning| warning == REVERSED) {
-                self.warnings.push(REVERSED.to_owned());
-            }
-        }
-        // Flanks alone are in contact as they are at every load of the same sign.
-        let loads: Vec<f64> =
-            self.lower_loads.iter().copied().filter(|load| has_residual || is_in_contact && *load < 0.0).collect();
-        let work = self.work;
-        for load in loads {
-            let (mut contact, mut displacement) = (self.contact.clone(), self.displacement.clone());
-            let settled = self.settle_at(case, load, &mut contact, &mut displacement);
-            self.work = work;
-            settled?;
-            let is_free = !self.is_in_contact() && contact.closed_places().next().is_none();
-            self.lower.push(LowerLoad { load, contact, displacement });
-            if is_free || !has_residual {
-                // In a straight line from there.
-                break;
-            }
-        }
-        Ok(())
-    }
-
-    /// Equilibrium under a share of the load, with flanks that do not overlap.
-    fn settle_at(&mut self, case: &Case, share: f64, contact: &mut Contact, displacement: &mut Vec<f64>) -> Result<()> {
-        let body = &self.body.clone();
-        for solve in 1..=CONTACT_SOLVES_MOST {
-            self.equilibrium.set_contact(body, share, &contact.springs(&|at| released(case, share, at), body.thickness));
-            self.iterations += self.equilibrium.solve(body, &self.bonds, displacement)?;
-            self.solves += 1;
-            self.work = self.equilibrium.work();
-            let least = CONTACT_LEAST * self.mean_strain(case) * body.lattice.spacing;
-            if solve == CONTACT_SOLVES_MOST || !contact.update(&self.layout(), displacement, least) {
-                break;
-            }
-        }
-        Ok(())
-    }
-
     /// Cracks whose ends are as long as they have to be to show a direction.
     fn blunted(&self, cracks: &CracksState, lines: &[CrackLine]) -> Vec<CrackLine> {
         let mut blunted = lines.to_vec();
@@ -191,12 +117,6 @@ impl PointPlate {
             *line = line.blunted(end.at_last, DIRECTION_SPACINGS * self.body.lattice.spacing);
         }
         blunted
-    }
-
-    /// Root mean square of the strain, of which the energy of the plate tells.
-    fn mean_strain(&self, case: &Case) -> f64 {
-        let volume = case.specimen.area() * case.specimen.thickness;
-        (self.work / (volume * case.material.youngs_modulus)).max(0.0).sqrt()
     }
 
     fn layout(&self) -> Layout {
@@ -227,7 +147,7 @@ impl CrackedPlate for PointPlate {
             bonds,
             contact: Contact::default(),
             displacement: Vec::new(),
-            lower_loads: case.loading.lower_loads(),
+            lower_loads: case.loading.lower_loads().0,
             lower: Vec::new(),
             work: 0.0,
             memory: vec![Memory::default(); cracks.tips.len()],
@@ -422,13 +342,6 @@ impl PointPlate {
         lives.dedup_by_key(|(bond, _)| *bond);
         self.remaining_life = lives;
     }
-}
-
-/// What the flanks release under a share of the maximum load, Pa: pressure, and residual stress.
-fn released(case: &Case, share: f64, at: Point) -> Components {
-    let [xx, yy, xy] = case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
-    let pressure = share * case.specimen.crack_pressure * case.loading.maximum;
-    [xx + pressure, yy + pressure, xy]
 }
 
 /// Unit vector in which a crack points at one of its ends; pieces shorter than [`DIRECTION_SPACINGS`] do not show it.

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::GrowthStatus;
 use crate::case::Case;
 use perilife_laws::response::Response;
 use perilife_plate::loading::Loading;
@@ -142,6 +143,12 @@ impl CurvePoint {
     pub fn with_response(self, k_max: f64, response: Response, loading: &Loading) -> CurvePoint {
         let row = CurvePoint { response, ..self };
         CurvePoint { delta_k: row.range_share(loading) * k_max, ..row }
+    }
+
+    /// Where the run stands in it.
+    pub fn status(&self) -> GrowthStatus<'_> {
+        let CurvePoint { cycles, crack_length, delta_k, response, limit_load, ref tips, .. } = *self;
+        GrowthStatus { cycles, crack_length, delta_k, response, limit_load, tips }
     }
 
     /// Share of K_max that counts as range, as [`Loading::range_share`], of the largest cycle.

@@ -4,10 +4,11 @@
 //! straight line off the origin (superposition: Bueckner 1958). Flanks and pins whose contact changes with the load bend it: K is then solved
 //! for at a few loads, and taken linear between them.
 
+use perilife_plate::loading::LOWER_LOADS_MOST;
 use serde::{Deserialize, Serialize};
 
-/// Loads of a cycle for which K is known, at the most.
-pub const LOADS_MOST: usize = 8;
+/// Loads of a cycle for which K is known, at the most: lower ones, the largest, and the one that opens the tip.
+const LOADS_MOST: usize = LOWER_LOADS_MOST + 2;
 
 /// Difference from the largest K that is round-off.
 const ROUND_OFF: f64 = 1e-9;

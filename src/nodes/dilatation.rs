@@ -58,9 +58,10 @@ pub fn influence_radius(elasticity: Elasticity, usual: f64) -> f64 {
     usual + split(elasticity).1[1] * (INFLUENCE_LEAST - usual).max(0.0)
 }
 
-/// Sides of these lines that a point is on.
+/// Sides of these lines that a point is on, however many there are: a hash (Fowler, Noll and Vo).
 pub fn side(cracks: &[[Point; 2]], at: Point) -> u64 {
-    cracks.iter().fold(0, |sides, &[a, b]| 2 * sides + u64::from(turn(a, b, at) > 0.0))
+    let one = |sides: u64, &[a, b]: &[Point; 2]| (sides ^ u64::from(turn(a, b, at) > 0.0)).wrapping_mul(0x0100_0000_01b3);
+    cracks.iter().fold(0xcbf2_9ce4_8422_2325, one)
 }
 
 impl Dilatation {

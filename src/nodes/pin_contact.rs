@@ -209,8 +209,7 @@ impl Search {
             (fewest, chances) = if wrong.len() < fewest { (wrong.len(), CHANCES) } else { (fewest, chances - 1) };
             wrong.into_iter().for_each(|piece| closed[piece] = !closed[piece]);
         }
-        let problem =
-            "the contact of a pin with its hole is not found; give the half angle over which it bears instead of its diameter";
+        let problem = "no contact of a pin with its hole is found; set its contact half angle, not its diameter";
         self.descend(&before).ok_or_else(|| Error::Mechanics(problem.to_owned()))
     }
 

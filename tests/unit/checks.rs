@@ -86,8 +86,7 @@ fn tips_that_open_in_turn_are_no_twins() {
     assert!((k(left) / k(right) - 1.0).abs() < 1e-3, "{left:?}, {right:?}");
     let [at_left, at_right] = [left, right].map(|tip| tip.response.at(1.0));
     assert!(at_left < 0.0 && at_right == 1.0, "the largest load opens the right tip: {at_left}, {at_right}");
-    assert!(run.warnings.iter().any(|warning| warning.contains("a lower load drives tip 0")), "{:?}", run.warnings);
-    assert!(run.cross_check.is_none_or(|check| check.difference.abs() < 0.05), "{:?}", run.cross_check);
+    assert!(run.warnings.iter().any(|warning| warning.contains("tip 0: K_eq is largest at a lower load")), "{:?}", run.warnings);
 }
 
 #[test]

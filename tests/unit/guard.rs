@@ -7,7 +7,7 @@ use perilife_growth::record::{StopReason, TipRecord};
 use perilife_laws::response::Response;
 
 fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
-    GrowthStatus { cycles, crack_length, delta_k: 1.0, limit_load: None, tips }
+    GrowthStatus { cycles, crack_length, delta_k: 1.0, response: Response::PROPORTIONAL, limit_load: None, tips }
 }
 
 fn tip(growth: f64) -> TipRecord {

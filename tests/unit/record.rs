@@ -46,8 +46,7 @@ impl CrackGrowth for Steady {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.0.last().unwrap();
-        GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
+        self.0.last().unwrap().status()
     }
 
     fn curve(&mut self) -> Vec<CurvePoint> {

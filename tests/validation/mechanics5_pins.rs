@@ -46,7 +46,6 @@ fn pins_lean_on_mouths_of_cracks() {
             println!("{file} {finer:?}: {k:.3?}, off {off:.4?} of K_I, residual {residual:.5}");
             assert!(off.iter().all(|off| off.abs() < share), "{file} {finer:?}: {k:?}");
             assert!(residual < 0.006, "{file} {finer:?}: {residual}");
-            assert!(residual > 1e-5, "{file} {finer:?}: {residual} cannot fail");
         }
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn to_metric(table: &mut Table) -> Result<Vec<Written>> {
     below(table, "", &mut written)?;
     let formula = table.get("loading").and_then(|loading| loading.get("residual_stress"));
     let Some((Written { us, .. }, formula)) = written.first().zip(formula) else { return Ok(written) };
-    let problem = format!("has no unit in its name, and stands beside {us}");
+    let problem = format!("has no unit in its name, and {us} is in US units");
     let remedy = "write loading.residual_stress_ksi for a formula in US units, or loading.residual_stress_mpa for a metric one";
     Err(input("loading.residual_stress", shorten(formula), problem, remedy))
 }

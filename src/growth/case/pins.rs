@@ -37,7 +37,7 @@ pub(super) fn settle(case: &mut Case) -> Result<()> {
     let plate = initial_plate(case)?;
     let solution =
         solve(&case.specimen, &plate, case.nodes().resolution.far, case.loading.maximum).map_err(|error| match error {
-            Error::LossOfStiffness => Error::Mechanics("what is left of the plate cannot carry the load of its pins".to_owned()),
+            Error::LossOfStiffness => Error::Mechanics("a part of the plate moves freely under the pin loads".to_owned()),
             other => other,
         })?;
     for (load, contact) in solution.contacts {

@@ -61,8 +61,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let is_reversed = |tip: &Tip| tip.response.at(1.0) < 1.0 - 1e-9 && tip.equivalent() > 0.0;
         let tips = self.state.tips.iter().enumerate().filter(|(_, tip)| is_reversed(tip));
         let tips = tips.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
-        (!tips.is_empty())
-            .then(|| format!("a lower load drives tip {tips} more than the largest does: its K is that of the lower one"))
+        (!tips.is_empty()).then(|| format!("tip {tips}: K_eq is largest at a lower load; K is that of this load"))
     }
 
     /// What the user should know of tips that the load presses shut.
@@ -101,8 +100,7 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.last();
-        GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
+        self.last().status()
     }
 
     fn body(&self) -> Option<Arc<Body>> {

@@ -279,11 +279,7 @@ impl CrackGrowth for PartThroughGrowth<'_> {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        let of_front = || {
-            let CurvePoint { cycles, crack_length, delta_k, limit_load, ref tips, .. } = *self.last();
-            GrowthStatus { cycles, crack_length, delta_k, limit_load, tips }
-        };
-        self.through.as_ref().map_or_else(of_front, Later::now)
+        self.through.as_ref().map_or_else(|| self.last().status(), Later::now)
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {

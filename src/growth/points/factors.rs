@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use super::contact::Contact;
 use super::readings::Sliding;
 use super::ring::{CORE_HORIZONS, RING_HORIZONS, RING_HORIZONS_MIN, TipRings};
-use super::{LowerLoad, PointPlate, heading, released};
+use super::settle::{LowerLoad, released};
+use super::{PointPlate, heading};
 use crate::case::Case;
 use crate::cracks::CrackedPlate;
 use crate::cracks::ahead;
@@ -13,7 +14,6 @@ use crate::cracks::steering::equivalent_factor;
 use crate::cracks::tip::{AtLoad, CracksState, Reading, Tip, pair_twins};
 use perilife_base::units::MM;
 use perilife_laws::response::Response;
-use perilife_plate::loading::residual::across;
 use perilife_plate::specimen::geometry::distance;
 use perilife_plate::specimen::{CrackLine, LineEnd};
 use perilife_points::body::severed::represented_excess;
@@ -136,8 +136,7 @@ impl PointPlate {
             let [mut t_stress, of_pressure] = [ring.t_stress, ring.of_pressure].map(|of_load| share * of_load);
             let ahead_of_tip = heading(body, lines, end);
             // The stress along the crack that the plate had before it.
-            let along = residual.map_or([0.0; 2], |residual| across(residual.at(lines[end.line].end(end.at_last)), ahead_of_tip));
-            let along = along[0] * ahead_of_tip[0] + along[1] * ahead_of_tip[1];
+            let along = residual.map_or(0.0, |residual| residual.along(lines[end.line].end(end.at_last), ahead_of_tip));
             t_stress += along;
             // Superposition with free flanks is not at hand: of a tip that is closed no K counts.
             let at_load = |place: usize, factors: [f64; 2], t_stress: f64| {

@@ -34,8 +34,6 @@ const WAY: f64 = 2e-3;
 const AFTER_MEETING: f64 = 0.015;
 /// Difference of K from the energy released from which nothing is said of the error of a life.
 const CROSS_CHECK_MOST: f64 = 0.02;
-/// Kinds of cycles of a spectrum up to which K of both ends of all is solved for.
-const ENDS_ASKED: usize = 2;
 /// Share of the load of a pin by which its contact may be off, beyond which nothing is said.
 const CONTACT_MOST: f64 = 0.005;
 /// Error of a path over the gap between a rim and a crack that passes it, from which nothing is said: K behind a rim falls with the gap.
@@ -146,7 +144,7 @@ fn of_part_through(case: &Case, prediction: &Prediction) -> Result<ErrorEstimate
     let stated = life.life_factors.iter().map(|factor| 100.0 * (factor - 1.0).abs()).fold(0.0, f64::max);
     let basis = format!("K ±{:.0} %, {:.1} % of life without a stated error in full", 100.0 * STATED_ERROR, outside + after);
     let estimate = ErrorEstimate { life_percent: stated + outside + after, path: 0.0, basis };
-    stated.is_finite().then_some(estimate).ok_or_else(|| "within the error of its K the crack stands still".to_owned())
+    stated.is_finite().then_some(estimate).ok_or_else(|| "within the error of K the crack does not grow".to_owned())
 }
 
 fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, shares: &[f64]) -> Result<ErrorEstimate, String> {
@@ -224,7 +222,7 @@ impl Difference {
         let InitialTips { tips, contact_residual, .. } =
             initial_tips::<NodePlate>(&finer).map_err(|error| format!("finer nodes: {error}"))?;
         if contact_residual > CONTACT_MOST {
-            return Err(format!("the contact of a pin is off by {:.2} % of its load", 100.0 * contact_residual));
+            return Err(format!("pin contact is off by {:.2} % of the pin load", 100.0 * contact_residual));
         }
         let rate = |tip: &TipRecord| {
             tip.factors.map_or(0.0, |factors| rates.law.mean_rate(equivalent_factor(factors), rates.ratio, &tip.response))
@@ -236,10 +234,8 @@ impl Difference {
         let (Some(before), Some(now)) = (own[lead].factors, tips[lead].factors) else {
             return Err("K of the leading tip is not known on finer nodes".to_owned());
         };
-        // Of few kinds of cycles K of every end is solved for.
-        let is_between = case.loading.spectrum.as_ref().is_some_and(|spectrum| spectrum.kinds > ENDS_ASKED);
-        let response = tips[lead].response;
-        let coarser = TipRecord { response: if is_between { response.coarser() } else { response }, ..tips[lead] };
+        let (response, (_, are_all)) = (tips[lead].response, case.loading.lower_loads());
+        let coarser = TipRecord { response: if are_all { response } else { response.coarser() }, ..tips[lead] };
         let (off, of_loads) = ((rate(&tips[lead]) / rate(&own[lead])).ln(), (rate(&coarser) / rate(&tips[lead])).ln() / 3.0);
         let difference = Difference {
             rate: off.abs() + of_loads.abs(),

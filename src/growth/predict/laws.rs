@@ -45,7 +45,8 @@ pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
     }
     let Some(law) = growth.law().filter(|law| law.is_refused_beyond()) else { return Ok(()) };
     let now = growth.now();
-    let Some(problem) = law.beyond(now.delta_k / case.loading.range_share(), case.loading.ratio) else { return Ok(()) };
+    let ratio = now.response.ratio(case.loading.ratio);
+    let Some(problem) = law.beyond(now.k_max(&case.loading), ratio) else { return Ok(()) };
     let at = format!("{problem}, at a crack length of {:.3} mm", now.crack_length / MM);
     Err(input_missing(
         "fatigue.growth_table",

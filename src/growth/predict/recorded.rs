@@ -114,8 +114,8 @@ impl Recorded {
         let none = |why: &str| Error::Mechanics(format!("{}: {why}, so there is no K(a) to compute other lives on", case.name));
         let is_bent = |row: &CurvePoint| !row.response.is_near(&Response::PROPORTIONAL);
         if case.loading.residual.is_none() && prediction.curve.iter().any(is_bent) {
-            let problem = "change their contact with the load, and K with it out of proportion: no other life follows from the K(a) of this run";
-            return Err(input_missing("loading.pins", problem, "run each case by itself"));
+            let problem = "make K non-proportional to the load: no other life follows from K(a) of this run";
+            return Err(input_missing("loading.pins", problem, "compute each case by itself"));
         }
         if let Some(residual) = &case.loading.residual {
             let problem = "shifts K whatever the load: no other life follows from the K(a) of this run";

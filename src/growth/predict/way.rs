@@ -51,7 +51,7 @@ impl Way {
 
 /// Growth left until K_max is the toughness, m.
 fn until_toughness(case: &Case, now: &GrowthStatus<'_>) -> Option<f64> {
-    let k_max = case.stop.required.unwrap_or(1.0) * now.delta_k / case.loading.range_share();
+    let k_max = case.stop.required.unwrap_or(1.0) * now.k_max(&case.loading);
     let ratio = case.toughness_at_end()? / k_max;
     Some(now.crack_length * (ratio * ratio - 1.0))
 }

@@ -128,6 +128,8 @@ pub struct Loading {
     pub residual: Option<Arc<ResidualStress>>,
 }
 
+/// Loads of [`Loading::lower_loads`] at the most.
+pub const LOWER_LOADS_MOST: usize = 5;
 /// Nominal stress under which cycles of a displacement are solved, Pa.
 pub const UNIT_STRESS: f64 = perilife_base::units::MPA;
 /// Force under which they are solved, N.
@@ -150,28 +152,25 @@ impl Loading {
         self.spectrum.as_ref().map_or([self.ratio; 2], |spectrum| spectrum.ratios)
     }
 
-    /// Loads over the largest, ascending and below it, at which K is asked for where it does not follow the load in proportion: the ends of all
-    /// cycles, or where these are many the least one and those between which the ends have equal parts of `Σ n ΔK³` in proportion.
-    pub fn lower_loads(&self) -> Vec<f64> {
-        const MOST: usize = 5;
-        let Some(spectrum) = &self.spectrum else { return vec![self.ratio] };
+    /// Loads over the largest, ascending and below it, at which K is asked for where it does not follow the load in proportion, and whether these
+    /// are the ends of all cycles; where those are many, the least one and those between which the ends have equal parts of `Σ n ΔK³` in proportion.
+    pub fn lower_loads(&self) -> (Vec<f64>, bool) {
+        let Some(spectrum) = &self.spectrum else { return (vec![self.ratio], true) };
         let weighed = |class: &Class| [class.max, class.min].map(|load| (load, class.share * (class.max - class.min).powi(3)));
         let mut ends: Vec<(f64, f64)> = spectrum.classes.iter().flat_map(weighed).filter(|(load, _)| *load < 1.0).collect();
         ends.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut loads: Vec<f64> = ends.iter().map(|(load, _)| *load).collect();
         loads.dedup();
-        if loads.len() > MOST {
-            let whole: f64 = ends.iter().map(|(_, weight)| weight).sum();
-            let mut below = ends.iter().scan(0.0, |sum, (load, weight)| {
-                *sum += weight;
-                Some((*load, *sum))
-            });
-            let part =
-                |k: usize| below.find(|(_, sum)| *sum >= (k as f64 - 0.5) / (MOST - 1) as f64 * whole).map(|(load, _)| load);
-            loads = std::iter::once(loads[0]).chain((1..MOST).filter_map(part)).collect();
+        let are_all = loads.len() <= LOWER_LOADS_MOST;
+        if !are_all {
+            let sums: Vec<f64> = ends.iter().scan(0.0, |sum, (_, weight)| Some(std::mem::replace(sum, *sum + weight))).collect();
+            let parts = (LOWER_LOADS_MOST - 1) as f64;
+            let whole = sums[sums.len() - 1] + ends[ends.len() - 1].1;
+            let part = |k: usize| ends[sums.partition_point(|sum| *sum <= (k as f64 - 0.5) / parts * whole) - 1].0;
+            loads = std::iter::once(loads[0]).chain((1..LOWER_LOADS_MOST).map(part)).collect();
             loads.dedup();
         }
-        loads
+        (loads, are_all)
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.

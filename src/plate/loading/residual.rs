@@ -103,8 +103,8 @@ impl ResidualStress {
         let formulas = [&given.residual_stress_mpa, &given.residual_stress_ksi, &given.residual_stress];
         let mut formulas = FORMULAS.into_iter().zip(formulas).filter_map(|(key, given)| Some((key, given.as_ref()?)));
         let twice = |key: &str, given: &dyn Display, (other, _): Key| {
-            let problem = format!("stands beside {other}: one field is given twice");
-            Err(input(key, given, problem, "keep the one that is meant"))
+            let problem = format!("conflicts with {other}");
+            Err(input(key, given, problem, "remove one of them"))
         };
         match (formulas.next(), formulas.next(), &given.residual_stress_file) {
             (None, _, None) => Ok(None),
@@ -161,6 +161,12 @@ impl ResidualStress {
             }
         };
         stress.iter().all(|component| component.is_finite()).then_some(stress)
+    }
+
+    /// The stress along a unit vector, Pa.
+    pub fn along(&self, at: Point, [x, y]: Point) -> f64 {
+        let [tx, ty] = across(self.at(at), [x, y]);
+        tx * x + ty * y
     }
 
     /// The stress at a place, m; none where it is not known, which [`ResidualStress::check`] refuses.
