@@ -7,6 +7,7 @@
 
 use serde::Serialize;
 
+use crate::median::median;
 use perilife_base::units::MPA_SQRT_M;
 use perilife_measured::MeasuredCurve;
 
@@ -67,9 +68,28 @@ pub struct MisfitAtEnds {
 /// Least intervals of an end.
 const INTERVALS_MIN: usize = 2;
 
-/// Misfit of the curve that the record was fitted to at its first and last readings: those within a tenth of the range of ln ΔK, or two
-/// intervals. Unlike [`lack_of_fit`] it takes the law at its own level, and no error: it is what a life is off by that is spent there.
-pub fn misfit_at_ends(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> MisfitAtEnds {
+/// Misfit of the typical specimen at its first and last readings, those within a tenth of the range of ln ΔK, or two intervals: the median over
+/// specimens, each beside the same by the law. Unlike [`lack_of_fit`] it takes the law at its own level, and no error: it is what a life is off
+/// by that is spent there.
+pub fn misfit_at_ends(measured: &[MeasuredCurve], law: &[MeasuredCurve], delta_k: &dyn Fn(f64) -> f64) -> MisfitAtEnds {
+    let of_specimen = |(measured, law): (&MeasuredCurve, &MeasuredCurve)| misfits(measured, law, delta_k);
+    let all: Vec<[Option<Misfit>; 2]> = measured.iter().zip(law).map(of_specimen).collect();
+    let typical = |end: usize| {
+        let ends: Vec<Misfit> = all.iter().filter_map(|ends| ends[end]).collect();
+        let misses: Vec<f64> = ends.iter().map(|end| (end.rate_over_law_percent / 100.0).ln_1p()).collect();
+        let fold = |of: fn(&Misfit) -> f64, fold: fn(f64, f64) -> f64| ends.iter().map(of).reduce(fold);
+        Some(Misfit {
+            delta_k_from_mpa_sqrt_m: fold(|end| end.delta_k_from_mpa_sqrt_m, f64::min)?,
+            delta_k_to_mpa_sqrt_m: fold(|end| end.delta_k_to_mpa_sqrt_m, f64::max)?,
+            intervals: ends.iter().map(|end| end.intervals).sum(),
+            rate_over_law_percent: 100.0 * median(&misses).exp_m1(),
+        })
+    };
+    MisfitAtEnds { low: typical(0), high: typical(1) }
+}
+
+/// Misfits of a specimen at its first and its last readings.
+fn misfits(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> [Option<Misfit>; 2] {
     let log: Vec<f64> = (0..measured.cycles.len()).map(|reading| log_k(measured, reading, delta_k)).collect();
     let last = log.len() - 1; // a curve has five readings
     let width = END * (log[last] - log[0]).abs();
@@ -86,10 +106,7 @@ pub fn misfit_at_ends(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &d
             rate_over_law_percent: 100.0 * (by_law / cycles - 1.0),
         })
     };
-    MisfitAtEnds {
-        low: end(1..=from_start.max(INTERVALS_MIN).min(last)),
-        high: end(last + 1 - from_end.max(INTERVALS_MIN).min(last)..=last),
-    }
+    [end(1..=from_start.max(INTERVALS_MIN).min(last)), end(last + 1 - from_end.max(INTERVALS_MIN).min(last)..=last)]
 }
 
 impl MisfitAtEnds {

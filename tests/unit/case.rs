@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use perilife_base::error::Error;
 use perilife_base::input::Folder;
-use perilife_growth::case::record::{Estimate, FittedRecord};
+use perilife_growth::case::record::{FittedLaw, FittedRecord};
 use perilife_growth::case::{Case, LawSource};
 use perilife_plate::material::library;
 use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
@@ -52,7 +52,8 @@ fn record() -> FittedRecord {
         material: "al2024-t3".into(),
         version: "0".into(),
         sources: vec![],
-        estimate: Estimate::LeastSquares,
+        law: FittedLaw::Paris,
+        curve: None,
         left_out: Vec::new(),
         population: None,
     }

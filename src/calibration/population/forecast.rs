@@ -2,18 +2,20 @@
 //!
 //! A path is divided into cells of `n_j` cycles, ln rates of which have the covariance `S = Z T Zᵀ + X V Xᵀ + cov(e)`. A life is the sum of
 //! correlated lognormals, taken as lognormal itself with their mean and variance: `u_j = n_j e^(S_jj/2)`, `M = Σ u_j`,
-//! `s² = ln(1 + uᵀ(e^S - 1)u / M²)`, median `M e^(-s²/2)`, quantiles `median · exp(t_ν s)`.
+//! `s² = ln(1 + uᵀ(e^S - 1)u / M²)`, median `M e^(-s²/2)`, quantiles `median · exp(t_ν s)`. Of a new specimen the median is
+//! the life by the law.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::Population;
 use super::intervals::{Interval, Specimen};
-use super::law::{EFFECTS, Row};
+use super::law::{Row, rows};
 use super::noise::{cholesky, whiten};
 use super::student::{noncentral_t_quantile, t_quantile};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::MPA_SQRT_M;
+use perilife_laws::curve::EFFECTS;
 pub use perilife_growth::case::Lot;
 
 /// Cells of a path: from 12 on lives change by less than 0.2 %.
@@ -84,14 +86,14 @@ impl Population {
     pub fn forecast(&self, path: &[Interval], own: Option<&Specimen>, lot: Lot) -> Result<Forecast> {
         self.check_range(path)?;
         let own: &[Interval] = own.map_or(&[], |own| &own.intervals);
-        let mut rows = self.law.rows(own);
-        let observed = rows.len();
-        let reached = rows.last().map_or(0.0, |row| row.zone[1]);
-        let of_path = self.law.rows(path);
+        let mut all = rows(&self.law, own);
+        let observed = all.len();
+        let reached = all.last().map_or(0.0, |row| row.zone[1]);
+        let of_path = rows(&self.law, path);
         // No error of a reading is left in a life.
-        rows.extend(of_path.iter().map(|row| Row { density: [0.0; 2], zone: row.zone.map(|zone| zone + reached), ..*row }));
-        let n = rows.len();
-        let covariance = self.of_rows(&rows, lot);
+        all.extend(of_path.iter().map(|row| Row { density: [0.0; 2], zone: row.zone.map(|zone| zone + reached), ..*row }));
+        let n = all.len();
+        let covariance = self.of_rows(&all, lot);
 
         // cov(future) - C_fo C_oo⁻¹ C_of and the mean with it, by the factor of the observed part.
         let cells = n - observed;
@@ -100,7 +102,7 @@ impl Population {
         cholesky(&mut factor, observed).ok_or_else(not_definite)?;
         let columns = cells + 1;
         let right = |i: usize| {
-            let residual = rows[i].log_cycles - own[i].cycles.ln();
+            let residual = all[i].log_cycles - own[i].cycles.ln();
             covariance[i * n + observed..(i + 1) * n].iter().copied().chain([residual])
         };
         let mut white: Vec<f64> = (0..observed).flat_map(right).collect();
@@ -114,20 +116,22 @@ impl Population {
         }
         let cycles: Vec<f64> = (0..cells)
             .map(|j| {
-                let row = &rows[observed + j];
-                let of_size = 0.5 * (self.interval_variance - self.noise.variance(row));
-                (row.log_cycles + of_size - known(j, cells)).exp()
+                let row = &all[observed + j];
+                // The law of lives is that of mean cycles.
+                (row.log_cycles - self.level_of_lives - 0.5 * self.noise.variance(row) - known(j, cells)).exp()
             })
             .collect();
         let outside: f64 = cycles.iter().zip(&of_path).map(|(n, row)| n * row.outside).sum();
-        Ok(Forecast {
+        let forecast = Forecast {
             share_outside: outside / cycles.iter().sum::<f64>(),
             cycles,
             covariance: conditional,
             freedom: self.freedom,
             specimens: self.specimens.len(),
             is_special: observed > 0 || lot == Lot::Other,
-        })
+        };
+        let by_law: f64 = of_path.iter().map(|row| (row.log_cycles - self.level_of_lives).exp()).sum();
+        Ok(if observed == 0 { forecast.about(by_law) } else { forecast })
     }
 
     /// Standard deviation of the slope of the law outside the calibrated range.
@@ -161,7 +165,7 @@ impl Population {
 
     fn check_range(&self, path: &[Interval]) -> Result<()> {
         let [low, high] = self.law.range;
-        let ends = || path.iter().flat_map(|cell| cell.ends).map(f64::exp);
+        let ends = || path.iter().flat_map(|cell| &cell.ends).map(|tips| tips[0].exp());
         let (least, most) = ends().fold((f64::INFINITY, 0.0_f64), |(least, most), k| (least.min(k), most.max(k)));
         if least * BEYOND_MAX >= low && most <= high * BEYOND_MAX {
             return Ok(());
@@ -177,6 +181,12 @@ impl Population {
 }
 
 impl Forecast {
+    /// The same about another median.
+    fn about(self, median: f64) -> Forecast {
+        let factor = median / self.life().median;
+        Forecast { cycles: self.cycles.iter().map(|cycles| cycles * factor).collect(), ..self }
+    }
+
     /// Median and scatter in closed form: within 0.5 % of draws.
     pub fn life(&self) -> Life {
         let n = self.cycles.len();

@@ -2,14 +2,12 @@
 //!
 //! A specimen of the lot takes the path of the run. Where its crack stands is told by the way of the fastest tip since N = 0, the length of
 //! a standard specimen, so that the cycles of a piece are `∫ ds / (da/dN)` with the ΔK of the rows, between them as
-//! [`TipFactors`] has it. Lives are those of the law of the lot, which has a shape; the run went by a power law, constants of the
-//! same readings. So the median here and the cycles of the run differ, by what a power law misses of the readings and by the mean over
-//! specimens, and more the farther ΔK is from that of the tests.
+//! [`TipFactors`] has it. The run goes by the law of the lot, so that its cycles are the median; readings of the plate itself move it.
 //!
 //! Quantiles are computed at [`PLACES`] rows and read between them over the cycles of the run, both in logarithms.
 
 use super::Population;
-use super::forecast::{BEYOND_MAX, CELLS, Forecast, Life, Lot};
+use super::forecast::{BEYOND_MAX, CELLS, Forecast, Lot};
 use super::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, Zones};
 use super::student::t_quantile;
 use perilife_base::error::{Error, InputError, Result, input};
@@ -108,7 +106,7 @@ impl Population {
             ("freedom", lot.freedom),
             ("specimens", lot.specimens.len() as f64),
         ];
-        let finite = [lot.law.level, lot.law.slope, lot.interval_variance, lot.between.level, lot.between.slope, lot.noise.white];
+        let finite = [lot.law.level, lot.law.slope, lot.level_of_lives, lot.between.level, lot.between.slope, lot.noise.white];
         let mut problem =
             positive.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)).map(|(key, value)| (*key, *value));
         problem = problem.or(finite
@@ -247,8 +245,9 @@ impl Plate {
         places.sort_by(|a, b| run[*a].total_cmp(&run[*b]));
         let mut logarithms: Vec<[f64; 4]> = Vec::with_capacity(places.len());
         for place in places {
-            let Life { median, deviation, .. } = piece(place).map_err(words)?.life();
-            let mut y = self.t.map(|t| median.ln() + t * deviation);
+            let deviation = piece(place).map_err(words)?.life().deviation;
+            // The run goes by the law of the lot: its cycles are the median.
+            let mut y = self.t.map(|t| run[place].ln() + t * deviation);
             if let Some(before) = logarithms.last() {
                 y = [0, 1, 2].map(|k| y[k].max(before[k + 1]));
             }
@@ -348,11 +347,12 @@ impl Plate {
             let read = self.length_over_way().at(read);
             return refuse(format!("is shorter than the last reading, {} mm", round_off(read / MM)));
         }
-        let life = self.forecast(way, self.way[last], own)?.life();
+        let of_lot = self.forecast(way, self.way[last], None)?.life();
+        let life = own.map_or(Ok(of_lot), |own| self.forecast(way, self.way[last], Some(own)).map(|own| own.life()))?;
         let at = Monotone::new(self.lengths.iter().zip(&self.cycles).map(|(a, n)| [*a, *n])).at(length);
-        let (run, whole) = (self.cycles[last] - at, self.cycles[self.cycles.len() - 1] - at);
-        let quantiles = self.t.map(|t| life.median * (t * life.deviation).exp());
-        Ok(Left { crack_length: length, cycles: whole, quantiles: scaled(quantiles, whole, run) })
+        let whole = self.cycles[self.cycles.len() - 1] - at;
+        let median = life.median / of_lot.median * whole;
+        Ok(Left { crack_length: length, cycles: whole, quantiles: self.t.map(|t| median * (t * life.deviation).exp()) })
     }
 
     /// Crack length up to which readings of the plate say its rate, m; of a single one that itself.
