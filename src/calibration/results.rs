@@ -15,7 +15,6 @@ use super::search::FittedCurve;
 use perilife_base::cells::field;
 use perilife_base::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::record::{CurveRecord, FittedLaw, FittedRecord, LawRecord};
-use perilife_laws::curve::CurveLaw;
 use perilife_measured::MeasuredCurve;
 
 /// `fit.json` of a fit that took `wall_s` seconds; units as in the names, cycles else, null for what is not known.
@@ -59,7 +58,6 @@ pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
         "specimens": fit.specimens.iter().map(specimen).collect::<Vec<_>>(),
         "law": law.law,
         "curve": law.curve,
-        "curve_gain": fit.population.as_ref().and_then(|population| population.gain),
         "misfit_at_ends": fit.misfit_at_ends,
         "power_law_misfit_at_ends": fit.power_law_misfit,
         "lack_of_fit": fit.lack_of_fit,
@@ -123,23 +121,11 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         sources: calibration.sources.clone(),
         law: if fit.curve.is_some() { FittedLaw::Curve } else { FittedLaw::Paris },
-        curve: fit.curve.as_ref().map(|law| curve(law, fit)),
+        curve: fit.curve.as_ref().zip(fit.population.as_ref()).map(|(law, lot)| {
+            CurveRecord::of(law, lot.gain.unwrap_or(f64::NAN), &|k| lot.errors_at(k))
+        }),
         left_out: calibration.left_out.clone(),
         population: fit.population.as_ref().and_then(|population| toml::Table::try_from(population).ok()),
-    }
-}
-
-/// The curve of a fit with its errors.
-fn curve(law: &CurveLaw, fit: &Fit) -> CurveRecord {
-    let knots = law.knots();
-    let errors = |which: usize| knots.map(|k| fit.population.as_ref().map_or(f64::NAN, |population| population.errors_at(k)[which]));
-    CurveRecord {
-        gain: fit.population.as_ref().and_then(|population| population.gain).unwrap_or(f64::NAN),
-        delta_k_mpa_sqrt_m: knots.map(|k| k / MPA_SQRT_M),
-        da_dn_mm_per_cycle: knots.map(|k| law.log_rate(k).exp() / MM_PER_CYCLE),
-        da_dn_relative_error: errors(0),
-        m: knots.map(|k| law.local_slope(k)),
-        m_error: errors(1),
     }
 }
 

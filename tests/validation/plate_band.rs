@@ -6,6 +6,7 @@ use perilife_calibration::population::intervals::{Specimen, cells};
 use perilife_calibration::population::plate::{Plate, PlateBand};
 use perilife_calibration::population::student::t_quantile;
 use perilife_calibration::population::{Population, fit};
+use perilife_growth::case::record::{CurveRecord, FittedLaw};
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::predict::{Prediction, Silent, predict};
 use perilife_measured::MeasuredCurve;
@@ -26,7 +27,7 @@ fn lot_of(specimens: &[Specimen]) -> Population {
 fn with(lot: &Population, mut case: Case) -> Case {
     let LawSource::Fitted(mut record) = fitted(8.18, 26.5) else { unreachable!() };
     record.stress_ratio = 0.2;
-    (record.paris_c_mm_per_cycle, record.paris_m) = (8.95422e-8, 2.874);
+    (record.law, record.curve) = (FittedLaw::Curve, Some(CurveRecord::of(&lot.life_law(), 0.0, &|_| [0.0; 2])));
     record.population = Some(Table::try_from(lot).unwrap());
     case.law = LawSource::Fitted(record);
     case

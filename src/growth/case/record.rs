@@ -127,6 +127,19 @@ pub struct CurveRecord {
 }
 
 impl CurveRecord {
+    /// A law with the gain of the likelihood that it was taken for, and standard errors of ln rate and exponent at a ΔK (Pa√m).
+    pub fn of(law: &CurveLaw, gain: f64, errors: &dyn Fn(f64) -> [f64; 2]) -> Self {
+        let knots = law.knots();
+        CurveRecord {
+            gain,
+            delta_k_mpa_sqrt_m: knots.map(|k| k / MPA_SQRT_M),
+            da_dn_mm_per_cycle: knots.map(|k| law.log_rate(k).exp() / MM_PER_CYCLE),
+            da_dn_relative_error: knots.map(|k| errors(k)[0]),
+            m: knots.map(|k| law.local_slope(k)),
+            m_error: knots.map(|k| errors(k)[1]),
+        }
+    }
+
     /// The law.
     pub fn law(&self) -> CurveLaw {
         let [low, high] = [0, ROWS - 1].map(|end| self.delta_k_mpa_sqrt_m[end] * MPA_SQRT_M);
