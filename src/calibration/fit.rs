@@ -6,9 +6,9 @@
 use super::case::CalibrationCase;
 use super::confidence::{Confidence, check_identified, confidence, end_of_range};
 use super::criterion::Criterion;
+use super::criterion::misfit;
 use super::exponent::DELTA_K_RATIO_MIN;
 use super::lack_of_fit::{LackOfFit, MisfitAtEnds, lack_of_fit, misfit_at_ends};
-use super::criterion::misfit;
 use super::outliers::{Run, StepRate, doubts_beside, long_step_rates, readings_apart, runs, step_rates, without};
 use super::paris::{self, Paris};
 use super::population::intervals::Specimen;

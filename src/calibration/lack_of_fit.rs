@@ -7,7 +7,7 @@
 
 use serde::Serialize;
 
-use crate::median::median;
+use crate::population::huber_mean;
 use perilife_base::units::MPA_SQRT_M;
 use perilife_measured::MeasuredCurve;
 
@@ -68,7 +68,7 @@ pub struct MisfitAtEnds {
 /// Least intervals of an end.
 const INTERVALS_MIN: usize = 2;
 
-/// Misfit of the typical specimen at its first and last readings, those within a tenth of the range of ln ΔK, or two intervals: the median over
+/// Misfit of the typical specimen at its first and last readings, those within a tenth of the range of ln ΔK, or two intervals: the mean over
 /// specimens, each beside the same by the law. Unlike [`lack_of_fit`] it takes the law at its own level, and no error: it is what a life is off
 /// by that is spent there.
 pub fn misfit_at_ends(measured: &[MeasuredCurve], law: &[MeasuredCurve], delta_k: &dyn Fn(f64) -> f64) -> MisfitAtEnds {
@@ -82,7 +82,7 @@ pub fn misfit_at_ends(measured: &[MeasuredCurve], law: &[MeasuredCurve], delta_k
             delta_k_from_mpa_sqrt_m: fold(|end| end.delta_k_from_mpa_sqrt_m, f64::min)?,
             delta_k_to_mpa_sqrt_m: fold(|end| end.delta_k_to_mpa_sqrt_m, f64::max)?,
             intervals: ends.iter().map(|end| end.intervals).sum(),
-            rate_over_law_percent: 100.0 * median(&misses).exp_m1(),
+            rate_over_law_percent: 100.0 * huber_mean(&misses).exp_m1(),
         })
     };
     MisfitAtEnds { low: typical(0), high: typical(1) }

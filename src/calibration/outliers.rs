@@ -13,9 +13,9 @@
 
 use super::median::median;
 use super::rates::STEP_MIN;
+use nalgebra::{DMatrix, DVector};
 use perilife_base::units::round_off;
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
-use nalgebra::{DMatrix, DVector};
 
 use super::population::intervals::INTERVALS_MAX;
 use perilife_laws::curve::{CurveLaw, EFFECTS, KNOTS, ROUGHNESS};
@@ -224,9 +224,8 @@ fn are_off(residuals: &[f64], deviation: f64) -> Vec<bool> {
     let limit = FACTOR.ln().max(DEVIATIONS * deviation);
     let beside = NEIGHBOURS.1.ln().max(NEIGHBOURS.0 * deviation);
     let mut off: Vec<bool> = residuals.iter().map(|residual| residual.abs() > limit).collect();
-    let goes_on = |off: &[bool], at: usize, from: usize| {
-        off[from] && residuals[at] * residuals[from] > 0.0 && residuals[at].abs() > beside
-    };
+    let goes_on =
+        |off: &[bool], at: usize, from: usize| off[from] && residuals[at] * residuals[from] > 0.0 && residuals[at].abs() > beside;
     (1..off.len()).for_each(|i| off[i] = off[i] || goes_on(&off, i, i - 1));
     (0..off.len().saturating_sub(1)).rev().for_each(|i| off[i] = off[i] || goes_on(&off, i, i + 1));
     off

@@ -121,9 +121,11 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         sources: calibration.sources.clone(),
         law: if fit.curve.is_some() { FittedLaw::Curve } else { FittedLaw::Paris },
-        curve: fit.curve.as_ref().zip(fit.population.as_ref()).map(|(law, lot)| {
-            CurveRecord::of(law, lot.gain.unwrap_or(f64::NAN), &|k| lot.errors_at(k))
-        }),
+        curve: fit
+            .curve
+            .as_ref()
+            .zip(fit.population.as_ref())
+            .map(|(law, lot)| CurveRecord::of(law, lot.gain.unwrap_or(f64::NAN), &|k| lot.errors_at(k))),
         left_out: calibration.left_out.clone(),
         population: fit.population.as_ref().and_then(|population| toml::Table::try_from(population).ok()),
     }
@@ -172,7 +174,10 @@ pub fn summary(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Vec<Str
             100.0 * law.rate_at_pivot_relative_error,
             law.pivot_delta_k_mpa_sqrt_m
         ),
-        format!("  power law      da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m), the best one by lives", law.paris_c_mm_per_cycle, law.paris_m),
+        format!(
+            "  power law      da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m), the best one by lives",
+            law.paris_c_mm_per_cycle, law.paris_m
+        ),
         format!("  m              {:.4}{}{source}", law.paris_m, error(law.paris_m_error)),
         "  ±              one standard error".to_owned(),
         format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", law.delta_k_min_mpa_sqrt_m, law.delta_k_max_mpa_sqrt_m),

@@ -65,7 +65,9 @@ impl CurveLaw {
 
     /// ΔK of the ends of the range and of the knots between them, Pa√m.
     pub fn knots(&self) -> [f64; ROWS] {
-        std::array::from_fn(|k| if k == ROWS - 1 { self.range[1] } else { self.range[0] * (self.knot_spacing() * k as f64).exp() })
+        std::array::from_fn(
+            |k| if k == ROWS - 1 { self.range[1] } else { self.range[0] * (self.knot_spacing() * k as f64).exp() },
+        )
     }
 
     /// ln of the rate (m/cycle) at a ΔK (Pa√m).
@@ -85,16 +87,18 @@ impl CurveLaw {
 
     /// Root mean square over the range of the local slope less m.
     pub fn slope_deviation(&self) -> f64 {
-        let Some(c) = self.shape else { return 0.0 };
-        let values: Vec<f64> = std::iter::once(0.0).chain(c).chain([0.0]).collect();
-        let squares: f64 = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
-        (squares / (KNOTS + 1) as f64).sqrt() / self.knot_spacing()
+        let squares: f64 = self.places().map(|k| (self.local_slope(k) - self.slope).powi(2)).sum();
+        (squares / self.places().count() as f64).sqrt()
+    }
+
+    /// ΔK of the knots and in the middle between them.
+    fn places(&self) -> impl Iterator<Item = f64> {
+        (0..=2 * (KNOTS + 1)).map(|half| self.range[0] * (0.5 * self.knot_spacing() * half as f64).exp())
     }
 
     /// Whether the rate rises with ΔK over the whole range, at knots and between them.
     pub fn rises(&self) -> bool {
-        let place = |half: usize| self.range[0] * (0.5 * self.knot_spacing() * half as f64).exp();
-        (0..=2 * (KNOTS + 1)).all(|half| self.local_slope(place(half)) > 0.0)
+        self.places().all(|k| self.local_slope(k) > 0.0)
     }
 
     /// b₀, m, c_k.

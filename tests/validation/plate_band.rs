@@ -26,7 +26,7 @@ fn lot_of(specimens: &[Specimen]) -> Population {
 
 fn with(lot: &Population, mut case: Case) -> Case {
     let LawSource::Fitted(mut record) = fitted(8.18, 26.5) else { unreachable!() };
-    record.stress_ratio = 0.2;
+    (record.stress_ratio, record.rate_constant, record.method) = (0.2, None, "handbook".to_owned());
     (record.law, record.curve) = (FittedLaw::Curve, Some(CurveRecord::of(&lot.life_law(), 0.0, &|_| [0.0; 2])));
     record.population = Some(Table::try_from(lot).unwrap());
     case.law = LawSource::Fitted(record);

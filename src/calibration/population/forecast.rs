@@ -15,8 +15,8 @@ use super::noise::{cholesky, whiten};
 use super::student::{noncentral_t_quantile, t_quantile};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::MPA_SQRT_M;
-use perilife_laws::curve::EFFECTS;
 pub use perilife_growth::case::Lot;
+use perilife_laws::curve::EFFECTS;
 
 /// Cells of a path: from 12 on lives change by less than 0.2 %.
 pub const CELLS: usize = 24;

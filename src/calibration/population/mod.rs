@@ -17,15 +17,18 @@ pub mod student;
 use nalgebra::{Matrix2, Vector2};
 use serde::{Deserialize, Serialize};
 
+use crate::median::median;
 use intervals::{Interval, Specimen};
 use law::{Row, rows};
 use noise::{Noise, cholesky, whiten};
-use crate::median::median;
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_laws::STEADY_EXPONENTS;
 use perilife_laws::curve::{CurveLaw, EFFECTS, KNOTS, ROUGHNESS};
-use reml::{Effects, EffectsMatrix, Group, PARAMETERS, Parameters, Penalty, departures, estimate, likelihood, minimise, uncertainty, variances};
+use reml::{
+    Effects, EffectsMatrix, Group, PARAMETERS, Parameters, Penalty, departures, estimate, likelihood, minimise, uncertainty,
+    variances,
+};
 
 /// Specimens from which on no scatter is assumed.
 const SPECIMENS_FOR_SCATTER: usize = 10;
@@ -461,7 +464,7 @@ fn assess(specimens: &[Specimen], best: &Found, gain: Option<f64>, slope: Option
 }
 
 /// Mean of which values far from the median count less; the plain one of fewer than three.
-fn huber_mean(values: &[f64]) -> f64 {
+pub(crate) fn huber_mean(values: &[f64]) -> f64 {
     let mean = |weight: &dyn Fn(f64) -> f64| {
         values.iter().map(|v| weight(*v) * v).sum::<f64>() / values.iter().map(|v| weight(*v)).sum::<f64>()
     };

@@ -261,9 +261,7 @@ impl Case {
     /// What the fitted rates are beside their power law; `None` where that is the law.
     pub fn shape(&self) -> Result<Option<Shape>> {
         let LawSource::Fitted(record) = &self.law else { return Ok(None) };
-        let of = |curve: &CurveRecord| {
-            Ok(Shape { curve: curve.law(), paris: fitted_paris(record)?, ratio: record.stress_ratio })
-        };
+        let of = |curve: &CurveRecord| Ok(Shape { curve: curve.law(), paris: fitted_paris(record)?, ratio: record.stress_ratio });
         record.curve.as_ref().map(of).transpose()
     }
 
