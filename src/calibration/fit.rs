@@ -8,7 +8,7 @@ use super::confidence::{Confidence, check_identified, confidence, end_of_range};
 use super::criterion::Criterion;
 use super::criterion::misfit;
 use super::exponent::DELTA_K_RATIO_MIN;
-use super::lack_of_fit::{LackOfFit, MisfitAtEnds, lack_of_fit, misfit_at_ends};
+use super::lack_of_fit::{MisfitAtEnds, misfit_at_ends};
 use super::outliers::{Run, StepRate, doubts_beside, long_step_rates, readings_apart, runs, step_rates, without};
 use super::paris::{self, Paris};
 use super::population::intervals::Specimen;
@@ -55,8 +55,6 @@ pub struct Fit {
     pub power_law_misfit: Option<MisfitAtEnds>,
     /// By how much the law misses the curve that it was fitted to at its first and last readings.
     pub misfit_at_ends: MisfitAtEnds,
-    /// Ends of its range at which the law misses measured rates by more than they scatter.
-    pub lack_of_fit: Option<LackOfFit>,
     /// The bonds that A and p of the record are of; without them they are C (m/cycle, MPa√m) and m.
     pub bonds: Option<Bonds>,
     /// K along the crack's own path, where no handbook has it.
@@ -158,7 +156,6 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         paris,
         misfit_at_ends: misfit_of(&fitted),
         power_law_misfit: curve.is_some().then(|| Ok::<_, Error>(misfit_of(&by_law(&power)?))).transpose()?,
-        lack_of_fit: lack_of_fit(task.curves, &fitted, task.delta_k),
         curve: curve.and_then(|curve| if let Written::Curve(law) = curve { Some(law) } else { None }),
         bonds: None,
         own_path: None,

@@ -60,7 +60,6 @@ pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
         "curve": law.curve,
         "misfit_at_ends": fit.misfit_at_ends,
         "power_law_misfit_at_ends": fit.power_law_misfit,
-        "lack_of_fit": fit.lack_of_fit,
         "population": fit.population,
         "left_out": law.left_out,
         "evaluations": fit.own_path.as_ref().map_or(1, |path| path.runs),

@@ -135,12 +135,12 @@ pub struct Population {
     pub assumed_scatter: bool,
     /// Negative logarithm of the restricted likelihood; compares fits of equal fixed effects.
     pub restricted_likelihood: f64,
-    /// Law of the lot: the mean of ln rate.
-    pub law: CurveLaw,
     /// L: what is added to the level of the law so that it takes the cycles that were counted, all of a specimen as one life.
     pub level_of_lives: f64,
     /// Gain of the likelihood by a shape; `None` where the readings are too few or their range is too short for one.
     pub gain: Option<f64>,
+    /// Law of the lot: the mean of ln rate.
+    pub law: CurveLaw,
     /// T.
     pub between: Between,
     /// Noise along a crack.
