@@ -127,3 +127,22 @@ fn readings_of_a_panel_narrow_what_it_has_left() {
     println!("width with own readings over that without {narrower:.3}, {covered} of 34 in their band");
     assert!(narrower < 0.92 && covered >= 27, "{narrower} {covered}");
 }
+
+/// Noise that a short growth cannot average says little of its life, and must not widen that of the whole.
+#[test]
+fn white_noise_of_the_first_rows_does_not_widen_the_life() {
+    let Some(panels) = panels() else { return };
+    let mut lot = lot_of(&specimens(&panels, 50));
+    lot.noise.white = 0.0108;
+    let case = with(&lot, hand_case(PANEL, &["stop.crack_length_mm=49.8"]));
+    let (run, _, band) = band(&case);
+    let whole =
+        lot.forecast(&cells(9.0 * MM, 49.8 * MM, CELLS, &super::fit_virkler::delta_k).unwrap(), None, Lot::Same).unwrap().life();
+    let [low, middle, high] = *band.reached.last().unwrap();
+    assert!((middle / run.life_cycles() - 1.0).abs() < 1e-12);
+    for (found, share) in [(low / middle, 0.05), (high / middle, 0.95)] {
+        let expected = whole.quantile(share) / whole.median;
+        assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+    }
+    assert!(band.reached.iter().all(|row| row[0] <= row[1] && row[1] <= row[2]));
+}

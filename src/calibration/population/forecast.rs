@@ -2,8 +2,7 @@
 //!
 //! A path is divided into cells of `n_j` cycles, ln rates of which have the covariance `S = Z T Zᵀ + X V Xᵀ + cov(e)`. A life is the sum of
 //! correlated lognormals, taken as lognormal itself with their mean and variance: `u_j = n_j e^(S_jj/2)`, `M = Σ u_j`,
-//! `s² = ln(1 + uᵀ(e^S - 1)u / M²)`, median `M e^(-s²/2)`, quantiles `median · exp(t_ν s)`. Of a new specimen the median is
-//! the life by the law.
+//! `s² = ln(1 + uᵀ(e^S - 1)u / M²)`, median `M e^(-s²/2)`, quantiles `median · exp(t_ν s)`.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -117,21 +116,19 @@ impl Population {
         let cycles: Vec<f64> = (0..cells)
             .map(|j| {
                 let row = &all[observed + j];
-                // The law of lives is that of mean cycles.
+                // On the mean over the noise a specimen takes the cycles of the law of lives.
                 (row.log_cycles - self.level_of_lives - 0.5 * self.noise.variance(row) - known(j, cells)).exp()
             })
             .collect();
         let outside: f64 = cycles.iter().zip(&of_path).map(|(n, row)| n * row.outside).sum();
-        let forecast = Forecast {
+        Ok(Forecast {
             share_outside: outside / cycles.iter().sum::<f64>(),
             cycles,
             covariance: conditional,
             freedom: self.freedom,
             specimens: self.specimens.len(),
             is_special: observed > 0 || lot == Lot::Other,
-        };
-        let by_law: f64 = of_path.iter().map(|row| (row.log_cycles - self.level_of_lives).exp()).sum();
-        Ok(if observed == 0 { forecast.about(by_law) } else { forecast })
+        })
     }
 
     /// Standard deviation of the slope of the law outside the calibrated range.
@@ -181,12 +178,6 @@ impl Population {
 }
 
 impl Forecast {
-    /// The same about another median.
-    fn about(self, median: f64) -> Forecast {
-        let factor = median / self.life().median;
-        Forecast { cycles: self.cycles.iter().map(|cycles| cycles * factor).collect(), ..self }
-    }
-
     /// Median and scatter in closed form: within 0.5 % of draws.
     pub fn life(&self) -> Life {
         let n = self.cycles.len();

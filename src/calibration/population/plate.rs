@@ -7,7 +7,7 @@
 //! Quantiles are computed at [`PLACES`] rows and read between them over the cycles of the run, both in logarithms.
 
 use super::Population;
-use super::forecast::{BEYOND_MAX, CELLS, Forecast, Lot};
+use super::forecast::{BEYOND_MAX, CELLS, Forecast, Life, Lot};
 use super::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, Zones};
 use super::student::t_quantile;
 use perilife_base::error::{Error, InputError, Result, input};
@@ -213,8 +213,9 @@ impl Plate {
         let whole = self.forecast(self.way[first], self.way[last], None).map_err(words)?;
         let to_row: Vec<f64> = self.cycles.iter().map(|n| n - start).collect();
         let from_row: Vec<f64> = self.cycles.iter().map(|n| end - n).collect();
-        let reached = self.along(&to_row, &|i| self.forecast(self.way[first], self.way[i], None))?;
-        let left = self.along(&from_row, &|i| self.forecast(self.way[i], self.way[last], None))?;
+        let centre = self.centre(&whole);
+        let reached = self.along(&to_row, centre, &|i| self.forecast(self.way[first], self.way[i], None))?;
+        let left = self.along(&from_row, centre, &|i| self.forecast(self.way[i], self.way[last], None))?;
         // Where ΔK is not known, the cycles of the run are taken with the scatter of the rest.
         let mut so_far = [0.0; 3];
         let reached_at = |i: usize| {
@@ -238,16 +239,22 @@ impl Plate {
         })
     }
 
-    /// Quantiles of a piece of the path for every row, `run` being its cycles in the run: at some rows by the closed form of `piece`, at the
-    /// others between them.
-    fn along(&self, run: &[f64], piece: &dyn Fn(usize) -> Result<Forecast>) -> std::result::Result<Vec<Quantiles>, NoBand> {
+    /// Quantiles of a piece of the path for every row, `run` being its cycles in the run, which goes by the law of the lot and is the median: at
+    /// some rows by the closed form of `piece` times the `centre` of the whole, at the others between them. The closed form keeps the mean of a
+    /// piece that is short beside the noise, not its median.
+    fn along(
+        &self,
+        run: &[f64],
+        centre: f64,
+        piece: &dyn Fn(usize) -> Result<Forecast>,
+    ) -> std::result::Result<Vec<Quantiles>, NoBand> {
         let mut places = self.places(run);
         places.sort_by(|a, b| run[*a].total_cmp(&run[*b]));
         let mut logarithms: Vec<[f64; 4]> = Vec::with_capacity(places.len());
         for place in places {
-            let deviation = piece(place).map_err(words)?.life().deviation;
-            // The run goes by the law of the lot: its cycles are the median.
-            let mut y = self.t.map(|t| run[place].ln() + t * deviation);
+            let (Life { median, deviation, .. }, middle) = (piece(place).map_err(words)?.life(), run[place].ln());
+            let [low, _, high] = self.t.map(|t| (centre * median).ln() + t * deviation);
+            let mut y = [low.min(middle), middle, high.max(middle)];
             if let Some(before) = logarithms.last() {
                 y = [0, 1, 2].map(|k| y[k].max(before[k + 1]));
             }
@@ -349,10 +356,20 @@ impl Plate {
         }
         let of_lot = self.forecast(way, self.way[last], None)?.life();
         let life = own.map_or(Ok(of_lot), |own| self.forecast(way, self.way[last], Some(own)).map(|own| own.life()))?;
+        let centre = self.centre(&self.forecast(self.way[first], self.way[last], None)?);
         let at = Monotone::new(self.lengths.iter().zip(&self.cycles).map(|(a, n)| [*a, *n])).at(length);
         let whole = self.cycles[self.cycles.len() - 1] - at;
-        let median = life.median / of_lot.median * whole;
-        Ok(Left { crack_length: length, cycles: whole, quantiles: self.t.map(|t| median * (t * life.deviation).exp()) })
+        // Of the piece whose ΔK is known, and of what lies beyond it.
+        let scale = centre * whole / (self.cycles[last] - at);
+        let [low, _, high] = self.t.map(|t| scale * life.median * (t * life.deviation).exp());
+        let middle = life.median / of_lot.median * whole;
+        Ok(Left { crack_length: length, cycles: whole, quantiles: [low.min(middle), middle, high.max(middle)] })
+    }
+
+    /// Cycles of the run over the median of the closed form, of the piece whose ΔK is known.
+    fn centre(&self, whole: &Forecast) -> f64 {
+        let [start, end] = self.known.map(|row| self.cycles[row]);
+        (end - start) / whole.life().median
     }
 
     /// Crack length up to which readings of the plate say its rate, m; of a single one that itself.
