@@ -5,22 +5,21 @@
 
 use super::case::CalibrationCase;
 use super::confidence::{Confidence, check_identified, confidence, end_of_range};
-use super::criterion::Criterion;
-use super::criterion::misfit;
+use super::criterion::{Criterion, misfit};
 use super::exponent::DELTA_K_RATIO_MIN;
 use super::lack_of_fit::{MisfitAtEnds, misfit_at_ends};
-use super::outliers::{Run, StepRate, doubts_beside, long_step_rates, readings_apart, runs, step_rates, without};
+use super::outliers::{Run, StepRate, doubts_beside, left_out, long_step_rates, readings_apart, runs, step_rates, without};
 use super::paris::{self, Paris};
 use super::population::intervals::Specimen;
 use super::population::{Population, fit as fit_population};
 use super::power_law::PowerLaw;
 use super::rates::{STEP_MIN, threshold};
-use super::search::{Constants, FittedCurve, Written, as_fitted, fit_all, fit_one, fitted_curve, is_at_end, own_law, picture};
+use super::search::{Constants, FittedCurve, as_fitted, fit_all, fit_one, fitted_curve, is_at_end, own_law, picture};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_laws::STEADY_EXPONENTS;
 use perilife_laws::curve::CurveLaw;
-use perilife_measured::{MeasuredCurve, first_of};
+use perilife_measured::{LeaveOut, MeasuredCurve, first_of};
 
 /// Most remarks on readings that a fit repeats.
 const DOUBTS_SHOWN: usize = 6;
@@ -55,6 +54,8 @@ pub struct Fit {
     pub power_law_misfit: Option<MisfitAtEnds>,
     /// By how much the law misses the curve that it was fitted to at its first and last readings.
     pub misfit_at_ends: MisfitAtEnds,
+    /// Readings that do not belong.
+    pub left_out: Vec<LeaveOut>,
     /// The bonds that A and p of the record are of; without them they are C (m/cycle, MPa√m) and m.
     pub bonds: Option<Bonds>,
     /// K along the crack's own path, where no handbook has it.
@@ -93,6 +94,8 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let is_fitted = fixed_p.is_none();
     let strange = runs(&task.curves.iter().map(|curve| long_step_rates(curve, task.delta_k)).collect::<Vec<_>>());
     let mut warnings = remarks(task, &strange);
+    let of_runs = |(curve, runs): (&MeasuredCurve, &Vec<Run>)| runs.iter().map(|run| left_out(curve, *run)).collect::<Vec<_>>();
+    let left_out = task.curves.iter().zip(&strange).flat_map(of_runs).collect();
     let belonging: Vec<MeasuredCurve> = task.curves.iter().zip(&strange).map(|(curve, runs)| without(curve, runs)).collect();
     let task = &FitTask { curves: &belonging, ..*task };
     let constants = fit_all(task.curves, task.criterion, fixed_p, law)?;
@@ -102,7 +105,7 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
         [only] => only.clone(),
         curves => picture(curves, &specimens, constants, law)?,
     };
-    let record = fitted_curve(&picture, constants, law)?;
+    let mut record = fitted_curve(&picture, constants, law)?;
     if is_fitted && is_at_end(record.constants.p) {
         return Err(Error::Mechanics(format!(
             "{}: {}; check the units of the readings and the load, narrow the window (measured.from_crack_length_mm and \
@@ -137,26 +140,28 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
              widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
-    let power = Written::Power(constants);
-    let curve = population.as_ref().filter(|population| is_fitted && population.law.shape.is_some());
-    let curve = curve.map(|population| Written::Curve(population.life_law()));
-    let curve = match curve {
-        Some(curve) if life_misfit(task, law, &curve)? <= life_misfit(task, law, &power)? => Some(curve),
-        _ => None,
-    };
-    let written = curve.as_ref().unwrap_or(&power);
-    let by_law = |written: &Written| task.curves.iter().map(|curve| as_fitted(curve, written, law)).collect::<Result<Vec<_>>>();
-    let fitted = by_law(written)?;
+    let power = |delta_k: f64| constants.a * delta_k.powf(constants.p);
+    let by = |rate: &dyn Fn(f64) -> f64| task.curves.iter().map(|curve| as_fitted(curve, rate, law)).collect::<Result<Vec<_>>>();
+    let by_power = by(&power)?;
+    let (mut curve, mut by_law) = (None, by_power.clone());
+    if let Some(lot) = population.as_ref().filter(|lot| is_fitted && lot.law.shape.is_some()) {
+        let (bent, rate) = (lot.life_law(), |delta_k: f64| lot.life_law().log_rate(delta_k * MPA_SQRT_M).exp());
+        let by_curve = by(&rate)?;
+        if life_misfit(task, &by_curve) <= life_misfit(task, &by_power) {
+            (curve, by_law) = (Some(bent), by_curve);
+            record.cycles_fitted = as_fitted(&picture, &rate, law)?.cycles;
+        }
+    }
     let misfit_of = |fitted: &[MeasuredCurve]| misfit_at_ends(task.curves, fitted, task.delta_k);
-    let record = FittedCurve { cycles_fitted: as_fitted(&picture, written, law)?.cycles, ..record };
     Ok(Fit {
         specimens: if task.curves.len() == 1 { vec![record.clone()] } else { specimens },
         record,
         confidence,
         paris,
-        misfit_at_ends: misfit_of(&fitted),
-        power_law_misfit: curve.is_some().then(|| Ok::<_, Error>(misfit_of(&by_law(&power)?))).transpose()?,
-        curve: curve.and_then(|curve| if let Written::Curve(law) = curve { Some(law) } else { None }),
+        misfit_at_ends: misfit_of(&by_law),
+        power_law_misfit: curve.map(|_| misfit_of(&by_power)),
+        curve,
+        left_out,
         bonds: None,
         own_path: None,
         population,
@@ -164,13 +169,11 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     })
 }
 
-/// Mean over specimens of the squared misfit of their lives, each at its own level.
-fn life_misfit(task: &FitTask<'_>, law: &PowerLaw, written: &Written) -> Result<f64> {
-    let of = |curve: &MeasuredCurve| {
-        let by_law = as_fitted(curve, written, law)?.cycles;
-        Ok(misfit(task.criterion, &by_law, &curve.cycles_counted()).powi(2))
-    };
-    Ok(task.curves.iter().map(of).sum::<Result<f64>>()? / task.curves.len() as f64)
+/// Sum over specimens of the squared misfit of their lives by a law, each at its own level.
+fn life_misfit(task: &FitTask<'_>, by_law: &[MeasuredCurve]) -> f64 {
+    let of =
+        |(law, curve): (&MeasuredCurve, &MeasuredCurve)| misfit(task.criterion, &law.cycles, &curve.cycles_counted()).powi(2);
+    by_law.iter().zip(task.curves).map(of).sum()
 }
 
 /// Law and scatter of the specimens; `None`, with a warning, where their readings do not tell it.

@@ -6,7 +6,7 @@
 
 use serde::Serialize;
 
-use crate::population::huber_mean;
+use crate::median::huber_mean;
 use perilife_base::units::MPA_SQRT_M;
 use perilife_measured::MeasuredCurve;
 

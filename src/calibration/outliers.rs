@@ -11,15 +11,15 @@
 //! common m, the second beginning at the split that fits best: `F = (S₁ - S₂) / (S₂ / (n - 3))` with the sums of squares S of both (test
 //! of nested models; Draper and Smith, Applied Regression Analysis, 1998).
 
-use super::median::median;
+use super::median::{NORMAL_MEDIAN, median};
 use super::rates::STEP_MIN;
 use nalgebra::{DMatrix, DVector};
 use perilife_base::units::round_off;
-use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_base::units::{MM, MPA_SQRT_M};
 
 use super::population::intervals::INTERVALS_MAX;
 use perilife_laws::curve::{CurveLaw, EFFECTS, KNOTS, ROUGHNESS};
-use perilife_measured::MeasuredCurve;
+use perilife_measured::{LeaveOut, MeasuredCurve};
 
 /// Rates beyond this factor of the curve, or below its inverse, do not belong; on clean curves the smallest seen is 0.83.
 pub const FACTOR: f64 = 3.0;
@@ -29,8 +29,6 @@ const DEVIATIONS: f64 = 5.0;
 const NEIGHBOURS: (f64, f64) = (3.0, 1.2);
 /// Standard deviations from which on a rate has no weight (95 % efficiency).
 const TUKEY: f64 = 4.685;
-/// Standard deviation over the median size of normal residuals.
-const OF_MEDIAN: f64 = 1.4826;
 /// Smallest standard deviation: computed curves have none.
 const DEVIATION_MIN: f64 = 0.01;
 /// τ of the shape, as in [`super::population`], wide.
@@ -62,7 +60,7 @@ pub struct StepRate {
 
 /// Line `ln da/dN = intercept + m ln ΔK` in m/cycle and MPa√m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RobustLine {
+struct RobustLine {
     /// ln of the rate at 1 MPa√m.
     pub intercept: f64,
     /// Slope.
@@ -71,14 +69,9 @@ pub struct RobustLine {
 
 impl RobustLine {
     /// The line of this slope through the middle of some rates.
-    pub fn at_level_of(self, rates: &[StepRate]) -> RobustLine {
+    fn at_level_of(self, rates: &[StepRate]) -> RobustLine {
         let levels: Vec<f64> = rates.iter().map(|rate| rate.log_rate - self.m * rate.log_k).collect();
         RobustLine { intercept: median(&levels), ..self }
-    }
-
-    /// C in mm/cycle and MPa√m.
-    pub fn c(&self) -> f64 {
-        self.intercept.exp() / MM_PER_CYCLE
     }
 }
 
@@ -131,7 +124,7 @@ fn rates_over(curve: &MeasuredCurve, least: f64, delta_k: &dyn Fn(f64) -> f64) -
 
 /// The repeated-median line; `None` for fewer than six rates or rates at one ΔK. Of more than two thousand every second, third and so on
 /// is taken.
-pub fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
+fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
     if rates.len() < RATES_MIN {
         return None;
     }
@@ -147,7 +140,7 @@ pub fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
 }
 
 /// The line of several specimens: the median of their slopes, and of their levels at it.
-pub fn robust_line_of_all(specimens: &[Vec<StepRate>]) -> Option<RobustLine> {
+fn robust_line_of_all(specimens: &[Vec<StepRate>]) -> Option<RobustLine> {
     let known: Vec<(&Vec<StepRate>, RobustLine)> =
         specimens.iter().filter_map(|rates| Some((rates, robust_line(rates)?))).collect();
     if known.is_empty() {
@@ -216,7 +209,7 @@ fn residuals(specimens: &[Vec<StepRate>]) -> Option<(Vec<Vec<f64>>, f64)> {
 
 fn deviation_of(residuals: &[Vec<f64>]) -> f64 {
     let sizes: Vec<f64> = residuals.iter().flatten().map(|residual| residual.abs()).collect();
-    (OF_MEDIAN * median(&sizes)).max(DEVIATION_MIN)
+    (median(&sizes) / NORMAL_MEDIAN).max(DEVIATION_MIN)
 }
 
 /// Which residuals of a specimen do not belong, with those beside them.
@@ -282,9 +275,22 @@ fn named(curve: &MeasuredCurve, runs: &[Run]) -> Vec<String> {
     lines
 }
 
+/// A run as what a fit leaves out.
+pub fn left_out(curve: &MeasuredCurve, run: Run) -> LeaveOut {
+    let cycles = |reading: usize| Some(curve.source.cycles_before + curve.cycles[reading]);
+    LeaveOut {
+        specimen: Some(curve.specimen.clone()),
+        from_cycles: cycles(run.from),
+        to_cycles: cycles(run.to),
+        reason: format!("by the program: {:.2} times the rate of the other readings", run.factor),
+        ..LeaveOut::default()
+    }
+}
+
 fn run_warning(curve: &MeasuredCurve, run: Run) -> String {
     let Run { from, to, factor } = run;
-    let [start, end] = [from, to].map(|reading| round_off(curve.source.cycles_before + curve.cycles[reading]));
+    let window = left_out(curve, run);
+    let [start, end] = [window.from_cycles, window.to_cycles].map(Option::unwrap_or_default);
     let [first, last] = [from, to].map(|reading| round_off(curve.crack_length[reading] / MM));
     format!(
         "{}readings do not belong: from {first} to {last} mm the crack of specimen {} grew at {factor:.2} times the rate of its other \

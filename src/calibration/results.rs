@@ -15,7 +15,7 @@ use super::search::FittedCurve;
 use perilife_base::cells::field;
 use perilife_base::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::record::{CurveRecord, FittedLaw, FittedRecord, LawRecord};
-use perilife_measured::MeasuredCurve;
+use perilife_measured::{LeaveOut, MeasuredCurve};
 
 /// `fit.json` of a fit that took `wall_s` seconds; units as in the names, cycles else, null for what is not known.
 pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
@@ -125,9 +125,14 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
             .as_ref()
             .zip(fit.population.as_ref())
             .map(|(law, lot)| CurveRecord::of(law, lot.gain.unwrap_or(f64::NAN), &|k| lot.errors_at(k))),
-        left_out: calibration.left_out.clone(),
+        left_out: left_out(calibration, fit),
         population: fit.population.as_ref().and_then(|population| toml::Table::try_from(population).ok()),
     }
+}
+
+/// What the user left out, and the program.
+pub fn left_out(calibration: &CalibrationCase, fit: &Fit) -> Vec<LeaveOut> {
+    [&calibration.left_out[..], &fit.left_out].concat()
 }
 
 /// The curve in words, a row for every knot.

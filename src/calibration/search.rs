@@ -10,9 +10,7 @@ use super::criterion::{Criterion, inverse_a, misfit, rms_life_error};
 use super::median::{Rising, common_lengths, median, pointwise_median_at};
 use super::power_law::PowerLaw;
 use perilife_base::error::{Error, Result};
-use perilife_base::units::MPA_SQRT_M;
 use perilife_laws::STEADY_EXPONENTS;
-use perilife_laws::curve::CurveLaw;
 use perilife_measured::{MeasuredCurve, READINGS_MIN};
 
 /// Where the search ends, relative and absolute in p: a minimum is not known better than to the root of the round-off.
@@ -137,22 +135,9 @@ pub(super) fn fitted_curve(curve: &MeasuredCurve, constants: Constants, law: &Po
     })
 }
 
-/// A law that a fit may write.
-pub(super) enum Written {
-    /// A power of ΔK.
-    Power(Constants),
-    /// The curve of the rates.
-    Curve(CurveLaw),
-}
-
-/// The curve as the law would have it.
-pub(super) fn as_fitted(curve: &MeasuredCurve, written: &Written, law: &PowerLaw) -> Result<MeasuredCurve> {
-    let (own, lengths) = (own_law(law, curve), &curve.crack_length);
-    let cycles = match written {
-        Written::Power(Constants { a, p }) => own.cycles(*p, lengths)?.into_iter().map(|n| n / a).collect(),
-        Written::Curve(law) => own.cycles_by(&|delta_k| law.log_rate(delta_k * MPA_SQRT_M).exp(), lengths)?,
-    };
-    Ok(MeasuredCurve { cycles, ..curve.clone() })
+/// The curve as it would be by a rate, m/cycle, over ΔK, MPa√m.
+pub(super) fn as_fitted(curve: &MeasuredCurve, rate: &dyn Fn(f64) -> f64, law: &PowerLaw) -> Result<MeasuredCurve> {
+    Ok(MeasuredCurve { cycles: own_law(law, curve).cycles_by(rate, &curve.crack_length)?, ..curve.clone() })
 }
 
 /// Specimens of one law: each with its own loads and level, all with one p.

@@ -124,41 +124,31 @@ impl CurveLaw {
         is_inside.then(|| ((place as usize).min(KNOTS), place - ((place as usize).min(KNOTS)) as f64))
     }
 
-    /// Values of φ_k at the ends of a piece, and their second derivatives over the square of the piece, over six.
-    fn ends(piece: usize, k: usize) -> [[f64; 2]; 2] {
-        let is_inner = |knot: usize| (1..=KNOTS).contains(&knot);
-        let value = |knot: usize| if knot == k + 1 { 1.0 } else { 0.0 };
-        let second = |knot: usize| if is_inner(knot) { SECOND[knot - 1][k] / 209.0 } else { 0.0 };
-        [[value(piece), value(piece + 1)], [second(piece), second(piece + 1)]]
-    }
-
     /// 1, x, φ_k at ln ΔK.
     pub fn design(&self, log_k: f64) -> [f64; EFFECTS] {
-        let mut design = [0.0; EFFECTS];
-        (design[0], design[1]) = (1.0, log_k - self.pivot.ln());
-        if let Some((piece, u)) = self.piece(log_k) {
-            let v = 1.0 - u;
-            for (k, phi) in design[2..].iter_mut().enumerate() {
-                let [[from, to], [bend_from, bend_to]] = Self::ends(piece, k);
-                *phi = v * from + u * to + (v.powi(3) - v) * bend_from + (u.powi(3) - u) * bend_to;
-            }
-        }
-        design
+        self.row([1.0, log_k - self.pivot.ln()], log_k, |u, v| [v, u, v.powi(3) - v, u.powi(3) - u])
     }
 
     /// Derivative of [`CurveLaw::design`] over ln ΔK.
     pub fn design_slope(&self, log_k: f64) -> [f64; EFFECTS] {
-        let mut design = [0.0; EFFECTS];
-        design[1] = 1.0;
-        if let Some((piece, u)) = self.piece(log_k) {
-            let v = 1.0 - u;
-            for (k, phi) in design[2..].iter_mut().enumerate() {
-                let [[from, to], [bend_from, bend_to]] = Self::ends(piece, k);
-                let bent = (1.0 - 3.0 * v * v) * bend_from + (3.0 * u * u - 1.0) * bend_to;
-                *phi = (to - from + bent) / self.knot_spacing();
-            }
+        let per = 1.0 / self.knot_spacing();
+        self.row([0.0, 1.0], log_k, |u, v| [-per, per, per * (1.0 - 3.0 * v * v), per * (3.0 * u * u - 1.0)])
+    }
+
+    /// The chord's part, and that of φ_k: its values at both ends of a piece and its second derivatives there (times the square of the piece,
+    /// over six) times their weights at the share u of the way through it, v = 1 - u.
+    fn row(&self, chord: [f64; 2], log_k: f64, weights: impl Fn(f64, f64) -> [f64; 4]) -> [f64; EFFECTS] {
+        let mut row = [0.0; EFFECTS];
+        (row[0], row[1]) = (chord[0], chord[1]);
+        let Some((piece, u)) = self.piece(log_k) else { return row };
+        let weights = weights(u, 1.0 - u);
+        for (k, phi) in row[2..].iter_mut().enumerate() {
+            let value = |knot: usize| if knot == k + 1 { 1.0 } else { 0.0 };
+            let second = |knot: usize| if (1..=KNOTS).contains(&knot) { SECOND[knot - 1][k] / 209.0 } else { 0.0 };
+            let ends = [value(piece), value(piece + 1), second(piece), second(piece + 1)];
+            *phi = ends.iter().zip(weights).map(|(end, weight)| end * weight).sum();
         }
-        design
+        row
     }
 }
 

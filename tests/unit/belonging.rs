@@ -120,6 +120,17 @@ fn readings_that_do_not_belong_are_named_and_left_out() {
         assert!(warning.contains(lines), "{name}: {lines} in {warning}");
         is_the_law(name, &fit, M);
         assert_eq!(fit.specimens, std::slice::from_ref(&fit.record), "{name}: one specimen, one law");
+        // What is left out stands in the record and beside the readings.
+        let case = case(&csv, "").unwrap();
+        let record = record(&case, &fit);
+        let table = perilife_calibration::readings::readings_csv(&case, &record.left_out, &|_| f64::NAN);
+        assert!(record.left_out.len() == 1 && record.left_out[0].reason.starts_with("by the program: "), "{:?}", record.left_out);
+        let marked = |line: &str| line.ends_with("times the rate of the other readings");
+        let first = table.lines().position(marked).unwrap_or_else(|| panic!("{name}: {table}"));
+        let [from, to] = [fit.left_out[0].from_cycles, fit.left_out[0].to_cycles].map(Option::unwrap);
+        let inside = made.windows(2).filter(|pair| pair[0].0 < to - 0.1 && pair[1].0 > from + 0.1).count();
+        let with_first = usize::from(first == 1);
+        assert_eq!(table.lines().filter(|line| marked(line)).count(), inside + with_first, "{name}: {table}");
         // The window of the message, as it stands there, leaves them out.
         let window = warning.split_once("leave_out = ").unwrap().1.replace("\"...\"", "\"seen\"");
         let out = fitted(&csv, &format!("leave_out = {window}"));
@@ -166,7 +177,7 @@ fn rows_are_left_out_by_line_value_and_reason() {
     assert_eq!((fit.paris.m, fit.record.life_measured()), (plain.paris.m, plain.record.life_measured()));
     assert_eq!(report(&bad, &fit, 0.0)["left_out"][0]["value"], "abc");
     assert_eq!(bad.sources[0].sha256, perilife_base::input::sha256(csv.as_bytes()));
-    let table = perilife_calibration::readings::readings_csv(&bad, &|_| f64::NAN);
+    let table = perilife_calibration::readings::readings_csv(&bad, &bad.left_out, &|_| f64::NAN);
     assert!(table.contains(",line 5: abc,typing error\n"), "{table}");
     let record = toml::to_string(&record(&bad, &fit)).unwrap();
     assert!(

@@ -1,6 +1,6 @@
 //! Reading intervals of specimens, and cells of a crack path whose life is asked for: growth between two crack lengths with ΔK along it.
 
-use crate::median::median;
+use crate::median::{NORMAL_MEDIAN, median};
 use perilife_base::error::{Result, input};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_measured::MeasuredCurve;
@@ -253,8 +253,8 @@ fn least_growth(readings: &[Reading]) -> f64 {
     let mut lengths: Vec<f64> = readings.iter().map(|reading| reading.length).collect();
     lengths.dedup_by(|a, b| (*a - *b).abs() <= SAME_LENGTH * b.abs());
     let third: Vec<f64> = lengths.windows(4).map(|a| (a[3] - 3.0 * a[2] + 3.0 * a[1] - a[0]).abs()).collect();
-    // Of readings with equal errors s, a third difference has the deviation √20 s; 0.6745 of it is the median of its size.
-    let error = if lengths.len() < READINGS_FOR_ERROR { 0.0 } else { median(&third) / (0.6745 * 20.0_f64.sqrt()) };
+    // Of readings with equal errors s, a third difference has the deviation √20 s.
+    let error = if lengths.len() < READINGS_FOR_ERROR { 0.0 } else { median(&third) / (NORMAL_MEDIAN * 20.0_f64.sqrt()) };
     let steps: Vec<f64> = lengths.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     let typical = if steps.is_empty() { 0.0 } else { median(&steps) };
     lengths.sort_by(f64::total_cmp);

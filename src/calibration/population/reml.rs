@@ -282,27 +282,3 @@ pub(super) fn minimise(groups: &[Group], penalty: &Penalty, priors: &Priors, sta
     }
     problem.best.into_inner().map_or(*start, |(_, at)| at)
 }
-
-/// Covariance of the parameters, the inverse of the second derivatives; `None` where they are no minimum.
-pub(super) fn uncertainty(
-    groups: &[Group],
-    penalty: &Penalty,
-    priors: &Priors,
-    at: &Parameters,
-) -> Option<SMatrix<f64, PARAMETERS, PARAMETERS>> {
-    const WIDE: f64 = 100.0 * STEP;
-    let problem = search(groups, penalty, priors, at);
-    let here = problem.slope(at);
-    let mut second = SMatrix::<f64, PARAMETERS, PARAMETERS>::zeros();
-    for i in 0..PARAMETERS {
-        let mut beside = *at;
-        beside[i] += WIDE;
-        let there = problem.slope(&beside);
-        for j in 0..PARAMETERS {
-            let value = 0.5 * (there[j] - here[j]) / WIDE;
-            second[(i, j)] += value;
-            second[(j, i)] += value;
-        }
-    }
-    Some(second.cholesky()?.inverse())
-}

@@ -173,8 +173,10 @@ impl FitTables {
         let curve = serde_json::from_value::<CurveRecord>(fit["curve"].clone()).ok();
         let law = LawCurve {
             name: String::new(),
-            points: curve.map_or_else(of_power, |curve| along(&curve)),
-            pivot: figure("pivot_delta_k_mpa_sqrt_m").and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
+            points: curve.as_ref().map_or_else(of_power, along),
+            pivot: figure("pivot_delta_k_mpa_sqrt_m")
+                .filter(|_| curve.is_none())
+                .and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
         };
         let fitted_to = fit["fitted_to"].as_str().unwrap_or("").to_owned();
         Ok(FitTables { readings: rows(readings, READINGS_FILE)?, curves: all, band, law, fitted_to })
