@@ -184,6 +184,12 @@ fn a_record_is_read_from_its_file() {
     let case = Case::from_file(&path, &[]).unwrap();
     assert_eq!((case.name.as_str(), &case.law), ("panel", &LawSource::Fitted(Box::new(record()))));
 
+    // One of before names its estimate, and no law.
+    let before = toml::to_string(&record()).unwrap().replace("\nlaw = \"paris\"", "\nestimate = \"least_squares\"");
+    assert!(before.contains("estimate"));
+    std::fs::write(folder.path().join("fitted.toml"), before).unwrap();
+    assert_eq!(Case::from_file(&path, &[]).unwrap().law, LawSource::Fitted(Box::new(record())));
+
     std::fs::write(folder.path().join("fitted.toml"), toml::to_string(&record()).unwrap().replace("5000", "-5000")).unwrap();
     let error = Case::from_file(&path, &[]).unwrap_err().to_string();
     assert!(error.contains("fitted.toml:1") && error.contains("a = -5000") && error.contains("above zero"), "{error}");

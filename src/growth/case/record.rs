@@ -89,6 +89,7 @@ pub struct FittedRecord {
     /// Program version.
     pub version: String,
     /// The law of its lives: C and m are the best power law all the same.
+    #[serde(default = "paris")]
     pub law: FittedLaw,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
@@ -101,6 +102,11 @@ pub struct FittedRecord {
     /// Scatter of the specimens about a common law; what it holds is the calibration's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub population: Option<Table>,
+}
+
+/// Law of a record of before, which names none.
+fn paris() -> FittedLaw {
+    FittedLaw::Paris
 }
 
 /// A curve of rates: its values at both ends of its range and at knots between them, even in ln ΔK, which make the whole of it.
