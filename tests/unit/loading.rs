@@ -233,7 +233,6 @@ fn directions_pressures_and_displacements_that_are_refused() {
         (PANEL, by_crack("\"high\""), "is not a number, or rows [crack length, load]"),
         (PANEL, by_crack("[[5, 50], [30, 40]]\nresidual_stress_mpa = \"5\""), "whose load depends on the crack length"),
         (PANEL, by_crack("[[5, 50], [30, 40]]\n[stop]\nrequired_strength_mpa = 90"), "is one for every crack length"),
-        (PANEL, by_crack("[[5, 50], [30, 40]]\n[fatigue]\ndriver = \"bond_strain\""), "their own strain know one load"),
         (PLATE, by_crack("[[5, 50], [30, 40]]\ncrack_pressure_mpa = 4"), "is the same at every crack length"),
         (two, by_crack("[[5, 50], [30, 40]]"), "the plate has several"),
     ];
