@@ -198,9 +198,14 @@ impl<'a, P: CrackedPlate> Cracks<'a, P> {
         growing.max_by(|a, b| a.1.rate.total_cmp(&b.1.rate).then(b.0.cmp(&a.0))).map(|(index, _)| index)
     }
 
+    /// Crack length in the convention of the specimen, m.
+    fn crack_length(&self) -> f64 {
+        self.state.crack_length(&self.case.specimen)
+    }
+
     /// Work of the load of the cycle, J.
     fn work(&self) -> f64 {
-        self.case.loading.share(self.plate.work()).powi(2) * self.plate.work()
+        self.case.loading.share(self.plate.work(), self.crack_length()).powi(2) * self.plate.work()
     }
 
     /// Unit vector in which a tip grows `step` on, m.

@@ -3,6 +3,7 @@
 
 use super::record::{CurvePoint, StopReason};
 use crate::case::Case;
+use perilife_plate::loading::LoadControl;
 use perilife_plate::specimen::handbook::handbook;
 use perilife_points::crack_tip::TipState;
 
@@ -47,7 +48,8 @@ pub fn critical_length(case: &Case) -> Option<End> {
 /// The crack lengths at which a standard specimen no longer bears the load that it has to, by K = toughness and by yield of the whole
 /// section; `None` where that is not known before a run, or does not end the life.
 pub fn critical_lengths(case: &Case) -> [Option<End>; 2] {
-    if case.loading.displacement().is_some() {
+    // Of a load that follows the crack known row by row: it need not rise with the crack.
+    if case.loading.control != LoadControl::Load {
         return [None; 2];
     }
     let (specimen, load) = (&case.specimen, case.loading.maximum * case.stop.required.unwrap_or(1.0));
@@ -92,7 +94,7 @@ fn first_reach(value: impl Fn(f64) -> f64, wanted: f64, from: f64, to: f64) -> f
 fn excess(case: &Case, row: &CurvePoint) -> [(Option<f64>, StopReason); 2] {
     let required = case.stop.required.unwrap_or(1.0);
     let k_max = row.k_max_at(required, &case.loading);
-    let load = case.loading.maximum * case.loading.share(row.work);
+    let load = case.loading.doing(row.work, row.crack_length);
     let known = |excess: f64| Some(excess).filter(|excess| excess.is_finite());
     [
         (case.toughness_at_end().and_then(|toughness| known(k_max / toughness - 1.0)), StopReason::Toughness),

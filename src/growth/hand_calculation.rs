@@ -93,7 +93,7 @@ impl<'a> HandCalculation<'a> {
 
     /// K at maximum load, Pa√m, and how it follows the load.
     fn factors(&self, crack_length: f64) -> (f64, Response) {
-        let of_load = self.formula.k_i(crack_length, self.case.loading.maximum);
+        let of_load = self.formula.k_i(crack_length, self.case.loading.at(crack_length));
         let Some(residual) = &self.residual else { return (of_load, Response::PROPORTIONAL) };
         let of_residual = residual.at(crack_length);
         (of_load + of_residual, Response::of_residual(of_residual / (of_load + of_residual)))
@@ -171,7 +171,8 @@ impl<'a> HandCalculation<'a> {
             return Ok(Some(reason));
         }
         let is_broken = |row: &CurvePoint| end_of_life::reason_to_stop(self.case, None, row, &[TipState::Active], true);
-        if let Some(reason) = self.residual.as_ref().and_then(|_| is_broken(last)) {
+        let is_row_by_row = self.residual.is_some() || self.case.loading.course().is_some();
+        if let Some(reason) = Some(last).filter(|_| is_row_by_row).and_then(is_broken) {
             return Ok(Some(reason));
         }
         let to = if done == INTERVALS { end } else { start * (end / start).powf(done as f64 / INTERVALS as f64) };
@@ -198,8 +199,8 @@ impl<'a> HandCalculation<'a> {
             return Ok(Some(StopReason::RunOut));
         }
         let (next, reason) = (self.point(before + more, to), (done == INTERVALS).then_some(reason));
-        // The sections of a plate are not known as a formula before the run, nor K of a residual stress.
-        let is_open = self.case.specimen.ligament(to).is_none() || self.residual.is_some();
+        // The sections of a plate are not known as a formula before the run, nor K of a residual stress or of a load that follows the crack.
+        let is_open = self.case.specimen.ligament(to).is_none() || is_row_by_row;
         let (next, reason) = if is_open { end_of_life::row_after(self.case, last, next, reason) } else { (next, reason) };
         self.curve.push(next);
         Ok(reason)

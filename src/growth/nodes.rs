@@ -84,7 +84,7 @@ impl NodePlate {
     pub fn displacement(&self, case: &Case, at: Point) -> Option<Point> {
         let (plate, solution) = self.solved.as_ref()?;
         let (displacement, _) = plate.displacement(&solution.whole.u, at, &mut Local::default())?;
-        Some(displacement.map(|u| case.loading.share(self.state.work) * u))
+        Some(displacement.map(|u| case.loading.share(self.state.work, case.specimen.crack_length) * u))
     }
 
     fn factors(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<[f64; 2]>> {
@@ -167,13 +167,14 @@ impl CrackedPlate for NodePlate {
         let Some((plate, solution)) = &self.solved else { return Ok(vec![None; cracks.tips.len()]) };
         let Solution { whole, lower, .. } = solution;
         let (lines, tips) = NodePlate::cracks(case, cracks);
+        let length = cracks.crack_length(&case.specimen);
         let has_residual = case.loading.residual.is_some();
         let released = |at| case.loading.residual.as_ref().map_or([0.0; 3], |residual| residual.at(at));
         let reading = |index: usize| {
             let axes = &plate.axes[index];
             let room = room(&case.specimen, &lines, &tips[index]);
             let read = |loaded: &Loaded, u: &[f64], is_free: bool| {
-                let share = share_of_cycle(case, loaded);
+                let share = case.loading.share(loaded.work / (loaded.share * loaded.share), length);
                 let pressure = case.specimen.crack_pressure * case.loading.maximum * loaded.share;
                 let stress = |at| {
                     let ([xx, yy, xy], pressure) = (released(at), pressure + if is_free { 0.0 } else { loaded.pressure_at(at) });
@@ -260,7 +261,8 @@ impl CrackedPlate for NodePlate {
             self.solve(case, cracks)?;
             self.state = state;
         }
-        let (share, far) = (case.loading.share(self.state.work), self.resolution().far);
+        let length = cracks.crack_length(&case.specimen);
+        let (share, far) = (case.loading.share(self.state.work, length), self.resolution().far);
         let of_plate = |(plate, solution): &(Discretisation, Solution)| {
             raster_fields(&case.specimen, plate, &solution.whole.u, far, case.material.plane, share)
         };
@@ -276,9 +278,4 @@ impl CrackedPlate for NodePlate {
     fn warnings(&self) -> Vec<String> {
         self.state.warnings.clone()
     }
-}
-
-/// What a plate that was solved under a load is multiplied by for that load of a cycle.
-fn share_of_cycle(case: &Case, loaded: &Loaded) -> f64 {
-    case.loading.share(loaded.work / (loaded.share * loaded.share))
 }

@@ -294,8 +294,8 @@ impl CrackedPlate for PointPlate {
         Some(self.body.grid())
     }
 
-    fn fields(&mut self, case: &Case, _cracks: &CracksState) -> Result<Option<Fields>> {
-        let share = case.loading.share(self.work());
+    fn fields(&mut self, case: &Case, cracks: &CracksState) -> Result<Option<Fields>> {
+        let share = case.loading.share(self.work(), cracks.crack_length(&case.specimen));
         let displacement: Vec<f64> = self.displacement.iter().map(|u| share * u).collect();
         Ok(Some(plate::fields(&self.body, &self.bonds, &displacement, &self.remaining_life)))
     }

@@ -89,7 +89,7 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
             other => other,
         })?;
         solves += 1;
-        let share = case.loading.share(solution.work);
+        let share = case.loading.share(solution.work, case.specimen.crack_length);
         let found = rim_stresses(specimen, &plate, &solution.u, share)?;
         let change = largest_change(&rims, &found);
         rims = found;

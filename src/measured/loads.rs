@@ -4,7 +4,7 @@
 //! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
 
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, first_of};
-use perilife_base::error::Result;
+use perilife_base::error::{Result, input_missing};
 use perilife_base::line::line;
 use perilife_base::table::Fault;
 use perilife_base::table::names::Role;
@@ -32,6 +32,14 @@ impl Measured {
     /// Sets the readings against the specimen and the load of a case.
     /// Errors: readings beyond the specimen; loads that it cannot have.
     pub fn set_against(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
+        if let Some(course) = loading.course() {
+            let problem = "follows the crack, and the load of readings is that of their own columns";
+            return Err(input_missing(
+                &course.key,
+                problem,
+                "give one number, and the load of every reading as a column such as force_max_n",
+            ));
+        }
         let (limit, limit_name) = specimen.length_limit();
         self.take_whole_lengths(specimen);
         self.leave_typing_errors_out();

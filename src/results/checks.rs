@@ -209,7 +209,7 @@ fn ligament(case: &Case, prediction: &Prediction) -> Check {
     if case.yield_strength_at_end().is_none() {
         return given;
     }
-    let load = |row: &CurvePoint| Some(case.loading.maximum * case.loading.share(row.work) / row.limit_load?);
+    let load = |row: &CurvePoint| Some(case.loading.doing(row.work, row.crack_length) / row.limit_load?);
     let most = prediction.curve.iter().filter_map(load).filter(|used| used.is_finite()).fold(f64::NAN, f64::max);
     if most.is_nan() {
         let words = "yielding: not checked, supports on both sides of every section";

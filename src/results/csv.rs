@@ -14,9 +14,11 @@ use perilife_base::error::{Error, InputError, Result};
 use perilife_base::input::{Opened, sha256};
 use perilife_base::units::us::System;
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
+use perilife_growth::case::Case;
 use perilife_growth::predict::{CurvePoint, Prediction};
 use perilife_growth::record::DepthRecord;
-use perilife_plate::specimen::{Crack, Point};
+use perilife_plate::loading::LoadControl;
+use perilife_plate::specimen::{Crack, LoadMeasure, Point};
 
 /// Name of the table of a run's a-N curve.
 pub const A_N_FILE: &str = "a_n.csv";
@@ -59,15 +61,28 @@ pub fn curve(rows: &[Row]) -> Vec<[f64; 2]> {
     rows.iter().map(|row| [row.crack_length_mm, row.cycles]).collect()
 }
 
+/// A column of the largest load of a cycle: its name behind a comma, and its value in a row.
+pub type LoadColumn<'a> = (&'static str, Box<dyn Fn(&CurvePoint) -> f64 + 'a>);
+
+/// That of a case whose load depends on the crack.
+pub fn load_column(case: &Case) -> Option<LoadColumn<'_>> {
+    let loading = &case.loading;
+    let at = |point: &CurvePoint| loading.at(point.crack_length);
+    Some(match (&loading.control, case.specimen.load_measure) {
+        (LoadControl::Load, _) => return None,
+        (LoadControl::Displacement { maximum, .. }, _) => (",force_max_n", Box::new(|point| point.work / *maximum)),
+        (LoadControl::Follows(_), LoadMeasure::Force) => (",force_max_n", Box::new(at)),
+        (LoadControl::Follows(_), LoadMeasure::Stress) => (",stress_max_mpa", Box::new(move |point| at(point) / MPA)),
+    })
+}
+
 /// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
-/// (load squared times compliance), the force where the cycles are of a `displacement`, m, of a crack that did not go through at the start its depth,
+/// (load squared times compliance), the `load` where it depends on the crack, of a crack that did not go through at the start its depth,
 /// where K does not follow the load in proportion K of the leading tip without load (K_res) and its stress ratio at that of the load, `ratio`, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
-pub fn a_n(prediction: &Prediction, displacement: Option<f64>, ratio: f64) -> String {
+pub fn a_n(prediction: &Prediction, load: Option<LoadColumn<'_>>, ratio: f64) -> String {
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
-    if displacement.is_some() {
-        text.push_str(",force_max_n");
-    }
+    text.push_str(load.as_ref().map_or("", |(column, _)| column));
     let has_depth = prediction.curve.iter().any(|point| point.depth.is_some());
     if has_depth {
         text.push_str(DEPTH_COLUMNS);
@@ -91,8 +106,8 @@ pub fn a_n(prediction: &Prediction, displacement: Option<f64>, ratio: f64) -> St
     text.push('\n');
     for point in &prediction.curve {
         let _ = write!(text, "{},{},{}", Row::of(point).fields(), point.broken_bonds, number(point.work));
-        if let Some(displacement) = displacement {
-            let _ = write!(text, ",{}", number(point.work / displacement));
+        if let Some((_, load)) = &load {
+            let _ = write!(text, ",{}", number(load(point)));
         }
         if has_depth {
             text.push_str(&depth_fields(point.depth));

@@ -86,8 +86,9 @@ impl<'a> Factors<'a> {
 
     /// β = K_eq/(σ √(πa)), NaN where it has no meaning.
     fn beta(&self, point: &CurvePoint, tip: usize) -> f64 {
+        let load = self.case.loading.at(point.crack_length) / self.case.loading.maximum;
         let root = (std::f64::consts::PI * self.length(point, tip)).sqrt();
-        self.stress.map_or(f64::NAN, |stress| Self::equivalent(point, tip) / (stress * root))
+        self.stress.map_or(f64::NAN, |stress| Self::equivalent(point, tip) / (load * stress * root))
     }
 }
 

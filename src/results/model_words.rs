@@ -222,7 +222,11 @@ pub fn loading(case: &Case) -> String {
             let most = short(pressure * loading.maximum / MPA);
             format!("{load} {loads} {symbol}, pressure on the cracks up to {most} MPa")
         }
-        _ => format!("{load} {loads} {symbol}"),
+        _ => {
+            let of_end =
+                |end: f64| format!("; the maximum follows the crack to {} at {} mm", short(loading.at(end) / unit), mm(end));
+            format!("{load} {loads} {symbol}{}", loading.course().map_or_else(String::new, |course| of_end(course.end())))
+        }
     };
     let sides =
         if loading.parallel_ratio == 0.0 { String::new() } else { format!(", {} of it on the sides", loading.parallel_ratio) };

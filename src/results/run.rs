@@ -90,7 +90,7 @@ impl Kept {
         lives.add_to(&mut result);
         quality.add_to(&mut result);
         answers.add_to(&mut result);
-        let a_n = lives.beside(csv::a_n(prediction, case.loading.displacement(), case.loading.ratio));
+        let a_n = lives.beside(csv::a_n(prediction, csv::load_column(case), case.loading.ratio));
         let crack_path = csv::crack_path(prediction, &case.specimen.cracks);
         if let Some(object) = result.as_object_mut() {
             object.insert("plate".to_owned(), json!(Plate::of(case)));
@@ -354,8 +354,8 @@ pub fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<
         series("residual strength", Mark::Line, &|s| Some(s.load())),
         series("by toughness", Mark::Dashes, &|s| s.by_toughness),
         series("by net-section yield", Mark::Dashes, &|s| s.by_net_section),
-        series("maximum load of the cycle", Mark::Dots, &|_| Some(case.loading.maximum)),
-        series("load to bear", Mark::Dashes, &|_| case.stop.required.map(|factor| factor * case.loading.maximum)),
+        series("maximum load of the cycle", Mark::Dots, &|s| Some(case.loading.at(s.crack_length))),
+        series("load to bear", Mark::Dashes, &|s| case.stop.required.map(|factor| factor * case.loading.at(s.crack_length))),
     ];
     let known: Vec<Series> = all.into_iter().filter(|series| !series.points.is_empty()).collect();
     let title = format!("{}: residual strength", case.name);

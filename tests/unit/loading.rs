@@ -171,6 +171,9 @@ fn a_roller_presses_uniformly_on_its_contact() {
 fn directions_pressures_and_displacements_that_are_refused() {
     let held = "stress_ratio = 0\nstress_max_mpa = 50\nedges = [\"top\", \"bottom\"]\n";
     let kept = "stress_ratio = 0\nkind = \"displacement\"\n";
+    let by_crack = |load: &str| format!("stress_ratio = 0\nstress_max_mpa = {load}");
+    let two = "kind = \"plate\"\nwidth_mm = 100\nlength_mm = 200\nthickness_mm = 2\n\
+               cracks = [{ from_mm = [-50, 0], to_mm = [-40, 0] }, { from_mm = [50, 0], to_mm = [40, 0] }]";
     let refused = [
         (PLATE, format!("{held}direction = [0, 0]"), "has no direction"),
         (PLATE, format!("{held}direction = [[0, 1]]"), "names 1 directions for 2 sides"),
@@ -221,6 +224,17 @@ fn directions_pressures_and_displacements_that_are_refused() {
             "moves an edge that [supports] holds along it",
         ),
         (PLATE, "kind = \"displacement\"\ndisplacement_mm = 0.1".into(), "belongs to fracture scenes"),
+        (PANEL, by_crack("[[12, 50], [30, 40]]"), "does not include the initial crack length 10 mm"),
+        (PANEL, by_crack("[[5, 50], [10, 40]]"), "does not include the initial crack length 10 mm"),
+        (PANEL, by_crack("[]"), "does not include the initial crack length 10 mm"),
+        (PANEL, by_crack("[[5, 50], [5, 45], [30, 40]]"), "stress_max_mpa[1][0] = 5: is not above the crack length 5 mm"),
+        (PANEL, by_crack("[[5, 50], [30, -4]]"), "stress_max_mpa[1][1] = -4: must be above zero"),
+        (PANEL, by_crack("[[5, 50, 1], [30, 40]]"), "is not a number, or rows [crack length, load]"),
+        (PANEL, by_crack("\"high\""), "is not a number, or rows [crack length, load]"),
+        (PANEL, by_crack("[[5, 50], [30, 40]]\nresidual_stress_mpa = \"5\""), "whose load depends on the crack length"),
+        (PANEL, by_crack("[[5, 50], [30, 40]]\n[stop]\nrequired_strength_mpa = 90"), "is one for every crack length"),
+        (PLATE, by_crack("[[5, 50], [30, 40]]\ncrack_pressure_mpa = 4"), "is the same at every crack length"),
+        (two, by_crack("[[5, 50], [30, 40]]"), "the plate has several"),
     ];
     for (specimen, loading, words) in refused {
         let error = case(specimen, &loading).map(|_| ()).expect_err(&loading).to_string();

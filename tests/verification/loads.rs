@@ -7,6 +7,7 @@ use perilife_growth::case::Case;
 use perilife_growth::cracks::initial_tips;
 use perilife_growth::points::PointPlate;
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_plate::specimen::handbook::handbook;
 use perilife_study::cases::by_name;
 
 use crate::support::shared::shared;
@@ -173,4 +174,102 @@ fn compliance_of_a_compact_specimen() {
     let [less, more] = ends.map(|row| [found(row.work), handbook(row.crack_length)]);
     println!("E B v/P of [points, handbook]: {less:.3?} to {more:.3?}");
     assert!(((more[0] - less[0]) / (more[1] - less[1]) - 1.0).abs() < 0.015, "{less:?}, {more:?}");
+}
+
+/// Rows (crack length, mm, load) with two corners.
+const ROWS: [[f64; 2]; 4] = [[5.0, 120.0], [18.0, 80.0], [25.0, 75.0], [40.0, 30.0]];
+
+fn load_at(length: f64) -> f64 {
+    let place = ROWS[1..3].iter().filter(|row| row[0] <= length).count();
+    let [[a, low], [b, high]] = [ROWS[place], ROWS[place + 1]];
+    low + (length - a) / (b - a) * (high - low)
+}
+
+/// `∫ da / (C (K(a) F(a))^m)` by K at unit load, in `parts`.
+fn quadrature(k: &dyn Fn(f64) -> f64, load: &dyn Fn(f64) -> f64, [from, to]: [f64; 2]) -> f64 {
+    let parts = 20_000;
+    let of = |i: usize| from + (to - from) * (i as f64 + 0.5) / parts as f64;
+    (0..parts).map(|i| (to - from) / parts as f64 / (1e-9 * (k(of(i)) * load(of(i))).powi(3))).sum()
+}
+
+/// Cycles under a load that follows the crack are those of K(a) F(a), whichever way K is found, and K at a load does not change by it.
+#[test]
+fn a_load_that_follows_the_crack_scales_k() {
+    let kinds = [
+        ("kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 200\ncrack_length_mm = 10", "stress_max_mpa", 32.0),
+        (
+            "kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 60\nlength_mm = 180\ncrack_length_mm = 10",
+            "stress_max_mpa",
+            28.0,
+        ),
+        ("kind = \"compact_tension\"\nwidth_mm = 60\ncrack_length_mm = 15", "force_max_n", 34.0),
+    ];
+    for (specimen, key, to) in kinds {
+        for (method, bound) in [("handbook", 1e-4), ("element_free_galerkin", 1e-3), ("peridynamics", 1e-3)] {
+            let set = [format!("stop.crack_length_mm={to}"), format!("model.method=\"{method}\"")];
+            let set = [&*set[0], &*set[1], "stop.cycles_max=1e15", "fatigue.step_error_percent=0.05"];
+            let follows = case(specimen, &format!("{key} = {ROWS:?}"), &set);
+            let (formula, unit) = (handbook(&follows.specimen).unwrap(), if key == "force_max_n" { 1.0 } else { 1e6 });
+            let follows = run(&follows);
+            let rows = follows
+                .curve
+                .iter()
+                .filter(|row| row.delta_k.is_finite())
+                .map(|row| [row.crack_length / 1e-3, row.delta_k / 1e6]);
+            let own: Vec<[f64; 2]> = rows.map(|[length, k]| [length, k / load_at(length)]).collect();
+            let between = |a: f64| {
+                let next = own.partition_point(|row| row[0] < a).clamp(1, own.len() - 1);
+                let [[from, low], [to, high]] = [own[next - 1], own[next]];
+                (low.ln() + (a - from) / (to - from) * (high / low).ln()).exp()
+            };
+            for [length, k] in &own {
+                let known = formula.k_i(length * 1e-3, unit) / 1e6;
+                assert!((k / known - 1.0).abs() < 0.01, "{specimen}, {method}: K by load {k} for {known} at {length} mm");
+            }
+            let start = own[0][0];
+            let expected = quadrature(&between, &load_at, [start, to]);
+            let off = follows.life_cycles() / expected - 1.0;
+            println!("{key}, {method}: {:.0} cycles, {off:+.1e} off", follows.life_cycles());
+            assert!(off.abs() < bound, "{specimen}, {method}: {} cycles for {expected}", follows.life_cycles());
+            assert!(follows.cross_check.is_none_or(|check| check.difference.abs() < 0.015), "{:?}", follows.cross_check);
+        }
+    }
+}
+
+/// Under F(a) = K / K₁(a) the crack grows at one rate: a over N is a straight line, and toughness ends it nowhere below K.
+#[test]
+fn a_load_that_keeps_k_constant_makes_a_straight_line() {
+    let specimen = "kind = \"compact_tension\"\nwidth_mm = 50\ncrack_length_mm = 15";
+    let unit = case(specimen, "force_max_n = 1000", &["model.method=\"handbook\""]);
+    let formula = handbook(&unit.specimen).unwrap();
+    let rows: Vec<[f64; 2]> =
+        (0..=200).map(|i| 15.0 + 0.1 * f64::from(i)).map(|a| [a, 15e6 / formula.k_i(a * 1e-3, 1.0)]).collect();
+    let load = format!("force_max_n = {rows:?}");
+    let set = ["model.method=\"handbook\"", "stop.crack_length_mm=34"];
+    for (toughness, stop) in [("15.1", StopReason::CrackLengthReached), ("14.9", StopReason::Toughness)] {
+        let of = format!("material.toughness_mpa_sqrt_m={toughness}");
+        let done = run(&case(specimen, &load, &[set[0], set[1], &*of]));
+        assert_eq!(done.stop, stop);
+        let rate = 1e-9 * 15_f64.powi(3);
+        for row in &done.curve {
+            let straight = (row.crack_length - 0.015) / 1e-3 / rate;
+            assert!((row.cycles - straight).abs() < 1e-4 * (0.019 / 1e-3 / rate), "{row:?}");
+        }
+    }
+}
+
+/// Cycles of a displacement break a plate by the load that they make: the same as those of that load.
+#[test]
+fn a_displacement_yields_the_section_by_its_load() {
+    let specimen = "kind = \"middle_tension\"\nwidth_mm = 50\nlength_mm = 100\ncrack_length_mm = 10";
+    let set = ["material.yield_strength_mpa=100", "model.method=\"element_free_galerkin\""];
+    let moved = |most: f64| run(&case(specimen, &format!("kind = \"displacement\"\ndisplacement_max_mm = {most}"), &set));
+    // P δ is the work; the section of 30 mm yields at 60 MPa.
+    let gross = |done: &Prediction, most: f64| done.curve[0].work / (most * 1e-3 * 0.05 * 0.002) / 1e6;
+    let light = moved(0.05);
+    let yields_at = 0.05 * 60.0 / gross(&light, 0.05);
+    for (share, is_broken) in [(0.98, false), (1.02, true)] {
+        let done = moved(share * yields_at);
+        assert_eq!(done.stop == StopReason::NetSectionYield && done.curve.len() == 1, is_broken, "{share}: {:?}", done.stop);
+    }
 }

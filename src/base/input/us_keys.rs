@@ -5,6 +5,7 @@ use toml::{Table, Value};
 use crate::error::{InputError, Result, input, input_missing};
 use crate::units::us::{System, clean, renamed};
 use crate::units::words::in_units;
+use crate::units::{INCH, MM};
 
 use super::slice::{path_steps, shorten, value_at};
 
@@ -66,7 +67,8 @@ fn below(table: &mut Table, above: &str, written: &mut Vec<Written>) -> Result<(
         })?;
         written.push(Written { metric: path(&si.name), us: path(key), value: value.clone() });
         table.remove(key);
-        table.insert(si.name.clone(), scaled(value, factor));
+        let value = if above == "loading" { of_rows(value, factor) } else { scaled(value, factor) };
+        table.insert(si.name.clone(), value);
     }
     Ok(())
 }
@@ -84,6 +86,16 @@ fn inside(value: &mut Value, path: &str, written: &mut Vec<Written>) -> Result<(
 
 fn number(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
+/// A load, times a factor: of rows over crack length that is in inches.
+fn of_rows(value: &Value, factor: f64) -> Value {
+    let Some(rows) = value.as_array() else { return scaled(value, factor) };
+    let row = |row: &Value| match row.as_array().map(Vec::as_slice) {
+        Some([length, load]) => Value::Array(vec![scaled(length, INCH / MM), scaled(load, factor)]),
+        _ => row.clone(),
+    };
+    Value::Array(rows.iter().map(row).collect())
 }
 
 /// A number, or all of a list, times a factor; what is no number stays, for its reader to refuse.

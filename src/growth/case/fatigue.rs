@@ -12,7 +12,7 @@ use perilife_base::units::MPA;
 use perilife_laws::growth_law::description::{Given, law_keys};
 use perilife_laws::initiation::{self, SnLaw};
 use perilife_laws::{Ageing, Driver, FatigueSettings, OVERLOAD_STRETCH, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS};
-use perilife_plate::loading::Loading;
+use perilife_plate::loading::{LoadControl, Loading};
 use perilife_plate::material::Material;
 use perilife_plate::specimen::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
 
@@ -112,7 +112,8 @@ fn read_initiation(input: &FatigueKeys, (driver, specimen, loading): (Driver, &S
         return Ok(None);
     };
     let law = SnLaw::read(value)?;
-    if driver != Driver::TipField || !specimen.is_through() || loading.spectrum.is_some() || loading.displacement().is_some() {
+    if driver != Driver::TipField || !specimen.is_through() || loading.spectrum.is_some() || loading.control != LoadControl::Load
+    {
         let problem = "goes with cycles of one load and through cracks that grow by K of their tips";
         return Err(input_missing(initiation::KEY, problem, "leave it out"));
     }
@@ -227,6 +228,10 @@ fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loa
             ));
         }
     };
+    if let (Some(course), STRENGTH) = (loading.course(), key) {
+        let problem = format!("is one stress, and {} is one for every crack length", course.key);
+        return Err(input(key, given, problem, format!("give {FACTOR}, the load to bear over that of the cycle")));
+    }
     if loading.displacement().is_some() {
         let problem = "is a load, and the cycles are of a displacement";
         return Err(input(key, given, problem, "leave it out, or give the load of the cycles"));

@@ -6,6 +6,7 @@ use perilife_base::units::MM;
 use perilife_nodes::crack::initial_cracks;
 use perilife_nodes::field::Discretisation;
 use perilife_nodes::solve::solve;
+use perilife_plate::loading::LoadControl;
 use perilife_plate::specimen::{Bearing, Load, SpecimenKind};
 use perilife_plate::williams::Elasticity;
 
@@ -24,8 +25,8 @@ pub(super) fn settle(case: &mut Case) -> Result<()> {
         _ => ("specimen.pin_diameter_mm", ((2e6 * radius / MM).round() / 1e6).to_string()),
     };
     let refused = |problem: &str, remedy: &str| Err(input(key, value.clone(), problem, remedy));
-    if case.loading.displacement().is_some() {
-        let problem = "touches as its force says, which cycles of a displacement do not know beforehand";
+    if case.loading.control != LoadControl::Load {
+        let problem = "touches as its force says, which is not the same at every crack length";
         return refused(problem, "give its contact half angle");
     }
     if matches!(case.model, Model::Handbook(_)) {

@@ -10,7 +10,7 @@ use super::{
     Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, pins, remove_law, residual,
 };
 use crate::case::record::FittedRecord;
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{
     Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Output, Provenance, Sections, value_at,
 };
@@ -228,6 +228,10 @@ fn refuse_scene(table: &Table) -> Result<()> {
 
 /// Loads that only growth by K of the tips on points knows.
 fn check_load(case: &Case) -> Result<()> {
+    if let Some(course) = case.loading.course().filter(|_| matches!(case.engine(), Engine::Bonds | Engine::BondsThenPoints)) {
+        let problem = "is a load that follows the crack, and bonds that lose life by their own strain know one load";
+        return Err(input_missing(&course.key, problem, "use fatigue.driver = \"tip_field\", or give one number"));
+    }
     let pressed = case.specimen.crack_pressure > 0.0;
     let (key, value, what) = match case.loading.displacement() {
         Some(most) => ("loading.kind", "\"displacement\"".to_owned(), format!("cycles of {} mm are", most / MM)),

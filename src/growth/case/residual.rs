@@ -2,6 +2,7 @@
 
 use super::{Case, Engine, LawSource};
 use perilife_base::error::{Result, input};
+use perilife_plate::loading::LoadControl;
 use perilife_plate::loading::residual::ResidualStress;
 use perilife_plate::specimen::SpecimenKind;
 
@@ -16,8 +17,9 @@ const SYMMETRIC: f64 = 1e-6;
 pub(super) fn check(case: &Case) -> Result<()> {
     let Some(residual) = case.loading.residual.as_deref() else { return Ok(()) };
     let refuse = |problem: &str, remedy: &str| Err(input(residual.key(), residual.words(), problem, remedy));
-    if case.loading.displacement().is_some() {
-        return refuse("does not go with cycles of a displacement, which one load follows", "give cycles of a load");
+    if case.loading.control != LoadControl::Load {
+        let problem = "does not go with cycles whose load depends on the crack length";
+        return refuse(problem, "give one load, such as loading.stress_max_mpa");
     }
     match case.engine() {
         Engine::Nodes | Engine::Points => {}

@@ -20,6 +20,8 @@ const MECHANISM: f64 = 20.0;
 const SEVERED: f64 = 1e6;
 /// Spacings on a ligament that resolve it.
 const LIGAMENT_SPACINGS: f64 = 4.0;
+/// Relative difference of a crack length from a corner of the load at which it is there.
+const ON_CORNER: f64 = 1e-6;
 
 /// An increment in the making.
 pub struct Increment {
@@ -64,7 +66,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     /// Growth of every tip over the same cycles, the fastest by one step. To be asked while a tip grows ([`Self::reason_to_stop`]).
     pub(crate) fn increments(&self) -> Increment {
         let lead = self.fastest().unwrap_or(0);
-        let until = self.end.map_or(f64::INFINITY, |end| end.crack_length);
+        let end = self.end.map_or(f64::INFINITY, |end| end.crack_length);
+        let until = self.corner_of_load(self.crack_length()).map_or(end, |corner| corner.min(end));
         let tip = &self.state.tips[lead];
         Increment {
             lead,
@@ -73,7 +76,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             rate: tip.rate,
             factor: tip.driving_factor(),
             is_kink: tip.begins_kink(),
-            past: tip.past(),
+            // The rates before a corner of the load and behind it lie on no parabola.
+            past: tip.past().filter(|_| !self.is_at_corner()),
             root: tip.root(tip.growth),
             before: self.energies(),
             parted: Parted::default(),
@@ -108,13 +112,17 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             return Err(StopReason::Severed);
         }
         let Err(error) = self.plate.solve(self.case, &self.state) else {
-            return if self.compliance_rise(self.work()) < SEVERED { Ok(()) } else { Err(StopReason::Severed) };
+            return if self.compliance_rise(self.work(), self.crack_length()) < SEVERED {
+                Ok(())
+            } else {
+                Err(StopReason::Severed)
+            };
         };
         // What the last tip has met ends the run, whatever can be solved of the pieces that are left.
         if matches!(error, Error::LossOfStiffness) || self.state.active().next().is_none() {
             return Err(StopReason::Severed);
         }
-        let rise = self.compliance_rise(self.last().work);
+        let rise = self.compliance_rise(self.last().work, self.last().crack_length);
         if rise > MECHANISM {
             self.warnings.push(format!(
                 "the run ends here: the plate is {rise:.0} times as compliant as at the start, and what is left of it moves almost freely \
@@ -211,7 +219,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let fastest = self.fastest().map_or(0.0, |tip| self.state.tips[tip].rate);
         let kinks = |tip: &Tip| tip.begins_kink() && !tip.is_at_rest(fastest);
         let is_kinking = self.scales.step.first_of_kink.is_finite() && self.state.tips.iter().any(kinks);
-        if has_ended || is_kinking {
+        if has_ended || is_kinking || self.is_at_corner() {
             self.state.step = self.first_step();
         } else if growth > 0.0 && !is_over {
             let all = self.last().cycles + cycles;
@@ -304,19 +312,32 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         (1..parts).map(|part| row_at(part as f64 / parts as f64)).collect()
     }
 
-    /// Compliance of an equilibrium by the work of its loads, J, over that at the start.
-    fn compliance_rise(&self, work: f64) -> f64 {
-        let rise = work / self.curve[0].work;
-        // Of a kept displacement the work falls as the compliance rises.
-        if self.case.loading.displacement().is_some() { 1.0 / rise } else { rise }
+    /// The next crack length, m, at which a load that follows the crack turns a corner.
+    fn corner_of_load(&self, from: f64) -> Option<f64> {
+        self.case.loading.course()?.corner_after(from)
     }
 
-    /// Of every tip `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its line, m; work of the loads, J.
+    /// Whether the crack has just reached one.
+    fn is_at_corner(&self) -> bool {
+        let length = self.crack_length();
+        self.corner_of_load(length * (1.0 - ON_CORNER)).is_some_and(|corner| corner <= length * (1.0 + ON_CORNER))
+    }
+
+    /// Compliance of an equilibrium by the work of its loads, J, over that at the start.
+    fn compliance_rise(&self, work: f64, crack_length: f64) -> f64 {
+        let compliance = |work: f64, length: f64| work / self.case.loading.doing(work, length).powi(2);
+        compliance(work, crack_length) / compliance(self.curve[0].work, self.curve[0].crack_length)
+    }
+
+    /// Of every tip `K_eq²/E'`, J/m², and the length that its crack stands for beyond that of its line, m; work of the loads, J. All of a load that
+    /// follows the crack as it was at the start: what a crack releases is the work that one load does more.
     fn energies(&self) -> (Vec<[f64; 2]>, f64) {
-        let modulus = self.case.material.plane_modulus();
+        let (modulus, loading) = (self.case.material.plane_modulus(), &self.case.loading);
+        let load = loading.at(self.crack_length()) / loading.maximum;
         // What a tip has at the load that the work is of.
-        let of_tip = |tip: &Tip| [(tip.driving_factor() * tip.response.at(1.0).max(0.0)).powi(2) / modulus, tip.length_offset];
-        (self.state.tips.iter().map(of_tip).collect(), self.work())
+        let factor = |tip: &Tip| tip.driving_factor() * tip.response.at(1.0).max(0.0) / load;
+        let of_tip = |tip: &Tip| [factor(tip).powi(2) / modulus, tip.length_offset];
+        (self.state.tips.iter().map(of_tip).collect(), self.work() / (load * load))
     }
 
     /// Compares the energy that the new segments released by their K with what the plate did.

@@ -345,6 +345,11 @@ pub struct CracksState {
 }
 
 impl CracksState {
+    /// Crack length in the convention of the specimen, m.
+    pub fn crack_length(&self, specimen: &Specimen) -> f64 {
+        specimen.crack_length_after(&self.tips.iter().map(|tip| tip.growth).collect::<Vec<_>>())
+    }
+
     /// Place of a tip, m.
     pub fn position(&self, tip: &Tip) -> Point {
         self.lines[tip.end.line].end(tip.end.at_last)

@@ -86,7 +86,7 @@ impl PointPlate {
         let loads: Vec<(f64, &Contact, &[f64])> = std::iter::once(whole).chain(of_lower).collect();
         let pressures: Vec<Vec<FlankPressure>> = loads.iter().map(|(load, contact, u)| tractions(contact, u, *load)).collect();
         let residual = case.loading.residual.as_deref();
-        let share = case.loading.share(self.work);
+        let share = case.loading.share(self.work, cracks.crack_length(&case.specimen));
         let (bonds, geometry) = (&self.bonds, &self.surroundings);
         let under = |place: usize| TipRings {
             body,

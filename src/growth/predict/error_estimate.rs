@@ -117,7 +117,7 @@ fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Resu
     let (life, mut sum) = (prediction.life_cycles(), 0.0);
     for pair in prediction.curve.windows(2) {
         let middle = 0.5 * (pair[0].crack_length + pair[1].crack_length);
-        let exponent = rates.exponent(formula.k_i(middle, case.loading.maximum));
+        let exponent = rates.exponent(formula.k_i(middle, case.loading.at(middle)));
         let error = formula.error_at(middle) * exponent.abs();
         sum += if error.is_finite() { error } else { 1.0 } * (pair[1].cycles - pair[0].cycles);
     }

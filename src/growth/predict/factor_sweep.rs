@@ -26,6 +26,7 @@ use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::units::MM;
 use perilife_laws::growth_law::Walker;
 use perilife_laws::paris::ParisLaw;
+use perilife_plate::loading::LoadControl;
 use perilife_plate::specimen::geometry::{along, direction, distance, distance_to_segment};
 use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::{CrackLine, LengthConvention, LoadMeasure, Point, Specimen, SpecimenKind};
@@ -134,8 +135,8 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
         let problem = "goes with --sweep no more than cycles of a displacement: β is K over the stress of a load";
         return Err(input_missing("loading.crack_pressure_mpa", problem, "leave --sweep out: K under pressure is that of `sif`"));
     }
-    if case.loading.displacement().is_some() {
-        let problem = "needs a load on rims or holes: β is K over its stress";
+    if case.loading.control != LoadControl::Load {
+        let problem = "needs one load on rims or holes: β is K over its stress";
         return Err(input_missing(KEY, problem, "give loading.stress_max_mpa or force_max_n"));
     }
     if *first < specimen.crack_length * (1.0 - SAME) {

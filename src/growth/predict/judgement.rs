@@ -4,7 +4,7 @@ use super::record::BLOCKS_WITHOUT_GROWTH;
 use super::{Prediction, StopReason, fit_use};
 use crate::case::{Case, first_load, ratio_line};
 use perilife_base::error::{Error, Result, input};
-use perilife_base::units::MPA_SQRT_M;
+use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_plate::loading::LoadControl;
 use perilife_plate::specimen::handbook::handbook;
 
@@ -54,16 +54,30 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
         }
         _ => {}
     }
+    warnings.extend(beyond_load(case, prediction));
     warnings.extend(fit_use::extrapolated(case, prediction));
     warnings.extend(fit_use::of_other_ratios(case, prediction));
     Ok(warnings)
+}
+
+/// What is to be said of the life that a crack spends beyond the table of its load, where that stays as it is in the last row.
+fn beyond_load(case: &Case, prediction: &Prediction) -> Option<String> {
+    let (course, last) = (case.loading.course()?, prediction.curve.last()?);
+    let rows = &prediction.curve[prediction.curve.partition_point(|row| row.crack_length <= course.end() * (1.0 + 1e-9))..];
+    let share = 100.0 * (last.cycles - rows.first()?.cycles) / last.cycles;
+    let [end, reached] = [course.end(), last.crack_length].map(|length| length / MM);
+    Some(format!(
+        "{}: the table ends at {end:.3} mm, and the crack grew to {reached:.3} mm under its last load, {share:.2} % of life; add rows, or set \
+         stop.crack_length_mm = {end:.3}",
+        course.key
+    ))
 }
 
 /// What breaks at the first load, and the load that it would bear.
 pub fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
     let [row] = prediction.curve.as_slice() else { return None };
     let required = case.stop.required.unwrap_or(1.0);
-    let load = case.loading.share(row.work) * case.loading.maximum * required;
+    let load = case.loading.doing(row.work, row.crack_length) * required;
     let k_max = row.k_max_at(required, &case.loading);
     // A limit that is reached but for round-off has no words of its own.
     let words = || first_load(case, load, Some(k_max).filter(|k| *k > 0.0));

@@ -40,7 +40,8 @@ pub fn stress_field(case: &Case, prediction: &Prediction) -> Result<Option<Stres
 
 fn pieces(case: &Case, plate: &Discretisation) -> Result<Vec<Vec<Corner>>> {
     let solution = solve(&case.specimen, plate, case.nodes().resolution.far, case.loading.maximum)?;
-    Ok(stress_pieces(&case.specimen, plate, &solution.u, case.material.plane, case.loading.share(solution.work)))
+    let share = case.loading.share(solution.work, case.specimen.crack_length);
+    Ok(stress_pieces(&case.specimen, plate, &solution.u, case.material.plane, share))
 }
 
 /// The last row before which no tip has met anything.

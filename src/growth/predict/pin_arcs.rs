@@ -59,7 +59,7 @@ fn changes(case: &Case, usual: f64, others: &[f64]) -> Result<Vec<(usize, f64)>>
             }
         }
         let solution = solve(&specimen, &plate, far, case.loading.maximum)?;
-        let share = case.loading.share(solution.work);
+        let share = case.loading.share(solution.work, case.specimen.crack_length);
         let size = |tip: usize| {
             let [k_i, k_ii] = factors::read(&plate, &solution.u, tip, room(&specimen, &lines, &tips[tip]), &|at| {
                 let pressure = solution.pressure_at(at);

@@ -157,7 +157,7 @@ fn asked(case: &Case, zone: &Zone, strength: f64) -> f64 {
     if case.loading.displacement().is_some() {
         return ligament_needed(zone.k_max, strength);
     }
-    case.specimen.ligament_asked(case.loading.maximum, zone.k_max, strength)
+    case.specimen.ligament_asked(case.loading.at(zone.crack_length), zone.k_max, strength)
 }
 
 /// What the user should know: yielding that K does not cover, and a plane state that the thickness contradicts.

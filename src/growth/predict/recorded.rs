@@ -17,7 +17,7 @@ use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_laws::growth_law::GrowthLaw;
 use perilife_laws::response::Response;
 use perilife_plate::specimen::LengthConvention;
-use perilife_plate::specimen::handbook::handbook;
+use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 
 /// Share of a way by which two of it may differ.
 const SAME: f64 = 1e-9;
@@ -348,8 +348,9 @@ fn before(case: &Case, places: &[Place]) -> Vec<Place> {
     // Metres that the fastest tip goes in one of the length.
     let way_per_length = (next.way - start.way) / (next.length - start.length);
     let (shortest, count) = if formula.is_some() { BY_HANDBOOK } else { BY_POWER };
+    let of_cycle = |formula: &HandbookFormula, length: f64| formula.k_i(length, case.loading.at(length));
     let log_k = |length: f64| match &formula {
-        Some(formula) => start.log_k + (formula.k_i(length, 1.0) / formula.k_i(start.length, 1.0)).ln(),
+        Some(formula) => start.log_k + (of_cycle(formula, length) / of_cycle(formula, start.length)).ln(),
         None => start.log_k + power * (length / start.length).ln(),
     };
     let place = |i: usize| {

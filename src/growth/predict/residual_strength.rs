@@ -44,10 +44,13 @@ impl Strength {
 /// Errors: neither toughness nor yield strength is given, or neither says anything about this plate.
 pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Strength>> {
     check_strength(case)?;
-    let load = case.loading.maximum;
     let strength = |crack_length: f64, k_max: Option<f64>, limit_load: Option<f64>| Strength {
         crack_length,
-        by_toughness: case.material.toughness.zip(k_max).map(|(toughness, k_max)| load * toughness / k_max),
+        by_toughness: case
+            .material
+            .toughness
+            .zip(k_max)
+            .map(|(toughness, k_max)| case.loading.at(crack_length) * toughness / k_max),
         by_net_section: limit_load,
     };
     let all: Vec<Strength> = match handbook(&case.specimen) {
@@ -55,7 +58,7 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
             let known = case.specimen.beta.as_ref().map_or(f64::INFINITY, |table| table.bounds()[1]);
             let (from, to) = (case.specimen.crack_length, case.specimen.length_limit().0.min(known));
             let lengths = (0..STEPS).map(|i| from + (to - from) * i as f64 / STEPS as f64);
-            lengths.map(|a| strength(a, Some(formula.k_i(a, load)), case.limit_load_at(a))).collect()
+            lengths.map(|a| strength(a, Some(formula.k_i(a, case.loading.at(a))), case.limit_load_at(a))).collect()
         }
         None => {
             let known = |point: &CurvePoint| Some(point.k_max(&case.loading)).filter(|k| *k > 0.0);

@@ -1,6 +1,7 @@
 //! Load history: constant amplitude, of a load or of a displacement, or a spectrum of loads.
 
 mod boundary;
+mod course;
 mod forces;
 mod formula;
 mod grips;
@@ -10,6 +11,7 @@ pub mod residual;
 pub mod spectrum;
 
 pub use boundary::{Imbalance, imbalance};
+pub use course::LoadCourse;
 pub use read::from_values;
 
 use std::sync::Arc;
@@ -18,6 +20,7 @@ use serde::Deserialize;
 use toml::Value;
 
 use crate::specimen::Edge;
+use course::Size;
 use residual::ResidualStress;
 use spectrum::{Class, Spectrum, SpectrumFormat};
 
@@ -54,12 +57,12 @@ perilife_base::kinds! {
 #[serde(deny_unknown_fields)]
 struct Input {
     kind: Option<LoadingKind>,
-    stress_max_mpa: Option<f64>,
-    stress_range_mpa: Option<f64>,
-    force_max_n: Option<f64>,
-    force_range_n: Option<f64>,
-    force_max_kn: Option<f64>,
-    force_range_kn: Option<f64>,
+    stress_max_mpa: Option<Size>,
+    stress_range_mpa: Option<Size>,
+    force_max_n: Option<Size>,
+    force_range_n: Option<Size>,
+    force_max_kn: Option<Size>,
+    force_range_kn: Option<Size>,
     displacement_max_mm: Option<f64>,
     displacement_range_mm: Option<f64>,
     grip: Option<Grip>,
@@ -95,10 +98,12 @@ impl Input {
 }
 
 /// What every cycle repeats.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum LoadControl {
     /// The load.
     Load,
+    /// A load by the crack length at which it acts.
+    Follows(Arc<LoadCourse>),
     /// The displacement `δ` that the load does work on: `P δ = Σ f·u` over the loaded places, P being the force of the load. Of two
     /// loaded ends it is what they move apart (its mean where they do not stay straight), of a pin that of the places it presses on.
     Displacement {
@@ -113,7 +118,8 @@ pub enum LoadControl {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loading {
     /// Largest nominal load of a cycle, of a spectrum that of all cycles: gross stress in Pa, or force in N (see `Specimen::load_measure`). Cycles of a displacement are
-    /// solved under [`UNIT_STRESS`] or [`UNIT_FORCE`] and scaled ([`Loading::share`]).
+    /// solved under [`UNIT_STRESS`] or [`UNIT_FORCE`] and scaled ([`Loading::share`]), as is a load that follows the crack, of which this is the one at the initial crack
+    /// length.
     pub maximum: f64,
     /// What every cycle repeats.
     pub control: LoadControl,
@@ -136,14 +142,33 @@ pub const UNIT_STRESS: f64 = perilife_base::units::MPA;
 pub const UNIT_FORCE: f64 = perilife_base::units::KN;
 
 impl Loading {
-    /// Load of the cycle over [`Loading::maximum`], on a plate on which the latter does this work `Σ f·u`, J: 1 where the load is given,
-    /// else `δ_max / δ`.
+    /// Load of the cycle over [`Loading::maximum`], on a plate with this crack length, m, on which the latter does this work `Σ f·u`, J: `δ_max / δ` where
+    /// a displacement is repeated.
     #[inline]
-    pub fn share(&self, work: f64) -> f64 {
-        match self.control {
+    pub fn share(&self, work: f64, crack_length: f64) -> f64 {
+        match &self.control {
             LoadControl::Load => 1.0,
+            LoadControl::Follows(course) => course.at(crack_length),
             LoadControl::Displacement { maximum, section } => maximum * self.maximum * section / work,
         }
+    }
+
+    /// Largest nominal load of the cycle, Pa or N, at a crack length, m, of cycles of a load.
+    pub fn at(&self, crack_length: f64) -> f64 {
+        self.maximum * self.course().map_or(1.0, |course| course.at(crack_length))
+    }
+
+    /// The same where it does this work `Σ f·u`, J, of cycles of a displacement too.
+    pub fn doing(&self, work: f64, crack_length: f64) -> f64 {
+        match self.control {
+            LoadControl::Displacement { maximum, section } => work / (maximum * section),
+            _ => self.at(crack_length),
+        }
+    }
+
+    /// The load over crack length, where it follows that.
+    pub fn course(&self) -> Option<&LoadCourse> {
+        if let LoadControl::Follows(course) = &self.control { Some(course) } else { None }
     }
 
     /// Smallest and largest stress ratio of the cycles that open the crack.
@@ -177,8 +202,8 @@ impl Loading {
     #[inline]
     pub fn displacement(&self) -> Option<f64> {
         match self.control {
-            LoadControl::Load => None,
             LoadControl::Displacement { maximum, .. } => Some(maximum),
+            _ => None,
         }
     }
 

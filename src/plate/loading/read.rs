@@ -5,11 +5,12 @@ use std::sync::Arc;
 use serde::Deserialize;
 use toml::Value;
 
+use super::course::{LoadCourse, Size};
 use super::residual::ResidualStress;
 use super::spectrum::{self, Spectrum};
 use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
 use super::{boundary, grips};
-use crate::specimen::{LoadMeasure, Specimen};
+use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
 use perilife_base::error::{self, Result, input, input_missing};
 use perilife_base::input::{
     FORCE, FORCE_KN, Folder, Quantity, STRESS, number, refuse_given, shorten, slice, slice_beside, table_of,
@@ -65,7 +66,7 @@ pub fn from_values(
     grips::refuse(&input)?;
     let spectrum = if input.kind == Some(LoadingKind::Spectrum) {
         // What is missing in the case is told before what is wrong in the file.
-        Magnitude::read(&input)?;
+        Magnitude::read(&input, specimen)?;
         Some(Spectrum::read(&input, folder)?)
     } else {
         spectrum::refuse(&input)?;
@@ -80,7 +81,7 @@ pub fn from_values(
     if is_of_load && input.crack_pressure_mpa.is_some() && input.magnitudes().all(|(_, given, ..)| given.is_none()) {
         return Ok(Loading { residual, ..pressure_alone(&input, supports, specimen, ratio)? });
     }
-    let magnitude = Magnitude::read(&input)?;
+    let magnitude = Magnitude::read(&input, specimen)?;
     let parallel_ratio =
         number("a ratio", -10.0, 10.0).read("loading.stress_parallel_ratio", input.stress_parallel_ratio.unwrap_or(0.0))?;
     let area = boundary::apply(&input, supports, specimen, parallel_ratio)?;
@@ -96,14 +97,21 @@ pub fn from_values(
         None if magnitude.is_range => magnitude.value / (1.0 - ratio),
         None => magnitude.value,
     };
+    let of_load = match magnitude.course {
+        Some(course) => {
+            refuse_beside(&magnitude.key, &magnitude.given, &input, specimen)?;
+            LoadControl::Follows(Arc::new(course))
+        }
+        None => LoadControl::Load,
+    };
     let (maximum, control) = match (specimen.load_measure, magnitude.of) {
-        (LoadMeasure::Stress, Of::Stress) | (LoadMeasure::Force, Of::Force) => (largest, LoadControl::Load),
-        (LoadMeasure::Stress, Of::Force) => (largest / area, LoadControl::Load),
+        (LoadMeasure::Stress, Of::Stress) | (LoadMeasure::Force, Of::Force) => (largest, of_load),
+        (LoadMeasure::Stress, Of::Force) => (largest / area, of_load),
         (LoadMeasure::Force, Of::Stress) => {
             let is_plate = specimen.kind.is_plate();
             let who = if is_plate { "a plate loaded by pins or rollers" } else { specimen.kind.name() };
             let problem = format!("is a stress, but {who} takes a force");
-            return Err(error::input(&magnitude.key, magnitude.given, problem, "give force_max_n or force_range_n (or _kn)"));
+            return Err(error::input(&magnitude.key, &magnitude.given, problem, "give force_max_n or force_range_n (or _kn)"));
         }
         (measure, Of::Displacement) => {
             for (key, given) in perilife_base::keyed!(input: stress_parallel_ratio, crack_pressure_mpa) {
@@ -126,6 +134,21 @@ pub fn from_values(
         specimen.crack_pressure = pressure / maximum;
     }
     Ok(Loading { maximum, control, ratio, spectrum: spectrum.map(Arc::new), parallel_ratio, residual })
+}
+
+/// Refuses what does not follow the crack as the load does, and cracks of which none is the one that it follows.
+fn refuse_beside(key: &str, given: &Size, input: &Input, specimen: &Specimen) -> Result<()> {
+    let one = "give one number";
+    let (problem, remedy) = if input.crack_pressure_mpa.is_some() {
+        ("does not go with loading.crack_pressure_mpa, which is the same at every crack length", one)
+    } else if specimen.part_through.is_some() {
+        ("is by the length of a through crack, and the crack is part-through", one)
+    } else if specimen.convention == LengthConvention::SumOfTips && specimen.crack_lines().len() > 1 {
+        ("is by the length of one crack, and the plate has several", "give one number, or a plate with one crack")
+    } else {
+        return Ok(());
+    };
+    Err(error::input(key, given, problem, remedy))
 }
 
 /// Pressure on the cracks and no other load: the nominal load is the pressure.
@@ -224,18 +247,18 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
 
 impl Input {
     /// Keys of a load with what is given.
-    fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<f64>, Quantity, Of)> {
+    fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<Size>, Quantity, Of)> {
         [
-            ("stress_max_mpa", self.stress_max_mpa, STRESS, Of::Stress),
-            ("stress_range_mpa", self.stress_range_mpa, STRESS, Of::Stress),
-            ("force_max_n", self.force_max_n, FORCE, Of::Force),
-            ("force_range_n", self.force_range_n, FORCE, Of::Force),
-            ("force_max_kn", self.force_max_kn, FORCE_KN, Of::Force),
-            ("force_range_kn", self.force_range_kn, FORCE_KN, Of::Force),
-            ("spectrum_scale_mpa", self.spectrum_scale_mpa, STRESS, Of::Stress),
-            ("spectrum_scale_n", self.spectrum_scale_n, FORCE, Of::Force),
-            ("displacement_max_mm", self.displacement_max_mm, DISPLACEMENT, Of::Displacement),
-            ("displacement_range_mm", self.displacement_range_mm, DISPLACEMENT, Of::Displacement),
+            ("stress_max_mpa", self.stress_max_mpa.clone(), STRESS, Of::Stress),
+            ("stress_range_mpa", self.stress_range_mpa.clone(), STRESS, Of::Stress),
+            ("force_max_n", self.force_max_n.clone(), FORCE, Of::Force),
+            ("force_range_n", self.force_range_n.clone(), FORCE, Of::Force),
+            ("force_max_kn", self.force_max_kn.clone(), FORCE_KN, Of::Force),
+            ("force_range_kn", self.force_range_kn.clone(), FORCE_KN, Of::Force),
+            ("spectrum_scale_mpa", self.spectrum_scale_mpa.map(Size::One), STRESS, Of::Stress),
+            ("spectrum_scale_n", self.spectrum_scale_n.map(Size::One), FORCE, Of::Force),
+            ("displacement_max_mm", self.displacement_max_mm.map(Size::One), DISPLACEMENT, Of::Displacement),
+            ("displacement_range_mm", self.displacement_range_mm.map(Size::One), DISPLACEMENT, Of::Displacement),
         ]
         .into_iter()
     }
@@ -253,15 +276,16 @@ enum Of {
 struct Magnitude {
     key: String,
     /// As given, in the unit of its key.
-    given: f64,
-    /// Pa, N or m.
+    given: Size,
+    /// Pa, N or m; of a load that follows the crack that at the initial crack length.
     value: f64,
+    course: Option<LoadCourse>,
     is_range: bool,
     of: Of,
 }
 
 impl Magnitude {
-    fn read(slice: &Input) -> Result<Self> {
+    fn read(slice: &Input, specimen: &Specimen) -> Result<Self> {
         let kind = slice.kind.unwrap_or(LoadingKind::ConstantAmplitude);
         let (wanted, example) = match kind {
             LoadingKind::ConstantAmplitude => (MAGNITUDES, "loading.stress_max_mpa"),
@@ -270,22 +294,22 @@ impl Magnitude {
         };
         let given: Vec<_> =
             slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of))).collect();
-        match given[..] {
+        match &given[..] {
             [(key, given, quantity, of)] => {
                 let path = format!("loading.{key}");
-                if !wanted.split(", ").any(|known| known == key) {
+                if !wanted.split(", ").any(|known| known == *key) {
                     let remedy = format!("give exactly one of {wanted}");
                     return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
                 }
-                if given < 0.0 {
+                if matches!(given, Size::One(load) if *load < 0.0) {
                     let problem =
                         "must be above zero: cracks grow by the tensile part of a cycle, and compression alone is not computed";
                     let remedy = "give the largest tension (a range: maximum - minimum; the scale of a file: above zero), and compression by \
                                   stress_ratio = minimum / maximum below 0, or by the signs of the file";
                     return Err(input(&path, given, problem, remedy));
                 }
-                let value = quantity.read(&path, given)?;
-                Ok(Magnitude { key: path, given, value, is_range: key.contains("range"), of })
+                let (value, course) = given.read(&path, *quantity, specimen.crack_length)?;
+                Ok(Magnitude { key: path, given: given.clone(), value, course, is_range: key.contains("range"), of: *of })
             }
             [] => Err(input_missing(example, "is missing: there is no load", format!("give exactly one of {wanted}"))),
             [(first, ..), (second, value, ..), ..] => {

@@ -228,7 +228,7 @@ export function createLoading(form, { places, plate, spectrum } = {}) {
       const isPinned = (loading.pins ?? []).every((pin) => onlyKnown(pin, ["hole", "direction"]));
       const known = ["kind", "stress_ratio", "bending_ratio", ...(KINDS[suits]?.biaxial ? ["stress_parallel_ratio"] : []), ...keys, ...(places ? ["edges", "pins"] : [])];
       const others = Object.fromEntries(Object.entries(loading).filter(([key]) => !known.includes(key)));
-      if (keys.length !== 1 || !isPinned) return false;
+      if (keys.length !== 1 || !isPinned || Array.isArray(loading[keys[0]])) return false;
       if (isOfSpectrum(keys[0]) ? !spectrum.fill(others) : !onlyKnown(others, [])) return false;
       if (places ? !places.fill(loading, supports) : supports) return false;
       fillIn(quantity, keys[0]);
