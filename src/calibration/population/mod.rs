@@ -9,6 +9,7 @@
 pub mod forecast;
 pub mod intervals;
 pub mod law;
+pub mod lots;
 pub mod noise;
 pub mod plate;
 mod reml;
@@ -27,8 +28,6 @@ use reml::{Effects, Group, PARAMETERS, Parameters, Penalty, departures, estimate
 
 /// Specimens from which on no scatter is assumed.
 const SPECIMENS_FOR_SCATTER: usize = 10;
-/// Assumed degrees of freedom of fewer specimens.
-const ASSUMED_FREEDOM: f64 = 3.0;
 /// Standard deviation of the ridge on the shape.
 const SHAPE_DEVIATION: f64 = 0.3;
 /// Range of ΔK, largest over smallest, from which on a law can have a shape.
@@ -175,7 +174,7 @@ impl Priors {
     fn of(specimens: usize) -> Priors {
         let root_mm = MM.sqrt();
         let between = match specimens < SPECIMENS_FOR_SCATTER {
-            true => [(0.12_f64.ln(), 0.4), (0.15_f64.ln(), 0.4)],
+            true => [(lots::MEDIAN.ln(), lots::DEVIATION), (0.15_f64.ln(), lots::DEVIATION)],
             false => [(0.07_f64.ln(), 1.0), (0.15_f64.ln(), 0.8)],
         };
         let noise = [(0.16_f64.ln(), 2.0), ((0.67 * MM).ln(), 1.5), ((0.065 * root_mm).ln(), 2.0), ((0.01 * MM).ln(), 2.0)];
@@ -407,7 +406,7 @@ fn assess(specimens: &[Specimen], best: &Found, straight: &Found, slope: Option<
         weights.iter().map(pair).sum::<f64>().max(0.0).sqrt()
     };
     let few = specimens.len() < SPECIMENS_FOR_SCATTER;
-    let freedom = specimens.len() as f64 - 1.0 + if few { ASSUMED_FREEDOM } else { 0.0 };
+    let freedom = specimens.len() as f64 - 1.0 + if few { lots::FREEDOM } else { 0.0 };
     Some(Population {
         law,
         power_law: straight.law,
