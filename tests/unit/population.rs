@@ -359,10 +359,7 @@ fn the_assumed_scatter_is_that_of_the_lots() {
     // P(|Z| e^(τ U) > q) over a grid of U, Z and U normal.
     let q = perilife_calibration::population::student::t_quantile(0.95, FREEDOM);
     let grid = (-600..=600).map(|i| f64::from(i) * 0.01);
-    let density = |z: f64| (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
-    // Two tails of the normal beyond z, by the middles of steps.
-    let tails = |z: f64| 1.0 - 2.0 * (0..400).map(|i| density(z * (f64::from(i) + 0.5) / 400.0) * z / 400.0).sum::<f64>();
-    let beyond = |u: f64| tails(q * (-DEVIATION * u).exp());
+    let beyond = |u: f64| 2.0 * (1.0 - normal_cdf(q * (-DEVIATION * u).exp()));
     let (p, all) = grid.fold((0.0, 0.0), |(p, all), u| (p + (-0.5 * u * u).exp() * beyond(u), all + (-0.5 * u * u).exp()));
     assert!((p / all - 0.1).abs() < 0.005, "{}", p / all);
     let squares: f64 = MEAN_PLUS_TWO.iter().map(|ratio| (0.5 * ratio.ln()).powi(2)).sum();
