@@ -32,6 +32,8 @@ const DIGITS_MOST: usize = 4;
 pub struct Lives {
     /// The plate with its band, or why there is none.
     pub band: std::result::Result<(Plate, PlateBand), NoBand>,
+    /// Whether the case says which lot its plate is of.
+    is_lot_given: bool,
     is_lower_bound: bool,
     tips: Option<TipLengths>,
     /// Cycles in a pass of a spectrum.
@@ -70,6 +72,7 @@ impl Lives {
         let plate = Plate::of(case, prediction)?;
         Ok(Lives {
             band: plate.and_then(|plate| plate.band().map(|band| (plate, band))),
+            is_lot_given: !case.echo["fatigue"]["lot"].is_null(),
             is_lower_bound: checks::is_bound_below(case, prediction),
             tips: TipLengths::of_run(case, prediction),
             per_pass: case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass),
@@ -170,13 +173,14 @@ impl Lives {
             Ok((plate, band)) => {
                 let assumed = if plate.lot.assumed_scatter { ", assumed scatter" } else { "" };
                 let lot = if plate.of == Lot::Same { "their lot" } else { "another lot" };
+                let other = if self.is_lot_given { "" } else { "; plate of another lot: fatigue.lot = \"other\"" };
                 let count = plate.lot.specimens.len();
                 let specimens = if count == 1 { "1 specimen".to_owned() } else { format!("{count} specimens") };
                 let outside = match band.share_outside {
                     share if share > 0.0 => format!(", {:.1} % of it outside their ΔK", 100.0 * share),
                     _ => String::new(),
                 };
-                lines.push(format!("  band           of {specimens}, {lot}{assumed}{outside}"));
+                lines.push(format!("  band           of {specimens}, {lot}{assumed}{outside}{other}"));
             }
             Err(why) => lines.push(format!("  band           none: {why}")),
         }

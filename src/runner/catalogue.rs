@@ -113,8 +113,10 @@ pub fn lines() -> Vec<(String, String, String)> {
         );
         ("material.name".to_owned(), name, meaning)
     }));
-    let record =
-        |record: GrowthRecord| ("material.name".to_owned(), record.name.clone(), format!("{}; with growth data", record.title()));
+    let record = |record: GrowthRecord| {
+        let meaning = format!("{}; with growth data, {}", record.title(), record.checked());
+        ("material.name".to_owned(), record.name, meaning)
+    };
     all.extend(growth_data::records().into_iter().map(record));
     all.extend(of_the_model.into_iter().flatten().map(words));
     all.push((

@@ -53,11 +53,14 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     for words in [
         "cycles (median; 90 % of specimens ",
         "of 1 specimen, their lot, assumed scatter",
+        "; plate of another lot: fatigue.lot = \"other\"\n",
         "  remaining  ",
         "5 % remaining life over 3",
     ] {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }
+    let said = done(dir.path(), &["predict", "case.toml", "--out", "given", "--set", "fatigue.lot=same"]);
+    assert!(said.contains("their lot") && !said.contains("fatigue.lot"), "{said}");
     let result = json(&dir.path().join("run/result.json"));
     let band = &result["band"];
     assert_eq!((&band["specimens"], &band["assumed_scatter"], &band["lot"]), (&1.into(), &true.into(), &"same".into()));

@@ -167,3 +167,25 @@ fn a_spectrum_of_equal_cycles_is_constant_amplitude() {
         assert!((one / other - 1.0).abs() < 1e-9, "{method}: {one} against {other}");
     }
 }
+
+/// Ratios from 0 to 0.3 and less: no word; a wider span is warned of unless a model of load interaction is chosen, also where it needs a yield strength.
+#[test]
+fn a_life_without_load_interaction_is_warned_of_where_stress_ratios_span_much() {
+    let narrow = "max,min,cycles\n0.6,0.1,20\n1.0,0.05,1\n0.5,0.1,40\n";
+    let newman = CASE.replace("[model]", "retardation = \"newman\"\n[model]");
+    let soft = CASE.replace("yield_strength_mpa = 340.0\n", "");
+    let remedy = "compare with loading.retardation = \"newman\"";
+    let rows = [
+        (CASE, narrow, None),
+        (CASE, FLIGHTS, Some("")),
+        (&newman, FLIGHTS, None),
+        (&soft, FLIGHTS, Some(" and material.yield_strength_mpa")),
+    ];
+    for (case, flights, wanted) in rows {
+        let (_dir, output) = run(case, "flights.csv", flights, &["predict", "case.toml", "--out", "out"]);
+        let (out, err) = texts(&output);
+        let said = format!("{out}{err}");
+        assert_eq!(said.contains("load interaction: none"), wanted.is_some(), "{said}");
+        assert!(wanted.is_none_or(|more| said.contains(&format!("{remedy}{more}\n"))), "{said}");
+    }
+}

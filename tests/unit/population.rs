@@ -5,6 +5,7 @@ use perilife_base::quadrature::integrate;
 use perilife_base::units::{MM, MPA, MPA_SQRT_M};
 use perilife_calibration::population::forecast::{Basis, CELLS, Lot, tolerance_factor};
 use perilife_calibration::population::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, cells};
+use perilife_calibration::population::lots::{BETWEEN_LOTS, DEVIATION, FREEDOM, LOTS, MEAN_PLUS_TWO, MEDIAN};
 use perilife_calibration::population::student::{normal_cdf, t_quantile};
 use perilife_calibration::population::{Population, fit};
 use rand_chacha::ChaCha8Rng;
@@ -248,20 +249,20 @@ fn own_readings_tell_a_fast_specimen() {
     assert!((known.median / truth).ln().abs() < 0.4 * (alike.median / truth).ln().abs(), "{known:?} {alike:?} {truth}");
     assert!(known.deviation < 0.8 * alike.deviation, "{known:?} {alike:?}");
     let other = lot.forecast(&path(25.0), None, Lot::Other).unwrap().life();
-    assert!((other.deviation.powi(2) - alike.deviation.powi(2) - 0.0625).abs() < 0.004, "{other:?} {alike:?}");
+    assert!((other.deviation.powi(2) - alike.deviation.powi(2) - BETWEEN_LOTS.powi(2)).abs() < 0.004, "{other:?} {alike:?}");
 }
 
-/// One specimen: standard deviation 0.12 assumed, as that of the lot and of the new one, with three degrees of freedom.
+/// One specimen: the median scatter of the lots assumed, as that of the lot and of the new one, with six degrees of freedom.
 #[test]
 fn of_one_specimen_the_scatter_is_assumed() {
     let lot = fit(&noisy_lot(1, 0.0, 0.05, 7), None).unwrap();
-    assert!(lot.assumed_scatter && lot.freedom == 3.0);
+    assert!(lot.assumed_scatter && lot.freedom == FREEDOM);
     let half = |which: Lot| {
         let band = lot.forecast(&path(9.0), None, which).unwrap().life().band(0.9);
         0.5 * (band[1] / band[0]).ln()
     };
-    assert!((0.39..0.5).contains(&half(Lot::Same)), "{}", half(Lot::Same));
-    assert!((0.68..0.8).contains(&half(Lot::Other)), "a factor of two each way: {}", half(Lot::Other));
+    assert!((0.31..0.4).contains(&half(Lot::Same)), "{}", half(Lot::Same));
+    assert!((0.66..0.76).contains(&half(Lot::Other)), "a factor of two each way: {}", half(Lot::Other));
 }
 
 #[test]
@@ -338,4 +339,26 @@ fn the_model_goes_through_its_record() {
     let lot = fit(&sparse_lot(3.0), None).unwrap();
     let text = toml::to_string(&lot).unwrap();
     assert_eq!(toml::from_str::<Population>(&text).unwrap(), lot);
+}
+
+/// Median and scatter of sd over the lots by restricted likelihood on a grid, the freedom by the quantiles of the mixture, and the sd between lots.
+#[test]
+fn the_assumed_scatter_is_that_of_the_lots() {
+    let fit = |tau: f64| {
+        let rows = LOTS.iter().map(|lot| (lot.deviation.ln(), 1.0 / (tau * tau + 0.5 / f64::from(lot.specimens - 1))));
+        let [sum, all] = rows.clone().fold([0.0; 2], |[sum, all], (x, w)| [sum + x * w, all + w]);
+        let of = |(x, w): (f64, f64)| w.ln() - w * (x - sum / all).powi(2);
+        (0.5 * rows.map(of).sum::<f64>() - 0.5 * all.ln(), tau, (sum / all).exp())
+    };
+    let best = (1..400).map(|i| fit(f64::from(i) * 0.0025)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+    println!("{best:?}");
+    assert!((best.1 - DEVIATION).abs() < 0.005 && (best.2 / MEDIAN - 1.0).abs() < 0.01, "{best:?}");
+    // P(|Z| e^(τ U) > q) over a grid of U, Z and U normal.
+    let q = perilife_calibration::population::student::t_quantile(0.95, FREEDOM);
+    let grid = (-600..=600).map(|i| f64::from(i) * 0.01);
+    let beyond = |u: f64| 2.0 * (1.0 - normal_cdf(q * (-DEVIATION * u).exp()));
+    let (p, all) = grid.fold((0.0, 0.0), |(p, all), u| (p + (-0.5 * u * u).exp() * beyond(u), all + (-0.5 * u * u).exp()));
+    assert!((p / all - 0.1).abs() < 0.005, "{}", p / all);
+    let squares: f64 = MEAN_PLUS_TWO.iter().map(|ratio| (0.5 * ratio.ln()).powi(2)).sum();
+    assert!((BETWEEN_LOTS / (0.5 * squares - MEDIAN * MEDIAN).sqrt() - 1.0).abs() < 0.01);
 }

@@ -9,6 +9,7 @@ use perilife_base::input::Folder;
 use perilife_base::units::{INCH, KSI, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{Silent, StopReason, predict};
+use perilife_laws::growth_law::nasgro::opening;
 use perilife_laws::growth_law::{GrowthLaw, Walker};
 use perilife_laws::paris::ParisLaw;
 use perilife_laws::retardation::{Laws, March, Marched, Retardation, RetardationKind, Underway};
@@ -246,4 +247,30 @@ fn a_rare_gust_ends_a_standstill() {
     let still = Walker { threshold: 50e6, ..law };
     let laws = Laws { law: &still, mean: &still, ..laws };
     assert_eq!(March::new(laws, &spectrum, Underway::start(&spectrum)).advance(&|_| 20e6, 1.0, 1e15), Marched::Arrested);
+}
+
+/// Newman's opening with the stress of each cycle by its own K and crack length: 0.6 of yield at the overload, 0.3 at a cycle of half its load.
+#[test]
+fn newman_takes_the_stress_of_each_cycle_from_k_and_crack_length() {
+    let cycle = |max: f64, min: f64, count: f64| Cycle { max, min, count };
+    let spectrum = Spectrum::of(vec![cycle(20.0, 5.0, 1.0), cycle(10.0, 2.0, 1e6)], [0.0, 1.0]).unwrap();
+    let (start, yielded) = (0.1, 68.0 * KSI);
+    let k = 0.6 * yielded * (PI * start).sqrt();
+    let law = Walker { paris: ParisLaw { c: 1e-16, m: 3.0 }, gamma: 0.6, threshold: 0.0 };
+    let (mean, newman) = (SpectrumLaw::new(Box::new(law), &spectrum), model("newman", &[1.0, f64::INFINITY]));
+    let of_each = Laws { law: &law, mean: &mean, retardation: Some(&newman) };
+    let grown = |laws: Laws<'_>| {
+        let mut march = March::new(laws, &spectrum, Underway::start(&spectrum));
+        march.start = start;
+        assert_eq!(march.advance(&|_| k, 1.0, 1e4), Marched::RunOut);
+        (march.at.a - law.rate(k, 0.25)) / (1e4 - 1.0)
+    };
+    let open = |share: f64, ratio: f64| opening(1.0, share, ratio).0;
+    // The cycle of half the load has its own minimum, below that of the overload.
+    let wanted = 2.0 * open(0.6, 2.0 / 20.0);
+    let ratio = (0..=1_000_000).map(|i| f64::from(i) * 1e-6).find(|ratio| open(0.3, *ratio) >= wanted).unwrap();
+    let rate = grown(of_each);
+    assert!((rate / law.rate(0.5 * k, ratio) - 1.0).abs() < 1e-4, "{rate} for {}", law.rate(0.5 * k, ratio));
+    let fixed = model("newman", &[1.0, 0.3]);
+    assert!(grown(Laws { retardation: Some(&fixed), ..of_each }) < 0.99 * rate, "a given share is another");
 }

@@ -6,7 +6,7 @@ use super::intervals::{Interval, Specimen};
 use super::law::{Row, rows};
 use super::noise::{Noise, cholesky, whiten};
 use super::reml::{departures, estimate, likelihood, variances};
-use super::{ASSUMED_FREEDOM, Found, Member, Population, SLOPE_SAME, SPECIMENS_FOR_SCATTER, groups, penalty, slope_of_readings};
+use super::{Found, Member, Population, SLOPE_SAME, SPECIMENS_FOR_SCATTER, groups, lots, penalty, slope_of_readings};
 use crate::median::huber_mean;
 use perilife_laws::curve::CurveLaw;
 
@@ -40,7 +40,7 @@ pub(super) fn assess(specimens: &[Specimen], best: &Found, gain: Option<f64>, sl
         }
     }
     let few = specimens.len() < SPECIMENS_FOR_SCATTER;
-    let freedom = specimens.len() as f64 - 1.0 + if few { ASSUMED_FREEDOM } else { 0.0 };
+    let freedom = specimens.len() as f64 - 1.0 + if few { lots::FREEDOM } else { 0.0 };
     Some(Population {
         law,
         level_of_lives: huber_mean(&levels),

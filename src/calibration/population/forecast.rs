@@ -10,6 +10,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use super::Population;
 use super::intervals::{Interval, Specimen};
 use super::law::{Row, rows};
+use super::lots::BETWEEN_LOTS;
 use super::noise::{cholesky, whiten};
 use super::student::{noncentral_t_quantile, t_quantile};
 use perilife_base::error::{Error, Result, input};
@@ -19,8 +20,6 @@ use perilife_laws::curve::EFFECTS;
 
 /// Cells of a path: from 12 on lives change by less than 0.2 %.
 pub const CELLS: usize = 24;
-/// Standard deviation of ln rate between lots of one material.
-pub const BETWEEN_LOTS: f64 = 0.25;
 /// Smallest standard deviation of the slope outside the calibrated range.
 const SLOPE_DEVIATION_MIN: f64 = 0.5;
 /// Factor of ΔK beyond the calibrated range up to which the chord is continued.

@@ -10,6 +10,7 @@ mod assess;
 pub mod forecast;
 pub mod intervals;
 pub mod law;
+pub mod lots;
 pub mod noise;
 pub mod plate;
 mod reml;
@@ -30,8 +31,6 @@ use reml::{Effects, EffectsMatrix, Group, PARAMETERS, Parameters, Penalty, estim
 
 /// Specimens from which on no scatter is assumed.
 const SPECIMENS_FOR_SCATTER: usize = 10;
-/// Assumed degrees of freedom of fewer specimens.
-const ASSUMED_FREEDOM: f64 = 3.0;
 /// τ: rms departure of a shape from a straight line, ln of rate.
 const SHAPE_DEVIATION: f64 = 0.2;
 /// Gain of the restricted likelihood, in its logarithm, from which on a law has a shape: of 200 made power laws with noise of 1 to 5 % none is
@@ -166,7 +165,7 @@ impl Priors {
     fn of(specimens: usize) -> Priors {
         let root_mm = MM.sqrt();
         let between = match specimens < SPECIMENS_FOR_SCATTER {
-            true => [(0.12_f64.ln(), 0.4), (0.15_f64.ln(), 0.4)],
+            true => [(lots::MEDIAN.ln(), lots::DEVIATION), (0.15_f64.ln(), lots::DEVIATION)],
             false => [(0.07_f64.ln(), 1.0), (0.15_f64.ln(), 0.8)],
         };
         let noise = [(0.16_f64.ln(), 2.0), ((0.67 * MM).ln(), 1.5), ((0.065 * root_mm).ln(), 2.0), ((0.01 * MM).ln(), 2.0)];

@@ -190,7 +190,8 @@ pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, fold
 /// Errors: as [`library::find`].
 fn growth_keys(name: &str, thickness: f64, folder: &Folder) -> Result<Option<(Table, String)>> {
     if let Some(record) = growth_data::record(name) {
-        return Ok(Some((keys_of(&record, thickness / MM), format!("{}: {}", record.title(), growth_data::SOURCE))));
+        let words = format!("{}: {}; {}", record.title(), growth_data::SOURCE, record.checked());
+        return Ok(Some((keys_of(&record, thickness / MM), words)));
     }
     let file = library::find(name, folder)?;
     Ok(file.growth.map(|keys| (keys, file.title)))

@@ -136,6 +136,8 @@ impl<'a> Overloads<'a> {
     fn march<'b>(&'b self, fronts: &'b Fronts<'_>, end: usize) -> March<'b> {
         let Order { law, .. } = &self.order;
         let laws = Laws { law: &**law, mean: &*fronts.law, retardation: Some(&self.models[end]) };
-        March::new(laws, self.spectrum, self.at[end])
+        let mut march = March::new(laws, self.spectrum, self.at[end]);
+        march.start = fronts.flaw.start()[end];
+        march
     }
 }

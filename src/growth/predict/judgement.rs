@@ -5,8 +5,11 @@ use super::{Prediction, StopReason, fit_use};
 use crate::case::{Case, first_load, ratio_line};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::{MM, MPA_SQRT_M};
-use perilife_plate::loading::LoadControl;
+use perilife_plate::loading::{LoadControl, SAME_RATIO};
 use perilife_plate::specimen::handbook::handbook;
+
+/// Span of the stress ratios of a spectrum from which its life without load interaction is warned about.
+const RATIOS_SPAN: f64 = 0.3;
 
 /// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
 /// Errors: [`Error::Mechanics`] if the run ended before the crack grew.
@@ -57,6 +60,7 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
     warnings.extend(beyond_load(case, prediction));
     warnings.extend(fit_use::extrapolated(case, prediction));
     warnings.extend(fit_use::of_other_ratios(case, prediction));
+    warnings.extend(no_interaction(case));
     Ok(warnings)
 }
 
@@ -71,6 +75,20 @@ fn beyond_load(case: &Case, prediction: &Prediction) -> Option<String> {
          stop.crack_length_mm = {end:.3}",
         course.key
     ))
+}
+
+/// What a mean rate per pass leaves out. Lives of AA7050 under five sequences, predicted without load interaction over measured, have the geometric
+/// mean 0.56 (White and Mongru 2014, Adv. Mater. Res. 891-892:687; White, Barter and Medhekar 2018, Int. J. Fatigue 112:240).
+fn no_interaction(case: &Case) -> Option<String> {
+    let spectrum = case.loading.spectrum.as_ref().filter(|_| case.retardation.is_none())?;
+    let [low, high] = spectrum.ratios;
+    let strength = if case.material.yield_strength.is_none() { " and material.yield_strength_mpa" } else { "" };
+    (high - low > RATIOS_SPAN - SAME_RATIO).then(|| {
+        format!(
+            "load interaction: none, at stress ratios from {low:.2} to {high:.2} (usually conservative; five published tests of AA7050 lasted 1.8 times \
+             the life without it, geometric mean); compare with loading.retardation = \"newman\"{strength}"
+        )
+    })
 }
 
 /// What breaks at the first load, and the load that it would bear.

@@ -57,6 +57,7 @@ pub(super) fn recount(
         let [first, last] = factors(case, [from, to], lead);
         let k = between([first, last], way);
         let before = march.at.cycles;
+        march.start = from.crack_length - way[0];
         march.response = from.tips[lead].response.between(&to.tips[lead].response, 0.5);
         if !(first > 0.0 && last > 0.0) {
             // Nothing is known of K there: the cycles are those of the run.

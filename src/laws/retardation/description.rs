@@ -48,6 +48,8 @@ pub struct Now {
     pub least: f64,
     /// Its plastic zone, m.
     pub size: f64,
+    /// K_max/(σ_Y √(πa)): its maximum over the yield strength, of a crack in a wide plate with this K (McClung 1994).
+    pub stress_over_yield: f64,
 }
 
 /// The plastic zone of the last overload, which is the state of a tip.

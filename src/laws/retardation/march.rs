@@ -6,6 +6,8 @@
 //! A cycle that comes in a fraction of the passes, count f, comes in whole numbers: so many that f times the passes so far, rounded down, is kept. A
 //! gust of 0.02 comes in every fiftieth pass, at its place. Passes are then compared, and jumped over, by periods of so many as make all counts whole.
 
+use std::f64::consts::PI;
+
 use super::{Now, Retardation, Zone};
 use crate::growth_law::GrowthLaw;
 use crate::response::Response;
@@ -95,6 +97,8 @@ pub struct March<'a> {
     least: f64,
     /// How its K follows the load.
     pub response: Response,
+    /// Crack length where its way is 0, m.
+    pub start: f64,
     /// Where it stands.
     pub at: Underway,
 }
@@ -109,7 +113,7 @@ impl<'a> March<'a> {
     /// A tip that goes on from where it stands.
     pub fn new(laws: Laws<'a>, spectrum: &'a Spectrum, at: Underway) -> Self {
         let (per_period, least) = (spectrum.period * spectrum.per_pass, laws.law.least_ratio());
-        March { laws, spectrum, per_period, least, response: Response::PROPORTIONAL, at }
+        March { laws, spectrum, per_period, least, response: Response::PROPORTIONAL, start: 0.0, at }
     }
 
     /// Grows the tip to a way, m, `k` being the K of the largest load at a way, Pa√m; no more than so many cycles in all.
@@ -141,9 +145,12 @@ impl<'a> March<'a> {
     fn now(&self, cycle: &Cycle, a: f64, k: f64) -> Now {
         let [largest, smallest] = self.response.cycle([cycle.max, cycle.min]);
         let k_max = largest * k;
-        let size = self.laws.retardation.map_or(0.0, |model| model.zone_size(k_max));
+        let [size, stress_over_yield] = self
+            .laws
+            .retardation
+            .map_or([0.0; 2], |model| [model.zone_size(k_max), k_max / (model.strength * (PI * (self.start + a)).sqrt())]);
         let least = self.least;
-        Now { a, k_max, ratio: (smallest / largest).max(least), least, size }
+        Now { a, k_max, ratio: (smallest / largest).max(least), least, size, stress_over_yield }
     }
 
     /// da/dN of a cycle, m, in the zone of an overload or out of it.

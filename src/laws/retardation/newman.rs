@@ -2,14 +2,21 @@
 
 use super::description::{Constant, Description};
 use crate::growth_law::nasgro::opening;
-use perilife_base::input::number;
+use perilife_base::input::{Quantity, number};
 use perilife_plate::material::Plane;
 
+/// S_max over the flow stress.
+const SHARE: Quantity = number("a share of the flow stress", 0.0, 0.99);
+/// In place of a share: that of every cycle, by K and crack length.
+const BY_THE_CRACK: f64 = f64::INFINITY;
 /// Least stress ratio for which the opening is known.
 const LEAST: f64 = -2.0;
 
 /// Within the zone of an overload the crack opens at `K_op = f(K_min/K_OL) K_OL`, f being S_open/S_max of constant amplitude and K_min the least
-/// K since the overload; a cycle grows as one of constant amplitude that opens at the same load: `da/dN = v(K_max, R*)`, `f(R*) = K_op/K_max`.
+/// K since the overload; a cycle grows as one of constant amplitude that opens at the same load: `da/dN = v(K_max, R*)`, `f(R*) = K_op/K_max`, so
+/// that cycles of one size have the rate of the law. S_max over the flow stress is K_max/(σ_Y √(πa)) where the case gives none: the stress at which a
+/// crack in a wide plate has this K, by which closure of M(T), SE(T) and bending specimens agrees (McClung 1994, Fatigue Fract. Eng. Mater. Struct.
+/// 17:861). The yield strength in place of the flow stress is conservative: more stress opens the crack sooner.
 pub static MODEL: Description = Description {
     name: "newman",
     meaning: "crack opening load of the overload, by Newman's S_open of R, kept within its zone (Newman 1984)",
@@ -20,16 +27,17 @@ pub static MODEL: Description = Description {
             default: |plane, _| Some(if plane == Plane::Strain { 3.0 } else { 1.0 }),
             remedy: "",
         },
-        Constant {
-            key: "newman_smax_over_flow",
-            quantity: number("a share of the flow stress", 0.0, 0.99),
-            default: |_, _| Some(0.3),
-            remedy: "",
-        },
+        Constant { key: "newman_smax_over_flow", quantity: SHARE, default: |_, _| Some(BY_THE_CRACK), remedy: "" },
     ],
     rate: Some(|constants, law, now, zone| {
-        let open = |ratio: f64| opening(constants[0], constants[1], ratio.max(LEAST)).0;
-        let wanted = open(zone.k_min / zone.k_max) * zone.k_max / now.k_max;
+        let over = |k_max: f64| match constants[1] {
+            BY_THE_CRACK => (now.stress_over_yield * k_max / now.k_max).min(SHARE.high),
+            given => given,
+        };
+        let open_at = |share: f64, ratio: f64| opening(constants[0], share, ratio.max(LEAST)).0;
+        let wanted = open_at(over(zone.k_max), zone.k_min / zone.k_max) * zone.k_max / now.k_max;
+        let own = over(now.k_max);
+        let open = |ratio: f64| open_at(own, ratio);
         match wanted {
             _ if wanted <= open(now.ratio) => law.rate(now.k_max, now.ratio),
             _ if wanted >= 1.0 => 0.0,

@@ -33,6 +33,8 @@ pub struct GrowthRecord {
     pub c_th_negative: f64,
     pub alpha: f64,
     pub smax_over_flow: f64,
+    /// Tests that its rates were compared with, their ranges, and predicted over measured life; empty: none.
+    checked: String,
 }
 
 /// MPa in a ksi.
@@ -63,6 +65,11 @@ impl GrowthRecord {
     /// In words.
     pub fn title(&self) -> String {
         format!("{}, {}, {}, {}", self.alloy, self.form, self.orientation, self.environment)
+    }
+
+    /// Where its law was checked, in words.
+    pub fn checked(&self) -> &str {
+        if self.checked.is_empty() { "not checked against tests" } else { &self.checked }
     }
 
     /// K_c of a thickness, mm, in MPa√m: `K_1c (1 + B_k exp(-(A_k t/t₀)²))` with `t₀ = 2.5 (K_1c/σ_y)²`.

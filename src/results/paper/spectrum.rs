@@ -81,7 +81,7 @@ fn counted(result: &Value, spectrum: &Value) -> Vec<(&'static str, String)> {
     for (key, value) in model.as_object().into_iter().flatten().filter(|(key, _)| *key != "model") {
         rows.push((
             "Constant",
-            format!("{} {}", quoted(key), value.as_f64().map_or_else(|| recorded(None), |value| sized(value, 4))),
+            format!("{} {}", quoted(key), value.as_f64().map_or_else(|| "of each cycle".to_owned(), |value| sized(value, 4))),
         ));
     }
     rows.push(("Life", life.map_or_else(|| "unlimited".to_owned(), |life| format!("{} cycles{}", whole(life), passes(life)))));
