@@ -32,7 +32,7 @@ pub struct Args {
     /// Measured a-N curves
     #[arg(value_name = "MEASURED.csv", required_unless_present = "materials")]
     pub measured: Vec<PathBuf>,
-    /// Growth laws of these materials of the library, of own material files or of folders of them, beside what was measured
+    /// Growth laws of these materials of the library, of own material files, folders of them or a fitted.toml, beside what was measured
     #[arg(long, value_name = "NAME", num_args = 1.., help_heading = "Input")]
     pub materials: Vec<String>,
     /// Stress ratio of these laws; that of the case where --specimen names one

@@ -22,19 +22,19 @@ pub struct MaterialRates {
     name: String,
     /// ΔK, MPa√m, and da/dN, mm/cycle.
     points: Vec<(f64, f64)>,
-    listed: [f64; 4],
+    listed: [Option<f64>; 4],
 }
 
 impl MaterialRates {
-    /// Of materials by name, or by the path of a file or of a folder of files, at a stress ratio and a thickness, mm; and what is to be said of
+    /// Of materials by name, or by the path of a file, a `fitted.toml` too, or of a folder of files, at a stress ratio and a thickness, mm; and what is to be said of
     /// them, and of those that cannot be drawn.
     /// Errors: as [`library_law`], where none can be drawn.
     pub fn all(names: &[String], ratio: f64, thickness_mm: f64) -> Result<(Vec<MaterialRates>, Vec<String>)> {
         let folder = Folder::from(Path::new(""));
         let (mut all, mut lines, mut first) = (Vec::new(), Vec::new(), None);
         for name in names.iter().flat_map(|name| files(name)) {
-            let law = match library_law(&name, thickness_mm * MM, ratio, &folder) {
-                Ok(law) => law,
+            let (law, fitted) = match library_law(&name, thickness_mm * MM, ratio, &folder) {
+                Ok(found) => found,
                 Err(error) => {
                     lines.push(format!("{name}: no growth rates: {error}"));
                     first = first.or(Some(error));
@@ -45,9 +45,13 @@ impl MaterialRates {
             let k_max = |delta_k: f64| delta_k * MPA_SQRT_M / (1.0 - ratio.max(0.0));
             let rate = |delta_k: f64| law.rate(k_max(delta_k), ratio) / MM_PER_CYCLE;
             let at = |k: usize| RANGE[0] * (RANGE[1] / RANGE[0]).powf(k as f64 / POINTS as f64);
-            let known = |(k, rate): &(f64, f64)| (RATES[0]..=RATES[1]).contains(rate) && law.beyond(k_max(*k), ratio).is_none();
+            let is_fitted = |k: f64| (fitted[0]..=fitted[1]).contains(&(k * MPA_SQRT_M));
+            let known = |(k, rate): &(f64, f64)| {
+                is_fitted(*k) && (RATES[0]..=RATES[1]).contains(rate) && law.beyond(k_max(*k), ratio).is_none()
+            };
             let points = (0..=POINTS).map(|k| (at(k), rate(at(k)))).filter(known).collect();
-            all.push(MaterialRates { name, points, listed: LISTED.map(|k| rate(k / per("MPa√m"))) });
+            let listed = LISTED.map(|k| Some(k / per("MPa√m")).filter(|k| is_fitted(*k)).map(rate));
+            all.push(MaterialRates { name, points, listed });
         }
         match first {
             Some(error) if all.is_empty() => Err(error),
@@ -70,7 +74,11 @@ fn files(name: &str) -> Vec<String> {
 pub fn table(materials: &[MaterialRates], ratio: f64) -> String {
     let head: String = LISTED.iter().map(|k| format!(",da_dn_at_{k}_mm_per_cycle")).collect();
     let row = |one: &MaterialRates| {
-        format!("{},{ratio}{}\n", one.name, one.listed.iter().map(|rate| format!(",{rate:.4e}")).collect::<String>())
+        format!(
+            "{},{ratio}{}\n",
+            one.name,
+            one.listed.iter().map(|rate| rate.map_or(",".to_owned(), |rate| format!(",{rate:.4e}"))).collect::<String>()
+        )
     };
     format!("material,stress_ratio{head}\n{}", materials.iter().map(row).collect::<String>())
 }

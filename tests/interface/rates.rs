@@ -146,3 +146,64 @@ fn names_like_formulas_are_text_in_tables() {
     let found: Vec<&str> = object["specimens"].as_array().unwrap().iter().map(|one| one["name"].as_str().unwrap()).collect();
     assert_eq!(found, names);
 }
+
+/// Middle tension panels, W = 152.4 mm, Δσ = 48.28 MPa, R = 0.2.
+const PANEL: &str = "[specimen]\nkind = \"middle_tension\"\nwidth_mm = 152.4\nlength_mm = 300\nthickness_mm = 2.54\ncrack_length_mm = 9\n\
+    [material]\nname = \"al2024-t3\"\n[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n[model]\nmethod = \"handbook\"\n";
+
+/// da/dN, mm/cycle, whose exponent rises from 2 in the middle of the range towards both ends; ΔK in MPa√m.
+fn curved_rate(delta_k: f64) -> f64 {
+    let x = (delta_k / 14.0).ln();
+    (1.8e-4_f64.ln() + 2.0 * x + 1.5 * x.powi(3)).exp()
+}
+
+/// Cycles from half crack 9 mm to every half millimetre, K by Feddersen (1966).
+fn curved_readings(names: &[(&str, f64)]) -> String {
+    let delta_k = |a: f64| 48.28 * (std::f64::consts::PI * a * 1e-3 / (std::f64::consts::PI * a / 152.4).cos()).sqrt();
+    let mut text = "specimen,cycles,crack_length_mm\n".to_owned();
+    for (name, factor) in names {
+        let mut cycles = 0.0;
+        for step in 0..=80 {
+            let a = 9.0 + 0.5 * f64::from(step);
+            text += &format!("{name},{cycles:.0},{a}\n");
+            cycles += (0..50).map(|k| 0.01 / curved_rate(delta_k(a + 0.01 * (f64::from(k) + 0.5))) * factor).sum::<f64>();
+        }
+    }
+    text
+}
+
+#[test]
+fn a_curve_that_was_fitted_is_drawn_and_gives_the_life() {
+    let dir = tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(dir.path().join(name), text).unwrap();
+    write("lot.csv", &curved_readings(&[("one", 1.02), ("two", 1.0), ("three", 0.98)]));
+    write("fit.toml", &format!("[measured]\nfiles = [\"lot.csv\"]\n{PANEL}"));
+    write("case.toml", &format!("{PANEL}[fatigue]\nfitted = \"fit/fitted.toml\"\n[stop]\ncrack_length_mm = 45\n"));
+    let done = |arguments: &str| {
+        let output = perilife(dir.path(), &arguments.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+        texts(&output).0
+    };
+    done("calibrate fit.toml --out fit");
+    assert!(fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap().contains("law = \"curve\""));
+
+    let table = done("rates --materials fit/fitted.toml --stress-ratio 0.2 --picture law.svg");
+    let row: Vec<&str> = table.lines().nth(1).unwrap().split(',').collect();
+    for (column, delta_k) in [(3, 10.0), (4, 20.0)] {
+        let rate: f64 = row[column].parse().unwrap();
+        assert!((rate / curved_rate(delta_k) - 1.0).abs() < 0.02, "{delta_k}: {rate}");
+    }
+    // Beyond the readings there is no rate, and at another stress ratio no law.
+    assert_eq!([row[2], row[5]], [""; 2]);
+    assert!(fs::read_to_string(dir.path().join("law.svg")).unwrap().contains("fit/fitted.toml"));
+    let other = perilife(dir.path(), &["rates", "--materials", "fit/fitted.toml", "--stress-ratio", "0.1"]);
+    assert_refused(&other, 2, &["stress_ratio = 0.1", "0.2"]);
+
+    done("predict case.toml --out run");
+    let result: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
+    let readings = curved_readings(&[("two", 1.0)]);
+    let row = readings.lines().find(|line| line.ends_with(",45")).unwrap();
+    let measured: f64 = row.split(',').nth(1).unwrap().parse().unwrap();
+    assert!((result["life_cycles"].as_f64().unwrap() / measured - 1.0).abs() < 0.005, "{} for {measured}", result["life_cycles"]);
+}

@@ -19,14 +19,14 @@ fn rates_of_the_library_are_those_of_its_source() {
         ("al7050-t7451-plate-lt", [7.513e-5, 2.269e-4]),
     ] {
         for (ratio, expected) in [0.0, 0.5].into_iter().zip(rates) {
-            let law = library_law(name, THICKNESS, ratio, &Folder::none()).unwrap();
+            let law = library_law(name, THICKNESS, ratio, &Folder::none()).unwrap().0;
             let rate = law.rate(10.0 * MPA_SQRT_M / (1.0 - ratio), ratio) / MM_PER_CYCLE;
             assert!((rate / expected - 1.0).abs() < 5e-4, "{name}, R = {ratio}: {rate}");
         }
     }
     // Thresholds of 2024-T3: 3.20 and 2.00 MPa√m.
     for (ratio, threshold) in [(0.0, 3.20), (0.5, 2.00)] {
-        let law = library_law("al2024-t3-clad-lt", THICKNESS, ratio, &Folder::none()).unwrap();
+        let law = library_law("al2024-t3-clad-lt", THICKNESS, ratio, &Folder::none()).unwrap().0;
         let grows = |delta_k: f64| law.rate(delta_k * MPA_SQRT_M / (1.0 - ratio), ratio) > 0.0;
         assert!(!grows(threshold - 0.005) && grows(threshold + 0.005), "R = {ratio}");
     }
@@ -38,7 +38,7 @@ fn every_record_gives_a_law_of_metals() {
     assert!(records.len() >= 20);
     for record in &records {
         for ratio in [-1.0, 0.0, 0.1, 0.7] {
-            let law = library_law(&record.name, THICKNESS, ratio, &Folder::none()).unwrap();
+            let law = library_law(&record.name, THICKNESS, ratio, &Folder::none()).unwrap().0;
             let rate = |k_max: f64| law.rate(k_max * MPA_SQRT_M, ratio) / MM_PER_CYCLE;
             let (name, [low, high]) = (&record.name, [15.0, 18.0].map(rate));
             assert!(low > 1e-8 && high < 1e-2, "{name}, R {ratio}: {low} and {high}");

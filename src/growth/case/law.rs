@@ -8,9 +8,11 @@ use crate::case::record::{CurveRecord, FittedLaw, FittedRecord};
 use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::{LENGTH, MODULUS, number};
 use perilife_base::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
-use perilife_laws::curve::Shape;
+use perilife_laws::curve::{Shape, Shaped};
+use perilife_laws::growth_law::{GrowthLaw, Walker};
 use perilife_laws::paris::ParisLaw;
 use perilife_laws::{Driver, FatigueLaw};
+use perilife_plate::loading::SAME_RATIO;
 use perilife_plate::material::{Material, Plane};
 use perilife_plate::specimen::{CrackLine, Specimen};
 
@@ -261,8 +263,7 @@ impl Case {
     /// What the fitted rates are beside their power law; `None` where that is the law.
     pub fn shape(&self) -> Result<Option<Shape>> {
         let LawSource::Fitted(record) = &self.law else { return Ok(None) };
-        let of = |curve: &CurveRecord| Ok(Shape { curve: curve.law(), paris: fitted_paris(record)?, ratio: record.stress_ratio });
-        record.curve.as_ref().map(of).transpose()
+        shape(record)
     }
 
     /// C and m of hand calculation for `da/dN = C (K_max (1-R)^γ)^m`, γ Walker's exponent.
@@ -286,6 +287,27 @@ impl Case {
             LawSource::Missing(path) => Err(missing(Method::Handbook, path)),
         }
     }
+}
+
+/// The law of a record over ΔK, and the ΔK, Pa√m, between which it was fitted.
+/// Errors: a stress ratio that is not that of its tests.
+pub(super) fn of_record(record: &FittedRecord, ratio: f64) -> Result<(Box<dyn GrowthLaw>, [f64; 2])> {
+    if (ratio - record.stress_ratio).abs() >= SAME_RATIO {
+        let problem = format!("is another stress ratio than that of the fit, {}", record.stress_ratio);
+        return Err(input("stress_ratio", ratio, problem, "give that of the fit"));
+    }
+    let walker = Walker { paris: fitted_paris(record)?, gamma: 1.0, threshold: 0.0 };
+    let law: Box<dyn GrowthLaw> = match shape(record)? {
+        Some(shape) => Box::new(Shaped { walker, shape }),
+        None => Box::new(walker),
+    };
+    Ok((law, [record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m].map(|k| k * MPA_SQRT_M)))
+}
+
+/// What a record departs from its power law by, where its law is a curve.
+fn shape(record: &FittedRecord) -> Result<Option<Shape>> {
+    let of = |curve: &CurveRecord| Ok(Shape { curve: curve.law(), paris: fitted_paris(record)?, ratio: record.stress_ratio });
+    record.curve.as_ref().map(of).transpose()
 }
 
 /// C and m of a record over the K that its curve is over.

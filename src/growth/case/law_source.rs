@@ -10,7 +10,7 @@ use super::{LawSource, law};
 use crate::case::record::{FittedRecord, LawRecord};
 use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::{Document, Folder, slice, value_at};
-use perilife_base::units::MM;
+use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_laws::growth_law::description::{Constant, GAMMA, Given, K_C, RatedRow, Rates, keys_of_laws, law_keys};
 use perilife_laws::growth_law::nasgro::keys_of;
 use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker, bonds, paris};
@@ -206,19 +206,30 @@ pub(super) fn rates(given: &Given<'_>, key: &str) -> Result<Option<Rates>> {
     Ok(Some(Rates { rows, notes, columns: table.columns, says_ratio: table.says_ratio, file: file.file }))
 }
 
-/// The growth law of a material of the library, for a plate of this thickness, m, at a stress ratio.
-/// Errors: a material that has none, or no law over K; files that cannot be read.
-pub fn library_law(name: &str, thickness: f64, ratio: f64, folder: &Folder) -> Result<Box<dyn GrowthLaw>> {
+/// The growth law of a material of the library, or of a `fitted.toml`, for a plate of this thickness, m, at a stress ratio; and the ΔK, Pa√m, between
+/// which a fit knows it.
+/// Errors: a material that has none, or no law over K; a fit of A and p at another stress ratio; files that cannot be read.
+pub fn library_law(name: &str, thickness: f64, ratio: f64, folder: &Folder) -> Result<(Box<dyn GrowthLaw>, [f64; 2])> {
     let no_law = || input("materials", format!("\"{name}\""), "has no growth law over K", "see `perilife list materials`");
-    let (keys, _) = growth_keys(name, thickness, folder)?.ok_or_else(no_law)?;
+    let (keys, range) = match Document::in_folder(folder, name, &[]) {
+        Ok(document) if LawRecord::is_of(&document.table) => {
+            let record: LawRecord =
+                slice(&Value::Table(document.table.clone()), "record").map_err(|error| document.locate(error))?;
+            (record.fatigue, [record.delta_k_min_mpa_sqrt_m, record.delta_k_max_mpa_sqrt_m])
+        }
+        Ok(document) if document.table.contains_key("paris_m") => return law::of_record(&fitted_record(name, folder)?, ratio),
+        _ => (growth_keys(name, thickness, folder)?.ok_or_else(no_law)?.0, [0.0, f64::INFINITY]),
+    };
     // Strengths and elastic constants do not act on rates; a law that needs K_c has to have it.
     let material = Material::elastic(f64::NAN, f64::NAN, Plane::Stress);
     let (section, threshold) = (Value::Table(keys), 0.0);
-    match read(threshold, None, &Given { section: &section, material: &material, ratios: [ratio; 2], folder, rates })? {
-        Some(LawSource::Factor(law)) => Ok(Box::new(law)),
-        Some(LawSource::Paris(paris)) => Ok(Box::new(Walker { paris, gamma: 1.0, threshold })),
-        _ => Err(no_law()),
-    }
+    let law: Box<dyn GrowthLaw> =
+        match read(threshold, None, &Given { section: &section, material: &material, ratios: [ratio; 2], folder, rates })? {
+            Some(LawSource::Factor(law)) => Box::new(law),
+            Some(LawSource::Paris(paris)) => Box::new(Walker { paris, gamma: 1.0, threshold }),
+            _ => return Err(no_law()),
+        };
+    Ok((law, range.map(|k| k * MPA_SQRT_M)))
 }
 
 /// Refuses a power of ΔK at another stress ratio than that of its rates; what is to be said of other laws there.

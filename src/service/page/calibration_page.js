@@ -122,6 +122,18 @@ function drawFit(place, fit, curves) {
   return chart;
 }
 
+/** Points [ΔK, rate] of the fitted law over its range: a straight line in logarithms, or the cubic pieces of its curve, which rates and exponents at the knots give. */
+function fittedLaw(s) {
+  if (!s.curve) return [s.delta_k_min_mpa_sqrt_m, s.delta_k_max_mpa_sqrt_m].map((k) => [k, s.rate_at_pivot_mm_per_cycle * (k / s.pivot_delta_k_mpa_sqrt_m) ** s.paris_m]);
+  const [x, y] = [s.curve.delta_k_mpa_sqrt_m, s.curve.da_dn_mm_per_cycle].map((values) => values.map(Math.log));
+  const pieces = 8, last = x.length - 1;
+  return Array.from({ length: pieces * last + 1 }, (_, step) => {
+    const i = Math.min(Math.floor(step / pieces), last - 1), t = step / pieces - i, h = x[i + 1] - x[i];
+    const rate = y[i] + t * t * (3 - 2 * t) * (y[i + 1] - y[i]) + h * t * (1 - t) * ((1 - t) * s.curve.m[i] - t * s.curve.m[i + 1]);
+    return [Math.exp(x[i] + t * h), Math.exp(rate)];
+  });
+}
+
 /** Rates of the readings, and the law where it was measured. */
 function drawRates(place, rates, s) {
   const chart = createChart(place, {
@@ -131,11 +143,11 @@ function drawRates(place, rates, s) {
     note: "Circles: rates of the readings. Blue: the fitted law, drawn only where it was measured.",
   });
   const pairs = rates.delta_k_mpa_sqrt_m.map((k, index) => [k, rates.da_dn_mm_per_cycle[index]]).filter(([k, rate]) => k > 0 && rate > 0);
-  const ends = [s.delta_k_min_mpa_sqrt_m, s.delta_k_max_mpa_sqrt_m];
+  const law = fittedLaw(s);
   chart.set([
     { id: "rates", name: "readings", kind: "points", tone: 2, x: pairs.map((pair) => pair[0]), y: pairs.map((pair) => pair[1]) },
     { id: "pivot", name: "pivot", kind: "points", tone: 0, x: [s.pivot_delta_k_mpa_sqrt_m], y: [s.rate_at_pivot_mm_per_cycle] },
-    { id: "law", name: "fitted law", kind: "line", tone: 0, x: s.curve?.delta_k_mpa_sqrt_m ?? ends, y: s.curve?.da_dn_mm_per_cycle ?? ends.map((k) => s.rate_at_pivot_mm_per_cycle * (k / s.pivot_delta_k_mpa_sqrt_m) ** s.paris_m) },
+    { id: "law", name: "fitted law", kind: "line", tone: 0, x: law.map((point) => point[0]), y: law.map((point) => point[1]) },
   ]);
   return chart;
 }
