@@ -47,11 +47,18 @@ fn own_tests_stand_beside_published_ones() {
     assert_eq!(read("out/validate.csv").lines().count(), 3);
 
     // One failing case is a row, and the others stand.
-    put("source.toml", &format!("{SOURCE}{tests}[[test]]\nkind = \"library\"\ncase = \"broken.toml\"\nlife_cycles = [1e5]\n"));
+    put(
+        "source.toml",
+        &format!(
+            "{SOURCE}{tests}[[test]]\nkind = \"library\"\ncase = \"broken.toml\"\nlife_cycles = [1e5]\n\
+                           [[test]]\nkind = \"spectrum\"\ncase = \"panel.toml\"\nlife_passes = [1e2]\n"
+        ),
+    );
     let output = perilife(dir.path(), &call);
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(3), "{stderr}");
     assert!(stderr.contains("own: broken.toml: ") && stderr.contains("crack_length_mm"), "{stderr}");
+    assert!(stderr.contains("own: panel.toml: ") && stderr.contains("test.life_passes"), "{stderr}");
     let object: Value = serde_json::from_str(&stdout).unwrap();
     assert!(object["rows"][0]["failure"].is_null() && object["rows"][1]["failure"].is_string(), "{object}");
     assert!(read("page.md").contains("failed: "));

@@ -29,30 +29,28 @@ pub(super) fn fill(set: &Set, row: &mut Row, test: &Test, count: usize) -> Resul
     }
     let mut random = ChaCha8Rng::seed_from_u64(0);
     let (mut predicted, mut measured, mut scores, mut ends) = (Vec::new(), Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
-    (row.lives_inside, row.lives_measured) = (Some(0), 0);
+    let mut lives_inside = 0;
     for _ in 0..count {
         let order = shuffled(specimens, &mut random);
         let (seen, held_out) = order.split_at(specimens / 2);
-        let law = Calibration::Lives(Box::new(part(&whole, seen)));
-        let case = set.case(&test.case, Some(&record(&law)?))?;
+        let law = record(&Calibration::Lives(Box::new(part(&whole, seen))))?;
+        let case = set.case(&test.case, Some(&law))?;
         let (prediction, found) = run(&case)?;
-        let plate = Plate::of(&case, &prediction)?;
-        let (band, plate) = found.band.zip(plate.ok()).ok_or_else(|| Error::Mechanics(format!("{}: no band", test.case)))?;
+        let plate = Plate::of(&case, &prediction)?.ok();
+        let ([low, high], plate) = found.band.zip(plate).ok_or_else(|| Error::Mechanics(format!("{}: no band", test.case)))?;
         let lives = held_out.iter().map(|&place| life(&whole, place, [case.specimen.crack_length, case.stop.crack_length]));
         let lives = lives.collect::<Result<Vec<f64>>>()?;
-        let quantiles = quantiles(&plate.whole()?.1.life());
-        scores.extend(lives.iter().map(|life| score(&quantiles, *life)));
-        row.lives_inside =
-            row.lives_inside.map(|inside| inside + lives.iter().filter(|life| (band[0]..=band[1]).contains(life)).count());
-        row.lives_measured += lives.len();
-        row.judge(&found, test);
+        scores.extend(self::scores(&plate.whole()?.1.life(), &lives));
+        lives_inside += lives.iter().filter(|life| (low..=high).contains(*life)).count();
+        row.judge(&found, test)?;
         predicted.push(found.life);
         measured.push(median(&lives));
-        ends.iter_mut().zip(band).for_each(|(ends, end)| ends.push(end));
+        ends.iter_mut().zip([low, high]).for_each(|(ends, end)| ends.push(end));
     }
     let square = |(predicted, measured): (&f64, &f64)| (predicted / measured - 1.0).powi(2);
     row.ratio_rms_percent = Some(100.0 * (predicted.iter().zip(&measured).map(square).sum::<f64>() / count as f64).sqrt());
     row.crps_percent = Some(100.0 * scores.iter().sum::<f64>() / scores.len() as f64);
+    (row.lives_inside, row.lives_measured) = (Some(lives_inside), scores.len());
     row.put(mean(&predicted), mean(&measured), Some(ends.map(|ends| mean(&ends))));
     Ok(())
 }
@@ -82,13 +80,14 @@ fn life(whole: &CalibrationCase, place: usize, [from, to]: [f64; 2]) -> Result<f
     })
 }
 
-/// The levels of a score with the lives there.
-fn quantiles(life: &Life) -> Vec<[f64; 2]> {
-    (0..LEVELS).map(|i| (i as f64 + 0.5) / LEVELS as f64).map(|level| [level, life.quantile(level)]).collect()
-}
-
-/// Continuous ranked probability score as twice the mean pinball loss over the quantiles (Gneiting and Raftery 2007), over the measured life.
-fn score(quantiles: &[[f64; 2]], measured: f64) -> f64 {
-    let loss = |[level, at]: &[f64; 2]| (f64::from(u8::from(measured < *at)) - level) * (at - measured);
-    2.0 * quantiles.iter().map(loss).sum::<f64>() / (LEVELS as f64 * measured)
+/// Continuous ranked probability score of each measured life as twice the mean pinball loss over quantiles (Gneiting and Raftery 2007), over
+/// that life.
+fn scores(life: &Life, measured: &[f64]) -> Vec<f64> {
+    let levels = (0..LEVELS).map(|i| (i as f64 + 0.5) / LEVELS as f64);
+    let quantiles: Vec<[f64; 2]> = levels.map(|level| [level, life.quantile(level)]).collect();
+    let score = |measured: &f64| {
+        let loss = |[level, at]: &[f64; 2]| (f64::from(u8::from(measured < at)) - level) * (at - measured);
+        2.0 * quantiles.iter().map(loss).sum::<f64>() / (LEVELS as f64 * measured)
+    };
+    measured.iter().map(score).collect()
 }

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use include_dir::{Dir, File, include_dir};
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::{Document, Folder, Provenance};
 use perilife_base::units::MM;
 use perilife_calibration::calibrate::Calibration;
@@ -176,10 +176,15 @@ impl Set {
         }
         let case = self.case(&test.case, law)?;
         let (prediction, predicted) = run(&case)?;
-        row.judge(&predicted, test);
+        row.judge(&predicted, test)?;
         if let Some(path) = &test.path {
-            let predicted = paths(&prediction, &case.specimen.cracks);
-            let way = |at: &Point| nearest(*at, predicted.iter().map(|path| path.iter().map(|(_, at)| *at).collect()));
+            let paths: Vec<Vec<Point>> = paths(&prediction, &case.specimen.cracks)
+                .into_iter()
+                .map(|path| path.into_iter().map(|(_, at)| at).collect())
+                .collect();
+            let pieces = || paths.iter().flat_map(|path| path.windows(2));
+            let way =
+                |at: &Point| pieces().map(|piece| distance_to_segment(*at, piece[0], piece[1])).fold(f64::INFINITY, f64::min);
             let distances: Vec<f64> = self.points[path].iter().map(|at| way(at) / MM).collect();
             row.path_mean_mm = Some(distances.iter().sum::<f64>() / distances.len() as f64);
             row.path_largest_mm = distances.iter().copied().reduce(f64::max);
@@ -204,13 +209,6 @@ fn run(case: &Case) -> Result<(Prediction, Predicted)> {
     let band = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| result["band"][key].as_f64());
     let life = band[1].unwrap_or(prediction.life_cycles());
     Ok((prediction, Predicted { life, band: band[0].zip(band[2]).map(<[f64; 2]>::from), result }))
-}
-
-/// Distance of a point from the nearest of several lines.
-fn nearest(at: Point, lines: impl Iterator<Item = Vec<Point>>) -> f64 {
-    let of_line =
-        |line: Vec<Point>| line.windows(2).map(|ends| distance_to_segment(at, ends[0], ends[1])).fold(f64::INFINITY, f64::min);
-    lines.map(of_line).fold(f64::INFINITY, f64::min)
 }
 
 /// Geometric mean.
@@ -242,17 +240,19 @@ impl Row {
     }
 
     /// Takes what a run gave.
-    fn judge(&mut self, predicted: &Predicted, test: &Test) {
+    /// Errors: passes of a case that has no spectrum.
+    fn judge(&mut self, predicted: &Predicted, test: &Test) -> Result<()> {
         let result = &predicted.result;
         self.model = result["model"]["method"].as_str().map(str::to_owned);
         self.error_estimate_percent = result["error_estimate_percent"].as_f64();
-        let Some(measured) = self.measured else { return };
-        let per_pass = result["passes"].as_f64().filter(|_| !test.life_passes.is_empty());
-        let share = per_pass.map_or(1.0, |passes| passes / result["life_cycles"].as_f64().unwrap_or(f64::NAN));
-        self.put(predicted.life * share, measured, predicted.band.map(|band| band.map(|end| end * share)));
-        self.lives_inside = predicted
-            .band
-            .map(|[low, high]| test.lives().iter().filter(|life| (low * share..=high * share).contains(life)).count());
+        let Some(measured) = self.measured else { return Ok(()) };
+        let passes = result["passes"].as_f64().zip(result["life_cycles"].as_f64()).map(|(passes, life)| passes / life);
+        let no_passes = || input_missing("test.life_passes", "needs a case with a spectrum", "give life_cycles");
+        let share = if test.life_passes.is_empty() { 1.0 } else { passes.ok_or_else(no_passes)? };
+        let band = predicted.band.map(|band| band.map(|end| end * share));
+        self.put(predicted.life * share, measured, band);
+        self.lives_inside = band.map(|[low, high]| test.lives().iter().filter(|life| (low..=high).contains(*life)).count());
+        Ok(())
     }
 
     /// Puts a life, its measured one and its band.

@@ -41,12 +41,6 @@ fn groups(rows: &[Row]) -> Vec<Group> {
     let name =
         |row: &Row| row.kind.replace('_', " ") + &row.variant.as_ref().map(|variant| format!(": {variant}")).unwrap_or_default();
     let of_kind = |kind: Kind| rows.iter().filter(move |row| row.kind == kind.name() && row.ratio.is_some());
-    let mut names: Vec<String> = Vec::new();
-    Kind::all().flat_map(of_kind).map(name).for_each(|name| {
-        if !names.contains(&name) {
-            names.push(name)
-        }
-    });
     let group = |group: String| {
         let own = || rows.iter().filter(|row| row.ratio.is_some() && name(row) == group);
         let ratios: Vec<f64> = own().filter_map(|row| row.ratio).collect();
@@ -58,22 +52,32 @@ fn groups(rows: &[Row]) -> Vec<Group> {
         let scatter_factor = (tests > 1).then(|| (square / (tests as f64 - 1.0)).sqrt().exp());
         Group { tests, ratio_geometric_mean: mean, scatter_factor, lives_inside, lives_with_band, group }
     };
-    names.into_iter().map(group).collect()
+    distinct(Kind::all().flat_map(of_kind).map(name)).into_iter().map(group).collect()
+}
+
+/// Each item once, in the order of the first ones.
+fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+    items.fold(Vec::new(), |mut kept, item| {
+        kept.extend((!kept.contains(&item)).then_some(item));
+        kept
+    })
 }
 
 /// A set with its rows on the console.
 pub fn lines(set: &Set, rows: &[Row]) -> String {
-    rows.iter().fold(set.about.title.clone(), |text, row| text + "\n" + &line(row))
-}
-
-fn line(row: &Row) -> String {
-    let name = format!("  {:<20} {:<28}", row.set, label(row));
-    if let Some(why) = &row.failure {
-        return format!("{name} failed: {why}");
-    }
-    let life = row.ratio.map(|ratio| format!(" {ratio:.3} of measured {} {}{}", life(row.measured), row.unit, band(row)));
-    let path = distances(row).map(|distances| format!(" distance of the path, mean and largest: {distances} mm"));
-    [Some(name), life, path].into_iter().flatten().collect()
+    let line = |row: &Row| {
+        let life = row.ratio.map(|ratio| format!(" {ratio:.3} of measured {} {}", digits(row.measured), row.unit));
+        let inside = row.lives_inside.map(|inside| format!(", {inside} of {} in the band", row.lives_measured));
+        let path = distances(row).map(|distances| format!(" distance of the path, mean and largest: {distances} mm"));
+        let failure = row.failure.as_ref().map(|why| format!(" failed: {why}"));
+        format!(
+            "\n  {:<20} {:<28}{}",
+            row.set,
+            label(row),
+            [life, inside, path, failure].into_iter().flatten().collect::<String>()
+        )
+    };
+    set.about.title.clone() + &rows.iter().map(line).collect::<String>()
 }
 
 /// All rows and groups as one object.
@@ -107,54 +111,32 @@ pub fn markdown(sets: &[Set], rows: &[Row]) -> String {
          | kind of test | tests | geometric mean of the ratio | scatter factor | lives in the band |\n|---|---|---|---|---|\n"
         .to_owned();
     for group in groups(rows) {
-        let scatter = group.scatter_factor.map_or("-".to_owned(), |factor| format!("{factor:.2}"));
-        let inside = if group.lives_with_band == 0 {
-            "-".to_owned()
-        } else {
-            format!("{} of {}", group.lives_inside, group.lives_with_band)
-        };
+        let scatter = dash(group.scatter_factor.map(|factor| format!("{factor:.2}")));
+        let (inside, all) = (group.lives_inside, group.lives_with_band);
+        let inside = dash((all > 0).then(|| format!("{inside} of {all}")));
         let mean = group.ratio_geometric_mean;
         text += &format!("| {} | {} | {mean:.3} | {scatter} | {inside} |\n", cell(&group.group), group.tests);
     }
-    text += &table(
-        "Lives",
-        "| set | test | measured | predicted | ratio | band | in the band | error stated, % | model | others |",
-        rows,
-        life_row,
-    );
-    text += &variants(rows);
-    text += &table(
-        "Replicates: random halves",
-        "| set | lives | in the band, % | rms of the ratio less 1, % | CRPS, % of life |",
-        rows,
-        |row| {
-            let share = 100.0 * row.lives_inside? as f64 / row.lives_measured as f64;
-            let (rms, crps) = (row.ratio_rms_percent?, row.crps_percent?);
-            Some(format!("| {} | {} | {share:.1} | {rms:.2} | {crps:.2} |", cell(&row.set), row.lives_measured))
-        },
-    );
-    text += &table(
-        "Paths: distance of the measured points from the predicted path",
-        "| set | mean, largest, mm | model | others |",
-        rows,
-        |row| {
-            let model = row.model.as_deref()?;
-            Some(format!("| {} | {} | {model} | {} |", cell(&row.set), distances(row)?, cell(&row.others)))
-        },
-    );
+    let lives = "| set | test | measured | predicted | ratio | band | in the band | error stated, % | model | others |";
+    text += &(table("Lives", lives, rows, life_row) + &variants(rows));
+    let halves = "| set | lives | in the band, % | rms of the ratio less 1, % | CRPS, % of life |";
+    text += &table("Replicates: random halves", halves, rows, |row| {
+        let share = 100.0 * row.lives_inside? as f64 / row.lives_measured as f64;
+        let (rms, crps) = (row.ratio_rms_percent?, row.crps_percent?);
+        Some(format!("| {} | {} | {share:.1} | {rms:.2} | {crps:.2} |", cell(&row.set), row.lives_measured))
+    });
+    let paths = "| set | mean, largest, mm | model | others |";
+    text += &table("Paths: distance of the measured points from the predicted path", paths, rows, |row| {
+        Some(format!("| {} | {} | {} | {} |", cell(&row.set), distances(row)?, row.model.as_deref()?, cell(&row.others)))
+    });
     text += "\n## Sources\n";
     for set in sets {
         let about = &set.about;
         text += &format!("\n### {}\n\n{}. {}.\n", set.name, about.title, about.reference);
-        let said = [
-            ("Numbers", &about.obtained),
-            ("Assumed", &about.assumed),
-            ("Uncertainty", &about.uncertainty),
-            ("Licence", &about.licence),
-        ];
+        let [numbers, assumed] = [("Numbers", &about.obtained), ("Assumed", &about.assumed)];
+        let said = [numbers, assumed, ("Uncertainty", &about.uncertainty), ("Licence", &about.licence)];
         let said = said.into_iter().chain(about.remark.as_ref().map(|remark| ("Remark", remark)));
-        text += &said.map(|(what, words)| format!("\n- {what}: {words}")).collect::<String>();
-        text += "\n";
+        text += &(said.map(|(what, words)| format!("\n- {what}: {words}")).collect::<String>() + "\n");
     }
     text + UNTESTED
 }
@@ -172,33 +154,24 @@ fn life_row(row: &Row) -> Option<String> {
         return Some(format!("{name} failed: {} | | | | | | | |", cell(why)));
     }
     let value = row.ratio?;
-    let inside = row.lives_inside.map_or("-".to_owned(), |inside| format!("{inside} of {}", row.lives_measured));
-    let band = row.predicted_p05.map_or("-".to_owned(), |low| format!("{} to {}", four_digits(low), life(row.predicted_p95)));
-    let error = row.error_estimate_percent.map_or("-".to_owned(), |error| format!("{error:.1}"));
+    let inside = dash(row.lives_inside.map(|inside| format!("{inside} of {}", row.lives_measured)));
+    let band = dash(row.predicted_p05.map(|low| format!("{} to {}", four_digits(low), digits(row.predicted_p95))));
+    let error = dash(row.error_estimate_percent.map(|error| format!("{error:.1}")));
     let ratio = row.others_ratio.map(|ratio| format!(" ({ratio:.2})")).unwrap_or_default();
-    let figures = format!("{} {} | {} | {value:.3}", life(row.measured), row.unit, life(row.predicted));
+    let figures = format!("{} {} | {} | {value:.3}", digits(row.measured), row.unit, digits(row.predicted));
     let model = row.model.as_deref().unwrap_or_default();
     Some(format!("{name} {figures} | {band} | {inside} | {error} | {model} | {}{ratio} |", cell(&row.others)))
 }
 
 /// Ratios of the variants of each set side by side.
 fn variants(rows: &[Row]) -> String {
-    let mut names: Vec<&String> = Vec::new();
-    rows.iter().filter_map(|row| row.variant.as_ref()).for_each(|name| {
-        if !names.contains(&name) {
-            names.push(name)
-        }
-    });
+    let names = distinct(rows.iter().filter_map(|row| row.variant.as_ref()));
     let words = names.iter().map(|name| cell(name)).collect::<Vec<_>>().join(" | ");
     let line = |row: &Row| {
         let own = || rows.iter().filter(|other| other.set == row.set && other.variant.is_some());
         let is_first = own().next().is_some_and(|first| first.case == row.case && first.variant == row.variant);
         let find = |name: &&String| own().find(|other| other.variant.as_ref() == Some(name)).and_then(|other| other.ratio);
-        let ratios = names
-            .iter()
-            .map(find)
-            .chain([row.others_ratio])
-            .map(|ratio| ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.3}")));
+        let ratios = names.iter().map(find).chain([row.others_ratio]).map(|ratio| dash(ratio.map(|ratio| format!("{ratio:.3}"))));
         is_first.then(|| format!("| {} | {} |", cell(&row.set), ratios.collect::<Vec<_>>().join(" | ")))
     };
     table("Ratio by model", &format!("| set | {words} | others |"), rows, line)
@@ -209,13 +182,12 @@ fn label(row: &Row) -> String {
     row.variant.clone().unwrap_or_else(|| row.kind.replace('_', " "))
 }
 
-fn life(life: Option<f64>) -> String {
-    life.map_or("-".to_owned(), four_digits)
+fn digits(life: Option<f64>) -> String {
+    dash(life.map(four_digits))
 }
 
-fn band(row: &Row) -> String {
-    let inside = |inside: usize| format!(", {inside} of {} in the band", row.lives_measured);
-    row.lives_inside.map(inside).unwrap_or_default()
+fn dash(words: Option<String>) -> String {
+    words.unwrap_or_else(|| "-".to_owned())
 }
 
 fn distances(row: &Row) -> Option<String> {
