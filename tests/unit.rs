@@ -13,6 +13,7 @@ mod checks;
 mod choose;
 mod circles;
 mod collinear;
+mod curve_law;
 mod commands;
 mod confidence;
 mod cross_check;

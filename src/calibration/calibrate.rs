@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::case::CalibrationCase;
-use super::fit::{Bonds, Fit, FitTask, OwnPath, fit, population};
+use super::fit::{Bonds, Fit, FitTask, OwnPath, fit};
 use super::laws::LawFits;
 use super::laws::case::{LawCase, is_law_fit};
 use super::paris;
@@ -145,25 +145,17 @@ fn fit_by_method(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
     let task = task(calibration, &delta_k);
     if matches!(case.model, Model::Handbook(_)) {
         let law = PowerLaw::new(from, to, &delta_k)?;
-        let fit = with_scatter(fit(&task, &law)?.of_power_law(), &task, &law);
+        let fit = fit(&task, &law)?.of_power_law();
         return if case.chosen.is_some() { in_terms_of_bonds(fit, case, usual_bonds(case)) } else { Ok(fit) };
     }
     let factors = FactorCurve::of(case, observer)?;
     let of_run = |length: f64| case.loading.range_share() * factors.at(length);
     let law = PowerLaw::new(from, to, &of_run)?;
-    let fit = with_scatter(fit(&task, &law)?, &task, &law);
+    let fit = fit(&task, &law)?;
     match case.model {
         Model::Points(_) => of_run_on_plate(fit, case, factors),
         _ => of_run_on_plate(fit.of_power_law(), case, factors),
     }
-}
-
-/// The fit with the scatter of lives, which of one specimen is assumed.
-fn with_scatter(mut fit: Fit, task: &FitTask<'_>, law: &PowerLaw) -> Fit {
-    if fit.population.is_none() && task.curves.len() == 1 {
-        fit.population = population(task, law, fit.record.constants.p, &mut fit.warnings);
-    }
-    fit
 }
 
 fn task<'a>(calibration: &'a CalibrationCase, delta_k: &'a dyn Fn(f64) -> f64) -> FitTask<'a> {
@@ -196,8 +188,7 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
         if fitted != m {
             fit = at_exponent(fitted)?;
         }
-        let mut fit =
-            with_scatter(fit.of_power_law(), &task(calibration, &|length| law.delta_k(length, fitted) * MPA_SQRT_M), &law);
+        let mut fit = fit.of_power_law();
         let reached = |fold: fn(f64, f64) -> f64, start: f64| {
             fit.record.crack_length.iter().map(|&length| law.largest_delta_k(length)).fold(start, fold)
         };

@@ -1,14 +1,14 @@
 //! The fit of lives on one page: from measured curves and K of a growing crack to C and m of `da/dN = C ΔK^m` and how sure they are.
 //!
-//! Least squares predict lives best as long as all readings belong. Where some do not, both estimates are given, and the robust one is
-//! written, since its error does not grow with theirs.
+//! Readings that do not belong are left out first ([`super::outliers`]). C and m are the best power law by lives; the law that is written is
+//! the curve of the rates where they show a shape ([`super::population`]) and lives are no worse by it, at the level of lives.
 
 use super::case::CalibrationCase;
 use super::confidence::{Confidence, check_identified, confidence, end_of_range};
-use super::criterion::Criterion;
+use super::criterion::{Criterion, misfit};
 use super::exponent::DELTA_K_RATIO_MIN;
-use super::lack_of_fit::{LackOfFit, MisfitAtEnds, lack_of_fit, misfit_at_ends};
-use super::outliers::{RobustLine, Run, StepRate, doubts, readings_apart, robust_line_of_all, runs, step_rates, without};
+use super::lack_of_fit::{MisfitAtEnds, misfit_at_ends};
+use super::outliers::{Run, StepRate, doubts_beside, left_out, long_step_rates, readings_apart, runs, step_rates, without};
 use super::paris::{self, Paris};
 use super::population::intervals::Specimen;
 use super::population::{Population, fit as fit_population};
@@ -17,18 +17,12 @@ use super::rates::{STEP_MIN, threshold};
 use super::search::{Constants, FittedCurve, as_fitted, fit_all, fit_one, fitted_curve, is_at_end, own_law, picture};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
-use perilife_growth::case::record::Estimate;
 use perilife_laws::STEADY_EXPONENTS;
-use perilife_measured::{MeasuredCurve, first_of};
+use perilife_laws::curve::CurveLaw;
+use perilife_measured::{LeaveOut, MeasuredCurve, first_of};
 
 /// Most remarks on readings that a fit repeats.
 const DOUBTS_SHOWN: usize = 6;
-
-/// Standard errors by which two estimates differ in earnest.
-const ERRORS_APART: f64 = 2.0;
-
-/// Smallest difference of exponents worth a word: computed curves have hardly any error.
-const APART_MIN: f64 = 0.05;
 
 /// What is fitted to what.
 #[derive(Clone, Copy)]
@@ -54,14 +48,14 @@ pub struct Fit {
     pub confidence: Confidence,
     /// Paris equivalents of the record.
     pub paris: Paris,
-    /// Which estimate the record holds.
-    pub estimate: Estimate,
-    /// C and m by the repeated median of the rates of the record's curve, where p was fitted.
-    pub robust: Option<RobustLine>,
+    /// The curve of the rates, where that is the law that is written.
+    pub curve: Option<CurveLaw>,
+    /// By how much the power law misses that curve's measured rates at the ends; `None` where it is the law itself.
+    pub power_law_misfit: Option<MisfitAtEnds>,
     /// By how much the law misses the curve that it was fitted to at its first and last readings.
     pub misfit_at_ends: MisfitAtEnds,
-    /// Ends of its range at which the law misses measured rates by more than they scatter.
-    pub lack_of_fit: Option<LackOfFit>,
+    /// Readings that do not belong.
+    pub left_out: Vec<LeaveOut>,
     /// The bonds that A and p of the record are of; without them they are C (m/cycle, MPa√m) and m.
     pub bonds: Option<Bonds>,
     /// K along the crack's own path, where no handbook has it.
@@ -92,21 +86,26 @@ pub struct OwnPath {
     pub runs: usize,
 }
 
-/// Fits A and p to all readings of all specimens, and again to each specimen.
+/// Fits A and p to all readings of all specimens that belong, and again to each specimen.
 /// Errors: readings outside the table of ΔK; [`Error::Mechanics`] where the smallest misfit lies at an end of the exponents searched, or
 /// the readings do not tell p.
 pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let fixed_p = task.fixed_p.map(checked_p).transpose()?;
     let is_fitted = fixed_p.is_none();
+    let strange = runs(&task.curves.iter().map(|curve| long_step_rates(curve, task.delta_k)).collect::<Vec<_>>());
+    let mut warnings = remarks(task, &strange);
+    let of_runs = |(curve, runs): (&MeasuredCurve, &Vec<Run>)| runs.iter().map(|run| left_out(curve, *run)).collect::<Vec<_>>();
+    let left_out = task.curves.iter().zip(&strange).flat_map(of_runs).collect();
+    let belonging: Vec<MeasuredCurve> = task.curves.iter().zip(&strange).map(|(curve, runs)| without(curve, runs)).collect();
+    let task = &FitTask { curves: &belonging, ..*task };
     let constants = fit_all(task.curves, task.criterion, fixed_p, law)?;
-    let mut specimens: Vec<FittedCurve> =
+    let specimens: Vec<FittedCurve> =
         task.curves.iter().map(|curve| fit_one(curve, task.criterion, fixed_p, law)).collect::<Result<_>>()?;
     let picture = match task.curves {
         [only] => only.clone(),
         curves => picture(curves, &specimens, constants, law)?,
     };
     let mut record = fitted_curve(&picture, constants, law)?;
-    let mut warnings = remarks(task);
     if is_fitted && is_at_end(record.constants.p) {
         return Err(Error::Mechanics(format!(
             "{}: {}; check the units of the readings and the load, narrow the window (measured.from_crack_length_mm and \
@@ -123,46 +122,17 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     }
     warnings.extend(task.curves.iter().find_map(|curve| short_steps_warning(&curve.crack_length)));
 
-    // The scatter of several specimens says how sure their constants are; that of one is assumed, and has no part in its fit.
-    let several = task.curves.len() > 1;
-    let population = several.then(|| population(task, law, constants.p, &mut warnings)).flatten();
-    let (mut confidence, mut paris) = assess(task, law, &picture, &record, population.as_ref())?;
+    let population = population(task, law, &mut warnings);
+    let (confidence, paris) = assess(task, law, &picture, &record, population.as_ref())?;
     if is_fitted {
         check_identified(&record.name, &confidence, &paris)?;
     }
-    let mut estimate = Estimate::LeastSquares;
     let step_rates: Vec<Vec<StepRate>> = task.curves.iter().map(|curve| step_rates(curve, task.delta_k)).collect();
     let of_threshold = |(curve, rates): (&MeasuredCurve, &Vec<StepRate>)| {
         let (_, words) = threshold(rates.iter().map(|rate| (rate.log_k.exp(), rate.log_rate.exp() / MM_PER_CYCLE)))?;
         Some(format!("specimen {}: {words}", curve.specimen))
     };
     warnings.extend(first_of(task.curves.iter().zip(&step_rates).filter_map(of_threshold).collect()));
-    let robust = robust_line_of_all(&step_rates).filter(|_| is_fitted);
-    let strange: Vec<Vec<Run>> =
-        step_rates.iter().map(|rates| robust.map_or_else(Vec::new, |line| runs(rates, line.at_level_of(rates)))).collect();
-    let is_strange = strange.iter().any(|runs| !runs.is_empty());
-    if let Some(line) = robust.filter(|_| is_strange || task.curves.len() == 1) {
-        // Readings that do not belong must not widen the error by which they are judged.
-        let belonging: Vec<MeasuredCurve> = task.curves.iter().zip(&strange).map(|(curve, runs)| without(curve, runs)).collect();
-        let of_belonging = FitTask { curves: &belonging, ..*task };
-        let their = fit_all(&belonging, task.criterion, fixed_p, law)?;
-        let population_of = several.then(|| self::population(&of_belonging, law, their.p, &mut Vec::new())).flatten();
-        let their_picture = if belonging.len() == 1 { belonging[0].clone() } else { picture.clone() };
-        let without = fitted_curve(&their_picture, their, law)?;
-        let error = assess(&of_belonging, law, &their_picture, &without, population_of.as_ref())?.1.m_error;
-        let least_squares = paris;
-        if (line.m - least_squares.m).abs() > (ERRORS_APART * error).max(APART_MIN) {
-            if let Some(constants) = robust_constants(task, law, record.constants.p).filter(|_| is_strange) {
-                estimate = Estimate::Robust;
-                record = fitted_curve(&picture, constants, law)?;
-                (confidence, paris) = assess(&of_belonging, law, &their_picture, &record, population_of.as_ref())?;
-            }
-            warnings.push(apart(&least_squares, error, line, estimate));
-        }
-    }
-    if task.curves.len() == 1 {
-        specimens = vec![record.clone()];
-    }
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
@@ -170,30 +140,45 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
              widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
-    let fitted: Vec<MeasuredCurve> =
-        task.curves.iter().map(|curve| as_fitted(curve, record.constants, law)).collect::<Result<_>>()?;
-    let lack_of_fit = lack_of_fit(task.curves, &fitted, task.delta_k);
-    let misfit_at_ends = misfit_at_ends(&picture, &as_fitted(&picture, record.constants, law)?, task.delta_k);
-    let (bonds, own_path) = (None, None);
+    let power = |delta_k: f64| constants.a * delta_k.powf(constants.p);
+    let by = |rate: &dyn Fn(f64) -> f64| task.curves.iter().map(|curve| as_fitted(curve, rate, law)).collect::<Result<Vec<_>>>();
+    let by_power = by(&power)?;
+    let (mut curve, mut by_law) = (None, by_power.clone());
+    if let Some(lot) = population.as_ref().filter(|lot| is_fitted && lot.law.shape.is_some()) {
+        let (bent, rate) = (lot.life_law(), |delta_k: f64| lot.life_law().log_rate(delta_k * MPA_SQRT_M).exp());
+        let by_curve = by(&rate)?;
+        if life_misfit(task, &by_curve) <= life_misfit(task, &by_power) {
+            (curve, by_law) = (Some(bent), by_curve);
+            record.cycles_fitted = as_fitted(&picture, &rate, law)?.cycles;
+        }
+    }
+    let misfit_of = |fitted: &[MeasuredCurve]| misfit_at_ends(task.curves, fitted, task.delta_k);
     Ok(Fit {
+        specimens: if task.curves.len() == 1 { vec![record.clone()] } else { specimens },
         record,
-        specimens,
         confidence,
         paris,
-        estimate,
-        robust,
-        misfit_at_ends,
-        lack_of_fit,
-        bonds,
-        own_path,
+        misfit_at_ends: misfit_of(&by_law),
+        power_law_misfit: curve.map(|_| misfit_of(&by_power)),
+        curve,
+        left_out,
+        bonds: None,
+        own_path: None,
         population,
         warnings,
     })
 }
 
-/// Scatter of the specimens about a common law; `None`, with a warning, where their readings do not tell it.
-pub(super) fn population(task: &FitTask<'_>, law: &PowerLaw, p: f64, warnings: &mut Vec<String>) -> Option<Population> {
-    let delta_k = |length: f64| law.delta_k(length, p) * MPA_SQRT_M;
+/// Sum over specimens of the squared misfit of their lives by a law, each at its own level.
+fn life_misfit(task: &FitTask<'_>, by_law: &[MeasuredCurve]) -> f64 {
+    let of =
+        |(law, curve): (&MeasuredCurve, &MeasuredCurve)| misfit(task.criterion, &law.cycles, &curve.cycles_counted()).powi(2);
+    by_law.iter().zip(task.curves).map(of).sum()
+}
+
+/// Law and scatter of the specimens; `None`, with a warning, where their readings do not tell it.
+fn population(task: &FitTask<'_>, law: &PowerLaw, warnings: &mut Vec<String>) -> Option<Population> {
+    let delta_k = |length: f64| law.tips(length).into_iter().map(|k| k * MPA_SQRT_M).collect();
     let specimens = task.curves.iter().map(|curve| Specimen::of_curve(curve, &delta_k)).collect::<Result<Vec<_>>>();
     match specimens.and_then(|specimens| fit_population(&specimens, task.fixed_p)) {
         Ok(population) => Some(population),
@@ -202,30 +187,6 @@ pub(super) fn population(task: &FitTask<'_>, law: &PowerLaw, p: f64, warnings: &
             None
         }
     }
-}
-
-/// C and m by the repeated median over ΔK of the law that is fitted; `None` where the law has no such m. `p` is the exponent of least
-/// squares, which several tips count together by.
-fn robust_constants(task: &FitTask<'_>, law: &PowerLaw, p: f64) -> Option<Constants> {
-    let rates = |curve| step_rates(curve, &|length| law.delta_k(length, p) * MPA_SQRT_M);
-    let line = robust_line_of_all(&task.curves.iter().map(rates).collect::<Vec<_>>())?;
-    STEADY_EXPONENTS.contains(&line.m).then(|| Constants { a: line.intercept.exp(), p: line.m })
-}
-
-/// Both estimates in words, and which is written; `error` is that of m without the readings that do not belong.
-fn apart(least_squares: &Paris, error: f64, robust: RobustLine, written: Estimate) -> String {
-    format!(
-        "least squares give m = {:.3}, C = {:.3e}, the repeated median of the rates m = {:.3}, C = {:.3e} (mm/cycle, MPa√m): they differ by \
-         more than two standard errors of {error:.3}; written are the {} constants",
-        least_squares.m,
-        least_squares.c,
-        robust.m,
-        robust.c(),
-        match written {
-            Estimate::LeastSquares => "least-squares",
-            Estimate::Robust => "robust",
-        }
-    )
 }
 
 /// How sure A and p are, and what they mean as C and m along a curve. Of several specimens their scatter says it.
@@ -240,7 +201,7 @@ fn assess(
     let Constants { a, p } = record.constants;
     let own = own_law(law, curve);
     let per_p = |lengths: &[f64]| is_fitted.then(|| own.cycles_per_p(p, lengths)).transpose();
-    let apart = readings_apart(&curve.crack_length);
+    let apart = readings_apart(&curve.crack_length, STEP_MIN);
     let lengths: Vec<f64> = apart.iter().map(|&i| curve.crack_length[i]).collect();
     let counted = curve.cycles_counted();
     let measured: Vec<f64> = apart.iter().map(|&i| counted[i]).collect();
@@ -276,8 +237,9 @@ fn delta_k_range(task: &FitTask<'_>) -> [f64; 2] {
 }
 
 /// What speaks against the readings of the specimens.
-fn remarks(task: &FitTask<'_>) -> Vec<String> {
-    let mut lines: Vec<String> = task.curves.iter().flat_map(|curve| doubts(curve, task.delta_k)).collect();
+fn remarks(task: &FitTask<'_>, runs: &[Vec<Run>]) -> Vec<String> {
+    let of_curve = |(curve, runs): (&MeasuredCurve, &Vec<Run>)| doubts_beside(curve, runs, task.delta_k);
+    let mut lines: Vec<String> = task.curves.iter().zip(runs).flat_map(of_curve).collect();
     if lines.len() > DOUBTS_SHOWN {
         let more = lines.len() - DOUBTS_SHOWN;
         lines.truncate(DOUBTS_SHOWN);

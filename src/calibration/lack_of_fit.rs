@@ -1,45 +1,17 @@
 //! By how much a law misses the measured rates at both ends of its range: a power of ΔK through a bent curve lies above it at one end
-//! and below it at the other, and the error of the fit does not say so. [`misfit_at_ends`] is what a life is off by that is spent there,
-//! [`lack_of_fit`] whether the scatter of readings and specimens could make as much.
+//! and below it at the other, and the error of the fit does not say so. [`misfit_at_ends`] is what a life is off by that is spent there.
 //!
 //! Rates are sums: the cycles that the law takes for the growth of every specimen through that end, over those that were counted. Rates of
 //! single readings would not do, since noise makes some of them negative, which have no logarithm.
 
 use serde::Serialize;
 
+use crate::median::huber_mean;
 use perilife_base::units::MPA_SQRT_M;
 use perilife_measured::MeasuredCurve;
 
 /// Share of the range of ln ΔK that is an end of it.
 const END: f64 = 0.1;
-/// Standard errors from which on a miss is given.
-const ERRORS: f64 = 2.0;
-/// Smallest miss worth a word: exact curves have no error.
-const MISS_MIN: f64 = 0.005;
-
-/// One end of the range.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct EndMiss {
-    /// Smallest ΔK there.
-    pub delta_k_from_mpa_sqrt_m: f64,
-    /// Largest.
-    pub delta_k_to_mpa_sqrt_m: f64,
-    /// Reading intervals there.
-    pub intervals: usize,
-    /// Measured over fitted rate, less one, in percent: positive where cracks grow faster than the law says.
-    pub rate_over_law_percent: f64,
-    /// Its standard error, by the scatter of readings and that between specimens.
-    pub error_percent: f64,
-}
-
-/// Ends of the range at which the law misses the rates by more than two standard errors.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct LackOfFit {
-    /// Smallest ΔK.
-    pub low: Option<EndMiss>,
-    /// Largest ΔK.
-    pub high: Option<EndMiss>,
-}
 
 /// Growth through an end of the readings that were fitted, against the law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -67,9 +39,27 @@ pub struct MisfitAtEnds {
 /// Least intervals of an end.
 const INTERVALS_MIN: usize = 2;
 
-/// Misfit of the curve that the record was fitted to at its first and last readings: those within a tenth of the range of ln ΔK, or two
-/// intervals. Unlike [`lack_of_fit`] it takes the law at its own level, and no error: it is what a life is off by that is spent there.
-pub fn misfit_at_ends(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> MisfitAtEnds {
+/// Misfit of the typical specimen at its first and last readings, those within a tenth of the range of ln ΔK, or two intervals: the mean over
+/// specimens, each beside the same by the law. It is what a life is off by that is spent there.
+pub fn misfit_at_ends(measured: &[MeasuredCurve], law: &[MeasuredCurve], delta_k: &dyn Fn(f64) -> f64) -> MisfitAtEnds {
+    let of_specimen = |(measured, law): (&MeasuredCurve, &MeasuredCurve)| misfits(measured, law, delta_k);
+    let all: Vec<[Option<Misfit>; 2]> = measured.iter().zip(law).map(of_specimen).collect();
+    let typical = |end: usize| {
+        let ends: Vec<Misfit> = all.iter().filter_map(|ends| ends[end]).collect();
+        let misses: Vec<f64> = ends.iter().map(|end| (end.rate_over_law_percent / 100.0).ln_1p()).collect();
+        let fold = |of: fn(&Misfit) -> f64, fold: fn(f64, f64) -> f64| ends.iter().map(of).reduce(fold);
+        Some(Misfit {
+            delta_k_from_mpa_sqrt_m: fold(|end| end.delta_k_from_mpa_sqrt_m, f64::min)?,
+            delta_k_to_mpa_sqrt_m: fold(|end| end.delta_k_to_mpa_sqrt_m, f64::max)?,
+            intervals: ends.iter().map(|end| end.intervals).sum(),
+            rate_over_law_percent: 100.0 * huber_mean(&misses).exp_m1(),
+        })
+    };
+    MisfitAtEnds { low: typical(0), high: typical(1) }
+}
+
+/// Misfits of a specimen at its first and its last readings.
+fn misfits(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> [Option<Misfit>; 2] {
     let log: Vec<f64> = (0..measured.cycles.len()).map(|reading| log_k(measured, reading, delta_k)).collect();
     let last = log.len() - 1; // a curve has five readings
     let width = END * (log[last] - log[0]).abs();
@@ -86,10 +76,7 @@ pub fn misfit_at_ends(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &d
             rate_over_law_percent: 100.0 * (by_law / cycles - 1.0),
         })
     };
-    MisfitAtEnds {
-        low: end(1..=from_start.max(INTERVALS_MIN).min(last)),
-        high: end(last + 1 - from_end.max(INTERVALS_MIN).min(last)..=last),
-    }
+    [end(1..=from_start.max(INTERVALS_MIN).min(last)), end(last + 1 - from_end.max(INTERVALS_MIN).min(last)..=last)]
 }
 
 impl MisfitAtEnds {
@@ -123,55 +110,4 @@ fn log_k(curve: &MeasuredCurve, reading: usize, delta_k: &dyn Fn(f64) -> f64) ->
 /// Rise of a quantity over some steps, each named by the reading at its end.
 fn sum(of: &[f64], steps: impl Iterator<Item = usize>) -> f64 {
     steps.map(|i| of[i] - of[i - 1]).sum()
-}
-
-/// Growth of a specimen through an end of the range.
-struct Through {
-    /// ln of measured over fitted rate.
-    miss: f64,
-    /// Variance of the mean rate by the scatter of readings.
-    variance: f64,
-    intervals: usize,
-}
-
-/// Misses at both ends of the range of ΔK of all curves, each beside the same curve by the law, whose level is its own; `None` where
-/// neither end has one. `delta_k` is that of the case's load (Pa√m) at a length (m).
-pub fn lack_of_fit(measured: &[MeasuredCurve], fitted: &[MeasuredCurve], delta_k: &dyn Fn(f64) -> f64) -> Option<LackOfFit> {
-    let log_k = |curve: &MeasuredCurve, reading: usize| log_k(curve, reading, delta_k);
-    let all = || measured.iter().flat_map(|curve| (0..curve.cycles.len()).map(|reading| log_k(curve, reading)));
-    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
-    let width = END * (high - low);
-    let end = |from: f64, to: f64| {
-        let through = |(curve, law): (&MeasuredCurve, &MeasuredCurve)| {
-            let inside: Vec<usize> = (1..curve.cycles.len())
-                .filter(|&i| curve.counts(i) && (i - 1..=i).all(|reading| (from..=to).contains(&log_k(curve, reading))))
-                .collect();
-            // The level of the specimen: all its counted cycles over those of the law.
-            let level = sum(&law.cycles, (1..law.cycles.len()).filter(|&i| curve.counts(i)))
-                / sum(&curve.cycles, (1..curve.cycles.len()).filter(|&i| curve.counts(i)));
-            let [by_law, counted, grown] =
-                [&law.cycles, &curve.cycles, &curve.crack_length].map(|of| sum(of, inside.iter().copied()));
-            let is_known = inside.len() > 1 && by_law > 0.0 && counted > 0.0 && grown > 0.0;
-            is_known.then(|| Through {
-                miss: (by_law / counted / level).ln(),
-                variance: 2.0 * (curve.scatter() / grown).powi(2),
-                intervals: inside.len(),
-            })
-        };
-        let all: Vec<Through> = measured.iter().zip(fitted).filter_map(through).collect();
-        let n = all.len() as f64;
-        let mean = all.iter().map(|one| one.miss).sum::<f64>() / n;
-        let between = all.iter().map(|one| (one.miss - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
-        let of_readings = all.iter().map(|one| one.variance).sum::<f64>() / n;
-        let error = (between.max(of_readings) / n).sqrt();
-        (mean.abs() > ERRORS * error && mean.abs() > MISS_MIN).then(|| EndMiss {
-            delta_k_from_mpa_sqrt_m: from.exp(),
-            delta_k_to_mpa_sqrt_m: to.exp(),
-            intervals: all.iter().map(|one| one.intervals).sum(),
-            rate_over_law_percent: 100.0 * mean.exp_m1(),
-            error_percent: 100.0 * error,
-        })
-    };
-    let found = LackOfFit { low: end(low, low + width), high: end(high - width, high) };
-    (found.low.is_some() || found.high.is_some()).then_some(found)
 }

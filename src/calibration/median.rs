@@ -168,3 +168,24 @@ fn cycles_reaching(curve: &[(f64, f64)], between: impl Fn(usize, f64) -> f64, le
         }
     }
 }
+
+/// Median of the size of a normal quantity over its standard deviation.
+pub const NORMAL_MEDIAN: f64 = 0.6745;
+/// Standard deviations from the mean beyond which a value counts less (Huber 1964, 95 % efficiency).
+const HUBER: f64 = 1.345;
+/// Steps in which the mean settles.
+const HUBER_STEPS: usize = 60;
+
+/// Mean of which values far from the median count less; the plain one of fewer than three.
+pub fn huber_mean(values: &[f64]) -> f64 {
+    let mean = |weight: &dyn Fn(f64) -> f64| {
+        values.iter().map(|v| weight(*v) * v).sum::<f64>() / values.iter().map(|v| weight(*v)).sum::<f64>()
+    };
+    if values.len() < 3 {
+        return mean(&|_| 1.0);
+    }
+    let middle = median(values);
+    let deviation = median(&values.iter().map(|v| (v - middle).abs()).collect::<Vec<_>>()) / NORMAL_MEDIAN;
+    let limit = (HUBER * deviation).max(f64::MIN_POSITIVE);
+    (0..HUBER_STEPS).fold(middle, |at, _| mean(&|v| (limit / (v - at).abs()).min(1.0)))
+}

@@ -1,23 +1,40 @@
 //! Readings that do not belong: growth far slower or faster than the rest of the same test at equal ΔK.
 //!
-//! A stalled start after a precrack at a higher load, an overload or a counter that jumped moves a line of least squares by more than its
-//! error says. A repeated-median line, `m = med_i med_(j≠i) (y_j - y_i) / (x_j - x_i)` with y = ln da/dN over x = ln ΔK (Siegel 1982,
-//! Biometrika 69:242), stays until half of the rates are wrong. Rates are those over growth of at least 0.25 mm, below which reading
-//! errors show.
+//! A stalled start after a precrack at a higher load, an overload or a counter that jumped moves a law of least squares by more than its
+//! error says. They are judged about a robust curve over ln ΔK, with a level for each specimen: the shape of [`CurveLaw`] with Tukey's weights
+//! (Beaton and Tukey 1974, Technometrics 16:147), begun at the repeated-median line `m = med_i med_(j≠i) (y_j - y_i) / (x_j - x_i)` with
+//! y = ln da/dN over x = ln ΔK (Siegel 1982, Biometrika 69:242), which stays until half of the rates are wrong. What does not belong to the line
+//! does not bend the curve. A run seldom begins and ends at a reading: neighbours on its side that are off belong to it.
 //!
 //! And whether one power of ΔK can hold for all readings of a test whose loads the file does not give: a load that was stepped or shed,
 //! or a counter that jumped, shows as two levels of rate at equal ΔK. Compared are one line `ln da/dN = ln C + m ln ΔK` and two with a
 //! common m, the second beginning at the split that fits best: `F = (S₁ - S₂) / (S₂ / (n - 3))` with the sums of squares S of both (test
 //! of nested models; Draper and Smith, Applied Regression Analysis, 1998).
 
-use super::median::median;
+use super::median::{NORMAL_MEDIAN, median};
 use super::rates::STEP_MIN;
+use nalgebra::{DMatrix, DVector};
 use perilife_base::units::round_off;
-use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
-use perilife_measured::MeasuredCurve;
+use perilife_base::units::{MM, MPA_SQRT_M};
 
-/// Rates beyond this factor of the line, or below its inverse, do not belong; on clean curves the smallest seen is 0.83.
+use super::population::intervals::INTERVALS_MAX;
+use perilife_laws::curve::{CurveLaw, EFFECTS, KNOTS, ROUGHNESS};
+use perilife_measured::{LeaveOut, MeasuredCurve};
+
+/// Rates beyond this factor of the curve, or below its inverse, do not belong; on clean curves the smallest seen is 0.83.
 pub const FACTOR: f64 = 3.0;
+/// Standard deviations that they are off as well.
+const DEVIATIONS: f64 = 5.0;
+/// Standard deviations, and factor, by which neighbours of such rates are off that belong to their run.
+const NEIGHBOURS: (f64, f64) = (3.0, 1.2);
+/// Standard deviations from which on a rate has no weight (95 % efficiency).
+const TUKEY: f64 = 4.685;
+/// Smallest standard deviation: computed curves have none.
+const DEVIATION_MIN: f64 = 0.01;
+/// τ of the shape, as in [`super::population`], wide.
+const SHAPE_DEVIATION: f64 = 0.3;
+/// Most steps of the weights, and the change of residuals at which they stand still.
+const STEPS: (usize, f64) = (40, 1e-6);
 
 /// Fewest rates for a line that a few of them cannot move.
 const RATES_MIN: usize = 6;
@@ -43,7 +60,7 @@ pub struct StepRate {
 
 /// Line `ln da/dN = intercept + m ln ΔK` in m/cycle and MPa√m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RobustLine {
+struct RobustLine {
     /// ln of the rate at 1 MPa√m.
     pub intercept: f64,
     /// Slope.
@@ -52,14 +69,9 @@ pub struct RobustLine {
 
 impl RobustLine {
     /// The line of this slope through the middle of some rates.
-    pub fn at_level_of(self, rates: &[StepRate]) -> RobustLine {
+    fn at_level_of(self, rates: &[StepRate]) -> RobustLine {
         let levels: Vec<f64> = rates.iter().map(|rate| rate.log_rate - self.m * rate.log_k).collect();
         RobustLine { intercept: median(&levels), ..self }
-    }
-
-    /// C in mm/cycle and MPa√m.
-    pub fn c(&self) -> f64 {
-        self.intercept.exp() / MM_PER_CYCLE
     }
 }
 
@@ -70,15 +82,15 @@ pub struct Run {
     pub from: usize,
     /// Last reading.
     pub to: usize,
-    /// Rate over that of the line, where it is farthest from it.
+    /// Rate over that of the curve, where it is farthest from it.
     pub factor: f64,
 }
 
-/// Readings at least [`STEP_MIN`] of growth apart, the first among them.
-pub fn readings_apart(lengths: &[f64]) -> Vec<usize> {
+/// Readings at least so much growth (m) apart, the first among them.
+pub fn readings_apart(lengths: &[f64], least: f64) -> Vec<usize> {
     let mut apart: Vec<usize> = Vec::new();
     for (i, &length) in lengths.iter().enumerate() {
-        if apart.last().is_none_or(|&last| length >= lengths[last] + STEP_MIN * (1.0 - 1e-9)) {
+        if apart.last().is_none_or(|&last| length >= lengths[last] + least * (1.0 - 1e-9)) {
             apart.push(i);
         }
     }
@@ -87,6 +99,16 @@ pub fn readings_apart(lengths: &[f64]) -> Vec<usize> {
 
 /// Rates over steps of at least [`STEP_MIN`]; `delta_k` is that of the case's load (Pa√m) at a length (m).
 pub fn step_rates(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<StepRate> {
+    rates_over(curve, STEP_MIN, delta_k)
+}
+
+/// The same over steps as long as those of [`super::population`].
+pub fn long_step_rates(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<StepRate> {
+    let end = curve.crack_length.iter().copied().fold(0.0, f64::max);
+    rates_over(curve, STEP_MIN.max((end - curve.crack_length[0]) / INTERVALS_MAX as f64), delta_k)
+}
+
+fn rates_over(curve: &MeasuredCurve, least: f64, delta_k: &dyn Fn(f64) -> f64) -> Vec<StepRate> {
     let factors = curve.step_factors();
     let rate = |pair: &[usize]| {
         let (from, to) = (pair[0], pair[1]);
@@ -97,12 +119,12 @@ pub fn step_rates(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<St
         let usable = (from + 1..=to).all(|step| curve.counts(step)) && k > 0.0 && cycles > 0.0;
         usable.then(|| StepRate { from, to, log_k: k.ln(), log_rate: (growth / cycles).ln() })
     };
-    readings_apart(&curve.crack_length).windows(2).filter_map(rate).collect()
+    readings_apart(&curve.crack_length, least).windows(2).filter_map(rate).collect()
 }
 
 /// The repeated-median line; `None` for fewer than six rates or rates at one ΔK. Of more than two thousand every second, third and so on
 /// is taken.
-pub fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
+fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
     if rates.len() < RATES_MIN {
         return None;
     }
@@ -118,7 +140,7 @@ pub fn robust_line(rates: &[StepRate]) -> Option<RobustLine> {
 }
 
 /// The line of several specimens: the median of their slopes, and of their levels at it.
-pub fn robust_line_of_all(specimens: &[Vec<StepRate>]) -> Option<RobustLine> {
+fn robust_line_of_all(specimens: &[Vec<StepRate>]) -> Option<RobustLine> {
     let known: Vec<(&Vec<StepRate>, RobustLine)> =
         specimens.iter().filter_map(|rates| Some((rates, robust_line(rates)?))).collect();
     if known.is_empty() {
@@ -129,23 +151,98 @@ pub fn robust_line_of_all(specimens: &[Vec<StepRate>]) -> Option<RobustLine> {
     Some(RobustLine { intercept: median(&levels), ..line })
 }
 
-/// Runs of neighbouring rates that do not belong to the line.
-pub fn runs(rates: &[StepRate], line: RobustLine) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    for rate in rates {
-        let factor = (rate.log_rate - line.intercept - line.m * rate.log_k).exp();
-        if (1.0 / FACTOR..=FACTOR).contains(&factor) {
-            continue;
-        }
-        match runs.last_mut() {
-            Some(run) if run.to == rate.from && (run.factor > 1.0) == (factor > 1.0) => {
-                let farther = factor.ln().abs() > run.factor.ln().abs();
-                *run = Run { to: rate.to, factor: if farther { factor } else { run.factor }, ..*run };
+/// ln of rates over those of a robust curve that all specimens share at levels of their own, and their standard deviation; `None` where there
+/// are too few rates.
+fn residuals(specimens: &[Vec<StepRate>]) -> Option<(Vec<Vec<f64>>, f64)> {
+    let line = robust_line_of_all(specimens)?;
+    let about_line = |rates: &Vec<StepRate>| -> Vec<f64> {
+        let line = line.at_level_of(rates);
+        rates.iter().map(|rate| rate.log_rate - line.intercept - line.m * rate.log_k).collect()
+    };
+    let of_line: Vec<Vec<f64>> = specimens.iter().map(about_line).collect();
+    let all = || specimens.iter().flatten();
+    let [low, high] = [f64::min, f64::max].map(|fold| all().map(|rate| rate.log_k).reduce(fold).unwrap_or(f64::NAN));
+    let range = [low.exp(), high.exp()];
+    let law = CurveLaw { pivot: (0.5 * (low + high)).exp(), level: 0.0, slope: 0.0, range, shape: Some([0.0; KNOTS]) };
+    // One column for the level of every specimen, then x and the shape.
+    let count = specimens.len() + EFFECTS - 1;
+    let columns = |specimen: usize, log_k: f64| {
+        let design = law.design(log_k);
+        std::iter::once((specimen, 1.0)).chain((1..EFFECTS).map(move |i| (specimens.len() + i - 1, design[i])))
+    };
+    let mut now = of_line.clone();
+    let mut deviation = deviation_of(&now);
+    let held: Vec<Vec<bool>> = of_line.iter().map(|residuals| are_off(residuals, deviation)).collect();
+    for _ in 0..STEPS.0 {
+        let (mut normal, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        for (i, row) in ROUGHNESS.iter().enumerate() {
+            for (j, value) in row.iter().enumerate() {
+                normal[(specimens.len() + 1 + i, specimens.len() + 1 + j)] = value * (deviation / SHAPE_DEVIATION).powi(2);
             }
-            _ => runs.push(Run { from: rate.from, to: rate.to, factor }),
+        }
+        for (specimen, rates) in specimens.iter().enumerate() {
+            normal[(specimen, specimen)] += 1e-9;
+            for (k, rate) in rates.iter().enumerate().filter(|(k, _)| !held[specimen][*k]) {
+                let weight = (1.0 - (now[specimen][k] / (TUKEY * deviation)).powi(2)).max(0.0).powi(2);
+                for (i, x) in columns(specimen, rate.log_k) {
+                    right[i] += weight * x * rate.log_rate;
+                    columns(specimen, rate.log_k).for_each(|(j, y)| normal[(i, j)] += weight * x * y);
+                }
+            }
+        }
+        let found = normal.cholesky()?.solve(&right);
+        let mut change = 0.0_f64;
+        for (specimen, rates) in specimens.iter().enumerate() {
+            for (rate, residual) in rates.iter().zip(&mut now[specimen]) {
+                let next = rate.log_rate - columns(specimen, rate.log_k).map(|(i, x)| found[i] * x).sum::<f64>();
+                change = change.max((next - *residual).abs());
+                *residual = next;
+            }
+        }
+        deviation = deviation_of(&now);
+        if change < STEPS.1 {
+            break;
         }
     }
-    runs
+    Some((now, deviation))
+}
+
+fn deviation_of(residuals: &[Vec<f64>]) -> f64 {
+    let sizes: Vec<f64> = residuals.iter().flatten().map(|residual| residual.abs()).collect();
+    (median(&sizes) / NORMAL_MEDIAN).max(DEVIATION_MIN)
+}
+
+/// Which residuals of a specimen do not belong, with those beside them.
+fn are_off(residuals: &[f64], deviation: f64) -> Vec<bool> {
+    let limit = FACTOR.ln().max(DEVIATIONS * deviation);
+    let beside = NEIGHBOURS.1.ln().max(NEIGHBOURS.0 * deviation);
+    let mut off: Vec<bool> = residuals.iter().map(|residual| residual.abs() > limit).collect();
+    let goes_on =
+        |off: &[bool], at: usize, from: usize| off[from] && residuals[at] * residuals[from] > 0.0 && residuals[at].abs() > beside;
+    (1..off.len()).for_each(|i| off[i] = off[i] || goes_on(&off, i, i - 1));
+    (0..off.len().saturating_sub(1)).rev().for_each(|i| off[i] = off[i] || goes_on(&off, i, i + 1));
+    off
+}
+
+/// Runs of neighbouring rates of every specimen that do not belong to the curve of all.
+pub fn runs(specimens: &[Vec<StepRate>]) -> Vec<Vec<Run>> {
+    let Some((residuals, deviation)) = residuals(specimens) else { return vec![Vec::new(); specimens.len()] };
+    let of_specimen = |(rates, residuals): (&Vec<StepRate>, &Vec<f64>)| {
+        let mut runs: Vec<Run> = Vec::new();
+        let off = are_off(residuals, deviation);
+        for ((rate, residual), _) in rates.iter().zip(residuals).zip(off).filter(|(_, off)| *off) {
+            let factor = residual.exp();
+            match runs.last_mut() {
+                Some(run) if run.to == rate.from && (run.factor > 1.0) == (factor > 1.0) => {
+                    let farther = residual.abs() > run.factor.ln().abs();
+                    *run = Run { to: rate.to, factor: if farther { factor } else { run.factor }, ..*run };
+                }
+                _ => runs.push(Run { from: rate.from, to: rate.to, factor }),
+            }
+        }
+        runs
+    };
+    specimens.iter().zip(&residuals).map(of_specimen).collect()
 }
 
 /// A curve with the growth of some runs left out.
@@ -157,12 +254,16 @@ pub fn without(curve: &MeasuredCurve, runs: &[Run]) -> MeasuredCurve {
     if runs.is_empty() { curve.clone() } else { MeasuredCurve { left_out, ..curve.clone() } }
 }
 
-/// What speaks against the readings of a curve: [`runs`] that do not belong, and a [shift of level](best_split).
+/// What speaks against the readings of a curve of its own: [`runs`] that do not belong, and a [shift of level](best_split).
 pub fn doubts(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<String> {
-    let rates = step_rates(curve, delta_k);
-    let runs = robust_line(&rates).map_or_else(Vec::new, |line| runs(&rates, line));
-    let shift = level_warning(curve, &rates, &runs);
-    named(curve, &runs).into_iter().chain(shift).collect()
+    let runs = runs(&[long_step_rates(curve, delta_k)]);
+    doubts_beside(curve, &runs[0], delta_k)
+}
+
+/// The same where the runs are known.
+pub fn doubts_beside(curve: &MeasuredCurve, runs: &[Run], delta_k: &dyn Fn(f64) -> f64) -> Vec<String> {
+    let shift = level_warning(curve, &step_rates(curve, delta_k), runs);
+    named(curve, runs).into_iter().chain(shift).collect()
 }
 
 /// Warnings that name the runs of a curve by line, with the window that leaves them out.
@@ -174,13 +275,26 @@ fn named(curve: &MeasuredCurve, runs: &[Run]) -> Vec<String> {
     lines
 }
 
+/// A run as what a fit leaves out.
+pub fn left_out(curve: &MeasuredCurve, run: Run) -> LeaveOut {
+    let cycles = |reading: usize| Some(curve.source.cycles_before + curve.cycles[reading]);
+    LeaveOut {
+        specimen: Some(curve.specimen.clone()),
+        from_cycles: cycles(run.from),
+        to_cycles: cycles(run.to),
+        reason: format!("by the program: {:.2} times the rate of the other readings", run.factor),
+        ..LeaveOut::default()
+    }
+}
+
 fn run_warning(curve: &MeasuredCurve, run: Run) -> String {
     let Run { from, to, factor } = run;
-    let [start, end] = [from, to].map(|reading| round_off(curve.source.cycles_before + curve.cycles[reading]));
+    let window = left_out(curve, run);
+    let [start, end] = [window.from_cycles, window.to_cycles].map(Option::unwrap_or_default);
     let [first, last] = [from, to].map(|reading| round_off(curve.crack_length[reading] / MM));
     format!(
         "{}readings do not belong: from {first} to {last} mm the crack of specimen {} grew at {factor:.2} times the rate of its other \
-         readings at equal ΔK; if the test explains it, leave them out by measured.leave_out = [{{ specimen = \"{}\", from_cycles = \
+         readings at equal ΔK; a fit leaves them out; if the test explains it, say so by measured.leave_out = [{{ specimen = \"{}\", from_cycles = \
          {start}, to_cycles = {end}, reason = \"...\" }}]",
         place(curve, from, to),
         curve.specimen,

@@ -75,8 +75,8 @@ impl PowerLaw {
         self.tips(length).into_iter().fold(0.0, f64::max)
     }
 
-    /// ΔK of the tips: parabolas through ln ΔK of the piece that the length lies in.
-    fn tips(&self, length: f64) -> Vec<f64> {
+    /// ΔK (MPa√m) of the tips at a length (m): parabolas through ln ΔK of the piece that the length lies in.
+    pub fn tips(&self, length: f64) -> Vec<f64> {
         let place = self.pieces.partition_point(|piece| piece.lengths[2] < length).min(self.pieces.len() - 1);
         let Piece { lengths: [a, b, c], delta_k, .. } = &self.pieces[place];
         // A tip stops within the piece: its K has no parabola there.
@@ -118,6 +118,12 @@ impl PowerLaw {
     /// Errors: a length outside the table.
     pub fn cycles(&self, p: f64, lengths: &[f64]) -> Result<Vec<f64>> {
         cycles_since_first(&self.integral(|tips| 1.0 / tips.iter().map(|k| k.powf(p)).sum::<f64>()), lengths)
+    }
+
+    /// Cycles from the first of `lengths` (m) to each of them by a rate, m/cycle, over ΔK, MPa√m, of every tip.
+    /// Errors: a length outside the table.
+    pub fn cycles_by(&self, rate: &dyn Fn(f64) -> f64, lengths: &[f64]) -> Result<Vec<f64>> {
+        cycles_since_first(&self.integral(|tips| 1.0 / tips.iter().map(|k| rate(*k)).sum::<f64>()), lengths)
     }
 
     /// Derivative of [`PowerLaw::cycles`] over p, of one tip `-∫ ln(ΔK / ΔK₀) (ΔK₀ / ΔK)^p da`.

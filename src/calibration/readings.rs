@@ -18,22 +18,28 @@ const OUTSIDE: &str = "outside the fit window";
 
 /// The table: ΔK, MPa√m, by that of the load of the case, Pa√m, at a length, m; a rate stands beside the reading in its middle, a secant
 /// beside the later of its two readings.
-pub fn readings_csv(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64) -> String {
+pub fn readings_csv(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &dyn Fn(f64) -> f64) -> String {
     let mut case = calibration.case.clone();
     case.material.yield_strength = calibration.yield_strength;
     let mut text = HEADER.to_owned();
     for curve in &calibration.read {
-        of_curve(&mut text, curve, calibration, &case, delta_k);
+        of_curve(&mut text, curve, (calibration, left_out), &case, delta_k);
     }
     // Rows that are left out by their lines stand at the end.
-    for one in calibration.left_out.iter().filter(|one| one.line.is_some()) {
+    for one in left_out.iter().filter(|one| one.line.is_some()) {
         let _ = writeln!(text, ",NaN,NaN,,,,{},{}", field(&one.place()), field(&one.reason));
     }
     text
 }
 
-fn of_curve(text: &mut String, read: &MeasuredCurve, calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) -> f64) {
-    let reasons = reasons(read, &calibration.left_out, calibration.read.len() == 1);
+fn of_curve(
+    text: &mut String,
+    read: &MeasuredCurve,
+    (calibration, left_out): (&CalibrationCase, &[LeaveOut]),
+    case: &Case,
+    delta_k: &dyn Fn(f64) -> f64,
+) {
+    let reasons = reasons(read, left_out, calibration.read.len() == 1);
     let mut curve = read.clone();
     if reasons.iter().any(Option::is_some) {
         curve.left_out = reasons.iter().map(Option::is_some).collect();

@@ -14,8 +14,8 @@ use super::rates::{self, Flags, RateMethod, RatePoint, add_delta_k, rates};
 use super::search::FittedCurve;
 use perilife_base::cells::field;
 use perilife_base::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
-use perilife_growth::case::record::{Estimate, FittedRecord, LawRecord};
-use perilife_measured::MeasuredCurve;
+use perilife_growth::case::record::{CurveRecord, FittedLaw, FittedRecord, LawRecord};
+use perilife_measured::{LeaveOut, MeasuredCurve};
 
 /// `fit.json` of a fit that took `wall_s` seconds; units as in the names, cycles else, null for what is not known.
 pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
@@ -56,11 +56,10 @@ pub fn report(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Value {
         "delta_k_min_mpa_sqrt_m": law.delta_k_min_mpa_sqrt_m,
         "delta_k_max_mpa_sqrt_m": law.delta_k_max_mpa_sqrt_m,
         "specimens": fit.specimens.iter().map(specimen).collect::<Vec<_>>(),
-        "estimate": fit.estimate,
-        "robust_paris_m": fit.robust.map(|line| line.m),
-        "robust_paris_c_mm_per_cycle": fit.robust.map(|line| line.c()),
+        "law": law.law,
+        "curve": law.curve,
         "misfit_at_ends": fit.misfit_at_ends,
-        "lack_of_fit": fit.lack_of_fit,
+        "power_law_misfit_at_ends": fit.power_law_misfit,
         "population": fit.population,
         "left_out": law.left_out,
         "evaluations": fit.own_path.as_ref().map_or(1, |path| path.runs),
@@ -120,10 +119,38 @@ pub fn record(calibration: &CalibrationCase, fit: &Fit) -> FittedRecord {
         material: case.material.name.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         sources: calibration.sources.clone(),
-        estimate: fit.estimate,
-        left_out: calibration.left_out.clone(),
+        law: if fit.curve.is_some() { FittedLaw::Curve } else { FittedLaw::Paris },
+        curve: fit
+            .curve
+            .as_ref()
+            .zip(fit.population.as_ref())
+            .map(|(law, lot)| CurveRecord::of(law, lot.gain.unwrap_or(f64::NAN), &|k| lot.errors_at(k))),
+        left_out: left_out(calibration, fit),
         population: fit.population.as_ref().and_then(|population| toml::Table::try_from(population).ok()),
     }
+}
+
+/// What the user left out, and the program.
+pub fn left_out(calibration: &CalibrationCase, fit: &Fit) -> Vec<LeaveOut> {
+    [&calibration.left_out[..], &fit.left_out].concat()
+}
+
+/// The curve in words, a row for every knot.
+fn curve_words(curve: &CurveRecord, fit: &Fit) -> Vec<String> {
+    let misses = fit.power_law_misfit.map_or_else(String::new, |misfit| format!("; the power law misses it: {}", misfit.words()));
+    let specimens = fit.specimens.len();
+    let head = format!("  law            curve (gain {:.1} over a power law, {specimens} specimens{misses})", curve.gain);
+    let row = |i: usize| {
+        format!(
+            "    ΔK {:>7.3}   da/dN {:.3e} ± {:.1} %   m {:.2} ± {:.2}",
+            curve.delta_k_mpa_sqrt_m[i],
+            curve.da_dn_mm_per_cycle[i],
+            100.0 * curve.da_dn_relative_error[i],
+            curve.m[i],
+            curve.m_error[i]
+        )
+    };
+    std::iter::once(head).chain((0..curve.m.len()).map(row)).collect()
 }
 
 /// A fit in words: rate at the pivot and exponent with their errors, never A alone.
@@ -151,7 +178,10 @@ pub fn summary(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Vec<Str
             100.0 * law.rate_at_pivot_relative_error,
             law.pivot_delta_k_mpa_sqrt_m
         ),
-        format!("  Paris          da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m)", law.paris_c_mm_per_cycle, law.paris_m),
+        format!(
+            "  power law      da/dN = {:.4e} ΔK^{:.4} (mm/cycle, MPa√m), the best one by lives",
+            law.paris_c_mm_per_cycle, law.paris_m
+        ),
         format!("  m              {:.4}{}{source}", law.paris_m, error(law.paris_m_error)),
         "  ±              one standard error".to_owned(),
         format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", law.delta_k_min_mpa_sqrt_m, law.delta_k_max_mpa_sqrt_m),
@@ -162,8 +192,10 @@ pub fn summary(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Vec<Str
             100.0 * fit.record.rms_life_error()
         ),
     ]);
-    if fit.estimate == Estimate::Robust {
-        lines.push("  estimate       robust: repeated median of the rates".to_owned());
+    match (&law.curve, fit.population.as_ref().and_then(|population| population.gain)) {
+        (Some(curve), _) => lines.extend(curve_words(curve, fit)),
+        (None, Some(gain)) => lines.push(format!("  law            Paris: no curve is better (gain {gain:.1})")),
+        (None, None) => lines.push("  law            Paris".to_owned()),
     }
     lines.push(format!("  misfit at ends {}", fit.misfit_at_ends.words()));
     lines.extend(law.left_out.iter().map(|one| format!("  left out       {} ({})", one.place(), one.reason)));

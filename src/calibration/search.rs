@@ -135,10 +135,9 @@ pub(super) fn fitted_curve(curve: &MeasuredCurve, constants: Constants, law: &Po
     })
 }
 
-/// The curve as the law would have it.
-pub(super) fn as_fitted(curve: &MeasuredCurve, Constants { a, p }: Constants, law: &PowerLaw) -> Result<MeasuredCurve> {
-    let cycles = own_law(law, curve).cycles(p, &curve.crack_length)?;
-    Ok(MeasuredCurve { cycles: cycles.into_iter().map(|n| n / a).collect(), ..curve.clone() })
+/// The curve as it would be by a rate, m/cycle, over ΔK, MPa√m.
+pub(super) fn as_fitted(curve: &MeasuredCurve, rate: &dyn Fn(f64) -> f64, law: &PowerLaw) -> Result<MeasuredCurve> {
+    Ok(MeasuredCurve { cycles: own_law(law, curve).cycles_by(rate, &curve.crack_length)?, ..curve.clone() })
 }
 
 /// Specimens of one law: each with its own loads and level, all with one p.

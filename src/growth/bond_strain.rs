@@ -22,8 +22,10 @@ use crate::case::Case;
 use history::{History, RunState};
 use overload::{overstretched, stretched};
 use perilife_base::error::{Error, Result};
+use perilife_laws::curve::Shape;
 use perilife_laws::response::Response;
 use perilife_laws::{FatigueLaw, FatigueSettings};
+use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_points::body::{Body, Bond};
 use perilife_points::crack_tip::{CrackTip, share_out};
 use perilife_points::pieces::{Connectivity, remove_fragments};
@@ -43,6 +45,8 @@ pub struct BondStrain<'a> {
     case: &'a Case,
     body: Arc<Body>,
     law: FatigueLaw,
+    /// What the rates that A and p were fitted to are beside them, and K of the specimen.
+    shape: Option<(Shape, HandbookFormula)>,
     end: Option<End>,
     /// Strain of a cycle over that at maximum load, and the range of strain below which nothing ages.
     range: (f64, f64),
@@ -95,9 +99,14 @@ impl<'a> BondStrain<'a> {
         if remove_fragments(&body, &mut run.bonds, &body.pre_cut) == Connectivity::Severed {
             return Err(Error::Mechanics(format!("{}: the initial cracks cut the plate in two", case.name)));
         }
+        let (shape, formula) = (case.shape()?, handbook(&case.specimen));
+        let words = "bonds spend their lives by A and p, the best power law: the curve of the fitted rates needs K of the tip, and no \
+                     formula has it here; fatigue.driver = \"tip_field\" goes by the curve";
+        let is_without = shape.is_some() && formula.is_none();
         Ok(BondStrain {
             case,
             law,
+            shape: shape.zip(formula),
             end: first_end(case),
             range: (share, threshold),
             equilibrium: solver(case, &body, &run),
@@ -107,7 +116,7 @@ impl<'a> BondStrain<'a> {
             watched: Vec::new(),
             is_closed: false,
             first: None,
-            warnings: Vec::new(),
+            warnings: is_without.then(|| words.to_owned()).into_iter().collect(),
             body: Arc::new(body),
         })
     }
@@ -205,12 +214,13 @@ impl<'a> BondStrain<'a> {
         // Spend life over the block; bonds at the end of theirs break.
         // A tip within a spacing of an edge or hole breaks through at once: the lattice cannot resolve what is left.
         let through = break_through(&mut run.tips, body, &run.bonds, &case.specimen);
-        let (cycles, first) = if through.is_empty() { run.life.until_next_break(&self.law, &ageing) } else { (0.0, through) };
+        let law = shaped(&self.law, self.shape.as_ref(), case, run.track.last().crack_length);
+        let (cycles, first) = if through.is_empty() { run.life.until_next_break(&law, &ageing) } else { (0.0, through) };
         if run.track.cycles() + cycles > case.stop.cycles_max {
             run.track.run_out(case.stop.cycles_max);
             return Ok(Some(StopReason::RunOut));
         }
-        run.life.spend(&self.law, cycles, &ageing);
+        run.life.spend(&law, cycles, &ageing);
         run.track.spend(cycles);
         let (spent, reason) = self.break_bonds(first);
 
@@ -371,6 +381,16 @@ fn focus(tips: &[CrackTip], body: &Body, settings: &FatigueSettings) -> Vec<Focu
     let reach = (settings.zone_radius_horizons + 0.5).max(1.0) * body.horizon() + body.lattice.spacing;
     let active = tips.iter().filter(|tip| tip.is_active());
     active.map(|tip| Focus { position: tip.position, direction: tip.direction, wake: tip.wake.clone(), reach }).collect()
+}
+
+/// The law at a crack length, m: A times the rate of the fitted curve over that of its power law at the K of the formula there.
+fn shaped(law: &FatigueLaw, shape: Option<&(Shape, HandbookFormula)>, case: &Case, length: f64) -> FatigueLaw {
+    let factor = shape.map_or(1.0, |(shape, formula)| {
+        let k_max = formula.k_i(length, case.loading.maximum);
+        let factor = shape.factor(k_max, case.loading.ratio, case.fatigue.walker_gamma);
+        if factor.is_finite() { factor } else { 1.0 }
+    });
+    FatigueLaw { a: law.a * factor, ..*law }
 }
 
 fn constants(law: &FatigueLaw) -> [f64; 3] {

@@ -6,6 +6,7 @@
 //!
 //! Imports `base` and `plate`.
 
+pub mod curve;
 pub mod growth_law;
 pub mod growth_rate;
 pub mod initiation;

@@ -176,10 +176,7 @@ impl Lives {
                     share if share > 0.0 => format!(", {:.1} % of it outside their ΔK", 100.0 * share),
                     _ => String::new(),
                 };
-                let run = self.rows.last().map_or(0.0, |row| row.cycles);
-                lines.push(format!(
-                    "  band           of {specimens}, {lot}{assumed}{outside}; the fitted constants alone give {run:.1}"
-                ));
+                lines.push(format!("  band           of {specimens}, {lot}{assumed}{outside}"));
             }
             Err(why) => lines.push(format!("  band           none: {why}")),
         }

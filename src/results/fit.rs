@@ -19,7 +19,7 @@ use perilife_calibration::calibrate::Fitted;
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::fit::Fit;
 use perilife_calibration::readings::readings_csv;
-use perilife_calibration::results::{fit_curves_csv, fitted_rates_csv, rates_csv, rates_taken_csv};
+use perilife_calibration::results::{fit_curves_csv, fitted_rates_csv, left_out, rates_csv, rates_taken_csv};
 use perilife_growth::case::RECORD;
 
 /// The law, for `fatigue.fitted`.
@@ -48,17 +48,17 @@ impl Kept {
         let mut json = report.clone();
         let tables = match fitted {
             Fitted::Lives(calibration, fit) => {
-                let delta_k = |length: f64| fit.delta_k(calibration, length);
+                let (delta_k, left_out) = (|length: f64| fit.delta_k(calibration, length), left_out(calibration, fit));
                 let tables = vec![
                     (LAW_FILE, law),
                     (CURVES_FILE, fit_curves_csv(fit)),
                     (BAND_FILE, band(calibration, fit)),
                     (RATES_FILE, fitted_rates_csv(calibration, fit)),
-                    (READINGS_FILE, readings_csv(calibration, &delta_k)),
+                    (READINGS_FILE, readings_csv(calibration, &left_out, &delta_k)),
                 ];
                 if let Some(object) = json.as_object_mut() {
                     object.insert("test".to_owned(), test_record::test(calibration));
-                    object.insert("criteria".to_owned(), test_record::criteria(calibration, &delta_k).into());
+                    object.insert("criteria".to_owned(), test_record::criteria(calibration, &left_out, &delta_k).into());
                     object.insert("plate".to_owned(), json!(Plate::of(&calibration.case)));
                 }
                 let listed: Vec<(&str, &str)> = tables.iter().map(|(name, text)| (*name, &**text)).collect();

@@ -183,7 +183,7 @@ fn law(case: &Case, prediction: &Prediction) -> Value {
             "paris_c_used_mm_per_cycle": c_used,
         }),
         LawSource::Fitted(record) => json!({
-            "source": "fitted", "a": record.a, "p": record.p, "rate_constant": record.rate_constant, "horizon_mm": record.horizon_mm, "a_used": used,
+            "source": "fitted", "law": record.law, "curve": record.curve, "a": record.a, "p": record.p, "rate_constant": record.rate_constant, "horizon_mm": record.horizon_mm, "a_used": used,
             "paris_c_mm_per_cycle": record.paris_c_mm_per_cycle, "paris_m": record.paris_m,
             "paris_m_error": record.paris_m_error, "paris_c_used_mm_per_cycle": c_used, "p_error": record.p_error,
             "pivot_delta_k_mpa_sqrt_m": record.pivot_delta_k_mpa_sqrt_m,

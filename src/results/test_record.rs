@@ -9,7 +9,7 @@ use perilife_base::units::{GPA, KN, MM, MPA};
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::rates::STEP_MIN;
 use perilife_growth::case::Case;
-use perilife_measured::{MeasuredCurve, side_difference_max};
+use perilife_measured::{LeaveOut, MeasuredCurve, side_difference_max};
 use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::{LoadMeasure, SpecimenKind};
 
@@ -49,7 +49,7 @@ fn criterion(name: &str, asked: String, found: String, holds: Option<bool>, rema
 }
 
 /// The criteria of ASTM E647 that readings and specimen can be held against.
-pub fn criteria(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64) -> Vec<Value> {
+pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &dyn Fn(f64) -> f64) -> Vec<Value> {
     let mut case = calibration.case.clone();
     case.material.yield_strength = calibration.yield_strength;
     let size = checks::of_case(&case).into_iter().find(|check| check.name == "e647_size");
@@ -67,7 +67,7 @@ pub fn criteria(calibration: &CalibrationCase, delta_k: &dyn Fn(f64) -> f64) -> 
     all.push(ligament(calibration, &case, delta_k));
     all.push(steps(&calibration.read));
     all.push(symmetry(&calibration.read, &case));
-    all.push(left_out(calibration));
+    all.push(readings_left_out(left_out, calibration.left_out.len()));
     all
 }
 
@@ -131,9 +131,15 @@ fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Value {
     criterion(NAME, asked, format!("{:.2} mm", found / MM), Some(holds), remark.to_owned())
 }
 
-fn left_out(calibration: &CalibrationCase) -> Value {
-    let count = calibration.left_out.len();
-    let found = if count == 0 { "none".to_owned() } else { count.to_string() };
-    let reasons: Vec<String> = calibration.left_out.iter().map(|one| format!("{} ({})", one.place(), one.reason)).collect();
-    criterion("Readings left out", "with reason".to_owned(), found, Some(true), reasons.join("; "))
+/// So many of them by the user, who knows the reason.
+fn readings_left_out(left_out: &[LeaveOut], by_user: usize) -> Value {
+    let found = if left_out.is_empty() { "none".to_owned() } else { left_out.len().to_string() };
+    let reasons: Vec<String> = left_out.iter().map(|one| format!("{} ({})", one.place(), one.reason)).collect();
+    criterion(
+        "Readings left out",
+        "with reason".to_owned(),
+        found,
+        (left_out.len() == by_user).then_some(true),
+        reasons.join("; "),
+    )
 }

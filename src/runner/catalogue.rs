@@ -15,7 +15,7 @@ use perilife_calibration::exponent::Parameter;
 use perilife_calibration::laws::FitLaw;
 use perilife_calibration::rates::RateMethod;
 use perilife_calibration::sweep::{DesignKind, DistributionKind, Scale, Scatter};
-use perilife_growth::case::record::Estimate;
+use perilife_growth::case::record::FittedLaw;
 use perilife_growth::case::{Failure, LIBRARY, Lot, Method};
 use perilife_growth::predict::StopReason;
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
@@ -95,7 +95,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         RateUnit::lines(),
         RangeKind::lines(),
         Decimal::lines(),
-        Estimate::lines(),
+        FittedLaw::lines(),
         RateMethod::lines(),
         SolverUsed::lines(),
         StopReason::lines(),

@@ -57,7 +57,7 @@ fn columns_decimal_sign_and_units_are_options() {
     assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
     let object: serde_json::Value = serde_json::from_str(&texts(&output).0).unwrap();
     assert!((object["paris_m"].as_f64().unwrap() - 3.0).abs() < 0.01, "{object}");
-    for key in ["estimate", "robust_paris_m", "misfit_at_ends", "lack_of_fit", "left_out"] {
+    for key in ["law", "misfit_at_ends", "left_out"] {
         assert!(object.get(key).is_some(), "{key} in {object}");
     }
     let wrong = [

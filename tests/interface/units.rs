@@ -84,15 +84,14 @@ const WITHOUT_UNIT: [&str; 68] = [
     "aspect_ratio_final",
 ];
 /// Those of a population and of its law, SI as in `fitted.toml`, which has the same.
-const OF_THE_RECORD: [&str; 12] = [
+const OF_THE_RECORD: [&str; 11] = [
     "a",
-    "between_level",
-    "between_slope",
+    "gain",
     "increment_scatter",
-    "interval_variance",
     "intervals",
     "length",
     "level",
+    "level_of_lives",
     "pivot",
     "restricted_likelihood",
     "scatter",

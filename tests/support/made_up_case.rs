@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use perilife_growth::case::record::{Estimate, FittedRecord};
+use perilife_growth::case::record::{FittedLaw, FittedRecord};
 use perilife_growth::case::{Case, LawSource};
 
 /// A plate of 100 x 300 mm with the slant crack of the made-up run and an inline law; the model names the bond law and a
@@ -76,7 +76,8 @@ pub fn fitted(delta_k_min: f64, delta_k_max: f64) -> LawSource {
         material: "inline".to_owned(),
         version: "0.0.0".to_owned(),
         sources: Vec::new(),
-        estimate: Estimate::LeastSquares,
+        law: FittedLaw::Paris,
+        curve: None,
         left_out: Vec::new(),
         population: None,
     }))

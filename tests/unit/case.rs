@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use perilife_base::error::Error;
 use perilife_base::input::Folder;
-use perilife_growth::case::record::{Estimate, FittedRecord};
+use perilife_growth::case::record::{FittedLaw, FittedRecord};
 use perilife_growth::case::{Case, LawSource};
 use perilife_plate::material::library;
 use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
@@ -52,7 +52,8 @@ fn record() -> FittedRecord {
         material: "al2024-t3".into(),
         version: "0".into(),
         sources: vec![],
-        estimate: Estimate::LeastSquares,
+        law: FittedLaw::Paris,
+        curve: None,
         left_out: Vec::new(),
         population: None,
     }
@@ -182,6 +183,12 @@ fn a_record_is_read_from_its_file() {
     std::fs::write(folder.path().join("fitted.toml"), toml::to_string(&record()).unwrap()).unwrap();
     let case = Case::from_file(&path, &[]).unwrap();
     assert_eq!((case.name.as_str(), &case.law), ("panel", &LawSource::Fitted(Box::new(record()))));
+
+    // One of before names its estimate, and no law.
+    let before = toml::to_string(&record()).unwrap().replace("\nlaw = \"paris\"", "\nestimate = \"least_squares\"");
+    assert!(before.contains("estimate"));
+    std::fs::write(folder.path().join("fitted.toml"), before).unwrap();
+    assert_eq!(Case::from_file(&path, &[]).unwrap().law, LawSource::Fitted(Box::new(record())));
 
     std::fs::write(folder.path().join("fitted.toml"), toml::to_string(&record()).unwrap().replace("5000", "-5000")).unwrap();
     let error = Case::from_file(&path, &[]).unwrap_err().to_string();

@@ -6,6 +6,7 @@ use perilife_calibration::population::intervals::{Specimen, cells};
 use perilife_calibration::population::plate::{Plate, PlateBand};
 use perilife_calibration::population::student::t_quantile;
 use perilife_calibration::population::{Population, fit};
+use perilife_growth::case::record::{CurveRecord, FittedLaw};
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::predict::{Prediction, Silent, predict};
 use perilife_measured::MeasuredCurve;
@@ -25,8 +26,8 @@ fn lot_of(specimens: &[Specimen]) -> Population {
 
 fn with(lot: &Population, mut case: Case) -> Case {
     let LawSource::Fitted(mut record) = fitted(8.18, 26.5) else { unreachable!() };
-    record.stress_ratio = 0.2;
-    (record.paris_c_mm_per_cycle, record.paris_m) = (8.95422e-8, 2.874);
+    (record.stress_ratio, record.rate_constant, record.method) = (0.2, None, "handbook".to_owned());
+    (record.law, record.curve) = (FittedLaw::Curve, Some(CurveRecord::of(&lot.life_law(), 0.0, &|_| [0.0; 2])));
     record.population = Some(Table::try_from(lot).unwrap());
     case.law = LawSource::Fitted(record);
     case
@@ -125,4 +126,23 @@ fn readings_of_a_panel_narrow_what_it_has_left() {
     }
     println!("width with own readings over that without {narrower:.3}, {covered} of 34 in their band");
     assert!(narrower < 0.92 && covered >= 27, "{narrower} {covered}");
+}
+
+/// Noise that a short growth cannot average says little of its life, and must not widen that of the whole.
+#[test]
+fn white_noise_of_the_first_rows_does_not_widen_the_life() {
+    let Some(panels) = panels() else { return };
+    let mut lot = lot_of(&specimens(&panels, 50));
+    lot.noise.white = 0.0108;
+    let case = with(&lot, hand_case(PANEL, &["stop.crack_length_mm=49.8"]));
+    let (run, _, band) = band(&case);
+    let whole =
+        lot.forecast(&cells(9.0 * MM, 49.8 * MM, CELLS, &super::fit_virkler::delta_k).unwrap(), None, Lot::Same).unwrap().life();
+    let [low, middle, high] = *band.reached.last().unwrap();
+    assert!((middle / run.life_cycles() - 1.0).abs() < 1e-12);
+    for (found, share) in [(low / middle, 0.05), (high / middle, 0.95)] {
+        let expected = whole.quantile(share) / whole.median;
+        assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
+    }
+    assert!(band.reached.iter().all(|row| row[0] <= row[1] && row[1] <= row[2]));
 }

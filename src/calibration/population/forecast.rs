@@ -9,12 +9,13 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::Population;
 use super::intervals::{Interval, Specimen};
-use super::law::{EFFECTS, Row};
+use super::law::{Row, rows};
 use super::noise::{cholesky, whiten};
 use super::student::{noncentral_t_quantile, t_quantile};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::MPA_SQRT_M;
 pub use perilife_growth::case::Lot;
+use perilife_laws::curve::EFFECTS;
 
 /// Cells of a path: from 12 on lives change by less than 0.2 %.
 pub const CELLS: usize = 24;
@@ -84,14 +85,14 @@ impl Population {
     pub fn forecast(&self, path: &[Interval], own: Option<&Specimen>, lot: Lot) -> Result<Forecast> {
         self.check_range(path)?;
         let own: &[Interval] = own.map_or(&[], |own| &own.intervals);
-        let mut rows = self.law.rows(own);
-        let observed = rows.len();
-        let reached = rows.last().map_or(0.0, |row| row.zone[1]);
-        let of_path = self.law.rows(path);
+        let mut all = rows(&self.law, own);
+        let observed = all.len();
+        let reached = all.last().map_or(0.0, |row| row.zone[1]);
+        let of_path = rows(&self.law, path);
         // No error of a reading is left in a life.
-        rows.extend(of_path.iter().map(|row| Row { density: [0.0; 2], zone: row.zone.map(|zone| zone + reached), ..*row }));
-        let n = rows.len();
-        let covariance = self.of_rows(&rows, lot);
+        all.extend(of_path.iter().map(|row| Row { density: [0.0; 2], zone: row.zone.map(|zone| zone + reached), ..*row }));
+        let n = all.len();
+        let covariance = self.of_rows(&all, lot);
 
         // cov(future) - C_fo C_oo⁻¹ C_of and the mean with it, by the factor of the observed part.
         let cells = n - observed;
@@ -100,7 +101,7 @@ impl Population {
         cholesky(&mut factor, observed).ok_or_else(not_definite)?;
         let columns = cells + 1;
         let right = |i: usize| {
-            let residual = rows[i].log_cycles - own[i].cycles.ln();
+            let residual = all[i].log_cycles - own[i].cycles.ln();
             covariance[i * n + observed..(i + 1) * n].iter().copied().chain([residual])
         };
         let mut white: Vec<f64> = (0..observed).flat_map(right).collect();
@@ -114,9 +115,9 @@ impl Population {
         }
         let cycles: Vec<f64> = (0..cells)
             .map(|j| {
-                let row = &rows[observed + j];
-                let of_size = 0.5 * (self.interval_variance - self.noise.variance(row));
-                (row.log_cycles + of_size - known(j, cells)).exp()
+                let row = &all[observed + j];
+                // On the mean over the noise a specimen takes the cycles of the law of lives.
+                (row.log_cycles - self.level_of_lives - 0.5 * self.noise.variance(row) - known(j, cells)).exp()
             })
             .collect();
         let outside: f64 = cycles.iter().zip(&of_path).map(|(n, row)| n * row.outside).sum();
@@ -161,7 +162,7 @@ impl Population {
 
     fn check_range(&self, path: &[Interval]) -> Result<()> {
         let [low, high] = self.law.range;
-        let ends = || path.iter().flat_map(|cell| cell.ends).map(f64::exp);
+        let ends = || path.iter().flat_map(|cell| &cell.ends).map(|tips| tips[0].exp());
         let (least, most) = ends().fold((f64::INFINITY, 0.0_f64), |(least, most), k| (least.min(k), most.max(k)));
         if least * BEYOND_MAX >= low && most <= high * BEYOND_MAX {
             return Ok(());

@@ -1,6 +1,6 @@
 //! Reading intervals of specimens, and cells of a crack path whose life is asked for: growth between two crack lengths with ΔK along it.
 
-use crate::median::median;
+use crate::median::{NORMAL_MEDIAN, median};
 use perilife_base::error::{Result, input};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_measured::MeasuredCurve;
@@ -29,6 +29,8 @@ const PATH_PIECES: usize = 400;
 
 /// ΔK (Pa√m) at a crack length (m), of one specimen or plate under its own loads.
 pub type RangeOfK<'a> = &'a dyn Fn(f64) -> f64;
+/// The same of all tips whose growth adds up to the length.
+pub type RangesOfTips<'a> = &'a dyn Fn(f64) -> Vec<f64>;
 
 /// One reading of a specimen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,12 +52,21 @@ pub struct Interval {
     pub to: f64,
     /// Measured cycles; NaN of a cell.
     pub cycles: f64,
-    /// Points of quadrature over the crack length: ln ΔK (Pa√m) and weight (m).
-    pub(super) points: Vec<(f64, f64)>,
-    /// ln ΔK (Pa√m) at both ends.
-    pub(super) ends: [f64; 2],
+    /// ln ΔK (Pa√m) of the tips at the points of quadrature over the crack length, the fastest first; -∞ of one that does not grow.
+    pub(super) log_k: Vec<f64>,
+    /// Weights of the points, m.
+    weights: Vec<f64>,
+    /// ln ΔK (Pa√m) of the tips at both ends.
+    pub(super) ends: [Vec<f64>; 2],
     /// Zone coordinate `u = ∫ (ΔK / 10 MPa√m)⁻² da` at both ends, m.
     pub(super) zone: [f64; 2],
+}
+
+impl Interval {
+    /// Points of quadrature: ln ΔK of the tips, and weight.
+    pub(super) fn places(&self) -> impl Iterator<Item = (&[f64], f64)> {
+        self.log_k.chunks_exact(self.log_k.len() / self.weights.len()).zip(self.weights.iter().copied())
+    }
 }
 
 /// A specimen with its reading intervals.
@@ -70,11 +81,12 @@ pub struct Specimen {
 impl Specimen {
     /// Readings of a curve under its own loads; `delta_k` is that of the load of the case.
     /// Errors: as [`Specimen::new`].
-    pub fn of_curve(curve: &MeasuredCurve, delta_k: RangeOfK<'_>) -> Result<Self> {
+    pub fn of_curve(curve: &MeasuredCurve, delta_k: RangesOfTips<'_>) -> Result<Self> {
         let reading = |i: usize| Reading { length: curve.crack_length[i], cycles: curve.cycles[i], counts: curve.counts(i) };
         let readings: Vec<Reading> = (0..curve.cycles.len()).map(reading).collect();
         let loads = curve.load_history();
-        Specimen::new(&curve.specimen, &readings, &|length| delta_k(length) * loads.at(length), INTERVALS_MAX)
+        let under_load = |length: f64| delta_k(length).into_iter().map(|k| k * loads.at(length)).collect();
+        Specimen::of_tips(&curve.specimen, &readings, &under_load, INTERVALS_MAX)
     }
 
     /// Joins readings to at most `intervals_max` intervals that grow by more than the error of a reading in more than no cycles.
@@ -82,6 +94,11 @@ impl Specimen {
     /// Readings at one length or one cycle count, and readings that fall back, are passed over: an interval goes on until both have risen.
     /// Errors: a ΔK that is not above 0; no interval.
     pub fn new(name: &str, readings: &[Reading], delta_k: RangeOfK<'_>, intervals_max: usize) -> Result<Self> {
+        Self::of_tips(name, readings, &|length| vec![delta_k(length)], intervals_max)
+    }
+
+    /// The same for several tips.
+    fn of_tips(name: &str, readings: &[Reading], delta_k: RangesOfTips<'_>, intervals_max: usize) -> Result<Self> {
         let least = least_growth(readings);
         // Runs of readings between growths that do not count.
         let runs: Vec<Vec<Reading>> =
@@ -134,9 +151,10 @@ impl Zones {
     /// Errors: as [`cells`].
     pub fn new(from: f64, to: f64, delta_k: RangeOfK<'_>) -> Result<Self> {
         check_longer(from, to)?;
+        let delta_k = |length: f64| vec![delta_k(length)];
         let mut zones = Zones { from, to, zone: vec![0.0] };
         for i in 0..PATH_PIECES {
-            let piece = integrate(&[zones.length(i), zones.length(i + 1)], zones.zone[i], delta_k)?;
+            let piece = integrate(&[zones.length(i), zones.length(i + 1)], zones.zone[i], &delta_k)?;
             zones.zone.push(piece.zone[1]);
         }
         Ok(zones)
@@ -158,7 +176,7 @@ impl Zones {
         let mut cells: Vec<Interval> = Vec::with_capacity(count);
         for pair in ends.windows(2) {
             let start = cells.last().map_or(0.0, |cell| cell.zone[1]);
-            cells.push(integrate(pair, start, delta_k)?);
+            cells.push(integrate(pair, start, &|length| vec![delta_k(length)])?);
         }
         Ok(cells)
     }
@@ -189,11 +207,12 @@ fn check_longer(from: f64, to: f64) -> Result<()> {
 }
 
 /// Quadrature over a chain of lengths, loads being steady or linear between two of them.
-fn integrate(lengths: &[f64], zone: f64, delta_k: RangeOfK<'_>) -> Result<Interval> {
+fn integrate(lengths: &[f64], zone: f64, delta_k: RangesOfTips<'_>) -> Result<Interval> {
     let log_k = |length: f64| {
-        let k = delta_k(length);
-        if k.is_finite() && k > 0.0 {
-            return Ok(k.ln());
+        let mut tips = delta_k(length);
+        tips.sort_by(|a, b| b.total_cmp(a));
+        if tips.first().is_some_and(|k| k.is_finite() && *k > 0.0) && tips.iter().all(|k| *k >= 0.0) {
+            return Ok(tips.into_iter().map(f64::ln).collect::<Vec<f64>>());
         }
         Err(input(
             "measured.crack_length_mm",
@@ -206,21 +225,26 @@ fn integrate(lengths: &[f64], zone: f64, delta_k: RangeOfK<'_>) -> Result<Interv
     // Loads may change at a reading: each end has that of its own side.
     let inside = 1e-9 * (to - from);
     let ends = [log_k(from + inside)?, log_k(to - inside)?];
-    let mut points = Vec::with_capacity(GAUSS.len() * (lengths.len() - 1));
+    let (mut points, mut weights) = (Vec::new(), Vec::with_capacity(GAUSS.len() * (lengths.len() - 1)));
     for pair in lengths.windows(2) {
         let step = pair[1] - pair[0];
-        let change = log_k(pair[1] - 1e-9 * step)? - log_k(pair[0] + 1e-9 * step)?;
+        let change = log_k(pair[1] - 1e-9 * step)?[0] - log_k(pair[0] + 1e-9 * step)?[0];
         let pieces = (change.abs() / STEP_OF_LOG_K).ceil().clamp(1.0, 1000.0) as usize;
         let piece = step / pieces as f64;
         for i in 0..pieces {
             for (abscissa, weight) in GAUSS {
                 let length = pair[0] + piece * (i as f64 + 0.5 + 0.5 * abscissa);
-                points.push((log_k(length)?, piece * weight));
+                points.push(log_k(length)?);
+                weights.push(piece * weight);
             }
         }
     }
-    let grown: f64 = points.iter().map(|(k, weight)| weight * (-2.0 * (k - (10.0 * MPA_SQRT_M).ln())).exp()).sum();
-    Ok(Interval { from, to, cycles: f64::NAN, points, ends, zone: [zone, zone + grown] })
+    let of_zone = |(tips, weight): (&Vec<f64>, &f64)| weight * (-2.0 * (tips[0] - (10.0 * MPA_SQRT_M).ln())).exp();
+    let grown: f64 = points.iter().zip(&weights).map(of_zone).sum();
+    // A tip that has stopped grows no more.
+    let most = points.iter().map(Vec::len).max().unwrap_or(1);
+    points.iter_mut().for_each(|tips| tips.resize(most, f64::NEG_INFINITY));
+    Ok(Interval { from, to, cycles: f64::NAN, log_k: points.concat(), weights, ends, zone: [zone, zone + grown] })
 }
 
 /// Growth below which two readings do not tell a rate, m.
@@ -229,8 +253,8 @@ fn least_growth(readings: &[Reading]) -> f64 {
     let mut lengths: Vec<f64> = readings.iter().map(|reading| reading.length).collect();
     lengths.dedup_by(|a, b| (*a - *b).abs() <= SAME_LENGTH * b.abs());
     let third: Vec<f64> = lengths.windows(4).map(|a| (a[3] - 3.0 * a[2] + 3.0 * a[1] - a[0]).abs()).collect();
-    // Of readings with equal errors s, a third difference has the deviation √20 s; 0.6745 of it is the median of its size.
-    let error = if lengths.len() < READINGS_FOR_ERROR { 0.0 } else { median(&third) / (0.6745 * 20.0_f64.sqrt()) };
+    // Of readings with equal errors s, a third difference has the deviation √20 s.
+    let error = if lengths.len() < READINGS_FOR_ERROR { 0.0 } else { median(&third) / (NORMAL_MEDIAN * 20.0_f64.sqrt()) };
     let steps: Vec<f64> = lengths.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     let typical = if steps.is_empty() { 0.0 } else { median(&steps) };
     lengths.sort_by(f64::total_cmp);

@@ -2,9 +2,7 @@
 //!
 //! A specimen of the lot takes the path of the run. Where its crack stands is told by the way of the fastest tip since N = 0, the length of
 //! a standard specimen, so that the cycles of a piece are `∫ ds / (da/dN)` with the ΔK of the rows, between them as
-//! [`TipFactors`] has it. Lives are those of the law of the lot, which has a shape; the run went by a power law, constants of the
-//! same readings. So the median here and the cycles of the run differ, by what a power law misses of the readings and by the mean over
-//! specimens, and more the farther ΔK is from that of the tests.
+//! [`TipFactors`] has it. The run goes by the law of the lot, so that its cycles are the median; readings of the plate itself move it.
 //!
 //! Quantiles are computed at [`PLACES`] rows and read between them over the cycles of the run, both in logarithms.
 
@@ -108,7 +106,7 @@ impl Population {
             ("freedom", lot.freedom),
             ("specimens", lot.specimens.len() as f64),
         ];
-        let finite = [lot.law.level, lot.law.slope, lot.interval_variance, lot.between.level, lot.between.slope, lot.noise.white];
+        let finite = [lot.law.level, lot.law.slope, lot.level_of_lives, lot.between.level, lot.between.slope, lot.noise.white];
         let mut problem =
             positive.iter().find(|(_, value)| !(value.is_finite() && *value > 0.0)).map(|(key, value)| (*key, *value));
         problem = problem.or(finite
@@ -215,8 +213,9 @@ impl Plate {
         let whole = self.forecast(self.way[first], self.way[last], None).map_err(words)?;
         let to_row: Vec<f64> = self.cycles.iter().map(|n| n - start).collect();
         let from_row: Vec<f64> = self.cycles.iter().map(|n| end - n).collect();
-        let reached = self.along(&to_row, &|i| self.forecast(self.way[first], self.way[i], None))?;
-        let left = self.along(&from_row, &|i| self.forecast(self.way[i], self.way[last], None))?;
+        let centre = self.centre(&whole);
+        let reached = self.along(&to_row, centre, &|i| self.forecast(self.way[first], self.way[i], None))?;
+        let left = self.along(&from_row, centre, &|i| self.forecast(self.way[i], self.way[last], None))?;
         // Where ΔK is not known, the cycles of the run are taken with the scatter of the rest.
         let mut so_far = [0.0; 3];
         let reached_at = |i: usize| {
@@ -240,15 +239,22 @@ impl Plate {
         })
     }
 
-    /// Quantiles of a piece of the path for every row, `run` being its cycles in the run: at some rows by the closed form of `piece`, at the
-    /// others between them.
-    fn along(&self, run: &[f64], piece: &dyn Fn(usize) -> Result<Forecast>) -> std::result::Result<Vec<Quantiles>, NoBand> {
+    /// Quantiles of a piece of the path for every row, `run` being its cycles in the run, which goes by the law of the lot and is the median: at
+    /// some rows by the closed form of `piece` times the `centre` of the whole, at the others between them. The closed form keeps the mean of a
+    /// piece that is short beside the noise, not its median.
+    fn along(
+        &self,
+        run: &[f64],
+        centre: f64,
+        piece: &dyn Fn(usize) -> Result<Forecast>,
+    ) -> std::result::Result<Vec<Quantiles>, NoBand> {
         let mut places = self.places(run);
         places.sort_by(|a, b| run[*a].total_cmp(&run[*b]));
         let mut logarithms: Vec<[f64; 4]> = Vec::with_capacity(places.len());
         for place in places {
-            let Life { median, deviation, .. } = piece(place).map_err(words)?.life();
-            let mut y = self.t.map(|t| median.ln() + t * deviation);
+            let (Life { median, deviation, .. }, middle) = (piece(place).map_err(words)?.life(), run[place].ln());
+            let [low, _, high] = self.t.map(|t| (centre * median).ln() + t * deviation);
+            let mut y = [low.min(middle), middle, high.max(middle)];
             if let Some(before) = logarithms.last() {
                 y = [0, 1, 2].map(|k| y[k].max(before[k + 1]));
             }
@@ -348,11 +354,22 @@ impl Plate {
             let read = self.length_over_way().at(read);
             return refuse(format!("is shorter than the last reading, {} mm", round_off(read / MM)));
         }
-        let life = self.forecast(way, self.way[last], own)?.life();
+        let of_lot = self.forecast(way, self.way[last], None)?.life();
+        let life = own.map_or(Ok(of_lot), |own| self.forecast(way, self.way[last], Some(own)).map(|own| own.life()))?;
+        let centre = self.centre(&self.forecast(self.way[first], self.way[last], None)?);
         let at = Monotone::new(self.lengths.iter().zip(&self.cycles).map(|(a, n)| [*a, *n])).at(length);
-        let (run, whole) = (self.cycles[last] - at, self.cycles[self.cycles.len() - 1] - at);
-        let quantiles = self.t.map(|t| life.median * (t * life.deviation).exp());
-        Ok(Left { crack_length: length, cycles: whole, quantiles: scaled(quantiles, whole, run) })
+        let whole = self.cycles[self.cycles.len() - 1] - at;
+        // Of the piece whose ΔK is known, and of what lies beyond it.
+        let scale = centre * whole / (self.cycles[last] - at);
+        let [low, _, high] = self.t.map(|t| scale * life.median * (t * life.deviation).exp());
+        let middle = life.median / of_lot.median * whole;
+        Ok(Left { crack_length: length, cycles: whole, quantiles: [low.min(middle), middle, high.max(middle)] })
+    }
+
+    /// Cycles of the run over the median of the closed form, of the piece whose ΔK is known.
+    fn centre(&self, whole: &Forecast) -> f64 {
+        let [start, end] = self.known.map(|row| self.cycles[row]);
+        (end - start) / whole.life().median
     }
 
     /// Crack length up to which readings of the plate say its rate, m; of a single one that itself.

@@ -12,9 +12,10 @@ use argmin::solver::quasinewton::LBFGS;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use rayon::prelude::*;
 
-use super::law::{EFFECTS, Row};
+use super::law::Row;
 use super::noise::{Noise, cholesky, whiten};
 use super::{Between, Priors};
+use perilife_laws::curve::EFFECTS;
 
 /// Numbers that are sought: ln sd of level and slope, artanh of their correlation, ln s, ln ℓ, ln w/s, ln r/s.
 pub(super) const PARAMETERS: usize = 7;
@@ -61,7 +62,7 @@ pub(super) struct Products {
 /// Quadratic penalty of the fixed effects: curvature and place, on the change of the current ones.
 #[derive(Clone, Copy)]
 pub(super) struct Penalty {
-    pub curvature: Effects,
+    pub curvature: EffectsMatrix,
     pub from_place: Effects,
 }
 
@@ -138,10 +139,10 @@ fn estimate_of(products: &[Products], at: &Parameters, penalty: &Penalty, free: 
     let (between, noise) = variances(at);
     let t = between.matrix() + Matrix2::new(free, 0.0, 0.0, 0.0);
     let (variance, log_variance) = (noise.scatter * noise.scatter, 2.0 * noise.scatter.ln());
-    let mut curvature = EffectsMatrix::from_diagonal(&penalty.curvature);
+    let mut curvature = penalty.curvature;
     let mut of_free = EffectsMatrix::zeros();
-    let mut right = -penalty.curvature.component_mul(&penalty.from_place);
-    let mut twice = penalty.curvature.component_mul(&penalty.from_place).dot(&penalty.from_place);
+    let mut right = -penalty.curvature * penalty.from_place;
+    let mut twice = -right.dot(&penalty.from_place);
     for group in products {
         let specimens = group.rr.len() as f64;
         let xx = group.xx / variance;
@@ -280,28 +281,4 @@ pub(super) fn minimise(groups: &[Group], penalty: &Penalty, priors: &Priors, sta
         let _ = Executor::new(&problem, solver).configure(|state| state.param(scaled).max_iters(STEPS_MAX)).run();
     }
     problem.best.into_inner().map_or(*start, |(_, at)| at)
-}
-
-/// Covariance of the parameters, the inverse of the second derivatives; `None` where they are no minimum.
-pub(super) fn uncertainty(
-    groups: &[Group],
-    penalty: &Penalty,
-    priors: &Priors,
-    at: &Parameters,
-) -> Option<SMatrix<f64, PARAMETERS, PARAMETERS>> {
-    const WIDE: f64 = 100.0 * STEP;
-    let problem = search(groups, penalty, priors, at);
-    let here = problem.slope(at);
-    let mut second = SMatrix::<f64, PARAMETERS, PARAMETERS>::zeros();
-    for i in 0..PARAMETERS {
-        let mut beside = *at;
-        beside[i] += WIDE;
-        let there = problem.slope(&beside);
-        for j in 0..PARAMETERS {
-            let value = 0.5 * (there[j] - here[j]) / WIDE;
-            second[(i, j)] += value;
-            second[(j, i)] += value;
-        }
-    }
-    Some(second.cholesky()?.inverse())
 }

@@ -11,7 +11,6 @@
 use super::detection::{Detection, Schedule};
 use super::distribution::{hypercube, normal_quantile, quantile};
 use crate::population::forecast::Forecast;
-use crate::population::law::MeanLaw;
 use crate::population::plate::{NoBand, Plate};
 use crate::population::student::normal_cdf;
 use perilife_base::error::{Result, input_missing};
@@ -176,7 +175,8 @@ impl<'f> Drawing<'f> {
             Err(_) => Laws::One(growth_law(case)?, case.loading.ratio),
             Ok(plate) => {
                 let (ends, forecast) = plate.whole()?;
-                let lot = LotRates::new(case, &recorded, plate.lot.law, ends, &forecast);
+                let share = forecast.cells().iter().sum::<f64>() / forecast.life().median;
+                let lot = LotRates { law: growth_law(case)?, ratio: case.loading.ratio, share, ends };
                 Laws::Lot(Box::new(lot), Box::new(forecast))
             }
         };
@@ -253,47 +253,19 @@ impl<'f> Drawing<'f> {
 
 /// Rates of the specimens of a lot along a path in cells.
 struct LotRates {
-    law: MeanLaw,
-    /// ΔK over K_max.
-    range_share: f64,
-    /// ΔK up to which nothing grows, Pa√m.
-    threshold: f64,
+    law: Box<dyn GrowthLaw>,
+    ratio: f64,
+    /// Sum of the median cycles of the cells over the median life.
+    share: f64,
     /// Ends of the cells along the way, m.
     ends: Vec<f64>,
-    /// Median cycles of every cell over those by the law.
-    shares: Vec<f64>,
 }
 
 impl LotRates {
-    fn new(case: &Case, recorded: &Recorded, law: MeanLaw, ends: Vec<f64>, forecast: &Forecast) -> Self {
-        let shares = vec![1.0; ends.len()];
-        let (range_share, threshold) = (case.loading.range_share(), case.fatigue.threshold);
-        let mut lot = LotRates { law, range_share, threshold, ends, shares };
-        // The plate of the run by the law alone, cell by cell: one cell grows at its rate, the others without taking cycles.
-        // Beyond the last, where the lot says nothing, its factors are taken.
-        let end = lot.ends[lot.ends.len() - 1];
-        let by_law = |cell: usize| {
-            let is_in = |way: f64| way <= end && lot.cell(way) == cell;
-            recorded.whole(|k, way| if is_in(way) { lot.law_rate(k) } else { f64::INFINITY })
-        };
-        let shares = (0..lot.ends.len()).map(|cell| forecast.cells()[cell] / by_law(cell));
-        lot.shares = shares.map(|share| if share.is_finite() && share > 0.0 { share } else { 1.0 }).collect();
-        lot
-    }
-
-    fn cell(&self, way: f64) -> usize {
-        self.ends.partition_point(|end| *end < way).min(self.ends.len() - 1)
-    }
-
-    fn law_rate(&self, k_max: f64) -> f64 {
-        let delta_k = k_max * self.range_share;
-        if delta_k <= self.threshold { 0.0 } else { self.law.log_rate(delta_k).exp() }
-    }
-
     /// da/dN, m/cycle, of a specimen with these cycles in every cell over the median.
     fn rate(&self, k_max: f64, way: f64, factors: &[f64]) -> f64 {
-        let cell = self.cell(way);
-        self.law_rate(k_max) / (self.shares[cell] * factors[cell])
+        let cell = self.ends.partition_point(|end| *end < way).min(self.ends.len() - 1);
+        self.law.rate(k_max, self.ratio) / (self.share * factors[cell])
     }
 }
 

@@ -4,10 +4,11 @@ use std::path::Path;
 use std::str::FromStr;
 
 use super::{Case, Engine, LawSource, Method, Model, usual_nodes};
-use crate::case::record::FittedRecord;
+use crate::case::record::{CurveRecord, FittedLaw, FittedRecord};
 use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::{LENGTH, MODULUS, number};
-use perilife_base::units::{GPA, MM, MM_PER_CYCLE};
+use perilife_base::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_laws::curve::Shape;
 use perilife_laws::paris::ParisLaw;
 use perilife_laws::{Driver, FatigueLaw};
 use perilife_plate::material::{Material, Plane};
@@ -30,7 +31,25 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
     number("a horizon ratio", 1.5, 12.0).read("horizon_ratio", record.horizon_ratio)?;
     number("a radius in horizons", 0.05, 10.0).read("zone_radius_horizons", record.zone_radius_horizons)?;
     Plane::from_str(&record.plane)?;
-    Ok(())
+    if record.curve.is_some() != (record.law == FittedLaw::Curve) {
+        return Err(input("law", record.law, "does not go with the section [curve] of the record", "calibrate again"));
+    }
+    record.curve.as_ref().map_or(Ok(()), check_curve)
+}
+
+fn check_curve(curve: &CurveRecord) -> Result<()> {
+    let (rate, delta_k) = (number("a rate in mm/cycle", 1e-30, 1e6), number("a range of K in MPa√m", 1e-3, 1e5));
+    for (key, values, of) in
+        [("da_dn_mm_per_cycle", &curve.da_dn_mm_per_cycle, rate), ("delta_k_mpa_sqrt_m", &curve.delta_k_mpa_sqrt_m, delta_k)]
+    {
+        values.iter().try_for_each(|value| of.read(&format!("curve.{key}"), *value).map(|_| ()))?;
+    }
+    let knots = curve.law().knots().map(|k| k / MPA_SQRT_M);
+    let off = knots.iter().zip(&curve.delta_k_mpa_sqrt_m).find(|(even, given)| (*even / *given - 1.0).abs() > 1e-6);
+    off.map_or(Ok(()), |(even, given)| {
+        let problem = format!("is not {even:.6}: the values rise even in their logarithms from the first to the last");
+        Err(input("curve.delta_k_mpa_sqrt_m", given, problem, "calibrate again"))
+    })
 }
 
 /// Takes the record as the law of the case. Where the case is silent the record decides; where both speak they must agree.
@@ -239,6 +258,13 @@ impl Case {
         }
     }
 
+    /// What the fitted rates are beside their power law; `None` where that is the law.
+    pub fn shape(&self) -> Result<Option<Shape>> {
+        let LawSource::Fitted(record) = &self.law else { return Ok(None) };
+        let of = |curve: &CurveRecord| Ok(Shape { curve: curve.law(), paris: fitted_paris(record)?, ratio: record.stress_ratio });
+        record.curve.as_ref().map(of).transpose()
+    }
+
     /// C and m of hand calculation for `da/dN = C (K_max (1-R)^γ)^m`, γ Walker's exponent.
     ///
     /// Inline constants are those at R = 0 (Walker 1970; without γ the same at every R). A record holds them for its own
@@ -248,9 +274,9 @@ impl Case {
             LawSource::Paris(law) => Ok(*law),
             LawSource::Fitted(record) => {
                 // K of the tip's field and K of the handbook are not quite the same: each law stays with its own.
-                let law = match record.rate_constant.filter(|_| self.model.method() == Method::Peridynamics) {
-                    Some(beta) => ParisLaw::of_bonds(&bonds_of(record), beta, recorded_modulus(record)?),
-                    None => ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m },
+                let law = match self.model.method() {
+                    Method::Peridynamics => fitted_paris(record)?,
+                    _ => ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m },
                 };
                 let range = 1.0 - record.stress_ratio.max(0.0);
                 let walker = range.powf(law.m * (1.0 - self.fatigue.walker_gamma));
@@ -259,6 +285,14 @@ impl Case {
             LawSource::Inline(_) | LawSource::Factor(_) => Err(missing(Method::Handbook, Path::new(""))),
             LawSource::Missing(path) => Err(missing(Method::Handbook, path)),
         }
+    }
+}
+
+/// C and m of a record over the K that its curve is over.
+fn fitted_paris(record: &FittedRecord) -> Result<ParisLaw> {
+    match record.rate_constant {
+        Some(beta) => Ok(ParisLaw::of_bonds(&bonds_of(record), beta, recorded_modulus(record)?)),
+        None => Ok(ParisLaw { c: record.paris_c_mm_per_cycle * MM_PER_CYCLE, m: record.paris_m }),
     }
 }
 

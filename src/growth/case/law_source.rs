@@ -117,7 +117,10 @@ pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
         let problem = "holds a law over K that was fitted to rates, not A and p";
         return Err(input("fitted", format!("\"{name}\""), problem, "give a record of a fit to a-N readings"));
     }
-    let record = slice::<FittedRecord>(&Value::Table(document.table.clone()), "record").and_then(|record| {
+    let mut table = document.table.clone();
+    // Records of before say by which estimate C and m are.
+    table.remove("estimate");
+    let record = slice::<FittedRecord>(&Value::Table(table), "record").and_then(|record| {
         law::check_record(&record)?;
         Ok(record)
     });

@@ -7,13 +7,15 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
+use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_laws::curve::{CurveLaw, ROWS};
 use perilife_measured::LeaveOut;
 
 perilife_base::kinds! {
-    /// Estimates of the constants of a law.
-    pub enum Estimate for "estimate" {
-        LeastSquares = "least_squares": "least squares on lives",
-        Robust = "robust": "repeated median of rates (Siegel 1982), where readings do not belong",
+    /// Laws that a fit to lives writes.
+    pub enum FittedLaw for "law" {
+        Paris = "paris": "da/dN = C ΔK^m, where the rates show no shape",
+        Curve = "curve": "the curve of the rates over ln ΔK, a natural spline through six knots",
     }
 }
 
@@ -86,21 +88,64 @@ pub struct FittedRecord {
     pub material: String,
     /// Program version.
     pub version: String,
-    /// Which estimate of the constants it holds.
-    #[serde(default = "least_squares")]
-    pub estimate: Estimate,
+    /// The law of its lives: C and m are the best power law all the same.
+    #[serde(default = "paris")]
+    pub law: FittedLaw,
     /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
     /// Readings that were left out, with the reasons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<LeaveOut>,
+    /// The curve, where it is the law.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<CurveRecord>,
     /// Scatter of the specimens about a common law; what it holds is the calibration's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub population: Option<Table>,
 }
 
-fn least_squares() -> Estimate {
-    Estimate::LeastSquares
+/// Law of a record of before, which names none.
+fn paris() -> FittedLaw {
+    FittedLaw::Paris
+}
+
+/// A curve of rates: its values at both ends of its range and at knots between them, even in ln ΔK, which make the whole of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CurveRecord {
+    /// Gain of the logarithm of the likelihood over a power law.
+    pub gain: f64,
+    /// ΔK.
+    pub delta_k_mpa_sqrt_m: [f64; ROWS],
+    /// da/dN there.
+    pub da_dn_mm_per_cycle: [f64; ROWS],
+    /// Relative standard errors of the rates.
+    pub da_dn_relative_error: [f64; ROWS],
+    /// Local exponents d ln(da/dN)/d ln ΔK.
+    pub m: [f64; ROWS],
+    /// Their standard errors.
+    pub m_error: [f64; ROWS],
+}
+
+impl CurveRecord {
+    /// A law with the gain of the likelihood that it was taken for, and standard errors of ln rate and exponent at a ΔK (Pa√m).
+    pub fn of(law: &CurveLaw, gain: f64, errors: &dyn Fn(f64) -> [f64; 2]) -> Self {
+        let knots = law.knots();
+        CurveRecord {
+            gain,
+            delta_k_mpa_sqrt_m: knots.map(|k| k / MPA_SQRT_M),
+            da_dn_mm_per_cycle: knots.map(|k| law.log_rate(k).exp() / MM_PER_CYCLE),
+            da_dn_relative_error: knots.map(|k| errors(k)[0]),
+            m: knots.map(|k| law.local_slope(k)),
+            m_error: knots.map(|k| errors(k)[1]),
+        }
+    }
+
+    /// The law.
+    pub fn law(&self) -> CurveLaw {
+        let [low, high] = [0, ROWS - 1].map(|end| self.delta_k_mpa_sqrt_m[end] * MPA_SQRT_M);
+        CurveLaw::through([low, high], self.da_dn_mm_per_cycle.map(|rate| rate * MM_PER_CYCLE))
+    }
 }
 
 /// A measured file a record was fitted to.

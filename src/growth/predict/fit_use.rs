@@ -78,8 +78,9 @@ pub fn law_line(case: &Case) -> Option<String> {
         Model::Points(_) => format!("p = {:.4} ± {:.4}, m", record.p, record.p_error),
         Model::Handbook(_) | Model::Nodes(_) => "m".to_owned(),
     };
+    let curve = if record.curve.is_some() { "curve of the rates; its power law " } else { "" };
     Some(format!(
-        "{:.4e} mm/cycle ± {:.1} % at ΔK = {:.2} MPa√m, {exponent} = {:.4} ± {m_error:.4} ({}, R = {})",
+        "{curve}{:.4e} mm/cycle ± {:.1} % at ΔK = {:.2} MPa√m, {exponent} = {:.4} ± {m_error:.4} ({}, R = {})",
         record.rate_at_pivot_mm_per_cycle,
         100.0 * record.rate_at_pivot_relative_error,
         record.pivot_delta_k_mpa_sqrt_m,

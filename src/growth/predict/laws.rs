@@ -8,6 +8,7 @@ use crate::rate_constant::rate_constant;
 use perilife_base::error::{Result, input_missing};
 use perilife_base::units::MM;
 use perilife_laws::FatigueLaw;
+use perilife_laws::curve::Shaped;
 use perilife_laws::growth_law::{GrowthLaw, Walker};
 use perilife_laws::paris::ParisLaw;
 use perilife_laws::spectrum_law::SpectrumLaw;
@@ -26,7 +27,10 @@ pub fn growth_law(case: &Case) -> Result<Box<dyn GrowthLaw>> {
 pub fn law_of_cycle(case: &Case) -> Result<Box<dyn GrowthLaw>> {
     Ok(match &case.law {
         LawSource::Factor(law) => Box::new(law.clone()),
-        _ => Box::new(Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold }),
+        _ => {
+            let walker = Walker { paris: paris_law(case)?, gamma: case.fatigue.walker_gamma, threshold: case.fatigue.threshold };
+            case.shape()?.map_or_else::<Box<dyn GrowthLaw>, _, _>(|| Box::new(walker), |shape| Box::new(Shaped { walker, shape }))
+        }
     })
 }
 

@@ -10,6 +10,7 @@ use crate::pictures::plate::{Plate, plate_svg};
 use crate::pictures::tables::RunTables;
 use crate::units::shown_result;
 use perilife_base::units::shown::per;
+use perilife_growth::case::record::CurveRecord;
 
 /// Files whose hashes are printed, at the most.
 const HASHES_MOST: usize = 12;
@@ -58,6 +59,7 @@ pub fn of_lives(fit: &Value, tables: &FitTables, signed: &Signed) -> (String, St
     page += &criteria(fit);
     page += &signatures(signed, "Tested by");
     page += &details(fit);
+    page += &curve(fit);
     page += &specimens(fit);
     page += &readings(&tables.readings);
     (format!("Fatigue crack growth rate, {name}"), page, version)
@@ -180,8 +182,11 @@ fn how(fit: &Value) -> String {
         _ => String::new(),
     };
     let criterion = fit["criterion"].as_str().unwrap_or("").replace('_', " ");
-    let method = match fit["estimate"].as_str() {
-        Some("robust") => "Repeated median of the rates",
+    let method = match fit["law"].as_str() {
+        Some("curve") => {
+            "Natural spline of the rates over ln ΔK by restricted maximum likelihood, at the level of the lives; C and m by least \
+                          squares on cycles at equal crack length"
+        }
         _ => "Least squares on cycles at equal crack length",
     };
     let misfit = |end: &str| {
@@ -201,6 +206,27 @@ fn how(fit: &Value) -> String {
          <h2>Fitted law</h2><p>da/dN = C ΔK<sup>m</sup>. {method}, criterion {}.{window}{life}{ends} C and m are correlated: quote the rate at \
          the pivot together with m.</p><h2>Use beyond this test</h2><p>Outside the range of ΔK the law is not known; another R needs tests at that R.</p>",
         quoted(&criterion)
+    )
+}
+
+/// The curve of the rates by its knots.
+fn curve(fit: &Value) -> String {
+    let Ok(curve) = serde_json::from_value::<CurveRecord>(fit["curve"].clone()) else { return String::new() };
+    let row = |i: usize| {
+        format!(
+            "<tr><td class=\"n\">{}</td><td class=\"n\">{} ± {} %</td><td class=\"n\">{} ± {}</td></tr>\n",
+            fixed(curve.delta_k_mpa_sqrt_m[i] * per("MPa√m"), 3),
+            rate(curve.da_dn_mm_per_cycle[i], 4),
+            fixed(100.0 * curve.da_dn_relative_error[i], 1),
+            fixed(curve.m[i], 2),
+            fixed(curve.m_error[i], 2)
+        )
+    };
+    format!(
+        "<h2>Curve of the rates</h2>\n<p class=\"key\">The law of all lives: a natural spline of ln da/dN over ln ΔK through these knots. C and m are the \
+         best power law.</p>\n<table class=\"readings\"><thead><tr><th class=\"n\">ΔK, MPa√m</th><th class=\"n\">da/dN, mm/cycle</th>\
+         <th class=\"n\">local m</th></tr></thead><tbody>\n{}</tbody></table>\n",
+        (0..curve.m.len()).map(row).collect::<String>()
     )
 }
 

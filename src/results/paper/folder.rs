@@ -103,7 +103,7 @@ impl Files<'_> {
 
     fn fit(&self) -> Result<Source> {
         let fit = self.object(FIT_FILE, "perilife calibrate")?;
-        if fit.get("law").is_some() {
+        if fit.get("candidates").is_some() {
             let wanted: [Key; 3] = [
                 ("law", Value::is_string, "text"),
                 ("constants", Value::is_object, "a table"),

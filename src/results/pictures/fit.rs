@@ -13,6 +13,9 @@ use crate::model_words::short;
 use crate::units::of_table;
 use perilife_base::error::{Error, InputError, Result};
 use perilife_base::units::us::System;
+use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_growth::case::record::CurveRecord;
+use perilife_laws::curve::ROWS;
 use perilife_plate::specimen::Point;
 
 /// The figures of a fit.
@@ -33,6 +36,8 @@ const RATIOS_DRAWN: usize = 6;
 const CIRCLES_MAX: usize = 160;
 /// Rates from which circles would hide the law and each other: dots then.
 const CIRCLES_OF_RATES_MAX: usize = 400;
+/// Pieces that a curve of rates is drawn by.
+const CURVE_POINTS: usize = 40;
 /// Share of an area that the band of the fit covers with its colour.
 const BAND: f64 = 0.3;
 
@@ -164,10 +169,14 @@ impl FitTables {
         let point = |delta_k: f64, rate: Option<f64>| Some([delta_k, rate?]);
         let rate = |delta_k: f64| Some(figure("paris_c_mm_per_cycle")? * delta_k.powf(figure("paris_m")?));
         let ends = ["delta_k_min_mpa_sqrt_m", "delta_k_max_mpa_sqrt_m"].map(figure);
+        let of_power = || ends.into_iter().flatten().filter_map(|delta_k| point(delta_k, rate(delta_k))).collect();
+        let curve = serde_json::from_value::<CurveRecord>(fit["curve"].clone()).ok();
         let law = LawCurve {
             name: String::new(),
-            points: ends.into_iter().flatten().filter_map(|delta_k| point(delta_k, rate(delta_k))).collect(),
-            pivot: figure("pivot_delta_k_mpa_sqrt_m").and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
+            points: curve.as_ref().map_or_else(of_power, along),
+            pivot: figure("pivot_delta_k_mpa_sqrt_m")
+                .filter(|_| curve.is_none())
+                .and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
         };
         let fitted_to = fit["fitted_to"].as_str().unwrap_or("").to_owned();
         Ok(FitTables { readings: rows(readings, READINGS_FILE)?, curves: all, band, law, fitted_to })
@@ -222,6 +231,13 @@ pub fn law_svg(rates: &[RateFitted], size: Size) -> String {
     let laws: Vec<LawCurve> = if ratios.len() > RATIOS_DRAWN { Vec::new() } else { ratios.iter().map(of_ratio).collect() };
     let measured: Vec<Point> = rates.iter().map(|rate| [rate.delta_k_mpa_sqrt_m, rate.da_dn_mm_per_cycle]).collect();
     rates_svg(&measured, &laws, size)
+}
+
+/// ΔK, MPa√m, and da/dN, mm/cycle, along a curve of rates.
+fn along(curve: &CurveRecord) -> Vec<Point> {
+    let (law, [low, high]) = (curve.law(), [0, ROWS - 1].map(|end| curve.delta_k_mpa_sqrt_m[end]));
+    let place = |i: usize| low * (high / low).powf(i as f64 / CURVE_POINTS as f64);
+    (0..=CURVE_POINTS).map(place).map(|k| [k, law.log_rate(k * MPA_SQRT_M).exp() / MM_PER_CYCLE]).collect()
 }
 
 /// Rows of a table with a header.

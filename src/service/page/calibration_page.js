@@ -135,7 +135,7 @@ function drawRates(place, rates, s) {
   chart.set([
     { id: "rates", name: "readings", kind: "points", tone: 2, x: pairs.map((pair) => pair[0]), y: pairs.map((pair) => pair[1]) },
     { id: "pivot", name: "pivot", kind: "points", tone: 0, x: [s.pivot_delta_k_mpa_sqrt_m], y: [s.rate_at_pivot_mm_per_cycle] },
-    { id: "law", name: "fitted law", kind: "line", tone: 0, x: ends, y: ends.map((k) => s.rate_at_pivot_mm_per_cycle * (k / s.pivot_delta_k_mpa_sqrt_m) ** s.paris_m) },
+    { id: "law", name: "fitted law", kind: "line", tone: 0, x: s.curve?.delta_k_mpa_sqrt_m ?? ends, y: s.curve?.da_dn_mm_per_cycle ?? ends.map((k) => s.rate_at_pivot_mm_per_cycle * (k / s.pivot_delta_k_mpa_sqrt_m) ** s.paris_m) },
   ]);
   return chart;
 }
@@ -150,6 +150,7 @@ function lawCard(s) {
       element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}, quoted only together with m.`)),
     element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, fixed(s.paris_m, 2)),
       terms([
+        s.curve && ["Law", "curve of the rates; C and m are the best power law"],
         Number.isFinite(s.paris_m_error) && ["±", fixed(s.paris_m_error, 2)],
         ["Life", `measured ${cycles(s.life_measured)}, fitted ${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
         ["Misfit", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),

@@ -1,0 +1,85 @@
+//! What a fit says at the variances that were found: law, scatter, their errors, and every specimen in it.
+
+use nalgebra::{Matrix2, Vector2};
+
+use super::intervals::{Interval, Specimen};
+use super::law::{Row, rows};
+use super::noise::{Noise, cholesky, whiten};
+use super::reml::{departures, estimate, likelihood, variances};
+use super::{ASSUMED_FREEDOM, Found, Member, Population, SLOPE_SAME, SPECIMENS_FOR_SCATTER, groups, penalty, slope_of_readings};
+use crate::median::huber_mean;
+use perilife_laws::curve::CurveLaw;
+
+/// Steps of the own law of a specimen.
+const OWN_STEPS: usize = 12;
+
+/// All results at the variances that were found.
+pub(super) fn assess(specimens: &[Specimen], best: &Found, gain: Option<f64>, slope: Option<f64>) -> Option<Population> {
+    let Found { law, at, .. } = best;
+    let (law, at) = (*law, at);
+    let groups = groups(specimens, &law);
+    let penalty = penalty(&law, slope);
+    let found = estimate(&groups, at, &penalty)?;
+    let (between, noise) = variances(at);
+    let mut members = vec![None; specimens.len()];
+    let mut levels = Vec::with_capacity(specimens.len());
+    for group in &groups {
+        let of_group = departures(group, at, &found.change)?;
+        for (&place, (own, misfit)) in group.members.iter().zip(of_group) {
+            let specimen = &specimens[place];
+            members[place] = Some(Member {
+                name: specimen.name.clone(),
+                level: law.level + own[0],
+                slope: law.slope + own[1],
+                own: own_law(&specimen.intervals, &law, &noise)?,
+                intervals: specimen.intervals.len(),
+                misfit,
+            });
+            let by_law: f64 = group.rows.iter().map(|row| row.log_cycles.exp()).sum();
+            levels.push((by_law / specimen.intervals.iter().map(|interval| interval.cycles).sum::<f64>()).ln());
+        }
+    }
+    let few = specimens.len() < SPECIMENS_FOR_SCATTER;
+    let freedom = specimens.len() as f64 - 1.0 + if few { ASSUMED_FREEDOM } else { 0.0 };
+    Some(Population {
+        law,
+        level_of_lives: huber_mean(&levels),
+        gain,
+        between,
+        noise,
+        slope_of_readings: if slope.is_some() { 0.0 } else { slope_of_readings(specimens, best)? },
+        covariance: found.covariance.transpose().into(),
+        freedom,
+        assumed_scatter: few,
+        restricted_likelihood: likelihood(&groups, at, &penalty)?,
+        specimens: members.into_iter().collect::<Option<_>>()?,
+    })
+}
+
+/// ln rate at the pivot and slope of the readings of one specimen, the shape being that of the lot.
+fn own_law(intervals: &[Interval], lot: &CurveLaw, noise: &Noise) -> Option<[f64; 2]> {
+    let n = intervals.len();
+    let mut law = *lot;
+    for _ in 0..OWN_STEPS {
+        let rows = rows(&law, intervals);
+        let mut factor = noise.covariance(&rows);
+        cholesky(&mut factor, n)?;
+        let line = |(row, own): (&Row, &Interval)| [row.design[0], row.design[1], row.log_cycles - own.cycles.ln()];
+        let mut white: Vec<f64> = rows.iter().zip(intervals).flat_map(line).collect();
+        whiten(&factor, n, &mut white, 3);
+        let (mut curvature, mut right) = (Matrix2::zeros(), Vector2::zeros());
+        for row in white.chunks_exact(3) {
+            let x = Vector2::new(row[0], row[1]);
+            curvature += x * x.transpose();
+            right += x * row[2];
+        }
+        let level_only = Vector2::new(right[0] / curvature[(0, 0)], 0.0);
+        let change = if n < 2 { level_only } else { curvature.try_inverse().map_or(level_only, |inverse| inverse * right) };
+        law.level += change[0];
+        law.slope += change[1].clamp(-1.0, 1.0);
+        if change.amax() < SLOPE_SAME {
+            break;
+        }
+    }
+    Some([law.level, law.slope])
+}
