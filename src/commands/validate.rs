@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use super::console::Console;
 use perilife_base::error::{Error, Result};
-use perilife_results::output::{OutputFile, OutputFolder, Room, RunKind, Sort, write_file};
-use perilife_study::validate::{Row, page, picture, read, rows, sets};
+use perilife_base::input::Provenance;
+use perilife_results::output::{OutputFile, OutputFolder, RunKind, Sort};
+use perilife_study::validate::{Row, page, picture, rows, sets};
 
 /// Arguments of `perilife validate`.
 #[derive(Debug, clap::Args)]
@@ -20,7 +21,7 @@ pub struct Args {
     /// Folder for validate.csv, validate.json, validate.md and validate.svg
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// File for the page as Markdown, without wall times
+    /// File for the page as Markdown
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub markdown: Option<PathBuf>,
     /// What is printed.
@@ -32,21 +33,14 @@ pub struct Args {
 /// Errors: a set that cannot be read, before any run; tests without a prediction, after all; files that cannot be written.
 pub fn run(args: &Args) -> Result<()> {
     let sets = sets(&args.sets)?;
-    let read = read(&sets);
     let sort = Sort { option: "--markdown", sign: b"Written by `perilife validate --markdown`" };
-    let markdown = args.markdown.as_deref().map(|path| OutputFile::claim(path, sort, &read)).transpose()?;
-    let claim = |path: &PathBuf| OutputFolder::claim(path, RunKind::Validate, &read, Room::default());
-    let folder = args.out.as_ref().map(claim).transpose()?;
+    let markdown = args.markdown.as_deref().map(|path| OutputFile::claim(path, sort, &Provenance::default())).transpose()?;
+    let folder = args.out.as_deref().map(|path| OutputFolder::create(path, RunKind::Validate)).transpose()?;
     let rows = rows(&sets, &|set, rows| args.console.say(&page::lines(set, rows)));
     let (object, page) = (page::object(&rows), page::markdown(&sets, &rows));
-    if let Some(mut folder) = folder {
-        folder.fill(|path| {
-            write_file(&path.join("validate.csv"), page::csv(&rows).as_bytes())?;
-            write_file(&path.join("validate.json"), format!("{object:#}\n").as_bytes())?;
-            write_file(&path.join("validate.svg"), picture::svg(&rows).as_bytes())?;
-            write_file(&path.join("validate.md"), page.as_bytes())
-        })?;
-        drop(folder.finish()?);
+    if let Some(folder) = folder {
+        let [csv, json, svg] = [page::csv(&rows), format!("{object:#}\n"), picture::svg(&rows)];
+        folder.write(&[("validate.csv", &csv), ("validate.json", &json), ("validate.svg", &svg), ("validate.md", &page)])?;
     }
     markdown.map_or(Ok(()), |file| file.write(page.as_bytes()))?;
     args.console.object(&object)?;

@@ -3,13 +3,13 @@
 use std::time::Instant;
 
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
+use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 
 use super::choice::{Choice, choices};
 use super::run::Run;
 use super::{Chart, Panel, Point, SCENES};
-use crate::tasks::Outcome;
+use crate::tasks::{Outcome, shuffled};
 use perilife_base::error::Result;
 
 /// Seed of the order: the same runs in the same order every time.
@@ -153,12 +153,4 @@ fn point<'r>(panel: &'static Panel, choice: Choice, records: impl Iterator<Item 
         point.outcome = record.outcome.clone();
     }
     point
-}
-
-/// In random order (Fisher and Yates).
-fn shuffled<T>(mut all: Vec<T>, random: &mut ChaCha8Rng) -> Vec<T> {
-    for i in (1..all.len()).rev() {
-        all.swap(i, (random.next_u64() % (i as u64 + 1)) as usize);
-    }
-    all
 }

@@ -1,14 +1,19 @@
-//! `source.toml`: where a set of tests comes from, and what was measured.
+//! Sets of tests: `source.toml` says where a set comes from, and what was measured.
 
-use std::collections::BTreeMap;
+use std::num::NonZero;
+use std::path::Path;
 
+use include_dir::{Dir, File, include_dir};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{Document, Folder, shorten, slice};
+use perilife_base::input::{Document, Folder, Sections, slice};
 use perilife_base::kinds;
 use perilife_base::units::MM;
+use perilife_calibration::calibrate::Calibration;
 use perilife_plate::specimen::Point;
 use serde::Deserialize;
 use toml::Value;
+
+static SETS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../data/validation");
 
 kinds! {
     /// What a prediction rests on.
@@ -23,7 +28,7 @@ kinds! {
 }
 
 /// Section `[source]`.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct About {
     pub(super) title: String,
@@ -34,12 +39,12 @@ pub(super) struct About {
     pub(super) uncertainty: String,
     pub(super) licence: String,
     pub(super) remark: Option<String>,
-    /// Calibration whose law cases with `fatigue.fitted` take.
-    pub(super) calibration: Option<String>,
+    /// File of the calibration that writes the record of the cases.
+    calibration: Option<String>,
 }
 
 /// An entry of `[[test]]`.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Test {
     pub(super) kind: Kind,
@@ -48,35 +53,19 @@ pub(super) struct Test {
     pub(super) variant: Option<String>,
     /// Measured lives, cycles, one per specimen.
     #[serde(default)]
-    pub(super) life_cycles: Vec<f64>,
-    /// Measured lives, passes of a spectrum.
+    life_cycles: Vec<f64>,
+    /// Measured lives, passes of a spectrum, one per specimen.
     #[serde(default)]
     pub(super) life_passes: Vec<f64>,
-    /// Table of the measured path, `x_mm,y_mm`.
-    pub(super) path: Option<String>,
     /// So many times a random half of the specimens of the calibration predicts the other half.
-    pub(super) halves: Option<usize>,
-    #[serde(default)]
-    pub(super) others: Vec<Other>,
-}
-
-/// A prediction of others.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Other {
-    pub(super) by: String,
-    pub(super) life: Option<f64>,
-    pub(super) path_mean_mm: Option<f64>,
-    pub(super) path_largest_mm: Option<f64>,
-}
-
-impl Other {
-    pub(super) fn words(&self) -> String {
-        let figure =
-            |what: &str, value: Option<f64>, unit| value.map(|value| format!(" {what}{value}{unit}")).unwrap_or_default();
-        let path = [figure("mean ", self.path_mean_mm, " mm"), figure("largest ", self.path_largest_mm, " mm")].concat();
-        format!("{}{}{path}", self.by, figure("", self.life, ""))
-    }
+    pub(super) halves: Option<NonZero<usize>>,
+    /// Table of the measured path, and its points, m.
+    path: Option<String>,
+    #[serde(skip)]
+    pub(super) points: Vec<Point>,
+    /// What others predicted, in words, and a life of theirs in the unit of the measured one.
+    pub(super) others: Option<String>,
+    pub(super) others_life: Option<f64>,
 }
 
 impl Test {
@@ -84,21 +73,38 @@ impl Test {
         if self.life_passes.is_empty() { &self.life_cycles } else { &self.life_passes }
     }
 
-    fn check(&self, at: &str, has_calibration: bool) -> Result<()> {
-        let given = [!self.life_cycles.is_empty(), !self.life_passes.is_empty(), self.halves.is_some()];
-        let lives = self.lives().iter().copied().chain(self.others.iter().filter_map(|other| other.life));
-        let wrong = lives.into_iter().find(|life| !(life.is_finite() && *life > 0.0));
-        let (problem, remedy) = match (given.iter().filter(|is_given| **is_given).count(), wrong, self.halves) {
-            (0, ..) if self.path.is_none() => ("has nothing measured", "give life_cycles, life_passes, path or halves"),
-            (2.., ..) => ("has its measured life twice", "keep one of life_cycles, life_passes and halves"),
-            (_, Some(_), _) => ("has a life that is not above zero", "give measured and predicted lives above zero"),
-            (.., Some(count)) if count == 0 || !has_calibration => {
-                ("has no specimens to draw halves from", "give source.calibration, and halves above zero")
-            }
-            _ => return Ok(()),
-        };
-        Err(input_missing(at, problem, remedy))
+    fn read(value: &Value, at: &str, folder: &Folder) -> Result<Test> {
+        let mut test: Test = slice(value, at)?;
+        let given = [!test.life_cycles.is_empty(), !test.life_passes.is_empty(), test.halves.is_some()];
+        let given = given.into_iter().filter(|is_given| *is_given).count();
+        if given > 1 || given == 0 && test.path.is_none() {
+            return Err(input_missing(
+                at,
+                format!("has {given} measured lives"),
+                "give one of life_cycles, life_passes and halves, or path",
+            ));
+        }
+        if test.lives().iter().chain(&test.others_life).any(|life| !(life.is_finite() && *life > 0.0)) {
+            return Err(input_missing(at, "has a life that is not above zero", "give lives above zero"));
+        }
+        test.points = test.path.as_ref().map_or(Ok(Vec::new()), |file| path(folder, file))?;
+        Ok(test)
     }
+}
+
+/// A measured path, m.
+fn path(folder: &Folder, name: &str) -> Result<Vec<Point>> {
+    let content = folder.read(name)?;
+    let mut table = csv::Reader::from_reader(&*content);
+    let has_head = table.headers().is_ok_and(|head| head == ["x_mm", "y_mm"].as_slice());
+    let points: csv::Result<Vec<Point>> = table.deserialize().collect();
+    let why = points.as_ref().err().map(|error| format!(" ({error})")).unwrap_or_default();
+    let is_path = |points: &Vec<Point>| has_head && !points.is_empty() && points.iter().flatten().all(|x| x.is_finite());
+    let points = points.ok().filter(is_path).ok_or_else(|| {
+        let problem = format!("is not a measured path{why}");
+        input_missing("test.path", problem, "give a header x_mm,y_mm and two numbers per line").in_file(&folder.path(name))
+    })?;
+    Ok(points.into_iter().map(|at| at.map(|x| x * MM)).collect())
 }
 
 /// A set of tests.
@@ -107,53 +113,67 @@ pub struct Set {
     pub(super) name: String,
     pub(super) about: About,
     pub(super) tests: Vec<Test>,
-    /// Measured paths by their files, m.
-    pub(super) points: BTreeMap<String, Vec<Point>>,
+    pub(super) calibration: Option<Calibration>,
     pub(super) folder: Folder,
 }
 
 impl Set {
-    /// Reads `source.toml` of a folder, and the paths that it names.
+    /// Reads `source.toml` of a folder, the calibration and the paths that it names.
     /// Errors: a file that is not there, keys that are not known, tests without anything measured, a path that is none.
-    pub(super) fn read(name: &str, folder: Folder) -> Result<Set> {
+    fn read(name: &str, folder: Folder) -> Result<Set> {
         let document = Document::in_folder(&folder, "source.toml", &[])?;
         let read = || -> Result<(About, Vec<Test>)> {
-            if let Some((key, value)) = document.table.iter().find(|(key, _)| !["source", "test"].contains(&key.as_str())) {
-                return Err(input(key, shorten(value), "is not a known section", "write [source] and [[test]]"));
-            }
-            let missing =
-                |key: &str| input_missing(key, "is missing", "write a section [source] and an entry [[test]] per prediction");
-            let about: About = slice(document.table.get("source").ok_or_else(|| missing("source"))?, "source")?;
-            let tests = document.table.get("test").and_then(Value::as_array).ok_or_else(|| missing("test"))?;
-            let test = |(place, value): (usize, &Value)| {
-                let at = format!("test[{place}]");
-                let test: Test = slice(value, &at)?;
-                test.check(&at, about.calibration.is_some()).map(|()| test)
-            };
-            let tests = tests.iter().enumerate().map(test).collect::<Result<_>>()?;
+            let mut table = document.table.clone();
+            let tests = table.remove("test");
+            let sections = Sections::of(&table, &["source"], &[])?;
+            let about: About = slice(sections.required("source")?, "source")?;
+            let no_tests = || input_missing("test", "is missing", "write an entry [[test]] per prediction");
+            let tests = tests.as_ref().and_then(Value::as_array).ok_or_else(no_tests)?.iter().enumerate();
+            let test = |(i, value)| Test::read(value, &format!("test[{i}]"), &folder);
+            let tests = tests.map(test).collect::<Result<_>>()?;
             Ok((about, tests))
         };
         let (about, tests) = read().map_err(|error| document.locate(error))?;
-        let files = tests.iter().filter_map(|test| test.path.as_ref());
-        let points = files.map(|file| Ok((file.clone(), path(&folder, file)?))).collect::<Result<_>>()?;
-        Ok(Set { name: name.to_owned(), about, tests, points, folder })
+        let calibration = |file: &String| Calibration::from_document(&Document::in_folder(&folder, file, &[])?);
+        let calibration = about.calibration.as_ref().map(calibration).transpose()?;
+        Ok(Set { name: name.to_owned(), about, tests, calibration, folder })
+    }
+
+    /// A built-in set; what it shares with another one lies beside its folder, as on disk.
+    fn built_in(folder: &Dir) -> Result<Set> {
+        let name = |file: &File| match file.path().strip_prefix(folder.path()) {
+            Ok(own) => own.display().to_string(),
+            Err(_) => format!("../{}", file.path().display()),
+        };
+        let at_hand = files(&SETS).into_iter().map(|file| (name(file), file.contents().to_vec()));
+        Set::read(&folder.path().display().to_string(), Folder::at_hand(at_hand))
     }
 }
 
-/// A measured path, m.
-fn path(folder: &Folder, name: &str) -> Result<Vec<Point>> {
-    let content = folder.read(name)?;
-    let mut reader = csv::Reader::from_reader(&*content);
-    let is_path = reader.headers().is_ok_and(|head| head == ["x_mm", "y_mm"].as_slice());
-    let points: csv::Result<Vec<Point>> = reader.deserialize().collect();
-    match points {
-        Ok(points) if is_path && !points.is_empty() && points.iter().flatten().all(|x| x.is_finite()) => {
-            Ok(points.into_iter().map(|at| at.map(|x| x * MM)).collect())
-        }
-        read => {
-            let why = read.err().map(|error| format!(" ({error})")).unwrap_or_default();
-            let remedy = "give a header x_mm,y_mm and two numbers per line";
-            Err(input_missing("test.path", format!("is not a table of a measured path{why}"), remedy).in_file(&folder.path(name)))
-        }
+fn files(folder: &'static Dir<'static>) -> Vec<&'static File<'static>> {
+    folder.files().chain(folder.dirs().flat_map(files)).collect()
+}
+
+/// Names and titles of the built-in sets.
+pub fn built_in() -> Vec<(String, String)> {
+    sets(&[]).unwrap_or_default().into_iter().map(|set| (set.name, set.about.title)).collect()
+}
+
+/// The sets of these names or folders, all built-in ones where none is given.
+/// Errors: what is neither; a set that cannot be read.
+pub fn sets(wanted: &[String]) -> Result<Vec<Set>> {
+    if wanted.is_empty() {
+        return SETS.dirs().map(Set::built_in).collect();
     }
+    let set = |name: &String| match SETS.dirs().find(|folder| folder.path() == Path::new(name)) {
+        Some(folder) => Set::built_in(folder),
+        None if Path::new(name).is_dir() => Set::read(name, Path::new(name).into()),
+        None => Err(input(
+            "NAME",
+            name,
+            "is no set of tests and no folder",
+            "give a folder with source.toml, or a name of `perilife list`",
+        )),
+    };
+    wanted.iter().map(set).collect()
 }
