@@ -6,7 +6,7 @@ use super::console::Console;
 use perilife_base::error::{Error, Result};
 use perilife_base::input::Provenance;
 use perilife_results::output::{OutputFile, OutputFolder, RunKind, Sort};
-use perilife_study::validate::{Row, page, picture, rows, sets};
+use perilife_study::validate::{page, picture, rows, sets};
 
 /// Arguments of `perilife validate`.
 #[derive(Debug, clap::Args)]
@@ -44,6 +44,6 @@ pub fn run(args: &Args) -> Result<()> {
     }
     markdown.map_or(Ok(()), |file| file.write(page.as_bytes()))?;
     args.console.object(&object)?;
-    let failed: Vec<String> = rows.iter().filter_map(Row::failure).collect();
+    let failed: Vec<String> = rows.into_iter().filter_map(|row| row.failure).collect();
     if failed.is_empty() { Ok(()) } else { Err(Error::Mechanics(failed.join("\n"))) }
 }

@@ -8,8 +8,6 @@ use std::thread;
 use serde::{Deserialize, Serialize};
 
 use perilife_base::error::{Error, Result, input};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::RngCore;
 
 /// What came of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -84,12 +82,4 @@ pub(super) fn side_by_side<T: Sync, R: Send>(tasks: &[T], work: impl Fn(&T) -> R
     let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
     done.sort_by_key(|(at, _)| *at);
     done.into_iter().map(|(_, result)| result).collect()
-}
-
-/// In random order (Fisher and Yates).
-pub(super) fn shuffled<T>(mut all: Vec<T>, random: &mut ChaCha8Rng) -> Vec<T> {
-    for i in (1..all.len()).rev() {
-        all.swap(i, (random.next_u64() % (i as u64 + 1)) as usize);
-    }
-    all
 }

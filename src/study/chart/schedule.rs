@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::choice::{Choice, choices};
 use super::run::Run;
 use super::{Chart, Panel, Point, SCENES};
-use crate::tasks::{Outcome, shuffled};
+use crate::tasks::Outcome;
 use perilife_base::error::Result;
+use perilife_calibration::sweep::distribution::shuffle;
 
 /// Seed of the order: the same runs in the same order every time.
 const SEED: u64 = 1;
@@ -124,8 +125,9 @@ pub fn measure(
         }
     }
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let firsts: Vec<Request> = planned.iter().map(|(_, _, request)| request.clone()).collect();
-    for request in shuffled(firsts, &mut random) {
+    let mut firsts: Vec<Request> = planned.iter().map(|(_, _, request)| request.clone()).collect();
+    shuffle(&mut firsts, &mut random);
+    for request in firsts {
         if measuring.of(&request).next().is_none() {
             measuring.measure(request)?;
         }
@@ -135,7 +137,9 @@ pub fn measure(
         let wanted = walls.first().map_or(0, |first| effort.runs(*first)).saturating_sub(walls.len());
         vec![request.clone(); wanted]
     });
-    for request in shuffled(repeats.collect(), &mut random) {
+    let mut repeats: Vec<Request> = repeats.collect();
+    shuffle(&mut repeats, &mut random);
+    for request in repeats {
         measuring.measure(request)?;
     }
     let points = planned.into_iter().map(|(panel, choice, request)| point(panel, choice, measuring.of(&request))).collect();

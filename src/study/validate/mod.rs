@@ -7,6 +7,8 @@ pub mod page;
 pub mod picture;
 mod source;
 
+use std::ops::Range;
+
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::input::Document;
 use perilife_base::units::MM;
@@ -14,6 +16,7 @@ use perilife_calibration::calibrate::Calibration;
 use perilife_calibration::median::{cycles_at, median};
 use perilife_calibration::population::forecast::Life;
 use perilife_calibration::population::student::t_quantile;
+use perilife_calibration::sweep::distribution::shuffle;
 use perilife_growth::case::{Case, RECORD, needs};
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 use perilife_measured::MeasuredCurve;
@@ -25,14 +28,15 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::Serialize;
 
-use crate::tasks::{Outcome, shuffled, side_by_side};
+use crate::tasks::{Outcome, side_by_side};
 use source::Test;
 pub use source::{Kind, Set, built_in, sets};
 
 /// Specimens below which no half says how they scatter.
 const SPECIMENS_MIN: usize = 4;
+const TOO_FEW: &str = "needs readings of at least four specimens";
 /// Quantiles of a score.
-const LEVELS: usize = 100;
+const LEVELS: Range<usize> = 0..100;
 
 /// A test beside its prediction. Lives are in `unit`; a measured one is the median of several, a predicted one that of the band where there
 /// is one. Over halves of specimens they are geometric means.
@@ -62,13 +66,15 @@ pub struct Row {
     others: Option<String>,
     /// Life that others predicted over the measured one.
     others_ratio: Option<f64>,
-    failure: Option<String>,
+    /// Why there is no prediction, with the place of the test.
+    pub failure: Option<String>,
 }
 
-/// A life that was predicted, with its scatter where the case has a band, beside measured ones, all in the unit of the test.
+/// A life that was predicted beside measured ones, in the unit of the test.
 struct Trial {
     predicted: f64,
-    scatter: Option<Life>,
+    /// Ends of the band, and quantiles for the score, where the case has a band.
+    scatter: Option<([f64; 2], Vec<f64>)>,
     measured: Vec<f64>,
 }
 
@@ -94,7 +100,7 @@ impl Set {
                 None => self.trial(&mut row, test, law.as_deref(), &[]).map(|trial| vec![trial]),
             });
             let filled = Outcome::of(filled.map(|trials| row.judge(&trials)));
-            row.failure = filled.reason().map(str::to_owned);
+            row.failure = filled.reason().map(|why| format!("{}: {}: {why}", self.name, test.case));
             row
         };
         self.tests.iter().map(row).collect()
@@ -104,15 +110,12 @@ impl Set {
     fn halves(&self, row: &mut Row, test: &Test, count: usize) -> Result<Vec<Trial>> {
         let whole = match &self.calibration {
             Some(Calibration::Lives(whole)) if whole.curves.len() >= SPECIMENS_MIN => whole,
-            _ => {
-                let problem = format!("needs a calibration by readings of at least {SPECIMENS_MIN} specimens");
-                return Err(input_missing("test.halves", problem, "give more specimens, or life_cycles"));
-            }
+            _ => return Err(input_missing("test.halves", TOO_FEW, "give source.calibration of such specimens, or life_cycles")),
         };
         let mut random = ChaCha8Rng::seed_from_u64(0);
         let half = |_| {
             let mut part = whole.clone();
-            part.curves = shuffled(part.curves, &mut random);
+            shuffle(&mut part.curves, &mut random);
             let held_out = part.curves.split_off(part.curves.len() / 2);
             part.read.retain(|curve| part.curves.iter().any(|own| own.specimen == curve.specimen));
             self.trial(row, test, Some(&record(&Calibration::Lives(part))?), &held_out)
@@ -132,7 +135,7 @@ impl Set {
         judged.take_refusal().map_or(Ok(()), Err)?;
         row.model = judged.kept.result["model"]["method"].as_str().map(str::to_owned);
         row.error_estimate_percent = judged.kept.result["error_estimate_percent"].as_f64();
-        row.judge_path(&test.points, &prediction, &case);
+        row.judge_path(&test.path_mm, &prediction, &case);
         let held_out = held_out.iter().map(|curve| life(curve, &case)).collect::<Result<Vec<f64>>>()?;
         let measured = [test.lives(), &held_out].concat();
         let has_end = prediction.stop != StopReason::RunOut || measured.is_empty();
@@ -142,11 +145,13 @@ impl Set {
         let no_passes = || input_missing("test.life_passes", "needs a case with a spectrum", "give life_cycles");
         let unit = if test.life_passes.is_empty() { 1.0 } else { per_pass.ok_or_else(no_passes)? };
         let band = judged.lives.life().zip(judged.lives.band.ok());
+        let predicted = band.as_ref().map_or(life, |([_, median, _], _)| *median) / unit;
         let scatter = band.map(|([low, median, high], (plate, _))| {
-            let deviation = (high / low).ln() / (2.0 * t_quantile(0.95, plate.lot.freedom));
-            Life { median, deviation, freedom: plate.lot.freedom }
+            let freedom = plate.lot.freedom;
+            let life = Life { median, deviation: (high / low).ln() / (2.0 * t_quantile(0.95, freedom)), freedom };
+            ([low, high], LEVELS.map(|level| life.quantile((level as f64 + 0.5) / LEVELS.len() as f64)).collect())
         });
-        Ok(Trial { predicted: scatter.map_or(life, |life| life.median) / unit, scatter, measured })
+        Ok(Trial { predicted, scatter, measured })
     }
 }
 
@@ -168,13 +173,12 @@ fn life(curve: &MeasuredCurve, case: &Case) -> Result<f64> {
 
 /// Continuous ranked probability score of a measured life as twice the mean pinball loss over quantiles (Gneiting and Raftery 2007), over
 /// that life.
-fn score((life, measured): &(Life, f64)) -> f64 {
-    let loss = |place: usize| {
-        let level = (place as f64 + 0.5) / LEVELS as f64;
-        let above = life.quantile(level) - measured;
+fn score(quantiles: &[f64], measured: f64) -> f64 {
+    let loss = |(level, quantile): (usize, &f64)| {
+        let (level, above) = ((level as f64 + 0.5) / quantiles.len() as f64, quantile - measured);
         if above > 0.0 { (1.0 - level) * above } else { -level * above }
     };
-    2.0 * (0..LEVELS).map(loss).sum::<f64>() / (LEVELS as f64 * measured)
+    2.0 * quantiles.iter().enumerate().map(loss).sum::<f64>() / (quantiles.len() as f64 * measured)
 }
 
 /// Geometric mean.
@@ -199,11 +203,6 @@ impl Row {
         }
     }
 
-    /// Why there is no prediction, with the place of the test.
-    pub fn failure(&self) -> Option<String> {
-        Some(format!("{}: {}: {}", self.set, self.case, self.failure.as_ref()?))
-    }
-
     /// Takes the lives of all trials, of which there are several over halves.
     fn judge(&mut self, trials: &[Trial]) {
         self.lives_measured = trials.iter().map(|trial| trial.measured.len()).sum();
@@ -214,21 +213,25 @@ impl Row {
         self.predicted = over(&|trial| Some(trial.predicted));
         self.measured = over(&|trial| Some(median(&trial.measured)));
         self.ratio = over(&|trial| Some(trial.predicted / median(&trial.measured)));
-        self.predicted_p05 = over(&|trial| Some(trial.scatter?.quantile(0.05)));
-        self.predicted_p95 = over(&|trial| Some(trial.scatter?.quantile(0.95)));
-        let lives = trials.iter().flat_map(|trial| trial.measured.iter().map(|measured| Some((trial.scatter?, *measured))));
-        let Some(lives) = lives.collect::<Option<Vec<(Life, f64)>>>() else { return };
-        let is_inside = |(life, measured): &&(Life, f64)| (life.quantile(0.05)..=life.quantile(0.95)).contains(measured);
-        self.lives_inside = Some(lives.iter().filter(is_inside).count());
-        self.crps_percent = Some(100.0 * lives.iter().map(score).sum::<f64>() / lives.len() as f64);
+        self.predicted_p05 = over(&|trial| Some(trial.scatter.as_ref()?.0[0]));
+        self.predicted_p95 = over(&|trial| Some(trial.scatter.as_ref()?.0[1]));
+        let beside = |trial: &Trial| {
+            let ([low, high], quantiles) = trial.scatter.as_ref()?;
+            let inside = trial.measured.iter().filter(|life| (low..=high).contains(life)).count();
+            Some((inside, trial.measured.iter().map(|life| score(quantiles, *life)).sum::<f64>()))
+        };
+        if let Some((inside, scores)) = trials.iter().map(beside).collect::<Option<(Vec<usize>, Vec<f64>)>>() {
+            self.lives_inside = Some(inside.iter().sum());
+            self.crps_percent = Some(100.0 * scores.iter().sum::<f64>() / self.lives_measured as f64);
+        }
     }
 
-    fn judge_path(&mut self, measured: &[Point], prediction: &Prediction, case: &Case) {
+    fn judge_path(&mut self, measured_mm: &[Point], prediction: &Prediction, case: &Case) {
         let paths = paths(prediction, &case.specimen.cracks);
         let pieces = || paths.iter().flat_map(|path| path.windows(2));
         let away =
             |at: &Point| pieces().map(|piece| distance_to_segment(*at, piece[0].1, piece[1].1)).fold(f64::INFINITY, f64::min);
-        let away: Vec<f64> = measured.iter().map(|at| away(at) / MM).collect();
+        let away: Vec<f64> = measured_mm.iter().map(|at| away(&at.map(|x| x * MM)) / MM).collect();
         self.path_largest_mm = away.iter().copied().reduce(f64::max);
         self.path_mean_mm = self.path_largest_mm.map(|_| away.iter().sum::<f64>() / away.len() as f64);
     }

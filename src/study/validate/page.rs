@@ -12,8 +12,24 @@ use perilife_base::cells::field;
 /// What the page ends with: kinds that no built-in set tests.
 const UNTESTED: &str = include_str!("../../../data/validation/untested.md");
 
-/// Tests of a kind, of several predictions those of one variant.
-#[derive(Default, Serialize)]
+/// What the cells of a row are.
+const HEADS: [&str; 12] = [
+    "set",
+    "test",
+    "measured",
+    "predicted",
+    "ratio",
+    "band",
+    "in the band",
+    "CRPS, %",
+    "path: mean, largest distance, mm",
+    "error stated, %",
+    "model",
+    "others",
+];
+
+/// Tests of a kind that have a life, of several predictions those of one variant.
+#[derive(Serialize)]
 struct Group {
     group: String,
     tests: usize,
@@ -25,33 +41,31 @@ struct Group {
     lives_with_band: usize,
 }
 
-/// The groups of tests with a life.
 fn groups(rows: &[Row]) -> Vec<Group> {
-    let mut groups: BTreeMap<String, Vec<&Row>> = BTreeMap::new();
-    for row in rows.iter().filter(|row| row.ratio.is_some()) {
+    let mut groups: BTreeMap<String, Vec<(f64, &Row)>> = BTreeMap::new();
+    for (ratio, row) in rows.iter().filter_map(|row| Some((row.ratio?, row))) {
         let variant = row.variant.as_ref().map(|of| format!(": {of}")).unwrap_or_default();
-        groups.entry(row.kind.replace('_', " ") + &variant).or_default().push(row);
+        groups.entry(row.kind.replace('_', " ") + &variant).or_default().push((ratio, row));
     }
-    let group = |(group, own): (String, Vec<&Row>)| {
-        let ratios: Vec<f64> = own.iter().filter_map(|row| row.ratio).collect();
-        let (mean, tests) = (mean(&ratios), own.len());
-        let square: f64 = ratios.iter().map(|ratio| (ratio / mean).ln().powi(2)).sum();
-        let with_band = || own.iter().filter(|row| row.lives_inside.is_some());
-        Group {
-            group,
-            tests,
-            ratio_geometric_mean: mean,
-            scatter_factor: (tests > 1).then(|| (square / (tests as f64 - 1.0)).sqrt().exp()),
-            lives_inside: with_band().filter_map(|row| row.lives_inside).sum(),
-            lives_with_band: with_band().map(|row| row.lives_measured).sum(),
-        }
+    let group = |(group, own): (String, Vec<(f64, &Row)>)| {
+        let (mean, tests) = (mean(&own.iter().map(|(ratio, _)| *ratio).collect::<Vec<_>>()), own.len());
+        let square: f64 = own.iter().map(|(ratio, _)| (ratio / mean).ln().powi(2)).sum();
+        let scatter_factor = (tests > 1).then(|| (square / (tests as f64 - 1.0)).sqrt().exp());
+        let with_band = || own.iter().filter_map(|(_, row)| Some([row.lives_inside?, row.lives_measured]));
+        let [lives_inside, lives_with_band] = [0, 1].map(|place| with_band().map(|lives| lives[place]).sum());
+        Group { group, tests, ratio_geometric_mean: mean, scatter_factor, lives_inside, lives_with_band }
     };
     groups.into_iter().map(group).collect()
 }
 
-/// A set with its rows on the console.
+/// A set with its rows on the console, without what is not known.
 pub fn lines(set: &Set, rows: &[Row]) -> String {
-    let line = |row: &Row| format!("\n  {}", cells(row).join("  "));
+    let line = |row: &Row| {
+        let cells = cells(row);
+        let figures = HEADS.iter().zip(&cells).skip(2).take(7).filter(|(_, figure)| *figure != "-");
+        let figures: Vec<String> = figures.map(|(head, figure)| format!("{head} {figure}")).collect();
+        format!("\n  {:<20} {:<32} {}", cells[0], cells[1], figures.join("; "))
+    };
     set.about.title.clone() + &rows.iter().map(line).collect::<String>()
 }
 
@@ -77,7 +91,7 @@ pub fn csv(rows: &[Row]) -> String {
 pub fn markdown(sets: &[Set], rows: &[Row]) -> String {
     let mut page = "# Validation\n\nWritten by `perilife validate --markdown`: lives and paths of published tests beside those that the program predicts. \
          The ratio is\npredicted over measured life (below 1: conservative); the scatter factor is exp(s), s the standard deviation of ln ratio; \
-         the band is\n5 % to 95 % of specimens. Sources, assumptions and uncertainties are below; inputs are in `data/validation`.\n\n\
+         the band is\n5 % to 95 % of specimens; the CRPS (continuous ranked probability score) is in percent of the life. Sources, assumptions and uncertainties are below; inputs are in\n`data/validation`.\n\n\
          | kind of test | tests | geometric mean of the ratio | scatter factor | lives in the band |\n|---|---|---|---|---|\n"
         .to_owned();
     for Group { group, tests, ratio_geometric_mean, scatter_factor, lives_inside, lives_with_band } in groups(rows) {
@@ -85,8 +99,7 @@ pub fn markdown(sets: &[Set], rows: &[Row]) -> String {
         let inside = if lives_with_band > 0 { format!("{lives_inside} of {lives_with_band}") } else { "-".to_owned() };
         page += &format!("| {} | {tests} | {ratio_geometric_mean:.3} | {scatter} | {inside} |\n", cell(&group));
     }
-    page += "\n## Tests\n\n| set | test | measured | predicted | ratio | band | in the band | CRPS, % of life | \
-             path, mean and largest distance, mm | error stated, % | model | others |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    page += &format!("\n## Tests\n\n| {} |\n{}|\n", HEADS.join(" | "), "|---".repeat(HEADS.len()));
     rows.iter().for_each(|row| page += &format!("| {} |\n", cells(row).map(|text| cell(&text)).join(" | ")));
     page += "\n## Sources\n";
     for Set { name, about, .. } in sets {
@@ -99,7 +112,7 @@ pub fn markdown(sets: &[Set], rows: &[Row]) -> String {
 }
 
 /// A row in words: of its variant, or its kind where there is one prediction.
-fn cells(row: &Row) -> [String; 12] {
+fn cells(row: &Row) -> [String; HEADS.len()] {
     let digits = |value: Option<f64>| shown(value, four_digits);
     let ratio = row.others_ratio.map(|ratio| format!(" (ratio {ratio:.3})")).unwrap_or_default();
     let predicted = row.failure.as_ref().map(|why| format!("failed: {why}")).unwrap_or_else(|| digits(row.predicted));
@@ -112,7 +125,7 @@ fn cells(row: &Row) -> [String; 12] {
         shown(row.predicted_p05, |low| format!("{} to {}", four_digits(low), digits(row.predicted_p95))),
         shown(row.lives_inside, |inside| format!("{inside} of {}", row.lives_measured)),
         shown(row.crps_percent, |score| format!("{score:.2}")),
-        shown(row.path_mean_mm, |mean| format!("{mean:.2}, {}", shown(row.path_largest_mm, |most| format!("{most:.2}")))),
+        shown(row.path_mean_mm, |mean| format!("{mean:.3}, {}", shown(row.path_largest_mm, |most| format!("{most:.3}")))),
         shown(row.error_estimate_percent, |error| format!("{error:.1}")),
         shown(row.model.clone(), |model| model),
         shown(row.others.clone(), |others| others + &ratio),

@@ -7,7 +7,6 @@ use include_dir::{Dir, File, include_dir};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Document, Folder, Sections, slice};
 use perilife_base::kinds;
-use perilife_base::units::MM;
 use perilife_calibration::calibrate::Calibration;
 use perilife_plate::specimen::Point;
 use serde::Deserialize;
@@ -59,10 +58,9 @@ pub(super) struct Test {
     pub(super) life_passes: Vec<f64>,
     /// So many times a random half of the specimens of the calibration predicts the other half.
     pub(super) halves: Option<NonZero<usize>>,
-    /// Table of the measured path, and its points, m.
-    path: Option<String>,
-    #[serde(skip)]
-    pub(super) points: Vec<Point>,
+    /// Points of the measured path, mm.
+    #[serde(default)]
+    pub(super) path_mm: Vec<Point>,
     /// What others predicted, in words, and a life of theirs in the unit of the measured one.
     pub(super) others: Option<String>,
     pub(super) others_life: Option<f64>,
@@ -73,38 +71,20 @@ impl Test {
         if self.life_passes.is_empty() { &self.life_cycles } else { &self.life_passes }
     }
 
-    fn read(value: &Value, at: &str, folder: &Folder) -> Result<Test> {
-        let mut test: Test = slice(value, at)?;
+    fn read(value: &Value, at: &str) -> Result<Test> {
+        let test: Test = slice(value, at)?;
         let given = [!test.life_cycles.is_empty(), !test.life_passes.is_empty(), test.halves.is_some()];
         let given = given.into_iter().filter(|is_given| *is_given).count();
-        if given > 1 || given == 0 && test.path.is_none() {
-            return Err(input_missing(
-                at,
-                format!("has {given} measured lives"),
-                "give one of life_cycles, life_passes and halves, or path",
-            ));
+        if given > 1 || given == 0 && test.path_mm.is_empty() {
+            let remedy = "give one of life_cycles, life_passes and halves, or path_mm";
+            return Err(input_missing(at, format!("has {given} measured lives"), remedy));
         }
-        if test.lives().iter().chain(&test.others_life).any(|life| !(life.is_finite() && *life > 0.0)) {
-            return Err(input_missing(at, "has a life that is not above zero", "give lives above zero"));
+        let is_life = |life: &f64| life.is_finite() && *life > 0.0;
+        if !test.lives().iter().chain(&test.others_life).all(is_life) || !test.path_mm.iter().flatten().all(|x| x.is_finite()) {
+            return Err(input_missing(at, "has a life or a place that is none", "give lives above zero, and finite places"));
         }
-        test.points = test.path.as_ref().map_or(Ok(Vec::new()), |file| path(folder, file))?;
         Ok(test)
     }
-}
-
-/// A measured path, m.
-fn path(folder: &Folder, name: &str) -> Result<Vec<Point>> {
-    let content = folder.read(name)?;
-    let mut table = csv::Reader::from_reader(&*content);
-    let has_head = table.headers().is_ok_and(|head| head == ["x_mm", "y_mm"].as_slice());
-    let points: csv::Result<Vec<Point>> = table.deserialize().collect();
-    let why = points.as_ref().err().map(|error| format!(" ({error})")).unwrap_or_default();
-    let is_path = |points: &Vec<Point>| has_head && !points.is_empty() && points.iter().flatten().all(|x| x.is_finite());
-    let points = points.ok().filter(is_path).ok_or_else(|| {
-        let problem = format!("is not a measured path{why}");
-        input_missing("test.path", problem, "give a header x_mm,y_mm and two numbers per line").in_file(&folder.path(name))
-    })?;
-    Ok(points.into_iter().map(|at| at.map(|x| x * MM)).collect())
 }
 
 /// A set of tests.
@@ -118,8 +98,8 @@ pub struct Set {
 }
 
 impl Set {
-    /// Reads `source.toml` of a folder, the calibration and the paths that it names.
-    /// Errors: a file that is not there, keys that are not known, tests without anything measured, a path that is none.
+    /// Reads `source.toml` of a folder, and the calibration that it names.
+    /// Errors: a file that is not there, keys that are not known, tests without anything measured.
     fn read(name: &str, folder: Folder) -> Result<Set> {
         let document = Document::in_folder(&folder, "source.toml", &[])?;
         let read = || -> Result<(About, Vec<Test>)> {
@@ -129,7 +109,7 @@ impl Set {
             let about: About = slice(sections.required("source")?, "source")?;
             let no_tests = || input_missing("test", "is missing", "write an entry [[test]] per prediction");
             let tests = tests.as_ref().and_then(Value::as_array).ok_or_else(no_tests)?.iter().enumerate();
-            let test = |(i, value)| Test::read(value, &format!("test[{i}]"), &folder);
+            let test = |(i, value)| Test::read(value, &format!("test[{i}]"));
             let tests = tests.map(test).collect::<Result<_>>()?;
             Ok((about, tests))
         };
