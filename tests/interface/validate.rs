@@ -77,7 +77,7 @@ fn sets_that_cannot_be_read_are_refused_before_any_run() {
     for (text, words) in [
         (SOURCE.replace("licence", "license"), ["source.license", "licence"]),
         (SOURCE.to_owned(), ["test", "is missing"]),
-        (format!("{SOURCE}[tests]\n"), ["tests", "[[test]]"]),
+        (format!("{SOURCE}[tests]\n"), ["tests", "source, test"]),
         (test(""), ["test[0]", "has 0 measured lives"]),
         (test("life_cycles = [1e5]\nlife_passes = [10]"), ["test[0]", "has 2 measured lives"]),
         (test("life_cycles = [-1e5]"), ["test[0]", "above zero"]),

@@ -105,7 +105,7 @@ impl Set {
         let read = || -> Result<(About, Vec<Test>)> {
             let mut table = document.table.clone();
             let tests = table.remove("test");
-            let sections = Sections::of(&table, &["source"], &[])?;
+            let sections = Sections::of(&table, &["source", "test"], &[])?;
             let about: About = slice(sections.required("source")?, "source")?;
             let no_tests = || input_missing("test", "is missing", "write an entry [[test]] per prediction");
             let tests = tests.as_ref().and_then(Value::as_array).ok_or_else(no_tests)?.iter().enumerate();
