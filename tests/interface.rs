@@ -33,4 +33,5 @@ mod time_limit;
 mod tip_field;
 mod traceable;
 mod units;
+mod validate;
 mod verify;

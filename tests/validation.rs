@@ -14,6 +14,7 @@ mod mechanics5_plates;
 mod median_virkler;
 mod notched_plates;
 mod plate_band;
+mod published;
 mod practice5_laws;
 mod practice5_spectra;
 mod population;

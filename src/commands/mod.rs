@@ -23,6 +23,7 @@ pub mod stability;
 pub mod sweep;
 #[cfg(feature = "service")]
 pub mod token;
+pub mod validate;
 pub mod verify;
 #[cfg(feature = "service")]
 pub mod worker;
@@ -101,6 +102,8 @@ commands! {
     Rates: rates,
     /// Run the built-in verification: computed, reference, error and bound of every row
     Verify: verify,
+    /// Predict published tests: ratio to what was measured, band, paths
+    Validate: validate,
     /// Measure every method, law, solver and resolution: time against error
     Chart: chart or "bench",
     /// Take every method across its range until it fails: safe ranges and why they end

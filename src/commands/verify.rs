@@ -7,7 +7,7 @@ use serde_json::json;
 use super::console::Console;
 use perilife_base::error::{Error, Result};
 use perilife_base::input::Provenance;
-use perilife_results::output::{OutputFile, OutputFolder, RunKind, Sort, write_file};
+use perilife_results::output::{OutputFile, OutputFolder, RunKind, Sort};
 use perilife_study::topics;
 use perilife_study::verification;
 
@@ -42,17 +42,12 @@ pub fn run(args: &Args) -> Result<()> {
         args.console.say(&format!("{}: {}\n{}", topic.name, topic.about, lines.join("\n")));
     })?;
     let object = verification::object(&rows);
-    if let Some(mut folder) = folder {
-        folder.fill(|path| {
-            write_file(&path.join("verify.csv"), verification::csv(&rows).as_bytes())?;
-            write_file(&path.join("verify.json"), format!("{object:#}\n").as_bytes())?;
-            write_file(&path.join("verify.md"), verification::markdown(&topics, &rows).as_bytes())
-        })?;
-        drop(folder.finish()?);
+    let page = verification::markdown(&topics, &rows);
+    if let Some(folder) = folder {
+        let (csv, json) = (verification::csv(&rows), format!("{object:#}\n"));
+        folder.write(&[("verify.csv", &csv), ("verify.json", &json), ("verify.md", &page)])?;
     }
-    if let Some(file) = markdown {
-        file.write(verification::markdown(&topics, &rows).as_bytes())?;
-    }
+    markdown.map_or(Ok(()), |file| file.write(page.as_bytes()))?;
     let (failed, missed) = (rows.iter().filter(|row| row.fails()).count(), rows.iter().filter(|row| !row.ok()).count());
     args.console.say(&format!(
         "{} rows, {} within their bounds, {} known misses",

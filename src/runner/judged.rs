@@ -21,7 +21,8 @@ use perilife_results::units::show_folder;
 pub struct Judged {
     /// Its figures and tables.
     pub kept: Kept,
-    lives: Lives,
+    /// Its life and band, and what was asked of them.
+    pub lives: Lives,
     quality: Quality,
     answers: Answers,
     strengths: Option<Vec<Strength>>,

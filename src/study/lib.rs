@@ -1,9 +1,9 @@
 //! The program beside truths that it did not give itself: one judge with three questions.
 //!
-//! Knows: topics of `verify`, scenes and choices of `chart`, sweeps of `stability`, their tables and pictures.
+//! Knows: topics of `verify`, published tests of `validate`, scenes and choices of `chart`, sweeps of `stability`, their tables and pictures.
 //! Must not know: terminals, networks.
 //!
-//! Imports any member but `runner` and `service`; only the commands import it.
+//! Imports any member but `service`; only the commands import it.
 //!
 //! A [`scene::Scene`] has a case, a truth and the truth's uncertainty, and says how far the case with some keys is from it. [`verify`](rows)
 //! bounds that error (and figures that are no such scene) at the default; [`chart`] sets it beside the time that it costs, over
@@ -43,6 +43,7 @@ pub mod table;
 pub mod tasks;
 pub mod tension_plate;
 pub mod uniform_tension;
+pub mod validate;
 pub mod verification;
 
 use perilife_base::error::Result;

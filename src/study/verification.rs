@@ -79,7 +79,7 @@ pub fn summary(rows: &[Row]) -> String {
 }
 
 /// Text for a cell of a table, in which a bar would end it.
-fn cell(text: &str) -> String {
+pub(super) fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
@@ -130,7 +130,7 @@ fn bound(percent: f64) -> String {
 }
 
 /// Four significant digits; what round-off leaves is zero.
-fn four_digits(value: f64) -> String {
+pub(super) fn four_digits(value: f64) -> String {
     let size = value.abs();
     if size < 1e-9 {
         return "0".to_owned();

@@ -168,7 +168,7 @@ pub fn hypercube(samples: usize, columns: usize, seed: u64) -> Vec<Vec<f64>> {
 }
 
 /// Every order is equally likely (Fisher and Yates; Durstenfeld 1964, Commun. ACM 7:420).
-fn shuffle(items: &mut [usize], stream: &mut ChaCha8Rng) {
+pub fn shuffle<T>(items: &mut [T], stream: &mut ChaCha8Rng) {
     for i in (1..items.len()).rev() {
         items.swap(i, below(i as u64 + 1, stream) as usize);
     }

@@ -105,6 +105,13 @@ impl OutputFolder {
         self.warning.as_deref()
     }
 
+    /// Writes these files by their names, and finishes.
+    /// Errors: files that cannot be written.
+    pub fn write(mut self, files: &[(&str, &str)]) -> Result<()> {
+        self.fill(|path| files.iter().try_for_each(|(name, text)| write_file(&path.join(name), text.as_bytes())))?;
+        self.finish().map(drop)
+    }
+
     /// Has the files of the run written. If that fails, what there is stays under a visible name.
     pub fn fill<T>(&mut self, write: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
         let error = match write(&self.partial) {

@@ -29,6 +29,8 @@ pub enum RunKind {
     SweepCase,
     /// `perilife verify`.
     Verify,
+    /// `perilife validate`.
+    Validate,
     /// `perilife chart`.
     Chart,
     /// `perilife stability`.
@@ -46,6 +48,7 @@ impl RunKind {
             RunKind::Sweep => "a sweep",
             RunKind::SweepCase => "a case of a sweep",
             RunKind::Verify => "a verification",
+            RunKind::Validate => "a validation",
             RunKind::Chart => "a speed-accuracy chart",
             RunKind::Stability => "a map of stability",
         }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
+use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 
 use super::choice::{Choice, choices};
@@ -11,6 +11,7 @@ use super::run::Run;
 use super::{Chart, Panel, Point, SCENES};
 use crate::tasks::Outcome;
 use perilife_base::error::Result;
+use perilife_calibration::sweep::distribution::shuffle;
 
 /// Seed of the order: the same runs in the same order every time.
 const SEED: u64 = 1;
@@ -124,8 +125,9 @@ pub fn measure(
         }
     }
     let mut random = ChaCha8Rng::seed_from_u64(SEED);
-    let firsts: Vec<Request> = planned.iter().map(|(_, _, request)| request.clone()).collect();
-    for request in shuffled(firsts, &mut random) {
+    let mut firsts: Vec<Request> = planned.iter().map(|(_, _, request)| request.clone()).collect();
+    shuffle(&mut firsts, &mut random);
+    for request in firsts {
         if measuring.of(&request).next().is_none() {
             measuring.measure(request)?;
         }
@@ -135,7 +137,9 @@ pub fn measure(
         let wanted = walls.first().map_or(0, |first| effort.runs(*first)).saturating_sub(walls.len());
         vec![request.clone(); wanted]
     });
-    for request in shuffled(repeats.collect(), &mut random) {
+    let mut repeats: Vec<Request> = repeats.collect();
+    shuffle(&mut repeats, &mut random);
+    for request in repeats {
         measuring.measure(request)?;
     }
     let points = planned.into_iter().map(|(panel, choice, request)| point(panel, choice, measuring.of(&request))).collect();
@@ -153,12 +157,4 @@ fn point<'r>(panel: &'static Panel, choice: Choice, records: impl Iterator<Item 
         point.outcome = record.outcome.clone();
     }
     point
-}
-
-/// In random order (Fisher and Yates).
-fn shuffled<T>(mut all: Vec<T>, random: &mut ChaCha8Rng) -> Vec<T> {
-    for i in (1..all.len()).rev() {
-        all.swap(i, (random.next_u64() % (i as u64 + 1)) as usize);
-    }
-    all
 }
