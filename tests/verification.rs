@@ -16,6 +16,7 @@ mod error_estimate;
 mod factors_between;
 mod fatigue;
 mod fracture_relaxation;
+mod governing_crack;
 mod grips;
 mod growth_data;
 mod hand_calculation;

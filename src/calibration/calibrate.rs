@@ -12,13 +12,14 @@ use super::results;
 use super::search::Constants;
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::Document;
-use perilife_base::units::MPA_SQRT_M;
+use perilife_base::units::{MM, MPA_SQRT_M, round_off};
 use perilife_base::watch;
 use perilife_growth::case::{Case, Model};
 use perilife_growth::predict::factor_curve::{EXPONENT_USUAL, FactorCurve};
 use perilife_growth::predict::{Observer, RunFigures};
 use perilife_growth::rate_constant::{rate_constant, rate_constant_slope};
 use perilife_laws::paris::ParisLaw;
+use perilife_measured::MeasuredCurve;
 
 /// Change of the exponent below which the path of several tips needs no other run.
 const EXPONENT_SAME: f64 = 0.05;
@@ -27,6 +28,8 @@ const EXPONENT_SAME: f64 = 0.05;
 const STEP_ERROR_PERCENT: f64 = 0.05;
 /// Most runs of a plate whose tips share the growth by the exponent that is sought.
 const RUNS_MAX: usize = 4;
+/// Relative difference between lengths that are equal but for round-off.
+const SAME_LENGTH: f64 = 1e-9;
 
 /// A checked calibration file.
 #[derive(Debug, Clone)]
@@ -162,6 +165,18 @@ fn task<'a>(calibration: &'a CalibrationCase, delta_k: &'a dyn Fn(f64) -> f64) -
     FitTask { curves: &calibration.curves, fixed_p: calibration.exponent.fixed, criterion: calibration.criterion, delta_k }
 }
 
+/// Refuses readings that begin before the governing crack does: they are of another one.
+fn check_crack(calibration: &CalibrationCase, start: f64) -> Result<()> {
+    let is_before = |curve: &&MeasuredCurve| curve.crack_length[0] < start * (1.0 - SAME_LENGTH);
+    let Some(curve) = calibration.curves.iter().find(is_before) else { return Ok(()) };
+    let [first, start] = [curve.crack_length[0], start].map(|length| round_off(length / MM));
+    let problem = format!(
+        "has a first reading of {first} mm for {}, and the crack that ends the life is {start} mm long at the start",
+        curve.specimen
+    );
+    Err(input_missing("measured.files", problem, "give the readings of that crack, along its path and over all its tips"))
+}
+
 /// The fit to K of the tips of a plate that no handbook has, along their own paths.
 fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Result<Fit> {
     let mut case = calibration.case.clone();
@@ -170,9 +185,10 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
     let mut run = 1;
     loop {
         let factors = FactorCurve::at_exponent(&case, m, observer)?;
+        check_crack(calibration, factors.start())?;
         let share = case.loading.range_share();
         let of_tips = |length: f64| factors.of_tips(length).into_iter().map(|k| share * k).collect();
-        let law = PowerLaw::of_tips(case.specimen.crack_length, case.stop.crack_length, &of_tips)?;
+        let law = PowerLaw::of_tips(factors.start(), case.stop.crack_length, &of_tips)?;
         let at_exponent = |m: f64| {
             let delta_k = |length: f64| law.delta_k(length, m) * MPA_SQRT_M;
             fit(&task(calibration, &delta_k), &law)

@@ -285,18 +285,19 @@ fn check_through(specimen: &Specimen) -> perilife_base::error::Result<()> {
 
 /// The model starts at the specimen's crack length, so no reading may come before it; one that its rounding puts there is at the start.
 fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> perilife_base::error::Result<()> {
+    let start = specimen.shortest_crack();
     for curve in curves {
         let first = curve.crack_length[0]; // a window keeps at least five readings
-        if specimen.crack_length > first * (1.0 + ROUNDING) {
+        if start > first * (1.0 + ROUNDING) {
             let mm = |length: f64| round_off(length / MM).to_string();
             return Err(input(
                 "specimen.crack_length_mm",
-                mm(specimen.crack_length),
+                mm(start),
                 format!("is longer than the first reading of specimen {}, {} mm", curve.specimen, mm(first)),
                 "start the model at the first reading, or the window (measured.from_crack_length_mm) at the model",
             ));
         }
-        curve.crack_length.iter_mut().for_each(|length| *length = length.max(specimen.crack_length));
+        curve.crack_length.iter_mut().for_each(|length| *length = length.max(start));
     }
     Ok(())
 }

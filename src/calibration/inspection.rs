@@ -20,8 +20,8 @@ pub struct Inspection {
     pub crack_length_mm: f64,
     /// The tip of a plate whose crack that is.
     pub tip: Option<usize>,
-    /// Crack length of the curve then: in a plate of all cracks together.
-    pub crack_length_of_all_mm: f64,
+    /// Crack length of the curve then: in a plate with several cracks that of the one that ends its life.
+    pub crack_length_governing_mm: f64,
     /// Cycles at which the curve reaches that length.
     pub cycles_at: f64,
     /// Cycles at its end.
@@ -87,9 +87,9 @@ impl TipLengths {
         Some(TipLengths { lengths: (0..case.specimen.tips.len()).map(of_tip).collect(), leads })
     }
 
-    /// The tip that is meant, and the length of all cracks when its crack has the length that was asked for, linear between rows.
+    /// The tip that is meant, and crack length and cycles of the curve when its crack has the length that was asked for.
     /// Errors: no such tip, a length that its crack does not come to.
-    fn of_all(&self, curve: &[[f64; 2]], from: InspectFrom) -> Result<(usize, f64)> {
+    fn of_curve(&self, curve: &[[f64; 2]], from: InspectFrom) -> Result<(usize, [f64; 2])> {
         let tip = from.tip.unwrap_or(self.leads);
         let Some(lengths) = self.lengths.get(tip).filter(|lengths| !lengths.is_empty()) else {
             let problem = format!("is no crack tip of this plate, which has {}", self.lengths.len());
@@ -104,8 +104,9 @@ impl TipLengths {
         let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
         let (a, b) = (lengths[after - 1], lengths[after]);
         let share = if b > a { (length - a) / (b - a) } else { 1.0 };
-        let all = curve[after - 1][0] + share * (curve[after][0] - curve[after - 1][0]);
-        Ok((tip, all))
+        let of_curve = curve[after - 1][0] + share * (curve[after][0] - curve[after - 1][0]);
+        let cycles = Monotone::new(lengths.iter().zip(curve).map(|(length, [_, cycles])| [*length, *cycles])).at(length);
+        Ok((tip, [of_curve, cycles]))
     }
 }
 
@@ -120,23 +121,23 @@ impl Inspection {
         is_lower_bound: bool,
     ) -> Result<Self> {
         from.check()?;
-        let of_tip = tips.map(|tips| tips.of_all(curve, from)).transpose()?;
+        let of_tip = tips.map(|tips| tips.of_curve(curve, from)).transpose()?;
         if let (None, Some(tip)) = (of_tip, from.tip) {
             let problem = "belongs to plates with cracks of their own: this specimen has the crack length of its standard";
             return Err(input(from.names[2], tip, problem, "leave it out"));
         }
-        let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, all)| all), curve[curve.len() - 1]);
+        let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, [length, _])| length), curve[curve.len() - 1]);
         let (shortest, longest) = (curve[0][0], end[0]);
         if !(shortest..=longest).contains(&length) {
             let problem = format!("is not on the curve, which goes from {shortest} to {longest} mm");
             return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them"));
         }
-        let cycles_at = Monotone::new(curve.iter().copied()).at(length);
+        let cycles_at = of_tip.map_or_else(|| Monotone::new(curve.iter().copied()).at(length), |(_, [_, cycles])| cycles);
         let remaining = end[1] - cycles_at;
         Ok(Inspection {
             crack_length_mm: from.crack_length_mm,
             tip: of_tip.map(|(tip, _)| tip),
-            crack_length_of_all_mm: length,
+            crack_length_governing_mm: length,
             cycles_at,
             life_cycles: end[1],
             remaining_cycles: remaining,

@@ -150,6 +150,7 @@ impl<'a> BondStrain<'a> {
                 factors: None,
                 t_stress: None,
                 response: Response::PROPORTIONAL,
+                growth_rate: None,
             }
         };
         self.run.tips.iter().map(record).collect()
@@ -235,7 +236,7 @@ impl<'a> BondStrain<'a> {
         let run = &mut self.run;
         run.track.record(records, run.broken_bonds, work);
         // The length averaged over a spacing of growth is known up to a known end once the run is a spacing further; the curve stops there.
-        let is_past = |end: &End| run.track.last().crack_length >= end.crack_length + case.points().spacing;
+        let is_past = |end: &End| run.track.last().towards(end, &case.specimen) >= end.crack_length + case.points().spacing;
         let reason = reason.or_else(|| self.end.filter(is_past).map(|end| end.reason));
         if reason.is_none() {
             self.look_around();
@@ -337,7 +338,7 @@ impl CrackGrowth for BondStrain<'_> {
         // Of a plate its sections are known afterwards, with its curve.
         let at_section = stop::at_section(self.case, &run.track.curve(self.case, body, self.end));
         self.end = [self.end, at_section].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length));
-        let stop = stop::settled(self.end, &run.track, stop);
+        let stop = stop::settled(self.end, (&run.track, &self.case.specimen), stop);
         if !matches!(stop, StopReason::Severed | StopReason::NoConvergence) {
             run.iterations += self.equilibrium.complete(body, &run.bonds, &mut self.displacement)?;
         }

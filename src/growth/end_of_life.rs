@@ -1,9 +1,10 @@
 //! Where a run ends: crack lengths at which a standard specimen is at its end, known before any run since its K(a) and its net section
 //! are; and of a run by K of its tips the reasons known before an increment, and those that lie within one.
 
-use super::record::{CurvePoint, StopReason};
+use super::record::{CurvePoint, StopReason, TipRecord};
 use crate::case::Case;
 use perilife_plate::loading::LoadControl;
+use perilife_plate::specimen::Specimen;
 use perilife_plate::specimen::handbook::handbook;
 use perilife_points::crack_tip::TipState;
 
@@ -17,6 +18,23 @@ pub struct End {
     pub crack_length: f64,
     /// Why the run ends there.
     pub reason: StopReason,
+}
+
+impl End {
+    /// What is set against it of cracks that are in all so long, m, after these growths of their tips.
+    pub fn length(&self, specimen: &Specimen, crack_length: f64, growth_of_tips: impl Iterator<Item = f64>) -> f64 {
+        match self.reason {
+            StopReason::CrackLengthReached if specimen.has_several_cracks() => {
+                specimen.length_towards(self.crack_length, growth_of_tips)
+            }
+            _ => crack_length,
+        }
+    }
+
+    /// The same of a row.
+    pub fn length_of(&self, specimen: &Specimen, crack_length: f64, tips: &[TipRecord]) -> f64 {
+        self.length(specimen, crack_length, tips.iter().map(|tip| tip.growth))
+    }
 }
 
 /// The first of: the length the case stops at, K = toughness under the load to bear (where a handbook has K), yield of a whole section (of a
@@ -135,7 +153,8 @@ pub(super) fn reason_to_stop(
     if let Some(breaks) = breaks {
         return Some(strength_reason(case, breaks));
     }
-    if let Some(end) = end.filter(|end| last.crack_length >= end.crack_length * (1.0 - ROUND_OFF)) {
+    let length = |end: &End| end.length_of(&case.specimen, last.crack_length, &last.tips);
+    if let Some(end) = end.filter(|end| length(end) >= end.crack_length * (1.0 - ROUND_OFF)) {
         return Some(end.reason);
     }
     if !states.contains(&TipState::Active) {

@@ -154,6 +154,7 @@ impl<'a> HandCalculation<'a> {
                     factors: Some([k_max, 0.0]),
                     t_stress: None,
                     response,
+                    growth_rate: Some(self.rate(crack_length)),
                 })
                 .collect(),
             depth: None,

@@ -27,7 +27,7 @@ mod snapshot;
 pub mod tip_factors;
 mod way;
 
-pub use outcome::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord, governing_length};
+pub use outcome::{CrossCheck, CurvePoint, GoverningCrack, Prediction, Progress, RunFigures, StopReason, TipRecord};
 pub use perilife_base::watch::Silent;
 pub use record::Observer;
 

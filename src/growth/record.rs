@@ -59,6 +59,8 @@ pub struct TipRecord {
     pub t_stress: Option<f64>,
     /// How K_eq follows the load.
     pub response: Response,
+    /// Growth rate, m/cycle; `None` where `factors` is in runs by K.
+    pub growth_rate: Option<f64>,
 }
 
 /// The end in the thickness of the front of a crack that did not go through at the start, at a recorded step.
@@ -119,7 +121,8 @@ impl CurvePoint {
         lead: Option<(f64, f64)>,
     ) -> CurvePoint {
         let is_read = |tip: &TipRecord| !work.is_nan() && matches!(tip.state, TipState::Active | TipState::Closed);
-        tips.iter_mut().filter(|tip| !is_read(tip)).for_each(|tip| (tip.factors, tip.t_stress) = (None, None));
+        let unread = tips.iter_mut().filter(|tip| !is_read(tip));
+        unread.for_each(|tip| (tip.factors, tip.t_stress, tip.growth_rate) = (None, None, None));
         let lead = lead.filter(|_| !work.is_nan());
         let growths: Vec<f64> = tips.iter().map(|tip| tip.growth).collect();
         let (k_max, growth_rate) = lead.unwrap_or((f64::NAN, f64::NAN));
@@ -184,6 +187,7 @@ impl CurvePoint {
             factors: a.factors.zip(b.factors).map(|(a, b)| [0, 1].map(|i| mix(a[i], b[i]))),
             t_stress: a.t_stress.zip(b.t_stress).map(|(a, b)| mix(a, b)),
             response: a.response.between(&b.response, share),
+            growth_rate: a.growth_rate.zip(b.growth_rate).map(|(a, b)| mix(a, b)),
         };
         CurvePoint {
             is_solved: false,

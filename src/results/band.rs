@@ -76,7 +76,7 @@ impl Lives {
             is_lower_bound: checks::is_bound_below(case, prediction),
             tips: TipLengths::of_run(case, prediction),
             per_pass: case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass),
-            rows: prediction.curve.iter().map(Row::of).collect(),
+            rows: Row::of_run(case, prediction),
             own: None,
             inspection: None,
         })
@@ -101,7 +101,7 @@ impl Lives {
         let left = self.band.as_ref().ok().map(|(_, band)| &*band.left);
         let mut inspection = Inspection::of(&csv::curve(&self.rows), self.tips.as_ref(), left, from, self.is_lower_bound)?;
         if let (Ok((plate, _)), Some(own)) = (&self.band, &self.own) {
-            let left = plate.left(inspection.crack_length_of_all_mm * MM, Some(&own.specimen))?;
+            let left = plate.left(inspection.crack_length_governing_mm * MM, Some(&own.specimen))?;
             inspection = inspection.with(Some(left.quantiles));
         }
         self.inspection = Some(inspection);

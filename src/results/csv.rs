@@ -15,7 +15,7 @@ use perilife_base::input::{Opened, sha256};
 use perilife_base::units::us::System;
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use perilife_growth::case::Case;
-use perilife_growth::predict::{CurvePoint, Prediction};
+use perilife_growth::predict::{CurvePoint, GoverningCrack, Prediction};
 use perilife_growth::record::DepthRecord;
 use perilife_plate::loading::LoadControl;
 use perilife_plate::specimen::{Crack, LoadMeasure, Point};
@@ -39,13 +39,18 @@ pub struct Row {
 }
 
 impl Row {
-    /// The row of a point of the curve.
-    pub fn of(point: &CurvePoint) -> Row {
+    /// The rows of a run.
+    pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Row> {
+        let governing = GoverningCrack::of(&case.specimen, &prediction.curve);
+        prediction.curve.iter().map(|point| Row::of(point, &governing, case.loading.ratio)).collect()
+    }
+
+    fn of(point: &CurvePoint, governing: &GoverningCrack<'_>, ratio: f64) -> Row {
         Row {
             cycles: point.cycles,
-            crack_length_mm: point.crack_length / MM,
-            delta_k_mpa_sqrt_m: point.delta_k / MPA_SQRT_M,
-            da_dn_mm_per_cycle: point.growth_rate / MM_PER_CYCLE,
+            crack_length_mm: governing.length(point) / MM,
+            delta_k_mpa_sqrt_m: governing.delta_k(point, ratio) / MPA_SQRT_M,
+            da_dn_mm_per_cycle: governing.growth_rate(point) / MM_PER_CYCLE,
         }
     }
 
@@ -62,10 +67,10 @@ pub fn curve(rows: &[Row]) -> Vec<[f64; 2]> {
 }
 
 /// A column of the largest load of a cycle: its name behind a comma, and its value in a row.
-pub type LoadColumn<'a> = (&'static str, Box<dyn Fn(&CurvePoint) -> f64 + 'a>);
+type LoadColumn<'a> = (&'static str, Box<dyn Fn(&CurvePoint) -> f64 + 'a>);
 
 /// That of a case whose load depends on the crack.
-pub fn load_column(case: &Case) -> Option<LoadColumn<'_>> {
+fn load_column(case: &Case) -> Option<LoadColumn<'_>> {
     let loading = &case.loading;
     let at = |point: &CurvePoint| loading.at(point.crack_length);
     Some(match (&loading.control, case.specimen.load_measure) {
@@ -76,13 +81,19 @@ pub fn load_column(case: &Case) -> Option<LoadColumn<'_>> {
     })
 }
 
-/// `a_n.csv`: one row per cycle block; after the four columns broken bonds, the work of the loads
-/// (load squared times compliance), the `load` where it depends on the crack, of a crack that did not go through at the start its depth,
-/// where K does not follow the load in proportion K of the leading tip without load (K_res) and its stress ratio at that of the load, `ratio`, and, per tip, position and growth, and K_I, K_II and T at maximum load where they are known.
-pub fn a_n(prediction: &Prediction, load: Option<LoadColumn<'_>>, ratio: f64) -> String {
+/// `a_n.csv`: one row per cycle block; after the four columns, of the governing crack, broken bonds, the work of the loads
+/// (load squared times compliance), the load where it depends on the crack, the length of all cracks together where there are several, of a crack
+/// that did not go through at the start its depth, where K does not follow the load in proportion K of the leading tip without load (K_res) and its
+/// stress ratio at that of the load, and, per tip, position and growth, and K_I, K_II and T at maximum load and da/dN where they are known.
+pub fn a_n(case: &Case, prediction: &Prediction) -> String {
+    let (load, ratio) = (load_column(case), case.loading.ratio);
+    let governing = GoverningCrack::of(&case.specimen, &prediction.curve);
     let mut text = A_N_COLUMNS.join(",");
     text.push_str(",broken_bonds,load_work_j");
     text.push_str(load.as_ref().map_or("", |(column, _)| column));
+    if governing.is_of_several() {
+        text.push_str(",total_crack_length_mm");
+    }
     let has_depth = prediction.curve.iter().any(|point| point.depth.is_some());
     if has_depth {
         text.push_str(DEPTH_COLUMNS);
@@ -94,6 +105,7 @@ pub fn a_n(prediction: &Prediction, load: Option<LoadColumn<'_>>, ratio: f64) ->
     // Fatigue bonds, driven by their own strain know no K of a tip.
     let has_factors = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.factors.is_some());
     let has_t = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.t_stress.is_some());
+    let has_rate = prediction.curve.iter().flat_map(|point| &point.tips).any(|tip| tip.growth_rate.is_some());
     for tip in 0..prediction.curve.first().map_or(0, |point| point.tips.len()) {
         let _ = write!(text, ",tip{tip}_x_mm,tip{tip}_y_mm,tip{tip}_growth_mm"); // writing to a String cannot fail
         if has_factors {
@@ -102,12 +114,18 @@ pub fn a_n(prediction: &Prediction, load: Option<LoadColumn<'_>>, ratio: f64) ->
         if has_t {
             let _ = write!(text, ",tip{tip}_t_stress_mpa");
         }
+        if has_rate {
+            let _ = write!(text, ",tip{tip}_da_dn_mm_per_cycle");
+        }
     }
     text.push('\n');
     for point in &prediction.curve {
-        let _ = write!(text, "{},{},{}", Row::of(point).fields(), point.broken_bonds, number(point.work));
+        let _ = write!(text, "{},{},{}", Row::of(point, &governing, ratio).fields(), point.broken_bonds, number(point.work));
         if let Some((_, load)) = &load {
             let _ = write!(text, ",{}", number(load(point)));
+        }
+        if governing.is_of_several() {
+            let _ = write!(text, ",{}", number(point.crack_length / MM));
         }
         if has_depth {
             text.push_str(&depth_fields(point.depth));
@@ -125,6 +143,9 @@ pub fn a_n(prediction: &Prediction, load: Option<LoadColumn<'_>>, ratio: f64) ->
             }
             if has_t {
                 let _ = write!(text, ",{}", number(tip.t_stress.unwrap_or(f64::NAN) / MPA));
+            }
+            if has_rate {
+                let _ = write!(text, ",{}", number(tip.growth_rate.unwrap_or(f64::NAN) / MM_PER_CYCLE));
             }
         }
         text.push('\n');

@@ -8,7 +8,7 @@ use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::Case;
 use perilife_growth::cracks::steering::equivalent_factor;
 use perilife_growth::predict::laws::growth_law;
-use perilife_growth::predict::{CurvePoint, Prediction};
+use perilife_growth::predict::{CurvePoint, GoverningCrack, Prediction};
 use perilife_laws::growth_law::GrowthLaw;
 use perilife_plate::specimen::LoadMeasure;
 use perilife_points::crack_tip::TipState;
@@ -108,6 +108,7 @@ pub fn are_known(prediction: &Prediction) -> bool {
 /// Errors: a law whose rate is not known.
 pub fn factors(case: &Case, prediction: &Prediction) -> Result<String> {
     let (law, of_case) = (growth_law(case)?, Factors::of(case));
+    let governing = GoverningCrack::of(&case.specimen, &prediction.curve);
     let mut text = FACTOR_COLUMNS.join(",") + "\n";
     for tip in 0..of_case.cracks.len() {
         for point in &prediction.curve {
@@ -115,7 +116,7 @@ pub fn factors(case: &Case, prediction: &Prediction) -> Result<String> {
             let k_eq = Factors::equivalent(point, tip);
             let range_share = record.response.range_share(case.loading.ratio);
             let rate = if k_eq.is_nan() { k_eq } else { law.mean_rate(k_eq, case.loading.ratio, &record.response) };
-            let lengths = [point.crack_length, record.growth].map(|length| number(length / MM)).join(",");
+            let lengths = [governing.length(point), record.growth].map(|length| number(length / MM)).join(",");
             let [k_i, k_ii] = record.factors.unwrap_or([f64::NAN; 2]);
             let known = [k_i, k_ii, k_eq, range_share * k_eq].map(|k| number(k / MPA_SQRT_M)).join(",");
             let beta = [of_case.length(point, tip) / MM, of_case.beta(point, tip)].map(number).join(",");

@@ -9,7 +9,7 @@ use perilife_growth::predict::judgement::judge;
 use perilife_growth::predict::laws::paris_law;
 use perilife_growth::predict::part_through::PartThroughLife;
 use perilife_growth::predict::plastic_zone::{self, Zone};
-use perilife_growth::predict::{Prediction, StopReason};
+use perilife_growth::predict::{CurvePoint, GoverningCrack, Prediction, StopReason};
 use perilife_growth::record::TipRecord;
 use perilife_plate::specimen::part_through::{BREAK_THROUGH, Limit, STATED_ERROR};
 
@@ -27,6 +27,8 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
     // What the run found comes first: it counts more than what an assumption may do.
     let warnings: Vec<&String> = prediction.warnings.iter().chain(&judged).chain(&case.warnings).collect();
     let checks = checks::of_run(case, prediction);
+    let governing = GoverningCrack::of(&case.specimen, &prediction.curve);
+    let length = |row: Option<&CurvePoint>| row.map_or(f64::NAN, |row| governing.length(row) / MM);
     json!({
         "name": case.name,
         "life_cycles": prediction.life(),
@@ -35,8 +37,8 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
         "stop_reason": prediction.stop.name(),
         "stop_meaning": prediction.stop.meaning(),
         "converged": prediction.stop != StopReason::NoConvergence,
-        "crack_length_initial_mm": clean(case.specimen.crack_length / MM),
-        "crack_length_final_mm": clean(prediction.crack_length_final() / MM),
+        "crack_length_initial_mm": clean(length(prediction.curve.first())),
+        "crack_length_final_mm": clean(length(prediction.curve.last())),
         "critical": critical(case, prediction),
         "tips": tips(case, prediction),
         "part_through": part_through(case, prediction),
@@ -71,7 +73,8 @@ pub fn result(case: &Case, prediction: &Prediction) -> Value {
 /// them; `null` where the run did not come to it and no formula
 /// says it.
 fn critical(case: &Case, prediction: &Prediction) -> Value {
-    let by_run = prediction.stop.is_strength().then(|| (prediction.crack_length_final(), prediction.stop));
+    let length = |row| GoverningCrack::of(&case.specimen, &prediction.curve).length(row);
+    let by_run = prediction.curve.last().filter(|_| prediction.stop.is_strength()).map(|row| (length(row), prediction.stop));
     let by_formula = || critical_length(case).map(|end| (end.crack_length, end.reason));
     let [toughness, net_section] = critical_lengths(case).map(|end| end.map(|end| clean(end.crack_length / MM)));
     by_run.or_else(by_formula).map_or(Value::Null, |(length, reason)| {

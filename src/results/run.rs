@@ -22,7 +22,7 @@ use super::quality::Quality;
 use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{checks, factors, json, provenance, spectrum, vtk};
 use perilife_base::error::Result;
-use perilife_base::units::{KN, MM, MPA};
+use perilife_base::units::{KN, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, Model, RECORD};
 use perilife_growth::predict::fit_use;
@@ -90,7 +90,7 @@ impl Kept {
         lives.add_to(&mut result);
         quality.add_to(&mut result);
         answers.add_to(&mut result);
-        let a_n = lives.beside(csv::a_n(prediction, csv::load_column(case), case.loading.ratio));
+        let a_n = lives.beside(csv::a_n(case, prediction));
         let crack_path = csv::crack_path(prediction, &case.specimen.cracks);
         if let Some(object) = result.as_object_mut() {
             object.insert("plate".to_owned(), json!(Plate::of(case)));
@@ -144,7 +144,9 @@ fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_
     if let Some(k) = k_svg(result, &tables, LARGE) {
         put("k.svg", &k)?;
     }
-    let points: Vec<(f64, f64)> = tables.rows.iter().map(|row| (row.delta_k_mpa_sqrt_m, row.da_dn_mm_per_cycle)).collect();
+    // Of the tip that leads, whose rate the law is of.
+    let points: Vec<(f64, f64)> =
+        prediction.curve.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.growth_rate / MM_PER_CYCLE)).collect();
     if points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
         let rates = Series { name: "predicted, one point per cycle block".to_owned(), mark: Mark::Dots, points };
         chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;

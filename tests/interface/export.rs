@@ -8,13 +8,13 @@ use perilife_results::resample::cycles_over_length;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
-use crate::support::made_up_run;
+use crate::support::{made_up_case, made_up_run};
 
 /// A folder with the made-up run in `run/`.
 fn fabricated() -> TempDir {
     let dir = tempdir().unwrap();
     fs::create_dir(dir.path().join("run")).unwrap();
-    fs::write(dir.path().join("run/a_n.csv"), csv::a_n(&made_up_run::prediction(0.0), None, 0.0)).unwrap();
+    fs::write(dir.path().join("run/a_n.csv"), csv::a_n(&made_up_case::case(), &made_up_run::prediction(0.0))).unwrap();
     dir
 }
 

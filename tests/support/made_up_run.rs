@@ -68,6 +68,7 @@ fn curve() -> Vec<CurvePoint> {
             factors: None,
             t_stress: None,
             response: Response::PROPORTIONAL,
+            growth_rate: None,
         };
         curve.push(CurvePoint {
             is_solved: true,

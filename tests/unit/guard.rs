@@ -18,6 +18,7 @@ fn tip(growth: f64) -> TipRecord {
         factors: None,
         t_stress: None,
         response: Response::PROPORTIONAL,
+        growth_rate: None,
     }
 }
 

@@ -19,7 +19,7 @@ use perilife_results::specimen_picture::specimen_svg;
 use perilife_results::{csv, vtk};
 use tempfile::tempdir;
 
-use crate::support::made_up_run;
+use crate::support::{made_up_case, made_up_run};
 
 /// Lattice angles that matter: the image and the mesh.
 const ANGLES: [f64; 2] = [0.0, 0.35];
@@ -28,7 +28,7 @@ const ANGLES: [f64; 2] = [0.0, 0.35];
 fn charts_name_axes_units_and_series() {
     let dir = tempdir().unwrap();
     let run = made_up_run::prediction(0.0);
-    let rows: Vec<csv::Row> = run.curve.iter().map(csv::Row::of).collect();
+    let rows: Vec<csv::Row> = csv::Row::of_run(&made_up_case::case(), &run);
     let series = |name: &str, mark, pick: fn(&csv::Row) -> (f64, f64)| Series {
         name: name.into(),
         mark,

@@ -150,19 +150,19 @@ fn an_end_without_k_takes_the_scatter_of_the_rest() {
 fn an_inspection_interval_comes_from_the_five_percent_life() {
     let case = panel(5, &[]);
     let (run, mut lives) = lives(&case);
-    let rows: Vec<Row> = run.curve.iter().map(Row::of).collect();
+    let rows: Vec<Row> = Row::of_run(&case, &run);
     let from = InspectFrom { crack_length_mm: 20.0, tip: None, factor: 4.0, names: ["--inspect-from", "--factor", "--tip"] };
     let point = Inspection::of(&csv::curve(&rows), None, None, from, false).unwrap();
     assert!(!point.has_band && (4.0 * point.inspection_interval_cycles - point.remaining_cycles).abs() < 1e-6);
     // What a service reads from the table is what the run itself says.
-    let table = lives.beside(csv::a_n(&run, None, 0.0));
+    let table = lives.beside(csv::a_n(&case, &run));
     assert!(table.lines().next().unwrap().ends_with(&COLUMNS.join(",")));
     let with_band = Inspection::of(&csv::curve(&rows), None, left_of_table(&table).as_deref(), from, false).unwrap();
     let plate = &lives.band.as_ref().unwrap().0;
     let exact = plate.left(20.0 * MM, None).unwrap();
     assert!((with_band.remaining_cycles_p05.unwrap() / exact.quantiles[0] - 1.0).abs() < 2e-3, "{with_band:?} {exact:?}");
     assert!((4.0 * with_band.inspection_interval_cycles - with_band.remaining_cycles_p05.unwrap()).abs() < 1e-6);
-    assert_eq!(left_of_table(&csv::a_n(&run, None, 0.0)), None);
+    assert_eq!(left_of_table(&csv::a_n(&case, &run)), None);
     for (crack_length_mm, factor, words) in [(8.0, 3.0, "--inspect-from"), (50.0, 3.0, "9 to 49.8"), (20.0, 0.5, "--factor")] {
         let error = lives.inspect(InspectFrom { crack_length_mm, factor, ..from }).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");

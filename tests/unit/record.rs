@@ -32,6 +32,7 @@ impl Steady {
                 factors: None,
                 t_stress: None,
                 response: Response::PROPORTIONAL,
+                growth_rate: None,
             }],
             depth: None,
             response: Response::PROPORTIONAL,
@@ -99,6 +100,7 @@ fn a_row_tells_no_k_that_was_not_read_for_it() {
         factors: Some([1e7, 1e6]),
         t_stress: Some(1e6),
         response: Response::PROPORTIONAL,
+        growth_rate: None,
     };
     let states = [TipState::Active, TipState::Closed, TipState::EnteredHole, TipState::LeftPlate, TipState::LinkedUp];
     let row = |work| CurvePoint::of_tips(&case, [1e3, work], 5, (states.map(tip).to_vec(), &[]), Some((2e7, 1e-7)));

@@ -37,7 +37,7 @@ fn the_curve_table_reads_back() {
     let mut run = made_up_run::prediction(0.0);
     run.curve[3].delta_k = f64::NAN;
     let file = tempfile::NamedTempFile::new().unwrap();
-    std::fs::write(file.path(), csv::a_n(&run, None, 0.0)).unwrap();
+    std::fs::write(file.path(), csv::a_n(&made_up_case::case(), &run)).unwrap();
     let rows = csv::read_a_n(file.path()).unwrap();
     assert_eq!(rows.len(), run.curve.len(), "one row per block and one for N = 0");
     for (row, point) in rows.iter().zip(&run.curve) {
@@ -45,7 +45,7 @@ fn the_curve_table_reads_back() {
         assert!((row.crack_length_mm - 1e3 * point.crack_length).abs() < 1e-12 * row.crack_length_mm);
         assert_eq!(row.delta_k_mpa_sqrt_m.is_nan(), point.delta_k.is_nan());
     }
-    let header = csv::a_n(&run, None, 0.0).lines().next().unwrap().to_owned();
+    let header = csv::a_n(&made_up_case::case(), &run).lines().next().unwrap().to_owned();
     assert!(header.starts_with(
         "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,broken_bonds,load_work_j,tip0_x_mm,tip0_y_mm,tip0_growth_mm,tip1_x_mm"
     ));

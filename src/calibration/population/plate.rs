@@ -16,9 +16,9 @@ use perilife_base::units::round_off;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, LawSource};
-use perilife_growth::predict::Prediction;
 use perilife_growth::predict::factor_curve::TipFactors;
 use perilife_growth::predict::recorded::way;
+use perilife_growth::predict::{GoverningCrack, Prediction};
 use perilife_measured::{MeasuredCurve, Source};
 use perilife_plate::specimen::LengthConvention;
 
@@ -162,7 +162,7 @@ impl Plate {
         if life <= 0.0 {
             return Err("no crack grew".to_owned());
         }
-        let way = way(case, prediction);
+        let (way, governing) = (way(case, prediction), GoverningCrack::of(&case.specimen, rows));
         let known: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].delta_k.is_finite() && rows[i].delta_k > 0.0).collect();
         let [low, high] = [lot.law.range[0] / BEYOND_MAX, lot.law.range[1] * BEYOND_MAX];
         let is_inside = |i: &usize| (low..=high).contains(&rows[*i].delta_k);
@@ -194,7 +194,7 @@ impl Plate {
         Ok(Plate {
             of: case.lot,
             cycles: rows.iter().map(|row| row.cycles).collect(),
-            lengths: rows.iter().map(|row| row.crack_length).collect(),
+            lengths: rows.iter().map(|row| governing.length(row)).collect(),
             way,
             factors,
             zones,

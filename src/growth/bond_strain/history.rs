@@ -38,6 +38,11 @@ pub struct Row {
 }
 
 impl Row {
+    /// What is set against a length at which a run ends, m.
+    pub(super) fn towards(&self, end: &End, specimen: &Specimen) -> f64 {
+        end.length_of(specimen, self.crack_length, &self.tips)
+    }
+
     /// Where the tips are.
     pub fn tips(&self) -> &[TipRecord] {
         &self.tips
@@ -202,7 +207,7 @@ impl GrowthHistory {
             rows.extend(rows.last().cloned().map(|row| Row { cycles: cycles_max, ..row }));
         }
         if let Some(end) = end {
-            end_at(&mut rows, end.crack_length);
+            end_at(&mut rows, &end, &case.specimen);
         }
         let (span, thickness) = (RATE_SPAN_HORIZONS * body.horizon(), case.specimen.thickness);
         let rate = rates(&self.samples(&rows), span, thickness);
@@ -239,7 +244,7 @@ impl GrowthHistory {
             growth_rate: fastest(i),
             work: row.work,
             broken_bonds: row.broken_bonds,
-            tips: row.tips.clone(),
+            tips: tips_with_rates(&row.tips, of_tips.iter().map(|tip| tip[i].growth_rate)),
             depth: None,
             response: Response::PROPORTIONAL,
         };
@@ -247,16 +252,26 @@ impl GrowthHistory {
     }
 }
 
+/// Tips with the rates that are known of them.
+fn tips_with_rates(tips: &[TipRecord], rates: impl Iterator<Item = f64>) -> Vec<TipRecord> {
+    let mut tips = tips.to_vec();
+    tips.iter_mut().zip(rates).for_each(|(tip, rate)| tip.growth_rate = Some(rate).filter(|rate| rate.is_finite()));
+    tips
+}
+
 /// Ends the rows at a crack length that they pass.
-fn end_at(rows: &mut Vec<Row>, crack_length: f64) {
-    let Some(past) = rows.iter().position(|row| row.crack_length >= crack_length).filter(|&past| past > 0) else { return };
+fn end_at(rows: &mut Vec<Row>, end: &End, specimen: &Specimen) {
+    let length = |row: &Row| row.towards(end, specimen);
+    let Some(past) = rows.iter().position(|row| length(row) >= end.crack_length).filter(|&past| past > 0) else { return };
     rows.truncate(past + 1);
     let before = rows[past - 1].clone();
     let row = &mut rows[past];
-    let share = (crack_length - before.crack_length) / (row.crack_length - before.crack_length);
+    let share = (end.crack_length - length(&before)) / (length(row) - length(&before));
     let between = |a: f64, b: f64| a + share * (b - a);
     row.cycles = between(before.cycles, row.cycles);
-    row.crack_length = crack_length;
+    // Where that is the length of the row there is no rounding between.
+    row.crack_length =
+        if specimen.has_several_cracks() { between(before.crack_length, row.crack_length) } else { end.crack_length };
     row.work = between(before.work, row.work);
     for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
         tip.growth = between(old.growth, tip.growth);

@@ -20,7 +20,10 @@ pub(super) fn before_block(
     tips: &[CrackTip],
     ageing: &[FatigueBond],
 ) -> Option<StopReason> {
-    if let Some(end) = end.filter(|end| end.crack_length <= case.specimen.crack_length) {
+    if let Some(end) = end.filter(|end| {
+        let specimen = &case.specimen;
+        end.crack_length <= end.length(specimen, specimen.crack_length, std::iter::empty())
+    }) {
         return Some(end.reason);
     }
     // Where no handbook knows K, the energy released so far does.
@@ -47,8 +50,8 @@ pub(super) fn at_section(case: &Case, curve: &[CurvePoint]) -> Option<End> {
 }
 
 /// The reason that counts where a run had passed a known end before it stopped for another reason.
-pub(super) fn settled(end: Option<End>, track: &GrowthHistory, stop: StopReason) -> StopReason {
-    end.filter(|end| track.last().crack_length >= end.crack_length).map_or(stop, |end| end.reason)
+pub(super) fn settled(end: Option<End>, (track, specimen): (&GrowthHistory, &Specimen), stop: StopReason) -> StopReason {
+    end.filter(|end| track.last().towards(end, specimen) >= end.crack_length).map_or(stop, |end| end.reason)
 }
 
 /// Bonds between tips and an edge or hole less than one spacing ahead; those tips end.

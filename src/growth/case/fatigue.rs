@@ -151,8 +151,8 @@ pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Sp
     let crack_length = LENGTH.read_optional("stop.crack_length_mm", slice.crack_length_mm)?;
     if let (Some(length), Some(given)) = (crack_length, slice.crack_length_mm) {
         const KEY: &str = "stop.crack_length_mm";
-        if length <= specimen.crack_length {
-            let start = perilife_base::units::round_mm(specimen.crack_length);
+        if length <= specimen.shortest_crack() {
+            let start = perilife_base::units::round_mm(specimen.shortest_crack());
             return Err(input(
                 KEY,
                 given,

@@ -45,6 +45,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             factors: Some(tip.factors),
             t_stress: Some(tip.t_stress),
             response: tip.response,
+            growth_rate: Some(if tip.is_growing() { tip.rate } else { 0.0 }),
         };
         let tips = self.state.tips.iter().map(now).collect();
         let lead = self.fastest().map(|tip| &self.state.tips[tip]);

@@ -38,7 +38,8 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let mut lengths: Vec<f64> = self.state.tips.iter().map(share).collect();
         let length_after = |lengths: &[f64]| {
             let growth: Vec<f64> = self.state.tips.iter().zip(lengths).map(|(tip, length)| tip.growth + length).collect();
-            self.case.specimen.crack_length_after(&growth)
+            let (specimen, length) = (&self.case.specimen, self.case.specimen.crack_length_after(&growth));
+            self.end.map_or(length, |end| end.length(specimen, length, growth.into_iter()))
         };
         let (now, then) = (length_after(&vec![0.0; lengths.len()]), length_after(&lengths));
         if then > until {

@@ -134,6 +134,7 @@ impl<'a> PartThroughGrowth<'a> {
         let rates = [0, 1].map(|end| (to.axes[end] - from.axes[end]) / (to.cycles - from.cycles));
         row.growth_rate = rates[0].max(rates[1]);
         row.depth = row.depth.map(|depth| DepthRecord { growth_rate: Some(rates[0]), ..depth });
+        row.tips.iter_mut().for_each(|tip| tip.growth_rate = Some(rates[1]));
         row
     }
 
@@ -220,6 +221,7 @@ impl<'a> PartThroughGrowth<'a> {
             factors: Some([factors[1], 0.0]),
             t_stress: None,
             response: Response::PROPORTIONAL,
+            growth_rate: Some(rates[1]),
         };
         CurvePoint {
             is_solved: true,

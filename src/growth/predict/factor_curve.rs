@@ -4,7 +4,7 @@
 //! The path of a crack does not depend on C, and that of a single tip not on m either, so one run serves every pair of C and m. Of several
 //! tips the faster ones grow the farther ahead of the others the larger m is.
 
-use super::{CurvePoint, Observer, Prediction, RunFigures, StopReason, predict};
+use super::{CurvePoint, GoverningCrack, Observer, Prediction, RunFigures, StopReason, predict};
 use crate::case::{Case, LawSource};
 use crate::cracks::steering::equivalent_factor;
 use perilife_base::blended::Blended;
@@ -12,7 +12,7 @@ use perilife_base::error::{Error, Result};
 use perilife_base::units::MM;
 use perilife_laws::Driver;
 use perilife_laws::paris::ParisLaw;
-use perilife_plate::specimen::LengthConvention;
+use perilife_plate::specimen::{LengthConvention, Specimen};
 use perilife_points::crack_tip::TipState;
 
 /// Exponent of a run whose tips share its growth, where nothing better is known.
@@ -23,7 +23,7 @@ const ALIKE: f64 = 0.01;
 /// K_eq at maximum load over crack length; where K does not follow the load in proportion, the one whose range at the ratio of the load is ΔK.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FactorCurve {
-    /// Of every tip whose growth adds to the length; of a standard specimen the fastest stands for all.
+    /// Of every tip whose growth adds to the length of the governing crack; of a standard specimen the fastest stands for all.
     tips: Vec<TipFactors>,
     /// Figures of the run that it comes from.
     pub figures: RunFigures,
@@ -52,9 +52,14 @@ impl FactorCurve {
             LengthConvention::MeanOfTips => {
                 vec![TipFactors::new(solved(&done.curve).map(|row| (row.crack_length, row.delta_k / case.loading.range_share())))]
             }
-            LengthConvention::SumOfTips => of_every_tip(&done.curve, case.loading.ratio),
+            LengthConvention::SumOfTips => of_every_tip(&case.specimen, &done.curve, case.loading.ratio),
         };
         Ok(FactorCurve { tips, figures: done.figures, warnings: done.warnings })
+    }
+
+    /// Crack length at which it begins, m.
+    pub fn start(&self) -> f64 {
+        self.tips.iter().map(|tip| tip.lengths()[0]).fold(f64::INFINITY, f64::min)
     }
 
     /// K_eq at maximum load, Pa√m, at a crack length, m, of the fastest tip.
@@ -112,19 +117,19 @@ pub(super) fn solved(curve: &[CurvePoint]) -> impl Iterator<Item = &CurvePoint> 
     curve.iter().enumerate().filter(move |(index, row)| row.is_solved || *index == last).map(|(_, row)| row)
 }
 
-/// K of every tip over the rows in which it grows.
-fn of_every_tip(curve: &[CurvePoint], ratio: f64) -> Vec<TipFactors> {
-    let count = curve.first().map_or(0, |row| row.tips.len());
+/// K of every tip of the governing crack over the rows in which it grows.
+fn of_every_tip(specimen: &Specimen, curve: &[CurvePoint], ratio: f64) -> Vec<TipFactors> {
+    let (count, governing) = (curve.first().map_or(0, |row| row.tips.len()), GoverningCrack::of(specimen, curve));
     let of_tip = |tip: usize| {
         let factor = |row: &CurvePoint| {
             let record = &row.tips[tip];
             let factor = equivalent_factor(record.factors.filter(|_| record.state == TipState::Active)?);
             let factor = factor * record.response.range_share(ratio) / (1.0 - ratio.max(0.0));
-            (factor > 0.0).then_some((row.crack_length, factor))
+            (factor > 0.0).then_some((governing.length(row), factor))
         };
         TipFactors::new(solved(curve).filter_map(factor))
     };
-    (0..count).map(of_tip).filter(|tip| tip.lengths().len() > 1).collect()
+    (0..count).filter(|tip| governing.has(*tip)).map(of_tip).filter(|tip| tip.lengths().len() > 1).collect()
 }
 
 impl TipFactors {

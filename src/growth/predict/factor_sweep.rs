@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::factor_curve::{EXPONENT_USUAL, TipFactors, solved, unit_growth};
 use super::moment::{grown, rows_before_meeting};
-use super::{CurvePoint, Observer};
+use super::{CurvePoint, GoverningCrack, Observer};
 use crate::CrackGrowth;
 use crate::case::{Case, Engine};
 use crate::cracks::steering::equivalent_factor;
@@ -95,13 +95,13 @@ pub fn factor_sweep(case: &Case, lengths: &[f64], has_compliance: bool, observer
     let compliance = |stand: &Stand| has_compliance.then(|| Compliance::of(case, stand)).transpose();
     let found = stands.par_iter().map(compliance).collect::<Result<Vec<_>>>()?;
     let mut rows = Vec::new();
-    for (Stand { specimen, factors, t_stress }, compliance) in stands.iter().zip(found) {
+    for ((Stand { specimen, factors, t_stress }, length), compliance) in stands.iter().zip(lengths).zip(found) {
         let beside = compliance.as_ref();
         for (tip, seed) in specimen.tips.iter().enumerate() {
             let beta_length = beta_length(specimen, tip);
             let stress = specimen.beta_stress(case.loading.maximum);
             rows.push(SweepRow {
-                crack_length: specimen.crack_length,
+                crack_length: *length,
                 tip,
                 position: seed.position,
                 factors: factors[tip],
@@ -139,8 +139,9 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
         let problem = "needs one load on rims or holes: β is K over its stress";
         return Err(input_missing(KEY, problem, "give loading.stress_max_mpa or force_max_n"));
     }
-    if *first < specimen.crack_length * (1.0 - SAME) {
-        let problem = format!("begins below the initial crack length {} mm of the plate", mm(specimen.crack_length));
+    let start = specimen.shortest_crack();
+    if *first < start * (1.0 - SAME) {
+        let problem = format!("begins below the initial crack length {} mm of the plate", mm(start));
         return Err(input(KEY, mm(*first), problem, format!("begin there, or give a smaller {}", specimen.crack_key())));
     }
     let (limit, name) = specimen.length_limit();
@@ -189,6 +190,8 @@ fn by_run(case: &Case, lengths: &[f64], observer: &dyn Observer, warnings: &mut 
     let run = unit_growth(case, EXPONENT_USUAL, observer)?;
     warnings.extend(run.warnings);
     let mut rows = rows_before_meeting(&run.curve).to_vec();
+    let governing = GoverningCrack::of(&case.specimen, &run.curve);
+    rows.iter_mut().for_each(|row| row.crack_length = governing.length(row));
     rows.dedup_by(|next, before| next.crack_length <= before.crack_length);
     let last = lengths[lengths.len() - 1];
     let reached = rows.last().map_or(0.0, |row| row.crack_length);

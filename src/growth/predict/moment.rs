@@ -69,7 +69,7 @@ pub(super) fn grown(specimen: &Specimen, rows: &[CurvePoint]) -> Specimen {
         }
         after.tips[tip] = TipSeed { position: line.end(end.at_last), direction: line.direction(end.at_last), from_slot: false };
     }
-    after.crack_length = last.crack_length;
+    after.crack_length = specimen.crack_length_after(&last.tips.iter().map(|tip| tip.growth).collect::<Vec<_>>());
     after.set_crack_lines(&lines);
     after
 }

@@ -2,14 +2,18 @@
 
 use super::initiation::PhaseOne;
 use crate::CrackGrowth;
+use crate::cracks::steering::equivalent_factor;
 pub use crate::cross_check::CrossCheck;
 pub use crate::record::{CurvePoint, StopReason, TipRecord};
 use perilife_base::machine;
 use perilife_base::raster::{PointGrid, Snapshot};
 use perilife_base::units::MM;
-use perilife_plate::specimen::Specimen;
+use perilife_plate::specimen::{LengthConvention, Specimen};
 use perilife_points::body::Body;
 use perilife_points::solver::SolverUsed;
+
+/// Relative difference between growths of tips that grew alike.
+const ALIKE: f64 = 1e-3;
 
 /// Figures of a run that users ask for.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,13 +133,70 @@ fn governing_tip(specimen: &Specimen, curve: &[CurvePoint]) -> Option<usize> {
         Some(before) => last.tips[tip].growth - before.tips[tip].growth,
         None => last.tips[tip].factors.map_or(0.0, |[k_i, _]| k_i),
     };
-    (0..last.tips.len()).max_by(|a, b| leads(*a).total_cmp(&leads(*b)))
+    // Of tips that grew alike that of the longest crack.
+    let most = (0..last.tips.len()).map(leads).fold(f64::NEG_INFINITY, f64::max);
+    let length = |tip: usize| last.crack_length_of(specimen, tip).unwrap_or(0.0);
+    (0..last.tips.len()).filter(|tip| leads(*tip) >= most * (1.0 - ALIKE)).max_by(|a, b| length(*a).total_cmp(&length(*b)))
 }
 
-/// Length of the governing crack of a plate at a row, m; that of the row of a standard specimen.
-pub fn governing_length<'a>(specimen: &'a Specimen, curve: &[CurvePoint]) -> impl Fn(&CurvePoint) -> f64 + 'a {
-    let tip = governing_tip(specimen, curve);
-    move |row| tip.and_then(|tip| row.crack_length_of(specimen, tip)).unwrap_or(row.crack_length)
+/// The crack that a curve is told by, whose length, ΔK and da/dN stand in one row: of a plate with several cracks the one whose tip ends the life,
+/// else that of the convention of the specimen.
+#[derive(Debug, Clone)]
+pub struct GoverningCrack<'a> {
+    specimen: &'a Specimen,
+    /// A tip of it, and all its tips; `None` where the length of the row is that of the specimen.
+    of_several: Option<(usize, Vec<usize>)>,
+}
+
+impl<'a> GoverningCrack<'a> {
+    /// Of a run.
+    pub fn of(specimen: &'a Specimen, curve: &[CurvePoint]) -> Self {
+        let line = |tip: usize| specimen.line_end(tip).map(|end| end.line);
+        let tip = governing_tip(specimen, curve).filter(|_| specimen.has_several_cracks());
+        let of_several = tip.map(|tip| (tip, (0..specimen.tips.len()).filter(|other| line(*other) == line(tip)).collect()));
+        GoverningCrack { specimen, of_several }
+    }
+
+    /// Whether the plate has others beside it.
+    pub fn is_of_several(&self) -> bool {
+        self.of_several.is_some()
+    }
+
+    /// Its length at a row, m.
+    pub fn length(&self, row: &CurvePoint) -> f64 {
+        let of_several = self.of_several.as_ref().and_then(|(tip, _)| row.crack_length_of(self.specimen, *tip));
+        of_several.unwrap_or(row.crack_length)
+    }
+
+    /// How fast that grows, m/cycle; NaN where it is not known.
+    pub fn growth_rate(&self, row: &CurvePoint) -> f64 {
+        let own: Vec<f64> = self.tips(row).filter_map(|tip| tip.growth_rate).collect();
+        let in_depth = row.depth.and_then(|depth| depth.growth_rate);
+        let fastest = row.tips.iter().filter_map(|tip| tip.growth_rate).chain(in_depth).fold(0.0, f64::max);
+        if own.is_empty() || fastest <= 0.0 {
+            return row.growth_rate;
+        }
+        let sum = own.iter().sum::<f64>() * row.growth_rate / fastest;
+        if self.specimen.convention == LengthConvention::SumOfTips { sum } else { sum / own.len() as f64 }
+    }
+
+    /// ΔK of the tip of it that leads, Pa√m; NaN where it is not known.
+    pub fn delta_k(&self, row: &CurvePoint, ratio: f64) -> f64 {
+        let range = |tip: &TipRecord| Some(equivalent_factor(tip.factors?) * tip.response.range_share(ratio));
+        let in_depth = row.depth.and_then(|depth| Some(depth.k_i? * row.response.range_share(ratio)));
+        let own = self.tips(row).filter_map(range).reduce(f64::max);
+        let largest = row.tips.iter().filter_map(range).chain(in_depth).fold(0.0, f64::max);
+        own.filter(|_| largest > 0.0).map_or(row.delta_k, |own| row.delta_k * own.max(0.0) / largest)
+    }
+
+    /// Whether a tip is one of its.
+    pub fn has(&self, tip: usize) -> bool {
+        self.of_several.as_ref().is_none_or(|(_, tips)| tips.contains(&tip))
+    }
+
+    fn tips<'b>(&'b self, row: &'b CurvePoint) -> impl Iterator<Item = &'b TipRecord> {
+        row.tips.iter().enumerate().filter(|(tip, _)| self.has(*tip)).map(|(_, tip)| tip)
+    }
 }
 
 /// What a run reports while it goes on.

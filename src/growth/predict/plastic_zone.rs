@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::{CurvePoint, governing_length};
+use super::{CurvePoint, GoverningCrack};
 use crate::case::Case;
 use perilife_base::units::MM;
 use perilife_plate::material::Plane;
@@ -58,11 +58,13 @@ pub struct PlasticZone {
 /// a plate the nearest free edge is at least `(4/π) (K_max/σ_Y)²` away from every tip, and cracks from rims are at least as long.
 pub fn plastic_zone(case: &Case, curve: &[CurvePoint]) -> Option<PlasticZone> {
     let strength = case.material.yield_strength?;
-    let length = governing_length(&case.specimen, curve);
+    let governing = GoverningCrack::of(&case.specimen, curve);
     let known: Vec<(&CurvePoint, Zone)> = curve
         .iter()
         .filter(|point| point.delta_k.is_finite())
-        .map(|point| (point, Zone { crack_length: length(point), ..zone(case, point, point.k_max(&case.loading), strength) }))
+        .map(|point| {
+            (point, Zone { crack_length: governing.length(point), ..zone(case, point, point.k_max(&case.loading), strength) })
+        })
         // Where every tip has reached an edge there is no room for a zone.
         .filter(|(_, zone)| zone.room().0.is_finite())
         .collect();

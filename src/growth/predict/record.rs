@@ -8,7 +8,7 @@ use super::initiation::{PhaseOne, phase_one};
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::way::Way;
-use super::{CrossCheck, CurvePoint, Prediction, Progress, RunFigures, StopReason, TipRecord, governing_length};
+use super::{CrossCheck, CurvePoint, GoverningCrack, Prediction, Progress, RunFigures, StopReason, TipRecord};
 use super::{laws, pin_arcs, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
 use crate::{CrackGrowth, GrowthStatus, plate};
@@ -188,9 +188,8 @@ impl<'a> Record<'a> {
         snapshots.keep_within(&curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
-        let at = |total: f64| {
-            curve.iter().find(|row| row.crack_length >= total).map_or(total, governing_length(&case.specimen, &curve))
-        };
+        let governing = GoverningCrack::of(&case.specimen, &curve);
+        let at = |total: f64| curve.iter().find(|row| row.crack_length >= total).map_or(total, |row| governing.length(row));
         let cross_check = growth.cross_check(last).map(|check| CrossCheck { crack_length: at(check.crack_length), ..check });
         let mut warnings = warnings(case, growth, of_growth, &curve);
         warnings.extend(cross_check.and_then(|check| check.warning()));

@@ -3,7 +3,7 @@
 //! `load_c(a) = min(load_max K_c / K_max(a), limit load(a))`: K is proportional to load, and the limit load that of the weakest section
 //! ([`perilife_plate::specimen::limit_load`]). Where the curve falls to the maximum load of the cycle, the run ends.
 
-use super::CurvePoint;
+use super::{CurvePoint, GoverningCrack};
 use crate::case::Case;
 use perilife_base::error::{Result, input_missing};
 use perilife_plate::specimen::handbook::handbook;
@@ -62,7 +62,8 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
         }
         None => {
             let known = |point: &CurvePoint| Some(point.k_max(&case.loading)).filter(|k| *k > 0.0);
-            curve.iter().map(|point| strength(point.crack_length, known(point), point.limit_load)).collect()
+            let governing = GoverningCrack::of(&case.specimen, curve);
+            curve.iter().map(|point| strength(governing.length(point), known(point), point.limit_load)).collect()
         }
     };
     Ok(all.into_iter().filter(|strength| strength.load().is_finite()).collect())

@@ -24,16 +24,20 @@ impl Way {
     pub(super) fn progress(&mut self, case: &Case, growth: &dyn CrackGrowth) -> Progress {
         let now = growth.now();
         let grown = now.growth();
-        let start = case.specimen.crack_length;
+        let specimen = &case.specimen;
+        // Of several cracks that of the longest on its way to the end.
+        let longest = || specimen.length_towards(case.stop.crack_length, now.tips.iter().map(|tip| tip.growth));
+        let length = if specimen.has_several_cracks() { longest() } else { now.crack_length };
+        let start = specimen.shortest_crack();
         let by_length =
-            if case.stop.crack_length.is_finite() { (now.crack_length - start) / (case.stop.crack_length - start) } else { 0.0 };
+            if case.stop.crack_length.is_finite() { (length - start) / (case.stop.crack_length - start) } else { 0.0 };
         let ahead =
             [Some(until_rims(&case.specimen, &now)), until_toughness(case, &now), self.until_limit_load(case, &now, grown)];
         let left = ahead.into_iter().flatten().filter(|left| !left.is_nan()).fold(f64::INFINITY, f64::min).max(0.0);
         let by_growth = if grown > 0.0 { grown / (grown + left) } else { 0.0 };
         let share = by_length.max(by_growth).max(now.cycles / case.stop.cycles_max).clamp(0.0, 1.0);
         self.share = self.share.max(if share.is_nan() { 0.0 } else { share });
-        Progress { cycles: now.cycles, crack_length: now.crack_length, share: self.share }
+        Progress { cycles: now.cycles, crack_length: length, share: self.share }
     }
 
     /// Growth left until the weakest section yields, m.

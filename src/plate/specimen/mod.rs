@@ -420,6 +420,30 @@ impl Specimen {
         }
     }
 
+    /// Length of the longest of several cracks, m, after these growths of their tips, of those that were shorter than `end` before; 0 where all
+    /// were longer.
+    pub fn length_towards(&self, end: f64, growth_of_tips: impl Iterator<Item = f64>) -> f64 {
+        let lines = self.crack_lines();
+        let mut lengths: Vec<f64> = lines.iter().map(CrackLine::length).collect();
+        let is_ahead: Vec<bool> = lengths.iter().map(|length| *length < end).collect();
+        for (tip, growth) in growth_of_tips.enumerate() {
+            self.line_end(tip).into_iter().for_each(|end| lengths[end.line] += growth);
+        }
+        lengths.into_iter().zip(is_ahead).filter(|(_, ahead)| *ahead).fold(0.0, |most, (length, _)| most.max(length))
+    }
+
+    /// Crack length from which growth can start, m: of several cracks that of the shortest, else the crack length.
+    pub fn shortest_crack(&self) -> f64 {
+        let lines = self.crack_lines();
+        let shortest = lines.iter().map(CrackLine::length).reduce(f64::min);
+        shortest.filter(|_| self.has_several_cracks()).unwrap_or(self.crack_length)
+    }
+
+    /// Whether several cracks of a plate have a length each; ends of slots have none of their own.
+    pub fn has_several_cracks(&self) -> bool {
+        self.convention == LengthConvention::SumOfTips && self.crack_lines().len() > 1 && self.has_sharp_tips()
+    }
+
     /// Key that its cracks were given by.
     #[inline]
     pub fn crack_key(&self) -> &'static str {
