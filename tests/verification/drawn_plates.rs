@@ -8,7 +8,7 @@ use perilife_calibration::fit::Fit;
 use perilife_calibration::results::{record, report};
 use perilife_calibration::search::Constants;
 use perilife_growth::case::Case;
-use perilife_growth::predict::{Silent, predict};
+use perilife_growth::predict::{GoverningCrack, Silent, predict};
 use perilife_laws::FatigueLaw;
 use perilife_laws::paris::ParisLaw;
 
@@ -32,7 +32,7 @@ const PLATES: [(&str, &str, f64, f64); 3] = [
         "unlike cracks",
         "cracks = [{ from_mm = [-50, 40], to_mm = [-32, 40] }, { from_mm = [50, -40], to_mm = [37, -40] }]\n",
         2.0,
-        56.0,
+        34.0,
     ),
 ];
 
@@ -47,8 +47,9 @@ fn readings(specimen: &str, spacing: f64, to: f64) -> String {
     let run = predict(&case, &Silent).unwrap();
     let mut text = "cycles,crack_length_mm\n".to_owned();
     let mut last = f64::NEG_INFINITY;
+    let governing = GoverningCrack::of(&case.specimen, &run.curve);
     for row in run.curve.iter().filter(|row| row.tips.iter().all(|tip| tip.growth >= 0.0)) {
-        let length = row.crack_length / MM;
+        let length = governing.length(row) / MM;
         if length >= last + 0.5 {
             text += &format!("{:.6},{length:.9}\n", row.cycles);
             last = length;

@@ -241,7 +241,7 @@ fn a_through_crack_goes_on_as_that_of_a_plate() {
         (flaw(KINDS[0], ""), "", |c| vec![[-c, c]], 2.0),
         (flaw(KINDS[1], ""), "", |c| vec![[-20.0, -20.0 + c]], 1.0),
         (flaw(KINDS[3], &at_hole(1)), hole, |c| vec![[3.0, 3.0 + c]], 1.0),
-        (flaw(KINDS[3], &at_hole(2)), hole, |c| vec![[3.0, 3.0 + c], [-3.0, -3.0 - c]], 2.0),
+        (flaw(KINDS[3], &at_hole(2)), hole, |c| vec![[3.0, 3.0 + c], [-3.0, -3.0 - c]], 1.0),
     ];
     for (keys, holes, ends, tips) in rows {
         let set = ["model.method=auto", "stop.crack_length_mm=9"];

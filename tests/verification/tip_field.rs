@@ -201,7 +201,7 @@ fn no_bond_is_left_across_the_crack() {
 fn a_tip_below_the_threshold_waits() {
     let specimen = "kind = \"plate\"\nwidth_mm = 80\nlength_mm = 160\nthickness_mm = 2\ncracks = [{ from_mm = [-40, 40], to_mm = [-26, 40] }, { from_mm = [-40, -40], to_mm = [-36, -40] }]";
     let run =
-        run(&case(specimen, PULL, &["model.spacing_mm=1", "fatigue.delta_k_threshold_mpa_sqrt_m=9", "stop.crack_length_mm=30"]));
+        run(&case(specimen, PULL, &["model.spacing_mm=1", "fatigue.delta_k_threshold_mpa_sqrt_m=9", "stop.crack_length_mm=26"]));
     assert_eq!(run.stop, StopReason::CrackLengthReached);
     let [long, short] = [0, 1].map(|tip: usize| run.curve.last().unwrap().tips[tip].growth);
     assert!(short == 0.0 && (long - 12e-3).abs() < 1e-9, "{long} {short}");
