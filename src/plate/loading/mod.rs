@@ -2,7 +2,7 @@
 
 mod boundary;
 mod forces;
-mod formula;
+pub mod formula;
 mod grips;
 mod read;
 pub mod pieces;

@@ -99,9 +99,9 @@ fn outlined(sketch: &mut Sketch, mut corners: Vec<Pixel>, fill: &str, rim: &str)
 
 /// A panel with its points.
 fn draw(panel: &Panel, points: &[&Point], most_s: f64) -> Sketch {
-    let quantity = panel.scene.quantity().split(',').next().unwrap_or_default();
+    let quantity = panel.quantity.split(',').next().unwrap_or_default();
     let axes = [Axis::logarithmic_between(SECONDS_LEAST, most_s), Axis::logarithmic_between(ERRORS[0], ERRORS[1])];
-    let mut frame = Frame::new(PANEL, panel.about, axes, ["Time of a run, s", &format!("Error of {quantity}, %")], &[]);
+    let mut frame = Frame::new(PANEL, &panel.about, axes, ["Time of a run, s", &format!("Error of {quantity}, %")], &[]);
     let mut taken = limits(&mut frame, panel, most_s);
     let held = |[time, error]: [f64; 2]| [time.clamp(SECONDS_LEAST, most_s), error.clamp(ERRORS[0], ERRORS[1])];
     let steps = front(points, most_s, held);
@@ -130,13 +130,13 @@ fn draw(panel: &Panel, points: &[&Point], most_s: f64) -> Sketch {
 
 /// Scatter of the material, and what the truth cannot tell; the line of the scatter, px.
 fn limits(frame: &mut Frame, panel: &Panel, most_s: f64) -> Vec<Pixel> {
-    let uncertainty = panel.scene.truth_uncertainty_percent();
+    let uncertainty = panel.uncertainty_percent;
     let [left, _, right, bottom] = frame.room();
     if uncertainty > ERRORS[0] {
         frame.below(uncertainty, [SECONDS_LEAST, most_s], SHADE, 0.8);
         frame.sketch().name([right - 4.0, bottom - 6.0], "below the error of the truth", "end", PANEL.text, GREY);
     }
-    if !panel.scene.grows() {
+    if !panel.grows() {
         return Vec::new();
     }
     let y = frame.at([most_s, SCATTER_PERCENT])[1];
