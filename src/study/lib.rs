@@ -118,6 +118,9 @@ pub static TOPICS: LazyLock<Vec<Topic>> = LazyLock::new(|| read_topics().unwrap_
 
 /// The topics of these names, all where no name is given.
 pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
+    if TOPICS.is_empty() {
+        read_topics()?;
+    }
     chosen(&TOPICS, |topic| topic.name, names, "NAME", "is not a verification topic")
 }
 

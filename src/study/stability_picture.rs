@@ -111,8 +111,7 @@ fn draw(sweep: &Sweep, records: &[&Record]) -> Frame {
                 frame.sketch().dot([x, y], 3.0, colour);
             } else {
                 let [x, _] = frame.at([value, sweep.bound_percent]);
-                frame.sketch().path(&[[x - 5.0, top - 5.0], [x + 5.0, top + 5.0]], colour, 2.0, "");
-                frame.sketch().path(&[[x - 5.0, top + 5.0], [x + 5.0, top - 5.0]], colour, 2.0, "");
+                frame.sketch().cross([x, top], 5.0, colour, 2.0);
             }
         }
     }

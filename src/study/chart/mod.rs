@@ -44,9 +44,9 @@ pub struct Panel {
     path_mm: Option<String>,
     /// What is asked.
     ask: Question,
-    /// Values that all scenes share.
-    #[serde(skip)]
-    values: Table,
+    /// Its values.
+    #[serde(default)]
+    set: Table,
 }
 
 /// What a run of a scene found.
@@ -78,14 +78,14 @@ impl Panel {
     /// Its case with keys set by `section.key=value`.
     pub fn case(&self, set: &[String]) -> Result<Case> {
         let asker = Asker::new(&perilife_base::watch::Silent);
-        Ok(asker.ask(&self.ask, &self.values).subject(set)?.case)
+        Ok(asker.ask(&self.ask, &self.set).subject(set)?.case)
     }
 
     /// What it finds with keys set.
     /// Errors: those of the run; a run that ends otherwise than the truth.
     pub fn found(&self, set: &[String], observer: &dyn Watcher) -> Result<Found> {
         let asker = Asker::new(observer);
-        let asking = asker.ask(&self.ask, &self.values);
+        let asking = asker.ask(&self.ask, &self.set);
         let subject: Subject<'_> = asking.subject(set)?;
         let case = subject.case.clone();
         let asking = asking.of_subject(subject);
@@ -108,8 +108,10 @@ struct Measured {
 /// Scenes in the order of the panels, and what is offered for them, from their file; `tests/unit/studies.rs` reads it with its errors.
 pub fn read_scenes() -> Result<(Vec<Panel>, Vec<choice::Offer>)> {
     let Measured { mut scene, choice } = read(file("chart.toml", include_str!("../../../data/studies/chart.toml"))?)?;
-    let values = file("shared.toml", SHARED)?;
-    scene.iter_mut().for_each(|panel| panel.values = values.clone());
+    let shared = file("shared.toml", SHARED)?;
+    for panel in &mut scene {
+        panel.set = shared.clone().into_iter().chain(std::mem::take(&mut panel.set)).collect();
+    }
     Ok((scene, choice))
 }
 
@@ -120,6 +122,9 @@ pub static SCENES: LazyLock<&'static [Panel]> = LazyLock::new(|| &READ.0);
 
 /// The scenes of these names, all where no name is given.
 pub fn scenes(names: &[String]) -> Result<Vec<&'static Panel>> {
+    if SCENES.is_empty() {
+        read_scenes()?;
+    }
     chosen(&SCENES, |panel| &panel.name, names, "SCENE", "is not a scene of the chart")
 }
 

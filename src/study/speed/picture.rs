@@ -171,8 +171,7 @@ fn left_out(sketch: &mut Sketch, points: &[&Point], frame: Box2) {
     sketch.name([frame.high[0] - 12.0 * count as f64 - 6.0, y + 4.0], "no result", "end", 11.0, PALE);
     for at in 0..count {
         let x = frame.high[0] - 12.0 * at as f64 - 8.0;
-        sketch.path(&[[x - 4.0, y - 4.0], [x + 4.0, y + 4.0]], PALE, 1.6, "");
-        sketch.path(&[[x - 4.0, y + 4.0], [x + 4.0, y - 4.0]], PALE, 1.6, "");
+        sketch.cross([x, y], 4.0, PALE, 1.6);
     }
 }
 

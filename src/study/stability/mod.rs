@@ -180,6 +180,9 @@ impl Effort {
 
 /// The sweeps of these names, all where no name is given.
 pub fn sweeps(names: &[String]) -> Result<Vec<&'static Sweep>> {
+    if SWEEPS.is_empty() {
+        read_sweeps()?;
+    }
     chosen(&SWEEPS, |sweep| &sweep.name, names, "NAME", "is not a stability sweep")
 }
 
