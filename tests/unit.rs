@@ -58,6 +58,7 @@ mod scene_results;
 mod specimen;
 mod spectrum;
 mod speed_chart;
+mod studies;
 mod sweep;
 #[cfg(feature = "tables")]
 mod tables;

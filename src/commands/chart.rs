@@ -126,7 +126,7 @@ fn once(args: &Args) -> Result<()> {
         "{}: error {} % of {}, {}, {} solves, {} MB",
         panel.name,
         digits(found.error_percent),
-        panel.scene.quantity(),
+        panel.quantity,
         seconds(found.wall_s),
         found.solves,
         digits(found.memory_mb)

@@ -295,8 +295,7 @@ impl Frame {
     /// A cross where a curve ends, and why.
     pub fn end(&mut self, point: Point, why: &str) {
         for [x, y] in self.pixels(&[point]) {
-            self.sketch.path(&[[x - 5.0, y - 5.0], [x + 5.0, y + 5.0]], INK, 2.0, "");
-            self.sketch.path(&[[x - 5.0, y + 5.0], [x + 5.0, y - 5.0]], INK, 2.0, "");
+            self.sketch.cross([x, y], 5.0, INK, 2.0);
             self.sketch.name([x - 9.0, y - 3.0], why, "end", self.size.text, INK);
         }
     }

@@ -9,10 +9,10 @@ use perilife_base::kinds::KindLine;
 pub fn lines() -> Vec<(String, String, String)> {
     let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
     let mut all = Vec::new();
-    all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.to_owned())));
+    all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.clone())));
     all.extend(validate::built_in().into_iter().map(|(name, title)| ("validate NAME".to_owned(), name, title)));
-    all.extend(SCENES.iter().map(|scene| ("chart SCENE".to_owned(), scene.name.to_owned(), scene.about.to_owned())));
+    all.extend(SCENES.iter().map(|scene| ("chart SCENE".to_owned(), scene.name.clone(), scene.about.clone())));
     all.extend([Family::lines(), Status::lines(), validate::Kind::lines()].into_iter().flatten().map(words));
-    all.extend(SWEEPS.iter().map(|sweep| ("stability NAME".to_owned(), sweep.name.to_owned(), sweep.about.to_owned())));
+    all.extend(SWEEPS.iter().map(|sweep| ("stability NAME".to_owned(), sweep.name.clone(), sweep.about.clone())));
     all
 }

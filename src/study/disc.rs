@@ -5,11 +5,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::table::Table;
+use super::figures::{Figures, Keys};
 use super::uniform_tension::strip;
 use perilife_base::error::{Error, Result};
 use perilife_base::quadrature;
-use perilife_base::units::{MM, MPA};
+use perilife_base::units::MM;
 use perilife_plate::material::{Material, Plane};
 use perilife_plate::specimen::{Edge, Point};
 use perilife_points::body::Body;
@@ -150,55 +150,27 @@ impl ElasticDisc {
     }
 }
 
-const MICRON: f64 = 1e-6;
-/// Asked for of stresses at the centre, percent.
-const CENTRE_PERCENT: f64 = 3.0;
-/// What the source calls good agreement of the displacement, as a number, percent.
-const AGREEMENT_PERCENT: f64 = 5.0;
-
-/// Constants that the source finds to agree well, N/m⁷, and the errors that are known, percent.
-const BEST_SPRINGS: [(f64, f64); 3] = [(0.1e23, -12.19), (0.25e23, -10.64), (0.5e23, -10.64)];
-
-/// Rows of the elastic disc.
-pub fn rows(table: &mut Table) -> Result<()> {
-    let silling = elastic(CONTROL, SPACING, TRAVEL)?;
-    // The factor goes with the spacing.
-    let fine = elastic((CONTROL.0, 0.5 * CONTROL.1), DIAMETER / 201.0, TRAVEL)?;
-    let nominal = |disc: &ElasticDisc| 2.0 * disc.load / (PI * DIAMETER * THICKNESS);
-    const CENTRE: &str = "2P/(πDt) and -6P/(πDt), Hondros 1959";
-    for (name, disc) in [("0.25 mm", &silling), ("0.126 mm", &fine)] {
-        let [along, across] = disc.centre;
-        table.compare(format!("σ_x at the centre, {name}, MPa"), along / MPA, nominal(disc) / MPA, CENTRE_PERCENT, CENTRE);
-        table.compare(
-            format!("σ_y at the centre, {name}, MPa"),
-            across / MPA,
-            -3.0 * nominal(disc) / MPA,
-            CENTRE_PERCENT,
-            CENTRE,
-        );
-        let (x, u) = disc.row.last().copied().unwrap_or_default();
-        let reference = hondros_displacement(x, disc.load, disc.half_angle);
-        let quantity = format!("u_x at the end of the horizontal diameter, {name}, µm");
-        table.compare(quantity, u / MICRON, reference / MICRON, CENTRE_PERCENT, "Hondros 1959 with the contact that was found");
-        table.error(
-            format!("depth by which points pass the platens, {name}, of the way"),
-            100.0 * disc.penetration / TRAVEL,
-            1.0,
-            "none is exact",
-        );
-    }
-    for (c, known) in BEST_SPRINGS {
-        let disc = elastic((ZeroEnergyControl::Spring, c), SPACING, TRAVEL)?;
-        let x = disc.row.last().map_or(0.0, |row| row.0);
-        let quantity = format!("u_x at the end of the diameter, springs c_I = {:.2}e23 N/m⁷, µm", c / 1e23);
-        let (computed, reference) = (disc.displacement(x) / MICRON, fine.displacement(x) / MICRON);
-        let source = "silling at half the spacing, equal way of the platens; Li, Hao, Liu and Zhen, figure 3: agrees well";
-        table.compare(quantity, computed, reference, AGREEMENT_PERCENT, source);
-        table.known_miss(
-            "the springs carry part of the stress: 4 % of the modulus in uniform strain at 0.5e23 (π c_I h δ⁴/8), more in the disc, \
-             probably since they resist rotation too. No constant of the source comes closer than a tenth",
-            known,
-        );
-    }
-    Ok(())
+/// Figures of the disc with springs or the control of Silling, so many points across: stresses at the centre and what the load means there,
+/// displacement of the end of the horizontal diameter and Hondros', that at the end of a lattice of [`SPACING`], depth that points have
+/// passed the platens over the way, largest departure of the second difference of displacements from Hondros'.
+pub fn figures(keys: &Keys<'_>) -> Result<Figures> {
+    let control: ZeroEnergyControl = keys.get("control")?;
+    let disc = elastic((control, keys.get("factor")?), DIAMETER / keys.get::<f64>("points")?, TRAVEL)?;
+    let (end, u) = disc.row.last().copied().unwrap_or((f64::NAN, f64::NAN));
+    let exact = |x: f64| hondros_displacement(x, disc.load, disc.half_angle);
+    let departs = |three: &[(f64, f64)]| {
+        let second = |u: [f64; 3]| u[0] - 2.0 * u[1] + u[2];
+        let [a, b, c] = [three[0], three[1], three[2]];
+        (second([a.1, b.1, c.1]) - second([exact(a.0), exact(b.0), exact(c.0)])).abs()
+    };
+    Ok(vec![
+        ("stress_x", disc.centre[0]),
+        ("stress_y", disc.centre[1]),
+        ("nominal", 2.0 * disc.load / (PI * DIAMETER * THICKNESS)),
+        ("u", u),
+        ("hondros", exact(end)),
+        ("u_common", disc.displacement(50.0 * SPACING)),
+        ("passed", disc.penetration / TRAVEL),
+        ("departs", disc.row.windows(3).map(departs).fold(0.0, f64::max)),
+    ])
 }

@@ -1,8 +1,8 @@
 //! Points of several levels: what the dual horizon keeps, and what a change of level does to uniform strain.
 
-use super::table::Table;
+use super::figures::Figures;
 use super::uniform_tension::{rest_within_rim, steel, strip};
-use perilife_base::error::Result;
+use perilife_base::error::{Error, Result};
 use perilife_base::units::MM;
 use perilife_plate::material::{Material, Plane};
 use perilife_plate::specimen::{Crack, Hole, Point, Slot, Specimen};
@@ -26,8 +26,6 @@ pub const PUBLISHED: BondLaw = BondLaw {
 const STRAIN: f64 = 1e-3;
 /// Spacing of their coarse points, m.
 const SPACING: f64 = 2.0 * MM;
-/// Forces and moments over the size of their parts that round-off may leave, percent.
-const ROUND_OFF: f64 = 1e-10;
 
 /// Bond laws that springs can carry, with all kernels, rotations and corrections; without tangential springs rotation has no say.
 pub fn laws() -> impl Iterator<Item = BondLaw> {
@@ -133,48 +131,28 @@ const TWO_LEVELS: &str = include_str!("../../data/cases/fracture/mixed_mode_two_
 /// The same with fine points everywhere.
 const UNIFORM: &str = include_str!("../../data/cases/fracture/mixed_mode_uniform.toml");
 
-/// Points of the mixed-mode plate beside those of its source: with 2.5 mm alone, those that the ligament is made of, those of 1.25 mm into
+/// Points of the mixed-mode plate: with 2.5 mm alone, those that the ligament is made of, those of 1.25 mm into
 /// which they are split, all with the refined ligament, with 1.25 mm everywhere.
-fn counts(table: &mut Table) -> Result<()> {
-    const SOURCE: &str =
-        "Chinese patent application of 2022 on brittle cracks by dual horizons (after Ren, Zhuang, Cai and Rabczuk 2016)";
+pub fn counts() -> Result<Figures> {
     let read = |text: &str| Scene::from_toml(text, "mixed_mode", std::path::Path::new("."), &[]);
-    let points = |scene: &Scene| Ok::<_, perilife_base::error::Error>(perilife_scenes::build(scene)?.0);
     let two_levels = read(TWO_LEVELS)?;
-    let net = points(&two_levels)?;
-    let coarse = points(&Scene { refinement: None, ..two_levels })?.len();
+    let net = perilife_scenes::build(&two_levels)?.0;
+    let coarse = perilife_scenes::build(&Scene { refinement: None, ..two_levels })?.0.len();
     let fine = net.spacings.iter().filter(|&&spacing| spacing < 2.0 * MM).count();
-    for (what, count, printed) in [
-        ("points of 2.5 mm", coarse, 6360),
-        ("of them split in four", coarse - (net.len() - fine), 1320),
-        ("points of 1.25 mm that they give", fine, 5280),
-        ("points of both levels", net.len(), 10320),
-        ("points of 1.25 mm everywhere", points(&read(UNIFORM)?)?.len(), 25440),
-    ] {
-        // One point of the most is 0.004 %.
-        table.compare(format!("mixed-mode plate: {what}"), count as f64, f64::from(printed), 1e-3, SOURCE);
-    }
-    Ok(())
+    let uniform = perilife_scenes::build(&read(UNIFORM)?)?.0.len();
+    let counts = [coarse, coarse - (net.len() - fine), fine, net.len(), uniform].map(|count| count as f64);
+    Ok(["coarse", "split", "fine", "both", "uniform"].into_iter().zip(counts).collect())
 }
 
-/// Where the figures of the published law come from.
-const PROGRAM: &str = "independent program, law of Ren, Zhuang, Cai and Rabczuk 2016: 0.76, 1.41, 0.8 %";
-
-/// Rows of the topic.
-pub fn rows(table: &mut Table) -> Result<()> {
-    momentum(table)?;
-    for (law, name, [least, largest], bounds, source) in [
-        // That program had another plate: two digits of its extremes count, give or take two.
-        (PUBLISHED, "bond_based, partial volumes", [0.76, 1.41], [2.0 / 0.76, 2.0 / 1.41, 0.8], PROGRAM),
-        (BALANCED, "two_parameter, balanced", [1.0, 1.0], [0.01; 3], "uniform strain"),
-    ] {
-        let Patch { strains: [low, high], off } = patch(law)?;
-        table.compare(format!("{name}: least strain beside a change of level over the nominal"), low, least, bounds[0], source);
-        table.compare(format!("{name}: largest strain there over the nominal"), high, largest, bounds[1], source);
-        let quantity = format!("{name}: displacement of a patch of two levels, over strain times length");
-        table.error(quantity, 100.0 * off, bounds[2], source);
-    }
-    counts(table)
+/// The patch of the published law, or of the one whose changes of level are balanced.
+pub fn patch_of(law: &str) -> Result<Figures> {
+    let law = match law {
+        "published" => PUBLISHED,
+        "balanced" => BALANCED,
+        other => return Err(Error::Mechanics(format!("data/studies: law={other}: neither published nor balanced"))),
+    };
+    let Patch { strains: [low, high], off } = patch(law)?;
+    Ok(vec![("least", low), ("largest", high), ("off", off)])
 }
 
 /// The law whose changes of level are balanced.
@@ -185,9 +163,10 @@ const BALANCED: BondLaw = BondLaw {
     surface_correction: SurfaceCorrection::Balanced,
 };
 
-/// Resultant and moment of a disorderly displacement on three levels around flaws.
-fn momentum(table: &mut Table) -> Result<()> {
-    let (mut force, mut moment, mut couple, mut count) = (0.0_f64, 0.0_f64, f64::INFINITY, 0);
+/// Resultant and moment of a disorderly displacement on three levels around flaws, largest of all laws; the least moment of laws whose
+/// tangential springs resist rotation.
+pub fn momentum() -> Result<Figures> {
+    let (mut force, mut moment, mut couple, mut count) = (0.0_f64, 0.0_f64, f64::INFINITY, 0.0);
     for law in laws().filter(|law| law.surface_correction != SurfaceCorrection::Balanced).chain([BALANCED]) {
         let net = perilife_scenes::build(&flawed(law))?.0;
         // Sines of large arguments: neighbours have nothing in common.
@@ -199,18 +178,7 @@ fn momentum(table: &mut Table) -> Result<()> {
         } else {
             moment = moment.max(turning);
         }
-        count += 1;
+        count += 1.0;
     }
-    let source = "a bond pulls both ends alike, along itself or with its couple";
-    let name = format!("three levels, worst of {count} laws: resultant of all forces, percent");
-    table.error(name, 100.0 * force, ROUND_OFF, source);
-    let name = "three levels, no tangential springs or free rotation: moment of all forces, percent";
-    table.error(name, 100.0 * moment, ROUND_OFF, source);
-    let name = "three levels, tangential springs, rotation resisted, least of all laws: moment of all forces, percent";
-    table.error(name, 100.0 * couple, ROUND_OFF, "as published");
-    table.known_miss(
-        "a tangential spring between points that cannot turn leaves a couple, on a lattice as well: use rotation = \"free\"",
-        2.11e-5,
-    );
-    Ok(())
+    Ok(vec![("force", force), ("moment", moment), ("couple", couple), ("laws", count)])
 }

@@ -8,7 +8,7 @@ use perilife_base::error::{Error, Result};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
 use perilife_growth::case::Case;
-use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_growth::predict::{Prediction, StopReason};
 use perilife_plate::specimen::Point;
 use perilife_plate::specimen::geometry::{distance, distance_to_segment};
 
@@ -20,8 +20,6 @@ pub const SHARES: [f64; 3] = [0.5, 0.75, 0.95];
 pub struct Reference {
     /// As its files are called.
     pub name: &'static str,
-    /// The same in words.
-    pub about: &'static str,
     /// The case, and cycles and places of every tip.
     files: [&'static str; 2],
     /// Whether its cracks end in holes.
@@ -29,10 +27,9 @@ pub struct Reference {
 }
 
 macro_rules! reference {
-    ($name:literal, $about:literal, $ends_in_hole:literal) => {
+    ($name:literal, $ends_in_hole:literal) => {
         Reference {
             name: $name,
-            about: $about,
             files: [
                 include_str!(concat!("../../data/reference/", $name, ".toml")),
                 include_str!(concat!("../../data/reference/", $name, ".csv")),
@@ -44,15 +41,15 @@ macro_rules! reference {
 
 /// All of them.
 pub const REFERENCES: [Reference; 9] = [
-    reference!("slant_severance", "slant crack until the plate is in two", false),
-    reference!("hole_attracts", "edge crack into a hole", true),
-    reference!("hole_missed", "edge crack that passes a hole", false),
-    reference!("compact_one_hole_a", "compact specimen, hole entered", true),
-    reference!("compact_one_hole_b", "compact specimen, hole passed", false),
-    reference!("offset_edge_cracks", "two edge cracks that pass each other", false),
-    reference!("double_edge_notched", "two holes, two edge cracks, each enters a hole", true),
-    reference!("three_point_bending", "bent beam with three holes, one entered", true),
-    reference!("three_cracks", "three collinear cracks that join twice", false),
+    reference!("slant_severance", false),
+    reference!("hole_attracts", true),
+    reference!("hole_missed", false),
+    reference!("compact_one_hole_a", true),
+    reference!("compact_one_hole_b", false),
+    reference!("offset_edge_cracks", false),
+    reference!("double_edge_notched", true),
+    reference!("three_point_bending", true),
+    reference!("three_cracks", false),
 ];
 
 /// Spacing, mm, of the plate whose holes the default does not resolve.
@@ -191,13 +188,6 @@ impl Reference {
             Some([Ok(k_i), Ok(k_ii)]) => Ok([*k_i, *k_ii]),
             _ => Err(Error::Mechanics(format!("no K in the first row of {}", self.name))),
         }
-    }
-
-    /// Its run, and how the tips went.
-    pub fn run(&self, set: &[String]) -> Result<(Prediction, Vec<Compared>)> {
-        let run = predict(&self.case(set)?, &Silent)?;
-        let compared = compare(&run, self.tips()?, f64::INFINITY);
-        Ok((run, compared))
     }
 
     /// Whether a run ended in a hole where the reference does.

@@ -89,7 +89,7 @@ fn draw(sweep: &Sweep, records: &[&Record]) -> Frame {
     let sizes = records.iter().flat_map(|record| &record.points).filter_map(|(_, outcome)| drawn(outcome));
     let y = Axis::logarithmic_wide(sizes.chain([sweep.bound_percent]));
     let [from, to] = x.ends();
-    let mut frame = Frame::new(SIZE, sweep.about, [x, y], [&parameter(sweep), "Size of the error, %"], &[]);
+    let mut frame = Frame::new(SIZE, &sweep.about, [x, y], [&parameter(sweep), "Size of the error, %"], &[]);
     let [first, last] = sweep.range();
     for (record, colour) in records.iter().zip(COLOURS.iter().cycle()) {
         // Safe ranges lie over each other: each is shaded faintly.
@@ -111,8 +111,7 @@ fn draw(sweep: &Sweep, records: &[&Record]) -> Frame {
                 frame.sketch().dot([x, y], 3.0, colour);
             } else {
                 let [x, _] = frame.at([value, sweep.bound_percent]);
-                frame.sketch().path(&[[x - 5.0, top - 5.0], [x + 5.0, top + 5.0]], colour, 2.0, "");
-                frame.sketch().path(&[[x - 5.0, top + 5.0], [x + 5.0, top - 5.0]], colour, 2.0, "");
+                frame.sketch().cross([x, top], 5.0, colour, 2.0);
             }
         }
     }

@@ -18,31 +18,26 @@ pub fn line(record: &Record) -> String {
 pub fn range(record: &Record) -> String {
     let sweep = record.sweep;
     let unit = if sweep.unit.is_empty() { String::new() } else { format!(" {}", sweep.unit) };
-    let [first, last] = sweep.range();
+    let [first, last] = sweep.range().map(short);
+    let (usual, bound) = (short(sweep.usual), sweep.bound_percent);
     match (record.is_safe, record.ends) {
-        (None, _) => format!("not judged: the usual value {}{unit} took more than its budget", short(sweep.usual)),
-        (Some(false), _) => format!("not within {} % at the usual value {}{unit}", sweep.bound_percent, short(sweep.usual)),
-        (Some(true), [None, None]) => {
-            format!("within {} % from {} to {}{unit}, the whole sweep", sweep.bound_percent, short(first), short(last))
-        }
-        (Some(true), [low, high]) => {
-            let end = |end: Option<f64>, whole: f64| short(end.unwrap_or(whole));
-            format!("within {} % from {} to {}{unit}", sweep.bound_percent, end(low, first), end(high, last))
-        }
+        (None, _) => format!("not judged: the usual value {usual}{unit} took more than its budget"),
+        (Some(false), _) => format!("not within {bound} % at the usual value {usual}{unit}"),
+        (Some(true), [None, None]) => format!("within {bound} % from {first} to {last}{unit}, the whole sweep"),
+        (Some(true), _) => format!("{}{unit}", ends(record)),
     }
 }
 
 /// The safe range of the map: its unit stands beside the parameter.
 pub fn ends(record: &Record) -> String {
-    let sweep = record.sweep;
-    let [first, last] = sweep.range();
+    let (sweep, [first, last]) = (record.sweep, record.sweep.range());
     match (record.is_safe, record.ends) {
         (None, _) => "not judged".to_owned(),
         (Some(false), _) => format!("never within {} %", sweep.bound_percent),
         (Some(true), [None, None]) => format!("within {} % everywhere", sweep.bound_percent),
         (Some(true), [low, high]) => {
-            let end = |end: Option<f64>, whole: f64| short(end.unwrap_or(whole));
-            format!("within {} % from {} to {}", sweep.bound_percent, end(low, first), end(high, last))
+            let [low, high] = [low.unwrap_or(first), high.unwrap_or(last)].map(short);
+            format!("within {} % from {low} to {high}", sweep.bound_percent)
         }
     }
 }
@@ -65,7 +60,7 @@ pub fn csv(records: &[Record]) -> String {
                 "{},{},{},{},{},{error},{},{},{}\n",
                 sweep.name,
                 field(record.method),
-                field(sweep.parameter),
+                field(&sweep.parameter),
                 number(*value),
                 sweep.status(outcome).name(),
                 record.ends[usize::from(*value >= record.sweep.usual)].map_or_else(String::new, number),
@@ -89,7 +84,7 @@ pub fn boundaries(records: &[Record]) -> String {
             "{},{},{},{},{low},{high},{},{},{date}\n",
             sweep.name,
             field(record.method),
-            field(sweep.parameter),
+            field(&sweep.parameter),
             record.is_safe.map_or_else(String::new, |is_safe| is_safe.to_string()),
             sweep.bound_percent,
             env!("CARGO_PKG_VERSION"),

@@ -1,112 +1,55 @@
-//! Standard specimens at default resolution, and their lives by quadrature with K of finite elements.
+//! Lives of standard specimens by quadrature with K of finite elements. The lengths between which a crack grows are keys of the case.
 
-use super::cases::{MATERIAL_AND_LAW, case_of, overrides, points};
+use super::cases::case_of;
 use perilife_base::error::{Error, Result};
 use perilife_base::quadrature::integrate;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::median::cycles_of_run;
 use perilife_growth::case::Case;
-use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
+use perilife_growth::predict::{Prediction, Silent, predict};
 use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::{LoadMeasure, Specimen};
 
 /// K of finite elements: specimen, crack length in mm, K_I in MPa√m at 100 MPa or 10 kN. Right to 0.05 % (`tests/reference/README.md`).
 const FACTORS: &str = include_str!("../../data/reference/standard_specimens.csv");
+/// Keys of the first and the last crack length.
+const RANGE: [&str; 2] = ["specimen.crack_length_mm=", "stop.crack_length_mm="];
 
-/// A specimen and the growth of its crack.
-#[derive(Debug, Clone, Copy)]
-pub struct Standard {
-    /// As ASTM E647 has it.
-    pub name: &'static str,
-    /// Its sections `[specimen]` and `[loading]`.
-    keys: &'static str,
-    /// First and last length, mm.
-    pub range: [f64; 2],
+/// First and last crack length of the keys, mm.
+fn range(set: &[String]) -> Result<[f64; 2]> {
+    let [first, last] = RANGE.map(|key| set.iter().rev().find_map(|set| set.strip_prefix(key)?.parse().ok()));
+    first.zip(last).map(|(first, last)| [first, last]).ok_or_else(|| Error::Mechanics(format!("keys {RANGE:?} are missing")))
 }
 
-/// M(T), 2a/W 0.2 to 0.76.
-pub const MIDDLE_TENSION: Standard = Standard {
-    name: "M(T)",
-    keys: "kind = \"middle_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 10\n\
-           [loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n",
-    range: [10.0, 38.0],
-};
-/// C(T), a/W 0.3 to 0.7.
-pub const COMPACT_TENSION: Standard = Standard {
-    name: "C(T)",
-    keys: "kind = \"compact_tension\"\nwidth_mm = 50\nthickness_mm = 10\ncrack_length_mm = 15\n\
-           [loading]\nforce_max_n = 5000\nstress_ratio = 0.1\n",
-    range: [15.0, 35.0],
-};
-/// SE(T), a/W 0.16 to 0.56.
-pub const SINGLE_EDGE: Standard = Standard {
-    name: "SE(T)",
-    keys: "kind = \"single_edge_tension\"\nends = \"uniform_stress\"\nwidth_mm = 50\nlength_mm = 150\nthickness_mm = 2\n\
-           crack_length_mm = 8\n[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n",
-    range: [8.0, 28.0],
-};
-/// DE(T), 2a/W 0.24 to 0.76.
-pub const DOUBLE_EDGE: Standard = Standard {
-    name: "DE(T)",
-    keys: "kind = \"double_edge_tension\"\nwidth_mm = 100\nlength_mm = 300\nthickness_mm = 2\ncrack_length_mm = 12\n\
-           [loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n",
-    range: [12.0, 38.0],
-};
-/// All of them.
-pub const STANDARD: [Standard; 4] = [MIDDLE_TENSION, COMPACT_TENSION, SINGLE_EDGE, DOUBLE_EDGE];
-
-impl Standard {
-    /// The same with another range of crack lengths, mm.
-    pub const fn from_to(self, range: [f64; 2]) -> Self {
-        Standard { range, ..self }
+/// The largest error of the cycles of a run at shares of the growth, percent, against quadrature with the range of its keys alone.
+pub fn growth_error(text: &str, set: &[String], run: &Prediction, shares: &[f64]) -> Result<f64> {
+    let [from, to] = range(set)?;
+    let own: Vec<String> = set.iter().filter(|key| RANGE.iter().any(|range| key.starts_with(range))).cloned().collect();
+    let lengths: Vec<f64> = [0.0].iter().chain(shares).map(|share| from + share * (to - from)).collect();
+    let points: Vec<(f64, f64)> = run.curve.iter().map(|point| (point.cycles, point.crack_length)).collect();
+    let cycles = cycles_of_run(&points, &lengths.iter().map(|length| length * MM).collect::<Vec<_>>())?;
+    let mut largest = 0.0_f64;
+    for (length, cycles) in lengths.iter().zip(&cycles).skip(1) {
+        let error = 100.0 * (cycles / by_quadrature(text, &own, Some(*length))? - 1.0);
+        largest = if error.abs() > largest.abs() { error } else { largest };
     }
+    Ok(largest)
+}
 
-    /// Its case, other keys set.
-    pub fn case(&self, set: &[String]) -> Result<Case> {
-        let [from, to] = self.range;
-        let range = format!("specimen.crack_length_mm={from} stop.crack_length_mm={to}");
-        case_of(&self.text(), &[&overrides(&range), set].concat())
-    }
+/// Life by quadrature with K of finite elements, to the last length of the keys or to another, mm.
+pub fn by_quadrature(text: &str, set: &[String], to: Option<f64>) -> Result<f64> {
+    let [from, last] = range(set)?;
+    let to = to.unwrap_or(last);
+    let more = [format!("{}{to}", RANGE[1]), "model.method=handbook".to_owned()];
+    let by_hand = case_of(text, &[set, &more].concat())?;
+    Ok(predict(&by_hand, &Silent)?.life_cycles() * over_handbook(&by_hand, [from, to])?)
+}
 
-    /// The life of a run over that by quadrature with the same keys and K of finite elements.
-    pub fn over_quadrature(&self, run: &Prediction, set: &[String]) -> Result<f64> {
-        if run.stop != StopReason::CrackLengthReached {
-            return Err(Error::Mechanics(format!("{} ended before its last length: {}", self.name, run.stop)));
-        }
-        Ok(run.life_cycles() / self.by_quadrature(set, self.range[1])?)
-    }
-
-    /// The largest error of the cycles of a run at shares of the growth, percent, against quadrature.
-    pub fn largest_error(&self, run: &Prediction, shares: &[f64]) -> Result<f64> {
-        let [from, to] = self.range;
-        let lengths: Vec<f64> = [0.0].iter().chain(shares).map(|share| from + share * (to - from)).collect();
-        let cycles = cycles_of_run(&points(run), &lengths.iter().map(|length| length * MM).collect::<Vec<_>>())?;
-        let mut largest = 0.0_f64;
-        for (length, cycles) in lengths.iter().zip(&cycles).skip(1) {
-            let error = 100.0 * (cycles / self.by_quadrature(&[], *length)? - 1.0);
-            largest = if error.abs() > largest.abs() { error } else { largest };
-        }
-        Ok(largest)
-    }
-
-    /// Life to a length, mm, by quadrature with K of finite elements, cycles.
-    fn by_quadrature(&self, set: &[String], to: f64) -> Result<f64> {
-        let range = [self.range[0], to];
-        let by_hand = self.from_to(range).case(&[set, &overrides("model.method=handbook")].concat())?;
-        Ok(predict(&by_hand, &Silent)?.life_cycles() * over_handbook(&by_hand, range)?)
-    }
-
-    /// Crack lengths, mm, with K_I of finite elements under the load of the case, Pa√m.
-    pub fn factors_of_elements(&self) -> Result<Vec<[f64; 2]>> {
-        let case = self.case(&[])?;
-        let load = case.loading.maximum / load_of_table(&case.specimen);
-        Ok(known_factors(case.specimen.kind.name()).map(|[a, k]| [a, k * load]).collect())
-    }
-
-    /// Text of its case.
-    pub fn text(&self) -> String {
-        format!("[specimen]\n{}{MATERIAL_AND_LAW}", self.keys)
-    }
+/// K_I of finite elements at a crack length of the table, mm, under the load of a case, Pa√m.
+pub fn k_of_elements(case: &Case, length: f64) -> Result<f64> {
+    let load = case.loading.maximum / load_of_table(&case.specimen);
+    let found = known_factors(case.specimen.kind.name()).find(|[a, _]| *a == length);
+    found.map(|[_, k]| k * load).ok_or_else(|| Error::Mechanics(format!("no K at {length} mm in the table")))
 }
 
 /// Load of the table: 100 MPa, or 10 kN.

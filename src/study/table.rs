@@ -2,10 +2,7 @@
 
 use std::time::Instant;
 
-use super::cases::overrides;
-use super::scene::{Scene, percent};
-use perilife_base::error::Result;
-use perilife_growth::predict::Silent;
+use super::closed::percent;
 
 /// One figure beside its reference.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,14 +65,6 @@ impl Table {
     /// A figure against its reference (not 0); the bound is on `100 |computed / reference - 1|`.
     pub fn compare(&mut self, quantity: impl Into<String>, computed: f64, reference: f64, bound_percent: f64, source: &str) {
         self.push(quantity.into(), computed, reference, percent(computed, reference), bound_percent, source);
-    }
-
-    /// A scene with these keys against its truth.
-    pub fn judge(&mut self, quantity: impl Into<String>, scene: &Scene, keys: &str, bound_percent: f64) -> Result<()> {
-        let set = overrides(keys);
-        let found = scene.found(&scene.case(&set)?, &set, &Silent)?;
-        self.compare(quantity, found.computed, found.truth, bound_percent, scene.truth());
-        Ok(())
     }
 
     /// A figure that is itself an error in percent.

@@ -51,7 +51,7 @@ impl<T> Outcome<T> {
 /// Those of these names among all, all where no name is given; `what` they are not, for a name that none has.
 pub(super) fn chosen<T>(
     all: &'static [T],
-    name: fn(&T) -> &'static str,
+    name: fn(&'static T) -> &'static str,
     names: &[String],
     key: &str,
     what: &str,

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use perilife_base::error::Result;
 use perilife_growth::case::Case;
+use perilife_plate::specimen::Point;
 use perilife_study::cases::by_name;
 
 /// Sections that most tests do not care about.
@@ -47,4 +48,36 @@ pub fn try_case(specimen: &str, set: &[&str]) -> Result<Case> {
 /// [`try_case`] where the input is right.
 pub fn case(specimen: &str, set: &[&str]) -> Case {
     try_case(specimen, set).unwrap()
+}
+
+/// Material and law of plates whose cracks go by K.
+const MATERIAL_AND_LAW: &str = "
+[material]
+youngs_modulus_gpa = 70.0
+poisson_ratio = 0.3
+plane = \"stress\"
+[fatigue]
+paris_c_mm_per_cycle = 1e-8
+paris_m = 3.0
+[stop]
+cycles_max = 1e14
+";
+
+/// Loading of all that is pulled at its ends.
+const PULL: &str = "[loading]\nstress_max_mpa = 60\nstress_ratio = 0.1\n";
+
+/// Two millimetres thick, of these keys, pulled at its ends.
+pub fn pulled_plate(keys: &str) -> String {
+    format!("[specimen]\nkind = \"plate\"\nthickness_mm = 2\n{keys}\n{PULL}{MATERIAL_AND_LAW}")
+}
+
+/// A pulled plate with these straight cracks, given by their ends; mm.
+pub fn cracked_plate(width: f64, length: f64, ends: &[[Point; 2]]) -> String {
+    pulled_plate(&format!("width_mm = {width}\nlength_mm = {length}\n{}", cracks(ends)))
+}
+
+/// The key of straight cracks, mm.
+pub fn cracks(ends: &[[Point; 2]]) -> String {
+    let all: Vec<String> = ends.iter().map(|[from, to]| format!("{{ from_mm = {from:?}, to_mm = {to:?} }}")).collect();
+    format!("cracks = [{}]", all.join(", "))
 }

@@ -15,8 +15,8 @@ const ASIDE: f64 = 0.01;
 fn every_method_has_its_row() {
     let limits = limits::parse(limits::TABLE).unwrap();
     let mut known: Vec<(String, String, f64)> = Vec::new();
-    for sweep in &SWEEPS {
-        known.extend(sweep.methods.iter().map(|(method, _)| (sweep.name.to_owned(), (*method).to_owned(), sweep.bound_percent)));
+    for sweep in SWEEPS.iter() {
+        known.extend(sweep.methods.iter().map(|method| (sweep.name.clone(), method.name.clone(), sweep.bound_percent)));
         assert!(sweep.values.windows(2).all(|pair| pair[0] < pair[1]), "{}: values rise", sweep.name);
         assert!(sweep.values.contains(&sweep.usual), "{}: the usual value is run", sweep.name);
     }

@@ -7,7 +7,7 @@ use perilife_study::chart::choice::choices;
 use perilife_study::chart::run::Model;
 use perilife_study::chart::schedule::{Effort, Record, Request, measure};
 use perilife_study::chart::{Chart, Family, Run, SCENES, Status, scenes};
-use perilife_study::scene::concentration_of;
+use perilife_study::closed::concentration_of;
 use perilife_study::speed::{COLUMNS, Origin, beaten, csv, fastest_within, markdown, never_on_front, svg};
 use perilife_study::tasks::Outcome;
 
@@ -126,24 +126,24 @@ fn the_summary_tells_the_fastest_and_the_beaten() {
 
 #[test]
 fn every_choice_is_a_case_of_its_own() {
-    for panel in &SCENES {
-        let (all, scene) = (choices(panel).unwrap(), &panel.scene);
+    for panel in SCENES.iter() {
+        let all = choices(panel).unwrap();
         assert!(all[0].is_default() && all.iter().filter(|choice| choice.is_default()).count() == 1, "{}", panel.name);
         // What the program chooses is a model that stands there by its own name, too.
         let all: Vec<_> = all.into_iter().filter(|choice| choice.family != Family::Auto).collect();
-        let points = scene.case(&[]).unwrap();
+        let points = panel.case(&[]).unwrap();
         for (i, choice) in all.iter().enumerate() {
             assert!(all[..i].iter().all(|other| other.name() != choice.name()), "{}: {} twice", panel.name, choice.name());
             // One that the program refuses is a point as well; the others differ from the default in what they set.
-            let Ok(case) = scene.case(&choice.set) else { continue };
+            let Ok(case) = panel.case(&choice.set) else { continue };
             let differs = case.model != points.model || case.fatigue != points.fatigue || case.material != points.material;
             assert!(differs || choice.family == Family::TipField && choice.words.is_empty(), "{}: {}", panel.name, choice.name());
         }
         let has = |family: Family| all.iter().any(|choice| choice.family == family);
-        assert!(has(Family::TipField) && (has(Family::ElementFree) || !scene.has_crack()), "{}", panel.name);
-        assert!(scene.grows() || has(Family::BondLaw) && has(Family::Solver), "{}", panel.name);
+        assert!(has(Family::TipField) && (has(Family::ElementFree) || !panel.is("crack")), "{}", panel.name);
+        assert!(panel.grows() || has(Family::BondLaw) && has(Family::Solver), "{}", panel.name);
     }
-    assert!(SCENES.len() >= 10 && SCENES.iter().all(|panel| panel.scene.truth_uncertainty_percent() < 1.0));
+    assert!(SCENES.len() >= 10 && SCENES.iter().all(|panel| panel.uncertainty_percent < 1.0));
 }
 
 #[test]

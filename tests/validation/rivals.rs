@@ -32,11 +32,11 @@ fn finite_elements_take_longer_for_the_same_error() {
         }
         // The finest repeats the table of the reference.
         assert!(runs[0]["error_percent"].as_f64().unwrap().abs() < 0.01, "{}", runs[0]);
-        let scene = &scenes(&[name.to_owned()]).unwrap()[0].scene;
+        let scene = scenes(&[name.to_owned()]).unwrap()[0];
         for (method, set) in [("points", vec![]), ("nodes", vec!["model.method=element_free_galerkin".to_owned()])] {
             let started = Instant::now();
-            let found = scene.found(&scene.case(&set).unwrap(), &set, &Silent).unwrap();
-            let error = found.error_percent().abs();
+            let found = scene.found(&set, &Silent).unwrap();
+            let error = found.error_percent.abs();
             line(method, found.solves as f64, started.elapsed().as_secs_f64(), error);
             // The coarsest mesh errs by some percent.
             assert!(error < runs[2]["error_percent"].as_f64().unwrap().abs(), "{plate}, {method}");

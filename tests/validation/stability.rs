@@ -14,7 +14,7 @@ fn check<const N: usize>((names, ends_least): ([&str; N], usize)) {
     let records = run(&chosen, Effort::QUICK, &|_| ());
     let mut ends = 0;
     for record in &records {
-        let limit = limits::of(record.sweep.name, record.method).expect("a row of every method");
+        let limit = limits::of(&record.sweep.name, record.method).expect("a row of every method");
         let name = format!("{} by {}", record.sweep.name, record.method);
         println!("{name}: {:?}, committed {:?}", record.ends, limit.ends);
         assert_eq!(record.is_safe, limit.is_safe, "{name}");

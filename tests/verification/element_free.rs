@@ -17,7 +17,9 @@ use perilife_nodes::solve::{Solution, solve, solve_with};
 use perilife_plate::material::{Material, Plane};
 use perilife_plate::specimen::{CrackLine, Specimen};
 use perilife_plate::williams::{Eigenfunction, Elasticity, Symmetry, coefficient_of_unit_factor};
-use perilife_study::cases::{NODES as METHOD, case, cracked_plate, cracks, pulled_plate};
+use perilife_study::cases::{NODES as METHOD, case};
+
+use crate::support::plates::{cracked_plate, cracks, pulled_plate};
 
 const BASES: [(BasisKind, Enrichment, f64); 4] = [
     (BasisKind::Linear, Enrichment::Tip, 2.5),

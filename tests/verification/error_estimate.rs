@@ -2,8 +2,10 @@
 
 use perilife_growth::predict::error_estimate::error_estimate;
 use perilife_growth::predict::{Silent, predict};
-use perilife_study::cases::{AUTO, POINTS, case, pulled_plate};
+use perilife_study::cases::{AUTO, POINTS, case};
 use perilife_study::references::{Reference, compare, largest};
+
+use crate::support::plates::pulled_plate;
 
 #[test]
 fn a_life_is_within_the_error_that_is_stated() {

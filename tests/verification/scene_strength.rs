@@ -7,9 +7,16 @@ use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceC
 use perilife_scenes::Scene;
 use perilife_scenes::assembly::preview;
 use perilife_scenes::trapping::trapping;
-use perilife_study::scene_strength::{GRIFFITH, SQUARE, growth_load};
+use perilife_study::cases::overrides;
+use perilife_study::scene_strength::growth_load;
 
 use crate::support::shared::shared;
+
+/// Values of the topic: the square, and Griffith's load on it, N.
+fn value(name: &str) -> toml::Value {
+    let text = include_str!("../../data/studies/scene_strength.toml");
+    text.parse::<toml::Table>().unwrap()["set"][name].clone()
+}
 
 /// τ of a law from its own lattice: square of the mean, over three angles of the rows, of the largest load of a growing crack whose
 /// bonds store the fracture energy, over Griffith's.
@@ -20,9 +27,9 @@ fn found(kind: BondLawKind, spacing: f64) -> f64 {
              damage.calibration=bond_energy"
         )
     };
-    let loads = [0, 20, 45].map(|angle| growth_load(&keys(angle)).unwrap());
+    let loads = [0, 20, 45].map(|angle| growth_load(value("square").as_str().unwrap(), &overrides(&keys(angle))).unwrap());
     println!("{kind}, {spacing} mm: {loads:.1?} N");
-    (loads.iter().sum::<f64>() / 3.0 / GRIFFITH[0]).powi(2)
+    (loads.iter().sum::<f64>() / 3.0 / value("griffith")[0].as_float().unwrap()).powi(2)
 }
 
 fn assert_table(kind: BondLawKind, spacing: f64, percent: f64) {
@@ -80,7 +87,7 @@ fn a_plate_under_1_mpa_branches() {
 #[test]
 fn a_crack_of_few_spacings_is_told() {
     let lines = |set: &str| {
-        let scene = Scene::from_toml(SQUARE, "square", Path::new("."), &[set.to_owned()]).unwrap();
+        let scene = Scene::from_toml(value("square").as_str().unwrap(), "square", Path::new("."), &[set.to_owned()]).unwrap();
         preview(&scene).unwrap().warnings
     };
     assert!(lines("model.spacing_mm=0.02").iter().any(|line| line.contains("25 spacings") && line.contains("0.0100")));

@@ -1,4 +1,4 @@
-//! A formula in x and y, as `200 * (1 - (x/15)^2) * exp(-0.5 * (x/15)^2)`.
+//! A formula in x and y, as `200 * (1 - (x/15)^2) * exp(-0.5 * (x/15)^2)`, or in names that the caller knows.
 //!
 //! Rules of written mathematics: `-x^2` is -(x²), `a^b^c` is a^(b^c), `1/2` is a half. (Crates that read formulas bind the minus before
 //! the power, or divide whole numbers without remainder; either would turn a stress into another one without a word.)
@@ -33,11 +33,13 @@ pub const KNOWN: &str = "numbers, x, y, pi, + - * / ^, brackets, sin cos tan ata
 const DEPTH_MOST: usize = 100;
 
 /// A step of the evaluation on a stack of numbers.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum Step {
     Number(f64),
     X,
     Y,
+    /// A name of the caller with so many values in brackets.
+    Named(String, usize),
     One(fn(f64) -> f64),
     Two(fn(f64, f64) -> f64),
 }
@@ -49,19 +51,38 @@ pub struct Formula(Vec<Step>);
 impl Formula {
     /// Reads a formula. Errors: in words, what is wrong and at which character, counted from 1.
     pub fn parse(text: &str) -> Result<Formula, String> {
-        let mut reader = Reader { text: text.as_bytes(), at: 0, depth: 0, steps: Vec::new() };
+        Formula::read(text, false)
+    }
+
+    /// Reads a formula in any names, with values in brackets or without, for [`Formula::of_names`]. Errors: as [`Formula::parse`].
+    pub fn parse_named(text: &str) -> Result<Formula, String> {
+        Formula::read(text, true)
+    }
+
+    fn read(text: &str, has_names: bool) -> Result<Formula, String> {
+        let mut reader = Reader { text: text.as_bytes(), at: 0, depth: 0, has_names, steps: Vec::new() };
         reader.sum()?;
         if reader.peek().is_some() { Err(reader.wrong("is not understood")) } else { Ok(Formula(reader.steps)) }
     }
 
     /// Its value.
-    pub fn at(&self, [x, y]: [f64; 2]) -> f64 {
+    pub fn at(&self, place: [f64; 2]) -> f64 {
+        self.value::<()>(place, |_, _| Err(())).unwrap_or(f64::NAN)
+    }
+
+    /// Its value with what names stand for. Errors: those of `named`.
+    pub fn of_names<E>(&self, named: impl FnMut(&str, &[f64]) -> Result<f64, E>) -> Result<f64, E> {
+        self.value([f64::NAN; 2], named)
+    }
+
+    fn value<E>(&self, [x, y]: [f64; 2], mut named: impl FnMut(&str, &[f64]) -> Result<f64, E>) -> Result<f64, E> {
         let mut stack: Vec<f64> = Vec::with_capacity(8);
         for step in &self.0 {
-            let value = match *step {
-                Step::Number(value) => value,
+            let value = match step {
+                Step::Number(value) => *value,
                 Step::X => x,
                 Step::Y => y,
+                Step::Named(name, count) => named(name, &stack.split_off(stack.len().saturating_sub(*count)))?,
                 Step::One(of) => of(stack.pop().unwrap_or(f64::NAN)),
                 Step::Two(of) => {
                     let right = stack.pop().unwrap_or(f64::NAN);
@@ -70,7 +91,7 @@ impl Formula {
             };
             stack.push(value);
         }
-        stack.pop().unwrap_or(f64::NAN)
+        Ok(stack.pop().unwrap_or(f64::NAN))
     }
 }
 
@@ -79,6 +100,7 @@ struct Reader<'a> {
     text: &'a [u8],
     at: usize,
     depth: usize,
+    has_names: bool,
     steps: Vec<Step>,
 }
 
@@ -194,17 +216,20 @@ impl Reader<'_> {
     }
 
     fn name(&mut self) -> Result<(), String> {
-        let start = self.at;
-        while self.text.get(self.at).is_some_and(u8::is_ascii_alphanumeric) {
+        let (start, has_names) = (self.at, self.has_names);
+        while self.text.get(self.at).is_some_and(|c| c.is_ascii_alphanumeric() || (has_names && *c == b'_')) {
             self.at += 1;
         }
         let name = String::from_utf8_lossy(&self.text[start..self.at]).into_owned();
         match name.as_str() {
-            "x" => self.steps.push(Step::X),
-            "y" => self.steps.push(Step::Y),
+            "x" if !has_names => self.steps.push(Step::X),
+            "y" if !has_names => self.steps.push(Step::Y),
             "pi" => self.steps.push(Step::Number(std::f64::consts::PI)),
             _ => {
                 let Some((_, function)) = FUNCTIONS.iter().find(|(known, _)| *known == name) else {
+                    if has_names {
+                        return self.values(name);
+                    }
                     self.at = start;
                     return Err(self.wrong("has an unknown name"));
                 };
@@ -222,6 +247,20 @@ impl Reader<'_> {
                 self.steps.push(step);
             }
         }
+        Ok(())
+    }
+
+    /// The values in brackets behind a name of the caller.
+    fn values(&mut self, name: String) -> Result<(), String> {
+        let mut count = 0;
+        if self.take(b'(') {
+            while count == 0 || self.take(b',') {
+                self.sum()?;
+                count += 1;
+            }
+            self.expect(b')', "a closing bracket")?;
+        }
+        self.steps.push(Step::Named(name, count));
         Ok(())
     }
 }

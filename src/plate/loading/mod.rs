@@ -3,7 +3,7 @@
 mod boundary;
 mod course;
 mod forces;
-mod formula;
+pub mod formula;
 mod grips;
 mod read;
 pub mod pieces;

@@ -84,6 +84,13 @@ impl Sketch {
         self.push(format_args!(r#"<circle cx="{x:.2}" cy="{y:.2}" r="{radius}" fill="{fill}"/>"#));
     }
 
+    /// A cross of this half size about a place of the picture, px.
+    pub fn cross(&mut self, [x, y]: Point, half: f64, stroke: &str, width: f64) {
+        for up in [half, -half] {
+            self.path(&[[x - half, y - up], [x + half, y + up]], stroke, width, "");
+        }
+    }
+
     /// Line between two pixels.
     pub fn line(&mut self, [x1, y1]: Point, [x2, y2]: Point, stroke: &str, width: f64) {
         self.push(format_args!(

@@ -1,7 +1,11 @@
 //! What is measured in a scene: every method with its resolutions, laws, solvers and steps.
 
-use super::Panel;
-use crate::cases::{AUTO, NODES, POINTS, overrides};
+use serde::Deserialize;
+use toml::Table;
+
+use super::{Panel, READ};
+use crate::cases::overrides;
+use crate::values::Values;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
 
@@ -31,78 +35,31 @@ perilife_base::kinds! {
     }
 }
 
-/// Scenes with growing cracks where laws, horizons, steps and bonds that fail by their strain are varied: elsewhere they would say the
-/// same again.
-const STUDIED: [&str; 4] = ["middle_tension", "single_edge", "slant_severance", "hole_entered"];
-/// Scenes with growing cracks where solvers are varied.
-const SOLVED: [&str; 2] = ["middle_tension", "slant_severance"];
-/// Bond laws beside the default one. The bond-based law has one Poisson's ratio.
-const LAWS: [(&str, &str); 4] = [
-    ("bond_based", "model.bond_law=bond_based material.poisson_ratio=0.3333333333"),
-    ("state_based", "model.bond_law=state_based"),
-    ("one_bond_two_parameter", "model.bond_law=one_bond_two_parameter"),
-    ("constant kernel", "model.kernel=constant"),
-];
+/// A choice that the file offers to scenes with a tag, or to all.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Offer {
+    family: Family,
+    #[serde(default)]
+    words: String,
+    /// Keys, with formulas of the default `spacing_mm` of the scene.
+    #[serde(default)]
+    keys: String,
+    #[serde(default)]
+    quick: bool,
+    tag: Option<String>,
+}
 
 /// The choices of a scene, the default first.
 pub fn choices(panel: &Panel) -> Result<Vec<Choice>> {
-    use Family::{Auto, BondLaw, BondStrain, ElementFree, Handbook, Solver, TipField};
-    let mut all = Vec::new();
-    let mut add = |family: Family, words: String, keys: &str, is_quick: bool| {
-        all.push(Choice { family, words, set: overrides(keys), is_quick });
+    let spacing_mm = panel.case(&[])?.points().spacing / MM;
+    let values = Table::from_iter([("spacing_mm".to_owned(), spacing_mm.into())]);
+    let offered = READ.1.iter().filter(|offer| offer.tag.as_ref().is_none_or(|tag| panel.is(tag)));
+    let choice = |offer: &Offer| {
+        let set = overrides(&Values::alone(&values).text(&offer.keys)?);
+        Ok(Choice { family: offer.family, words: offer.words.clone(), set, is_quick: offer.quick })
     };
-    let scene = &panel.scene;
-    let is_among = |names: &[&str]| names.contains(&panel.name);
-    let spacing = scene.case(&[])?.points().spacing / MM;
-    let spaced = |times: f64| format!("model.spacing_mm={}", (1e4 * times * spacing).round() / 1e4);
-    if scene.grows() {
-        add(Auto, String::new(), AUTO, true);
-        for percent in [5.0, 1.0, 0.5] {
-            add(Auto, format!("to {percent} %"), &format!("{AUTO} model.tolerance_percent={percent}"), true);
-        }
-    }
-    add(TipField, String::new(), if scene.grows() { POINTS } else { "" }, true);
-    for (times, is_quick) in [(2.0, true), (1.5, true), (0.75, false), (0.5, false)] {
-        add(TipField, format!("spacing × {times}"), &spaced(times), is_quick);
-    }
-    if !scene.grows() || is_among(&STUDIED) {
-        for ratio in [2.015, 4.015] {
-            add(TipField, format!("horizon {ratio} spacings"), &format!("model.horizon_ratio={ratio}"), false);
-        }
-        for (words, keys) in LAWS {
-            add(BondLaw, words.to_owned(), keys, words == "state_based");
-        }
-    }
-    if !scene.grows() || is_among(&SOLVED) {
-        for solver in ["multigrid", "direct"] {
-            add(Solver, solver.to_owned(), &format!("model.solver={solver}"), false);
-        }
-    }
-    if is_among(&STUDIED) {
-        for error in [2.0, 0.05] {
-            add(TipField, format!("step to {error} %"), &format!("fatigue.step_error_percent={error}"), false);
-        }
-    }
-    if scene.has_crack() || panel.name == "hole_in_tension" {
-        add(ElementFree, String::new(), NODES, true);
-    }
-    if scene.has_crack() {
-        for percent in [10.0, 1.0] {
-            add(ElementFree, format!("to {percent} %"), &format!("{NODES} model.tolerance_percent={percent}"), true);
-        }
-        for nodes in [1000.0, 3000.0] {
-            add(ElementFree, format!("{nodes} nodes"), &format!("{NODES} model.nodes={nodes}"), false);
-        }
-    }
-    if scene.has_formula() {
-        add(Handbook, String::new(), "model.method=handbook", true);
-    }
-    if is_among(&STUDIED) {
-        const KEYS: &str = "fatigue.driver=bond_strain";
-        add(BondStrain, String::new(), KEYS, false);
-        add(BondStrain, "spacing × 2".to_owned(), &format!("{KEYS} {}", spaced(2.0)), false);
-    }
-    Ok(all)
+    offered.map(choice).collect()
 }
 
 impl Choice {

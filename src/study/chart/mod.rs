@@ -1,6 +1,6 @@
 //! Speed against accuracy: what a result costs with every method, and how far it is from a truth that none of them gave.
 //!
-//! A [`Panel`] is a [`Scene`] with a name. Its [`choice`]s are methods, resolutions, laws, solvers and steps. [`run`] makes one run of a
+//! A [`Panel`] is a question with a name (`data/studies/chart.toml`). Its [`choice`]s are methods, resolutions, laws, solvers and steps. [`run`] makes one run of a
 //! choice; [`schedule`] makes all of them in random order, each in a process of its own, beside reference runs. What is refused or
 //! fails is a point of the [`Chart`] as well, with its reason.
 
@@ -11,46 +11,121 @@ pub mod schedule;
 pub use choice::{Choice, Family};
 pub use run::Run;
 
-use super::scene::Scene;
-use super::standard::{COMPACT_TENSION, MIDDLE_TENSION, SINGLE_EDGE};
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+use toml::Table;
+
+use super::closed::percent;
+use super::questions::{Asker, Question, SHARED, file, read};
+use super::subject::{Subject, Watcher};
 use super::tasks::{Outcome, chosen};
 use perilife_base::error::Result;
 use perilife_calibration::median::median;
+use perilife_growth::case::Case;
 
 /// A scene of the chart.
-#[derive(Debug)]
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Panel {
     /// Name, as `perilife chart NAME` takes it.
-    pub name: &'static str,
+    pub name: String,
     /// What it is, in words.
-    pub about: &'static str,
+    pub about: String,
+    /// What its choices are chosen by.
+    pub tags: Vec<String>,
+    /// What its error is of.
+    pub quantity: String,
+    /// Where its truth comes from.
+    pub truth: String,
+    /// How far that may be off, percent.
+    pub uncertainty_percent: f64,
+    /// Formula of the distance of the path from that of the truth, rms, mm.
+    path_mm: Option<String>,
     /// What is asked.
-    pub scene: Scene,
+    ask: Question,
+    /// Its values.
+    #[serde(default)]
+    set: Table,
 }
 
-const fn panel(name: &'static str, about: &'static str, scene: Scene) -> Panel {
-    Panel { name, about, scene }
+/// What a run of a scene found.
+#[derive(Debug)]
+pub struct Found {
+    /// The case that ran.
+    pub case: Case,
+    /// Error in percent of the truth.
+    pub error_percent: f64,
+    /// Distance of the path from that of the truth, rms, mm.
+    pub path_rms_mm: Option<f64>,
+    /// Points or nodes; 0 of a hand calculation.
+    pub points: usize,
+    /// Equilibrium solves.
+    pub solves: usize,
 }
+
+impl Panel {
+    /// Whether it has a tag.
+    pub fn is(&self, tag: &str) -> bool {
+        self.tags.iter().any(|own| own == tag)
+    }
+
+    /// Whether cracks grow in it.
+    pub fn grows(&self) -> bool {
+        self.is("grows")
+    }
+
+    /// Its case with keys set by `section.key=value`.
+    pub fn case(&self, set: &[String]) -> Result<Case> {
+        let asker = Asker::new(&perilife_base::watch::Silent);
+        Ok(asker.ask(&self.ask, &self.set).subject(set)?.case)
+    }
+
+    /// What it finds with keys set.
+    /// Errors: those of the run; a run that ends otherwise than the truth.
+    pub fn found(&self, set: &[String], observer: &dyn Watcher) -> Result<Found> {
+        let asker = Asker::new(observer);
+        let asking = asker.ask(&self.ask, &self.set);
+        let subject: Subject<'_> = asking.subject(set)?;
+        let case = subject.case.clone();
+        let asking = asking.of_subject(subject);
+        let truth = self.ask.truth.as_ref().map_or(Ok(1.0), |truth| asking.figure(truth))?;
+        let error_percent = percent(asking.number(&self.ask.read)?, truth);
+        let path_rms_mm = self.path_mm.as_ref().map(|path| asking.number(path)).transpose()?;
+        let (points, solves) = asking.size();
+        Ok(Found { case, error_percent, path_rms_mm, points, solves })
+    }
+}
+
+/// What the chart measures.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Measured {
+    scene: Vec<Panel>,
+    choice: Vec<choice::Offer>,
+}
+
+/// Scenes in the order of the panels, and what is offered for them, from their file; `tests/unit/studies.rs` reads it with its errors.
+pub fn read_scenes() -> Result<(Vec<Panel>, Vec<choice::Offer>)> {
+    let Measured { mut scene, choice } = read(file("chart.toml", include_str!("../../../data/studies/chart.toml"))?)?;
+    let shared = file("shared.toml", SHARED)?;
+    for panel in &mut scene {
+        panel.set = shared.clone().into_iter().chain(std::mem::take(&mut panel.set)).collect();
+    }
+    Ok((scene, choice))
+}
+
+static READ: LazyLock<(Vec<Panel>, Vec<choice::Offer>)> = LazyLock::new(|| read_scenes().unwrap_or_default());
 
 /// All scenes, in the order of the panels.
-pub static SCENES: [Panel; 12] = [
-    panel("middle_tension", "middle-tension panel, W 100 mm, a 10 to 38 mm", Scene::Growth(MIDDLE_TENSION)),
-    panel("compact_tension", "compact specimen, W 50 mm, a 15 to 35 mm", Scene::Growth(COMPACT_TENSION)),
-    panel("single_edge", "single-edge panel, W 50 mm, a 8 to 28 mm", Scene::Growth(SINGLE_EDGE)),
-    panel("slant_factors", "slant crack, 30° to the side: K_I and K_II", Scene::Factors("slant_severance")),
-    panel("slant_severance", "slant crack until the plate is in two", Scene::Plate("slant_severance")),
-    panel("hole_entered", "edge crack that enters a hole", Scene::Plate("hole_attracts")),
-    panel("hole_passed", "edge crack that passes a hole", Scene::Plate("hole_missed")),
-    panel("offset_cracks", "two edge cracks that pass each other", Scene::Plate("offset_edge_cracks")),
-    panel("three_cracks", "three collinear cracks that join", Scene::Plate("three_cracks")),
-    panel("bending_with_holes", "bent beam with three holes, one entered", Scene::Plate("three_point_bending")),
-    panel("tension_plate", "plate in uniform tension, 100 x 200 mm", Scene::Tension),
-    panel("hole_in_tension", "hole of 20 mm in a plate of 100 x 200 mm in tension", Scene::Hole),
-];
+pub static SCENES: LazyLock<&'static [Panel]> = LazyLock::new(|| &READ.0);
 
 /// The scenes of these names, all where no name is given.
 pub fn scenes(names: &[String]) -> Result<Vec<&'static Panel>> {
-    chosen(&SCENES, |panel| panel.name, names, "SCENE", "is not a scene of the chart")
+    if SCENES.is_empty() {
+        read_scenes()?;
+    }
+    chosen(&SCENES, |panel| &panel.name, names, "SCENE", "is not a scene of the chart")
 }
 
 perilife_base::kinds! {
@@ -142,12 +217,12 @@ pub struct Chart {
 impl Chart {
     /// The chart of these points, fronts marked; `references` are the seconds of reference runs.
     pub fn new(mut points: Vec<Point>, references: &[f64]) -> Chart {
-        for panel in &SCENES {
+        for panel in SCENES.iter() {
             let of_scene: Vec<usize> = (0..points.len()).filter(|&i| points[i].panel.name == panel.name).collect();
             let place = |&i: &usize| {
                 points[i].place().map_or((f64::NAN, f64::NAN), |(time, error)| {
                     // Below its own uncertainty the truth cannot tell errors apart.
-                    (time, error.max(panel.scene.truth_uncertainty_percent()))
+                    (time, error.max(panel.uncertainty_percent))
                 })
             };
             let places: Vec<(f64, f64)> = of_scene.iter().map(place).collect();

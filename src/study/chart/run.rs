@@ -4,8 +4,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::Panel;
-use crate::scene::Found;
+use super::{Found, Panel};
 use perilife_base::error::Result;
 use perilife_base::machine;
 use perilife_base::units::MM;
@@ -57,25 +56,23 @@ pub struct Model {
 
 /// Runs a scene with these keys in this process; its peak of memory is that of the process.
 pub fn once(panel: &Panel, set: &[String]) -> Result<Run> {
-    let timed = || -> Result<(Case, Found, f64)> {
+    let timed = || -> Result<(Found, f64)> {
         let started = Instant::now();
-        let case = panel.scene.case(set)?;
-        let found = panel.scene.found(&case, set, &Silent)?;
-        Ok((case, found, started.elapsed().as_secs_f64()))
+        Ok((panel.found(set, &Silent)?, started.elapsed().as_secs_f64()))
     };
-    let (case, found, first) = timed()?;
+    let (found, first) = timed()?;
     let mut walls = vec![first];
     while walls.iter().sum::<f64>() < SHORT_S {
-        walls.push(timed()?.2);
+        walls.push(timed()?.1);
     }
     Ok(Run {
         wall_s: median(&walls),
         memory_mb: machine::peak_mb(),
-        error_percent: found.error_percent().abs(),
+        error_percent: found.error_percent.abs(),
         path_rms_mm: found.path_rms_mm,
         points: found.points,
         solves: found.solves,
-        model: Model::of(&case, panel.scene.grows()),
+        model: Model::of(&found.case, panel.grows()),
     })
 }
 

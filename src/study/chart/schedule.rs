@@ -84,7 +84,7 @@ impl Measuring<'_> {
             Some((wall, _)) => return Ok(wall),
             None => {
                 // The default run of the first scene.
-                let request = Request { scene: SCENES[0].name.to_owned(), set: Vec::new() };
+                let request = Request { scene: SCENES[0].name.clone(), set: Vec::new() };
                 (self.isolated)(&request, f64::INFINITY)?.done().map_or(f64::NAN, |run| run.wall_s)
             }
         };
@@ -120,7 +120,7 @@ pub fn measure(
     let mut planned: Vec<(&'static Panel, Choice, Request)> = Vec::new();
     for panel in scenes {
         for choice in choices(panel)?.into_iter().filter(|choice| choice.is_quick || !effort.is_quick) {
-            let request = Request { scene: panel.name.to_owned(), set: choice.set.clone() };
+            let request = Request { scene: panel.name.clone(), set: choice.set.clone() };
             planned.push((panel, choice, request));
         }
     }

@@ -64,12 +64,12 @@ pub fn csv(chart: &Chart) -> String {
 }
 
 fn fields(point: &Point, chart: &Chart) -> Vec<String> {
-    let (scene, run) = (&point.panel.scene, point.outcome.done());
+    let (scene, run) = (point.panel, point.outcome.done());
     let model = |of: fn(&Model) -> &str| run.map_or_else(String::new, |run| of(&run.model).to_owned());
     let number = |value: Option<f64>| value.map_or_else(String::new, exact);
     let count = |value: Option<usize>| value.map_or_else(String::new, |count| count.to_string());
     vec![
-        point.panel.name.to_owned(),
+        point.panel.name.clone(),
         point.choice.family.name().to_owned(),
         model(|model| &model.driver),
         model(|model| &model.bond_law),
@@ -82,8 +82,8 @@ fn fields(point: &Point, chart: &Chart) -> Vec<String> {
         count(run.map(|run| run.solves)),
         number(run.map(|run| run.error_percent)),
         number(run.and_then(|run| run.path_rms_mm)),
-        scene.truth().to_owned(),
-        exact(scene.truth_uncertainty_percent()),
+        scene.truth.clone(),
+        exact(scene.uncertainty_percent),
         number(point.wall_s()),
         number(point.time_ratio()),
         point.walls.len().to_string(),

@@ -99,9 +99,9 @@ fn outlined(sketch: &mut Sketch, mut corners: Vec<Pixel>, fill: &str, rim: &str)
 
 /// A panel with its points.
 fn draw(panel: &Panel, points: &[&Point], most_s: f64) -> Sketch {
-    let quantity = panel.scene.quantity().split(',').next().unwrap_or_default();
+    let quantity = panel.quantity.split(',').next().unwrap_or_default();
     let axes = [Axis::logarithmic_between(SECONDS_LEAST, most_s), Axis::logarithmic_between(ERRORS[0], ERRORS[1])];
-    let mut frame = Frame::new(PANEL, panel.about, axes, ["Time of a run, s", &format!("Error of {quantity}, %")], &[]);
+    let mut frame = Frame::new(PANEL, &panel.about, axes, ["Time of a run, s", &format!("Error of {quantity}, %")], &[]);
     let mut taken = limits(&mut frame, panel, most_s);
     let held = |[time, error]: [f64; 2]| [time.clamp(SECONDS_LEAST, most_s), error.clamp(ERRORS[0], ERRORS[1])];
     let steps = front(points, most_s, held);
@@ -130,13 +130,13 @@ fn draw(panel: &Panel, points: &[&Point], most_s: f64) -> Sketch {
 
 /// Scatter of the material, and what the truth cannot tell; the line of the scatter, px.
 fn limits(frame: &mut Frame, panel: &Panel, most_s: f64) -> Vec<Pixel> {
-    let uncertainty = panel.scene.truth_uncertainty_percent();
+    let uncertainty = panel.uncertainty_percent;
     let [left, _, right, bottom] = frame.room();
     if uncertainty > ERRORS[0] {
         frame.below(uncertainty, [SECONDS_LEAST, most_s], SHADE, 0.8);
         frame.sketch().name([right - 4.0, bottom - 6.0], "below the error of the truth", "end", PANEL.text, GREY);
     }
-    if !panel.scene.grows() {
+    if !panel.grows() {
         return Vec::new();
     }
     let y = frame.at([most_s, SCATTER_PERCENT])[1];
@@ -171,8 +171,7 @@ fn left_out(sketch: &mut Sketch, points: &[&Point], frame: Box2) {
     sketch.name([frame.high[0] - 12.0 * count as f64 - 6.0, y + 4.0], "no result", "end", 11.0, PALE);
     for at in 0..count {
         let x = frame.high[0] - 12.0 * at as f64 - 8.0;
-        sketch.path(&[[x - 4.0, y - 4.0], [x + 4.0, y + 4.0]], PALE, 1.6, "");
-        sketch.path(&[[x - 4.0, y + 4.0], [x + 4.0, y - 4.0]], PALE, 1.6, "");
+        sketch.cross([x, y], 4.0, PALE, 1.6);
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Overall {
 
 /// Choices over the scenes in which cracks grow, in their order.
 fn overall(chart: &Chart) -> Vec<Overall> {
-    let growing: Vec<&Point> = chart.points.iter().filter(|point| point.panel.scene.grows()).collect();
+    let growing: Vec<&Point> = chart.points.iter().filter(|point| point.panel.grows()).collect();
     let mut names: Vec<String> = Vec::new();
     for point in &growing {
         let name = point.choice.name();
@@ -44,7 +44,7 @@ fn overall(chart: &Chart) -> Vec<Overall> {
 fn of_choice(growing: &[&Point], name: String) -> Option<Overall> {
     let own: Vec<&&Point> = growing.iter().filter(|point| point.choice.name() == name).collect();
     let results: Vec<(f64, f64, &'static str)> =
-        own.iter().filter_map(|point| point.place().map(|(time, error)| (time, error, point.panel.name))).collect();
+        own.iter().filter_map(|point| point.place().map(|(time, error)| (time, error, point.panel.name.as_str()))).collect();
     let worst = results.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(Overall {
         done: results.len(),
@@ -59,7 +59,7 @@ fn of_choice(growing: &[&Point], name: String) -> Option<Overall> {
 
 /// The choice with the least median time that is within an error in every scene in which cracks grow.
 pub fn fastest_within(chart: &Chart, percent: f64) -> Option<Overall> {
-    let scenes = chart.scenes().into_iter().filter(|panel| panel.scene.grows()).count();
+    let scenes = chart.scenes().into_iter().filter(|panel| panel.grows()).count();
     let fits = |choice: &Overall| choice.done == scenes && choice.worst_percent <= percent;
     overall(chart).into_iter().filter(fits).min_by(|a, b| a.median_s.total_cmp(&b.median_s))
 }
@@ -174,7 +174,7 @@ fn sentences(chart: &Chart) -> Vec<String> {
     let losers = beaten(chart);
     let defaults = chart.points.iter().filter(|point| point.choice.is_default() && point.place().is_some()).count();
     let name = |(panel, by): &(&Panel, Option<&Point>)| {
-        panel.name.to_owned() + &by.map_or_else(String::new, |by| format!(" by {}", by.choice.name()))
+        panel.name.clone() + &by.map_or_else(String::new, |by| format!(" by {}", by.choice.name()))
     };
     let named: Vec<String> = losers.iter().map(name).collect();
     all.push(match named.is_empty() {

@@ -1,92 +1,88 @@
 //! Where methods fail: each method is taken across the range of one parameter until its error passes a bound or it gives no result.
 //!
 //! A [`Sweep`] has a truth that does not come from the method (a handbook's quadrature, a closed form, uniform strain, or a method that
-//! shares neither points nor bonds with it). Its cases run at rising values; the ends of the safe range, the run of stable values around
+//! shares neither points nor bonds with it). Sweeps are questions with the parameter as a value (`data/studies/stability.toml`). Their cases run at rising values; the ends of the safe range, the run of stable values around
 //! the usual one, are found by bisection. Every run has a [`Budget`] of cycle blocks and seconds, and a panic is a failure with a
 //! name, so that nothing hangs and nothing is left out.
 
 mod budget;
-mod factors;
-mod lives;
-mod readings;
-mod scenes;
 
+use std::sync::LazyLock;
 use std::time::Instant;
+
+use serde::Deserialize;
+use toml::Table;
 
 pub use budget::{Budget, Run, within};
 
+use super::questions::{Asker, SHARED, each, file, read};
+use super::subject::Watcher;
 use super::tasks::{Outcome, chosen, side_by_side};
 use perilife_base::error::Result;
 
-/// A method in a sweep: its name in the table, and its error at a value of the parameter, percent.
-pub type Method = (&'static str, fn(f64, &Run) -> Result<f64>);
-
-/// A parameter that is taken across its range.
-pub struct Sweep {
-    /// Name, as `perilife stability NAME` takes it.
-    pub name: &'static str,
-    /// What is varied and what the error is measured against.
-    pub about: &'static str,
-    /// The parameter, as the axis of the picture names it.
-    pub parameter: &'static str,
-    /// Its unit; empty where it has none.
-    pub unit: &'static str,
-    /// Values, rising.
-    pub values: &'static [f64],
-    /// Value that is usual, from which the safe range is sought in both directions; one of the values.
-    pub usual: f64,
-    /// Whether there are others between the values.
-    pub is_continuous: bool,
-    /// Error up to which a result counts as right, percent.
-    pub bound_percent: f64,
-    /// Methods, each with a line of its own.
-    pub methods: &'static [Method],
+/// A method in a sweep.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Method {
+    /// Its name in the table.
+    pub name: String,
+    /// Values of its own.
+    #[serde(default)]
+    set: Table,
+    /// What it asks otherwise than the others.
+    #[serde(default)]
+    ask: Table,
 }
 
-/// What most sweeps have in common.
-const SWEEP: Sweep = Sweep {
-    name: "",
-    about: "",
-    parameter: "",
-    unit: "",
-    values: &[],
-    usual: 0.0,
-    is_continuous: true,
-    bound_percent: 2.0,
-    methods: &[],
-};
+/// A parameter that is taken across its range.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sweep {
+    /// Name, as `perilife stability NAME` takes it.
+    pub name: String,
+    /// What is varied and what the error is measured against.
+    pub about: String,
+    /// The parameter, as the axis of the picture names it.
+    pub parameter: String,
+    /// Its unit; empty where it has none.
+    #[serde(default)]
+    pub unit: String,
+    /// Values, rising.
+    pub values: Vec<f64>,
+    /// Value that is usual, from which the safe range is sought in both directions; one of the values.
+    #[serde(default)]
+    pub usual: f64,
+    /// Whether there are none between the values.
+    #[serde(default)]
+    pub only_values: bool,
+    /// Error up to which a result counts as right, percent.
+    pub bound_percent: f64,
+    /// What is asked, with the parameter as the value `it`; its largest error counts.
+    ask: Table,
+    /// Methods, each with a line of its own.
+    pub methods: Vec<Method>,
+    /// Values that all sweeps share.
+    #[serde(skip)]
+    shared: Table,
+}
 
-/// All sweeps, in the order in which a life is computed.
-pub static SWEEPS: [Sweep; 28] = [
-    scenes::SPRING,
-    scenes::SILLING,
-    lives::PLANE_STRESS,
-    lives::PLANE_STRAIN,
-    lives::HORIZON_RATIO,
-    factors::LATTICE_ANGLE,
-    factors::HOLE_OFFSET,
-    factors::PLATE_SIZE,
-    factors::CRACK_LENGTH,
-    factors::EDGE_CRACK_LENGTH,
-    factors::LIGAMENT,
-    factors::HOLE_DISTANCE,
-    factors::HOLE_DIAMETER,
-    factors::CRACK_DISTANCE,
-    factors::KINK_MIXITY,
-    factors::BIAXIALITY,
-    lives::STEP_ERROR,
-    lives::SEVERING_STEP,
-    lives::EXPONENT,
-    lives::AGEING,
-    scenes::TIME_STEP,
-    scenes::LOAD_STEPS,
-    scenes::DENSITY_FACTOR,
-    factors::LAST_LIGAMENT,
-    factors::INFLUENCE_RADIUS,
-    factors::NODE_OFFSET,
-    readings::NOISE,
-    readings::COUNT,
-];
+/// What is swept.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Swept {
+    sweep: Vec<Sweep>,
+}
+
+/// All sweeps, in the order in which a life is computed, from their file; `tests/unit/studies.rs` reads it with its errors.
+pub fn read_sweeps() -> Result<Vec<Sweep>> {
+    let Swept { mut sweep } = read(file("stability.toml", include_str!("../../../data/studies/stability.toml"))?)?;
+    let shared = file("shared.toml", SHARED)?;
+    sweep.iter_mut().for_each(|sweep| sweep.shared = shared.clone());
+    Ok(sweep)
+}
+
+/// All sweeps.
+pub static SWEEPS: LazyLock<Vec<Sweep>> = LazyLock::new(|| read_sweeps().unwrap_or_default());
 
 /// How a run is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,6 +116,19 @@ impl Sweep {
         }
     }
 
+    /// The error of a method at a value, percent: the largest of all questions. No number stays none.
+    fn error(&self, method: &Method, value: f64, observer: &dyn Watcher) -> Result<f64> {
+        let own = [("it".to_owned(), value.into())];
+        let values = self.shared.clone().into_iter().chain(method.set.clone()).chain(own).collect();
+        let (asker, mut worst) = (Asker::new(observer), 0.0_f64);
+        each(&self.ask.clone().into_iter().chain(method.ask.clone()).collect(), &values, &mut |question, values| {
+            let error = asker.ask(question, values).number(&question.read)?;
+            worst = if error.abs() <= worst.abs() { worst } else { error };
+            Ok(())
+        })?;
+        Ok(worst)
+    }
+
     /// First and last value.
     pub fn range(&self) -> [f64; 2] {
         [self.values[0], self.values[self.values.len() - 1]]
@@ -142,8 +151,6 @@ pub struct Record {
     /// Seconds it took.
     pub wall_s: f64,
 }
-
-impl Record {}
 
 /// How thorough.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -173,15 +180,19 @@ impl Effort {
 
 /// The sweeps of these names, all where no name is given.
 pub fn sweeps(names: &[String]) -> Result<Vec<&'static Sweep>> {
-    chosen(&SWEEPS, |sweep| sweep.name, names, "NAME", "is not a stability sweep")
+    if SWEEPS.is_empty() {
+        read_sweeps()?;
+    }
+    chosen(&SWEEPS, |sweep| &sweep.name, names, "NAME", "is not a stability sweep")
 }
 
 /// Records of some sweeps in their order. `done` hears of every one as it ends.
 pub fn run(sweeps: &[&'static Sweep], effort: Effort, done: &(dyn Fn(&Record) + Sync)) -> Vec<Record> {
-    let all = sweeps.iter().flat_map(|sweep| sweep.methods.iter().map(|method| (*sweep, *method)));
-    let tasks: Vec<_> = all.filter(|(sweep, method)| effort.with_slow || !SLOW.contains(&(sweep.name, method.0))).collect();
+    let all = sweeps.iter().flat_map(|sweep| sweep.methods.iter().map(|method| (*sweep, method)));
+    let tasks: Vec<_> =
+        all.filter(|(sweep, method)| effort.with_slow || !SLOW.contains(&(sweep.name.as_str(), method.name.as_str()))).collect();
     side_by_side(&tasks, |(sweep, method)| {
-        let record = walk(sweep, *method, effort);
+        let record = walk(sweep, method, effort);
         done(&record);
         record
     })
@@ -191,9 +202,9 @@ pub fn run(sweeps: &[&'static Sweep], effort: Effort, done: &(dyn Fn(&Record) + 
 const BISECTIONS_MAX: usize = 8;
 
 /// Runs a method at every value and narrows the ends of its safe range.
-fn walk(sweep: &'static Sweep, (method, error): Method, effort: Effort) -> Record {
+fn walk(sweep: &'static Sweep, method: &'static Method, effort: Effort) -> Record {
     let begun = Instant::now();
-    let measure = |value: f64| (value, within(effort.budget, |run| error(value, run)));
+    let measure = |value: f64| (value, within(effort.budget, |run| sweep.error(method, value, run)));
     let mut points: Vec<(f64, Outcome<f64>)> = values(sweep, effort.stride).into_iter().map(measure).collect();
     let is_stable = |point: &(f64, Outcome<f64>)| sweep.status(&point.1) == Status::Stable;
     let is_judged = |point: &(f64, Outcome<f64>)| !matches!(point.1, Outcome::Stopped(_));
@@ -209,7 +220,7 @@ fn walk(sweep: &'static Sweep, (method, error): Method, effort: Effort) -> Recor
         for (end, pair) in ends.iter_mut().zip(pairs) {
             let Some([mut inside, mut beyond]) = pair else { continue };
             for _ in 0..BISECTIONS_MAX {
-                if !sweep.is_continuous || (beyond - inside).abs() <= effort.resolution * beyond.abs().max(inside.abs()) {
+                if sweep.only_values || (beyond - inside).abs() <= effort.resolution * beyond.abs().max(inside.abs()) {
                     break;
                 }
                 let point =
@@ -229,7 +240,7 @@ fn walk(sweep: &'static Sweep, (method, error): Method, effort: Effort) -> Recor
         }
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Record { sweep, method, points, ends, is_safe, wall_s: begun.elapsed().as_secs_f64() }
+    Record { sweep, method: &method.name, points, ends, is_safe, wall_s: begun.elapsed().as_secs_f64() }
 }
 
 /// Every so many-th value, the first, the last and the usual one among them.
