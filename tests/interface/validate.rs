@@ -81,7 +81,7 @@ fn sets_that_cannot_be_read_are_refused_before_any_run() {
         (test(""), ["test[0]", "has 0 measured lives"]),
         (test("life_cycles = [1e5]\nlife_passes = [10]"), ["test[0]", "has 2 measured lives"]),
         (test("life_cycles = [-1e5]"), ["test[0]", "above zero"]),
-        (test("halves = 0"), ["test[0].halves", "nonzero"]),
+        (test("halves = 0"), ["test[0]", "counts above zero"]),
         (test("life_cycles = [1e5]\nlifes = 1"), ["test[0].lifes", "life_cycles"]),
         (test("halves = 3").replace("\"path\"", "\"paths\""), ["test[0].kind", "other_condition"]),
         (test("path_mm = [[1, nan]]"), ["test[0]", "finite"]),

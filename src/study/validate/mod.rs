@@ -96,7 +96,7 @@ impl Set {
             let mut row = Row::of(self, test);
             let law = law.as_ref().map_err(|why| Error::Mechanics(why.clone()));
             let filled = law.and_then(|law| match test.halves {
-                Some(count) => self.halves(&mut row, test, count.get()),
+                Some(count) => self.halves(&mut row, test, count),
                 None => self.trial(&mut row, test, law.as_deref(), &[]).map(|trial| vec![trial]),
             });
             let filled = Outcome::of(filled.map(|trials| row.judge(&trials)));

@@ -1,6 +1,5 @@
 //! Sets of tests: `source.toml` says where a set comes from, and what was measured.
 
-use std::num::NonZero;
 use std::path::Path;
 
 use include_dir::{Dir, File, include_dir};
@@ -57,7 +56,7 @@ pub(super) struct Test {
     #[serde(default)]
     pub(super) life_passes: Vec<f64>,
     /// So many times a random half of the specimens of the calibration predicts the other half.
-    pub(super) halves: Option<NonZero<usize>>,
+    pub(super) halves: Option<usize>,
     /// Points of the measured path, mm.
     #[serde(default)]
     pub(super) path_mm: Vec<Point>,
@@ -79,9 +78,11 @@ impl Test {
             let remedy = "give one of life_cycles, life_passes and halves, or path_mm";
             return Err(input_missing(at, format!("has {given} measured lives"), remedy));
         }
-        let is_life = |life: &f64| life.is_finite() && *life > 0.0;
-        if !test.lives().iter().chain(&test.others_life).all(is_life) || !test.path_mm.iter().flatten().all(|x| x.is_finite()) {
-            return Err(input_missing(at, "has a life or a place that is none", "give lives above zero, and finite places"));
+        let is_above_zero = |number: &f64| number.is_finite() && *number > 0.0;
+        let are_lives = test.lives().iter().chain(&test.others_life).all(is_above_zero) && test.halves != Some(0);
+        if !are_lives || !test.path_mm.iter().flatten().all(|x| x.is_finite()) {
+            let problem = "has a life, a count of halves or a place that is none";
+            return Err(input_missing(at, problem, "give lives and counts above zero, and finite places"));
         }
         Ok(test)
     }
