@@ -1,9 +1,12 @@
 //! A row of a curve is of one crack: its rate is the slope of its length, and a plate with several cracks ends where one has the length asked for.
 
 use perilife_base::units::MM;
-use perilife_growth::predict::{GoverningCrack, Prediction};
+
 use perilife_plate::specimen::Point;
-use perilife_study::cases::{NODES, case, cracked_plate, run};
+use perilife_growth::predict::{GoverningCrack, Prediction, Silent, predict};
+use perilife_study::cases::{NODES, case};
+
+use crate::support::plates::cracked_plate;
 
 /// A slant crack with two tips, two cracks of unlike length, one from each edge, and two of which only the longer grows in time.
 const PLATES: [(&str, &[[Point; 2]], f64); 3] = [
@@ -24,7 +27,8 @@ fn its_rate_is_the_slope_of_its_length() {
     for (name, cracks, stop) in PLATES {
         let text = cracked_plate(80.0, 120.0, cracks);
         let keys = format!("{NODES} stop.crack_length_mm={stop}");
-        let (case, run) = (case(&text, &keys).unwrap(), run(&text, &keys).unwrap());
+        let case = case(&text, &keys).unwrap();
+        let run = predict(&case, &Silent).unwrap();
         let governing = GoverningCrack::of(&case.specimen, &run.curve);
         let [first, last] = [&run.curve[0], &run.curve[run.curve.len() - 1]];
         let error = counted(&run, &governing) / run.life_cycles() - 1.0;
