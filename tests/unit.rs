@@ -64,3 +64,4 @@ mod tables;
 mod units;
 mod verification_table;
 mod watch;
+mod vocabulary;
