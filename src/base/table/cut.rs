@@ -103,7 +103,7 @@ fn width(row: &Row) -> usize {
 /// Where header and readings stand; `None` for less than two columns.
 pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
     let head = &rows[..rows.len().min(PREAMBLE_MAX)];
-    let below = |header: usize| header + 1 + usize::from(rows.get(header + 1).is_some_and(|row| is_row_of_units(row)));
+    let below = |header: usize| header + 1 + usize::from(rows.get(header + 1).is_some_and(is_row_of_units));
     let names = |row: &Row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>();
     let named: Vec<usize> = (0..head.len())
         .filter(|&row| {

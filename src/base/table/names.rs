@@ -335,15 +335,15 @@ fn by_word(kind: Kind, index: usize, name: &str, words: &[String]) -> Option<Col
     };
     // `S1 kilocycles` is a specimen.
     let end = (1..words.len()).find(|cut| Unit::spelled(&words[*cut..], CYCLES).is_some()).unwrap_or(words.len());
-    let has = |role: Role| words[..end].iter().any(|word| is(word, role, Measure::Words));
-    if kind == Kind::Spectrum && words.iter().all(|word| is(word, Role::Other, Measure::OnlyWords)) || has(Role::Other) {
+    let has = |role: Role, words: &[String]| words.iter().any(|word| is(word, role, Measure::Words));
+    if kind == Kind::Spectrum && words.iter().all(|word| is(word, Role::Other, Measure::OnlyWords)) || has(Role::Other, words) {
         // One in a unit of load is told of if it is not read.
         let unit = unit_at_end(name, LOAD, false);
         let is_unit = words.last().is_some_and(|word| word != "n") || name.ends_with([')', ']', '}']);
         let unit = if is_unit && unit != Named::Strange { unit } else { Named::No };
         return Some(Column::new(index, Role::Other, unit));
     }
-    has(Role::Unclear).then(|| Column::new(index, Role::Unclear, Named::No))
+    has(Role::Unclear, &words[..end]).then(|| Column::new(index, Role::Unclear, Named::No))
 }
 
 /// The unit that a name ends with, whatever else it says.
