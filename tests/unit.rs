@@ -65,3 +65,4 @@ mod tables;
 mod units;
 mod verification_table;
 mod watch;
+mod vocabulary;

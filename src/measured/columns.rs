@@ -1,18 +1,14 @@
 //! What the columns of a measured file are: one row a reading, or columns of every specimen; and in which units.
 
-use super::doubts::{check_cycles, check_names, not_specimens, other_lengths, rejected, statistics};
-use super::header::{columns_of, cut, is_length, is_wide, pairs_of, place_of};
+use super::header::{columns_of, cut, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, Import};
+use super::marks::{is_of_thousands, rejected};
 use perilife_base::error::{Error, Result};
 use perilife_base::table::decimal::decide;
-use perilife_base::table::names::vocabulary::METHODS;
-use perilife_base::table::names::{Column, Named, Role, says_one_of, says_tip_to_tip, unit_at_end};
+use perilife_base::table::names::{Column, Kind, Named, Role, says_tip_to_tip, unit_of_specimen};
 use perilife_base::table::numerals::number;
-use perilife_base::table::{
-    Decimal,
-    units::{CycleUnit, LoadUnit, Unit},
-};
-use perilife_base::table::{Fault, Table};
+use perilife_base::table::units::{CycleUnit, LengthUnit, LoadUnit, Unit};
+use perilife_base::table::{Decimal, Fault, Table, whole_file};
 
 /// How the specimens of a table are laid out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,13 +63,12 @@ pub struct Layout {
 
 const KNOWN: &str = "known are specimen, cycles (N, kilocycles, megacycles), crack_length_mm (a [mm], crack_length_inch, crack_length_m), \
                      front and back, force_max_kn and force_min_kn; a wide table starts with cycles or crack length and has at least two \
-                     more columns, all of them specimens";
+                     more columns, all of them specimens (S1, S2, ...; a1, a2, ... may be places of one crack)";
 
 /// Recognises the layout of a table by its header and by what the user says.
 /// Errors: columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
 pub(super) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
     check_given(table, import)?;
-    check_names(table, import)?;
     let mut warnings = table.warnings();
     let given = import.columns != ColumnNames::default();
     let (shape, series) = match if given { None } else { pairs_of(&table.names) } {
@@ -85,16 +80,13 @@ pub(super) fn recognise(table: &Table, import: &Import) -> Result<Layout> {
     let decimal = decide(table, &read.iter().map(Column::numbers).collect::<Vec<_>>(), import.decimal)?;
     let of_specimens = series.iter().filter_map(|series| series.specimen);
     let known: Vec<usize> = read.iter().copied().chain(of_specimens).map(|column| column.index).collect();
-    if let [only] = series.as_slice() {
-        warnings.extend(other_lengths(table, &only.lengths, &known, decimal));
-    }
     warnings.extend(rejected(table, &known));
     Ok(Layout { shape, series, decimal, separator, warnings })
 }
 
 /// Refuses columns that the user names and the file does not have.
 fn check_given(table: &Table, import: &Import) -> Result<()> {
-    for (key, name) in import.columns.given() {
+    for (key, _, name) in import.columns.given() {
         if place_of(name, &table.header, &table.names).is_none() {
             let key = format!("measured.columns.{key}");
             let fault = Fault { file: &table.file, line: None, key: Some(&key), value: Some(name) };
@@ -112,22 +104,22 @@ fn paired(table: &Table, (name, [cycles, length]): (String, [Column; 2]), import
 fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Result<(Shape, Vec<Series>)> {
     let columns = columns_of(&table.header, &table.names, import);
     let of = |wanted: fn(&Column) -> bool| columns.iter().copied().filter(wanted).collect::<Vec<Column>>();
-    let (cycles, lengths) = (of(|column| column.role == Role::Cycles), of(is_length));
-    let wide = is_wide(&columns);
-    let of_several = Some(statistics(table)).filter(|found| wide && found.len() + 1 < columns.len()).unwrap_or_default();
-    warnings.extend(not_specimens(table, &of_several));
-    let specimens =
-        || (1..columns.len()).filter(|index| !of_several.contains(index)).map(|index| (table.header[index].clone(), index));
+    let (cycles, lengths) = (of(|column| column.role == Role::Cycles), of(Column::is_length));
+    let wide = is_wide(&columns) && !are_places_of_one_crack(&table.header[1..]);
+    let specimens = || of(|column| column.index > 0 && column.role == Role::Unknown).into_iter().map(|column| column.index);
+    let one = |i: usize, cycles, length| Series::of_one(table.header[i].clone(), cycles, length, vec![i]);
+    if wide {
+        warnings.extend(not_specimens(table, &columns));
+    }
     match (cycles.as_slice(), lengths.as_slice()) {
         ([cycles], [_, ..]) => {
             let specimen = of(|column| column.role == Role::Specimen);
             let optical = optical(table, &columns).map(|column| length_column(table, column, import)).transpose()?;
             // A length without a method goes before those of methods.
-            let by_method = |column: &Column| says_one_of(&table.names[column.index], METHODS);
             let is_other = |column: &Column| optical.is_none_or(|optical| optical.index != column.index);
-            let is_plain = |column: &Column| column.role == Role::Length && is_other(column) && !by_method(column);
-            let by_method = |column: &Column| column.role == Role::Length && columns.iter().any(is_plain) && by_method(column);
-            let columns: Vec<Column> = columns.iter().filter(|column| is_other(column) && !by_method(column)).copied().collect();
+            let has_plain = columns.iter().any(|column| column.role == Role::Length && is_other(column));
+            let is_read = |column: &&Column| is_other(column) && !(has_plain && column.role == Role::Method);
+            let columns: Vec<Column> = columns.iter().filter(is_read).copied().collect();
             let (lengths, sides) = lengths_and_sides(table, &columns, import)?;
             let cycles = cycle_column(table, *cycles, import)?;
             let (loads, mut compared) = loads(table, &columns, import, warnings)?;
@@ -145,28 +137,21 @@ fn by_roles(table: &Table, import: &Import, warnings: &mut Vec<String>) -> Resul
         ([_, second, ..], _) => Err(says_the_same(table, second.index, "cycles")),
         ([], [length]) if wide && length.index == 0 => {
             let length = length_column(table, *length, import)?;
-            let series = specimens().map(|(name, i)| {
-                let cycles = Column::new(i, Role::Cycles, unit_at_end(&table.names[i], Role::Cycles));
-                Ok(Series::of_one(name, cycle_column(table, cycles, import)?, length, vec![i]))
+            let series = specimens().map(|i| {
+                let cycles = Column::new(i, Role::Cycles, unit_of_specimen(&table.names[i], Role::Cycles));
+                Ok(one(i, cycle_column(table, cycles, import)?, length))
             });
             Ok((Shape::WideCycles, series.collect::<Result<_>>()?))
         }
-        ([_], []) if wide && are_places_of_one_crack(&table.header[1..]) => Err(table.header_fault(1).error(
-            "begins a row of numbered crack lengths, which are places on the front of one crack or cracks of several specimens",
-            format!(
-                "for one crack give measured.columns = {{ length = [\"{}\"] }} (--column length=... for each), whose mean counts; name columns \
-                 of specimens S1, S2, ...",
-                table.header[1..].join("\", \"")
-            ),
-        )),
         ([cycles], []) if wide && cycles.index == 0 => {
             let cycles = cycle_column(table, *cycles, import)?;
             // Where `2a` stands in names of some specimens alone it is part of their names.
-            let are_whole: Option<Vec<bool>> = table.names[1..].iter().map(|name| says_tip_to_tip(name)).collect();
-            let series = specimens().map(|(name, i)| {
-                let length = wide_length(table, i, import)?;
-                let is_whole = are_whole.as_ref().is_some_and(|are_whole| are_whole[i - 1]);
-                Ok(Series::of_one(name, cycles, if is_whole { length.tip_to_tip() } else { length }, vec![i]))
+            let are_whole: Option<Vec<bool>> = specimens().map(|i| says_tip_to_tip(&table.names[i])).collect();
+            let series = specimens().enumerate().map(|(place, i)| {
+                let length = Column::new(i, Role::Length, unit_of_specimen(&table.names[i], Role::Length));
+                let length = length_column(table, length, import)?;
+                let is_whole = are_whole.as_ref().is_some_and(|are_whole| are_whole[place]);
+                Ok(one(i, cycles, if is_whole { length.tip_to_tip() } else { length }))
             });
             Ok((Shape::WideLengths, series.collect::<Result<_>>()?))
         }
@@ -202,15 +187,8 @@ impl Layout {
         for series in &self.series {
             let read = series.loads.iter().chain(&series.specimen).chain(&series.lengths).chain([&series.cycles]);
             for column in read.filter(|column| self.shape == Shape::Paired || !series.own.contains(&column.index)) {
-                keys[column.index] = match column.role {
-                    Role::Specimen => "specimen",
-                    Role::Cycles => "cycles",
-                    Role::Max => "force_max",
-                    Role::Min => "force_min",
-                    Role::Range => "force_range",
-                    Role::Ratio => "stress_ratio",
-                    _ => "length",
-                };
+                let own = ColumnNames::KEYS.into_iter().find(|(_, role)| *role == column.role);
+                keys[column.index] = own.map_or("length", |(key, _)| key);
             }
         }
         keys
@@ -247,7 +225,8 @@ fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
 /// Of two columns of crack length the one that at most every second row has: optical readings beside those of potential drop.
 fn optical(table: &Table, columns: &[Column]) -> Option<Column> {
     let count = |column: &Column| table.rows.iter().filter(|row| !row.cell(column.index).is_empty()).count();
-    let mut lengths: Vec<Column> = columns.iter().filter(|column| column.role == Role::Length).copied().collect();
+    let is_whole = |column: &&Column| column.is_length() && column.role != Role::Side;
+    let mut lengths: Vec<Column> = columns.iter().filter(is_whole).copied().collect();
     lengths.sort_by_key(count);
     let [few, many] = *lengths.as_slice() else { return None };
     (count(&few) > 0 && 2 * count(&few) <= count(&many) + 1).then_some(few)
@@ -255,91 +234,80 @@ fn optical(table: &Table, columns: &[Column]) -> Option<Column> {
 
 /// Columns of crack length, and those of single sides beside them: where no column has the mean, the sides have it.
 fn lengths_and_sides(table: &Table, columns: &[Column], import: &Import) -> Result<(Vec<Column>, Vec<Column>)> {
-    let of = |role: Role| columns.iter().filter(move |column| column.role == role);
-    if let Some(second) = of(Role::Length).nth(1) {
+    let of = |is_side: bool| columns.iter().filter(move |column| column.is_length() && (column.role == Role::Side) == is_side);
+    if let Some(second) = of(false).nth(1) {
         return Err(says_the_same(table, second.index, "length"));
     }
-    let read = |role: Role| of(role).map(|column| length_column(table, *column, import)).collect::<Result<Vec<Column>>>();
-    let (sides, lengths) = (read(Role::Side)?, read(Role::Length)?);
+    let read = |is_side: bool| of(is_side).map(|column| length_column(table, *column, import)).collect::<Result<Vec<Column>>>();
+    let (sides, lengths) = (read(true)?, read(false)?);
     Ok(if lengths.is_empty() { (sides.clone(), sides) } else { (lengths, sides) })
 }
 
-/// The unit of a column: as its name says, or as the user does, and never two of them.
-pub(super) fn stated_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Option<Unit>> {
+/// The unit of a column: as its name says, or as the user does by a key, and never two of them.
+fn stated_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Option<Unit>> {
     match (column.unit, given) {
         (Named::Is(named), Some(given)) if named != given => Err(table.header_fault(column.index).error(
-            format!("is in {}, but measured.{key} says {}", named.name(), given.name()),
+            format!("is in {}, but {} says {}", named.name(), key.split(' ').next().unwrap_or(key), given.name()),
             "name the unit in one place, or the same in both",
         )),
-        (Named::Is(unit), _) | (Named::No, Some(unit)) => Ok(Some(unit)),
-        _ => Ok(None),
+        (Named::Is(unit), _) => Ok(Some(unit)),
+        // What stands in brackets may be part of a name.
+        (Named::No | Named::Strange, given) => Ok(given),
     }
+}
+
+/// The column in its unit.
+/// Errors: none, and none that the user says; one of them each.
+pub(super) fn column_in_unit(table: &Table, column: Column, key: &str, like: Unit, given: Option<Unit>) -> Result<Column> {
+    if let Some(unit) = stated_unit(table, column, key, given)? {
+        return Ok(column.in_unit(unit));
+    }
+    let problem = if column.unit == Named::Strange { "has a unit that is not known" } else { "does not say its unit" };
+    Err(table.header_fault(column.index).error(problem, unit_remedy(key, like)))
+}
+
+fn unit_remedy(key: &str, like: Unit) -> String {
+    format!("name one of {} in the header, or set {key}", like.alternatives().join(", "))
 }
 
 /// The column of a crack length.
 fn length_column(table: &Table, column: Column, import: &Import) -> Result<Column> {
-    let fault = || table.header_fault(column.index);
-    match stated_unit(table, column, "length_unit", import.length.map(Unit::Length))? {
-        Some(unit) => Ok(column.in_unit(unit)),
-        None if column.unit == Named::Strange => Err(fault().error(
-            "has a unit that is not known",
-            "known are mm, inch and m; convert the column, or name another by measured.columns.length (--column length=...)",
-        )),
-        None => Err(fault().error(
-            "does not say its unit",
-            "name it crack_length_mm, crack_length_inch or crack_length_m, or set measured.length_unit (--length-unit)",
-        )),
-    }
+    let like = Unit::Length(LengthUnit::Millimetre);
+    column_in_unit(table, column, "measured.length_unit (--length-unit)", like, import.length.map(Unit::Length))
 }
 
 /// Whether the names of columns are `a1`, `a2`, ...: one letter or word of crack length, numbered.
 fn are_places_of_one_crack(names: &[String]) -> bool {
     let is_numbered = |(place, name): (usize, &String)| {
         let (base, number) = cut(name);
-        number == Some((place + 1).to_string().as_str()) && is_length(&Column::named(0, &base))
+        number == Some((place + 1).to_string().as_str()) && Column::named(Kind::Readings, 0, &base).is_length()
     };
     names.len() > 1 && names.iter().enumerate().all(is_numbered)
 }
 
-/// A specimen's column in a wide table: in the unit of its name, or as the user says.
-fn wide_length(table: &Table, index: usize, import: &Import) -> Result<Column> {
-    let column = Column::new(index, Role::Length, unit_at_end(&table.names[index], Role::Length));
-    match (column.unit, import.length) {
-        (Named::No, None) => Err(table.header_fault(index).error(
-            "does not say the unit of its crack lengths",
-            "set measured.length_unit = \"mm\", \"inch\" or \"m\" (--length-unit)",
-        )),
-        // What stands in brackets may be part of a specimen's name.
-        (Named::Strange, Some(unit)) => Ok(column.in_unit(Unit::Length(unit))),
-        _ => length_column(table, column, import),
-    }
-}
-
+/// A column of cycles: one by one where nothing says otherwise.
 fn cycle_column(table: &Table, column: Column, import: &Import) -> Result<Column> {
-    let given = import.cycles.map(Unit::Cycles);
-    let unit = match (stated_unit(table, column, "cycle_unit", given)?.or(given), column.unit) {
-        (Some(unit), _) => unit,
-        (None, Named::Strange) => {
-            return Err(table.header_fault(column.index).error(
-                "counts cycles in a unit that is not known",
-                "known are cycles, kilocycles (x1000) and megacycles; set measured.cycle_unit (--cycle-unit)",
+    let (like, mut given) = (Unit::Cycles(CycleUnit::Cycles), import.cycles.map(Unit::Cycles));
+    if (column.unit, given) == (Named::No, None) {
+        if let Some((line, text)) = table.preamble.iter().find(|(_, text)| is_of_thousands(text)) {
+            return Err(Fault { line: Some(*line), value: Some(text), ..whole_file(&table.file) }.error(
+                "may say the unit of the cycles, which the header does not",
+                "set measured.cycle_unit = \"kilocycles\", or \"cycles\" where they are single ones (--cycle-unit), or name the unit in the \
+                 header",
             ));
         }
-        (None, _) => {
-            check_cycles(table)?;
-            Unit::Cycles(CycleUnit::Cycles)
-        }
-    };
-    Ok(column.in_unit(unit))
+        given = Some(like);
+    }
+    column_in_unit(table, column, "measured.cycle_unit (--cycle-unit)", like, given)
 }
 
 /// The column of a load; `None` where its unit is not said and the loads do not change, so that those of the case hold for all.
 fn load_column(table: &Table, column: Column, import: &Import, warnings: &mut Vec<String>) -> Result<Option<Column>> {
-    if let Some(unit) = stated_unit(table, column, "load_unit", import.load.map(Unit::Load))? {
+    const KEY: &str = "measured.load_unit (--load-unit)";
+    if let Some(unit) = stated_unit(table, column, KEY, import.load.map(Unit::Load))? {
         return Ok(Some(column.in_unit(unit)));
     }
-    let known: Vec<&str> = LoadUnit::ALL.iter().map(|unit| unit.name()).collect();
-    let remedy = format!("name one of {} in the header, or set measured.load_unit (--load-unit)", known.join(", "));
+    let remedy = unit_remedy(KEY, Unit::Load(LoadUnit::Newton));
     let first = table.rows.first().map_or("", |row| row.cell(column.index));
     if let Some(row) = table.rows.iter().find(|row| row.cell(column.index) != first) {
         let problem = format!("is a load that changes (from {first}), in a unit that is not known");
@@ -400,10 +368,18 @@ pub(super) fn is_stress(column: &Column) -> bool {
     matches!(column.unit, Named::Is(unit) if unit.is_stress())
 }
 
+/// The line that says which columns of a wide table are not specimens.
+fn not_specimens(table: &Table, columns: &[Column]) -> Option<String> {
+    let statistics = columns.iter().filter(|column| column.role == Role::Statistic);
+    let names: Vec<&str> = statistics.map(|column| table.header[column.index].as_str()).collect();
+    let file = table.file.display();
+    (!names.is_empty()).then(|| format!("{file}: not read, since it is of several specimens or of a model: {}", names.join(", ")))
+}
+
 /// A line about columns that nobody asked for and whose names say nothing, or a load that is not read.
 fn not_read(table: &Table, columns: &[Column]) -> Option<String> {
     let strange = columns.iter().filter(|column| {
-        matches!(column.role, Role::Unknown | Role::Load)
+        matches!(column.role, Role::Unknown | Role::Unclear | Role::Statistic)
             || matches!((column.role, column.unit), (Role::Other, Named::Is(Unit::Load(_))))
     });
     let names: Vec<&str> = strange.map(|column| table.header[column.index].as_str()).filter(|name| !name.is_empty()).collect();
@@ -430,8 +406,9 @@ fn says_the_same(table: &Table, column: usize, key: &str) -> Error {
 /// A header that does not make up a test: what is missing, the first rows, and the key that settles it.
 fn unknown_shape(table: &Table, columns: &[Column]) -> Error {
     let first = |wanted: fn(&Column) -> bool| columns.iter().position(wanted);
-    let unknown = first(|column| column.role == Role::Unknown);
-    let (column, problem) = match (first(|column| column.role == Role::Cycles), first(is_length), unknown) {
+    let unclear = || first(|column| column.role == Role::Unclear).filter(|_| first(Column::is_length).is_none());
+    let unknown = first(|column| column.role == Role::Unknown).or_else(unclear);
+    let (column, problem) = match (first(|column| column.role == Role::Cycles), first(Column::is_length), unknown) {
         (None, None, Some(column)) => (column, "is not a known column"),
         (Some(column), None, None) => (column, "stands in a header without a column of crack length"),
         (None, Some(column), None) => (column, "stands in a header without a column of cycles"),

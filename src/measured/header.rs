@@ -2,60 +2,31 @@
 //! beside each other, `N1, a1, N2, a2`, or `N, a, N, a`.
 
 use super::import::Import;
-use perilife_base::table::names::{Column, Named, Role, is_length_of, is_unit_or_blank, with_unit};
-use perilife_base::table::units::Unit;
+use perilife_base::table::names::{Column, Kind, Named, Role};
 use perilife_base::table::{Sheet, Vocabulary};
-
-/// The role of a key of `measured.columns`.
-fn role_of(key: &str) -> Role {
-    match key {
-        "cycles" => Role::Cycles,
-        "length" => Role::Length,
-        "specimen" => Role::Specimen,
-        "force_max" | "stress_max" => Role::Max,
-        "force_min" | "stress_min" => Role::Min,
-        "force_range" => Role::Range,
-        "delta_k" => Role::DeltaK,
-        "rate" => Role::Rate,
-        _ => Role::Ratio,
-    }
-}
-
-/// Whether a column holds a crack length, or that on one side.
-pub(super) fn is_length(column: &Column) -> bool {
-    matches!(column.role, Role::Length | Role::Side)
-}
 
 /// Columns of a header as it stands in the file, and with the units of the row below.
 pub(super) fn columns_of(header: &[String], names: &[String], import: &Import) -> Vec<Column> {
-    let named = if import.of_rates { Column::named_of_rates } else { Column::named };
-    let mut columns: Vec<Column> = names.iter().enumerate().map(|(index, name)| named(index, name)).collect();
-    // `aL` and `aR` beside each other are sides of one specimen; one alone may be its name.
-    for pair in [["al", "ar"], ["af", "ab"]] {
-        let place = |side: &str| {
-            let is_side = |name: &String| name.starts_with('a') && is_length_of(name, side);
-            names.iter().position(is_side).filter(|index| columns[*index].role == Role::Unknown)
-        };
-        if let [Some(one), Some(other)] = pair.map(place) {
-            [one, other].into_iter().for_each(|index| columns[index] = Column::given(index, Role::Side, &names[index]));
-        }
-    }
-    for role in import.columns.given().map(|(key, _)| role_of(key)) {
-        let same = |column: &&mut Column| column.role == role || (role == Role::Length && column.role == Role::Side);
+    let kind = if import.of_rates { Kind::Rates } else { Kind::Readings };
+    let mut columns: Vec<Column> = names.iter().enumerate().map(|(index, name)| Column::named(kind, index, name)).collect();
+    for (_, role, _) in import.columns.given() {
+        let same = |column: &&mut Column| column.role == role || (role == Role::Length && column.is_length());
         columns.iter_mut().filter(same).for_each(|column| *column = Column::new(column.index, Role::Other, Named::No));
     }
-    for (key, name) in import.columns.given() {
+    for (_, role, name) in import.columns.given() {
         if let Some(index) = place_of(name, header, names) {
-            let is_side = key == "length" && import.columns.has_sides();
-            columns[index] = Column::given(index, if is_side { Role::Side } else { role_of(key) }, &names[index]);
+            let role = if role == Role::Length && import.columns.has_sides() { Role::Side } else { role };
+            columns[index] = Column::given(index, role, &names[index]);
         }
     }
     columns
 }
 
-/// Whether all columns behind the first are of no known quantity: names of specimens.
+/// Whether all columns behind the first are names of specimens, and perhaps what several of them have.
 pub(super) fn is_wide(columns: &[Column]) -> bool {
-    columns.len() >= 3 && columns[1..].iter().all(|column| column.role == Role::Unknown)
+    let (statistics, specimens): (Vec<&Column>, Vec<&Column>) =
+        columns.iter().skip(1).partition(|column| column.role == Role::Statistic);
+    !specimens.is_empty() && specimens.len() + statistics.len() > 1 && specimens.iter().all(|column| column.role == Role::Unknown)
 }
 
 /// Whether a row of names, with what the user says, names cycles and crack length, starts a wide table or is one of pairs; of a table of
@@ -76,7 +47,7 @@ fn names_a_test(names: &[String], import: &Import) -> bool {
     }
     let columns = columns_of(names, names, import);
     let first = |wanted: fn(&Column) -> bool| columns.iter().position(wanted);
-    match (first(|column| column.role == Role::Cycles), first(is_length)) {
+    match (first(|column| column.role == Role::Cycles), first(Column::is_length)) {
         (Some(_), Some(_)) => true,
         (Some(0), None) | (None, Some(0)) => is_wide(&columns) && names.iter().all(|name| !name.is_empty()),
         _ => false,
@@ -90,14 +61,6 @@ impl Vocabulary for Import {
 
     fn is_header(&self, names: &[String]) -> bool {
         names_a_test(names, self)
-    }
-
-    fn is_unit(&self, cell: &str) -> bool {
-        is_unit_or_blank(cell)
-    }
-
-    fn with_unit(&self, name: &str, unit: &str) -> Result<String, &'static str> {
-        with_unit(name, unit).map_err(Unit::name)
     }
 
     fn sheet(&self) -> Option<&Sheet> {
@@ -134,7 +97,8 @@ pub(super) fn pairs_of(names: &[String]) -> Option<Vec<(String, [Column; 2])>> {
     // Tables beside each other have an empty column between them.
     let (places, names): (Vec<usize>, Vec<(String, Option<&str>)>) =
         names.iter().enumerate().filter(|(_, name)| !name.is_empty()).map(|(place, name)| (place, cut(name))).unzip();
-    let columns: Vec<Column> = places.iter().zip(&names).map(|(&index, (base, _))| Column::named(index, base)).collect();
+    let columns: Vec<Column> =
+        places.iter().zip(&names).map(|(&index, (base, _))| Column::named(Kind::Readings, index, base)).collect();
     let count = names.len() / 2;
     let is_pair = |pair: usize| {
         let [cycles, length] = [2 * pair, 2 * pair + 1];

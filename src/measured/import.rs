@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use perilife_base::error::{Result, input, input_missing};
+use perilife_base::table::names::Role;
 use perilife_base::table::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
 use perilife_base::table::{Decimal, Sheet, TextOrNumber};
 
@@ -95,30 +96,38 @@ pub fn check_left_out(all: &[LeaveOut], files: &[String]) -> Result<()> {
 /// laboratories use. Several columns of crack length are readings of one crack on several sides.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 #[serde(try_from = "BTreeMap<String, OneOrMany>")]
-pub struct ColumnNames(Vec<(&'static str, String)>);
+pub struct ColumnNames(Vec<((&'static str, Role), String)>);
 
 impl ColumnNames {
-    /// Known keys.
-    pub const KEYS: [&'static str; 11] = [
-        "cycles",
-        "length",
-        "specimen",
-        "force_max",
-        "force_min",
-        "force_range",
-        "stress_max",
-        "stress_min",
-        "stress_ratio",
-        "delta_k",
-        "rate",
+    /// Known keys with their roles; of several the first is shown.
+    pub const KEYS: [(&'static str, Role); 11] = [
+        ("cycles", Role::Cycles),
+        ("length", Role::Length),
+        ("specimen", Role::Specimen),
+        ("force_max", Role::Max),
+        ("force_min", Role::Min),
+        ("force_range", Role::Range),
+        ("stress_max", Role::Max),
+        ("stress_min", Role::Min),
+        ("stress_ratio", Role::Ratio),
+        ("delta_k", Role::DeltaK),
+        ("rate", Role::Rate),
     ];
+
+    fn key(name: &str) -> Option<(&'static str, Role)> {
+        Self::KEYS.into_iter().find(|(known, _)| *known == name)
+    }
+
+    /// Names of the keys.
+    pub fn names(between: &str) -> String {
+        Self::KEYS.map(|(key, _)| key).join(between)
+    }
 
     /// Names a column as `key=name` of the option `--column` does.
     /// Errors: a text without `=`, an unknown key, or a key given twice (crack length may be).
     pub fn put(&mut self, text: &str) -> Result<()> {
         let refuse = |problem: &str| {
-            let remedy =
-                format!("write --column key=name with one of {}, e.g. --column length=\"a [in]\"", Self::KEYS.join(", "));
+            let remedy = format!("write --column key=name with one of {}, e.g. --column length=\"a [in]\"", Self::names(", "));
             input("--column", format!("\"{text}\""), problem, remedy)
         };
         let (key, name) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
@@ -126,19 +135,20 @@ impl ColumnNames {
         if name.is_empty() {
             return Err(refuse("names no column"));
         }
-        let key = Self::KEYS.into_iter().find(|known| *known == key.trim());
-        let key = key.ok_or_else(|| refuse("has a key that is not known"))?;
-        if key != "length" && self.0.iter().any(|(given, _)| *given == key) {
+        let key = Self::key(key.trim()).ok_or_else(|| refuse("has a key that is not known"))?;
+        if key.1 != Role::Length && self.0.iter().any(|(given, _)| *given == key) {
             return Err(refuse("names a column twice"));
         }
         self.0.push((key, name.to_owned()));
         Ok(())
     }
 
-    /// Columns that are named, with their keys; crack lengths last.
-    pub(super) fn given(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        let keys = Self::KEYS.into_iter().filter(|key| *key != "length").chain(["length"]);
-        keys.flat_map(|key| self.0.iter().filter(move |(own, _)| *own == key).map(|(own, name)| (*own, name.as_str())))
+    /// Columns that are named, with their keys and roles; crack lengths last.
+    pub(super) fn given(&self) -> impl Iterator<Item = (&'static str, Role, &str)> {
+        let keys = Self::KEYS.into_iter().filter(|(_, role)| *role != Role::Length).chain([("length", Role::Length)]);
+        keys.flat_map(|key| {
+            self.0.iter().filter(move |(own, _)| *own == key).map(|((key, role), name)| (*key, *role, name.as_str()))
+        })
     }
 
     /// Those that are named, without those given by number: a number is there in every table.
@@ -148,7 +158,7 @@ impl ColumnNames {
 
     /// Whether several columns are crack lengths.
     pub(super) fn has_sides(&self) -> bool {
-        self.given().filter(|(key, _)| *key == "length").count() > 1
+        self.given().filter(|(_, role, _)| *role == Role::Length).count() > 1
     }
 }
 
@@ -158,11 +168,13 @@ impl TryFrom<BTreeMap<String, OneOrMany>> for ColumnNames {
     fn try_from(table: BTreeMap<String, OneOrMany>) -> std::result::Result<Self, String> {
         let mut names = Vec::new();
         for (key, columns) in table {
-            let known = Self::KEYS.into_iter().find(|known| *known == key);
-            let known = known.ok_or_else(|| format!("unknown field `{key}`, expected one of `{}`", Self::KEYS.join("`, `")))?;
+            let known =
+                Self::key(&key).ok_or_else(|| format!("unknown field `{key}`, expected one of `{}`", Self::names("`, `")))?;
             match columns {
                 OneOrMany::One(name) => names.push((known, name.into())),
-                OneOrMany::Many(several) if key == "length" => names.extend(several.into_iter().map(|name| (known, name.into()))),
+                OneOrMany::Many(several) if known.1 == Role::Length => {
+                    names.extend(several.into_iter().map(|name| (known, name.into())))
+                }
                 OneOrMany::Many(_) => return Err("a column, expected the name of a column or its number".to_owned()),
             }
         }

@@ -13,7 +13,6 @@
 
 mod columns;
 mod curve;
-mod doubts;
 mod header;
 mod import;
 mod leave_out;

@@ -1,11 +1,12 @@
-//! Columns that say whether a reading counts: `valid`, `use`, `outlier`, `flag`.
+//! What a table says of its readings beside the numbers: columns that say which count, remarks that reject one, a unit above the header.
 
 use super::header::columns_of;
 use super::import::Import;
 use perilife_base::error::Result;
-use perilife_base::table::names::vocabulary::{MARKS_KEEP, MARKS_OUT};
-use perilife_base::table::names::{Role, any_in, of_words, says_one_of};
+use perilife_base::table::names::{Column, Kind, Role};
 use perilife_base::table::numerals::is_number;
+use perilife_base::table::units::{CycleUnit, Unit};
+use perilife_base::table::words::words;
 use perilife_base::table::{Row, Table};
 
 /// Cells that answer what the name of the column asks.
@@ -35,10 +36,44 @@ pub(super) fn counts(cell: &str, is_out: bool) -> Option<bool> {
     }
 }
 
-/// Whether a remark says that its reading does not count.
-pub(super) fn rejects(remark: &str) -> bool {
+/// The note of rows whose remarks reject them, which are read all the same; `read`: places of the columns that are read.
+pub(super) fn rejected(table: &Table, read: &[usize]) -> Option<String> {
+    let is_word = |word: &String| [COUNTS_NOT, REMARKS].iter().any(|list| list.split(' ').any(|known| known == word));
     // "not rejected" and "no outlier" are rare, and only told of.
-    !is_number(remark) && [COUNTS_NOT, REMARKS].iter().any(|list| says_one_of(remark, list))
+    let rejects = |remark: &str| !is_number(remark) && words(remark).0.iter().any(is_word);
+    let columns: Vec<usize> = (0..table.header.len()).filter(|column| !read.contains(column)).collect();
+    let of_row = |row: &Row| {
+        columns.iter().find(|column| rejects(row.cell(**column))).map(|column| (row.line, *column, row.cell(*column).to_owned()))
+    };
+    let mut found = table.rows.iter().filter_map(of_row);
+    let (line, column, cell) = found.next()?;
+    Some(format!(
+        "{}:{line}: {} = \"{cell}\" may reject the reading, and {} in all: they are read like the others; leave them out by \
+         measured.leave_out, or by a column valid of yes and no",
+        table.file.display(),
+        table.header[column],
+        match found.count() {
+            0 => "it is the only one".to_owned(),
+            more => format!("{} rows do so", more + 1),
+        }
+    ))
+}
+
+/// Whether a line says that cycles are counted in thousands or millions: `N x 1000`, `Zyklen in Tausend`; not `precracked for 50 thousand cycles`.
+pub(super) fn is_of_thousands(line: &str) -> bool {
+    let all = words(line).0;
+    let is_cycles = |word: &String| Column::named(Kind::Readings, 0, word).role == Role::Cycles;
+    let is_many = |from: usize| {
+        let before = from.checked_sub(1).map_or("", |before| &all[before]);
+        let is_said = match all[from].parse::<f64>() {
+            Ok(_) => ["in", "of", "mal", "times"].contains(&before),
+            Err(_) => all[from].len() > 2 && before.parse::<f64>().is_err() || all[from] == "x",
+        };
+        let spelled =
+            (from + 1..=all.len().min(from + 3)).filter_map(|to| Unit::spelled(&all[from..to], Unit::Cycles(CycleUnit::Cycles)));
+        is_said && spelled.into_iter().any(|unit| unit.si() > 1.0)
+    };
+    all.iter().any(is_cycles) && (0..all.len()).any(is_many)
 }
 
 fn is_blank(cell: &str) -> bool {
@@ -49,8 +84,8 @@ fn is_blank(cell: &str) -> bool {
 /// Errors: no row is left.
 pub(super) fn leave_marked_out(table: &mut Table, import: &Import) -> Result<()> {
     let columns = columns_of(&table.header, &table.names, import);
-    for index in columns.iter().filter(|column| column.role == Role::Mark).map(|column| column.index) {
-        let (name, is_out) = (table.header[index].clone(), marks_out(&table.names[index]));
+    for Column { index, role, .. } in columns.into_iter().filter(|column| matches!(column.role, Role::Counts | Role::CountsNot)) {
+        let (name, is_out) = (table.header[index].clone(), role == Role::CountsNot);
         let said: Vec<bool> = table.rows.iter().filter_map(|row| counts(row.cell(index), is_out)).collect();
         // Blank is what the cells that say something do not say.
         let blank = match (said.contains(&true), said.contains(&false)) {
@@ -81,9 +116,4 @@ pub(super) fn leave_marked_out(table: &mut Table, import: &Import) -> Result<()>
         })?;
     }
     Ok(())
-}
-
-/// Whether a column that says which readings count marks those that do not.
-fn marks_out(name: &str) -> bool {
-    of_words(name, |words, _| any_in(words, MARKS_OUT) || !any_in(words, MARKS_KEEP))
 }

@@ -7,18 +7,16 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::columns::stated_unit;
-use super::doubts::rejected;
+use super::columns::column_in_unit;
 use super::header::columns_of;
 use super::import::{ColumnNames, Import};
-use super::marks::counts;
+use super::marks::{counts, rejected};
 use super::readings::value;
 use super::table;
 use super::wide_rates;
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, number};
 use perilife_base::table::decimal::decide;
-use perilife_base::table::names::vocabulary::is_in;
 use perilife_base::table::names::{Column, Named, Role};
 use perilife_base::table::{
     Decimal, Sheet,
@@ -177,10 +175,12 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     let (Some(k), Some(rate)) = (delta_k.or(k_max.filter(|_| says_range)), of(Role::Rate)?) else {
         return Err(without_columns(&cells));
     };
-    let of_k = |column: Column| with_unit(&cells, column, "intensity_unit", keys.intensity_unit.map(Unit::Intensity));
+    let like = Unit::Intensity(IntensityUnit::MpaSqrtM);
+    let of_k = |column: Column| column_in_unit(&cells, column, "intensity_unit", like, keys.intensity_unit.map(Unit::Intensity));
     let in_unit = |column: Option<Column>| column.map(of_k).transpose();
     let (k, delta_k, k_max, k_min) = (of_k(k)?, in_unit(delta_k)?, in_unit(k_max)?, in_unit(k_min)?);
-    let rate = with_unit(&cells, rate, "rate_unit", keys.rate_unit.map(Unit::Rate))?;
+    let like = Unit::Rate(RateUnit::Millimetre);
+    let rate = column_in_unit(&cells, rate, "rate_unit", like, keys.rate_unit.map(Unit::Rate))?;
     if let (Some(column), Some(given)) = (ratio, keys.stress_ratio) {
         let problem = format!("is a column, and stress_ratio = {given} is given for the file");
         return Err(cells.header_fault(column.index).error(problem, "leave one of them out"));
@@ -300,31 +300,12 @@ fn leave_censored_out(cells: &mut Table, k: Column, rate: Column) -> Result<()> 
     let is_censored = |row: &Row| {
         let cell = row.cell(rate.index);
         let word: String = cell.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
-        cell.starts_with(['<', '≤']) || is_in(WORDS, &word)
+        cell.starts_with(['<', '≤']) || WORDS.split_whitespace().any(|known| known == word)
     };
     let Some(first) = cells.rows.iter().find(|row| is_censored(row)) else { return Ok(()) };
     let [name, of_k, rate] = [&cells.header[k.index], first.cell(k.index), first.cell(rate.index)];
     let why = format!("with a rate below the measurable one, first at {name} = {of_k}: {rate}");
     cells.leave_out(&why, "their ΔK is a lower bound of the threshold", is_censored)
-}
-
-fn with_unit(table: &Table, column: Column, key: &str, given: Option<Unit>) -> Result<Column> {
-    let fault = || table.header_fault(column.index);
-    match stated_unit(table, column, key, given)? {
-        Some(unit) => Ok(column.in_unit(unit)),
-        None if column.unit == Named::Strange => {
-            Err(fault().error("has a unit that is not known", format!("convert the column, or give {key} = {}", units(key))))
-        }
-        None => Err(fault().error("does not say its unit", format!("name it in the header, or give {key} = {}", units(key)))),
-    }
-}
-
-fn units(key: &str) -> String {
-    let names: Vec<&str> = match key {
-        "rate_unit" => RateUnit::ALL.iter().map(|unit| unit.name()).collect(),
-        _ => IntensityUnit::ALL.iter().map(|unit| unit.name()).collect(),
-    };
-    format!("\"{}\"", names.join("\" or \""))
 }
 
 fn without_columns(table: &Table) -> perilife_base::error::Error {

@@ -124,7 +124,12 @@ fn broken() -> Vec<(&'static str, Vec<u8>, [&'static str; 4])> {
         (
             "no unit",
             text("cycles,crack_length\n0,9\n"),
-            [":1: ", "header = crack_length", "does not say its unit", "name it crack_length_mm"],
+            [
+                ":1: ",
+                "header = crack_length",
+                "does not say its unit",
+                "name one of mm, inch, m in the header, or set measured.length_unit (--length-unit)",
+            ],
         ),
         (
             "no length",
@@ -155,7 +160,7 @@ fn broken() -> Vec<(&'static str, Vec<u8>, [&'static str; 4])> {
         (
             "wide without unit",
             text("cycles,A1,A2\n0,9,9\n"),
-            [":1: ", "header = A1", "does not say the unit", "measured.length_unit"],
+            [":1: ", "header = A1", "does not say its unit", "measured.length_unit"],
         ),
         (
             "wide with falling cycles",

@@ -2,8 +2,8 @@
 
 use perilife_base::units::MM;
 
-use perilife_plate::specimen::Point;
 use perilife_growth::predict::{GoverningCrack, Prediction, Silent, predict};
+use perilife_plate::specimen::Point;
 use perilife_study::cases::{NODES, case};
 
 use crate::support::plates::cracked_plate;

@@ -10,6 +10,7 @@ use std::path::Path;
 use super::Vocabulary;
 use super::cells::{COLUMNS_MAX, Fault, Row, Separator, Table, whole_file};
 use super::lines::Line;
+use super::names::{is_unit_or_blank, with_unit};
 use super::numerals::is_number;
 use crate::cells::{ROWS_MAX, SMALLER, TEXT_MAX, restored, too_many};
 use crate::error::Result;
@@ -31,8 +32,6 @@ pub(super) struct Place {
     columns: usize,
     /// Whether the header names what a test has.
     named: bool,
-    /// A row above the header whose cells begin the names.
-    above: Option<usize>,
 }
 
 /// How well a separator cuts the sample, better ones larger.
@@ -104,7 +103,7 @@ fn width(row: &Row) -> usize {
 /// Where header and readings stand; `None` for less than two columns.
 pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
     let head = &rows[..rows.len().min(PREAMBLE_MAX)];
-    let below = |header: usize| header + 1 + usize::from(rows.get(header + 1).is_some_and(|row| is_row_of_units(row, words)));
+    let below = |header: usize| header + 1 + usize::from(rows.get(header + 1).is_some_and(is_row_of_units));
     let names = |row: &Row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>();
     let named: Vec<usize> = (0..head.len())
         .filter(|&row| {
@@ -118,24 +117,14 @@ pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
         (Some(header), _) => (Some(header), below(header), header),
         (None, Some(0)) => (None, 0, 0),
         (None, Some(first)) => {
-            let over_units = first > 1 && is_row_of_units(&rows[first - 1], words) && width(&rows[first - 2]) > 1;
+            let over_units = first > 1 && is_row_of_units(&rows[first - 1]) && width(&rows[first - 2]) > 1;
             let header = first - 1 - usize::from(over_units);
             (Some(header), first, header)
         }
         (None, None) => (Some(0), 1.min(rows.len()), 0),
     };
     let columns = width(rows.get(width_of)?);
-    // A header of two lines, neither of which names a test by itself.
-    let above =
-        header.filter(|header| named.is_empty() && *header > 0 && width(&rows[header - 1]) == columns).map(|header| header - 1);
-    let above = above.filter(|&above| words.is_header(&joined(&rows[above], &rows[above + 1], columns)));
-    let is_named = !named.is_empty() || above.is_some();
-    (words.columns()..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: is_named, above })
-}
-
-/// Names that stand in two lines.
-fn joined(above: &Row, below: &Row, columns: usize) -> Vec<String> {
-    (0..columns).map(|column| format!("{} {}", above.cell(column), below.cell(column)).trim().to_owned()).collect()
+    (words.columns()..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: !named.is_empty() })
 }
 
 /// Rows up to the last one that has a number: what stands behind is text.
@@ -146,10 +135,10 @@ fn without_footer(rows: &[Row]) -> usize {
 }
 
 /// A row below the header of nothing but units.
-fn is_row_of_units(row: &Row, words: &dyn Vocabulary) -> bool {
+fn is_row_of_units(row: &Row) -> bool {
     // `1000, 1` is a reading.
     let is_text = |cell: &str| !cell.is_empty() && !is_number(cell);
-    row.cells.iter().any(is_text) && row.cells.iter().all(|cell| words.is_unit(cell))
+    row.cells.len() <= COLUMNS_MAX && row.cells.iter().any(is_text) && row.cells.iter().all(is_unit_or_blank)
 }
 
 fn merit(rows: &[Row], place: Place) -> Merit {
@@ -198,17 +187,16 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) 
         return Err(whole_file(file).error("is no table of 2 to 4096 columns", words.remedy()));
     };
     let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
-    let header = match (place.header, place.above) {
-        (Some(header), Some(above)) => joined(&rows[above], &rows[header], place.columns),
-        (Some(header), None) => cells(&rows[header]),
-        (None, _) => (1..=place.columns).map(|column| format!("column {column}")).collect(),
+    let header = match place.header {
+        Some(header) => cells(&rows[header]),
+        None => (1..=place.columns).map(|column| format!("column {column}")).collect(),
     };
     let row_of_units = place.header.filter(|header| header + 1 < place.body).map(|header| &rows[header + 1]);
     let units = row_of_units.map(cells);
     let in_units = |(name, unit): (&String, &String)| {
         let fault = Fault { line: row_of_units.map(|row| row.line), key: Some(name), value: Some(unit), ..whole_file(file) };
-        words.with_unit(name, unit).map_err(|own| {
-            let problem = format!("is another unit than that of the name above it, {own}");
+        with_unit(name, unit).map_err(|own| {
+            let problem = format!("is another unit than that of the name above it, {}", own.name());
             fault.error(problem, "name the unit in one place, or the same in both")
         })
     };
@@ -217,7 +205,7 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) 
         Some(units) => header.iter().zip(units).map(in_units).collect::<Result<_>>()?,
     };
     let header_line = place.header.map_or(0, |header| rows[header].line);
-    let above = place.above.or(place.header).unwrap_or(0);
+    let above = place.header.unwrap_or(0);
     let in_words = |row: &Row| (row.line, row.cells.iter().filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" "));
     let preamble = rows[..above].iter().map(in_words).collect();
     let end = without_footer(&rows).max(place.body);

@@ -30,11 +30,6 @@ use crate::error::Result;
 pub trait Vocabulary {
     /// Whether these names are the header of a table of the kind that is looked for.
     fn is_header(&self, names: &[String]) -> bool;
-    /// Whether a cell of a row below the header is a unit, or blank.
-    fn is_unit(&self, cell: &str) -> bool;
-    /// A name with the unit of the row below it, unless it has one itself.
-    /// Errors: its own unit, where the row says another one.
-    fn with_unit(&self, name: &str, unit: &str) -> std::result::Result<String, &'static str>;
     /// Whether a row is left out by its line, so that it may have other columns than the header.
     fn leaves_out(&self, _line: usize) -> bool {
         false

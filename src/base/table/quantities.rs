@@ -2,39 +2,31 @@
 
 use super::cells::{Fault, Row, Table, whole_file};
 use super::decimal::{Numbers, decide};
-use super::names::{Named, is_unit_or_blank, with_unit};
+use super::names::{Column, Kind, Named, Role};
 use super::numerals::{is_number, number};
 use super::units::Unit;
 use super::{Decimal, Sheet, Vocabulary};
 use crate::error::Result;
 
-/// What a name means to the reader of such a table, and in which unit; `None` of a name that it does not know.
-pub type RoleOf<R> = fn(&str) -> Option<(R, Named)>;
-
-/// The words of such a table.
-pub struct Words<R> {
-    /// What a name means.
-    pub role: RoleOf<R>,
+/// What is asked of such a table.
+#[derive(Clone, Copy)]
+pub struct Words {
+    /// Its forms.
+    pub kind: Kind,
+    /// Roles that its columns may have; all where it is empty.
+    pub roles: &'static [Role],
     /// Whether columns of these roles are enough.
-    pub is_enough: fn(&[R]) -> bool,
+    pub is_enough: fn(&[Role]) -> bool,
     /// Fewest columns.
     pub columns: usize,
     /// Which columns to give.
     pub remedy: &'static str,
 }
 
-impl<R> Vocabulary for Words<R> {
+impl Vocabulary for Words {
     fn is_header(&self, names: &[String]) -> bool {
-        let roles: Vec<R> = names.iter().filter_map(|name| (self.role)(name)).map(|(role, _)| role).collect();
+        let roles: Vec<Role> = names.iter().filter_map(|name| self.role(name)).map(|(role, _)| role).collect();
         (self.is_enough)(&roles)
-    }
-
-    fn is_unit(&self, cell: &str) -> bool {
-        is_unit_or_blank(cell)
-    }
-
-    fn with_unit(&self, name: &str, unit: &str) -> std::result::Result<String, &'static str> {
-        with_unit(name, unit).map_err(Unit::name)
     }
 
     fn sheet(&self) -> Option<&Sheet> {
@@ -50,12 +42,22 @@ impl<R> Vocabulary for Words<R> {
     }
 }
 
-impl<R: Copy + PartialEq> Words<R> {
+impl Words {
+    /// Role and unit of a name; `None` of one that such a table does not have.
+    pub fn role(&self, name: &str) -> Option<(Role, Named)> {
+        let column = Column::named(self.kind, 0, name);
+        let is_wanted = match self.roles {
+            [] => column.role != Role::Unknown,
+            roles => roles.contains(&column.role),
+        };
+        (is_wanted && !column.is_tip_to_tip()).then_some((column.role, column.unit))
+    }
+
     /// Role and unit of every column.
-    /// Errors: no header, a header without the columns, a name that is not known, two columns of one role but `several`.
-    pub fn roles(&self, table: &Table, several: Option<R>) -> Result<Vec<(R, Named)>> {
-        let known: Vec<Option<(R, Named)>> = table.names.iter().map(|name| (self.role)(name)).collect();
-        let roles: Vec<R> = known.iter().flatten().map(|(role, _)| *role).collect();
+    /// Errors: no header, a header without the columns, a name that is not known, two columns of one role but of others.
+    pub fn roles(&self, table: &Table) -> Result<Vec<(Role, Named)>> {
+        let known: Vec<Option<(Role, Named)>> = table.names.iter().map(|name| self.role(name)).collect();
+        let roles: Vec<Role> = known.iter().flatten().map(|(role, _)| *role).collect();
         let fault = |column: usize, problem: &str| table.header_fault(column).error(problem, self.remedy);
         let of_row = |line, value| Fault { line: Some(line), value: Some(value), ..whole_file(&table.file) };
         if let Some(row) = table.rows.first().filter(|_| table.header_line == 0) {
@@ -70,7 +72,7 @@ impl<R: Copy + PartialEq> Words<R> {
             let fault = Fault { key: Some("header"), ..of_row(table.header_line, &names) };
             return Err(fault.error("lacks a column", self.remedy));
         }
-        let twice = |at: &usize| roles[..*at].contains(&roles[*at]) && several != Some(roles[*at]);
+        let twice = |at: &usize| roles[*at] != Role::Other && roles[..*at].contains(&roles[*at]);
         match (0..roles.len()).find(twice) {
             Some(second) => Err(fault(second, "says the same as an earlier column")),
             None => Ok(known.into_iter().flatten().collect()),

@@ -1,5 +1,10 @@
 //! Units of the columns of tables, and how tables spell them.
 
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+use super::names::VOCABULARY;
+use super::words::words;
 use crate::units::{INCH, KGF, KN, KSI, LBF, MM, MPA, MPA_SQRT_M, SQRT_INCH};
 
 crate::kinds! {
@@ -83,15 +88,24 @@ impl Unit {
 
     /// Metres, cycles, newtons, pascals, Pa√m or m/cycle in the unit.
     pub fn si(self) -> f64 {
-        UNITS.iter().find(|(unit, ..)| *unit == self).map_or(f64::NAN, |(_, si, _)| *si)
+        UNITS.iter().find(|(unit, _)| *unit == self).map_or(f64::NAN, |(_, si)| *si)
     }
 
     /// The unit of a quantity, that of `like`, that some lower-case words spell.
-    pub fn spelled(words: &[&str], like: Unit) -> Option<Unit> {
-        let words = words.join(" ");
-        let is_like = |unit: &Unit| std::mem::discriminant(unit) == std::mem::discriminant(&like);
-        let found = UNITS.iter().find(|(unit, _, spellings)| is_like(unit) && spellings.split(", ").any(|own| own == words));
-        found.map(|(unit, ..)| *unit)
+    pub fn spelled(words: &[String], like: Unit) -> Option<Unit> {
+        let is_like = |unit: &&Unit| std::mem::discriminant(*unit) == std::mem::discriminant(&like);
+        SPELLINGS.get(&words.join(" "))?.iter().find(is_like).copied()
+    }
+
+    /// Names of the units of its quantity.
+    pub fn alternatives(self) -> Vec<&'static str> {
+        let is_like = |unit: &Unit| std::mem::discriminant(unit) == std::mem::discriminant(&self);
+        UNITS.iter().map(|(unit, _)| *unit).filter(is_like).map(Unit::name).collect()
+    }
+
+    /// Whether lower-case words spell a unit of any quantity.
+    pub(super) fn is_known(words: &str) -> bool {
+        SPELLINGS.contains_key(words)
     }
 
     /// Whether it is one of stress.
@@ -103,66 +117,40 @@ impl Unit {
 /// Pa√m in N/mm^(3/2), 1e6 √1e-3.
 const N_PER_MM_1_5: f64 = 31_622.776_601_683_79;
 
-/// Units with their size in SI, or in cycles, and how tables spell them.
-const UNITS: [(Unit, f64, &str); 22] = [
-    (Unit::Length(LengthUnit::Millimetre), MM, "mm, millimetre, millimeter, millimetres, millimeters"),
-    (Unit::Length(LengthUnit::Inch), INCH, "in, inch, inches"),
-    (Unit::Length(LengthUnit::Metre), 1.0, "m, metre, meter, metres, meters"),
-    (Unit::Cycles(CycleUnit::Cycles), 1.0, "cycles, cycle, cyc, 1, zyklen, count, counts, lw, n"),
-    (
-        Unit::Cycles(CycleUnit::Kilocycles),
-        1e3,
-        "kilocycles, kilocycle, kcycles, kcycle, kcyc, kc, k, thousand, thousands, 1000, 1e3, e3, tausend, 10 3",
-    ),
-    (
-        Unit::Cycles(CycleUnit::Megacycles),
-        1e6,
-        "megacycles, megacycle, mcycles, mcycle, mcyc, million, millions, millionen, 1000000, 1e6, e6, 10 6",
-    ),
-    (Unit::Load(LoadUnit::Newton), 1.0, "n, newton, newtons"),
-    (Unit::Load(LoadUnit::Kilonewton), KN, "kn, kilonewton, kilonewtons"),
-    (Unit::Load(LoadUnit::PoundForce), LBF, "lbf, lb, lbs, pounds, pound"),
-    (Unit::Load(LoadUnit::Kip), 1e3 * LBF, "kip, kips, klbf, klb, klbs"),
-    (Unit::Load(LoadUnit::KilogramForce), KGF, "kgf, kg, kp"),
-    (Unit::Load(LoadUnit::Megapascal), MPA, "mpa, n mm2, n mm 2"),
-    (Unit::Load(LoadUnit::Ksi), KSI, "ksi"),
-    (
-        Unit::Intensity(IntensityUnit::MpaSqrtM),
-        MPA_SQRT_M,
-        "mpa m, mpa sqrt m, mpa sqrtm, mpa root m, mpa m 0 5, mpa m05, mpa m 1 2, mpa m1 2, mpa m½, mpam, mpasqrtm, mpam 0 5, mpam 1 2, \
-         mpam1 2, mpam½, mpa sqr m, mn m 3 2, mn m 1 5, mn m3 2",
-    ),
-    (
-        Unit::Intensity(IntensityUnit::KsiSqrtInch),
-        KSI * SQRT_INCH,
-        "ksi in, ksi inch, ksi sqrt in, ksi sqrtin, ksi sqrt inch, ksi root in, ksi in 0 5, ksi in 1 2, ksi in1 2, ksi in½, ksi inch 0 5, \
-         ksi inch 1 2, ksiin, ksisqrtin, ksiin 0 5, ksiin 1 2",
-    ),
-    (
-        Unit::Intensity(IntensityUnit::NewtonMm),
-        N_PER_MM_1_5,
-        "n mm 3 2, n mm 1 5, n mm3 2, n mm1 5, n mm15, mpa mm, mpa sqrt mm, mpa sqrtmm, mpa mm 0 5, mpa mm 1 2, n mm2 mm, n mm 2 mm",
-    ),
-    (
-        Unit::Intensity(IntensityUnit::KilogramForceMm),
-        KGF * N_PER_MM_1_5,
-        "kgf mm 3 2, kgf mm 1 5, kgf mm3 2, kgf mm1 5, kgf mm15, kg mm 3 2, kg mm 1 5, kg mm3 2, kg mm1 5, kp mm 3 2",
-    ),
-    (
-        Unit::Rate(RateUnit::Millimetre),
-        MM,
-        "mm cycle, mm cycles, mm per cycle, mm cyc, mm c, mm lw, mm zyklus, mm lastwechsel, millimetre per cycle, mm cycle 1",
-    ),
-    (Unit::Rate(RateUnit::Metre), 1.0, "m cycle, m cycles, m per cycle, m cyc, m c, metre per cycle, meter per cycle, m cycle 1"),
-    (
-        Unit::Rate(RateUnit::Inch),
-        INCH,
-        "in cycle, in cycles, in per cycle, in cyc, in c, inch cycle, inch cycles, inch per cycle, inches cycle, inches per cycle",
-    ),
-    (
-        Unit::Rate(RateUnit::Micrometre),
-        1e-6,
-        "um cycle, um cycles, um per cycle, um cyc, micrometre per cycle, micron cycle, microns cycle",
-    ),
-    (Unit::Rate(RateUnit::Nanometre), 1e-9, "nm cycle, nm cycles, nm per cycle, nm cyc"),
+/// Units by how tables spell them; no unit for those of quantities that are not read.
+static SPELLINGS: LazyLock<HashMap<String, Vec<Unit>>> = LazyLock::new(|| {
+    let mut spellings: HashMap<String, Vec<Unit>> = HashMap::new();
+    for (name, forms) in &VOCABULARY.units {
+        let unit = UNITS.iter().map(|(unit, _)| *unit).find(|unit| unit.name() == name);
+        for form in forms.split(',') {
+            spellings.entry(words(form).0.join(" ")).or_default().extend(unit);
+        }
+    }
+    spellings
+});
+
+/// Units with their size in SI, or in cycles.
+const UNITS: [(Unit, f64); 22] = [
+    (Unit::Length(LengthUnit::Millimetre), MM),
+    (Unit::Length(LengthUnit::Inch), INCH),
+    (Unit::Length(LengthUnit::Metre), 1.0),
+    (Unit::Cycles(CycleUnit::Cycles), 1.0),
+    (Unit::Cycles(CycleUnit::Kilocycles), 1e3),
+    (Unit::Cycles(CycleUnit::Megacycles), 1e6),
+    (Unit::Load(LoadUnit::Newton), 1.0),
+    (Unit::Load(LoadUnit::Kilonewton), KN),
+    (Unit::Load(LoadUnit::PoundForce), LBF),
+    (Unit::Load(LoadUnit::Kip), 1e3 * LBF),
+    (Unit::Load(LoadUnit::KilogramForce), KGF),
+    (Unit::Load(LoadUnit::Megapascal), MPA),
+    (Unit::Load(LoadUnit::Ksi), KSI),
+    (Unit::Intensity(IntensityUnit::MpaSqrtM), MPA_SQRT_M),
+    (Unit::Intensity(IntensityUnit::KsiSqrtInch), KSI * SQRT_INCH),
+    (Unit::Intensity(IntensityUnit::NewtonMm), N_PER_MM_1_5),
+    (Unit::Intensity(IntensityUnit::KilogramForceMm), KGF * N_PER_MM_1_5),
+    (Unit::Rate(RateUnit::Millimetre), MM),
+    (Unit::Rate(RateUnit::Metre), 1.0),
+    (Unit::Rate(RateUnit::Inch), INCH),
+    (Unit::Rate(RateUnit::Micrometre), 1e-6),
+    (Unit::Rate(RateUnit::Nanometre), 1e-9),
 ];

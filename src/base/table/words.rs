@@ -1,10 +1,9 @@
-//! Names of columns as plain words, whatever their case, signs and brackets.
+//! Texts as plain words, whatever their case, accents, signs and brackets.
 
-/// Lower-case words of a name, and those of a last bracket; one of nothing but words that are part of a name
-/// counts as the name.
-pub fn words(name: &str, is_part_of_name: impl Fn(&str) -> bool) -> (Vec<String>, Vec<String>) {
-    let mut plain = String::with_capacity(name.len());
-    for c in name.chars().flat_map(char::to_lowercase) {
+/// Lower-case words of a text, and how many of them stand before a bracket at its end; all where nothing does.
+pub fn words(text: &str) -> (Vec<String>, usize) {
+    let mut plain = String::with_capacity(text.len());
+    for c in text.chars().flat_map(char::to_lowercase) {
         match c {
             'ä' => plain.push_str("ae"),
             'ö' => plain.push_str("oe"),
@@ -20,6 +19,7 @@ pub fn words(name: &str, is_part_of_name: impl Fn(&str) -> bool) -> (Vec<String>
             '√' => plain.push_str(" sqrt "),
             '³' => plain.push_str(" 3"),
             '⁶' => plain.push_str(" 6"),
+            '×' => plain.push_str(" x"),
             '"' | '″' | '”' => plain.push_str(" inch"),
             other => plain.push(other),
         }
@@ -28,16 +28,8 @@ pub fn words(name: &str, is_part_of_name: impl Fn(&str) -> bool) -> (Vec<String>
         text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_owned).collect()
     };
     let trimmed = plain.trim_end();
-    let open = trimmed.rfind(['(', '[', '{']).filter(|_| trimmed.ends_with([')', ']', '}']));
-    match open {
-        Some(open) if !cut(&trimmed[..open]).is_empty() => {
-            let (before, inside) = (cut(&trimmed[..open]), cut(&trimmed[open..]));
-            match inside.as_slice() {
-                [] => (before, Vec::new()),
-                words if words.iter().all(|word| is_part_of_name(word)) => ([before, inside].concat(), Vec::new()),
-                _ => (before, inside),
-            }
-        }
-        _ => (cut(&plain), Vec::new()),
-    }
+    let open = trimmed.rfind(['(', '[', '{']).filter(|_| trimmed.ends_with([')', ']', '}'])).unwrap_or(plain.len());
+    let (all, before) = (cut(&plain), cut(&plain[..open]).len());
+    let before = if before == 0 { all.len() } else { before };
+    (all, before)
 }

@@ -19,9 +19,8 @@ use crate::specimen::geometry::{along, distance};
 use crate::specimen::{CrackLine, Point};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Folder, shorten};
-use perilife_base::table::names::{Named, quantity};
+use perilife_base::table::names::{Kind, Named, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};
-use perilife_base::table::units::{LengthUnit, LoadUnit, Unit};
 use perilife_base::table::{self, Fault, whole_file};
 use perilife_base::units::{INCH, KSI, MM, MPA, place_mm};
 
@@ -236,41 +235,10 @@ fn of_formulas((own, units): Key, given: &Value) -> Result<ResidualStress> {
     Ok(ResidualStress { field: Field::Formulas(field, units), words: given.to_string(), sha256: String::new(), key: own })
 }
 
-/// Names of σ_y, σ_x and τ_xy, without the word residual.
-const STRESSES: [&[&str]; 3] = [
-    &["stress", "stress y", "stress yy", "sigma", "sigma y", "sigma yy", "sigmay", "s", "s y", "s yy", "sy", "syy"],
-    &["stress x", "stress xx", "sigma x", "sigma xx", "sigmax", "s x", "s xx", "sx", "sxx"],
-    &[
-        "shear xy",
-        "shear",
-        "shear stress",
-        "shear stress xy",
-        "stress xy",
-        "sigma xy",
-        "tau",
-        "tau xy",
-        "tauxy",
-        "s xy",
-        "sxy",
-        "txy",
-    ],
-];
-
-/// The place of a column among x, y, σ_y, σ_x, τ_xy.
-fn role(name: &str) -> Option<(usize, Named)> {
-    let axis = |axis: usize| quantity(name, Unit::Length(LengthUnit::Millimetre), |words| words == [["x", "y"][axis]]);
-    let of_stress = |component: usize| {
-        quantity(name, Unit::Load(LoadUnit::Megapascal), |words| {
-            let words = words.strip_prefix(&["residual"]).unwrap_or(words);
-            STRESSES[component].contains(&words.join(" ").as_str())
-        })
-    };
-    (0..2).find_map(|place| Some((place, axis(place)?))).or_else(|| (0..3).find_map(|place| Some((place + 2, of_stress(place)?))))
-}
-
-const WORDS: Words<usize> = Words {
-    role,
-    is_enough: |roles| (0..3).all(|column| roles.contains(&column)),
+const WORDS: Words = Words {
+    kind: Kind::ResidualStress,
+    roles: &[],
+    is_enough: |roles| [Role::X, Role::Y, Role::StressY].iter().all(|role| roles.contains(role)),
     columns: 3,
     remedy: "name the columns x_mm, y_mm, stress_mpa (or x_in, y_in, stress_ksi), and stress_x_mpa, shear_xy_mpa where they are known",
 };
@@ -278,7 +246,7 @@ const WORDS: Words<usize> = Words {
 /// Rows of places and stresses below a header.
 fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
     let table = table::read(bytes, file, &WORDS)?;
-    let roles = WORDS.roles(&table, None)?;
+    let roles = WORDS.roles(&table)?;
     let unit = |column: usize, named: Named| in_si(&table, column, named, None);
     let factors = roles.iter().enumerate().map(|(column, (_, named))| unit(column, *named)).collect::<Result<Vec<f64>>>()?;
     let columns: Vec<(usize, bool)> = (0..roles.len()).map(|column| (column, false)).collect();
@@ -287,12 +255,12 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
     };
     let mut samples = Vec::new();
     for (line, values) in numbers(&table, &columns)? {
-        let of = |role: usize| roles.iter().position(|(own, _)| *own == role).map_or(0.0, |place| values[place] * factors[place]);
-        let stress = [of(3), of(2), of(4)];
+        let of = |role: Role| roles.iter().position(|(own, _)| *own == role).map_or(0.0, |place| values[place] * factors[place]);
+        let stress = [Role::StressX, Role::StressY, Role::ShearXy].map(of);
         if let Some(large) = stress.iter().map(|stress| stress / MPA).find(|stress| stress.abs() > MOST) {
             return Err(fault(Some(line), "stress", &large.to_string(), "is beyond any stress in MPa", "check its unit"));
         }
-        samples.push((line, Sample { at: [of(0), of(1)], stress }));
+        samples.push((line, Sample { at: [of(Role::X), of(Role::Y)], stress }));
     }
     let (first, last) = match samples.as_slice() {
         [(_, first), .., (_, last)] => (*first, *last),

@@ -16,7 +16,7 @@ use super::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
 use perilife_base::blended::Blended;
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::input::Folder;
-use perilife_base::table::names::{self, Column, Named, made_of, vocabulary::words};
+use perilife_base::table::names::{Kind, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};
 use perilife_base::table::{self, Fault, whole_file};
 use perilife_base::units::MM;
@@ -182,19 +182,10 @@ impl Row {
     }
 }
 
-/// Whether a column is β, and not a crack length.
-fn role(name: &str) -> Option<(bool, Named)> {
-    const BETA: &str = "beta β betafactor";
-    if made_of(&words(name).0.iter().map(String::as_str).collect::<Vec<_>>(), BETA, &["factor geometry"]) {
-        return Some((true, Named::No));
-    }
-    let column = Column::named(0, name);
-    (column.role == names::Role::Length && !column.is_tip_to_tip()).then_some((false, column.unit))
-}
-
-const WORDS: Words<bool> = Words {
-    role,
-    is_enough: |roles| roles.contains(&true) && roles.contains(&false),
+const WORDS: Words = Words {
+    kind: Kind::Beta,
+    roles: &[Role::Length, Role::Beta],
+    is_enough: |roles| roles.contains(&Role::Beta) && roles.contains(&Role::Length),
     columns: 2,
     remedy: "begin with crack_length_mm,beta (or crack_length_in,beta), then one pair a line",
 };
@@ -202,9 +193,9 @@ const WORDS: Words<bool> = Words {
 /// The rows of the table, and the name of the column of lengths.
 fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<Row>, String)> {
     let table = table::read(bytes, file, &WORDS)?;
-    let roles = WORDS.roles(&table, None)?;
-    let place = |of_beta: bool| roles.iter().position(|(role, _)| *role == of_beta).unwrap_or_default();
-    let (length, beta) = (place(false), place(true));
+    let roles = WORDS.roles(&table)?;
+    let place = |wanted: Role| roles.iter().position(|(role, _)| *role == wanted).unwrap_or_default();
+    let (length, beta) = (place(Role::Length), place(Role::Beta));
     let unit = in_si(&table, length, roles[length].1, None)?;
     let mut rows: Vec<Row> = Vec::new();
     for (row, (line, values)) in table.rows.iter().zip(numbers(&table, &[(length, false), (beta, false)])?) {

@@ -127,7 +127,7 @@ pub async fn measured(State(app): State<App>, Extension(caller): Extension<Calle
         length: field("length_unit").map(|name| named(LengthUnit::ALL, LengthUnit::name, "length_unit", name)).transpose()?,
         cycles: field("cycle_unit").map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
         load: field("load_unit").map(|name| named(LoadUnit::ALL, LoadUnit::name, "load_unit", name)).transpose()?,
-        columns: json_of("columns", field("columns"), &format!("object with keys of {}", ColumnNames::KEYS.join(", ")))?,
+        columns: json_of("columns", field("columns"), &format!("object with keys of {}", ColumnNames::names(", ")))?,
         left_out: json_of("leave_out", field("leave_out"), "list of { file, line, value, reason }")?,
         decimal: field("decimal").map(|name| named(Decimal::ALL, Decimal::name, "decimal", name)).transpose()?,
         sheet: field("sheet").map(|name| Sheet(name.clone())),

@@ -6,85 +6,18 @@ use std::path::Path;
 
 use super::content::{Content, RawCycle, SpectrumFormat};
 use perilife_base::error::Result;
-use perilife_base::table::names::vocabulary::{
-    FORCE, LOAD_MORE, MAX, MAX_STRESS, MAX_WORDS, MIN, MIN_STRESS, MIN_WORDS, RANGE, RANGE_STRESS, RANGE_WORDS, STRESS, words,
-};
-use perilife_base::table::names::{self, Column, Named, made_of, quantity, says_one_of};
+use perilife_base::table::names::{Kind, Named, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};
-use perilife_base::table::units::{LoadUnit, Unit};
+use perilife_base::table::units::Unit;
 use perilife_base::table::{self, Fault, Table, whole_file};
 
 const REMEDY: &str = "name the columns max, min, cycles (or two of max, min, range, amplitude, mean, stress ratio, and cycles), or give one \
                       column of turning points";
-const AMPLITUDE: &str = "amplitude amplitudes amp ampl alternating sa sigmaa";
-const MEAN: &str = "mean mittel mittelwert average avg sm smean sigmam sigmamean";
-const LEVELS: &str = "level levels value values turning points reversals signal";
-const COUNT: &str = "n ni count counts cycles occurrences occurrence repetitions repetition repeats reps anzahl haeufigkeit lastspiele schwingspiele";
-const COUNT_MORE: &str = "cycle number of per pass block flight in the no";
-/// Counts that rise from row to row are those of an exceedance curve.
-const SUMS: &str = "elapsed total cumulative cumulated cum accumulated running gesamt gesamtzahl exceedance exceedances";
-/// Columns that nothing depends on.
-const OTHER: &str = "time t day days hours sec seconds second elapsed timestamp temps zeit date datum index idx i id no nr nummer point sample line row flight segment mission phase event start end begin \
-                     from to bin class name label comment remark note notes damage type source unnamed 0";
 /// Difference of a scale from the size of a unit by which both are one.
 const ALIKE: f64 = 0.02;
 
-/// What a column holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Role {
-    Max,
-    Min,
-    Range,
-    Amplitude,
-    Mean,
-    Ratio,
-    Count,
-    Load,
-    Other,
-}
-
-const WORDS: Words<Role> = Words { role, is_enough: |roles| format_of(roles).is_some(), columns: 1, remedy: REMEDY };
-
-/// What a name means.
-fn role(name: &str) -> Option<(Role, Named)> {
-    if name.contains('%') {
-        return role(&name.replace('%', "")).map(|(role, _)| (role, Named::Strange));
-    }
-    let column = Column::named(0, name);
-    if column.role == names::Role::Ratio {
-        return Some((Role::Ratio, Named::No));
-    }
-    let of_loads: [(Role, &str, &str); 6] = [
-        (Role::Range, RANGE, &[RANGE_WORDS, RANGE_STRESS].join(" ")),
-        (Role::Amplitude, AMPLITUDE, ""),
-        (Role::Mean, MEAN, ""),
-        (Role::Max, MAX, &[MAX_WORDS, MAX_STRESS].join(" ")),
-        (Role::Min, MIN, &[MIN_WORDS, MIN_STRESS].join(" ")),
-        (Role::Load, LEVELS, ""),
-    ];
-    let load = Unit::Load(LoadUnit::Megapascal);
-    let more = [FORCE, STRESS, LOAD_MORE, LEVELS];
-    let found = of_loads.into_iter().find_map(|(role, core, whole)| {
-        let is_core = |words: &[&str]| made_of(words, &[core, whole].join(" "), &more);
-        Some((role, quantity(name, load, is_core)?))
-    });
-    let letters = |last: &'static str| move |words: &[&str]| matches!(words, [of, letter] if *letter == last && made_of(&[of], STRESS, &[]));
-    let found = found.or_else(|| Some((Role::Amplitude, quantity(name, load, letters("a"))?)));
-    let found = found.or_else(|| Some((Role::Mean, quantity(name, load, letters("m"))?)));
-    if found.is_some() {
-        return found;
-    }
-    let (own, _) = words(name);
-    let own: Vec<&str> = own.iter().map(String::as_str).collect();
-    if !says_one_of(name, SUMS) && (column.role == names::Role::Cycles || made_of(&own, COUNT, &[COUNT_MORE])) {
-        return Some((Role::Count, if column.role == names::Role::Cycles { column.unit } else { Named::No }));
-    }
-    if own.is_empty() || own.iter().all(|word| OTHER.split_whitespace().any(|other| other == *word)) {
-        return Some((Role::Other, Named::No));
-    }
-    let is_load = |words: &[&str]| made_of(words, &[FORCE, STRESS].join(" "), &[LOAD_MORE, LEVELS]);
-    Some((Role::Load, quantity(name, load, is_load)?))
-}
+const WORDS: Words =
+    Words { kind: Kind::Spectrum, roles: &[], is_enough: |roles| format_of(roles).is_some(), columns: 1, remedy: REMEDY };
 
 /// Maximum and minimum by what a row says of them: maximum, minimum, range, mean, ratio; `None` where that is not enough.
 fn ends([max, min, range, mean, ratio]: [Option<f64>; 5]) -> Option<[f64; 2]> {
@@ -107,10 +40,10 @@ fn format_of(roles: &[Role]) -> Option<SpectrumFormat> {
     let given = |role: Role| has(role).then_some(1.0);
     let range = given(Role::Range).or(given(Role::Amplitude));
     let of_cycles = ends([given(Role::Max), given(Role::Min), range, given(Role::Mean), given(Role::Ratio)]);
-    let loads = roles.iter().filter(|role| **role == Role::Load).count();
+    let loads = roles.iter().filter(|role| **role == Role::Value).count();
     match (of_cycles, loads) {
         (Some(_), 0) => Some(SpectrumFormat::Cycles),
-        (None, 1) if roles.iter().all(|role| matches!(role, Role::Load | Role::Other)) => Some(SpectrumFormat::TurningPoints),
+        (None, 1) if roles.iter().all(|role| matches!(role, Role::Value | Role::Other)) => Some(SpectrumFormat::TurningPoints),
         _ => None,
     }
 }
@@ -118,7 +51,7 @@ fn format_of(roles: &[Role]) -> Option<SpectrumFormat> {
 /// Whether a line of names is a header of a spectrum.
 pub(super) fn is_header(line: &str) -> bool {
     let names = line.split([',', ';', '\t', '|']).filter(|name| !name.trim().is_empty());
-    let roles: Vec<Role> = names.filter_map(|name| Some(role(name)?.0)).collect();
+    let roles: Vec<Role> = names.filter_map(|name| Some(WORDS.role(name)?.0)).collect();
     roles.len() > 1 && format_of(&roles).is_some()
 }
 
@@ -141,7 +74,7 @@ pub(super) fn read(
     }
     // Forces in N may be written in thousands, as counts are; stresses, ratios and kN are below a thousand.
     let is_large = |column: &Read| match column.role {
-        Role::Count => true,
+        Role::Cycles => true,
         Role::Ratio => false,
         _ => !scale.0.is_stress() && column.factor * scale.0.si() < 1e3,
     };
@@ -152,10 +85,10 @@ pub(super) fn read(
         Some(values[place] * columns[place].factor)
     };
     if format == SpectrumFormat::TurningPoints {
-        let points = rows.iter().filter_map(|(_, values)| of(values, Role::Load)).collect();
+        let points = rows.iter().filter_map(|(_, values)| of(values, Role::Value)).collect();
         return Ok((format, Content::Points(points), notes));
     }
-    if let Some(place) = columns.iter().position(|column| column.role == Role::Count).filter(|_| asked.is_none()) {
+    if let Some(place) = columns.iter().position(|column| column.role == Role::Cycles).filter(|_| asked.is_none()) {
         // 1, 2, 3, ... as 0, 1000, 2000, 3000, ...
         let step = rows.get(1).zip(rows.first()).map_or(0.0, |(second, first)| second.1[place] - first.1[place]);
         let is_from = |from: f64| rows.iter().enumerate().all(|(row, (_, values))| values[place] == from + step * row as f64);
@@ -169,7 +102,7 @@ pub(super) fn read(
         let value = |role: Role| of(values, role);
         let range = value(Role::Range).or(value(Role::Amplitude).map(|amplitude| 2.0 * amplitude));
         let [max, min] = ends([value(Role::Max), value(Role::Min), range, value(Role::Mean), value(Role::Ratio)])?;
-        Some(RawCycle { line: *line, max, min, count: value(Role::Count).unwrap_or(1.0) })
+        Some(RawCycle { line: *line, max, min, count: value(Role::Cycles).unwrap_or(1.0) })
     };
     Ok((format, Content::Cycles(rows.iter().filter_map(cycle).collect()), notes))
 }
@@ -186,22 +119,22 @@ struct Read {
 fn columns_of(table: &Table, asked: Option<SpectrumFormat>, scale: (Unit, f64)) -> Result<(SpectrumFormat, Vec<Read>)> {
     let count = table.header.len();
     let bare = |roles: &[Role]| roles.iter().enumerate().map(|(index, &role)| Read { index, role, factor: 1.0 }).collect();
-    let is_title = count == 1 && format_of(&[role(&table.names[0]).map_or(Role::Other, |(role, _)| role)]).is_none();
+    let is_title = count == 1 && format_of(&[WORDS.role(&table.names[0]).map_or(Role::Other, |(role, _)| role)]).is_none();
     if table.header_line == 0 || is_title {
         return match (asked, count) {
             (Some(SpectrumFormat::Cycles), 2 | 3) => {
-                Ok((SpectrumFormat::Cycles, bare(&[Role::Max, Role::Min, Role::Count][..count])))
+                Ok((SpectrumFormat::Cycles, bare(&[Role::Max, Role::Min, Role::Cycles][..count])))
             }
             (None | Some(SpectrumFormat::TurningPoints), 1) => {
                 if asked.is_none() {
                     refuse_pairs(table)?;
                 }
-                Ok((SpectrumFormat::TurningPoints, bare(&[Role::Load])))
+                Ok((SpectrumFormat::TurningPoints, bare(&[Role::Value])))
             }
             _ => Err(nameless(table)),
         };
     }
-    let roles = WORDS.roles(table, Some(Role::Other))?;
+    let roles = WORDS.roles(table)?;
     let only: Vec<Role> = roles.iter().map(|(role, _)| *role).collect();
     let Some(format) = format_of(&only).filter(|format| asked.is_none_or(|asked| asked == *format)) else {
         let fault = table.header_fault(0);
@@ -211,7 +144,7 @@ fn columns_of(table: &Table, asked: Option<SpectrumFormat>, scale: (Unit, f64)) 
     for (index, (role, unit)) in roles.into_iter().enumerate().filter(|(_, (role, _))| *role != Role::Other) {
         let factor = match role {
             Role::Ratio => 1.0,
-            Role::Count => in_si(table, index, unit, Some(Unit::Cycles(table::units::CycleUnit::Cycles)))?,
+            Role::Cycles => in_si(table, index, unit, Some(Unit::Cycles(table::units::CycleUnit::Cycles)))?,
             _ => factor(table, index, unit, scale)?,
         };
         columns.push(Read { index, role, factor });
@@ -293,7 +226,7 @@ fn without_count(table: &mut Table) -> Result<Option<String>> {
         table.rows.remove(0);
         return Ok(Some(format!("{}: line {line}, {first}, is the number of values that follow", table.file.display())));
     }
-    let is_named = table.header_line > 0 && role(&table.names[0]).is_some();
+    let is_named = table.header_line > 0 && WORDS.role(&table.names[0]).is_some();
     let is_near = (0.5 * follow..=2.0 * follow).contains(&first) && first > 2.0 * most;
     if is_near || (first == follow && !is_named) {
         let cell = first.to_string();
