@@ -39,9 +39,11 @@ fn its_rate_is_the_slope_of_its_length() {
         let longest = cracks.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
         assert!((governing.length(first) / (longest * MM) - 1.0).abs() < 1e-9, "{name}: {}", governing.length(first) / MM);
         assert_eq!(governing.is_of_several(), cracks.len() > 1);
+        // K of a row without equilibrium is not known.
+        let is_above = |own: f64, of_all: f64| own > of_all * (1.0 + 1e-9);
         for row in &run.curve {
             assert!(governing.is_of_several() || governing.length(row) == row.crack_length);
-            assert!(governing.length(row) <= row.crack_length && !(governing.delta_k(row, 0.1) > row.delta_k * (1.0 + 1e-9)));
+            assert!(governing.length(row) <= row.crack_length && !is_above(governing.delta_k(row, 0.1), row.delta_k));
         }
     }
 }
