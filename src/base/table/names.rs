@@ -10,7 +10,7 @@ use serde::Deserialize;
 
 use super::decimal::Numbers;
 use super::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit, Unit};
-use super::words::words;
+use super::words::{COLUMNS, words};
 
 /// Longest name that can be a form, bytes.
 const NAME_MAX: usize = 200;
@@ -143,18 +143,6 @@ const RATE: Unit = Unit::Rate(RateUnit::Millimetre);
 /// Forms of a kind of table, by role.
 type Forms = BTreeMap<Role, BTreeMap<Measure, String>>;
 
-/// The data file.
-#[derive(Default, Deserialize)]
-pub(super) struct Vocabulary {
-    /// Spellings of units by their names.
-    pub units: HashMap<String, String>,
-    #[serde(flatten)]
-    kinds: HashMap<Kind, Forms>,
-}
-
-pub(super) static VOCABULARY: LazyLock<Vocabulary> =
-    LazyLock::new(|| toml::from_str(include_str!("../../../data/columns.toml")).unwrap_or_default());
-
 /// Forms and words of a kind of table, with what they mean.
 type Part = HashMap<String, Vec<(Role, Measure)>>;
 
@@ -170,7 +158,10 @@ static PARTS: LazyLock<HashMap<Kind, Part>> = LazyLock::new(|| {
         }
         part
     };
-    VOCABULARY.kinds.iter().map(|(kind, forms)| (*kind, of(forms))).collect()
+    let mut kinds = COLUMNS.clone();
+    kinds.remove("units");
+    let kinds: HashMap<Kind, Forms> = kinds.try_into().unwrap_or_default();
+    kinds.iter().map(|(kind, forms)| (*kind, of(forms))).collect()
 });
 
 /// The unit that a name says.

@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use super::names::VOCABULARY;
-use super::words::words;
+use super::words::{COLUMNS, words};
 use crate::units::{INCH, KGF, KN, KSI, LBF, MM, MPA, MPA_SQRT_M, SQRT_INCH};
 
 crate::kinds! {
@@ -120,9 +119,9 @@ const N_PER_MM_1_5: f64 = 31_622.776_601_683_79;
 /// Units by how tables spell them; no unit for those of quantities that are not read.
 static SPELLINGS: LazyLock<HashMap<String, Vec<Unit>>> = LazyLock::new(|| {
     let mut spellings: HashMap<String, Vec<Unit>> = HashMap::new();
-    for (name, forms) in &VOCABULARY.units {
+    for (name, forms) in COLUMNS.get("units").and_then(|units| units.as_table()).into_iter().flatten() {
         let unit = UNITS.iter().map(|(unit, _)| *unit).find(|unit| unit.name() == name);
-        for form in forms.split(',') {
+        for form in forms.as_str().unwrap_or_default().split(',') {
             spellings.entry(words(form).0.join(" ")).or_default().extend(unit);
         }
     }

@@ -1,5 +1,11 @@
 //! Texts as plain words, whatever their case, accents, signs and brackets.
 
+use std::sync::LazyLock;
+
+/// Names of columns and spellings of units; empty where the file is damaged, which a test sees.
+pub(super) static COLUMNS: LazyLock<toml::Table> =
+    LazyLock::new(|| include_str!("../../../data/columns.toml").parse().unwrap_or_default());
+
 /// Lower-case words of a text, and how many of them stand before a bracket at its end; all where nothing does.
 pub fn words(text: &str) -> (Vec<String>, usize) {
     let mut plain = String::with_capacity(text.len());
