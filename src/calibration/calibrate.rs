@@ -195,7 +195,7 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
         };
         let mut fit = at_exponent(m)?;
         let fitted = fit.record.constants.p;
-        let has_other_path = (fitted - m).abs() > EXPONENT_SAME && factors.depends_on_exponent();
+        let has_other_path = (fitted - m).abs() > EXPONENT_SAME && factors.depends_on_exponent;
         if has_other_path && run < RUNS_MAX {
             (m, run) = (fitted, run + 1);
             continue;

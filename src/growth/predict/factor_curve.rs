@@ -4,7 +4,7 @@
 //! The path of a crack does not depend on C, and that of a single tip not on m either, so one run serves every pair of C and m. Of several
 //! tips the faster ones grow the farther ahead of the others the larger m is.
 
-use super::{CurvePoint, GoverningCrack, Observer, Prediction, RunFigures, StopReason, predict};
+use super::{CurvePoint, GoverningCrack, Observer, Prediction, RunFigures, StopReason, TipRecord, predict};
 use crate::case::{Case, LawSource};
 use crate::cracks::steering::equivalent_factor;
 use perilife_base::blended::Blended;
@@ -25,6 +25,8 @@ const ALIKE: f64 = 0.01;
 pub struct FactorCurve {
     /// Of every tip whose growth adds to the length of the governing crack; of a standard specimen the fastest stands for all.
     tips: Vec<TipFactors>,
+    /// Whether tips of unlike K, of this crack or of others, share the growth, so that the path depends on the exponent.
+    pub depends_on_exponent: bool,
     /// Figures of the run that it comes from.
     pub figures: RunFigures,
     /// What the user should know about that run.
@@ -48,13 +50,17 @@ impl FactorCurve {
     /// The same, several tips growing by this exponent.
     pub fn at_exponent(case: &Case, m: f64, observer: &dyn Observer) -> Result<Self> {
         let done = unit_growth(case, m, observer)?;
-        let tips = match case.specimen.convention {
+        let (tips, is_shared) = match case.specimen.convention {
             LengthConvention::MeanOfTips => {
-                vec![TipFactors::new(solved(&done.curve).map(|row| (row.crack_length, row.delta_k / case.loading.range_share())))]
+                let of_row = |row: &CurvePoint| (row.crack_length, row.delta_k / case.loading.range_share());
+                (vec![TipFactors::new(solved(&done.curve).map(of_row))], false)
             }
-            LengthConvention::SumOfTips => of_every_tip(&case.specimen, &done.curve, case.loading.ratio),
+            LengthConvention::SumOfTips => {
+                let ratio = case.loading.ratio;
+                (of_every_tip(&case.specimen, &done.curve, ratio), solved(&done.curve).any(|row| is_unlike(row, ratio)))
+            }
         };
-        Ok(FactorCurve { tips, figures: done.figures, warnings: done.warnings })
+        Ok(FactorCurve { tips, depends_on_exponent: is_shared, figures: done.figures, warnings: done.warnings })
     }
 
     /// Crack length at which it begins, m.
@@ -76,15 +82,6 @@ impl FactorCurve {
             (lengths[0] * (1.0 - 1e-9)..=lengths[lengths.len() - 1] * (1.0 + 1e-9)).contains(&length.min(last))
         };
         self.tips.iter().filter(grows).map(|tip| tip.at(length)).collect()
-    }
-
-    /// Whether tips of unlike K share the growth, so that the path depends on the exponent.
-    pub fn depends_on_exponent(&self) -> bool {
-        let rows = self.tips.iter().flat_map(|tip| tip.lengths());
-        rows.map(|&length| self.of_tips(length)).any(|tips| {
-            let (low, high) = tips.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(*k), high.max(*k)));
-            tips.len() > 1 && (high / low).ln() > ALIKE
-        })
     }
 }
 
@@ -121,15 +118,23 @@ pub(super) fn solved(curve: &[CurvePoint]) -> impl Iterator<Item = &CurvePoint> 
 fn of_every_tip(specimen: &Specimen, curve: &[CurvePoint], ratio: f64) -> Vec<TipFactors> {
     let (count, governing) = (curve.first().map_or(0, |row| row.tips.len()), GoverningCrack::of(specimen, curve));
     let of_tip = |tip: usize| {
-        let factor = |row: &CurvePoint| {
-            let record = &row.tips[tip];
-            let factor = equivalent_factor(record.factors.filter(|_| record.state == TipState::Active)?);
-            let factor = factor * record.response.range_share(ratio) / (1.0 - ratio.max(0.0));
-            (factor > 0.0).then_some((governing.length(row), factor))
-        };
+        let factor = |row: &CurvePoint| Some((governing.length(row), growing_factor(&row.tips[tip], ratio)?));
         TipFactors::new(solved(curve).filter_map(factor))
     };
     (0..count).filter(|tip| governing.has(*tip)).map(of_tip).filter(|tip| tip.lengths().len() > 1).collect()
+}
+
+/// K_eq of a tip that grows, as [`FactorCurve`] has it.
+fn growing_factor(record: &TipRecord, ratio: f64) -> Option<f64> {
+    let factor = equivalent_factor(record.factors.filter(|_| record.state == TipState::Active)?);
+    Some(factor * record.response.range_share(ratio) / (1.0 - ratio.max(0.0))).filter(|factor| *factor > 0.0)
+}
+
+/// Whether tips of unlike K grow in a row.
+fn is_unlike(row: &CurvePoint, ratio: f64) -> bool {
+    let factors: Vec<f64> = row.tips.iter().filter_map(|tip| growing_factor(tip, ratio)).collect();
+    let (low, high) = factors.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), k| (low.min(*k), high.max(*k)));
+    factors.len() > 1 && (high / low).ln() > ALIKE
 }
 
 impl TipFactors {
