@@ -91,7 +91,8 @@ pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> 
             asked_to_stop().await;
             app.stop();
         };
-        listen::serve(listener, api::router(app.clone()), settings.limits.connections, stopping).await;
+        let trusts_proxy = settings.security.trusts_proxy;
+        listen::serve(listener, api::router(app.clone()), settings.limits.connections, trusts_proxy, stopping).await;
         tracing::info!("stopping: jobs go on from their checkpoints at the next start");
         forgetting.abort();
         workers.stop().await;

@@ -1,5 +1,7 @@
 //! What went wrong, as RFC 9457 has it; the words are those of the command line.
 
+use std::time::Duration;
+
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
@@ -83,6 +85,12 @@ impl Problem {
     /// More than this server takes.
     pub fn too_large(detail: impl Into<String>) -> Self {
         Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "Too large", detail)
+    }
+
+    /// The body did not come in time.
+    pub fn too_slow(within: Duration) -> Self {
+        let detail = format!("the body did not come within {} s", within.as_secs());
+        Problem::new(StatusCode::REQUEST_TIMEOUT, "Too slow", detail)
     }
 
     /// Come back later.

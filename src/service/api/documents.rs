@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
 
 use axum::body::Bytes;
 use axum::extract::multipart::MultipartRejection;
@@ -16,6 +15,7 @@ use utoipa::ToSchema;
 
 use super::app::BodyPlace;
 use super::caller::Caller;
+use super::security::BODY_WITHIN;
 use super::{App, Limits};
 use crate::job::{FITTED, JobKind, State, Submission, is_id};
 use crate::problem::{Answer, Problem};
@@ -29,8 +29,6 @@ use perilife_runner::Task;
 const INPUT_MAX: usize = 1 << 20;
 /// Most parts of a JSON body: each takes a hundred times its room in memory.
 const PARTS_MAX: usize = 200_000;
-/// Time in which a body must have come: until then it takes up room.
-const BODY_WITHIN: Duration = Duration::from_secs(20);
 /// Cases of a sweep that are looked at before it is accepted.
 const LOOKED_AT: usize = 100;
 /// Longest name of a case or file, bytes.
@@ -199,13 +197,9 @@ fn input_of_form(text: String) -> Answer<Value> {
 }
 
 async fn bytes(request: Request) -> Answer<Bytes> {
-    let read = tokio::time::timeout(BODY_WITHIN, Bytes::from_request(request, &())).await.map_err(|_| too_slow())?;
+    let read =
+        tokio::time::timeout(BODY_WITHIN, Bytes::from_request(request, &())).await.map_err(|_| Problem::too_slow(BODY_WITHIN))?;
     read.map_err(|rejection| refused(rejection.status(), &rejection.body_text()))
-}
-
-fn too_slow() -> Problem {
-    let detail = format!("the body did not come within {} s", BODY_WITHIN.as_secs());
-    Problem::new(StatusCode::REQUEST_TIMEOUT, "Too slow", detail)
 }
 
 fn refused(status: StatusCode, text: &str) -> Problem {
@@ -217,7 +211,7 @@ fn refused(status: StatusCode, text: &str) -> Problem {
 
 /// Reads a form; parts with a file name are files.
 pub async fn form(app: &App, request: Request) -> Answer<Fields> {
-    tokio::time::timeout(BODY_WITHIN, parts_of_form(app, request)).await.map_err(|_| too_slow())?
+    tokio::time::timeout(BODY_WITHIN, parts_of_form(app, request)).await.map_err(|_| Problem::too_slow(BODY_WITHIN))?
 }
 
 async fn parts_of_form(app: &App, request: Request) -> Answer<Fields> {
