@@ -101,11 +101,8 @@ pub(super) fn other_lengths(table: &Table, read: &[Column], known: &[usize], dec
 
 /// Rows whose remarks reject them, which are read all the same.
 pub(super) fn rejected(table: &Table, read: &[usize]) -> Option<String> {
-    let of_row = |row: &Row| {
-        (0..table.header.len())
-            .find(|column| !read.contains(column) && rejects(row.cell(*column)))
-            .map(|column| (row.line, column))
-    };
+    let others: Vec<usize> = (0..table.header.len()).filter(|column| !read.contains(column)).collect();
+    let of_row = |row: &Row| others.iter().find(|column| rejects(row.cell(**column))).map(|column| (row.line, *column));
     let found: Vec<(usize, usize)> = table.rows.iter().filter_map(of_row).collect();
     let (line, column) = *found.first()?;
     let cell = table.rows.iter().find(|row| row.line == line).map_or("", |row| row.cell(column));

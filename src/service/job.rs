@@ -134,10 +134,8 @@ pub struct Submission {
     /// Whether the law is that of the file [`FITTED`], whatever the text says.
     pub with_fitted: bool,
     /// Options of the command, `NAME=VALUE`; stored beside it.
-    #[serde(skip)]
     pub options: Vec<String>,
     /// Files that the text names; stored beside it.
-    #[serde(skip)]
     pub files: Vec<(String, Vec<u8>)>,
 }
 

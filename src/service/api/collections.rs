@@ -14,7 +14,7 @@ use utoipa::{IntoParams, ToSchema};
 
 use super::App;
 use super::caller::Caller;
-use super::documents::{self, JobRequest, submission};
+use super::documents::{self, JobRequest};
 use crate::job::{Job, JobKind, State, is_id};
 use crate::problem::{Answer, Problem};
 use crate::store::{Change, FileEntry, NewJob, Origin, Role, Room, Submitted, Wanted};
@@ -156,13 +156,14 @@ pub async fn submit(
     let submitted = match app.store.submitted(&caller.name, key.as_deref(), &fingerprint).await? {
         Some(earlier) => earlier,
         None => {
+            let (_, submission, _room) = documents::looked(&app, body, Some(kind)).await?;
             let new = NewJob {
                 kind,
                 owner: &caller.name,
                 calibration: calibration.as_deref(),
                 idempotency_key: key.as_deref(),
                 fingerprint: &fingerprint,
-                submission: &submission(&app, Some(kind), body.asked).await?,
+                submission: &submission,
             };
             app.store.submit(&new, Room { queued: app.limits.queued, bytes: app.limits.quota_bytes }).await?
         }
@@ -191,7 +192,6 @@ pub async fn submit(
             return Err(Problem::new(StatusCode::INSUFFICIENT_STORAGE, "No room", detail));
         }
     };
-    drop(body.room);
     let job = job_of(&app, &collection, &id).await?;
     let location = app.public(&format!("/v1/{collection}/{id}"));
     Ok((status, [(header::LOCATION, location)], Json(view(&app, job, false).await?)).into_response())

@@ -97,8 +97,9 @@ const BEHIND_ALL: &str = "~";
 impl Store {
     /// Stores a job with its input, whole or not at all: once this returns it will be run.
     pub async fn submit(&self, new: &NewJob<'_>, room: Room) -> Result<Submitted> {
+        let Submission { name, text, with_fitted, .. } = new.submission;
         // Without failure: text and numbers.
-        let content = postcard::to_stdvec(new.submission).unwrap_or_default();
+        let content = postcard::to_stdvec(&(name, text, with_fitted)).unwrap_or_default();
         let mut transaction = self.begin().await?;
         if self.dialect == Dialect::Postgres {
             // One of an owner's submissions at a time, or two could both find the last place free. SQLite has one writer anyway.
@@ -196,9 +197,9 @@ impl Store {
         let Some(row) = row.fetch_optional(&self.pool).await? else { return Ok(None) };
         let content: Vec<u8> = row.try_get(0)?;
         let options: String = row.try_get(1)?;
-        let mut submission: Submission = postcard::from_bytes(&content).map_err(|error| sqlx::Error::Decode(error.into()))?;
-        submission.options = serde_json::from_str(&options).map_err(|error| sqlx::Error::Decode(error.into()))?;
-        Ok(Some(submission))
+        let (name, text, with_fitted) = postcard::from_bytes(&content).map_err(|error| sqlx::Error::Decode(error.into()))?;
+        let options = serde_json::from_str(&options).map_err(|error| sqlx::Error::Decode(error.into()))?;
+        Ok(Some(Submission { name, text, with_fitted, options, files: Vec::new() }))
     }
 
     /// Jobs, newest first.

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use axum::http::StatusCode;
 use tempfile::TempDir;
 
-use super::process::{Death, JobProcess, News, Order};
+use super::process::{Death, JobProcess, News, Order, Run};
 use super::{Shared, TRY_EVERY, files, milliseconds};
 use crate::job::{JobKind, State, Submission};
 use crate::problem::Problem;
@@ -85,12 +85,7 @@ pub fn work(shared: &Shared, claim: &Claim) {
 }
 
 /// Starts the process of a job, and makes the folder for its results.
-fn begin(
-    shared: &Shared,
-    claim: &Claim,
-    mut submission: Submission,
-    checkpoint: Option<Vec<u8>>,
-) -> Result<(JobProcess, TempDir)> {
+fn begin(shared: &Shared, claim: &Claim, submission: Submission, checkpoint: Option<Vec<u8>>) -> Result<(JobProcess, TempDir)> {
     let parent = std::env::temp_dir();
     let folder = tempfile::Builder::new().prefix("perilife-job-").tempdir_in(&parent);
     let folder = folder.map_err(|error| Error::file(&parent, "cannot create a folder in", error))?;
@@ -98,19 +93,18 @@ fn begin(
     std::fs::create_dir(&results).map_err(|error| Error::file(&results, "cannot create", error))?;
     let shown = (claim.fence > 1 && claim.kind == JobKind::Prediction)
         .then(|| shared.handle.block_on(shared.store.growth(&claim.id, 0, None)).unwrap_or_default());
-    let order = Order {
+    let settings = &shared.settings;
+    let order = Order::Run(Box::new(Run {
         kind: claim.kind,
-        options: std::mem::take(&mut submission.options),
-        files: std::mem::take(&mut submission.files),
         submission,
         checkpoint,
         shown,
         folder: results,
-        threads: shared.settings.threads,
-        checkpoint_every: shared.settings.checkpoint_every,
-    };
-    let process = JobProcess::start(&shared.settings.program, &order, shared.settings.memory);
-    let process = process.map_err(|error| Error::file(&shared.settings.program, "cannot be started", error))?;
+        threads: settings.threads,
+        checkpoint_every: settings.checkpoint_every,
+    }));
+    let process = JobProcess::start(&settings.program, &order, settings.memory, settings.threads);
+    let process = process.map_err(|error| Error::file(&settings.program, "cannot be started", error))?;
     Ok((process, folder))
 }
 

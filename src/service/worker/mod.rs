@@ -18,6 +18,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use job::work;
+pub use process::look;
 use tokio::runtime::Handle;
 use tokio::sync::Notify;
 use zip::write::SimpleFileOptions;
