@@ -1,5 +1,6 @@
 //! The three troubles a caller can act on: wrong input, mechanics that gave no result, file or network.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -75,6 +76,24 @@ pub struct InputError {
     pub remedy: String,
 }
 
+/// Most characters of a key or value that a message repeats.
+const VALUE_MAX: usize = 200;
+/// Most characters of a sentence of a message, which may repeat names.
+const SENTENCE_MAX: usize = 2000;
+
+/// The beginning of a text, as messages repeat it: what a user gave may be a whole file.
+pub fn cut(text: &str, most: usize) -> Cow<'_, str> {
+    text.char_indices().nth(most).map_or(Cow::Borrowed(text), |(end, _)| Cow::Owned(format!("{}...", &text[..end])))
+}
+
+impl InputError {
+    /// Key, value, problem and remedy as messages have them.
+    pub fn said(&self) -> (Option<Cow<'_, str>>, Option<Cow<'_, str>>, [Cow<'_, str>; 2]) {
+        let [key, given] = [&self.key, &self.value].map(|text| text.as_deref().map(|text| cut(text, VALUE_MAX)));
+        (key, given, [&self.problem, &self.remedy].map(|text| cut(text, SENTENCE_MAX)))
+    }
+}
+
 impl std::error::Error for InputError {}
 
 impl fmt::Display for InputError {
@@ -87,15 +106,16 @@ impl fmt::Display for InputError {
             }
             write!(f, ": ")?;
         }
-        match (&self.key, &self.value) {
+        let (key, value, [problem, remedy]) = self.said();
+        match (key, value) {
             (Some(key), Some(value)) => write!(f, "{key} = {value}: ")?,
             (Some(key), None) => write!(f, "{key}: ")?,
             (None, Some(value)) => write!(f, "{value}: ")?,
             (None, None) => {}
         }
-        write!(f, "{}", self.problem)?;
-        if !self.remedy.is_empty() {
-            write!(f, "; {}", self.remedy)?;
+        write!(f, "{problem}")?;
+        if !remedy.is_empty() {
+            write!(f, "; {remedy}")?;
         }
         Ok(())
     }

@@ -38,7 +38,7 @@ use tokio::sync::Notify;
 
 use api::{App, Audit, Limits, Security};
 use perilife_base::error::{Error, Result, input};
-use store::{Store, Upgrade};
+use store::{DatabaseFile, Store, Upgrade};
 use worker::Workers;
 
 /// Connections to the database beyond those of the workers.
@@ -124,8 +124,7 @@ pub fn work(url: &str, settings: &worker::Settings, ready: impl FnOnce()) -> Res
 
 /// Folders that a service writes to: of the database file, and of temporary files where it runs jobs.
 fn disks(settings: &Settings) -> Vec<(&'static str, PathBuf)> {
-    let file = settings.database.starts_with("sqlite://").then(|| PathBuf::from(without_password(&settings.database)));
-    let store = file.and_then(|file| file.parent().map(Path::to_path_buf));
+    let store = DatabaseFile::of(&settings.database).map(|file| file.folder());
     let temporary = (settings.workers.jobs > 0).then(std::env::temp_dir);
     [("store", store), ("temporary", temporary)].into_iter().filter_map(|(name, place)| Some((name, place?))).collect()
 }

@@ -61,9 +61,12 @@ pub async fn serve(
                     let own = if is_everybody { None } else { of_address.take(&address.ip().to_string()) };
                     let place = Arc::clone(&room).try_acquire_owned().ok().filter(|_| is_everybody || own.is_some());
                     let crowded = place.is_none().then_some(Crowded);
-                    let head_within = match crowded {
-                        None => within(HEAD_WITHIN, room.available_permits(), connections),
-                        Some(_) => within(RESERVED_WITHIN, reserve.available_permits(), RESERVE),
+                    let head_within = match (crowded, &own) {
+                        (Some(_), _) => within(RESERVED_WITHIN, reserve.available_permits(), RESERVE),
+                        (None, Some(own)) if own.left() * connections < room.available_permits() * of_address.most() => {
+                            within(HEAD_WITHIN, own.left(), of_address.most())
+                        }
+                        (None, _) => within(HEAD_WITHIN, room.available_permits(), connections),
                     };
                     let held = Held { address, crowded, head_within, _places: (place.unwrap_or(spare), own) };
                     take(stream, held, router.clone(), &graceful);

@@ -1,5 +1,6 @@
 //! What went wrong, as RFC 9457 has it; the words are those of the command line.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use axum::http::{HeaderValue, StatusCode, header};
@@ -8,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::store;
-use perilife_base::error::{Error, InputError};
+use perilife_base::error::{Error, InputError, cut};
 
 /// Problem details.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -50,6 +51,9 @@ pub struct Place {
 /// Result of a request.
 pub type Answer<T> = std::result::Result<T, Problem>;
 
+/// Most characters of what went wrong, which may repeat what was sent.
+const DETAIL_MAX: usize = 5000;
+
 /// Seconds after which a database that was gone is asked for again.
 const DATABASE_BACK_S: u32 = 2;
 
@@ -61,7 +65,7 @@ impl Problem {
             kind: format!("urn:perilife:problem:{slug}"),
             title: title.to_owned(),
             status: status.as_u16(),
-            detail: detail.into(),
+            detail: cut(&detail.into(), DETAIL_MAX).into_owned(),
             input: None,
             retry_after: None,
         }
@@ -136,13 +140,14 @@ impl From<Error> for Problem {
 
 impl From<InputError> for Place {
     fn from(error: InputError) -> Self {
+        let (key, value, [problem, remedy]) = error.said();
         Place {
-            file: error.file.map(|file| file.display().to_string()),
+            file: error.file.as_ref().map(|file| file.display().to_string()),
             line: error.line,
-            key: error.key,
-            value: error.value,
-            problem: error.problem,
-            remedy: error.remedy,
+            key: key.map(Cow::into_owned),
+            value: value.map(Cow::into_owned),
+            problem: problem.into_owned(),
+            remedy: remedy.into_owned(),
         }
     }
 }

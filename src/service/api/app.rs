@@ -264,6 +264,14 @@ impl Places {
     }
 }
 
+impl Place {
+    /// How many of its key are left.
+    pub fn left(&self) -> usize {
+        let taken = self.places.0.taken.lock().unwrap_or_else(PoisonError::into_inner);
+        self.places.most() - taken.get(&self.key).copied().unwrap_or(0)
+    }
+}
+
 impl Drop for Place {
     fn drop(&mut self) {
         let mut taken = self.places.0.taken.lock().unwrap_or_else(PoisonError::into_inner);

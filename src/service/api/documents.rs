@@ -246,12 +246,20 @@ async fn parts_of_form(app: &App, request: Request) -> Answer<Fields> {
 
 /// Refuses what is no name of a case or file.
 pub fn check_name(key: &str, name: &str) -> Answer<()> {
-    let is_fine = !name.is_empty() && name.len() <= NAME_MAX && !name.chars().any(char::is_control);
-    if is_fine {
+    let shows = name.chars().any(|c| !c.is_whitespace()) && !name.chars().any(|c| c.is_control() || is_unseen(c));
+    if shows && name.len() <= NAME_MAX && !matches!(name, "." | "..") {
         return Ok(());
     }
-    let remedy = format!("give 1 to {NAME_MAX} bytes of text without line breaks");
+    let remedy = format!("give 1 to {NAME_MAX} bytes of text that shows, without line breaks, and not . or ..");
     Err(input(key, format!("{name:?}"), "is no name", remedy).into())
+}
+
+/// Whether a character shows nothing, or turns what stands beside it around: separators of lines, joiners, marks of direction and of the
+/// byte order, fillers.
+fn is_unseen(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
+        | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{2800}' | '\u{3164}' | '\u{feff}'
+        | '\u{ffa0}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
 /// What was asked for as it can be stored and run, after a look at it as this kind of job; what the look found goes before.

@@ -129,8 +129,13 @@ fn token_of(headers: &HeaderMap) -> Option<&str> {
 fn check_origin(security: &Security, needs_token: bool, headers: &HeaderMap, is_write: bool) -> Answer<()> {
     let refused = |detail: &str| Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail));
     let text = |name: header::HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
-    let of_url = |url: &str| url.split_once("://").and_then(|(_, rest)| rest.split('/').next()?.parse::<Authority>().ok());
-    let host = text(header::HOST).and_then(|host| host.parse::<Authority>().ok());
+    let of_url = |url: &str| {
+        url.split_once("://").and_then(|(_, rest)| rest.split('/').next()?.to_ascii_lowercase().parse::<Authority>().ok())
+    };
+    if headers.get_all(header::HOST).iter().count() > 1 {
+        return Err(Problem::bad_request("the request has more than one Host; send one"));
+    }
+    let host = text(header::HOST).map(str::to_ascii_lowercase).and_then(|host| host.parse::<Authority>().ok());
     let public = security.public_url.as_deref().and_then(of_url);
     if !needs_token {
         let is_here = host.as_ref().is_some_and(|host| {
@@ -272,6 +277,11 @@ pub async fn headers(request: Request, next: Next) -> Response {
         (header::HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
         (header::HeaderName::from_static("permissions-policy"), "camera=(), geolocation=(), microphone=()"),
     ];
+    // What is packed is not the same byte by byte (RFC 9110, 8.8.3.3).
+    let tag = response.headers().get(header::ETAG).filter(|_| response.headers().contains_key(header::CONTENT_ENCODING));
+    if let Some(weak) = tag.and_then(|tag| HeaderValue::try_from(format!("W/{}", tag.to_str().ok()?)).ok()) {
+        response.headers_mut().insert(header::ETAG, weak);
+    }
     for (name, value) in fixed {
         response.headers_mut().insert(name, HeaderValue::from_static(value));
     }

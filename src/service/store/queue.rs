@@ -35,6 +35,15 @@ pub struct Claim {
 /// Longest time for which a job that was put back waits.
 const LONGEST_WAIT: Duration = Duration::from_secs(300);
 
+/// Waiting time of another owner's job after which a run gives way.
+const PATIENT: Duration = Duration::from_millis(500);
+
+/// Time for which a run goes on while others wait, where its owner has other workers' turns to give.
+const HELD: Duration = Duration::from_secs(120);
+
+/// Computing time that counts as a turn where a run has given way.
+const TURN: Duration = Duration::from_secs(10);
+
 /// What a sign of life brings back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Heartbeat {
@@ -53,6 +62,16 @@ pub struct ResultFile {
     pub name: String,
     /// Where its bytes are.
     pub path: PathBuf,
+}
+
+/// What became of the end of a job: it is stored, the claim does not hold any more, or with its results the owner's jobs would have so
+/// many bytes, more than they may.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "said above")]
+pub enum Finish {
+    Stored,
+    Lost,
+    SpaceFull(i64),
 }
 
 /// How a job ended.
@@ -93,24 +112,30 @@ pub struct Told {
 }
 
 impl Store {
-    /// A job whose worker has given no sign of life for as long as it was granted, or else the next that waits.
-    pub async fn claim(&self, worker: &str, lease_ms: i64) -> Result<Option<Claim>> {
+    /// A job whose worker has given no sign of life for as long as it was granted, or else the next that waits. While others wait an owner
+    /// has all but one of the `workers` of a process; where several may submit, runs that cannot give way leave it to them in any case.
+    pub async fn claim(&self, worker: &str, workers: usize, lease_ms: i64) -> Result<Option<Claim>> {
         // Within a transaction, since only its end tells that the claim has got to the disk.
         let mut transaction = self.begin().await?;
         schema::expect(&mut transaction).await?;
         let row = sqlx::query(self.sql(
             "UPDATE jobs SET state = 'running', worker = $1, fence = fence + 1, attempts = attempts + 1,
-                lease_until_ms = {now} + $2, lease_ms = $2, started_ms = COALESCE(started_ms, {now}), revision = revision + 1
+                lease_until_ms = {now} + $2, lease_ms = $2, started_ms = COALESCE(started_ms, {now}), not_before_ms = NULL,
+                revision = revision + 1
              WHERE id = COALESCE(
                 (SELECT id FROM jobs WHERE state = 'running' AND {orphaned} ORDER BY turn, id LIMIT 1 {skip_locked}),
-                (SELECT id FROM jobs WHERE state = 'queued'
-                    AND (not_before_ms IS NULL OR not_before_ms <= {now} OR not_before_ms > {now} + $3)
+                (SELECT id FROM jobs WHERE {waits} AND owner NOT IN
+                    (SELECT owner FROM jobs WHERE state = 'running' AND worker = $1 GROUP BY owner HAVING COUNT(*) >= $4)
+                 ORDER BY turn, id LIMIT 1 {skip_locked}),
+                (SELECT id FROM jobs WHERE {waits}
+                    AND (kind = 'prediction' OR (SELECT COUNT(*) FROM tokens WHERE role <> 'read') < 2)
                  ORDER BY turn, id LIMIT 1 {skip_locked}))
              RETURNING id, kind, fence, attempts, cancel_asked, owner, turn, failures, spent_ms, started_ms - created_ms AS waited_ms",
         ))
         .bind(worker)
         .bind(lease_ms)
         .bind(LONGEST_WAIT.as_millis() as i64)
+        .bind(workers.saturating_sub(1).max(1) as i64)
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(row) = row else { return Ok(None) };
@@ -219,6 +244,8 @@ impl Store {
         .bind(checkpoint)
         .execute(&mut *transaction)
         .await?;
+        let counted = self.sql("UPDATE jobs SET bytes = room + {stored} WHERE id = $1");
+        sqlx::query(counted).bind(&claim.id).execute(&mut *transaction).await?;
         transaction.commit().await?;
         Ok(true)
     }
@@ -247,9 +274,9 @@ impl Store {
         sqlx::query_scalar("SELECT content FROM pictures WHERE job = $1").bind(id).fetch_optional(&self.pool).await
     }
 
-    /// Ends a job with its results, all or nothing, if the claim still holds; whether it did.
+    /// Ends a job with its results, all or nothing, if the claim still holds and the owner has room for them.
     /// Errors: the database cannot take it; the job then runs on as far as it is concerned.
-    pub async fn finish(&self, claim: &Claim, outcome: &Outcome) -> Result<bool> {
+    pub async fn finish(&self, claim: &Claim, outcome: &Outcome) -> Result<Finish> {
         let mut transaction = self.begin().await?;
         let changed = sqlx::query(self.sql(
             "UPDATE jobs SET state = $3, summary = $4, problem = $5, finished_ms = {now}, finished_count_ms = {counted}, worker = NULL, lease_until_ms = NULL,
@@ -264,18 +291,46 @@ impl Store {
         .execute(&mut *transaction)
         .await?;
         if changed.rows_affected() == 0 {
-            return Ok(false);
+            return Ok(Finish::Lost);
         }
         for ResultFile { name, path } in &outcome.files {
             // One at a time in memory.
             let content = tokio::fs::read(path).await?;
             files::add(&mut transaction, &claim.id, Origin::Result, name, &content).await?;
         }
-        for leftover in ["DELETE FROM checkpoints WHERE job = $1", "DELETE FROM growth WHERE job = $1"] {
-            sqlx::query(leftover).bind(&claim.id).execute(&mut *transaction).await?;
+        self.settle(&mut transaction, &claim.id).await?;
+        if outcome.state == State::Succeeded {
+            let over = sqlx::query_scalar(
+                "SELECT bytes FROM stored WHERE bytes > most AND owner = (SELECT owner FROM jobs WHERE id = $1)",
+            );
+            if let Some(bytes) = over.bind(&claim.id).fetch_optional(&mut *transaction).await? {
+                return Ok(Finish::SpaceFull(bytes));
+            }
         }
         transaction.commit().await?;
-        Ok(true)
+        Ok(Finish::Stored)
+    }
+
+    /// Gives a job that was held for so long back to the queue, behind those of others, if one of an owner waits who has nothing running,
+    /// and this job's owner has all `workers` of its process, or it was held for long enough. Whether it did: it must have been kept.
+    pub async fn give_way(&self, claim: &Claim, workers: usize, held: Duration) -> Result<bool> {
+        let changed = sqlx::query(self.sql(
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, revision = revision + 1,
+                turn = $3 + (SELECT MAX(turn) FROM turns)
+             WHERE id = $1 AND fence = $2 AND state = 'running'
+                AND ($4 = 1 OR $5 <= (SELECT COUNT(*) FROM jobs own
+                    WHERE own.state = 'running' AND own.worker = jobs.worker AND own.owner = jobs.owner))
+                AND EXISTS (SELECT 1 FROM jobs other WHERE other.state = 'queued' AND other.owner <> jobs.owner
+                    AND COALESCE(other.not_before_ms, other.created_ms) < {now} - $6
+                    AND other.owner NOT IN (SELECT owner FROM jobs WHERE state = 'running'))",
+        ))
+        .bind(&claim.id)
+        .bind(claim.fence)
+        .bind(1 + (held.as_secs() / TURN.as_secs()) as i64)
+        .bind(i64::from(held >= HELD))
+        .bind(workers.max(2) as i64)
+        .bind(PATIENT.as_millis() as i64);
+        Ok(changed.execute(&self.pool).await?.rows_affected() > 0)
     }
 
     /// Gives a job back to the queue, not counted as having been tried: it is not to blame.
@@ -294,15 +349,16 @@ impl Store {
     }
 
     /// Gives a job back to the queue after an end that was not its fault, which is counted; nobody takes it before `wait` is over.
-    pub async fn put_back(&self, claim: &Claim, wait: Duration) -> Result<()> {
+    pub async fn put_back(&self, claim: &Claim, wait: Duration, reason: &str) -> Result<()> {
         sqlx::query(self.sql(
-            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, failures = failures + 1,
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, failures = failures + 1, reason = $4,
                 not_before_ms = {now} + $3, revision = revision + 1
              WHERE id = $1 AND fence = $2 AND state = 'running'",
         ))
         .bind(&claim.id)
         .bind(claim.fence)
         .bind(wait.min(LONGEST_WAIT).as_millis() as i64)
+        .bind(reason)
         .execute(&self.pool)
         .await
         .map(drop)

@@ -15,9 +15,9 @@ use serde_json::Value;
 
 use super::process::{News, Order, Run, read_frame, write_frame};
 use super::telling::Teller;
-use super::{bytes, free_bytes, packed};
+use super::{bytes, packed};
 use crate::problem::Problem;
-use crate::store::Growth;
+use crate::store::{Growth, free_bytes};
 use perilife_base::error::{Error, Result};
 use perilife_base::input::Opened;
 use perilife_calibration::calibrate::Calibration;

@@ -134,33 +134,30 @@ const ASKED_EVERY: Duration = Duration::from_millis(100);
 
 /// Looks at input in a process of its own, which ends when nobody waits any more ([`watch`]).
 pub fn look(program: &Path, look: &Look, memory: u64) -> Answer<String> {
-    let fault = |why: &str| {
+    let fault = |why: String| {
         tracing::error!("input cannot be looked at: {why}");
         Problem::internal()
     };
-    let order = Order::Look(look.clone());
-    let process = JobProcess::start(program, &order, memory, 1).map_err(|error| fault(&error.to_string()))?;
-    let too_large = || {
-        Problem::too_large(format!("the input takes more than the {} MB of memory of a job (--job-memory)", memory / 1_000_000))
-    };
+    let process = JobProcess::start(program, &Order::Look(look.clone()), memory, 1).map_err(|error| fault(error.to_string()))?;
     loop {
-        match process.news.recv_timeout(ASKED_EVERY) {
+        let is_over = match process.news.recv_timeout(ASKED_EVERY) {
             Ok(News::Done(found)) => return Ok(found),
             Ok(News::Failed(problem)) => return Err(serde_json::from_str(&problem).unwrap_or_else(|_| Problem::internal())),
-            Ok(_) => {}
             Err(RecvTimeoutError::Timeout) if watch::is_cancelled() => return Err(Problem::internal()),
-            Err(RecvTimeoutError::Timeout) if process.touched().is_some_and(|touched| touched > memory) => {
-                return Err(too_large());
-            }
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => {
-                return Err(match process.death() {
-                    Death::OutOfMemory => too_large(),
-                    Death::Panicked(why) | Death::Other(why) => fault(&why),
-                });
-            }
+            Ok(_) | Err(RecvTimeoutError::Timeout) => process.touched().is_some_and(|touched| touched > memory),
+            Err(RecvTimeoutError::Disconnected) => match process.death() {
+                Death::Panicked(why) | Death::Other(why) => return Err(fault(why)),
+                Death::OutOfMemory => return Err(too_large(memory)),
+            },
+        };
+        if is_over {
+            return Err(too_large(memory));
         }
     }
+}
+
+fn too_large(memory: u64) -> Problem {
+    Problem::too_large(format!("the input takes more than the {} MB of memory of a job (--job-memory)", memory / 1_000_000))
 }
 
 /// Bytes that matrix products reserve and hardly touch: twice the third-level cache for each thread (private-gemm-x86, which `faer` calls),
