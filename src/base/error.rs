@@ -1,6 +1,5 @@
 //! The three troubles a caller can act on: wrong input, mechanics that gave no result, file or network.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -76,23 +75,10 @@ pub struct InputError {
     pub remedy: String,
 }
 
-/// Most characters of a key or value that a message repeats.
-const VALUE_MAX: usize = 200;
+/// Most characters of a key or value that a message repeats: what a user gave may be a whole file.
+pub const VALUE_MAX: usize = 200;
 /// Most characters of a sentence of a message, which may repeat names.
-const SENTENCE_MAX: usize = 2000;
-
-/// The beginning of a text, as messages repeat it: what a user gave may be a whole file.
-pub fn cut(text: &str, most: usize) -> Cow<'_, str> {
-    text.char_indices().nth(most).map_or(Cow::Borrowed(text), |(end, _)| Cow::Owned(format!("{}...", &text[..end])))
-}
-
-impl InputError {
-    /// Key, value, problem and remedy as messages have them.
-    pub fn said(&self) -> (Option<Cow<'_, str>>, Option<Cow<'_, str>>, [Cow<'_, str>; 2]) {
-        let [key, given] = [&self.key, &self.value].map(|text| text.as_deref().map(|text| cut(text, VALUE_MAX)));
-        (key, given, [&self.problem, &self.remedy].map(|text| cut(text, SENTENCE_MAX)))
-    }
-}
+pub const SENTENCE_MAX: usize = 2000;
 
 impl std::error::Error for InputError {}
 
@@ -106,16 +92,15 @@ impl fmt::Display for InputError {
             }
             write!(f, ": ")?;
         }
-        let (key, value, [problem, remedy]) = self.said();
-        match (key, value) {
-            (Some(key), Some(value)) => write!(f, "{key} = {value}: ")?,
-            (Some(key), None) => write!(f, "{key}: ")?,
-            (None, Some(value)) => write!(f, "{value}: ")?,
+        match (&self.key, &self.value) {
+            (Some(key), Some(value)) => write!(f, "{key:.VALUE_MAX$} = {value:.VALUE_MAX$}: ")?,
+            (Some(key), None) => write!(f, "{key:.VALUE_MAX$}: ")?,
+            (None, Some(value)) => write!(f, "{value:.VALUE_MAX$}: ")?,
             (None, None) => {}
         }
-        write!(f, "{problem}")?;
-        if !remedy.is_empty() {
-            write!(f, "; {remedy}")?;
+        write!(f, "{:.SENTENCE_MAX$}", self.problem)?;
+        if !self.remedy.is_empty() {
+            write!(f, "; {:.SENTENCE_MAX$}", self.remedy)?;
         }
         Ok(())
     }

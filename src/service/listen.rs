@@ -63,8 +63,8 @@ pub async fn serve(
                     let crowded = place.is_none().then_some(Crowded);
                     let head_within = match (crowded, &own) {
                         (Some(_), _) => within(RESERVED_WITHIN, reserve.available_permits(), RESERVE),
-                        (None, Some(own)) if own.left() * connections < room.available_permits() * of_address.most() => {
-                            within(HEAD_WITHIN, own.left(), of_address.most())
+                        (None, Some(own)) if own.left * connections < room.available_permits() * of_address.most() => {
+                            within(HEAD_WITHIN, own.left, of_address.most())
                         }
                         (None, _) => within(HEAD_WITHIN, room.available_permits(), connections),
                     };

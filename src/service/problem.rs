@@ -1,6 +1,5 @@
 //! What went wrong, as RFC 9457 has it; the words are those of the command line.
 
-use std::borrow::Cow;
 use std::time::Duration;
 
 use axum::http::{HeaderValue, StatusCode, header};
@@ -9,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::store;
-use perilife_base::error::{Error, InputError, cut};
+use perilife_base::error::{Error, InputError, SENTENCE_MAX, VALUE_MAX};
 
 /// Problem details.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -65,7 +64,7 @@ impl Problem {
             kind: format!("urn:perilife:problem:{slug}"),
             title: title.to_owned(),
             status: status.as_u16(),
-            detail: cut(&detail.into(), DETAIL_MAX).into_owned(),
+            detail: format!("{:.DETAIL_MAX$}", detail.into()),
             input: None,
             retry_after: None,
         }
@@ -140,14 +139,14 @@ impl From<Error> for Problem {
 
 impl From<InputError> for Place {
     fn from(error: InputError) -> Self {
-        let (key, value, [problem, remedy]) = error.said();
+        let value = |text: String| format!("{text:.VALUE_MAX$}");
         Place {
-            file: error.file.as_ref().map(|file| file.display().to_string()),
+            file: error.file.map(|file| file.display().to_string()),
             line: error.line,
-            key: key.map(Cow::into_owned),
-            value: value.map(Cow::into_owned),
-            problem: problem.into_owned(),
-            remedy: remedy.into_owned(),
+            key: error.key.map(value),
+            value: error.value.map(value),
+            problem: format!("{:.SENTENCE_MAX$}", error.problem),
+            remedy: format!("{:.SENTENCE_MAX$}", error.remedy),
         }
     }
 }

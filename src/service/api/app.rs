@@ -239,6 +239,8 @@ struct Counted {
 pub struct Place {
     places: Places,
     key: String,
+    /// How many of its key were left when it was taken.
+    pub left: usize,
 }
 
 impl Places {
@@ -260,15 +262,7 @@ impl Places {
             return None;
         }
         *count += 1;
-        Some(Place { places: self.clone(), key: key.to_owned() })
-    }
-}
-
-impl Place {
-    /// How many of its key are left.
-    pub fn left(&self) -> usize {
-        let taken = self.places.0.taken.lock().unwrap_or_else(PoisonError::into_inner);
-        self.places.most() - taken.get(&self.key).copied().unwrap_or(0)
+        Some(Place { places: self.clone(), key: key.to_owned(), left: self.0.most - *count })
     }
 }
 

@@ -55,26 +55,22 @@ impl DatabaseFile {
         Err(io::Error::new(io::ErrorKind::NotFound, format!("{} was removed or replaced", self.path.display())))
     }
 
-    fn reserve(&self) -> PathBuf {
-        self.path.with_extension("reserve")
-    }
-
     /// Lays the reserve where there is plenty of room. On disks that cannot there is none.
     pub fn lay_reserve(&self) {
         let [needed, reserve] = needed_bytes(&self.folder());
-        if self.reserve().exists() || free_bytes(&self.folder()).is_none_or(|free| free < needed + reserve) {
+        if free_bytes(&self.folder()).is_none_or(|free| free < needed + reserve) {
             return;
         }
-        let file = OpenOptions::new().write(true).create(true).truncate(true).mode(0o600).open(self.reserve());
+        let file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(self.path.with_extension("reserve"));
         if file.is_ok_and(|file| fallocate(&file, FallocateFlags::empty(), 0, reserve).is_err()) {
-            let _ = fs::remove_file(self.reserve());
+            let _ = fs::remove_file(self.path.with_extension("reserve"));
         }
     }
 
     /// Gives the reserve up on a full disk; whether that made room.
     pub fn give_reserve_up(&self) -> bool {
         free_bytes(&self.folder()).is_some_and(|free| free < needed_bytes(&self.folder())[1])
-            && fs::remove_file(self.reserve()).is_ok()
+            && fs::remove_file(self.path.with_extension("reserve")).is_ok()
     }
 }
 

@@ -129,39 +129,20 @@ impl Store {
         }
         let turn = turn(&mut transaction, new.owner).await?;
         let id = uuid::Uuid::now_v7().to_string();
-        sqlx::query(self.sql(
+        run!(&mut *transaction, self.sql(
             "INSERT INTO jobs (id, kind, name, owner, state, calibration, turn, room, bytes, created_ms)
              VALUES ($1, $2, $3, $4, 'queued', $5, $6, $7, $8, {now})",
-        ))
-        .bind(&id)
-        .bind(new.kind.name())
-        .bind(&new.submission.name)
-        .bind(new.owner)
-        .bind(new.calibration)
-        .bind(turn)
-        .bind(new.room)
-        .bind(bytes + new.room)
-        .execute(&mut *transaction)
-        .await?;
+        ); &id, new.kind.name(), &new.submission.name, new.owner, new.calibration, turn, new.room, bytes + new.room)?;
         let most = sqlx::query("UPDATE stored SET most = $2 WHERE owner = $1").bind(new.owner).bind(room.bytes);
         most.execute(&mut *transaction).await?;
-        sqlx::query("INSERT INTO submissions (job, content, options) VALUES ($1, $2, $3)")
-            .bind(&id)
-            .bind(content)
-            .bind(serde_json::to_string(&new.submission.options).unwrap_or_default())
-            .execute(&mut *transaction)
-            .await?;
+        run!(&mut *transaction, "INSERT INTO submissions (job, content, options) VALUES ($1, $2, $3)";
+            &id, content, serde_json::to_string(&new.submission.options).unwrap_or_default())?;
         for (name, content) in &new.submission.files {
             files::add(&mut transaction, &id, Origin::Input, name, content).await?;
         }
         if let Some(key) = new.idempotency_key {
-            sqlx::query("INSERT INTO idempotency (owner, key, fingerprint, job) VALUES ($1, $2, $3, $4)")
-                .bind(new.owner)
-                .bind(key)
-                .bind(new.fingerprint)
-                .bind(&id)
-                .execute(&mut *transaction)
-                .await?;
+            run!(&mut *transaction, "INSERT INTO idempotency (owner, key, fingerprint, job) VALUES ($1, $2, $3, $4)";
+                new.owner, key, new.fingerprint, &id)?;
         }
         transaction.commit().await?;
         Ok(Submitted::New(id))
@@ -223,12 +204,8 @@ impl Store {
             part = part.replace(sign, &format!("!{sign}"));
         }
         // One more than asked for tells whether there are more.
-        let rows = sqlx::query(self.sql(&statement))
-            .bind(after.unwrap_or(BEHIND_ALL))
-            .bind(i64::from(limit) + 1)
-            .bind(state.map_or("", State::name))
-            .bind(i64::from(archived))
-            .bind(format!("%{part}%"))
+        let rows = bound!(sqlx::query(self.sql(&statement));
+            after.unwrap_or(BEHIND_ALL), i64::from(limit) + 1, state.map_or("", State::name), i64::from(archived), format!("%{part}%"))
             .fetch_all(&self.pool)
             .await?;
         let mut jobs: Vec<Job> = rows.iter().map(job_of).collect::<Result<_>>()?;
@@ -278,15 +255,11 @@ impl Store {
 
     /// Says something else of a job from now on; whoever holds it goes on. Whether there was one.
     pub async fn change(&self, id: &str, change: &Change) -> Result<bool> {
-        let changed = sqlx::query(
+        let changed = bound!(sqlx::query(
             "UPDATE jobs SET name = COALESCE($2, name), note = COALESCE($3, note), archived = COALESCE($4, archived),
                 revision = revision + 1
              WHERE id = $1",
-        )
-        .bind(id)
-        .bind(&change.name)
-        .bind(&change.note)
-        .bind(change.archived.map(i64::from))
+        ); id, &change.name, &change.note, change.archived.map(i64::from))
         .execute(&self.pool)
         .await?;
         Ok(changed.rows_affected() > 0)

@@ -4,6 +4,15 @@
 //! The store is the only place in which a job exists: nothing of it stands in files, and no name from outside becomes a path.
 //! Times are those of the database, so that machines need not agree on theirs.
 
+/// A statement with the values of its places, in their order.
+macro_rules! bound {
+    ($query:expr; $($value:expr),+) => { $query$(.bind($value))+ };
+}
+/// What came of running one.
+macro_rules! run {
+    ($on:expr, $statement:expr; $($value:expr),+) => { bound!(sqlx::query($statement); $($value),+).execute($on).await };
+}
+
 mod disk;
 mod files;
 mod jobs;

@@ -118,7 +118,7 @@ impl Store {
         // Within a transaction, since only its end tells that the claim has got to the disk.
         let mut transaction = self.begin().await?;
         schema::expect(&mut transaction).await?;
-        let row = sqlx::query(self.sql(
+        let row = bound!(sqlx::query(self.sql(
             "UPDATE jobs SET state = 'running', worker = $1, fence = fence + 1, attempts = attempts + 1,
                 lease_until_ms = {now} + $2, lease_ms = $2, started_ms = COALESCE(started_ms, {now}), not_before_ms = NULL,
                 revision = revision + 1
@@ -131,21 +131,15 @@ impl Store {
                     AND (kind = 'prediction' OR (SELECT COUNT(*) FROM tokens WHERE role <> 'read') < 2)
                  ORDER BY turn, id LIMIT 1 {skip_locked}))
              RETURNING id, kind, fence, attempts, cancel_asked, owner, turn, failures, spent_ms, started_ms - created_ms AS waited_ms",
-        ))
-        .bind(worker)
-        .bind(lease_ms)
-        .bind(LONGEST_WAIT.as_millis() as i64)
-        .bind(workers.saturating_sub(1).max(1) as i64)
+        )); worker, lease_ms, LONGEST_WAIT.as_millis() as i64, workers.saturating_sub(1).max(1) as i64)
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(row) = row else { return Ok(None) };
         // One taken up again had its turn long ago.
-        sqlx::query(
+        bound!(sqlx::query(
             "INSERT INTO turns (owner, turn) VALUES ($1, $2) ON CONFLICT (owner) DO UPDATE
                 SET turn = CASE WHEN turns.turn < excluded.turn THEN excluded.turn ELSE turns.turn END",
-        )
-        .bind(row.try_get::<String, _>("owner")?)
-        .bind(row.try_get::<i64, _>("turn")?)
+        ); row.try_get::<String, _>("owner")?, row.try_get::<i64, _>("turn")?)
         .execute(&mut *transaction)
         .await?;
         let (id, kind): (String, String) = (row.try_get("id")?, row.try_get("kind")?);
@@ -191,18 +185,12 @@ impl Store {
     pub async fn beat(&self, claim: &Claim, lease_ms: i64, elapsed: Duration, told: &Told) -> Result<Heartbeat> {
         let mut transaction = self.begin().await?;
         let is_more = told.growth.is_some() || told.picture.is_some();
-        let asked: Option<i64> = sqlx::query_scalar(self.sql(
+        let asked: Option<i64> = bound!(sqlx::query_scalar(self.sql(
             "UPDATE jobs SET lease_until_ms = {now} + $3, lease_ms = $3, spent_ms = $5,
                 revision = revision + CASE WHEN $6 = 0 AND ($4 IS NULL OR $4 = progress) THEN 0 ELSE 1 END,
                 progress = COALESCE($4, progress)
              WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING cancel_asked",
-        ))
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .bind(lease_ms)
-        .bind(&told.progress)
-        .bind(claim.spent_ms + elapsed.as_millis() as i64)
-        .bind(i64::from(is_more))
+        )); &claim.id, claim.fence, lease_ms, &told.progress, claim.spent_ms + elapsed.as_millis() as i64, i64::from(is_more))
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(asked) = asked else { return Ok(Heartbeat::Lost) };
@@ -210,15 +198,9 @@ impl Store {
             grow(&mut transaction, claim, growth).await?;
         }
         if let Some((about, picture)) = &told.picture {
-            sqlx::query(
-                "INSERT INTO pictures (job, revision, about, content) VALUES ($1, 1, $2, $3) ON CONFLICT (job) DO UPDATE
-                    SET revision = pictures.revision + 1, about = excluded.about, content = excluded.content",
-            )
-            .bind(&claim.id)
-            .bind(about)
-            .bind(&picture[..])
-            .execute(&mut *transaction)
-            .await?;
+            run!(&mut *transaction, "INSERT INTO pictures (job, revision, about, content) VALUES ($1, 1, $2, $3) ON CONFLICT (job) DO UPDATE
+                    SET revision = pictures.revision + 1, about = excluded.about, content = excluded.content";
+                        &claim.id, about, &picture[..])?;
         }
         transaction.commit().await?;
         Ok(if asked == 0 { Heartbeat::Held } else { Heartbeat::Cancel })
@@ -229,21 +211,13 @@ impl Store {
     pub async fn keep(&self, claim: &Claim, checkpoint: Vec<u8>) -> Result<bool> {
         let mut transaction = self.begin().await?;
         // Others cannot take the row until the transaction ends.
-        let held = sqlx::query("UPDATE jobs SET attempts = 0 WHERE id = $1 AND fence = $2 AND state = 'running'")
-            .bind(&claim.id)
-            .bind(claim.fence)
-            .execute(&mut *transaction)
-            .await?;
+        let held = run!(&mut *transaction, "UPDATE jobs SET attempts = 0 WHERE id = $1 AND fence = $2 AND state = 'running'";
+            &claim.id, claim.fence)?;
         if held.rows_affected() == 0 {
             return Ok(false);
         }
-        sqlx::query(
-            "INSERT INTO checkpoints (job, content) VALUES ($1, $2) ON CONFLICT (job) DO UPDATE SET content = excluded.content",
-        )
-        .bind(&claim.id)
-        .bind(checkpoint)
-        .execute(&mut *transaction)
-        .await?;
+        run!(&mut *transaction, "INSERT INTO checkpoints (job, content) VALUES ($1, $2) ON CONFLICT (job) DO UPDATE SET content = excluded.content";
+            &claim.id, checkpoint)?;
         let counted = self.sql("UPDATE jobs SET bytes = room + {stored} WHERE id = $1");
         sqlx::query(counted).bind(&claim.id).execute(&mut *transaction).await?;
         transaction.commit().await?;
@@ -252,12 +226,9 @@ impl Store {
 
     /// Pieces of the growing curve of a job from entry `from` on, of one claim or of all.
     pub async fn growth(&self, id: &str, from: i64, fence: Option<i64>) -> Result<Vec<Growth>> {
-        let pieces: Vec<String> = sqlx::query_scalar(
+        let pieces: Vec<String> = bound!(sqlx::query_scalar(
             "SELECT entries FROM growth WHERE job = $1 AND first >= $2 AND ($3 < 0 OR fence = $3) ORDER BY first",
-        )
-        .bind(id)
-        .bind(from)
-        .bind(fence.unwrap_or(-1))
+        ); id, from, fence.unwrap_or(-1))
         .fetch_all(&self.pool)
         .await?;
         Ok(pieces.iter().filter_map(|piece| serde_json::from_str(piece).ok()).collect())
@@ -278,18 +249,11 @@ impl Store {
     /// Errors: the database cannot take it; the job then runs on as far as it is concerned.
     pub async fn finish(&self, claim: &Claim, outcome: &Outcome) -> Result<Finish> {
         let mut transaction = self.begin().await?;
-        let changed = sqlx::query(self.sql(
+        let changed = run!(&mut *transaction, self.sql(
             "UPDATE jobs SET state = $3, summary = $4, problem = $5, finished_ms = {now}, finished_count_ms = {counted}, worker = NULL, lease_until_ms = NULL,
                 revision = revision + 1
              WHERE id = $1 AND fence = $2 AND state = 'running'",
-        ))
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .bind(outcome.state.name())
-        .bind(&outcome.summary)
-        .bind(&outcome.problem)
-        .execute(&mut *transaction)
-        .await?;
+        ); &claim.id, claim.fence, outcome.state.name(), &outcome.summary, &outcome.problem)?;
         if changed.rows_affected() == 0 {
             return Ok(Finish::Lost);
         }
@@ -336,32 +300,22 @@ impl Store {
     /// Gives a job back to the queue, not counted as having been tried: it is not to blame.
     /// Errors: the database does not answer; the job goes on elsewhere once its time has run out.
     pub async fn release(&self, claim: &Claim) -> Result<()> {
-        sqlx::query(
-            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL,
-                attempts = CASE WHEN attempts > 0 THEN attempts - 1 ELSE 0 END, revision = revision + 1
-             WHERE id = $1 AND fence = $2 AND state = 'running'",
-        )
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .execute(&self.pool)
-        .await
-        .map(drop)
+        self.requeue(claim, "attempts = CASE WHEN attempts > 0 THEN attempts - 1 ELSE 0 END", 0, None).await
     }
 
     /// Gives a job back to the queue after an end that was not its fault, which is counted; nobody takes it before `wait` is over.
     pub async fn put_back(&self, claim: &Claim, wait: Duration, reason: &str) -> Result<()> {
-        sqlx::query(self.sql(
-            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, failures = failures + 1, reason = $4,
-                not_before_ms = {now} + $3, revision = revision + 1
-             WHERE id = $1 AND fence = $2 AND state = 'running'",
-        ))
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .bind(wait.min(LONGEST_WAIT).as_millis() as i64)
-        .bind(reason)
-        .execute(&self.pool)
-        .await
-        .map(drop)
+        let wait = wait.min(LONGEST_WAIT).as_millis() as i64;
+        self.requeue(claim, "failures = failures + 1, not_before_ms = {now} + $3", wait, Some(reason)).await
+    }
+
+    async fn requeue(&self, claim: &Claim, change: &str, wait_ms: i64, reason: Option<&str>) -> Result<()> {
+        let statement = format!(
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, revision = revision + 1,
+                reason = CASE WHEN $3 > 0 THEN $4 ELSE reason END, {change}
+             WHERE id = $1 AND fence = $2 AND state = 'running'"
+        );
+        run!(&self.pool, self.sql(&statement); &claim.id, claim.fence, wait_ms, reason).map(drop)
     }
 }
 
@@ -370,15 +324,8 @@ async fn grow(transaction: &mut sqlx::Transaction<'static, sqlx::Any>, claim: &C
     if growth.from == 0 {
         sqlx::query("DELETE FROM growth WHERE job = $1").bind(&claim.id).execute(&mut **transaction).await?;
     }
-    sqlx::query(
-        "INSERT INTO growth (job, first, fence, entries) VALUES ($1, $2, $3, $4)
-         ON CONFLICT (job, first) DO UPDATE SET fence = excluded.fence, entries = excluded.entries",
-    )
-    .bind(&claim.id)
-    .bind(growth.from as i64)
-    .bind(claim.fence)
-    .bind(serde_json::to_string(growth).unwrap_or_default())
-    .execute(&mut **transaction)
-    .await
+    run!(&mut **transaction, "INSERT INTO growth (job, first, fence, entries) VALUES ($1, $2, $3, $4)
+         ON CONFLICT (job, first) DO UPDATE SET fence = excluded.fence, entries = excluded.entries";
+             &claim.id, growth.from as i64, claim.fence, serde_json::to_string(growth).unwrap_or_default())
     .map(drop)
 }

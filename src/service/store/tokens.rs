@@ -51,16 +51,10 @@ impl Store {
         let mut random = [0; RANDOM_BYTES];
         getrandom::fill(&mut random).map_err(|error| sqlx::Error::Io(std::io::Error::other(error.to_string())))?;
         let secret = format!("{PREFIX}{}", hex(&random));
-        let added = sqlx::query(self.sql(
+        let added = run!(&self.pool, self.sql(
             "INSERT INTO tokens (hash, name, role, created_ms, expires_ms) VALUES ($1, $2, $3, {now}, {now} + $4)
              ON CONFLICT DO NOTHING",
-        ))
-        .bind(hash(&secret))
-        .bind(name)
-        .bind(role.name())
-        .bind(days.map(|days| i64::from(days) * 86_400_000))
-        .execute(&self.pool)
-        .await?;
+        ); hash(&secret), name, role.name(), days.map(|days| i64::from(days) * 86_400_000))?;
         Ok((added.rows_affected() > 0).then_some(secret))
     }
 

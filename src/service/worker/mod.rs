@@ -147,7 +147,8 @@ fn job_folder() -> std::io::Result<(TempDir, File)> {
 fn remove_leftovers() {
     for path in entries(&std::env::temp_dir()).unwrap_or_default().into_iter().filter(|path| name_of(path).starts_with(PREFIX)) {
         if File::open(path.join(LOCK)).is_ok_and(|lock| lock.try_lock().is_ok()) {
-            tracing::info!("{}: removed, its worker is gone: {:?}", path.display(), std::fs::remove_dir_all(&path));
+            let removed = std::fs::remove_dir_all(&path);
+            tracing::info!("{}, whose worker is gone, is removed: {removed:?}", path.display());
         }
     }
 }

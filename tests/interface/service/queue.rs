@@ -74,6 +74,17 @@ fn a_submission_costs_the_same_whatever_is_stored() {
         let service = Server::start(place, &["--jobs", "1"]);
         let job = service.submit("predictions", &of("tiny", &tiny()));
         let id = service.succeeded(&job)["id"].as_str().unwrap().to_owned();
+        let median_s = || {
+            let submit = |_| {
+                let begun = std::time::Instant::now();
+                service.submit("predictions", &of("next", &tiny()));
+                begun.elapsed().as_secs_f64()
+            };
+            let mut times: Vec<f64> = (0..9).map(submit).collect();
+            times.sort_by(f64::total_cmp);
+            times[4]
+        };
+        let before = median_s();
         let columns = "kind, name, owner, state, created_ms, started_ms, finished_ms, finished_count_ms, summary, bytes";
         let numbers = "WITH RECURSIVE numbers(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM numbers WHERE i < 20000)";
         on_store(
@@ -90,17 +101,10 @@ fn a_submission_costs_the_same_whatever_is_stored() {
             ),
         );
         sums_are_right(place);
-        let mut times: Vec<f64> = (0..9)
-            .map(|_| {
-                let begun = std::time::Instant::now();
-                service.submit("predictions", &of("next", &tiny()));
-                begun.elapsed().as_secs_f64()
-            })
-            .collect();
-        times.sort_by(f64::total_cmp);
-        println!("a submission takes {:.1} ms", 1e3 * times[4]);
-        // A sum over all files took 100 ms.
-        assert!(times[4] < 0.04, "{times:?}");
+        let after = median_s();
+        println!("a submission takes {:.1} ms, {:.1} ms before", 1e3 * after, 1e3 * before);
+        // A sum over all files took 100 ms more.
+        assert!(after < 3.0 * before + 0.02, "{before} s, {after} s");
         sums_are_right(place);
     });
 }
