@@ -75,6 +75,11 @@ pub struct InputError {
     pub remedy: String,
 }
 
+/// Most characters of a key or value that a message repeats: what a user gave may be a whole file.
+pub const VALUE_MAX: usize = 200;
+/// Most characters of a sentence of a message, which may repeat names.
+pub const SENTENCE_MAX: usize = 2000;
+
 impl std::error::Error for InputError {}
 
 impl fmt::Display for InputError {
@@ -88,14 +93,14 @@ impl fmt::Display for InputError {
             write!(f, ": ")?;
         }
         match (&self.key, &self.value) {
-            (Some(key), Some(value)) => write!(f, "{key} = {value}: ")?,
-            (Some(key), None) => write!(f, "{key}: ")?,
-            (None, Some(value)) => write!(f, "{value}: ")?,
+            (Some(key), Some(value)) => write!(f, "{key:.VALUE_MAX$} = {value:.VALUE_MAX$}: ")?,
+            (Some(key), None) => write!(f, "{key:.VALUE_MAX$}: ")?,
+            (None, Some(value)) => write!(f, "{value:.VALUE_MAX$}: ")?,
             (None, None) => {}
         }
-        write!(f, "{}", self.problem)?;
+        write!(f, "{:.SENTENCE_MAX$}", self.problem)?;
         if !self.remedy.is_empty() {
-            write!(f, "; {}", self.remedy)?;
+            write!(f, "; {:.SENTENCE_MAX$}", self.remedy)?;
         }
         Ok(())
     }

@@ -43,10 +43,10 @@ pub struct Args {
     /// Most jobs of one owner that wait
     #[arg(long, value_name = "COUNT", default_value_t = 1000, help_heading = "Limits")]
     pub queued: u32,
-    /// Most MiB of the files of one owner's jobs, inputs and results
+    /// Most MiB of one owner's jobs: inputs, results, checkpoints, and what waiting jobs may write
     #[arg(long, value_name = "MIB", default_value_t = 102_400, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Limits")]
     pub quota_mib: u32,
-    /// Most connections at a time; the others wait
+    /// Most connections at a time, three quarters of them from one address; beyond them only health is answered
     #[arg(long, value_name = "COUNT", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Limits")]
     pub connections: u32,
     /// Most requests a second of one caller

@@ -75,7 +75,9 @@ mod _perilife {
         wishes: Option<Wishes>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Run> {
-        let kind: Kind = kind.parse().map_err(|()| pyo3::exceptions::PyValueError::new_err("no kind of run"))?;
+        let kind: Kind = kind
+            .parse()
+            .map_err(|error: perilife_base::error::Error| pyo3::exceptions::PyValueError::new_err(error.to_string()))?;
         let document = document(source, name, &set, law, files)?;
         let work = |told: &crate::watcher::Told| {
             let mut task = Task::read(kind, &document, &methods)?;

@@ -83,14 +83,26 @@ fn rename(value: &mut toml::Value, named: &[(&str, &str)]) {
     }
 }
 
+/// A name as every system takes it: Windows has folders behind `\`, characters that no name may have, and names of devices.
+fn portable(name: &str) -> String {
+    const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "com", "lpt"];
+    let last = name.rsplit('\\').next().unwrap_or_default().trim_end_matches([' ', '.']);
+    let name = last.replace(|c: char| c.is_control() || "<>:\"|?*".contains(c), "_");
+    let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
+    let device = stem.trim_end_matches(|c: char| c.is_ascii_digit());
+    let is_device = DEVICES.contains(&device) && stem.len() <= device.len() + 1;
+    if is_device || name.is_empty() { format!("_{name}") } else { name }
+}
+
 /// Where each file is kept in the folder of a run: by its last name, with a number where that is taken.
 fn kept_names(files: &[OpenedFile]) -> Vec<String> {
     let mut names: Vec<String> = Vec::with_capacity(files.len());
     for file in files {
         let last = Path::new(&file.name).file_name().map(|name| name.to_string_lossy().into_owned());
-        let last = last.filter(|name| name != perilife_base::input::STREAM).unwrap_or_else(|| "input.toml".to_owned());
+        let last = last.filter(|name| name != perilife_base::input::STREAM).map(|name| portable(&name));
+        let last = last.unwrap_or_else(|| "input.toml".to_owned());
         let numbered = |count: usize| if count == 1 { format!("{INPUTS}/{last}") } else { format!("{INPUTS}/{count}_{last}") };
-        names.extend((1..).map(numbered).find(|name| !names.contains(name)));
+        names.extend((1..).map(numbered).find(|name| names.iter().all(|other| !other.eq_ignore_ascii_case(name))));
     }
     names
 }

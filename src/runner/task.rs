@@ -1,10 +1,7 @@
 //! What a document asks for, read and found right.
 
-use std::fmt;
 use std::path::Path;
-use std::str::FromStr;
 
-use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use crate::scene_results;
@@ -27,27 +24,19 @@ use perilife_results::{run, stresses};
 use perilife_scenes::Scene;
 use perilife_scenes::read::is_scene;
 
-/// What is done with a document.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = JobKind))]
-#[serde(rename_all = "snake_case")]
-pub enum Kind {
-    /// Fits the fatigue law to measured curves.
-    Calibration,
-    /// Runs a case.
-    Prediction,
-    /// Runs a fracture scene without cycles.
-    Scene,
-    /// Runs many cases of one.
-    Sweep,
-    /// Stress intensity factors of a case.
-    Sif,
+perilife_base::kinds! {
+    /// What is done with a document.
+    #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = JobKind, rename_all = "snake_case"))]
+    pub enum Kind for "kind" {
+        Calibration = "calibration": "Fits the fatigue law to measured curves.",
+        Prediction = "prediction": "Runs a case.",
+        Scene = "scene": "Runs a fracture scene without cycles.",
+        Sweep = "sweep": "Runs many cases of one.",
+        Sif = "sif": "Stress intensity factors of a case.",
+    }
 }
 
 impl Kind {
-    /// All of them.
-    pub const ALL: [Kind; 5] = [Kind::Calibration, Kind::Prediction, Kind::Scene, Kind::Sweep, Kind::Sif];
-
     /// The kind of run that a document of these sections is input of.
     pub fn of(table: &Table) -> Kind {
         match () {
@@ -55,17 +44,6 @@ impl Kind {
             () if is_scene(table) => Kind::Scene,
             () if table.contains_key("measured") || table.contains_key("fit") => Kind::Calibration,
             () => Kind::Prediction,
-        }
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Kind::Calibration => "calibration",
-            Kind::Prediction => "prediction",
-            Kind::Scene => "scene",
-            Kind::Sweep => "sweep",
-            Kind::Sif => "sif",
         }
     }
 
@@ -83,20 +61,6 @@ impl Kind {
     /// Options of its command that a job of it may have.
     pub fn options(self) -> &'static [&'static str] {
         if self == Kind::Sif { &["method"] } else { &[] }
-    }
-}
-
-impl FromStr for Kind {
-    type Err = ();
-
-    fn from_str(name: &str) -> std::result::Result<Self, ()> {
-        Kind::ALL.into_iter().find(|kind| kind.name() == name).ok_or(())
-    }
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
     }
 }
 

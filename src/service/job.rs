@@ -1,7 +1,5 @@
 //! A job: what was asked for, how far it is, what came of it.
 
-use std::fmt;
-use std::str::FromStr;
 use std::time::{Duration, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
@@ -14,54 +12,23 @@ use perilife_base::input::{Document, Folder};
 use perilife_growth::case::remove_law;
 pub use perilife_runner::Kind as JobKind;
 
-/// Where a job stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum State {
-    /// Waits for a worker.
-    Queued,
-    /// A worker has it.
-    Running,
-    /// Done; its results are there.
-    Succeeded,
-    /// Ended without a result; its problem says why.
-    Failed,
-    /// Ended because somebody asked for it.
-    Cancelled,
+perilife_base::kinds! {
+    /// Where a job stands.
+    #[derive(ToSchema)]
+    #[schema(rename_all = "snake_case")]
+    pub enum State for "state" {
+        Queued = "queued": "Waits for a worker.",
+        Running = "running": "A worker has it.",
+        Succeeded = "succeeded": "Done; its results are there.",
+        Failed = "failed": "Ended without a result; its problem says why.",
+        Cancelled = "cancelled": "Ended because somebody asked for it.",
+    }
 }
 
 impl State {
-    /// All of them.
-    pub const ALL: [State; 5] = [State::Queued, State::Running, State::Succeeded, State::Failed, State::Cancelled];
-
-    /// Its name, in the database and in URLs.
-    pub fn name(self) -> &'static str {
-        match self {
-            State::Queued => "queued",
-            State::Running => "running",
-            State::Succeeded => "succeeded",
-            State::Failed => "failed",
-            State::Cancelled => "cancelled",
-        }
-    }
-
     /// Whether nothing more will happen.
     pub fn is_final(self) -> bool {
         matches!(self, State::Succeeded | State::Failed | State::Cancelled)
-    }
-}
-
-impl FromStr for State {
-    type Err = ();
-
-    fn from_str(name: &str) -> std::result::Result<Self, ()> {
-        State::ALL.into_iter().find(|state| state.name() == name).ok_or(())
-    }
-}
-
-impl fmt::Display for State {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
     }
 }
 
@@ -108,6 +75,12 @@ pub struct Job {
     pub finished: Option<String>,
     /// Workers that have taken it so far; more than one where a worker stopped or died.
     pub attempts: i64,
+    /// Ends so far that were not its fault.
+    pub failures: i64,
+    /// Why it ended so the last time.
+    pub last_failure: Option<String>,
+    /// When it may be tried again, where it waits for that.
+    pub next_try: Option<String>,
     /// Somebody has asked for its end.
     pub cancel_asked: bool,
     /// Jobs before it in the queue.
@@ -134,10 +107,8 @@ pub struct Submission {
     /// Whether the law is that of the file [`FITTED`], whatever the text says.
     pub with_fitted: bool,
     /// Options of the command, `NAME=VALUE`; stored beside it.
-    #[serde(skip)]
     pub options: Vec<String>,
     /// Files that the text names; stored beside it.
-    #[serde(skip)]
     pub files: Vec<(String, Vec<u8>)>,
 }
 

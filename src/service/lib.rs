@@ -21,6 +21,7 @@
 pub mod api;
 pub mod job;
 mod listen;
+mod look;
 pub mod problem;
 pub mod store;
 pub mod worker;
@@ -37,11 +38,13 @@ use tokio::sync::Notify;
 
 use api::{App, Audit, Limits, Security};
 use perilife_base::error::{Error, Result, input};
-use store::{Store, Upgrade};
+use store::{DatabaseFile, Store, Upgrade};
 use worker::Workers;
 
 /// Connections to the database beyond those of the workers.
 const CONNECTIONS: u32 = 8;
+/// Time in which input that is being looked at is left when the process stops.
+const LAST_LOOKS: Duration = Duration::from_secs(1);
 /// Time between two forgettings of callers that were not heard of.
 const FORGET_EVERY: Duration = Duration::from_secs(60);
 
@@ -64,7 +67,8 @@ pub struct Settings {
 
 /// Serves until the process is asked to stop (SIGINT, SIGTERM); `ready` is told the address once it answers.
 pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> {
-    runtime()?.block_on(async {
+    let runtime = runtime()?;
+    let served = runtime.block_on(async {
         let store = open(&settings.database, CONNECTIONS + settings.workers.jobs as u32, Upgrade::Allowed).await?;
         let needs_token = settings.security.needs_token || !settings.listen.ip().is_loopback();
         let audit = settings.audit_log.as_deref().map(Audit::open).transpose()?;
@@ -80,7 +84,7 @@ pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> 
         let wake = Arc::new(Notify::new());
         let workers = Workers::start(store.clone(), settings.workers.clone(), Arc::clone(&wake)).map_err(threads)?;
         let security = Security { needs_token, ..settings.security.clone() };
-        let mut app = App::new(store.clone(), settings.limits.clone(), security, settings.workers.jobs, wake);
+        let mut app = App::new(store.clone(), settings.limits.clone(), security, settings.workers.clone(), wake);
         app.audit = audit.map(Arc::new);
         app.disks = Arc::new(disks(settings));
         api::start_counting();
@@ -91,13 +95,17 @@ pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> 
             asked_to_stop().await;
             app.stop();
         };
-        listen::serve(listener, api::router(app.clone()), settings.limits.connections, stopping).await;
+        let trusts_proxy = settings.security.trusts_proxy;
+        listen::serve(listener, api::router(app.clone()), settings.limits.connections, trusts_proxy, stopping).await;
         tracing::info!("stopping: jobs go on from their checkpoints at the next start");
         forgetting.abort();
         workers.stop().await;
         store.close().await;
         Ok(())
-    })
+    });
+    // Nobody waits any more for what is still being looked at.
+    runtime.shutdown_timeout(LAST_LOOKS);
+    served
 }
 
 /// Works for a service of another process until this one is asked to stop.
@@ -116,8 +124,7 @@ pub fn work(url: &str, settings: &worker::Settings, ready: impl FnOnce()) -> Res
 
 /// Folders that a service writes to: of the database file, and of temporary files where it runs jobs.
 fn disks(settings: &Settings) -> Vec<(&'static str, PathBuf)> {
-    let file = settings.database.starts_with("sqlite://").then(|| PathBuf::from(without_password(&settings.database)));
-    let store = file.and_then(|file| file.parent().map(Path::to_path_buf));
+    let store = DatabaseFile::of(&settings.database).map(|file| file.folder());
     let temporary = (settings.workers.jobs > 0).then(std::env::temp_dir);
     [("store", store), ("temporary", temporary)].into_iter().filter_map(|(name, place)| Some((name, place?))).collect()
 }

@@ -1,12 +1,14 @@
 //! What went wrong, as RFC 9457 has it; the words are those of the command line.
 
+use std::time::Duration;
+
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use super::store;
-use perilife_base::error::{Error, InputError};
+use perilife_base::error::{Error, InputError, SENTENCE_MAX, VALUE_MAX};
 
 /// Problem details.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -48,6 +50,9 @@ pub struct Place {
 /// Result of a request.
 pub type Answer<T> = std::result::Result<T, Problem>;
 
+/// Most characters of what went wrong, which may repeat what was sent.
+const DETAIL_MAX: usize = 5000;
+
 /// Seconds after which a database that was gone is asked for again.
 const DATABASE_BACK_S: u32 = 2;
 
@@ -59,7 +64,7 @@ impl Problem {
             kind: format!("urn:perilife:problem:{slug}"),
             title: title.to_owned(),
             status: status.as_u16(),
-            detail: detail.into(),
+            detail: format!("{:.DETAIL_MAX$}", detail.into()),
             input: None,
             retry_after: None,
         }
@@ -83,6 +88,12 @@ impl Problem {
     /// More than this server takes.
     pub fn too_large(detail: impl Into<String>) -> Self {
         Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "Too large", detail)
+    }
+
+    /// The body did not come in time.
+    pub fn too_slow(within: Duration) -> Self {
+        let detail = format!("the body did not come within {} s", within.as_secs());
+        Problem::new(StatusCode::REQUEST_TIMEOUT, "Too slow", detail)
     }
 
     /// Come back later.
@@ -128,13 +139,14 @@ impl From<Error> for Problem {
 
 impl From<InputError> for Place {
     fn from(error: InputError) -> Self {
+        let value = |text: String| format!("{text:.VALUE_MAX$}");
         Place {
             file: error.file.map(|file| file.display().to_string()),
             line: error.line,
-            key: error.key,
-            value: error.value,
-            problem: error.problem,
-            remedy: error.remedy,
+            key: error.key.map(value),
+            value: error.value.map(value),
+            problem: format!("{:.SENTENCE_MAX$}", error.problem),
+            remedy: format!("{:.SENTENCE_MAX$}", error.remedy),
         }
     }
 }

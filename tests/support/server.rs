@@ -184,6 +184,14 @@ impl Server {
         }
     }
 
+    /// Processes that it has started and that still run.
+    pub fn children(&self) -> Vec<u32> {
+        let own = self.process.id();
+        let of_task = |task: std::fs::DirEntry| std::fs::read_to_string(task.path().join("children")).unwrap_or_default();
+        let tasks = std::fs::read_dir(format!("/proc/{own}/task")).unwrap().flatten().map(of_task).collect::<String>();
+        tasks.split_whitespace().map(|child| child.parse().unwrap()).collect()
+    }
+
     /// Ends the process without a warning.
     pub fn kill(&mut self) {
         let _ = self.process.kill();

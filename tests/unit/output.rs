@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use perilife_base::input::{OpenedFile, Provenance};
 use perilife_results::output::{MARKER, OutputFolder, RunKind, write_file};
+use perilife_results::provenance;
 use tempfile::tempdir;
 
 fn names(folder: &Path) -> Vec<String> {
@@ -24,6 +26,30 @@ fn a_folder_appears_when_it_is_finished_and_replaces_only_its_own() {
         assert_eq!(names(&out), [MARKER, content], "the earlier result has gone");
     }
     assert_eq!(names(out.parent().unwrap()), ["run"], "no temporary folder stays");
+}
+
+/// Files that a run keeps have names that every system takes, each its own whatever the case.
+#[test]
+fn kept_files_can_be_unpacked_everywhere() {
+    let file = |name: &str| OpenedFile { name: name.to_owned(), path: None, id: None, content: [][..].into() };
+    for (given, kept) in [
+        ("a\\..\\..\\b.csv", "b.csv"),
+        ("con.csv", "_con.csv"),
+        ("COM1", "_COM1"),
+        ("Lpt9.txt", "_Lpt9.txt"),
+        ("company.csv", "company.csv"),
+        ("com12.csv", "com12.csv"),
+        ("a<b>:\"|?*.csv", "a_b______.csv"),
+        ("a. ", "a"),
+        ("\\", "_"),
+        ("Maße 1.csv", "Maße 1.csv"),
+    ] {
+        let mut object = serde_json::json!({});
+        let files = ["case.toml", given, "case.TOML"].map(file).to_vec();
+        provenance::add(&mut object, &Provenance { files, ..Provenance::default() }, &[]);
+        let names: Vec<&str> = object["inputs"].as_array().unwrap().iter().map(|one| one["kept_as"].as_str().unwrap()).collect();
+        assert_eq!(names, ["inputs/case.toml", &format!("inputs/{kept}"), "inputs/2_case.TOML"], "{given}");
+    }
 }
 
 #[test]

@@ -107,7 +107,8 @@ pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
     let names = |row: &Row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>();
     let named: Vec<usize> = (0..head.len())
         .filter(|&row| {
-            rows[row].cells.len() <= COLUMNS_MAX && !is_number(rows[row].cell(0)) && words.is_header(&names(&rows[row]))
+            let can_be = (words.columns()..=COLUMNS_MAX).contains(&rows[row].cells.len()) && !is_number(rows[row].cell(0));
+            can_be && words.is_header(&names(&rows[row]))
         })
         .collect();
     // A line of the preamble may speak of cycles and crack length too; below the header stand numbers.

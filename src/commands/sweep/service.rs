@@ -105,6 +105,7 @@ async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
             idempotency_key: Some(&key),
             fingerprint: &case.hash,
             submission: &submission,
+            room: 0,
         };
         match patiently(async || store.submit(&new, ROOM).await).await? {
             Submitted::New(id) => return Ok(id),
@@ -115,7 +116,7 @@ async fn submitted(store: &Store, case: &DrawnCase) -> store::Result<String> {
                 }
             }
             // The key names its request, and the queue has no end here; another key is as good.
-            Submitted::KeyTaken | Submitted::QueueFull | Submitted::SpaceFull(_) => {}
+            Submitted::KeyTaken | Submitted::QueueFull | Submitted::SpaceFull(..) => {}
         }
         tries += 1;
     }

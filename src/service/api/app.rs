@@ -14,6 +14,7 @@ use tokio::sync::{Notify, OwnedSemaphorePermit, RwLock, Semaphore};
 use super::caller::{Audit, Caller};
 use crate::problem::{Answer, Problem};
 use crate::store::{Role, Store, Token};
+use crate::worker;
 
 /// How much a request may ask for.
 #[derive(Debug, Clone)]
@@ -101,8 +102,8 @@ pub struct App {
     pub security: Security,
     /// Told of new jobs.
     pub wake: Arc<Notify>,
-    /// Workers of this process.
-    pub workers: usize,
+    /// How workers of this process work, and what a process that looks at input may take.
+    pub workers: worker::Settings,
     /// Room for bodies.
     pub bodies: BodyPlaces,
     /// Room for whole curves that something is computed from.
@@ -126,7 +127,7 @@ struct Shared {
 
 impl App {
     /// A service on a store.
-    pub fn new(store: Store, limits: Limits, security: Security, workers: usize, wake: Arc<Notify>) -> Self {
+    pub fn new(store: Store, limits: Limits, security: Security, workers: worker::Settings, wake: Arc<Notify>) -> Self {
         let limiter = |per_second: NonZeroU32| RateLimiter::keyed(Quota::per_second(per_second));
         let shared = Shared {
             requests: limiter(limits.requests_per_second),
@@ -238,6 +239,8 @@ struct Counted {
 pub struct Place {
     places: Places,
     key: String,
+    /// How many of its key were left when it was taken.
+    pub left: usize,
 }
 
 impl Places {
@@ -259,7 +262,7 @@ impl Places {
             return None;
         }
         *count += 1;
-        Some(Place { places: self.clone(), key: key.to_owned() })
+        Some(Place { places: self.clone(), key: key.to_owned(), left: self.0.most - *count })
     }
 }
 

@@ -14,7 +14,8 @@ use utoipa::{IntoParams, ToSchema};
 
 use super::App;
 use super::caller::Caller;
-use super::documents::{self, JobRequest, submission};
+use super::documents::{self, JobRequest};
+use super::watching::has_room;
 use crate::job::{Job, JobKind, State, is_id};
 use crate::problem::{Answer, Problem};
 use crate::store::{Change, FileEntry, NewJob, Origin, Role, Room, Submitted, Wanted};
@@ -68,6 +69,7 @@ pub struct Page {
 
 /// Which part of a list.
 #[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct Part {
     /// Jobs, 1 to 200; 20 if left out.
@@ -89,7 +91,7 @@ pub fn kind_of(collection: &str) -> Answer<JobKind> {
         let detail = "a service runs no charts and shows none of an earlier version; run `perilife chart` on a command line";
         return Err(Problem::new(StatusCode::GONE, "Gone", detail));
     }
-    JobKind::ALL.into_iter().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
+    JobKind::all().find(|kind| kind.collection() == collection).ok_or_else(|| Problem::not_found("address"))
 }
 
 /// A job of a collection.
@@ -150,19 +152,23 @@ pub async fn submit(
     caller.must_be(Role::Run)?;
     let key = key_of(&headers)?;
     let body = documents::read(&app, &caller, request).await?;
+    // The temporary disk is the workers' matter, who try again.
+    app.disks.iter().filter(|(place, _)| *place == "store").try_for_each(has_room)?;
     let fingerprint = format!("{kind} {}", body.fingerprint);
     let calibration = body.asked.calibration.clone();
     // Asked before the body is looked into: what it refers to may be gone since it was accepted.
     let submitted = match app.store.submitted(&caller.name, key.as_deref(), &fingerprint).await? {
         Some(earlier) => earlier,
         None => {
+            let (found, submission, _room) = documents::looked(&app, body, Some(kind)).await?;
             let new = NewJob {
                 kind,
                 owner: &caller.name,
                 calibration: calibration.as_deref(),
                 idempotency_key: key.as_deref(),
                 fingerprint: &fingerprint,
-                submission: &submission(&app, Some(kind), body.asked).await?,
+                submission: &submission,
+                room: found.parse().unwrap_or(0),
             };
             app.store.submit(&new, Room { queued: app.limits.queued, bytes: app.limits.quota_bytes }).await?
         }
@@ -181,17 +187,18 @@ pub async fn submit(
             let detail = format!("{} of your jobs wait already, which is all this server takes", app.limits.queued);
             return Err(Problem::too_many(detail, QUEUE_MOVES_S));
         }
-        Submitted::SpaceFull(bytes) => {
+        Submitted::SpaceFull(stored, bytes) => {
+            let mib = |bytes: i64| bytes as f64 / f64::from(1 << 20);
             let detail = format!(
-                "the files of your jobs have {} MiB, which is all that this server keeps of one owner ({} MiB): delete jobs that are not \
-                 needed any more",
-                bytes >> 20,
+                "your jobs have {:.1} MiB, inputs and what those that wait may write included; with the {:.1} MiB of this input they would \
+                 have more than the {} MiB that this server keeps of one owner (--quota-mib): delete jobs that are not needed any more",
+                mib(stored),
+                mib(bytes),
                 app.limits.quota_bytes >> 20
             );
             return Err(Problem::new(StatusCode::INSUFFICIENT_STORAGE, "No room", detail));
         }
     };
-    drop(body.room);
     let job = job_of(&app, &collection, &id).await?;
     let location = app.public(&format!("/v1/{collection}/{id}"));
     Ok((status, [(header::LOCATION, location)], Json(view(&app, job, false).await?)).into_response())
@@ -289,6 +296,7 @@ pub async fn change(
 
 /// How long a look at a job may wait.
 #[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct Wait {
     /// Seconds, 0 to 50, after which the job is shown even if it has not ended.

@@ -57,7 +57,7 @@ pub fn complete(handlers: &OpenApi) -> Value {
 
 fn complete_schemas(schemas: &mut Value) {
     schemas["Collection"] = json!({
-        "type": "string", "description": "Jobs of a kind.", "enum": JobKind::ALL.map(JobKind::collection),
+        "type": "string", "description": "Jobs of a kind.", "enum": JobKind::all().map(JobKind::collection).collect::<Vec<_>>(),
     });
     let request = &mut schemas["JobRequest"];
     request["required"] = json!(["input"]);

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
 
 use axum::body::Bytes;
 use axum::extract::multipart::MultipartRejection;
@@ -14,25 +13,24 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
+use super::App;
 use super::app::BodyPlace;
 use super::caller::Caller;
-use super::{App, Limits};
+use super::security::BODY_WITHIN;
 use crate::job::{FITTED, JobKind, State, Submission, is_id};
+use crate::look::Look;
 use crate::problem::{Answer, Problem};
 use crate::store::{Origin, hex};
+use crate::worker;
 use perilife_base::error::input;
-use perilife_base::input::Document;
 use perilife_base::watch::{self, Watch};
-use perilife_runner::Task;
 
 /// Longest input, bytes; files beside it may be as large as bodies are.
 const INPUT_MAX: usize = 1 << 20;
 /// Most parts of a JSON body: each takes a hundred times its room in memory.
 const PARTS_MAX: usize = 200_000;
-/// Time in which a body must have come: until then it takes up room.
-const BODY_WITHIN: Duration = Duration::from_secs(20);
-/// Cases of a sweep that are looked at before it is accepted.
-const LOOKED_AT: usize = 100;
+/// Longest text and files, bytes, that no process of its own looks at before they are accepted: it would take longer than they can.
+const SHORT: usize = 64 << 10;
 /// Longest name of a case or file, bytes.
 const NAME_MAX: usize = 200;
 
@@ -199,13 +197,9 @@ fn input_of_form(text: String) -> Answer<Value> {
 }
 
 async fn bytes(request: Request) -> Answer<Bytes> {
-    let read = tokio::time::timeout(BODY_WITHIN, Bytes::from_request(request, &())).await.map_err(|_| too_slow())?;
+    let read =
+        tokio::time::timeout(BODY_WITHIN, Bytes::from_request(request, &())).await.map_err(|_| Problem::too_slow(BODY_WITHIN))?;
     read.map_err(|rejection| refused(rejection.status(), &rejection.body_text()))
-}
-
-fn too_slow() -> Problem {
-    let detail = format!("the body did not come within {} s", BODY_WITHIN.as_secs());
-    Problem::new(StatusCode::REQUEST_TIMEOUT, "Too slow", detail)
 }
 
 fn refused(status: StatusCode, text: &str) -> Problem {
@@ -217,7 +211,7 @@ fn refused(status: StatusCode, text: &str) -> Problem {
 
 /// Reads a form; parts with a file name are files.
 pub async fn form(app: &App, request: Request) -> Answer<Fields> {
-    tokio::time::timeout(BODY_WITHIN, parts_of_form(app, request)).await.map_err(|_| too_slow())?
+    tokio::time::timeout(BODY_WITHIN, parts_of_form(app, request)).await.map_err(|_| Problem::too_slow(BODY_WITHIN))?
 }
 
 async fn parts_of_form(app: &App, request: Request) -> Answer<Fields> {
@@ -252,16 +246,38 @@ async fn parts_of_form(app: &App, request: Request) -> Answer<Fields> {
 
 /// Refuses what is no name of a case or file.
 pub fn check_name(key: &str, name: &str) -> Answer<()> {
-    let is_fine = !name.is_empty() && name.len() <= NAME_MAX && !name.chars().any(char::is_control);
-    if is_fine {
+    let shows = name.chars().any(|c| !c.is_whitespace()) && !name.chars().any(|c| c.is_control() || is_unseen(c));
+    if shows && name.len() <= NAME_MAX && !matches!(name, "." | "..") {
         return Ok(());
     }
-    let remedy = format!("give 1 to {NAME_MAX} bytes of text without line breaks");
+    let remedy = format!("give 1 to {NAME_MAX} bytes of text that shows, without line breaks, and not . or ..");
     Err(input(key, format!("{name:?}"), "is no name", remedy).into())
 }
 
+/// Whether a character shows nothing, or turns what stands beside it around: separators of lines, joiners, marks of direction and of the
+/// byte order, fillers.
+fn is_unseen(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
+        | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{2800}' | '\u{3164}' | '\u{feff}'
+        | '\u{ffa0}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}
+
+/// What was asked for as it can be stored and run, after a look at it as this kind of job; what the look found goes before.
+pub async fn looked(app: &App, body: Body, kind: Option<JobKind>) -> Answer<(String, Submission, BodyPlace)> {
+    let is_text = body.asked.input.as_ref().is_some_and(Value::is_string);
+    let submission = submission(app, kind, body.asked).await?;
+    let is_short = submission.text.len() + submission.files.iter().map(|(_, content)| content.len()).sum::<usize>() <= SHORT;
+    let check = Look::Check { kind, submission, limits: [app.limits.points, app.limits.case_bytes] };
+    match look(app, check, body.room, kind.is_none() || !is_short).await {
+        Ok((found, Look::Check { submission, .. }, room)) => Ok((found, submission, room)),
+        Ok(_) => Err(Problem::internal()),
+        Err(problem) if is_text => Err(problem),
+        Err(problem) => Err(problem.without_line()),
+    }
+}
+
 /// What was asked for as it can be stored and run.
-pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> Answer<Submission> {
+async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> Answer<Submission> {
     let options = options(kind, &asked.options)?;
     let no_input = || Problem::bad_request("the body has no `input`: give TOML text or an object");
     let given = asked.input.ok_or_else(no_input)?;
@@ -272,7 +288,6 @@ pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> 
         check_name("file", &name)?;
         files.push((name, content));
     }
-    let is_text = given.is_string();
     let mut text = text_of(given)?;
     if let Some(table) = text.parse::<toml::Table>().ok().filter(|table| names_no_readings(table) && !files.is_empty()) {
         text = with_readings(table, &files)?;
@@ -282,13 +297,7 @@ pub async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> 
         files.retain(|(name, _)| name != FITTED);
         files.push((FITTED.to_owned(), record_of(app, id).await?));
     }
-    let submission = Submission { name, text, with_fitted, options, files };
-    let limits = app.limits.clone();
-    let look = move || {
-        kind.map_or(Ok(()), |kind| check(&submission, kind, &submission.document()?, &limits).map(drop)).map(|()| submission)
-    };
-    let checked = while_asked(look).await;
-    checked.map_err(|problem| if is_text { problem } else { problem.without_line() })
+    Ok(Submission { name, text, with_fitted, options, files })
 }
 
 /// Options as a command takes them, `NAME=VALUE`.
@@ -321,10 +330,16 @@ impl Drop for Asked {
     }
 }
 
-/// Work on a thread of its own; it ends at its next mark when the request that waits for it has gone.
-pub async fn while_asked<T: Send + 'static>(work: impl FnOnce() -> Answer<T> + Send + 'static) -> Answer<T> {
+/// Looks at input on a thread of its own, or in a process of its own, until the request that waits for it has gone: the process ends
+/// then, the thread at its next mark. The room of the body is taken up until the work is done.
+pub async fn look(app: &App, look: Look, room: BodyPlace, by_process: bool) -> Answer<(String, Look, BodyPlace)> {
     let watch = Arc::new(Watch::default());
     let _asked = Asked(Arc::clone(&watch));
+    let (program, memory) = (app.workers.program.clone(), app.workers.memory);
+    let work = move || {
+        let found = if by_process { worker::look(&program, &look, memory) } else { look.answer() };
+        found.map(|found| (found, look, room))
+    };
     let worked = tokio::task::spawn_blocking(move || watch::with(Some(watch), work));
     worked.await.map_err(|_| Problem::internal())?
 }
@@ -391,15 +406,4 @@ async fn record_of(app: &App, id: &str) -> Answer<Vec<u8>> {
         Some(record) => Ok(record),
         None => Err(refused(&format!("has no result: it is {}", job.state), &format!("wait until it has {}", State::Succeeded))),
     }
-}
-
-/// Reads it as this kind of job, within the limits of this server as far as they show without building the plate.
-pub fn check(submission: &Submission, kind: JobKind, document: &Document, limits: &Limits) -> Answer<Task> {
-    let task = Task::read(kind, document, &submission.methods())?;
-    // Of very many cases a few: each runs within the memory of the job all the same.
-    for budget in task.budgets(LOOKED_AT)? {
-        budget.within_points(limits.points)?;
-        budget.within(limits.case_bytes)?;
-    }
-    Ok(task)
 }

@@ -50,7 +50,7 @@ pub async fn service(State(app): State<App>, caller: Option<Extension<Caller>>) 
         version: env!("CARGO_PKG_VERSION"),
         needs_token: app.security.needs_token,
         role: caller.map(|Extension(caller)| caller.role),
-        workers: app.workers,
+        workers: app.workers.jobs,
         limits: Allowed { body_bytes: limits.body_bytes, files: limits.files, points: limits.points, queued: limits.queued },
     })
 }

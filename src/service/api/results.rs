@@ -2,16 +2,17 @@
 
 use std::path::Path as FilePath;
 
-use axum::Json;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State as Shared};
 use axum::http::{HeaderMap, header};
 use axum::response::{IntoResponse, Response};
+use axum::{Extension, Json};
 use serde::Deserialize;
 use tokio::sync::OwnedSemaphorePermit;
 use utoipa::IntoParams;
 
 use super::App;
+use super::caller::Caller;
 use super::collections::job_of;
 use super::sending::Stored;
 use crate::job::{Job, State, is_id};
@@ -28,6 +29,7 @@ const POINTS: std::ops::RangeInclusive<u64> = 2..=100_000;
 
 /// Where an a-N curve is wanted.
 #[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct Wanted {
     /// Only for `a_n.csv`: so many rows, equally spaced in cycles.
@@ -46,6 +48,7 @@ pub struct Wanted {
 pub async fn file(
     Shared(app): Shared<App>,
     Path((collection, id, name)): Path<(String, String, String)>,
+    Extension(caller): Extension<Caller>,
     wanted: Result<Query<Wanted>, QueryRejection>,
     headers: HeaderMap,
 ) -> Answer<Response> {
@@ -83,8 +86,11 @@ pub async fn file(
     let fixed = [
         (header::CONTENT_TYPE, media_type),
         (header::CONTENT_DISPOSITION, disposition),
-        // A result never changes.
-        (header::CACHE_CONTROL, "private, max-age=86400, immutable".to_owned()),
+        // A result never changes; but whoever uses the browser next, or has lost his token, may not have it.
+        (
+            header::CACHE_CONTROL,
+            if caller.token.is_empty() { "private, max-age=86400, immutable" } else { "no-store" }.to_owned(),
+        ),
     ];
     Ok((fixed, content).into_response())
 }
@@ -167,6 +173,7 @@ pub async fn picture(Shared(app): Shared<App>, Path((collection, id)): Path<(Str
 
 /// From which length on, and with which factor.
 #[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct From {
     /// Crack length today.

@@ -1,7 +1,6 @@
 //! Who may ask, how often, and what browsers are told.
 
 use std::net::{IpAddr, SocketAddr};
-use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::{Body, HttpBody, to_bytes};
@@ -11,7 +10,7 @@ use axum::http::uri::Authority;
 use axum::http::{HeaderMap, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use tokio::sync::Semaphore;
+use tokio::time::timeout;
 use tokio_stream::StreamExt;
 
 use super::caller::Caller;
@@ -30,14 +29,15 @@ pub async fn guard(
     let (mut head, body) = request.into_parts();
     let address = address_of(&app, connected.ip(), &head.headers);
     let (method, path) = (head.method.clone(), head.uri.path().to_owned());
+    let length = content_length(&head.headers);
     let (caller, response) = match caller_of(&app, address, &head).await {
-        Ok(caller) => {
-            if let Some(caller) = &caller {
-                head.extensions.insert(caller.clone());
-            }
-            (caller, next.run(Request::from_parts(head, body)).await)
+        Ok(Some(caller)) => {
+            head.extensions.insert(caller.clone());
+            (Some(caller), next.run(Request::from_parts(head, body)).await)
         }
-        Err(problem) => (None, problem.into_response()),
+        // What everybody may see takes no body.
+        Ok(None) => (None, unread(next.run(Request::from_parts(head, Body::empty())).await, length, body).await),
+        Err(problem) => (None, unread(problem.into_response(), length, body).await),
     };
     if let Some(audit) = &app.audit {
         let place = response.headers().get(header::LOCATION).and_then(|place| place.to_str().ok());
@@ -129,8 +129,13 @@ fn token_of(headers: &HeaderMap) -> Option<&str> {
 fn check_origin(security: &Security, needs_token: bool, headers: &HeaderMap, is_write: bool) -> Answer<()> {
     let refused = |detail: &str| Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail));
     let text = |name: header::HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
-    let of_url = |url: &str| url.split_once("://").and_then(|(_, rest)| rest.split('/').next()?.parse::<Authority>().ok());
-    let host = text(header::HOST).and_then(|host| host.parse::<Authority>().ok());
+    let of_url = |url: &str| {
+        url.split_once("://").and_then(|(_, rest)| rest.split('/').next()?.to_ascii_lowercase().parse::<Authority>().ok())
+    };
+    if headers.get_all(header::HOST).iter().count() > 1 {
+        return Err(Problem::bad_request("the request has more than one Host; send one"));
+    }
+    let host = text(header::HOST).map(str::to_ascii_lowercase).and_then(|host| host.parse::<Authority>().ok());
     let public = security.public_url.as_deref().and_then(of_url);
     if !needs_token {
         let is_here = host.as_ref().is_some_and(|host| {
@@ -153,32 +158,29 @@ fn check_origin(security: &Security, needs_token: bool, headers: &HeaderMap, is_
     Ok(())
 }
 
-/// A connection beyond those that there are for everybody: who watches over the service is answered, others when there is room.
-#[derive(Debug, Clone)]
-pub struct Crowded(pub Arc<Semaphore>);
+/// A connection beyond those that there are for everybody, or for one address: only who watches over the service is answered.
+#[derive(Debug, Clone, Copy)]
+pub struct Crowded;
 
-/// Time for which a request on such a connection waits for room.
-const ROOM_WITHIN: Duration = Duration::from_secs(5);
-
-/// Holds back requests on connections beyond those that there are for everybody.
+/// Refuses requests on connections beyond those that there are for everybody, before anything of them is waited for.
 pub async fn in_room(request: Request, next: Next) -> Response {
-    let room = request.extensions().get::<Crowded>().map(|crowded| Arc::clone(&crowded.0));
-    let Some(room) = room.filter(|_| !IS_WELL.contains(&request.uri().path())) else { return next.run(request).await };
-    match tokio::time::timeout(ROOM_WITHIN, room.acquire_owned()).await {
-        Ok(Ok(_place)) => next.run(request).await,
-        _ => {
-            let problem =
-                Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Too many connections", "all connections are taken; try again");
-            let mut response = Problem { retry_after: Some(1), ..problem }.into_response();
-            response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
-            response
-        }
+    let is_watching = IS_WELL.contains(&request.uri().path()) && request.body().is_end_stream();
+    if is_watching || request.extensions().get::<Crowded>().is_none() {
+        return next.run(request).await;
     }
+    let problem = Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Too many connections", "all connections are taken; try again");
+    closed(Problem { retry_after: Some(1), ..problem }.into_response())
+}
+
+/// An answer after which the connection is closed.
+fn closed(mut response: Response) -> Response {
+    response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+    response
 }
 
 /// Ends a request whose answer does not begin in time.
 pub async fn in_time(State(limit): State<Duration>, request: Request, next: Next) -> Response {
-    tokio::time::timeout(limit, next.run(request)).await.unwrap_or_else(|_| {
+    timeout(limit, next.run(request)).await.unwrap_or_else(|_| {
         let detail = format!("no answer within {} s; try again when the server has less to do", limit.as_secs());
         Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Too slow", detail).into_response()
     })
@@ -186,6 +188,13 @@ pub async fn in_time(State(limit): State<Duration>, request: Request, next: Next
 
 /// Largest body that is read before anything is answered.
 const SMALL_BYTES: usize = 64 << 10;
+
+/// Time in which such a body must have come.
+const SMALL_WITHIN: Duration = Duration::from_secs(5);
+/// Time in which any body must have come: until then it takes up room.
+pub const BODY_WITHIN: Duration = Duration::from_secs(20);
+/// Time in which a small body has come that was sent with its head.
+const AT_ONCE: Duration = Duration::from_millis(200);
 
 /// Leaves the connection in a state that the answer tells: a small body is read whole first, so that a refusal which does not look
 /// at it does not cut off the next request on the same connection; after a refusal of a larger one the connection is closed, and
@@ -196,16 +205,23 @@ pub async fn in_whole(request: Request, next: Next) -> Response {
     }
     if content_length(request.headers()).is_some_and(|length| length <= SMALL_BYTES) {
         let (head, body) = request.into_parts();
-        return match to_bytes(body, SMALL_BYTES).await {
-            Ok(body) => next.run(Request::from_parts(head, Body::from(body))).await,
-            Err(error) => Problem::bad_request(format!("the body cannot be read: {error}")).into_response(),
+        return match timeout(SMALL_WITHIN, to_bytes(body, SMALL_BYTES)).await {
+            Ok(Ok(body)) => next.run(Request::from_parts(head, Body::from(body))).await,
+            Ok(Err(error)) => Problem::bad_request(format!("the body cannot be read: {error}")).into_response(),
+            Err(_) => closed(Problem::too_slow(SMALL_WITHIN).into_response()),
         };
     }
-    let mut response = next.run(request).await;
-    if !response.status().is_success() {
-        response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
-    }
-    response
+    let response = next.run(request).await;
+    if response.status().is_success() { response } else { closed(response) }
+}
+
+/// An answer that needs nothing of the body. One that came with its head is read, so that the connection serves the next request; no
+/// other is waited for.
+async fn unread(response: Response, length: Option<usize>, body: Body) -> Response {
+    let small = length.is_some_and(|length| length <= SMALL_BYTES);
+    let is_read =
+        body.is_end_stream() || (small && timeout(AT_ONCE, to_bytes(body, SMALL_BYTES)).await.is_ok_and(|read| read.is_ok()));
+    if is_read { response } else { closed(response) }
 }
 
 fn content_length(headers: &HeaderMap) -> Option<usize> {
@@ -221,13 +237,16 @@ pub async fn in_size(State(limit): State<usize>, request: Request, next: Next) -
         return next.run(request).await;
     }
     let mut rest = request.into_body().into_data_stream();
-    let mut forgotten = 0;
-    while let Some(Ok(piece)) = rest.next().await {
-        forgotten += piece.len();
-        if forgotten > FORGOTTEN_BYTES {
-            break;
+    let forget = async {
+        let mut forgotten = 0;
+        while let Some(Ok(piece)) = rest.next().await {
+            forgotten += piece.len();
+            if forgotten > FORGOTTEN_BYTES {
+                break;
+            }
         }
-    }
+    };
+    let _ = timeout(BODY_WITHIN, forget).await;
     Problem::too_large(format!("the body is larger than the {limit} bytes this server takes")).into_response()
 }
 
@@ -258,6 +277,11 @@ pub async fn headers(request: Request, next: Next) -> Response {
         (header::HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
         (header::HeaderName::from_static("permissions-policy"), "camera=(), geolocation=(), microphone=()"),
     ];
+    // What is packed is not the same byte by byte (RFC 9110, 8.8.3.3).
+    let tag = response.headers().get(header::ETAG).filter(|_| response.headers().contains_key(header::CONTENT_ENCODING));
+    if let Some(weak) = tag.and_then(|tag| HeaderValue::try_from(format!("W/{}", tag.to_str().ok()?)).ok()) {
+        response.headers_mut().insert(header::ETAG, weak);
+    }
     for (name, value) in fixed {
         response.headers_mut().insert(name, HeaderValue::from_static(value));
     }

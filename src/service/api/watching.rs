@@ -1,5 +1,6 @@
 //! For those who run the service: is it well, and what is it doing?
 
+use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
@@ -12,7 +13,7 @@ use metrics_exporter_prometheus::{Matcher, PrometheusBuilder, PrometheusHandle};
 use super::App;
 use crate::job::State;
 use crate::problem::{Answer, Problem};
-use crate::worker::free_bytes;
+use crate::store::{free_bytes, needed_bytes};
 
 /// Bounds of the histogram of answer times, s.
 const BOUNDS_S: [f64; 12] = [0.000_5, 0.001, 0.002_5, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 5.0];
@@ -85,27 +86,33 @@ pub async fn health() -> &'static str {
     "ok\n"
 }
 
-/// Bytes that must be free on every disk that is written to.
-const FREE_BYTES: u64 = 64 << 20;
-
 /// `/readyz`: 200 while jobs are taken: the store can be written, its tables are of this version, disks have room; else 503 and why.
 pub async fn ready(Shared(app): Shared<App>) -> Answer<&'static str> {
-    let refused = |why: String| Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Not ready", why);
     let asked = tokio::time::timeout(READY_WITHIN, app.store.is_ready()).await;
     let asked = asked.map_err(|_| refused(format!("the database does not answer within {} s", READY_WITHIN.as_secs())))?;
     asked.map_err(|error| {
         tracing::warn!("the store is not ready: {error}");
         refused("the database cannot be written, or its tables are of another version; see the log".to_owned())
     })?;
-    for (place, folder) in app.disks.iter() {
-        let free = free_bytes(folder).unwrap_or(0);
-        if free < FREE_BYTES {
-            let (free, needed) = (free >> 20, FREE_BYTES >> 20);
-            return Err(refused(format!("the {place} disk has {free} MB free, and {needed} are needed")));
-        }
-    }
-    Ok("ready\n")
+    app.disks.iter().try_for_each(has_room).map(|()| "ready\n")
 }
+
+fn refused(why: String) -> Problem {
+    Problem { retry_after: Some(TRY_AFTER_S), ..Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Not ready", why) }
+}
+
+/// Refuses a disk that is nearly full.
+pub fn has_room((place, folder): &(&str, PathBuf)) -> Answer<()> {
+    let (free, [needed, _]) = (free_bytes(folder).unwrap_or(0), needed_bytes(folder));
+    if free >= needed {
+        return Ok(());
+    }
+    let (free, needed) = (free >> 20, needed >> 20);
+    Err(refused(format!("the {place} disk has {free} MB free, and {needed} are needed; make room on it, or delete jobs")))
+}
+
+/// Seconds after which a service that was not ready may be.
+const TRY_AFTER_S: u32 = 10;
 
 /// Time in which the store must answer.
 const READY_WITHIN: Duration = Duration::from_secs(5);
@@ -114,7 +121,7 @@ const READY_WITHIN: Duration = Duration::from_secs(5);
 pub async fn metrics(Shared(app): Shared<App>) -> Answer<Response> {
     let counts = app.store.counts().await?;
     // Those that no job is in as well.
-    for state in State::ALL {
+    for state in State::all() {
         let count = counts.iter().find(|(name, _)| name == state.name()).map_or(0, |(_, count)| *count);
         metrics::gauge!("perilife_jobs", "state" => state.name()).set(count as f64);
     }

@@ -73,13 +73,10 @@ impl Store {
 
     /// A part of a file of a job; `None` behind the last.
     pub async fn file_part(&self, job: &str, origin: Origin, name: &str, number: i64) -> Result<Option<Vec<u8>>> {
-        sqlx::query_scalar("SELECT content FROM file_parts WHERE job = $1 AND origin = $2 AND name = $3 AND number = $4")
-            .bind(job)
-            .bind(origin.name())
-            .bind(name)
-            .bind(number)
-            .fetch_optional(&self.pool)
-            .await
+        bound!(sqlx::query_scalar("SELECT content FROM file_parts WHERE job = $1 AND origin = $2 AND name = $3 AND number = $4");
+            job, origin.name(), name, number)
+        .fetch_optional(&self.pool)
+        .await
     }
 
     /// A whole file of a job.
@@ -104,14 +101,8 @@ pub(super) async fn add(
     name: &str,
     content: &[u8],
 ) -> Result<()> {
-    sqlx::query("INSERT INTO job_files (job, origin, name, media_type, size) VALUES ($1, $2, $3, $4, $5)")
-        .bind(job)
-        .bind(origin.name())
-        .bind(name)
-        .bind(media_type(name))
-        .bind(content.len() as i64)
-        .execute(&mut **transaction)
-        .await?;
+    run!(&mut **transaction, "INSERT INTO job_files (job, origin, name, media_type, size) VALUES ($1, $2, $3, $4, $5)";
+        job, origin.name(), name, media_type(name), content.len() as i64)?;
     // In one statement, which the database takes apart: a result has a hundred parts. An empty file has one as well, so that every
     // file opens alike.
     let last = content.len().saturating_sub(1) / PART;
@@ -120,14 +111,7 @@ pub(super) async fn add(
          WITH RECURSIVE numbers(i) AS (SELECT 0 UNION ALL SELECT i + 1 FROM numbers WHERE i < $5)
          SELECT $1, $2, $3, i, COALESCE(substr($4, i * {PART} + 1, {PART}), $4) FROM numbers"
     );
-    sqlx::query(sqlx::AssertSqlSafe(statement))
-        .bind(job)
-        .bind(origin.name())
-        .bind(name)
-        .bind(content)
-        .bind(last as i64)
-        .execute(&mut **transaction)
-        .await?;
+    run!(&mut **transaction, sqlx::AssertSqlSafe(statement); job, origin.name(), name, content, last as i64)?;
     Ok(())
 }
 

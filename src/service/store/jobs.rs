@@ -21,6 +21,8 @@ pub struct NewJob<'a> {
     pub fingerprint: &'a str,
     /// What was asked for.
     pub submission: &'a Submission,
+    /// Bytes that its run may write.
+    pub room: i64,
 }
 
 /// What became of a submission.
@@ -34,8 +36,8 @@ pub enum Submitted {
     KeyTaken,
     /// The owner has as many jobs in the queue as he may have.
     QueueFull,
-    /// The owner's files have so many bytes, which is all they may have.
-    SpaceFull(i64),
+    /// The owner's jobs have so many bytes, and with those of this input they would have more than they may.
+    SpaceFull(i64, i64),
 }
 
 /// How much of one owner there may be.
@@ -43,7 +45,7 @@ pub enum Submitted {
 pub struct Room {
     /// Jobs that wait.
     pub queued: i64,
-    /// Bytes of files of all his jobs.
+    /// Bytes of all that his jobs have, and of what those that have not ended may write.
     pub bytes: i64,
 }
 
@@ -86,7 +88,7 @@ pub struct Change {
 
 /// Columns of a [`Job`].
 const COLUMNS: &str = "id, kind, name, note, archived, owner, state, calibration, created_ms, started_ms, finished_ms, cancel_asked, \
-                       revision, fence, progress, problem, summary";
+                       revision, fence, failures, reason, not_before_ms, progress, problem, summary";
 
 /// Jobs removed at a time because their time is over: a mistake in a clock shows before all is gone.
 const EXPIRED_AT_ONCE: i64 = 200;
@@ -97,8 +99,9 @@ const BEHIND_ALL: &str = "~";
 impl Store {
     /// Stores a job with its input, whole or not at all: once this returns it will be run.
     pub async fn submit(&self, new: &NewJob<'_>, room: Room) -> Result<Submitted> {
+        let Submission { name, text, with_fitted, .. } = new.submission;
         // Without failure: text and numbers.
-        let content = postcard::to_stdvec(new.submission).unwrap_or_default();
+        let content = postcard::to_stdvec(&(name, text, with_fitted)).unwrap_or_default();
         let mut transaction = self.begin().await?;
         if self.dialect == Dialect::Postgres {
             // One of an owner's submissions at a time, or two could both find the last place free. SQLite has one writer anyway.
@@ -117,46 +120,29 @@ impl Store {
         if queued >= room.queued {
             return Ok(Submitted::QueueFull);
         }
-        let stored: i64 = sqlx::query_scalar(
-            "SELECT CAST(COALESCE(SUM(size), 0) AS BIGINT) FROM job_files WHERE job IN (SELECT id FROM jobs WHERE owner = $1)",
-        )
-        .bind(new.owner)
-        .fetch_one(&mut *transaction)
-        .await?;
-        if stored >= room.bytes {
-            return Ok(Submitted::SpaceFull(stored));
+        let stored = sqlx::query_scalar("SELECT bytes FROM stored WHERE owner = $1").bind(new.owner);
+        let stored: i64 = stored.fetch_optional(&mut *transaction).await?.unwrap_or(0);
+        let files = new.submission.files.iter().map(|(_, content)| content.len());
+        let bytes = (content.len() + files.sum::<usize>()) as i64;
+        if stored + bytes > room.bytes {
+            return Ok(Submitted::SpaceFull(stored, bytes));
         }
         let turn = turn(&mut transaction, new.owner).await?;
         let id = uuid::Uuid::now_v7().to_string();
-        sqlx::query(self.sql(
-            "INSERT INTO jobs (id, kind, name, owner, state, calibration, turn, created_ms)
-             VALUES ($1, $2, $3, $4, 'queued', $5, $6, {now})",
-        ))
-        .bind(&id)
-        .bind(new.kind.name())
-        .bind(&new.submission.name)
-        .bind(new.owner)
-        .bind(new.calibration)
-        .bind(turn)
-        .execute(&mut *transaction)
-        .await?;
-        sqlx::query("INSERT INTO submissions (job, content, options) VALUES ($1, $2, $3)")
-            .bind(&id)
-            .bind(content)
-            .bind(serde_json::to_string(&new.submission.options).unwrap_or_default())
-            .execute(&mut *transaction)
-            .await?;
+        run!(&mut *transaction, self.sql(
+            "INSERT INTO jobs (id, kind, name, owner, state, calibration, turn, room, bytes, created_ms)
+             VALUES ($1, $2, $3, $4, 'queued', $5, $6, $7, $8, {now})",
+        ); &id, new.kind.name(), &new.submission.name, new.owner, new.calibration, turn, new.room, bytes + new.room)?;
+        let most = sqlx::query("UPDATE stored SET most = $2 WHERE owner = $1").bind(new.owner).bind(room.bytes);
+        most.execute(&mut *transaction).await?;
+        run!(&mut *transaction, "INSERT INTO submissions (job, content, options) VALUES ($1, $2, $3)";
+            &id, content, serde_json::to_string(&new.submission.options).unwrap_or_default())?;
         for (name, content) in &new.submission.files {
             files::add(&mut transaction, &id, Origin::Input, name, content).await?;
         }
         if let Some(key) = new.idempotency_key {
-            sqlx::query("INSERT INTO idempotency (owner, key, fingerprint, job) VALUES ($1, $2, $3, $4)")
-                .bind(new.owner)
-                .bind(key)
-                .bind(new.fingerprint)
-                .bind(&id)
-                .execute(&mut *transaction)
-                .await?;
+            run!(&mut *transaction, "INSERT INTO idempotency (owner, key, fingerprint, job) VALUES ($1, $2, $3, $4)";
+                new.owner, key, new.fingerprint, &id)?;
         }
         transaction.commit().await?;
         Ok(Submitted::New(id))
@@ -196,9 +182,9 @@ impl Store {
         let Some(row) = row.fetch_optional(&self.pool).await? else { return Ok(None) };
         let content: Vec<u8> = row.try_get(0)?;
         let options: String = row.try_get(1)?;
-        let mut submission: Submission = postcard::from_bytes(&content).map_err(|error| sqlx::Error::Decode(error.into()))?;
-        submission.options = serde_json::from_str(&options).map_err(|error| sqlx::Error::Decode(error.into()))?;
-        Ok(Some(submission))
+        let (name, text, with_fitted) = postcard::from_bytes(&content).map_err(|error| sqlx::Error::Decode(error.into()))?;
+        let options = serde_json::from_str(&options).map_err(|error| sqlx::Error::Decode(error.into()))?;
+        Ok(Some(Submission { name, text, with_fitted, options, files: Vec::new() }))
     }
 
     /// Jobs, newest first.
@@ -218,12 +204,8 @@ impl Store {
             part = part.replace(sign, &format!("!{sign}"));
         }
         // One more than asked for tells whether there are more.
-        let rows = sqlx::query(self.sql(&statement))
-            .bind(after.unwrap_or(BEHIND_ALL))
-            .bind(i64::from(limit) + 1)
-            .bind(state.map_or("", State::name))
-            .bind(i64::from(archived))
-            .bind(format!("%{part}%"))
+        let rows = bound!(sqlx::query(self.sql(&statement));
+            after.unwrap_or(BEHIND_ALL), i64::from(limit) + 1, state.map_or("", State::name), i64::from(archived), format!("%{part}%"))
             .fetch_all(&self.pool)
             .await?;
         let mut jobs: Vec<Job> = rows.iter().map(job_of).collect::<Result<_>>()?;
@@ -236,30 +218,48 @@ impl Store {
     /// Asks for the end of a job: one that waits, or whose worker is silent, ends at once, one that runs with the next sign of life.
     /// Whether there was one to end.
     pub async fn cancel(&self, id: &str) -> Result<bool> {
-        let changed = sqlx::query(self.sql(
+        match self.cancel_once(id).await {
+            Err(error) if self.has_given_reserve_up(&error) => self.cancel_once(id).await,
+            done => done,
+        }
+    }
+
+    async fn cancel_once(&self, id: &str) -> Result<bool> {
+        let mut transaction = self.begin().await?;
+        let state: Option<String> = sqlx::query_scalar(self.sql(
             "UPDATE jobs SET cancel_asked = 1, revision = revision + 1,
                 finished_ms = CASE WHEN state = 'queued' OR {orphaned} THEN {now} END,
                 finished_count_ms = CASE WHEN state = 'queued' OR {orphaned} THEN {counted} END,
                 state = CASE WHEN state = 'queued' OR {orphaned} THEN 'cancelled' ELSE state END
-             WHERE id = $1 AND state IN ('queued', 'running')",
+             WHERE id = $1 AND state IN ('queued', 'running') RETURNING state",
         ))
         .bind(id)
-        .execute(&self.pool)
+        .fetch_optional(&mut *transaction)
         .await?;
-        Ok(changed.rows_affected() > 0)
+        if state.as_deref() == Some(State::Cancelled.name()) {
+            self.settle(&mut transaction, id).await?;
+        }
+        transaction.commit().await?;
+        Ok(state.is_some())
+    }
+
+    /// Removes what only a job on its way needs, and counts what one that has ended keeps.
+    pub(super) async fn settle(&self, transaction: &mut sqlx::Transaction<'static, sqlx::Any>, id: &str) -> Result<()> {
+        for table in ["checkpoints", "growth", "pictures"] {
+            let leftover = sqlx::AssertSqlSafe(format!("DELETE FROM {table} WHERE job = $1"));
+            sqlx::query(leftover).bind(id).execute(&mut **transaction).await?;
+        }
+        let counted = self.sql("UPDATE jobs SET room = 0, bytes = {stored} WHERE id = $1");
+        sqlx::query(counted).bind(id).execute(&mut **transaction).await.map(drop)
     }
 
     /// Says something else of a job from now on; whoever holds it goes on. Whether there was one.
     pub async fn change(&self, id: &str, change: &Change) -> Result<bool> {
-        let changed = sqlx::query(
+        let changed = bound!(sqlx::query(
             "UPDATE jobs SET name = COALESCE($2, name), note = COALESCE($3, note), archived = COALESCE($4, archived),
                 revision = revision + 1
              WHERE id = $1",
-        )
-        .bind(id)
-        .bind(&change.name)
-        .bind(&change.note)
-        .bind(change.archived.map(i64::from))
+        ); id, &change.name, &change.note, change.archived.map(i64::from))
         .execute(&self.pool)
         .await?;
         Ok(changed.rows_affected() > 0)
@@ -267,8 +267,13 @@ impl Store {
 
     /// Removes a job that no worker has, with all it has. Whether there was one.
     pub async fn delete(&self, id: &str) -> Result<bool> {
-        let statement = self.sql("DELETE FROM jobs WHERE id = $1 AND (state <> 'running' OR {orphaned})");
-        Ok(sqlx::query(statement).bind(id).execute(&self.pool).await?.rows_affected() > 0)
+        let statement = "DELETE FROM jobs WHERE id = $1 AND (state <> 'running' OR {orphaned})";
+        let delete = || sqlx::query(self.sql(statement)).bind(id).execute(&self.pool);
+        let gone = match delete().await {
+            Err(error) if self.has_given_reserve_up(&error) => delete().await,
+            done => done,
+        };
+        Ok(gone?.rows_affected() > 0)
     }
 
     /// Removes jobs that ended longer than so many milliseconds of the counted clock ago, the oldest first and only so many at a time;
@@ -330,18 +335,22 @@ fn job_of(row: &AnyRow) -> Result<Job> {
     fn object<T: serde::de::DeserializeOwned>(row: &AnyRow, column: &str) -> Result<Option<T>> {
         Ok(row.try_get::<Option<String>, _>(column)?.and_then(|text| serde_json::from_str(&text).ok()))
     }
+    let state = name("state")?.parse().map_err(|_| unknown("state"))?;
     Ok(Job {
         id: name("id")?,
-        kind: name("kind")?.parse().map_err(|()| unknown("kind"))?,
+        kind: name("kind")?.parse().map_err(|_| unknown("kind"))?,
         name: name("name")?,
         note: name("note")?,
         archived: row.try_get::<i64, _>("archived")? != 0,
-        state: name("state")?.parse().map_err(|()| unknown("state"))?,
+        state,
         owner: name("owner")?,
         created: time(row.try_get("created_ms")?),
         started: moment("started_ms")?,
         finished: moment("finished_ms")?,
         attempts: row.try_get("fence")?,
+        failures: row.try_get("failures")?,
+        last_failure: row.try_get("reason")?,
+        next_try: if state == State::Queued { moment("not_before_ms")? } else { None },
         cancel_asked: row.try_get::<i64, _>("cancel_asked")? != 0,
         position: None,
         progress: object(row, "progress")?,

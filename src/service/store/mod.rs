@@ -4,6 +4,16 @@
 //! The store is the only place in which a job exists: nothing of it stands in files, and no name from outside becomes a path.
 //! Times are those of the database, so that machines need not agree on theirs.
 
+/// A statement with the values of its places, in their order.
+macro_rules! bound {
+    ($query:expr; $($value:expr),+) => { $query$(.bind($value))+ };
+}
+/// What came of running one.
+macro_rules! run {
+    ($on:expr, $statement:expr; $($value:expr),+) => { bound!(sqlx::query($statement); $($value),+).execute($on).await };
+}
+
+mod disk;
 mod files;
 mod jobs;
 mod queue;
@@ -17,9 +27,10 @@ use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_encode};
 use sqlx::any::AnyPoolOptions;
 use sqlx::{AnyConnection, AnyPool, Connection};
 
+pub use disk::{DatabaseFile, free_bytes, needed_bytes};
 pub use files::{FileEntry, Origin, PART, media_type};
 pub use jobs::{Change, Listing, NewJob, Room, Submitted, Wanted};
-pub use queue::{Claim, Growth, Heartbeat, Outcome, ResultFile, Told};
+pub use queue::{Claim, Finish, Growth, Heartbeat, Outcome, ResultFile, Told};
 pub use tokens::{Role, Token, hash, hex};
 
 /// What a statement can fail with; see [`is_gone`].
@@ -36,6 +47,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(250);
 pub struct Store {
     pool: AnyPool,
     dialect: Dialect,
+    file: Option<DatabaseFile>,
 }
 
 /// In what the statements differ.
@@ -86,8 +98,13 @@ pub fn url_of_file(path: &Path) -> String {
 async fn first_look(url: &str, dialect: Dialect) -> Result<()> {
     let look = async || -> Result<()> {
         let mut connection = AnyConnection::connect(url).await?;
-        // SQLite reads nothing of its file before it is asked something.
-        let question = if dialect == Dialect::Sqlite { "PRAGMA schema_version" } else { "SELECT 1" };
+        // SQLite reads nothing of its file before it is asked something. Readers and the writer do not wait for each other; space of
+        // what was deleted can be given back. Both stay in the file, where they are said before the first table is laid, and a connection
+        // that says them once more would write on a full disk.
+        let question = match dialect {
+            Dialect::Sqlite => "PRAGMA schema_version; PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL",
+            Dialect::Postgres => "SELECT 1",
+        };
         sqlx::raw_sql(question).execute(&mut connection).await?;
         connection.close().await
     };
@@ -110,9 +127,19 @@ const COUNTED_STEP: Duration = Duration::from_secs(300);
 /// Time since the counted clock was looked at last, within its longest step.
 const STEP: &str = "CASE WHEN {now} < seen_ms THEN 0 WHEN {now} - seen_ms > {most} THEN {most} ELSE {now} - seen_ms END";
 
+/// Bytes that a job has in the store.
+const STORED: &str = "CAST((SELECT COALESCE(SUM(octet_length(content)), 0) FROM submissions WHERE job = jobs.id)
+    + (SELECT COALESCE(SUM(size), 0) FROM job_files WHERE job = jobs.id)
+    + (SELECT COALESCE(SUM(octet_length(content)), 0) FROM checkpoints WHERE job = jobs.id)
+    + (SELECT COALESCE(SUM(octet_length(entries)), 0) FROM growth WHERE job = jobs.id)
+    + (SELECT COALESCE(SUM(octet_length(content)), 0) FROM pictures WHERE job = jobs.id) AS BIGINT)";
+
 /// A running job whose worker is silent: its lease is over, or ends later than any lease granted now could, as after a clock was set
 /// back.
 const ORPHANED: &str = "(lease_until_ms < {now} OR lease_until_ms > {now} + 2 * lease_ms)";
+
+/// A job that may be taken, unless it was put back for so long, $3, that the clock must have been set back.
+const WAITS: &str = "state = 'queued' AND (not_before_ms IS NULL OR not_before_ms <= {now} OR not_before_ms > {now} + $3)";
 
 /// Pages of SQLite given back to the disk at a time, 4 kB each: so that writers do not wait for long.
 const GIVEN_BACK: u32 = 16_384;
@@ -143,12 +170,8 @@ impl Store {
                 Box::pin(async move {
                     let patience = PATIENCE.as_millis();
                     let settings = match dialect {
-                        // Readers and the writer do not wait for each other; what was committed outlives a loss of power.
-                        // Space of what was deleted can be given back where that was said before the first table was laid.
-                        Dialect::Sqlite => format!(
-                            "PRAGMA auto_vacuum = INCREMENTAL; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; \
-                             PRAGMA busy_timeout = {patience};"
-                        ),
+                        // What was committed outlives a loss of power.
+                        Dialect::Sqlite => format!("PRAGMA synchronous = FULL; PRAGMA busy_timeout = {patience};"),
                         // A process that stands still in the middle of a transaction would keep others from its job for as long as
                         // its connection seems to be there.
                         Dialect::Postgres => format!("SET idle_in_transaction_session_timeout = {patience};"),
@@ -162,10 +185,12 @@ impl Store {
                 let is_free = !connection.is_in_transaction();
                 Box::pin(async move { Ok(is_free) })
             })
-            .connect(url)
+            // A file that was removed since is not made anew.
+            .connect(&url.replace("mode=rwc", "mode=rw"))
             .await?;
-        let store = Store { pool, dialect };
+        let store = Store { pool, dialect, file: DatabaseFile::of(url) };
         store.lay_tables(upgrade == Upgrade::Allowed).await?;
+        store.file.iter().for_each(DatabaseFile::lay_reserve);
         Ok(store)
     }
 
@@ -184,7 +209,17 @@ impl Store {
             let give_back = format!("PRAGMA incremental_vacuum({GIVEN_BACK}); PRAGMA wal_checkpoint(TRUNCATE)");
             sqlx::raw_sql(sqlx::AssertSqlSafe(give_back)).execute(&self.pool).await?;
         }
+        self.file.iter().for_each(DatabaseFile::lay_reserve);
         Ok(())
+    }
+
+    /// Whether what makes room is worth another try after this error, since a full disk has got the reserve.
+    fn has_given_reserve_up(&self, error: &sqlx::Error) -> bool {
+        let given_up = is_gone(error) && self.file.as_ref().is_some_and(DatabaseFile::give_reserve_up);
+        if given_up {
+            tracing::warn!("the disk is full: its reserve is given up ({error})");
+        }
+        given_up
     }
 
     /// Closes all connections.
@@ -193,18 +228,23 @@ impl Store {
     }
 
     /// A statement with the fragments of this database filled in: `{now}`, `{skip_locked}`, `{bytes}`, `{key}`, and those made of
-    /// them: `{counted}`, the counted clock, and `{orphaned}`, whether a running job's lease is over.
+    /// them: `{counted}`, the counted clock, `{orphaned}`, whether a running job's lease is over, `{waits}`, whether a job may be taken, and `{stored}`,
+    /// its bytes.
     fn sql(&self, statement: &str) -> sqlx::AssertSqlSafe<String> {
         let composed = statement
             .replace("{counted}", "(SELECT counted_ms + {step} FROM clock)")
             .replace("{step}", &STEP.replace("{most}", &COUNTED_STEP.as_millis().to_string()))
-            .replace("{orphaned}", ORPHANED);
+            .replace("{waits}", WAITS)
+            .replace("{orphaned}", ORPHANED)
+            .replace("{stored}", STORED);
         let fragments = self.dialect.fragments().into_iter();
         sqlx::AssertSqlSafe(fragments.fold(composed, |statement, (name, fragment)| statement.replace(name, fragment)))
     }
 
     /// A transaction that writes.
+    /// Errors: also a file that was removed or replaced, in which nobody would find what is written.
     async fn begin(&self) -> Result<sqlx::Transaction<'static, sqlx::Any>> {
+        self.file.as_ref().map_or(Ok(()), DatabaseFile::check)?;
         self.pool.begin_with(self.dialect.begin()).await
     }
 }

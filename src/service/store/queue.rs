@@ -35,6 +35,15 @@ pub struct Claim {
 /// Longest time for which a job that was put back waits.
 const LONGEST_WAIT: Duration = Duration::from_secs(300);
 
+/// Waiting time of another owner's job after which a run gives way.
+const PATIENT: Duration = Duration::from_millis(500);
+
+/// Time for which a run goes on while others wait, where its owner has other workers' turns to give.
+const HELD: Duration = Duration::from_secs(120);
+
+/// Computing time that counts as a turn where a run has given way.
+const TURN: Duration = Duration::from_secs(10);
+
 /// What a sign of life brings back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Heartbeat {
@@ -53,6 +62,16 @@ pub struct ResultFile {
     pub name: String,
     /// Where its bytes are.
     pub path: PathBuf,
+}
+
+/// What became of the end of a job: it is stored, the claim does not hold any more, or with its results the owner's jobs would have so
+/// many bytes, more than they may.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "said above")]
+pub enum Finish {
+    Stored,
+    Lost,
+    SpaceFull(i64),
 }
 
 /// How a job ended.
@@ -93,34 +112,34 @@ pub struct Told {
 }
 
 impl Store {
-    /// A job whose worker has given no sign of life for as long as it was granted, or else the next that waits.
-    pub async fn claim(&self, worker: &str, lease_ms: i64) -> Result<Option<Claim>> {
+    /// A job whose worker has given no sign of life for as long as it was granted, or else the next that waits. While others wait an owner
+    /// has all but one of the `workers` of a process; where several may submit, runs that cannot give way leave it to them in any case.
+    pub async fn claim(&self, worker: &str, workers: usize, lease_ms: i64) -> Result<Option<Claim>> {
         // Within a transaction, since only its end tells that the claim has got to the disk.
         let mut transaction = self.begin().await?;
         schema::expect(&mut transaction).await?;
-        let row = sqlx::query(self.sql(
+        let row = bound!(sqlx::query(self.sql(
             "UPDATE jobs SET state = 'running', worker = $1, fence = fence + 1, attempts = attempts + 1,
-                lease_until_ms = {now} + $2, lease_ms = $2, started_ms = COALESCE(started_ms, {now}), revision = revision + 1
+                lease_until_ms = {now} + $2, lease_ms = $2, started_ms = COALESCE(started_ms, {now}), not_before_ms = NULL,
+                revision = revision + 1
              WHERE id = COALESCE(
                 (SELECT id FROM jobs WHERE state = 'running' AND {orphaned} ORDER BY turn, id LIMIT 1 {skip_locked}),
-                (SELECT id FROM jobs WHERE state = 'queued'
-                    AND (not_before_ms IS NULL OR not_before_ms <= {now} OR not_before_ms > {now} + $3)
+                (SELECT id FROM jobs WHERE {waits} AND owner NOT IN
+                    (SELECT owner FROM jobs WHERE state = 'running' AND worker = $1 GROUP BY owner HAVING COUNT(*) >= $4)
+                 ORDER BY turn, id LIMIT 1 {skip_locked}),
+                (SELECT id FROM jobs WHERE {waits}
+                    AND (kind = 'prediction' OR (SELECT COUNT(*) FROM tokens WHERE role <> 'read') < 2)
                  ORDER BY turn, id LIMIT 1 {skip_locked}))
              RETURNING id, kind, fence, attempts, cancel_asked, owner, turn, failures, spent_ms, started_ms - created_ms AS waited_ms",
-        ))
-        .bind(worker)
-        .bind(lease_ms)
-        .bind(LONGEST_WAIT.as_millis() as i64)
+        )); worker, lease_ms, LONGEST_WAIT.as_millis() as i64, workers.saturating_sub(1).max(1) as i64)
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(row) = row else { return Ok(None) };
         // One taken up again had its turn long ago.
-        sqlx::query(
+        bound!(sqlx::query(
             "INSERT INTO turns (owner, turn) VALUES ($1, $2) ON CONFLICT (owner) DO UPDATE
                 SET turn = CASE WHEN turns.turn < excluded.turn THEN excluded.turn ELSE turns.turn END",
-        )
-        .bind(row.try_get::<String, _>("owner")?)
-        .bind(row.try_get::<i64, _>("turn")?)
+        ); row.try_get::<String, _>("owner")?, row.try_get::<i64, _>("turn")?)
         .execute(&mut *transaction)
         .await?;
         let (id, kind): (String, String) = (row.try_get("id")?, row.try_get("kind")?);
@@ -166,18 +185,12 @@ impl Store {
     pub async fn beat(&self, claim: &Claim, lease_ms: i64, elapsed: Duration, told: &Told) -> Result<Heartbeat> {
         let mut transaction = self.begin().await?;
         let is_more = told.growth.is_some() || told.picture.is_some();
-        let asked: Option<i64> = sqlx::query_scalar(self.sql(
+        let asked: Option<i64> = bound!(sqlx::query_scalar(self.sql(
             "UPDATE jobs SET lease_until_ms = {now} + $3, lease_ms = $3, spent_ms = $5,
                 revision = revision + CASE WHEN $6 = 0 AND ($4 IS NULL OR $4 = progress) THEN 0 ELSE 1 END,
                 progress = COALESCE($4, progress)
              WHERE id = $1 AND fence = $2 AND state = 'running' RETURNING cancel_asked",
-        ))
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .bind(lease_ms)
-        .bind(&told.progress)
-        .bind(claim.spent_ms + elapsed.as_millis() as i64)
-        .bind(i64::from(is_more))
+        )); &claim.id, claim.fence, lease_ms, &told.progress, claim.spent_ms + elapsed.as_millis() as i64, i64::from(is_more))
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(asked) = asked else { return Ok(Heartbeat::Lost) };
@@ -185,15 +198,9 @@ impl Store {
             grow(&mut transaction, claim, growth).await?;
         }
         if let Some((about, picture)) = &told.picture {
-            sqlx::query(
-                "INSERT INTO pictures (job, revision, about, content) VALUES ($1, 1, $2, $3) ON CONFLICT (job) DO UPDATE
-                    SET revision = pictures.revision + 1, about = excluded.about, content = excluded.content",
-            )
-            .bind(&claim.id)
-            .bind(about)
-            .bind(&picture[..])
-            .execute(&mut *transaction)
-            .await?;
+            run!(&mut *transaction, "INSERT INTO pictures (job, revision, about, content) VALUES ($1, 1, $2, $3) ON CONFLICT (job) DO UPDATE
+                    SET revision = pictures.revision + 1, about = excluded.about, content = excluded.content";
+                        &claim.id, about, &picture[..])?;
         }
         transaction.commit().await?;
         Ok(if asked == 0 { Heartbeat::Held } else { Heartbeat::Cancel })
@@ -204,33 +211,24 @@ impl Store {
     pub async fn keep(&self, claim: &Claim, checkpoint: Vec<u8>) -> Result<bool> {
         let mut transaction = self.begin().await?;
         // Others cannot take the row until the transaction ends.
-        let held = sqlx::query("UPDATE jobs SET attempts = 0 WHERE id = $1 AND fence = $2 AND state = 'running'")
-            .bind(&claim.id)
-            .bind(claim.fence)
-            .execute(&mut *transaction)
-            .await?;
+        let held = run!(&mut *transaction, "UPDATE jobs SET attempts = 0 WHERE id = $1 AND fence = $2 AND state = 'running'";
+            &claim.id, claim.fence)?;
         if held.rows_affected() == 0 {
             return Ok(false);
         }
-        sqlx::query(
-            "INSERT INTO checkpoints (job, content) VALUES ($1, $2) ON CONFLICT (job) DO UPDATE SET content = excluded.content",
-        )
-        .bind(&claim.id)
-        .bind(checkpoint)
-        .execute(&mut *transaction)
-        .await?;
+        run!(&mut *transaction, "INSERT INTO checkpoints (job, content) VALUES ($1, $2) ON CONFLICT (job) DO UPDATE SET content = excluded.content";
+            &claim.id, checkpoint)?;
+        let counted = self.sql("UPDATE jobs SET bytes = room + {stored} WHERE id = $1");
+        sqlx::query(counted).bind(&claim.id).execute(&mut *transaction).await?;
         transaction.commit().await?;
         Ok(true)
     }
 
     /// Pieces of the growing curve of a job from entry `from` on, of one claim or of all.
     pub async fn growth(&self, id: &str, from: i64, fence: Option<i64>) -> Result<Vec<Growth>> {
-        let pieces: Vec<String> = sqlx::query_scalar(
+        let pieces: Vec<String> = bound!(sqlx::query_scalar(
             "SELECT entries FROM growth WHERE job = $1 AND first >= $2 AND ($3 < 0 OR fence = $3) ORDER BY first",
-        )
-        .bind(id)
-        .bind(from)
-        .bind(fence.unwrap_or(-1))
+        ); id, from, fence.unwrap_or(-1))
         .fetch_all(&self.pool)
         .await?;
         Ok(pieces.iter().filter_map(|piece| serde_json::from_str(piece).ok()).collect())
@@ -247,65 +245,77 @@ impl Store {
         sqlx::query_scalar("SELECT content FROM pictures WHERE job = $1").bind(id).fetch_optional(&self.pool).await
     }
 
-    /// Ends a job with its results, all or nothing, if the claim still holds; whether it did.
+    /// Ends a job with its results, all or nothing, if the claim still holds and the owner has room for them.
     /// Errors: the database cannot take it; the job then runs on as far as it is concerned.
-    pub async fn finish(&self, claim: &Claim, outcome: &Outcome) -> Result<bool> {
+    pub async fn finish(&self, claim: &Claim, outcome: &Outcome) -> Result<Finish> {
         let mut transaction = self.begin().await?;
-        let changed = sqlx::query(self.sql(
+        let changed = run!(&mut *transaction, self.sql(
             "UPDATE jobs SET state = $3, summary = $4, problem = $5, finished_ms = {now}, finished_count_ms = {counted}, worker = NULL, lease_until_ms = NULL,
                 revision = revision + 1
              WHERE id = $1 AND fence = $2 AND state = 'running'",
-        ))
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .bind(outcome.state.name())
-        .bind(&outcome.summary)
-        .bind(&outcome.problem)
-        .execute(&mut *transaction)
-        .await?;
+        ); &claim.id, claim.fence, outcome.state.name(), &outcome.summary, &outcome.problem)?;
         if changed.rows_affected() == 0 {
-            return Ok(false);
+            return Ok(Finish::Lost);
         }
         for ResultFile { name, path } in &outcome.files {
             // One at a time in memory.
             let content = tokio::fs::read(path).await?;
             files::add(&mut transaction, &claim.id, Origin::Result, name, &content).await?;
         }
-        for leftover in ["DELETE FROM checkpoints WHERE job = $1", "DELETE FROM growth WHERE job = $1"] {
-            sqlx::query(leftover).bind(&claim.id).execute(&mut *transaction).await?;
+        self.settle(&mut transaction, &claim.id).await?;
+        if outcome.state == State::Succeeded {
+            let over = sqlx::query_scalar(
+                "SELECT bytes FROM stored WHERE bytes > most AND owner = (SELECT owner FROM jobs WHERE id = $1)",
+            );
+            if let Some(bytes) = over.bind(&claim.id).fetch_optional(&mut *transaction).await? {
+                return Ok(Finish::SpaceFull(bytes));
+            }
         }
         transaction.commit().await?;
-        Ok(true)
+        Ok(Finish::Stored)
+    }
+
+    /// Gives a job that was held for so long back to the queue, behind those of others, if one of an owner waits who has nothing running,
+    /// and this job's owner has all `workers` of its process, or it was held for long enough. Whether it did: it must have been kept.
+    pub async fn give_way(&self, claim: &Claim, workers: usize, held: Duration) -> Result<bool> {
+        let changed = sqlx::query(self.sql(
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, revision = revision + 1,
+                turn = $3 + (SELECT MAX(turn) FROM turns)
+             WHERE id = $1 AND fence = $2 AND state = 'running'
+                AND ($4 = 1 OR $5 <= (SELECT COUNT(*) FROM jobs own
+                    WHERE own.state = 'running' AND own.worker = jobs.worker AND own.owner = jobs.owner))
+                AND EXISTS (SELECT 1 FROM jobs other WHERE other.state = 'queued' AND other.owner <> jobs.owner
+                    AND COALESCE(other.not_before_ms, other.created_ms) < {now} - $6
+                    AND other.owner NOT IN (SELECT owner FROM jobs WHERE state = 'running'))",
+        ))
+        .bind(&claim.id)
+        .bind(claim.fence)
+        .bind(1 + (held.as_secs() / TURN.as_secs()) as i64)
+        .bind(i64::from(held >= HELD))
+        .bind(workers.max(2) as i64)
+        .bind(PATIENT.as_millis() as i64);
+        Ok(changed.execute(&self.pool).await?.rows_affected() > 0)
     }
 
     /// Gives a job back to the queue, not counted as having been tried: it is not to blame.
     /// Errors: the database does not answer; the job goes on elsewhere once its time has run out.
     pub async fn release(&self, claim: &Claim) -> Result<()> {
-        sqlx::query(
-            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL,
-                attempts = CASE WHEN attempts > 0 THEN attempts - 1 ELSE 0 END, revision = revision + 1
-             WHERE id = $1 AND fence = $2 AND state = 'running'",
-        )
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .execute(&self.pool)
-        .await
-        .map(drop)
+        self.requeue(claim, "attempts = CASE WHEN attempts > 0 THEN attempts - 1 ELSE 0 END", 0, None).await
     }
 
     /// Gives a job back to the queue after an end that was not its fault, which is counted; nobody takes it before `wait` is over.
-    pub async fn put_back(&self, claim: &Claim, wait: Duration) -> Result<()> {
-        sqlx::query(self.sql(
-            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, failures = failures + 1,
-                not_before_ms = {now} + $3, revision = revision + 1
-             WHERE id = $1 AND fence = $2 AND state = 'running'",
-        ))
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .bind(wait.min(LONGEST_WAIT).as_millis() as i64)
-        .execute(&self.pool)
-        .await
-        .map(drop)
+    pub async fn put_back(&self, claim: &Claim, wait: Duration, reason: &str) -> Result<()> {
+        let wait = wait.min(LONGEST_WAIT).as_millis() as i64;
+        self.requeue(claim, "failures = failures + 1, not_before_ms = {now} + $3", wait, Some(reason)).await
+    }
+
+    async fn requeue(&self, claim: &Claim, change: &str, wait_ms: i64, reason: Option<&str>) -> Result<()> {
+        let statement = format!(
+            "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, revision = revision + 1,
+                reason = CASE WHEN $3 > 0 THEN $4 ELSE reason END, {change}
+             WHERE id = $1 AND fence = $2 AND state = 'running'"
+        );
+        run!(&self.pool, self.sql(&statement); &claim.id, claim.fence, wait_ms, reason).map(drop)
     }
 }
 
@@ -314,15 +324,8 @@ async fn grow(transaction: &mut sqlx::Transaction<'static, sqlx::Any>, claim: &C
     if growth.from == 0 {
         sqlx::query("DELETE FROM growth WHERE job = $1").bind(&claim.id).execute(&mut **transaction).await?;
     }
-    sqlx::query(
-        "INSERT INTO growth (job, first, fence, entries) VALUES ($1, $2, $3, $4)
-         ON CONFLICT (job, first) DO UPDATE SET fence = excluded.fence, entries = excluded.entries",
-    )
-    .bind(&claim.id)
-    .bind(growth.from as i64)
-    .bind(claim.fence)
-    .bind(serde_json::to_string(growth).unwrap_or_default())
-    .execute(&mut **transaction)
-    .await
+    run!(&mut **transaction, "INSERT INTO growth (job, first, fence, entries) VALUES ($1, $2, $3, $4)
+         ON CONFLICT (job, first) DO UPDATE SET fence = excluded.fence, entries = excluded.entries";
+             &claim.id, growth.from as i64, claim.fence, serde_json::to_string(growth).unwrap_or_default())
     .map(drop)
 }

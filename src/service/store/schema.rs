@@ -3,7 +3,7 @@
 use super::{Dialect, Result, Store};
 
 /// Version of the tables; one higher with every change of them.
-const VERSION: i64 = 4;
+const VERSION: i64 = 5;
 
 /// Version of [`TABLES`], to which [`UPGRADES`] lead on.
 const FIRST: i64 = 2;
@@ -36,6 +36,39 @@ const UPGRADES: &[(i64, &[&str])] = &[
             // What people say of a run once it is there.
             "ALTER TABLE jobs ADD COLUMN note TEXT NOT NULL DEFAULT ''",
             "ALTER TABLE jobs ADD COLUMN archived BIGINT NOT NULL DEFAULT 0",
+        ],
+    ),
+    (
+        5,
+        &[
+            // `reason` says why it ended last when it was not to blame. `room` is what a job without a result may still write, `bytes`
+            // that and all it has. Their sum for each owner is kept by triggers, so that nobody has to add it up, whoever writes;
+            // `most` is what he may have.
+            "ALTER TABLE jobs ADD COLUMN reason TEXT",
+            "ALTER TABLE jobs ADD COLUMN room BIGINT NOT NULL DEFAULT 0",
+            "ALTER TABLE jobs ADD COLUMN bytes BIGINT NOT NULL DEFAULT 0",
+            "UPDATE jobs SET bytes = {stored}",
+            "CREATE TABLE stored (owner {key} PRIMARY KEY, bytes BIGINT NOT NULL, most BIGINT)",
+            "INSERT INTO stored (owner, bytes) SELECT owner, CAST(SUM(bytes) AS BIGINT) FROM jobs GROUP BY owner",
+            "sqlite: CREATE TRIGGER jobs_in AFTER INSERT ON jobs BEGIN
+                INSERT INTO stored (owner, bytes) VALUES (NEW.owner, NEW.bytes)
+                ON CONFLICT (owner) DO UPDATE SET bytes = stored.bytes + excluded.bytes; END",
+            "sqlite: CREATE TRIGGER jobs_of AFTER UPDATE OF bytes ON jobs BEGIN
+                UPDATE stored SET bytes = bytes + NEW.bytes - OLD.bytes WHERE owner = NEW.owner; END",
+            "sqlite: CREATE TRIGGER jobs_out AFTER DELETE ON jobs BEGIN
+                UPDATE stored SET bytes = bytes - OLD.bytes WHERE owner = OLD.owner; END",
+            "postgres: CREATE FUNCTION count_stored() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN
+                IF TG_OP = 'INSERT' THEN
+                    INSERT INTO stored (owner, bytes) VALUES (NEW.owner, NEW.bytes)
+                    ON CONFLICT (owner) DO UPDATE SET bytes = stored.bytes + excluded.bytes;
+                ELSIF TG_OP = 'UPDATE' THEN
+                    UPDATE stored SET bytes = bytes + NEW.bytes - OLD.bytes WHERE owner = NEW.owner;
+                ELSE
+                    UPDATE stored SET bytes = bytes - OLD.bytes WHERE owner = OLD.owner;
+                END IF;
+                RETURN NULL; END $$",
+            "postgres: CREATE TRIGGER jobs_stored AFTER INSERT OR UPDATE OF bytes OR DELETE ON jobs
+                FOR EACH ROW EXECUTE FUNCTION count_stored()",
         ],
     ),
 ];
@@ -87,8 +120,8 @@ const TABLES: &[&str] = &[
         hash TEXT PRIMARY KEY, name TEXT NOT NULL UNIQUE, role TEXT NOT NULL, created_ms BIGINT NOT NULL, expires_ms BIGINT)",
 ];
 
-/// What a statement begins with that SQLite has no need of.
-const POSTGRES_ONLY: &str = "postgres: ";
+/// What a statement of one database begins with.
+const ONLY: [(Dialect, &str); 2] = [(Dialect::Sqlite, "sqlite: "), (Dialect::Postgres, "postgres: ")];
 
 /// Number by which processes that start together agree who lays the tables in PostgreSQL.
 const LOCK: i64 = 0x7065_7269_6c69_6665;
@@ -130,12 +163,14 @@ impl Store {
     }
 
     async fn lay(&self, transaction: &mut sqlx::Transaction<'static, sqlx::Any>, statement: &'static str) -> Result<()> {
-        let statement = match statement.strip_prefix(POSTGRES_ONLY) {
-            Some(_) if self.dialect == Dialect::Sqlite => return Ok(()),
-            Some(theirs) => theirs,
-            None => statement,
-        };
-        sqlx::query(self.sql(statement)).execute(&mut **transaction).await.map(drop)
+        let theirs = ONLY.iter().find_map(|(dialect, start)| Some((*dialect, statement.strip_prefix(start)?)));
+        match theirs {
+            Some((dialect, _)) if dialect != self.dialect => Ok(()),
+            theirs => {
+                let statement = theirs.map_or(statement, |(_, statement)| statement);
+                sqlx::query(self.sql(statement)).execute(&mut **transaction).await.map(drop)
+            }
+        }
     }
 }
 

@@ -1,49 +1,19 @@
 //! Who may ask for what: tokens, of which only hashes are kept.
 
-use std::fmt;
-use std::str::FromStr;
-
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use sqlx::Row;
 use utoipa::ToSchema;
 
 use super::{Result, Store};
 
-/// What the holder of a token may do; each role may do what the ones before it may.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema, clap::ValueEnum)]
-#[serde(rename_all = "snake_case")]
-pub enum Role {
-    /// Look at everything.
-    Read,
-    /// Submit jobs, and cancel and delete his own.
-    Run,
-    /// Cancel and delete those of others.
-    Admin,
-}
-
-impl Role {
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Role::Read => "read",
-            Role::Run => "run",
-            Role::Admin => "admin",
-        }
-    }
-}
-
-impl fmt::Display for Role {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Role {
-    type Err = ();
-
-    fn from_str(name: &str) -> std::result::Result<Self, ()> {
-        [Role::Read, Role::Run, Role::Admin].into_iter().find(|role| role.name() == name).ok_or(())
+perilife_base::kinds! {
+    /// What the holder of a token may do; each role may do what the ones before it may.
+    #[derive(PartialOrd, Ord, ToSchema, clap::ValueEnum)]
+    #[schema(rename_all = "snake_case")]
+    pub enum Role for "role" {
+        Read = "read": "Look at everything.",
+        Run = "run": "Submit jobs, and cancel and delete his own.",
+        Admin = "admin": "Cancel and delete those of others.",
     }
 }
 
@@ -81,16 +51,10 @@ impl Store {
         let mut random = [0; RANDOM_BYTES];
         getrandom::fill(&mut random).map_err(|error| sqlx::Error::Io(std::io::Error::other(error.to_string())))?;
         let secret = format!("{PREFIX}{}", hex(&random));
-        let added = sqlx::query(self.sql(
+        let added = run!(&self.pool, self.sql(
             "INSERT INTO tokens (hash, name, role, created_ms, expires_ms) VALUES ($1, $2, $3, {now}, {now} + $4)
              ON CONFLICT DO NOTHING",
-        ))
-        .bind(hash(&secret))
-        .bind(name)
-        .bind(role.name())
-        .bind(days.map(|days| i64::from(days) * 86_400_000))
-        .execute(&self.pool)
-        .await?;
+        ); hash(&secret), name, role.name(), days.map(|days| i64::from(days) * 86_400_000))?;
         Ok((added.rows_affected() > 0).then_some(secret))
     }
 
@@ -118,7 +82,7 @@ fn token_of(row: &sqlx::any::AnyRow) -> Result<Token> {
     let role: String = row.try_get(1)?;
     Ok(Token {
         name: row.try_get(0)?,
-        role: role.parse().map_err(|()| sqlx::Error::Decode("unknown role".into()))?,
+        role: role.parse().map_err(|_| sqlx::Error::Decode("unknown role".into()))?,
         created_ms: row.try_get(2)?,
         expires_ms: row.try_get(3)?,
     })

@@ -5,7 +5,7 @@ use std::io::{self, Read as _};
 use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
@@ -13,11 +13,11 @@ use std::time::Duration;
 use rustix::process::{Signal, kill_current_process_group};
 use serde_json::Value;
 
-use super::process::{News, Order, read_frame, write_frame};
+use super::process::{News, Order, Run, read_frame, write_frame};
 use super::telling::Teller;
-use super::{bytes, free_bytes, packed};
+use super::{bytes, packed};
 use crate::problem::Problem;
-use crate::store::Growth;
+use crate::store::{Growth, free_bytes};
 use perilife_base::error::{Error, Result};
 use perilife_base::input::Opened;
 use perilife_calibration::calibrate::Calibration;
@@ -36,10 +36,20 @@ pub fn take() -> Result<()> {
     let cannot = |error| Error::file(Path::new("standard input"), "brings no order of a worker", error);
     let socket = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from).map_err(cannot)?;
     let order: Option<Order> = read_frame(&socket).map_err(cannot)?;
-    let mut order = order.ok_or_else(|| cannot(io::ErrorKind::UnexpectedEof.into()))?;
-    order.submission.files = std::mem::take(&mut order.files);
-    order.submission.options = std::mem::take(&mut order.options);
-    end_with_worker(socket.try_clone().map_err(cannot)?, &order);
+    let order = order.ok_or_else(|| cannot(io::ErrorKind::UnexpectedEof.into()))?;
+    let failed = |problem: &Problem| News::Failed(serde_json::to_string(problem).unwrap_or_default());
+    let folder = match &order {
+        Order::Run(run) => run.folder.parent().map(Path::to_path_buf),
+        Order::Look(_) => None,
+    };
+    end_with_worker(socket.try_clone().map_err(cannot)?, folder);
+    let order = match order {
+        Order::Run(run) => run,
+        Order::Look(look) => {
+            let found = look.answer().map_or_else(|problem| failed(&problem), News::Done);
+            return write_frame(&socket, &found).map_err(cannot);
+        }
+    };
     let threads = |error| Error::file(Path::new("threads"), "cannot be started", io::Error::other(error));
     rayon::ThreadPoolBuilder::new().num_threads(order.threads).build_global().map_err(threads)?;
     let socket = Mutex::new(socket);
@@ -52,25 +62,24 @@ pub fn take() -> Result<()> {
     let end = match ended(&order, &mut room, &tell) {
         Ok(summary) => News::Done(summary.to_string()),
         Err(error @ Error::File { .. }) => News::NoRoom(error.to_string(), room.all.max(bytes(&order.folder))),
-        Err(error) => News::Failed(serde_json::to_string(&Problem::from(error)).unwrap_or_default()),
+        Err(error) => failed(&error.into()),
     };
     tell(&end);
     Ok(())
 }
 
 /// Ends this process, all that it started and what it wrote when its worker is gone.
-fn end_with_worker(mut socket: UnixStream, order: &Order) {
-    let folder = order.folder.parent().unwrap_or(&order.folder).to_path_buf();
+fn end_with_worker(mut socket: UnixStream, folder: Option<PathBuf>) {
     std::thread::spawn(move || {
         // A worker says nothing more after its order.
         let _ = socket.read(&mut [0]);
-        let _ = fs::remove_dir_all(folder);
+        let _ = folder.map(fs::remove_dir_all);
         let _ = kill_current_process_group(Signal::KILL);
     });
 }
 
 /// Runs an order to its figures.
-fn ended(order: &Order, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync)) -> Result<Value> {
+fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync)) -> Result<Value> {
     let task = Task::read(order.kind, &order.submission.document()?, &order.submission.methods())?;
     *room = if matches!(task, Task::Prediction { .. } | Task::Scene(_)) { task.room() } else { Room::default() };
     // Asked before the run, which would be for nothing.

@@ -1,18 +1,18 @@
 //! One job from its claim to its end.
 
+use std::fs::File;
 use std::path::Path;
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
-use axum::http::StatusCode;
-use tempfile::TempDir;
-
-use super::process::{Death, JobProcess, News, Order};
-use super::{Shared, TRY_EVERY, files, milliseconds};
+use super::process::{Death, JobProcess, News, Order, Run};
+use super::{Shared, TRY_EVERY, files, job_folder, milliseconds};
 use crate::job::{JobKind, State, Submission};
 use crate::problem::Problem;
-use crate::store::{Claim, Growth, Heartbeat, Outcome, Told, is_gone};
+use crate::store::{Claim, Finish, Growth, Heartbeat, Outcome, Told, free_bytes, is_gone};
+use axum::http::StatusCode;
 use perilife_base::error::{Error, Result};
+use tempfile::TempDir;
 
 /// Time between two signs of life, in which a wish to cancel comes back as well.
 const BEAT: Duration = Duration::from_millis(400);
@@ -20,6 +20,8 @@ const BEAT: Duration = Duration::from_millis(400);
 const LAST_TRIES: u32 = 3;
 /// Wait after the first end that was not the job's fault; twice as long after each further one.
 const FIRST_WAIT: Duration = Duration::from_secs(1);
+/// Time behind its last checkpoint that a job may lose by giving way.
+const RUN_AGAIN: Duration = Duration::from_secs(10);
 /// Bytes in a megabyte, as messages count them.
 const MEGABYTE: u64 = 1_000_000;
 
@@ -37,6 +39,8 @@ enum End {
     OutOfTime,
     /// Somebody asked for it.
     Cancelled,
+    /// It waits again, from its checkpoint on, since jobs of others wait.
+    GaveWay,
     /// The job is not this worker's any more.
     Lost,
     /// This process stops.
@@ -67,7 +71,7 @@ pub fn work(shared: &Shared, claim: &Claim) {
     let (Some(submission), checkpoint) = content else { return };
     let begun = Instant::now();
     match begin(shared, claim, submission, checkpoint) {
-        Ok((process, folder)) => {
+        Ok((process, (folder, _lock))) => {
             // Its process has ended before anything else is done about it.
             let end = match relay(shared, claim, &process, begun) {
                 Some(end) => {
@@ -80,7 +84,10 @@ pub fn work(shared: &Shared, claim: &Claim) {
             metrics::histogram!("perilife_job_seconds", "kind" => claim.kind.name()).record(seconds);
             conclude(shared, claim, end, &folder.path().join(RESULTS));
         }
-        Err(error) => conclude(shared, claim, End::NoRoom(error.to_string()), Path::new("")),
+        Err(error) => {
+            tracing::error!(job = claim.id, "no process of the job: {error}");
+            conclude(shared, claim, End::NoRoom(CANNOT_BEGIN.to_owned()), Path::new(""));
+        }
     }
 }
 
@@ -88,31 +95,32 @@ pub fn work(shared: &Shared, claim: &Claim) {
 fn begin(
     shared: &Shared,
     claim: &Claim,
-    mut submission: Submission,
+    submission: Submission,
     checkpoint: Option<Vec<u8>>,
-) -> Result<(JobProcess, TempDir)> {
-    let parent = std::env::temp_dir();
-    let folder = tempfile::Builder::new().prefix("perilife-job-").tempdir_in(&parent);
-    let folder = folder.map_err(|error| Error::file(&parent, "cannot create a folder in", error))?;
+) -> Result<(JobProcess, (TempDir, File))> {
+    let cannot = |error| Error::file(&std::env::temp_dir(), "cannot create a folder in", error);
+    let (folder, lock) = job_folder().map_err(cannot)?;
     let results = folder.path().join(RESULTS);
     std::fs::create_dir(&results).map_err(|error| Error::file(&results, "cannot create", error))?;
     let shown = (claim.fence > 1 && claim.kind == JobKind::Prediction)
         .then(|| shared.handle.block_on(shared.store.growth(&claim.id, 0, None)).unwrap_or_default());
-    let order = Order {
+    let settings = &shared.settings;
+    let order = Order::Run(Box::new(Run {
         kind: claim.kind,
-        options: std::mem::take(&mut submission.options),
-        files: std::mem::take(&mut submission.files),
         submission,
         checkpoint,
         shown,
         folder: results,
-        threads: shared.settings.threads,
-        checkpoint_every: shared.settings.checkpoint_every,
-    };
-    let process = JobProcess::start(&shared.settings.program, &order, shared.settings.memory);
-    let process = process.map_err(|error| Error::file(&shared.settings.program, "cannot be started", error))?;
-    Ok((process, folder))
+        threads: settings.threads,
+        checkpoint_every: settings.checkpoint_every,
+    }));
+    let process = JobProcess::start(&settings.program, &order, settings.memory, settings.threads);
+    let process = process.map_err(|error| Error::file(&settings.program, "cannot be started", error))?;
+    Ok((process, (folder, lock)))
 }
+
+/// What a user is told of a worker that cannot begin; the log says more.
+const CANNOT_BEGIN: &str = "a worker cannot write its temporary folder or start a process";
 
 /// Folder of the results in that of a job.
 const RESULTS: &str = "results";
@@ -120,16 +128,19 @@ const RESULTS: &str = "results";
 /// Tells the store what the process tells, until it ends or is to end; `None` if it ended without a word.
 fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -> Option<End> {
     let (mut untold, mut beaten) = (Told::default(), Instant::now());
-    let mut memory = 0;
+    let (mut memory, mut kept) = (0, None::<Instant>);
     let end = loop {
         match process.news.recv_timeout(BEAT.saturating_sub(beaten.elapsed())) {
             Ok(News::Progress(progress)) => untold.progress = Some(progress),
             Ok(News::Growth(growth)) => add(&mut untold.growth, growth),
             Ok(News::Picture(about, picture)) => untold.picture = Some((about, picture)),
-            Ok(News::Checkpoint(bytes)) => keep(shared, claim, bytes),
+            Ok(News::Checkpoint(bytes)) => kept = keep(shared, claim, bytes).then(Instant::now).or(kept),
             Ok(News::Done(summary)) => break Some(End::Done(summary)),
             Ok(News::Failed(problem)) => break Some(End::Failed(problem)),
-            Ok(News::NoRoom(why, bytes)) => break Some(End::NoRoom(room_needed(&why, bytes))),
+            Ok(News::NoRoom(why, bytes)) => {
+                tracing::error!(job = claim.id, "the results cannot be written: {why}");
+                break Some(End::NoRoom(room_needed(bytes)));
+            }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break None,
         }
@@ -141,6 +152,9 @@ fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -
             }
             if let Some(end) = beat(shared, claim, &mut untold, begun.elapsed()) {
                 break Some(end);
+            }
+            if kept.is_some_and(|kept| kept.elapsed() < RUN_AGAIN) && gives_way(shared, claim, begun.elapsed()) {
+                break Some(End::GaveWay);
             }
         }
     };
@@ -160,17 +174,25 @@ fn add(untold: &mut Option<Growth>, growth: Growth) {
     }
 }
 
-fn room_needed(why: &str, bytes: u64) -> String {
-    let folder = std::env::temp_dir();
-    let free = super::free_bytes(&folder).map_or_else(String::new, |free| format!(", which has {} MB free", free / MEGABYTE));
+fn room_needed(bytes: u64) -> String {
+    let free = free_bytes(&std::env::temp_dir()).unwrap_or(0) / MEGABYTE;
     // What was written until the disk was full is a part of it.
-    format!("{why}; needs {} MB or more in {}{free}", bytes.div_ceil(MEGABYTE) + 1, folder.display())
+    let needed = bytes.div_ceil(MEGABYTE) + 1;
+    format!("the temporary disk of a worker does not take the results: needs {needed} MB or more, has {free} MB free")
 }
 
-fn keep(shared: &Shared, claim: &Claim, checkpoint: Vec<u8>) {
-    if let Err(error) = shared.handle.block_on(shared.store.keep(claim, checkpoint)) {
+/// Keeps a checkpoint; whether it is kept.
+fn keep(shared: &Shared, claim: &Claim, checkpoint: Vec<u8>) -> bool {
+    shared.handle.block_on(shared.store.keep(claim, checkpoint)).unwrap_or_else(|error| {
         tracing::warn!(job = claim.id, "a checkpoint cannot be kept: {error}");
-    }
+        false
+    })
+}
+
+/// Whether the job, held for so long, has given way to those of others.
+fn gives_way(shared: &Shared, claim: &Claim, held: Duration) -> bool {
+    // A database that is gone is the matter of the sign of life.
+    shared.handle.block_on(shared.store.give_way(claim, shared.settings.jobs, held)).unwrap_or(false)
 }
 
 /// A sign of life; why the run is to end, if it is.
@@ -207,7 +229,10 @@ fn conclude(shared: &Shared, claim: &Claim, end: End, folder: &Path) {
                 let done = Outcome { state: State::Succeeded, summary: Some(summary), problem: None, files };
                 hand_in(shared, claim, &done, "done");
             }
-            Err(error) => put_back(shared, claim, StatusCode::INSUFFICIENT_STORAGE, &error.to_string(), "disk"),
+            Err(error) => {
+                tracing::error!(job = claim.id, "the results cannot be read: {error}");
+                put_back(shared, claim, StatusCode::INSUFFICIENT_STORAGE, &room_needed(0), "disk");
+            }
         },
         End::Failed(problem) => hand_in(shared, claim, &ended(State::Failed, Some(problem)), "input"),
         End::NoRoom(why) => put_back(shared, claim, StatusCode::INSUFFICIENT_STORAGE, &why, "disk"),
@@ -235,6 +260,7 @@ fn conclude(shared: &Shared, claim: &Claim, end: End, folder: &Path) {
             fail(shared, claim, StatusCode::UNPROCESSABLE_ENTITY, "Too slow", &detail, "time");
         }
         End::Cancelled => hand_in(shared, claim, &ended(State::Cancelled, None), "cancelled"),
+        End::GaveWay => tracing::info!(job = claim.id, "job given back: those of others wait"),
         End::Lost => tracing::warn!(job = claim.id, "the job is another worker's: this one was not heard of for too long"),
         End::Shutdown => match shared.handle.block_on(shared.store.release(claim)) {
             Ok(()) => tracing::info!(job = claim.id, "job given back"),
@@ -254,7 +280,7 @@ fn put_back(shared: &Shared, claim: &Claim, status: StatusCode, why: &str, reaso
         return fail(shared, claim, status, "Given up", &detail, reason);
     }
     let wait = FIRST_WAIT * (1 << claim.failures.clamp(0, 12));
-    if let Err(error) = shared.handle.block_on(shared.store.put_back(claim, wait)) {
+    if let Err(error) = shared.handle.block_on(shared.store.put_back(claim, wait, why)) {
         tracing::warn!(job = claim.id, "the job cannot be given back, others take it later: {error}");
     }
 }
@@ -273,13 +299,21 @@ fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome, reason: &'static s
     let (mut tries, begun) = (0, Instant::now());
     loop {
         match shared.handle.block_on(shared.store.finish(claim, outcome)) {
-            Ok(true) => {
+            Ok(Finish::Stored) => {
                 let (kind, state) = (claim.kind.name(), outcome.state.name());
                 metrics::counter!("perilife_jobs_finished_total", "kind" => kind, "state" => state, "reason" => reason)
                     .increment(1);
                 return tracing::info!(job = claim.id, state = %outcome.state, reason, "job done");
             }
-            Ok(false) => return tracing::warn!(job = claim.id, "the job is another worker's: its result is dropped"),
+            Ok(Finish::SpaceFull(bytes)) => {
+                let detail = format!(
+                    "ended: with its results your jobs would have {} MB, more than this server keeps of one owner (--quota-mib); \
+                     delete jobs that are not needed any more and submit it again",
+                    bytes as u64 / MEGABYTE
+                );
+                return fail(shared, claim, StatusCode::INSUFFICIENT_STORAGE, "No room", &detail, "quota");
+            }
+            Ok(Finish::Lost) => return tracing::warn!(job = claim.id, "the job is another worker's: its result is dropped"),
             Err(error) => {
                 tracing::warn!(job = claim.id, "the result cannot be stored: {error}");
                 tries += 1;

@@ -18,6 +18,8 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use job::work;
+pub use process::look;
+use tempfile::TempDir;
 use tokio::runtime::Handle;
 use tokio::sync::Notify;
 use zip::write::SimpleFileOptions;
@@ -106,6 +108,7 @@ pub struct Workers {
 impl Workers {
     /// Starts them; `wake` tells of new jobs. Must be called within a runtime, on which their statements to the store run.
     pub fn start(store: Store, settings: Settings, wake: Arc<Notify>) -> std::io::Result<Workers> {
+        remove_leftovers();
         let name = format!("{}/{}/{}", host(), std::process::id(), uuid::Uuid::now_v7());
         let handle = Handle::current();
         let shared = Arc::new(Shared { store, settings, name, wake, stopping: AtomicBool::new(false), handle });
@@ -127,6 +130,29 @@ impl Workers {
     }
 }
 
+/// What the name of the temporary folder of a job begins with.
+const PREFIX: &str = "perilife-job-";
+/// File in it that its worker keeps locked.
+const LOCK: &str = "lock";
+
+/// A temporary folder of a job, and the lock that says that somebody needs it.
+fn job_folder() -> std::io::Result<(TempDir, File)> {
+    let folder = tempfile::Builder::new().prefix(PREFIX).tempdir()?;
+    let lock = File::create(folder.path().join(LOCK))?;
+    lock.lock()?;
+    Ok((folder, lock))
+}
+
+/// Removes folders whose worker was killed together with its job.
+fn remove_leftovers() {
+    for path in entries(&std::env::temp_dir()).unwrap_or_default().into_iter().filter(|path| name_of(path).starts_with(PREFIX)) {
+        if File::open(path.join(LOCK)).is_ok_and(|lock| lock.try_lock().is_ok()) {
+            let removed = std::fs::remove_dir_all(&path);
+            tracing::info!("{}, whose worker is gone, is removed: {removed:?}", path.display());
+        }
+    }
+}
+
 /// What the machine calls itself.
 fn host() -> String {
     let name = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
@@ -137,7 +163,7 @@ fn host() -> String {
 fn take_jobs(shared: &Arc<Shared>) {
     let lease_ms = milliseconds(shared.settings.lease);
     while !shared.is_stopping() {
-        match shared.handle.block_on(shared.store.claim(&shared.name, lease_ms)) {
+        match shared.handle.block_on(shared.store.claim(&shared.name, shared.settings.jobs, lease_ms)) {
             Ok(Some(claim)) => {
                 // There may be more where this came from.
                 shared.wake.notify_one();
@@ -173,12 +199,6 @@ async fn tidy(shared: Arc<Shared>) {
         }
         tokio::time::sleep(keep.unwrap_or(TIDY_EVERY).clamp(TRY_EVERY, TIDY_EVERY)).await;
     }
-}
-
-/// Bytes that are free where a folder is; `None` where it is not there.
-pub fn free_bytes(folder: &Path) -> Option<u64> {
-    let about = rustix::fs::statvfs(folder).ok()?;
-    Some(about.f_bavail.saturating_mul(about.f_frsize))
 }
 
 fn milliseconds(time: Duration) -> i64 {

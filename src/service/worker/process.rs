@@ -10,7 +10,7 @@ use std::os::unix::net::UnixStream;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{Receiver, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -19,7 +19,10 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::job::{JobKind, Submission};
+use crate::look::Look;
+use crate::problem::{Answer, Problem};
 use crate::store::Growth;
+use perilife_base::watch;
 
 /// The subcommand that takes an order.
 pub const COMMAND: &str = "job";
@@ -49,8 +52,8 @@ pub enum Death {
 }
 
 impl JobProcess {
-    /// Starts the process with an order.
-    pub fn start(program: &Path, order: &Order, memory: u64) -> io::Result<JobProcess> {
+    /// Starts the process with an order, for so many threads.
+    pub fn start(program: &Path, order: &Order, memory: u64, threads: usize) -> io::Result<JobProcess> {
         let (ours, theirs) = UnixStream::pair()?;
         let mut child = Command::new(program)
             .arg(COMMAND)
@@ -63,7 +66,7 @@ impl JobProcess {
         let stderr = child.stderr.take();
         let mut process = JobProcess { child, news: sync_channel(0).1, said: None };
         let begin = || -> io::Result<()> {
-            let most = Some(memory + reserved(order.threads));
+            let most = Some(memory + reserved(threads));
             let limit = Rlimit { current: most, maximum: most };
             // Writable private memory, and not addresses: reserved addresses cost nothing. What it touches is watched beside
             // ([`JobProcess::touched`]).
@@ -126,6 +129,37 @@ impl JobProcess {
     }
 }
 
+/// Time between two looks whether somebody still waits.
+const ASKED_EVERY: Duration = Duration::from_millis(100);
+
+/// Looks at input in a process of its own, which ends when nobody waits any more ([`watch`]).
+pub fn look(program: &Path, look: &Look, memory: u64) -> Answer<String> {
+    let fault = |why: String| {
+        tracing::error!("input cannot be looked at: {why}");
+        Problem::internal()
+    };
+    let process = JobProcess::start(program, &Order::Look(look.clone()), memory, 1).map_err(|error| fault(error.to_string()))?;
+    loop {
+        let is_over = match process.news.recv_timeout(ASKED_EVERY) {
+            Ok(News::Done(found)) => return Ok(found),
+            Ok(News::Failed(problem)) => return Err(serde_json::from_str(&problem).unwrap_or_else(|_| Problem::internal())),
+            Err(RecvTimeoutError::Timeout) if watch::is_cancelled() => return Err(Problem::internal()),
+            Ok(_) | Err(RecvTimeoutError::Timeout) => process.touched().is_some_and(|touched| touched > memory),
+            Err(RecvTimeoutError::Disconnected) => match process.death() {
+                Death::Panicked(why) | Death::Other(why) => return Err(fault(why)),
+                Death::OutOfMemory => return Err(too_large(memory)),
+            },
+        };
+        if is_over {
+            return Err(too_large(memory));
+        }
+    }
+}
+
+fn too_large(memory: u64) -> Problem {
+    Problem::too_large(format!("the input takes more than the {} MB of memory of a job (--job-memory)", memory / 1_000_000))
+}
+
 /// Bytes that matrix products reserve and hardly touch: twice the third-level cache for each thread (private-gemm-x86, which `faer` calls),
 /// 600 MB on a processor with 300 MB of it.
 fn reserved(threads: usize) -> u64 {
@@ -164,17 +198,22 @@ fn tail(mut from: impl io::Read) -> Vec<u8> {
     kept
 }
 
+/// What a process is to do.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum Order {
+    /// To run a job.
+    Run(Box<Run>),
+    /// To look at input.
+    Look(Look),
+}
+
 /// What is to be run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Order {
+pub struct Run {
     /// What it does.
     pub kind: JobKind,
-    /// The input without what it names.
+    /// The input.
     pub submission: Submission,
-    /// Options of the command, which its form leaves out.
-    pub options: Vec<String>,
-    /// Files that came with it.
-    pub files: Vec<(String, Vec<u8>)>,
     /// Where an earlier worker stood.
     pub checkpoint: Option<Vec<u8>>,
     /// The curve that earlier workers have shown; `None` for the first.
@@ -198,7 +237,7 @@ pub enum News {
     Picture(String, Vec<u8>),
     /// Where it could be taken up.
     Checkpoint(Vec<u8>),
-    /// It is done: the figures of its result, JSON. Its files are in the folder.
+    /// It is done: the figures of its result or what was found, JSON. Its files are in the folder.
     Done(String),
     /// It has no result: [`crate::problem::Problem`] as JSON.
     Failed(String),

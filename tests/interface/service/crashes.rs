@@ -142,11 +142,14 @@ impl Drop for SmallDisk {
 /// The disk fills up while jobs run: new ones are refused with 503, what is there can be read, and all goes on once there is room.
 #[test]
 fn a_full_disk_loses_nothing() {
-    let Some(disk) = SmallDisk::mounted() else { return };
+    let Some(disk) = SmallDisk::mounted_with("120m") else { return };
     let dir = tempdir().unwrap();
     let jobs = mixed(dir.path(), 3);
     let place = crate::support::server::in_folder(disk.0.path());
     let service = Server::start(&[&place[0], &place[1]], &EAGER);
+    let large = serde_json::json!({ "input": QUICK, "files": { "large.csv": "7".repeat(3_000_000) } });
+    let superfluous = [(); 4].map(|()| service.submit("predictions", &large));
+    superfluous.iter().for_each(|job| drop(service.succeeded(job)));
     let addresses = submit(&service, &jobs);
     let ballast = disk.0.path().join("ballast");
     let mut file = fs::File::create(&ballast).unwrap();
@@ -156,7 +159,14 @@ fn a_full_disk_loses_nothing() {
     let refused = (0..20).map(|_| service.post("/v1/predictions", &of("case", QUICK))).find(|answer| answer.status != 202);
     let refused = refused.unwrap().expect(503);
     assert!(refused.header("retry-after").is_some(), "{}", refused.text());
-    service.get(&addresses[0]).expect(200);
+    assert!(refused.text().contains("disk has 0 MB free, and 64 are needed"), "{}", refused.text());
+    // All is read, and room can be made, which the next results take.
+    for _ in 0..20 {
+        service.get(&addresses[0]).expect(200);
+        service.get("/v1/jobs").expect(200);
+    }
+    service.get("/readyz").expect(503);
+    superfluous.iter().for_each(|job| drop(service.send("DELETE", job, &[], b"").expect(204)));
     // Long enough for claims to run out.
     std::thread::sleep(Duration::from_millis(3500));
     fs::remove_file(&ballast).unwrap();

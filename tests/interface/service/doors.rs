@@ -10,7 +10,8 @@ use assert_cmd::cargo::{cargo_bin, cargo_bin_cmd};
 use serde_json::json;
 use tempfile::tempdir;
 
-use super::{FOR_PARAVIEW, QUICK, of};
+use super::queue::token;
+use super::{FOR_PARAVIEW, QUICK, SLOW, of, tiny};
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::server::{PATIENCE, Server, in_folder};
 
@@ -107,6 +108,136 @@ fn files_have_tags_and_ranges() {
         assert!(asked(&[("if-none-match", &tag)]).expect(304).body.is_empty());
         assert_eq!(service.get(&path).header("etag"), Some(&*tag), "the same tag each time");
     }
+}
+
+/// Keys of a query that are not known are refused: a misspelt factor would give the interval of another.
+#[test]
+fn unknown_keys_of_a_query_are_refused() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    let job = service.submit("predictions", &of("tiny", &tiny()));
+    service.succeeded(&job);
+    service.get(&format!("{job}/remaining?crack_length_mm=12&factor=5")).expect(200);
+    for (path, key) in [
+        (format!("{job}/remaining?crack_length_mm=12&facter=5"), "facter"),
+        (format!("{job}/remaining?crack_length_mm=12&Factor=5"), "Factor"),
+        (format!("{job}/files/a_n.csv?point=5"), "point"),
+        (format!("{job}?waite=5"), "waite"),
+        ("/v1/jobs?stat=failed".to_owned(), "stat"),
+        ("/v1/predictions?lim=5".to_owned(), "lim"),
+    ] {
+        let refused = service.get(&path).expect(400);
+        assert!(refused.text().contains(key), "{path}: {}", refused.text());
+    }
+}
+
+/// Names that show nothing or something else, and those that addresses lose, are refused.
+#[test]
+fn names_show_what_they_are() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    for name in [" ", "\u{a0}", "\u{200b}", "a\u{202e}b", "a\u{2028}b", "\u{feff}a", "a\u{2066}b", ".", ".."] {
+        service.post("/v1/predictions", &of(name, QUICK)).expect(422);
+        service.post("/v1/predictions", &json!({ "input": QUICK, "files": { name: "7" } })).expect(422);
+    }
+    let job = service.submit("predictions", &of("Prüfling 1 …", QUICK));
+    service.send("PATCH", &job, &[("content-type", "application/json")], "{\"name\": \"\u{200b}\"}".as_bytes()).expect(422);
+    // Whatever is wrong, its message is short.
+    let long = QUICK.replace("al2024-t3", &"x".repeat(900_000));
+    let refused = service.post("/v1/predictions", &of("long", &long)).expect(422);
+    assert!(refused.body.len() < 10_000, "{} bytes", refused.body.len());
+    let files = json!({ "spectrum.csv": format!("max,min,cycles\n{}", "y".repeat(3_000_000)) });
+    let spectrum = QUICK.replace(
+        "stress_range_mpa = 60\nstress_ratio = 0.1",
+        "kind = \"spectrum\"\nspectrum_file = \"spectrum.csv\"\nspectrum_scale_mpa = 60",
+    );
+    let refused = service.post("/v1/predictions", &json!({ "input": spectrum, "files": files })).expect(422);
+    assert!(refused.body.len() < 10_000 && refused.text().contains("yyy"), "{} bytes", refused.body.len());
+}
+
+/// A database that is removed under a running service is told of, and nothing is accepted that nobody would find again.
+#[test]
+fn a_database_that_was_removed_takes_no_jobs() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
+    service.succeeded(&service.submit("predictions", &of("tiny", &tiny())));
+    for file in fs::read_dir(dir.path()).unwrap().flatten() {
+        fs::remove_file(file.path()).unwrap();
+    }
+    service.get("/readyz").expect(503);
+    service.post("/v1/predictions", &of("tiny", &tiny())).expect(503);
+    service.get("/healthz").expect(200);
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0, "a new empty file");
+}
+
+/// Where tokens are asked for no browser keeps results; packed answers have weak tags; names of hosts have no case, and there is one.
+#[test]
+fn headers_say_what_may_be_kept() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let place = [place[0].as_str(), place[1].as_str()];
+    let service = Server::start(&place, &["--jobs", "1"]);
+    let job = service.submit("predictions", &of("tiny", &tiny()));
+    service.succeeded(&job);
+    let file = format!("{job}/files/a_n.csv");
+    assert!(service.get(&file).header("cache-control").unwrap().contains("immutable"));
+    let port = service.url.rsplit(':').next().unwrap();
+    service.send("GET", "/v1/jobs", &[("host", &format!("LOCALHOST:{port}"))], b"").expect(200);
+    let raw = |head: &str| {
+        let mut stream = std::net::TcpStream::connect(service.url.trim_start_matches("http://")).unwrap();
+        std::io::Write::write_all(&mut stream, format!("{head}Connection: close\r\n\r\n").as_bytes()).unwrap();
+        let mut answer = Vec::new();
+        std::io::Read::read_to_end(&mut stream, &mut answer).unwrap();
+        String::from_utf8_lossy(&answer).to_lowercase()
+    };
+    assert!(raw("GET /v1/jobs HTTP/1.1\r\nHost: localhost\r\nHost: localhost\r\n").starts_with("http/1.1 400"));
+    let tag = |answer: &str| answer.lines().find_map(|line| line.strip_prefix("etag: ")).unwrap().to_owned();
+    let plain = tag(&raw(&format!("GET {file} HTTP/1.1\r\nHost: localhost\r\n")));
+    let packed = raw(&format!("GET {file} HTTP/1.1\r\nHost: localhost\r\nAccept-Encoding: gzip\r\n"));
+    assert!(packed.contains("content-encoding: gzip") && tag(&packed) == format!("w/{plain}"), "{plain}, {}", tag(&packed));
+    let secret = token(&place, "ann", "read");
+    let service = Server::start(&place, &["--jobs", "0", "--require-token"]).with_token(&secret);
+    assert_eq!(service.get(&file).expect(200).header("cache-control"), Some("no-store"));
+}
+
+/// What a worker and the process of its job left when both were killed is removed at the next start.
+#[test]
+fn leftovers_of_the_killed_are_removed() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(&dir.path().join("data"));
+    let temporary = dir.path().join("temporary");
+    fs::create_dir(&temporary).unwrap();
+    let start = || Server::start_with(&[&place[0], &place[1]], &["--jobs", "1"], &[("TMPDIR", temporary.to_str().unwrap())]);
+    let mut service = start();
+    service.submit("predictions", &of("slow", SLOW));
+    let begun = Instant::now();
+    let child = loop {
+        assert!(begun.elapsed() < PATIENCE, "no process of a job");
+        if let [child] = service.children()[..] {
+            break child;
+        }
+    };
+    let kill = |signal: &str| assert!(Command::new("kill").args([signal, &child.to_string()]).status().unwrap().success());
+    kill("-STOP");
+    let left = || fs::read_dir(&temporary).unwrap().count();
+    service.kill();
+    kill("-KILL");
+    assert_eq!(left(), 1);
+    // Of another service that still runs, and of nobody who is known.
+    let others = temporary.join("perilife-job-other");
+    fs::create_dir(&others).unwrap();
+    let held = fs::File::create(others.join("lock")).unwrap();
+    held.lock().unwrap();
+    let service = start();
+    service.succeeded(&format!("/v1/predictions/{}", service.get("/v1/predictions").json()["items"][0]["id"].as_str().unwrap()));
+    let begun = Instant::now();
+    while left() > 1 {
+        assert!(begun.elapsed() < PATIENCE, "{:?}", fs::read_dir(&temporary).unwrap().flatten().collect::<Vec<_>>());
+    }
+    assert!(others.exists());
 }
 
 /// A name is looked up; what is no address is answered with what would be.

@@ -11,7 +11,7 @@ use tempfile::tempdir;
 use super::crashes::SmallDisk;
 use super::jobs::{with_each_store, with_store};
 use super::queue::{on_store, token};
-use super::{FOR_PARAVIEW, QUICK, SLOW, of};
+use super::{FOR_PARAVIEW, QUICK, SLOW, of, tiny};
 use crate::interface::cli::perilife;
 use crate::support::server::{PATIENCE, Server, in_folder};
 
@@ -91,7 +91,7 @@ fn a_full_temporary_disk_is_counted() {
     fs::create_dir(&full).unwrap();
     fs::write(full.join("ballast"), vec![1; 28 << 20]).unwrap();
     let missing = dir.path().join("missing");
-    for (folder, words) in [(&full, "needs "), (&missing, "cannot create a folder in")] {
+    for (folder, words) in [(&full, "needs "), (&missing, "a worker cannot write its temporary folder")] {
         let start = |attempts: &str| {
             let folder = folder.to_str().unwrap();
             Server::start_with(&[&place[0], &place[1]], &["--jobs", "1", "--attempts", attempts], &[("TMPDIR", folder)])
@@ -106,6 +106,8 @@ fn a_full_temporary_disk_is_counted() {
         assert_eq!((&ended["problem"]["title"], &ended["problem"]["status"]), (&"Given up".into(), &507.into()), "{ended:#}");
         let detail = ended["problem"]["detail"].as_str().unwrap();
         assert!(detail.contains(words) && detail.contains("after 3 tries"), "{detail}");
+        assert!(!ended.to_string().contains(folder.to_str().unwrap()), "a folder of the server in {ended}");
+        assert!(ended["failures"] == 2 && ended["last_failure"].as_str().unwrap().contains(words), "{ended:#}");
         assert_eq!(ended["attempts"], 3);
     }
 }
@@ -167,11 +169,36 @@ fn a_jump_of_the_clock_deletes_nothing() {
 fn owners_have_so_much_space() {
     let dir = tempdir().unwrap();
     let place = in_folder(dir.path());
-    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1", "--quota-mib", "1", "--keep-days", "1e-4"]);
-    let job = service.submit("predictions", &of("large", &(spaced(0.5) + FOR_PARAVIEW)));
+    let place = [place[0].as_str(), place[1].as_str()];
+    let start = |jobs: &str| Server::start(&place, &["--jobs", jobs, "--quota-mib", "8", "--keep-days", "1e-4"]);
+    // What waits counts with what it may write, a text of 1 MB as well; what was cancelled, with what it keeps.
+    let mut service = start("0");
+    let long = format!("# {}\n{}", "x".repeat(1_000_000), tiny());
+    let waiting: Vec<u16> = (0..20).map(|_| service.post("/v1/predictions", &of("long", &long)).status).collect();
+    let accepted = waiting.iter().filter(|status| **status == 202).count();
+    assert!((3..8).contains(&accepted) && waiting[accepted..].iter().all(|status| *status == 507), "{waiting:?}");
+    let jobs = |service: &Server| -> Vec<String> {
+        let list = service.get("/v1/predictions").json();
+        let address = |job: &Value| format!("/v1/predictions/{}", job["id"].as_str().unwrap());
+        list["items"].as_array().unwrap().iter().map(address).collect()
+    };
+    jobs(&service).iter().for_each(|job| drop(service.post(&format!("{job}/cancel"), &json!({})).expect(202)));
+    let more = (0..20).filter(|_| service.post("/v1/predictions", &of("long", &long)).status == 202).count();
+    assert!((1..accepted).contains(&more), "{accepted} and {more}");
+    jobs(&service).iter().for_each(|job| drop(service.send("DELETE", job, &[], b"").expect(204)));
+    // Asked again at the end: others may have been given less room meanwhile.
+    let late = service.submit("predictions", &of("late", &tiny()));
+    on_store(&place, "UPDATE stored SET most = 1");
+    service.stop();
+    let service = start("1");
+    let ended = service.ended(&late);
+    assert_eq!((&ended["state"], &ended["problem"]["status"]), (&"failed".into(), &507.into()), "{ended:#}");
+    assert!(ended["problem"]["detail"].as_str().unwrap().contains("delete jobs"), "{ended:#}");
+    let job = service.submit("predictions", &json!({ "input": QUICK, "files": { "large.csv": "7".repeat(6_000_000) } }));
     service.succeeded(&job);
-    let refused = service.post("/v1/predictions", &of("quick", QUICK)).expect(507);
+    let refused = service.post("/v1/predictions", &json!({ "input": tiny(), "files": { "more.csv": "7".repeat(2_500_000) } }));
     assert!(refused.text().contains("delete jobs"), "{}", refused.text());
+    refused.expect(507);
     // What was written last may stand in the log beside the file.
     let size_of = |name: &str| fs::metadata(dir.path().join(name)).map_or(0, |about| about.len());
     let size = || size_of("perilife.sqlite") + size_of("perilife.sqlite-wal");
@@ -253,6 +280,93 @@ fn streams_of_one_shut_nobody_out() {
     let mut pieces = streams.swap_remove(0).0.lines();
     assert!(pieces.any(|line| line.unwrap() == "0"), "cut off");
     assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
+}
+
+/// Bodies that never come and connections that ask nothing keep nobody waiting, whether tokens are asked for or not.
+#[test]
+fn bodies_that_never_come_keep_nobody_waiting() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let secret = token(&[&place[0], &place[1]], "ann", "admin");
+    for more in [&["--require-token"][..], &[]] {
+        let service = Server::start(&[&place[0], &place[1]], &[&["--jobs", "0", "--connections", "100"], more].concat());
+        let service = service.with_token(&secret);
+        let address = service.url.trim_start_matches("http://").to_owned();
+        let head =
+            "POST /v1/check HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\nContent-Length: 60000\r\n\r\n{";
+        for text in [head, "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 60000\r\n\r\n{", "GET"] {
+            let mut waiting: Vec<TcpStream> = Vec::new();
+            for _ in 0..300 {
+                let mut stream = TcpStream::connect(&address).unwrap();
+                let _ = stream.write_all(text.as_bytes());
+                waiting.push(stream);
+            }
+            let begun = Instant::now();
+            service.get("/healthz").expect(200);
+            assert!(begun.elapsed() < Duration::from_secs(3), "{more:?} {text}: {:?}", begun.elapsed());
+            // A body that somebody may send has seconds.
+            while !service.try_send("GET", "/v1/jobs", &[], b"").is_ok_and(|answer| answer.status == 200) {
+                assert!(begun.elapsed() < Duration::from_secs(8), "{more:?} {text}: {:?}", begun.elapsed());
+                std::thread::sleep(Duration::from_millis(50));
+            }
+        }
+    }
+}
+
+/// A form of one file of readings.
+fn form(content: &str) -> String {
+    format!("--XX\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a.csv\"\r\n\r\n{content}\r\n--XX--\r\n")
+}
+
+/// Long lines and wide tables cost little, and what is looked at ends with its request and with the service.
+#[test]
+fn a_look_ends_with_its_request() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let mut service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
+    let asked = |content: &str| {
+        let begun = Instant::now();
+        let kind = [("content-type", "multipart/form-data; boundary=XX")];
+        let found = service.send("POST", "/v1/measured", &kind, form(content).as_bytes()).expect(200).json();
+        assert!(begun.elapsed() < Duration::from_secs(4), "{:?} for {}", begun.elapsed(), &content[..60]);
+        found["files"][0].clone()
+    };
+    for long in ["\"".repeat(1_000_000), "0,".repeat(1_000_000), "in ".repeat(300_000)] {
+        let found = asked(&format!("cycles,crack_length_mm\n{long}"));
+        assert!(!found["problems"].as_array().unwrap().is_empty(), "{found}");
+    }
+    asked(&(0..100_000).map(|i| format!("a{i},")).collect::<String>());
+    let row = |start: String, cell: &dyn Fn(usize) -> String| (0..2000).fold(start, |row, i| row + "," + &cell(i)) + "\n";
+    let rows = (0..300).map(|n| row((1000 * n).to_string(), &|_| format!("{}", 9.0 + 0.01 * f64::from(n)))).collect::<String>();
+    let found = asked(&(row("cycles".to_owned(), &|i| format!("P{i} (mm)")) + &rows));
+    assert_eq!((found["columns"]["layout"].as_str(), found["curves"].as_array().unwrap().len()), (Some("wide"), 2000));
+
+    // Seconds of work that nobody waits for any more.
+    let heavy = form(&format!("cycles,crack_length_mm\n{}", (0..1_500_000).map(|i| format!("{i},9\n")).collect::<String>()));
+    let address = service.url.trim_start_matches("http://").to_owned();
+    let send = || {
+        let mut stream = TcpStream::connect(&address).unwrap();
+        write!(stream, "POST /v1/measured HTTP/1.1\r\nHost: localhost\r\nContent-Type: multipart/form-data; boundary=XX\r\n")
+            .unwrap();
+        write!(stream, "Content-Length: {}\r\n\r\n{heavy}", heavy.len()).unwrap();
+        stream
+    };
+    let looking = || service.children().len();
+    let sent = send();
+    let begun = Instant::now();
+    while looking() == 0 {
+        assert!(begun.elapsed() < PATIENCE, "no process looks");
+    }
+    drop(sent);
+    let gone = Instant::now();
+    while looking() > 0 {
+        assert!(gone.elapsed() < Duration::from_secs(2), "a process looks for nobody");
+    }
+    let _sent = send();
+    std::thread::sleep(Duration::from_millis(300));
+    let begun = Instant::now();
+    service.stop();
+    assert!(begun.elapsed() < Duration::from_secs(13), "{:?}", begun.elapsed());
 }
 
 /// With all connections taken, those who watch over the service are answered all the same.
