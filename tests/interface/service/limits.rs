@@ -36,7 +36,7 @@ fn a_job_ends_alone_at_its_limits() {
     with_store("limits", |place| {
         for (limit, text, title, words) in [
             (["--job-memory", "256"], spaced(0.12), "Too large", "more than the 268 MB of memory"),
-            (["--job-hours", "0.003"], spaced(0.12), "Too slow", "--job-hours"),
+            (["--job-hours", "0.001"], spaced(0.12), "Too slow", "--job-hours"),
         ] {
             // What is accepted may be more than a worker of a smaller machine has.
             let service = Server::start(place, &["--jobs", "0"]);
