@@ -2,8 +2,8 @@
 //!
 //! A question is a table of [`Question`]. With `rows` it is several: each row has the keys of the table around it and its own. `over` is a list of
 //! axes, tables of lists whose columns go together; axes multiply, the first outermost. `set` names values. Every text may hold formulas in
-//! angle brackets ([`crate::values`]), over values, closed forms ([`crate::closed`]), readings of the case ([`crate::subject`])
-//! or of the computation that `by` names ([`crate::computations`]), and the same of `beside`, another case, behind `beside_`.
+//! angle brackets (`values.rs`), over values, closed forms (`closed.rs`), readings of the case (`subject.rs`)
+//! or of the computation that `by` names (`computations.rs`), and the same of `beside`, another case, behind `beside_`.
 
 use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
