@@ -22,7 +22,7 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
 /// Bytes that must be free where a folder is, and those of a reserve there: less on a disk that has not as much in all.
 pub fn needed_bytes(folder: &Path) -> [u64; 2] {
     let all = rustix::fs::statvfs(folder).map_or(u64::MAX, |about| about.f_blocks.saturating_mul(about.f_frsize));
-    if all > FREE_BYTES { [FREE_BYTES, RESERVE] } else { [all / 8, all / 16] }
+    if all > FREE_BYTES { [FREE_BYTES, RESERVE] } else { [all / 4, all / 8] }
 }
 
 /// The file of a SQLite database.
@@ -67,10 +67,14 @@ impl DatabaseFile {
         }
     }
 
+    /// Whether its disk has less room than a reserve.
+    pub fn is_disk_full(&self) -> bool {
+        free_bytes(&self.folder()).is_some_and(|free| free < needed_bytes(&self.folder())[1])
+    }
+
     /// Gives the reserve up on a full disk; whether that made room.
     pub fn give_reserve_up(&self) -> bool {
-        free_bytes(&self.folder()).is_some_and(|free| free < needed_bytes(&self.folder())[1])
-            && fs::remove_file(self.path.with_extension("reserve")).is_ok()
+        self.is_disk_full() && fs::remove_file(self.path.with_extension("reserve")).is_ok()
     }
 }
 

@@ -222,6 +222,11 @@ impl Store {
         given_up
     }
 
+    /// Whether results may be written: on a full disk they leave the rest to deletions.
+    pub fn has_room_for_results(&self) -> bool {
+        self.file.as_ref().is_none_or(|file| !file.is_disk_full())
+    }
+
     /// Closes all connections.
     pub async fn close(&self) {
         self.pool.close().await;

@@ -297,7 +297,21 @@ fn ended(state: State, problem: Option<String>) -> Outcome {
 /// Stores the end of a job; waits for a database that is gone, since what was computed should not be lost.
 fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome, reason: &'static str) {
     let (mut tries, begun) = (0, Instant::now());
+    let wait = || {
+        let (lease_ms, nothing) = (milliseconds(shared.settings.lease), Told::default());
+        let heard = shared.handle.block_on(shared.store.beat(claim, lease_ms, begun.elapsed(), &nothing));
+        std::thread::sleep(TRY_EVERY);
+        heard
+    };
     loop {
+        // What the reserve of a full disk gave up is for those who make room.
+        if outcome.state == State::Succeeded && !shared.store.has_room_for_results() && !shared.is_stopping() {
+            tracing::warn!(job = claim.id, "the result waits for room on the disk of the database");
+            match wait() {
+                Ok(Heartbeat::Cancel) => return hand_in(shared, claim, &ended(State::Cancelled, None), "cancelled"),
+                _ => continue,
+            }
+        }
         match shared.handle.block_on(shared.store.finish(claim, outcome)) {
             Ok(Finish::Stored) => {
                 let (kind, state) = (claim.kind.name(), outcome.state.name());
@@ -324,9 +338,7 @@ fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome, reason: &'static s
                 if !is_gone(&error) || (shared.is_stopping() && tries >= LAST_TRIES) {
                     return;
                 }
-                let (lease_ms, nothing) = (milliseconds(shared.settings.lease), Told::default());
-                let _ = shared.handle.block_on(shared.store.beat(claim, lease_ms, begun.elapsed(), &nothing));
-                std::thread::sleep(TRY_EVERY);
+                let _ = wait();
             }
         }
     }
