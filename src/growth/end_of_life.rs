@@ -37,7 +37,7 @@ impl End {
     }
 }
 
-/// The first of: the length the case stops at, K = toughness under the load to bear (where a handbook has K), yield of a whole section (of a
+/// The first of: the length the case stops at, K = toughness under the required load (where a handbook has K), yield of a whole section (of a
 /// plate that with its initial cracks). `None` where nothing of that is given. Where cycles are of a displacement the load is not known before the run:
 /// only the length that the case stops at is.
 pub fn first_end(case: &Case) -> Option<End> {

@@ -357,7 +357,7 @@ pub fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<
         series("by toughness", Mark::Dashes, &|s| s.by_toughness),
         series("by net-section yield", Mark::Dashes, &|s| s.by_net_section),
         series("maximum load of the cycle", Mark::Dots, &|s| Some(case.loading.at(s.crack_length))),
-        series("load to bear", Mark::Dashes, &|s| case.stop.required.map(|factor| factor * case.loading.at(s.crack_length))),
+        series("required strength", Mark::Dashes, &|s| case.stop.required.map(|factor| factor * case.loading.at(s.crack_length))),
     ];
     let known: Vec<Series> = all.into_iter().filter(|series| !series.points.is_empty()).collect();
     let title = format!("{}: residual strength", case.name);

@@ -61,7 +61,7 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
     for (file, words) in [
         ("fleet.svg", "lives of a fleet"),
         ("sensitivities.svg", "change of the life"),
-        ("residual_strength.svg", "load to bear"),
+        ("residual_strength.svg", "required strength"),
         ("sensitivities.csv", "initial crack length,-10 %,"),
     ] {
         assert!(fs::read_to_string(run.join(file)).unwrap().contains(words), "{words} in {file}");

@@ -191,7 +191,7 @@ fn a_curve_that_was_fitted_is_drawn_and_gives_the_life() {
     let row: Vec<&str> = table.lines().nth(1).unwrap().split(',').collect();
     for (column, delta_k) in [(3, 10.0), (4, 20.0)] {
         let rate: f64 = row[column].parse().unwrap();
-        assert!((rate / curved_rate(delta_k) - 1.0).abs() < 0.02, "{delta_k}: {rate}");
+        assert!((rate / curved_rate(delta_k) - 1.0).abs() < 0.01, "{delta_k}: {rate}");
     }
     // Beyond the readings there is no rate, and at another stress ratio no law.
     assert_eq!([row[2], row[5]], [""; 2]);
@@ -205,5 +205,5 @@ fn a_curve_that_was_fitted_is_drawn_and_gives_the_life() {
     let readings = curved_readings(&[("two", 1.0)]);
     let row = readings.lines().find(|line| line.ends_with(",45")).unwrap();
     let measured: f64 = row.split(',').nth(1).unwrap().parse().unwrap();
-    assert!((result["life_cycles"].as_f64().unwrap() / measured - 1.0).abs() < 0.005, "{} for {measured}", result["life_cycles"]);
+    assert!((result["life_cycles"].as_f64().unwrap() / measured - 1.0).abs() < 0.002, "{} for {measured}", result["life_cycles"]);
 }

@@ -2,6 +2,7 @@
 
 mod budget;
 mod crashes;
+mod denial;
 mod deploy;
 mod description;
 mod doors;

@@ -8,7 +8,7 @@ use perilife_study::cases::{NODES, case};
 
 use crate::support::plates::cracked_plate;
 
-/// A slant crack with two tips, two cracks of unlike length, one from each edge, and two of which only the longer grows in time.
+/// A slant crack with two tips, two cracks of unlike length, and one from each edge: cracks, mm, and the length at which the run ends.
 const PLATES: [(&str, &[[Point; 2]], f64); 3] = [
     ("slant", &[[[-5.0, -3.0], [5.0, 3.0]]], 30.0),
     ("two", &[[[-20.0, -12.0], [-8.0, -12.0]], [[8.0, 12.0], [18.0, 12.0]]], 24.0),
@@ -33,7 +33,7 @@ fn its_rate_is_the_slope_of_its_length() {
         let [first, last] = [&run.curve[0], &run.curve[run.curve.len() - 1]];
         let error = counted(&run, &governing) / run.life_cycles() - 1.0;
         println!("{name}: {} rows, ∫ da/(da/dN) off by {:+.2} % of the cycles", run.curve.len(), 100.0 * error);
-        assert!(error.abs() < 0.01, "{name}: {error}");
+        assert!(error.abs() < 0.003, "{name}: {error}");
         // The crack that came to the length ends the run, whatever the others sum to.
         assert!((governing.length(last) / (stop * MM) - 1.0).abs() < 1e-9, "{name}: {}", governing.length(last) / MM);
         let longest = cracks.iter().map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);

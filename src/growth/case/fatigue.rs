@@ -205,7 +205,7 @@ fn stop_in_depth(slice: &StopInput, specimen: &Specimen) -> Result<(f64, bool)> 
     Ok((depth.unwrap_or(f64::INFINITY), slice.at_break_through == Some(true)))
 }
 
-/// The load that the plate has to bear, over the largest of a cycle.
+/// The required residual strength, a load, over the maximum load of the cycle.
 fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<Option<f64>> {
     const FACTOR: &str = "stop.limit_load_factor";
     const STRENGTH: &str = "stop.required_strength_mpa";
@@ -220,25 +220,20 @@ fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loa
         }
         (None, Some(strength)) => {
             let problem = format!("is a gross stress, and a {} is loaded by a force on its pins", specimen.kind);
-            return Err(input(
-                STRENGTH,
-                strength,
-                problem,
-                format!("give {FACTOR}, the load to bear over the largest of a cycle"),
-            ));
+            return Err(input(STRENGTH, strength, problem, format!("set {FACTOR} = required load / maximum load")));
         }
     };
     if let (Some(course), STRENGTH) = (loading.course(), key) {
         let problem = format!("is one stress, and {} is one for every crack length", course.key);
-        return Err(input(key, given, problem, format!("give {FACTOR}, the load to bear over that of the cycle")));
+        return Err(input(key, given, problem, format!("set {FACTOR} = required load / maximum load")));
     }
     if loading.displacement().is_some() {
         let problem = "is a load, and the cycles are of a displacement";
         return Err(input(key, given, problem, "leave it out, or give the load of the cycles"));
     }
     if !(factor.is_finite() && factor >= 1.0) {
-        let problem = "is less than the largest load of a cycle, which the plate has to bear anyhow";
-        return Err(input(key, given, problem, "give the limit load that it has to bear at the end of its life"));
+        let problem = "is below the maximum load of the cycle";
+        return Err(input(key, given, problem, "set the required residual strength (service limit load)"));
     }
     let ends = [(stop.toughness, material.toughness), (stop.net_section, material.yield_strength)];
     if !ends.iter().any(|(asked, strength)| asked.unwrap_or(true) && strength.is_some()) {

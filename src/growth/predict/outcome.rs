@@ -144,16 +144,19 @@ fn governing_tip(specimen: &Specimen, curve: &[CurvePoint]) -> Option<usize> {
 #[derive(Debug, Clone)]
 pub struct GoverningCrack<'a> {
     specimen: &'a Specimen,
-    /// A tip of it, and all its tips; `None` where the length of the row is that of the specimen.
-    of_several: Option<(usize, Vec<usize>)>,
+    /// Its initial length, m, and its tips; `None` where the length of the row is that of the specimen.
+    of_several: Option<(f64, Vec<usize>)>,
 }
 
 impl<'a> GoverningCrack<'a> {
     /// Of a run.
     pub fn of(specimen: &'a Specimen, curve: &[CurvePoint]) -> Self {
         let line = |tip: usize| specimen.line_end(tip).map(|end| end.line);
-        let tip = governing_tip(specimen, curve).filter(|_| specimen.has_several_cracks());
-        let of_several = tip.map(|tip| (tip, (0..specimen.tips.len()).filter(|other| line(*other) == line(tip)).collect()));
+        let governing = governing_tip(specimen, curve).and_then(line).filter(|_| specimen.has_several_cracks());
+        let of_several = governing.map(|governing| {
+            let tips = (0..specimen.tips.len()).filter(|tip| line(*tip) == Some(governing));
+            (specimen.crack_lines()[governing].length(), tips.collect())
+        });
         GoverningCrack { specimen, of_several }
     }
 
@@ -164,8 +167,8 @@ impl<'a> GoverningCrack<'a> {
 
     /// Its length at a row, m.
     pub fn length(&self, row: &CurvePoint) -> f64 {
-        let of_several = self.of_several.as_ref().and_then(|(tip, _)| row.crack_length_of(self.specimen, *tip));
-        of_several.unwrap_or(row.crack_length)
+        let grown = |tips: &[usize]| tips.iter().map(|tip| row.tips[*tip].growth).sum::<f64>();
+        self.of_several.as_ref().map_or(row.crack_length, |(start, tips)| start + grown(tips))
     }
 
     /// How fast that grows, m/cycle; NaN where it is not known.

@@ -59,7 +59,7 @@ struct Place {
     length: f64,
     log_k: f64,
     cycles: f64,
-    /// Load to bear over what toughness and net section bear.
+    /// Required load over what toughness and net section bear.
     demands: [f64; 2],
 }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tempfile::tempdir;
 
-use super::{QUICK, SLOW, of, tiny};
+use super::{FOR_PARAVIEW, QUICK, SLOW, of, tiny};
 use crate::support::postgres::Postgres;
 use crate::support::server::{PATIENCE, Server, in_folder};
 
@@ -197,4 +197,66 @@ fn a_stop_loses_nothing() {
         let done = service.succeeded(&job);
         assert_eq!(done["attempts"], 2, "{done:#}");
     });
+}
+
+/// A look that waits comes back when the job has ended.
+#[test]
+fn a_look_waits_for_the_end() {
+    with_each_store("waits", |place| {
+        let service = Server::start(place, &["--jobs", "1"]);
+        let job = service.submit("predictions", &of("quick", QUICK));
+        assert_eq!(service.get(&format!("{job}?wait=50")).expect(200).json()["state"], "succeeded");
+        service.get(&format!("{job}?wait=51")).expect(400);
+        let idle = Server::start(place, &["--jobs", "0"]);
+        let begun = Instant::now();
+        idle.get(&format!("{job}?wait=50")).expect(200);
+        assert!(begun.elapsed() < Duration::from_secs(5));
+    });
+}
+
+const SCENE: &str = "[specimen]\nkind = \"plate\"\nwidth_mm = 20\nlength_mm = 20\nthickness_mm = 1\n\
+    cracks = [{ from_mm = [-3, 0], to_mm = [3, 0] }]\n[material]\nyoungs_modulus_gpa = 70\npoisson_ratio = 0.3\n\
+    [model]\nbond_law = \"two_parameter\"\nspacing_mm = 1.0\n[loading]\nkind = \"traction\"\nstress_mpa = 10\n\
+    edges = [\"top\", \"bottom\"]\n[damage]\nlaw = \"none\"\n";
+
+/// Every kind of job runs, has the files of its command, and is refused with wrong options.
+#[test]
+fn every_kind_of_job_runs() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let service = Server::start(&[&place[0], &place[1]], &["--jobs", "2"]);
+    let sweep =
+        "case = \"case.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"loading.stress_range_mpa\"\nvalues = [50, 60]\n";
+    for (collection, body, files) in [
+        ("scenes", of("scene", &(SCENE.to_owned() + FOR_PARAVIEW)), vec!["result.json", "history.csv", "paraview.zip"]),
+        (
+            "sweeps",
+            json!({ "name": "sweep", "input": sweep, "files": { "case.toml": QUICK } }),
+            vec!["sweep.csv", "sweep.json", "life.svg", "cases.zip"],
+        ),
+        ("sif", json!({ "name": "sif", "input": QUICK, "options": { "method": ["ring"] } }), vec!["result.json"]),
+    ] {
+        let job = service.submit(collection, &body);
+        let done = service.succeeded(&job);
+        let found: Vec<&str> = done["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
+        assert!(files.iter().all(|file| found.contains(file)), "{collection}: {found:?}");
+        assert!(done["summary"].is_object(), "{done:#}");
+        for file in files {
+            assert!(!service.file(&job, file).is_empty(), "{collection}: {file}");
+        }
+        if collection == "sif" {
+            let factors = done["summary"].to_string();
+            assert!(factors.contains("\"ring\"") && !factors.contains("element_free"), "the method asked for alone: {factors}");
+        }
+        let refused = json!({ "name": "x", "input": QUICK, "options": { "out": "/tmp/x" } });
+        service.post(&format!("/v1/{collection}"), &refused).expect(422);
+    }
+    let bad = json!({ "name": "sif", "input": QUICK, "options": { "method": ["magic"] } });
+    assert!(service.post("/v1/sif", &bad).expect(422).text().contains("magic"));
+    // Nothing on the disk of the server is read, whatever an input names.
+    for name in ["/etc/passwd", "../../etc/passwd", "case.toml"] {
+        let body = json!({ "name": "sweep", "input": sweep.replace("case.toml", name) });
+        let refused = service.post("/v1/sweeps", &body).expect(422);
+        assert!(refused.text().contains("was not sent along"), "{}", refused.text());
+    }
 }

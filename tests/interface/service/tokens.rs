@@ -1,8 +1,11 @@
 //! Who may do what where tokens are asked for.
 
-use serde_json::json;
+use std::fs;
+
+use serde_json::{Value, json};
 use tempfile::tempdir;
 
+use super::queue::token;
 use super::{QUICK, of};
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::server::{Server, in_folder};
@@ -108,4 +111,36 @@ fn nobody_is_let_in_from_elsewhere_without_tokens() {
         4,
         &["cannot listen"],
     );
+}
+
+/// Without tokens nobody is let in who came through a proxy, unless the operator says that the proxy is to be believed.
+#[test]
+fn a_proxy_makes_nobody_an_admin() {
+    let dir = tempdir().unwrap();
+    let place = in_folder(dir.path());
+    let place = [place[0].as_str(), place[1].as_str()];
+    let service = Server::start(&place, &["--jobs", "0"]);
+    let secret = token(&place, "ann", "read");
+    let bearer = format!("bEaReR {secret}");
+    for header in ["forwarded", "via", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto", "x-real-ip"] {
+        for value in ["10.0.0.7", "127.0.0.1"] {
+            service.send("GET", "/v1/predictions", &[(header, value)], b"").expect(401);
+        }
+        service.send("GET", "/v1/predictions", &[(header, "1.2.3.4"), ("authorization", &bearer)], b"").expect(200);
+    }
+    service.get("/v1/predictions").expect(200);
+    drop(service);
+    let audit = dir.path().join("audit.jsonl");
+    let more =
+        ["--jobs", "0", "--trust-proxy", "--public-url", "https://life.example.org", "--audit-log", audit.to_str().unwrap()];
+    let service = Server::start(&place, &more);
+    let from = [("x-forwarded-for", "10.0.0.7, 192.0.2.4"), ("host", "life.example.org"), ("content-type", "application/json")];
+    let body = of("quick", QUICK).to_string();
+    let accepted = service.send("POST", "/v1/predictions", &from, body.as_bytes()).expect(202);
+    assert!(accepted.header("location").unwrap().starts_with("https://life.example.org/v1/predictions/"));
+    service.send("GET", "/v1/predictions", &[("host", "evil.example.org")], b"").expect(403);
+    let lines: Vec<Value> = fs::read_to_string(&audit).unwrap().lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!((&lines[0]["address"], &lines[0]["status"]), (&"192.0.2.4".into(), &202.into()), "{lines:?}");
+    assert!(lines[0]["path"].as_str().unwrap().contains("/v1/predictions/0"), "{lines:?}");
+    assert_eq!((lines.len(), &lines[1]["status"]), (2, &403.into()), "{lines:?}");
 }
