@@ -76,11 +76,11 @@ fn a_required_load_ends_the_life() {
 fn a_required_load_that_says_nothing_is_refused() {
     let toughness = "material.toughness_mpa_sqrt_m=60";
     let wrong: [(&str, &[&str], &str); 5] = [
-        (PANEL, &[toughness, "stop.required_strength_mpa=50"], "less than the largest load of a cycle"),
-        (PANEL, &[toughness, "stop.limit_load_factor=0.9"], "less than the largest load of a cycle"),
+        (PANEL, &[toughness, "stop.required_strength_mpa=50"], "below the maximum load of the cycle"),
+        (PANEL, &[toughness, "stop.limit_load_factor=0.9"], "below the maximum load of the cycle"),
         (PANEL, &["stop.limit_load_factor=2"], "has neither toughness nor yield strength"),
         (PANEL, &[toughness, "stop.limit_load_factor=2", "stop.required_strength_mpa=150"], "the load is given twice"),
-        (ALL[3], &[toughness, "stop.required_strength_mpa=150"], "give stop.limit_load_factor"),
+        (ALL[3], &[toughness, "stop.required_strength_mpa=150"], "set stop.limit_load_factor"),
     ];
     for (specimen, set, words) in wrong {
         let error = try_hand_case(specimen, set).unwrap_err().to_string();
