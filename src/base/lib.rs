@@ -10,6 +10,7 @@ pub mod error;
 pub mod kinds;
 pub mod units;
 pub mod cells;
+pub mod columns;
 pub mod parallel;
 pub mod watch;
 pub mod machine;

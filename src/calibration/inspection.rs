@@ -1,6 +1,6 @@
 //! What is left of a life from a crack length on, and how often to inspect.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::population::plate::Quantiles;
 use perilife_base::error::{Result, input};
@@ -13,7 +13,7 @@ use perilife_growth::predict::Prediction;
 pub const FACTOR: f64 = 3.0;
 
 /// What is left of a life from a crack length on, and an inspection interval.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = Remaining))]
 pub struct Inspection {
     /// Crack length today: of a plate that of the crack of `tip`.

@@ -16,7 +16,7 @@ use perilife_growth::case::{Case, remove_law};
 use perilife_growth::predict::Prediction;
 use perilife_results::output::{Finished, OutputFolder, Room, RunKind};
 use perilife_results::{fit, run};
-use perilife_runner::{Wanted, of_prediction};
+use perilife_runner::{Task, Wanted, of_prediction};
 
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
@@ -124,7 +124,12 @@ fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finish
         }
         place.adopt(&case.name)?;
         let prediction = run?;
-        let files = |path: &Path| of_prediction(case, &prediction, &Wanted::default(), Some(path), console);
+        let task = Task::Prediction { case: Box::new(case.clone()), wanted: Box::default() };
+        let files = |path: &Path| {
+            let summary = of_prediction(case, prediction, &Wanted::default(), console)?;
+            summary.write(&task, path)?;
+            Ok(summary)
+        };
         let kept = console.keep(folder, &[], files)?.counted()?;
         predictions.insert(case.name.clone(), kept.result);
     }

@@ -66,7 +66,7 @@ impl Console {
 
     /// Tables and words of a run.
     pub fn print(&self, summary: Summary) -> Result<Summary> {
-        self.result(&summary.tables)?;
+        self.result(&summary.printed)?;
         summary.lines.iter().for_each(|line| self.say(line));
         Ok(summary)
     }

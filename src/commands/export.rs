@@ -7,13 +7,18 @@ use serde_json::json;
 use super::console::Console;
 use perilife_base::error::{Error, Result, input};
 use perilife_base::input::Opened;
-use perilife_results::csv::{self, A_N_FILE, Row, parse_a_n};
+use perilife_base::units::shown::asked;
+use perilife_base::units::us::System;
+use perilife_results::curve::{self, A_N_FILE, Row};
+use perilife_results::kept;
 use perilife_results::output::{OutputFile, Sort};
 use perilife_results::resample::{ROWS_MAX, Sampling};
-use perilife_results::units::shown_table;
 
 /// First line of an export, which a run's own table has not.
 const HEADER: &str = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n";
+
+/// Column of the table of a run in US units.
+const US_COLUMN: &str = ",crack_length_in,";
 
 /// Arguments of `perilife export`.
 #[derive(Debug, clap::Args)]
@@ -38,29 +43,27 @@ pub struct Args {
 /// Runs `perilife export`.
 pub fn run(args: &Args) -> Result<()> {
     let opened = Opened::default();
-    let curve = curve_of(&args.run, &opened)?;
+    let (curve, units) = curve_of(&args.run, &opened)?;
     let (first, last) = (curve[0].cycles, curve[curve.len() - 1].cycles);
     let sampling = args.every_cycles.map_or(Sampling::Points(args.points), Sampling::EveryCycles);
     let rows = sampling.of(&curve, "--every-cycles")?;
-    let text = csv::table(&rows);
     let sort = Sort { option: "--out", sign: HEADER.as_bytes() };
     let file = OutputFile::claim(&args.out, sort, &opened.so_far())?;
     let is_file = file.is_file();
-    file.write(shown_table(&text).as_bytes())?;
+    file.write(curve::table(&rows).csv_in(units).as_bytes())?;
     if is_file {
         args.console.say(&format!("{}: {} rows from {first} to {last} cycles", args.out.display(), rows.len()));
     }
     args.console.object(&json!({ "file": args.out, "rows": rows.len(), "cycles_first": first, "cycles_last": last }))
 }
 
-/// The a-N curve of a run's folder, at least one row.
-fn curve_of(folder: &Path, opened: &Opened) -> Result<Vec<Row>> {
+/// The a-N curve of a run's folder, at least one row, and the units that it is written in: those that are asked for, else those of the run.
+fn curve_of(folder: &Path, opened: &Opened) -> Result<(Vec<Row>, System)> {
     std::fs::read_dir(folder).map_err(|e| Error::file(folder, "cannot read the folder of a run", e))?;
-    let table = folder.join(A_N_FILE);
-    if table.is_file() {
-        let bytes = opened.read(&table, A_N_FILE)?;
-        csv::check_whole(folder, A_N_FILE, &bytes, opened)?;
-        return parse_a_n(&String::from_utf8_lossy(&bytes), &table);
+    if folder.join(A_N_FILE).is_file() {
+        let (rows, text) = kept::curve(folder, A_N_FILE, opened)?;
+        let of_run = if text.lines().next().is_some_and(|head| head.contains(US_COLUMN)) { System::Us } else { System::Si };
+        return Ok((rows, asked().unwrap_or(of_run)));
     }
     let remedy = if folder.join("fitted.toml").is_file() {
         "this is a calibration: give the folder of a predicted case inside it"

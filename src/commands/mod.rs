@@ -147,18 +147,17 @@ pub struct CommandLine {
     /// Say on stderr what the program does; twice for details (the variable RUST_LOG overrides)
     #[arg(long, short, action = clap::ArgAction::Count, global = true, help_heading = "What is printed")]
     pub verbose: u8,
-    /// Units of what is written and printed: si (mm, MPa, MPa√m) or us (inch, ksi, ksi√in). Input files take keys of both. Metric stay what is read
+    /// Units of what is written and printed: si (mm, MPa, MPa√m), the default, or us (inch, ksi, ksi√in). Input files take keys of both. Metric stay what is read
     /// again as input (fitted.toml, case.toml, checkpoints), files for ParaView and Parquet, and options of the command line
     #[arg(
         long,
         value_name = "UNITS",
         env = "PERILIFE_UNITS",
         hide_env_values = true,
-        default_value_t = System::Si,
         global = true,
         help_heading = "What is printed"
     )]
-    pub units: System,
+    pub units: Option<System>,
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
@@ -179,8 +178,8 @@ impl CommandLine {
         let is_job = matches!(self.command, Command::Job(_));
         #[cfg(not(feature = "service"))]
         let is_job = false;
-        if !self.is_service() && !is_job {
-            show(self.units);
+        if let Some(units) = self.units.filter(|_| !self.is_service() && !is_job) {
+            show(units);
         }
     }
 

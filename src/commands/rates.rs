@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::case_without_law;
 use super::console::Console;
 use super::rates_of_materials::{self, MaterialRates};
+use perilife_base::columns::shown_text;
 use perilife_base::error::{Result, input};
 use perilife_base::input::{Opened, STREAM, number};
 use perilife_base::table::{
@@ -21,7 +22,6 @@ use perilife_growth::case::Case;
 use perilife_measured::{ColumnNames, Import, Measured, MeasuredCurve, first_of, read_into};
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_results::output::{OutputFile, Sort};
-use perilife_results::units::shown_table;
 
 /// Thickness of plates where no case says it, mm: K_c of records depends on it.
 const THICKNESS_MM: f64 = 2.5;
@@ -127,7 +127,7 @@ pub fn run(args: &Args) -> Result<()> {
         rates_of_materials::draw(path, &materials, ratio, points.map(in_units).collect())?;
     }
     if !materials.is_empty() {
-        args.console.say(&shown_table(&rates_of_materials::table(&materials, ratio)));
+        args.console.say(&shown_text(&rates_of_materials::table(&materials, ratio), "materials.csv")?);
     }
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
     for warning in of_materials.iter().chain(&measured.warnings).chain(&of_specimens) {
@@ -139,9 +139,9 @@ pub fn run(args: &Args) -> Result<()> {
             let mut read = opened.so_far();
             read.files.extend(case.iter().flat_map(|case| case.provenance.files.clone()));
             let sort = Sort { option: "--out", sign: HEADER.as_bytes() };
-            OutputFile::claim(path, sort, &read)?.write(shown_table(&table).as_bytes())?;
+            OutputFile::claim(path, sort, &read)?.write(shown_text(&table, "rates.csv")?.as_bytes())?;
         }
-        None => args.console.result(&shown_table(&table))?,
+        None => args.console.result(&shown_text(&table, "rates.csv")?)?,
     }
     if args.out.as_deref().is_some_and(|path| path != Path::new(STREAM)) {
         specimens.iter().for_each(|specimen| args.console.say(&specimen.summary()));

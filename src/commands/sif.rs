@@ -9,13 +9,11 @@ use super::console::Console;
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Document, STREAM};
 use perilife_base::units::MM;
-use perilife_base::units::shown::shown;
 use perilife_growth::predict::factor_sweep::factor_sweep;
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
 use perilife_plate::specimen::beta::HEADER;
 use perilife_results::factor_sweep as tables;
 use perilife_results::output::{OutputFile, OutputFolder, Sort};
-use perilife_results::units::of_table;
 use perilife_runner::{Kind, Task};
 
 /// Arguments of `perilife sif`.
@@ -88,17 +86,17 @@ fn sweep(args: &Args, asked: &str) -> Result<()> {
     let document = Document::read(&args.case, &args.set)?;
     let case = perilife_runner::factor_sweep::case(&document, &lengths)?;
     let out = args.out.as_deref().ok_or_else(|| input_missing("--out", "is missing", "name the table: --out FILE.csv"))?;
-    let claim = |option, path: &Path, header: &'static str| {
-        OutputFile::claim(path, Sort { option, sign: header.as_bytes() }, &document.folder.opened().so_far())
+    let claim = |option, path: &Path, sign: &'static str| {
+        OutputFile::claim(path, Sort { option, sign: sign.as_bytes() }, &document.folder.opened().so_far())
     };
     // Claimed first: a file that cannot be written should not cost a run.
-    let file = claim("--out", out, tables::COLUMNS)?;
+    let file = claim("--out", out, tables::SIGN)?;
     let beta = args.beta.as_deref().map(|path| claim("--beta", path, HEADER)).transpose()?;
     case.warnings.iter().for_each(|warning| console.warn(warning));
     let found = factor_sweep(&case, &lengths, true, console).map_err(|error| document.locate(error))?;
     found.warnings.iter().for_each(|warning| console.warn(warning));
-    file.write(of_table(&tables::table(&found), shown()).as_bytes())?;
-    beta.map_or(Ok(()), |file| file.write(of_table(&tables::beta_table(&found), shown()).as_bytes()))?;
+    file.write(tables::table(&found).csv().as_bytes())?;
+    beta.map_or(Ok(()), |file| file.write(tables::beta_table(&found).csv().as_bytes()))?;
     let [from, to] = [lengths[0], lengths[lengths.len() - 1]].map(|length| length / MM);
     if out != Path::new(STREAM) {
         console.say(&format!("{}: {} rows from {from} to {to} mm", out.display(), found.rows.len()));

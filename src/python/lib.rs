@@ -118,7 +118,7 @@ mod _perilife {
             let case = perilife_runner::factor_sweep::case(&document, &lengths)?;
             let found = factor_sweep(&case, &lengths, true, told)?;
             let warnings = [case.warnings, found.warnings.clone()].concat();
-            Ok((tables::table(&found), tables::beta_table(&found), found.lead, warnings))
+            Ok((tables::table(&found).csv(), tables::beta_table(&found).csv(), found.lead, warnings))
         };
         watched(py, progress, |told| work(told).map_err(|error| document.locate(error)))
     }

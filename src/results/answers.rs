@@ -3,12 +3,12 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use serde_json::{Value, json};
-
 use super::band::Lives;
+use super::checks::is_bound_below;
 use super::fleet::FleetReport;
 pub use super::inspections::Asked;
-use super::inspections::Inspections;
+use super::inspections::InspectionsRecord;
+use super::record::RunRecord;
 use super::sensitivities::Sensitivities;
 use perilife_base::error::Result;
 use perilife_growth::case::{Case, Engine, Stop};
@@ -28,7 +28,7 @@ fn whole<'p>(case: &Case, prediction: &'p Prediction, is_asked: bool) -> Cow<'p,
 /// The answers, as far as they were asked for.
 #[derive(Debug, Clone, Default)]
 pub struct Answers {
-    inspections: Option<Inspections>,
+    inspections: Option<InspectionsRecord>,
     fleet: Option<FleetReport>,
     sensitivities: Option<Sensitivities>,
 }
@@ -37,26 +37,20 @@ impl Answers {
     /// Of a run; `lives` say when its plate is looked at and how its law scatters.
     /// Errors: a fleet in which nothing scatters, a run without K.
     pub fn of(case: &Case, prediction: &Prediction, lives: &Lives, asked: Asked) -> Result<Self> {
-        let inspections = lives.inspection().and_then(|inspection| Inspections::of(case, prediction, inspection, asked));
+        let inspections = lives.inspection().and_then(|inspection| InspectionsRecord::of(case, prediction, inspection, asked));
         let run = whole(case, prediction, case.fleet.is_some() || asked.sensitivities);
-        let of_whole = if matches!(run, Cow::Owned(_)) { &Lives::of(case, &run)? } else { lives };
+        let of_whole = if matches!(run, Cow::Owned(_)) { &Lives::of(case, &run, is_bound_below(case, &run))? } else { lives };
         let of_fleet = |fleet| FleetReport::of(case, fleet, (prediction, lives.inspection()), (&run, of_whole), asked);
         let fleet = case.fleet.as_ref().map(of_fleet).transpose()?;
         let sensitivities = asked.sensitivities.then(|| Sensitivities::of(case, &run)).transpose()?;
         Ok(Answers { inspections, fleet, sensitivities })
     }
 
-    /// Adds `inspections`, `fleet` and `sensitivities` to the object of `result.json`.
-    pub fn add_to(&self, result: &mut Value) {
-        let objects = [
-            ("inspections", self.inspections.as_ref().map(Inspections::json)),
-            ("fleet", self.fleet.as_ref().map(FleetReport::json)),
-            ("sensitivities", self.sensitivities.as_ref().map(Sensitivities::json)),
-        ];
-        objects
-            .into_iter()
-            .filter_map(|(key, object)| Some((key, object?)))
-            .for_each(|(key, object)| result[key] = json!(object));
+    /// Adds them to the record of the run.
+    pub fn add_to(&self, record: &mut RunRecord) {
+        record.inspections.clone_from(&self.inspections);
+        record.fleet = self.fleet.as_ref().map(FleetReport::record);
+        record.sensitivities = self.sensitivities.as_ref().map(Sensitivities::record);
     }
 
     /// Writes tables and pictures into the folder of a run.
@@ -72,7 +66,7 @@ impl Answers {
 
     /// Lines of a summary.
     pub fn words(&self) -> Vec<String> {
-        let inspections = self.inspections.iter().map(Inspections::words);
+        let inspections = self.inspections.iter().map(InspectionsRecord::words);
         let sensitivities = self.sensitivities.iter().map(Sensitivities::words);
         inspections.chain(self.fleet.iter().flat_map(FleetReport::words)).chain(sensitivities).collect()
     }

@@ -1,7 +1,7 @@
 //! An axis of a chart: range, ticks and how numbers are written along it. Linear or logarithmic.
 
+use super::format::{AXIS, clean, trimmed};
 use perilife_base::units::shown::per;
-use perilife_base::units::us::clean;
 
 /// Linear or logarithmic axis. Ticks of a logarithmic one are not of whole decades only, which would leave ΔK from 8 to 40 MPa√m with one
 /// number.
@@ -162,25 +162,8 @@ fn tick_text(value: f64, largest: f64, decimals: usize) -> String {
         let power = format!("10{}", superscript(exponent));
         return if mantissa == "1" { power } else { format!("{mantissa}·{power}") };
     }
-    let text = trimmed(&format!("{value:.6}"));
-    let text = if decimals > 0 { format!("{value:.decimals$}") } else { text };
-    grouped(&text, "\u{2009}")
-}
-
-fn trimmed(text: &str) -> String {
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text.to_owned() }
-}
-
-/// Puts a space between thousands, from 10 000 on.
-pub(super) fn grouped(text: &str, space: &str) -> String {
-    let (whole, rest) = text.split_once('.').map_or((text, String::new()), |(w, r)| (w, format!(".{r}")));
-    if whole.len() < 5 {
-        return text.to_owned();
-    }
-    let head = whole.len() % 3;
-    let mut groups: Vec<&str> = if head > 0 { vec![&whole[..head]] } else { Vec::new() };
-    groups.extend((head..whole.len()).step_by(3).map(|at| &whole[at..at + 3]));
-    groups.join(space) + &rest
+    let text = if decimals > 0 { format!("{value:.decimals$}") } else { trimmed(&format!("{value:.6}")).to_owned() };
+    AXIS.digits(&text)
 }
 
 fn superscript(exponent: &str) -> String {

@@ -1,10 +1,9 @@
-//! The band of the lives of a run as it is written: columns of `a_n.csv`, keys of `result.json`, words, and the inspection interval.
+//! The band of the lives of a run: its figures, words, what readings of the plate itself say, and the inspection interval.
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
-use super::checks;
-use super::csv::{self, Row};
-use super::model_words::short;
+use super::curve::{Row, curve};
+use super::format::{PLAIN, digits, short};
 use perilife_base::error::{Result, input};
 use perilife_base::units::MM;
 use perilife_calibration::inspection::{InspectFrom, Inspection, TipLengths};
@@ -14,18 +13,51 @@ use perilife_growth::case::{Case, Lot};
 use perilife_growth::predict::Prediction;
 use perilife_measured::MeasuredCurve;
 
-/// Columns of a table of rows that have a band: cycles at which 5, 50 and 95 % of specimens have reached the length, and cycles that so
-/// many do not live on from there to the end of the run.
-pub const COLUMNS: [&str; 6] =
-    ["cycles_p05", "cycles_p50", "cycles_p95", "remaining_cycles_p05", "remaining_cycles_p50", "remaining_cycles_p95"];
 /// Whose the band is, in words: of any specimen of the lot, of the plate that was read.
 const OF_SPECIMENS: &str = "90 % of specimens";
 /// See [`OF_SPECIMENS`].
 const OF_PLATE: &str = "90 % band";
-/// Half widths of a band above which a life has so many significant digits, and those below.
-const DIGITS: [(f64, usize); 2] = [(0.1, 2), (0.01, 3)];
-/// Digits of a life that is known better.
-const DIGITS_MOST: usize = 4;
+
+/// `band` of a result: cycles that 5, 50 and 95 % of specimens do not reach, and what they rest on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BandRecord {
+    pub cycles_p05: f64,
+    pub cycles_p50: f64,
+    pub cycles_p95: f64,
+    pub specimens: usize,
+    pub assumed_scatter: bool,
+    /// Share of the life outside their ΔK.
+    pub share_outside: f64,
+    pub lot: Lot,
+}
+
+impl BandRecord {
+    pub fn cycles(&self) -> Quantiles {
+        [self.cycles_p05, self.cycles_p50, self.cycles_p95]
+    }
+}
+
+/// Cycles that 5, 50 and 95 % of specimens do not live on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Remaining {
+    pub remaining_cycles_p05: f64,
+    pub remaining_cycles_p50: f64,
+    pub remaining_cycles_p95: f64,
+}
+
+/// `measured` of a result: what readings of the plate itself say.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OwnRecord {
+    pub remaining_cycles_p05: f64,
+    pub remaining_cycles_p50: f64,
+    pub remaining_cycles_p95: f64,
+    pub specimen: String,
+    pub intervals: usize,
+    pub crack_length_mm: f64,
+    pub cycles: f64,
+    /// The same by the lot alone.
+    pub of_lot: Remaining,
+}
 
 /// Lives of a lot on a plate that was run, and what was asked about them.
 #[derive(Debug, Clone)]
@@ -52,28 +84,15 @@ struct Own {
     of_lot: Left,
 }
 
-/// What is left at every row of a table that a run with a band wrote; `None` of one without.
-pub fn left_of_table(text: &str) -> Option<Vec<Quantiles>> {
-    let mut lines = text.lines();
-    let head: Vec<&str> = lines.next()?.split(',').collect();
-    let place = |name: &str| head.iter().position(|column| *column == name);
-    let places = [place(COLUMNS[3])?, place(COLUMNS[4])?, place(COLUMNS[5])?];
-    let row = |line: &str| {
-        let fields: Vec<&str> = line.split(',').collect();
-        places.map(|place| fields.get(place).and_then(|field| field.parse().ok()).unwrap_or(f64::NAN))
-    };
-    Some(lines.map(row).collect())
-}
-
 impl Lives {
     /// Of a run.
     /// Errors: a record whose `[population]` is damaged.
-    pub fn of(case: &Case, prediction: &Prediction) -> Result<Self> {
+    pub fn of(case: &Case, prediction: &Prediction, is_lower_bound: bool) -> Result<Self> {
         let plate = Plate::of(case, prediction)?;
         Ok(Lives {
             band: plate.and_then(|plate| plate.band().map(|band| (plate, band))),
             is_lot_given: !case.echo["fatigue"]["lot"].is_null(),
-            is_lower_bound: checks::is_bound_below(case, prediction),
+            is_lower_bound,
             tips: TipLengths::of_run(case, prediction),
             per_pass: case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass),
             rows: Row::of_run(case, prediction),
@@ -99,7 +118,7 @@ impl Lives {
     /// Errors: as [`Inspection::of`]; a length shorter than the last reading of the plate.
     pub fn inspect(&mut self, from: InspectFrom) -> Result<()> {
         let left = self.band.as_ref().ok().map(|(_, band)| &*band.left);
-        let mut inspection = Inspection::of(&csv::curve(&self.rows), self.tips.as_ref(), left, from, self.is_lower_bound)?;
+        let mut inspection = Inspection::of(&curve(&self.rows), self.tips.as_ref(), left, from, self.is_lower_bound)?;
         if let (Ok((plate, _)), Some(own)) = (&self.band, &self.own) {
             let left = plate.left(inspection.crack_length_governing_mm * MM, Some(&own.specimen))?;
             inspection = inspection.with(Some(left.quantiles));
@@ -118,47 +137,35 @@ impl Lives {
         self.band.as_ref().ok().and_then(|(_, band)| band.reached.last().copied())
     }
 
-    /// Adds `band` and what was asked to the object of `result.json`.
-    pub fn add_to(&self, result: &mut Value) {
-        let Some(fields) = result.as_object_mut() else { return };
-        let band = self.life().zip(self.band.as_ref().ok()).map(|([low, middle, high], (plate, band))| {
-            json!({
-                "cycles_p05": low,
-                "cycles_p50": middle,
-                "cycles_p95": high,
-                "specimens": plate.lot.specimens.len(),
-                "assumed_scatter": plate.lot.assumed_scatter,
-                "share_outside": band.share_outside,
-                "lot": plate.of.name(),
-            })
-        });
-        fields.insert("band".to_owned(), json!(band));
-        fields.insert("no_band".to_owned(), json!(self.band.as_ref().err()));
-        if let Some(own) = &self.own {
-            let quantiles = |left: &Left| json!({ COLUMNS[3]: left.quantiles[0], COLUMNS[4]: left.quantiles[1], COLUMNS[5]: left.quantiles[2] });
-            let mut object = quantiles(&own.left);
-            object["specimen"] = json!(own.specimen.name);
-            object["intervals"] = json!(own.specimen.intervals.len());
-            object["crack_length_mm"] = json!(own.left.crack_length / MM);
-            object["cycles"] = json!(own.cycles);
-            object["of_lot"] = quantiles(&own.of_lot);
-            fields.insert("measured".to_owned(), object);
-        }
-        if let Some(inspection) = &self.inspection {
-            fields.insert("inspection".to_owned(), json!(inspection));
-        }
+    /// What `a_n.csv` has beside its rows.
+    pub fn columns(&self) -> Option<&PlateBand> {
+        self.band.as_ref().ok().map(|(_, band)| band)
     }
 
-    /// `a_n.csv` with the columns of the band at its end.
-    pub fn beside(&self, table: String) -> String {
-        let Ok((_, band)) = &self.band else { return table };
-        let mut lines = table.lines();
-        let mut text = format!("{},{}\n", lines.next().unwrap_or_default(), COLUMNS.join(","));
-        for (line, (reached, left)) in lines.zip(band.reached.iter().zip(&band.left)) {
-            let fields: Vec<String> = reached.iter().chain(left).map(|cycles| csv::exact(*cycles)).collect();
-            text.push_str(&format!("{line},{}\n", fields.join(",")));
-        }
-        text
+    /// `band` of the result.
+    pub(super) fn band_record(&self) -> Option<BandRecord> {
+        let (plate, band) = self.band.as_ref().ok()?;
+        let [cycles_p05, cycles_p50, cycles_p95] = self.life()?;
+        let (specimens, assumed_scatter) = (plate.lot.specimens.len(), plate.lot.assumed_scatter);
+        let share_outside = band.share_outside;
+        Some(BandRecord { cycles_p05, cycles_p50, cycles_p95, specimens, assumed_scatter, share_outside, lot: plate.of })
+    }
+
+    /// `measured` of the result.
+    pub(super) fn own_record(&self) -> Option<OwnRecord> {
+        let own = self.own.as_ref()?;
+        let [remaining_cycles_p05, remaining_cycles_p50, remaining_cycles_p95] = own.left.quantiles;
+        let [low, middle, high] = own.of_lot.quantiles;
+        Some(OwnRecord {
+            remaining_cycles_p05,
+            remaining_cycles_p50,
+            remaining_cycles_p95,
+            specimen: own.specimen.name.clone(),
+            intervals: own.specimen.intervals.len(),
+            crack_length_mm: own.left.crack_length / MM,
+            cycles: own.cycles,
+            of_lot: Remaining { remaining_cycles_p05: low, remaining_cycles_p50: middle, remaining_cycles_p95: high },
+        })
     }
 
     /// The life in words, with the digits that its band deserves; `None` without a band.
@@ -199,32 +206,14 @@ impl Lives {
     }
 }
 
-/// Lengths of the cracks of the tips, of the table of a run and `tips` of its `result.json`.
-pub fn tip_lengths_of_table(text: &str, tips: &Value) -> Option<TipLengths> {
-    let tips = tips.as_array()?;
-    let leads = tips.iter().position(|tip| tip["leads"] == true && !tip["crack"].is_null())?;
-    let mut lines = text.lines();
-    let head: Vec<&str> = lines.next()?.split(',').collect();
-    let growth = |tip: usize| head.iter().position(|column| *column == format!("tip{tip}_growth_mm"));
-    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
-    let of_tip = |tip: &Value| {
-        let same = (0..tips.len()).filter(|other| tips[*other]["crack"] == tip["crack"]);
-        let columns: Option<Vec<usize>> = same.map(growth).collect();
-        let (Some(start), Some(columns)) = (tip["crack_length_initial_mm"].as_f64(), columns) else { return Vec::new() };
-        let grown = |row: &Vec<&str>, column: usize| row.get(column).and_then(|field| field.parse::<f64>().ok()).unwrap_or(0.0);
-        rows.iter().map(|row| start + columns.iter().map(|&column| grown(row, column)).sum::<f64>()).collect()
-    };
-    Some(TipLengths { lengths: tips.iter().map(of_tip).collect(), leads })
-}
-
 /// What an inspection says, in lines of a summary.
 fn inspection_words(inspection: &Inspection, whose: &str, per_pass: Option<f64>) -> Vec<String> {
     let (length, factor, quantiles) = (short(inspection.crack_length_mm), inspection.factor, inspection.quantiles());
-    let every = every_words(inspection.inspection_interval_cycles, quantiles.as_ref(), per_pass);
+    let every = interval_words(inspection, per_pass);
     let [left, every] = match quantiles {
         Some(quantiles) => [words_of(&quantiles, whose), format!("{every}: the 5 % remaining life over {factor}")],
         None => [
-            format!("{} cycles", grouped(inspection.remaining_cycles.round())),
+            format!("{} cycles", PLAIN.whole(inspection.remaining_cycles)),
             format!("{every}: the remaining life over {factor}, no band"),
         ],
     };
@@ -239,53 +228,16 @@ pub fn no_band_to_narrow(curve: &MeasuredCurve, why: &str) -> perilife_base::err
     input("--measured", curve.source.file.display(), format!("cannot narrow the band of the life, which has none: {why}"), remedy)
 }
 
-/// Significant digits that a band deserves.
-pub fn digits([low, middle, high]: &Quantiles) -> usize {
-    let half = 0.5 * (high - low) / middle;
-    DIGITS.iter().find(|(width, _)| half > *width).map_or(DIGITS_MOST, |(_, digits)| *digits)
-}
-
 /// An interval rounded down, since it is a promise, to the digits that a band deserves, and its passes under a spectrum.
 pub fn every_words(cycles: f64, band: Option<&Quantiles>, per_pass: Option<f64>) -> String {
-    let whole = band.map_or_else(|| grouped(cycles.floor()), |band| written(cycles, digits(band), f64::floor));
     let passes =
         per_pass.map_or_else(String::new, |each| format!(" ({} passes)", short((100.0 * cycles / each).floor() / 100.0)));
-    format!("{whole} cycles{passes}")
+    format!("{} cycles{passes}", PLAIN.promised(cycles, band))
 }
 
-/// The interval of the object `inspection` of a result, as the console says it.
-pub fn interval_of(result: &Value) -> Option<String> {
-    let inspection = &result["inspection"];
-    let [low, middle, high] = [3, 4, 5].map(|place| inspection[COLUMNS[place]].as_f64());
-    let band = low.zip(middle).zip(high).map(|((low, middle), high)| [low, middle, high]);
-    let cycles = inspection["inspection_interval_cycles"].as_f64()?;
-    Some(every_words(cycles, band.as_ref(), result["spectrum"]["cycles_per_pass"].as_f64()))
-}
-
-fn written(cycles: f64, digits: usize, to_whole: fn(f64) -> f64) -> String {
-    if !(cycles.is_finite() && cycles > 0.0) {
-        return format!("{cycles}");
-    }
-    let place = cycles.log10().floor() as i32 + 1 - digits as i32;
-    let unit = 10f64.powi(place);
-    if place < 0 {
-        format!("{:.*}", place.unsigned_abs() as usize, to_whole(cycles / unit) * unit)
-    } else {
-        grouped(to_whole(cycles / unit) * unit)
-    }
-}
-
-/// A whole number with its thousands apart.
-fn grouped(whole: f64) -> String {
-    let digits = format!("{whole:.0}");
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && digits.len() > 4 && (digits.len() - i) % 3 == 0 {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
+/// The interval of an inspection, as the console says it.
+pub fn interval_words(inspection: &Inspection, per_pass: Option<f64>) -> String {
+    every_words(inspection.inspection_interval_cycles, inspection.quantiles().as_ref(), per_pass)
 }
 
 /// `254 000 cycles (median; 90 % of specimens 228 000 to 283 000)`, with the digits that the band deserves.
@@ -295,6 +247,6 @@ pub fn band_words(quantiles: &Quantiles) -> String {
 
 fn words_of(quantiles: &Quantiles, whose: &str) -> String {
     let digits = digits(quantiles);
-    let [low, middle, high] = quantiles.map(|cycles| written(cycles, digits, f64::round));
+    let [low, middle, high] = quantiles.map(|cycles| PLAIN.significant(cycles, digits, f64::round));
     format!("{middle} cycles (median; {whose} {low} to {high})")
 }

@@ -2,15 +2,17 @@
 
 mod part_through;
 
-use serde::Serialize;
-use serde_json::Value;
+use std::borrow::Cow;
 
-use super::model_words::short;
+use serde::{Deserialize, Serialize};
+
+use super::format::{PLAIN, short};
+use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::predict::fit_use;
-use perilife_growth::predict::judgement::first_delta_k;
+use perilife_growth::predict::judgement::{self, first_delta_k};
 use perilife_growth::predict::plastic_zone::plastic_zone;
 use perilife_growth::predict::{CurvePoint, Prediction, StopReason};
 use perilife_plate::material::growth_data::BATCH_FACTOR;
@@ -32,7 +34,7 @@ const RETARDED_DOUBTFUL: f64 = 1.5;
 const EXPONENT_USUAL: f64 = 3.0;
 
 /// Whether a condition holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// It does not, and the life is none.
@@ -46,7 +48,7 @@ pub enum Verdict {
 }
 
 /// On which side of the true life a life is where a condition does not hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
     /// Too short.
@@ -58,10 +60,10 @@ pub enum Side {
 }
 
 /// One condition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// Name, the same in every run.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// Whether it holds.
     pub verdict: Verdict,
     /// What it may do to the life, or the share of the life that it concerns, percent; `None` where nobody knows.
@@ -76,7 +78,7 @@ pub struct Check {
 
 impl Check {
     fn new(name: &'static str, verdict: Verdict, words: String) -> Self {
-        Check { name, verdict, effect_percent: None, side: None, words, remedy: None }
+        Check { name: name.into(), verdict, effect_percent: None, side: None, words, remedy: None }
     }
 
     fn not_checked(name: &'static str, words: &str, remedy: &str) -> Self {
@@ -140,7 +142,35 @@ pub fn is_bound_below(case: &Case, prediction: &Prediction) -> bool {
     prediction.stop == StopReason::RunOut || prediction.stop.is_lower_bound() && is_checked()
 }
 
-/// One line that says how the life stands.
+/// What a run was judged to be, once: how its life stands, what the user should know, whether it counts.
+#[derive(Debug, Default)]
+pub struct Judgement {
+    /// Those that matter most first.
+    pub checks: Vec<Check>,
+    /// Whether the life is reached at the least.
+    pub is_lower_bound: bool,
+    /// What is to be said of it beyond what the run itself says.
+    pub warnings: Vec<String>,
+    /// Why it does not count.
+    pub refusal: Option<Error>,
+}
+
+impl Judgement {
+    /// Of a run.
+    /// Errors: as [`judgement::judge`].
+    pub fn of(case: &Case, prediction: &Prediction) -> Result<Self> {
+        let warnings = judgement::judge(case, prediction)?;
+        let (checks, is_lower_bound) = (of_run(case, prediction), is_bound_below(case, prediction));
+        Ok(Judgement { checks, is_lower_bound, warnings, refusal: judgement::refusal(case, prediction) })
+    }
+
+    /// One line that says how the life stands.
+    pub fn verdict(&self) -> String {
+        verdict(&self.checks)
+    }
+}
+
+/// One line that says how a life stands.
 pub fn verdict(checks: &[Check]) -> String {
     let count = |verdict: Verdict| checks.iter().filter(|check| check.verdict == verdict).count();
     let some =
@@ -160,11 +190,6 @@ pub fn lines(checks: &[Check]) -> Vec<String> {
     let cut = |words: &str, end: usize| format!("{}…", &words[..words[..end].rfind(' ').unwrap_or(end)]);
     let line = |words: &str| words.char_indices().nth(LETTERS_MOST).map_or_else(|| words.to_owned(), |(end, _)| cut(words, end));
     open.take(LINES_MOST).map(|check| line(&check.words)).collect()
-}
-
-/// The array of `result.json`.
-pub fn json(checks: &[Check]) -> Value {
-    serde_json::to_value(checks).unwrap_or(Value::Null)
 }
 
 /// Whether a strength is there to be checked.
@@ -232,10 +257,10 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
     let never = zone.too_large_to.is_none() && zone.too_large_from == Some(zone.first.crack_length);
     let words = match zone.too_large_from {
         None => "small-scale yielding: holds to the end".to_owned(),
-        Some(from) if never => format!("small-scale yielding: not from N = 0, {} mm, on", two_digits(from / MM)),
+        Some(from) if never => format!("small-scale yielding: not from N = 0, {}, on", two_digits(from)),
         Some(from) => {
-            let until = zone.too_large_to.map_or_else(|| "on".to_owned(), |to| format!("to {} mm", two_digits(to / MM)));
-            format!("small-scale yielding: not from {} mm {until}, {percent:.1} % of life", two_digits(from / MM))
+            let until = zone.too_large_to.map_or_else(|| "on".to_owned(), |to| format!("to {}", two_digits(to)));
+            format!("small-scale yielding: not from {} {until}, {percent:.1} % of life", two_digits(from))
         }
     };
     let remedy = match zone.too_small {
@@ -249,7 +274,7 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
 
 /// A length as the criterion deserves: two digits, and the third of a length of more than ten.
 fn two_digits(length: f64) -> String {
-    if length < 10.0 { format!("{length:.1}") } else { format!("{length:.0}") }
+    PLAIN.length(length, usize::from(length < 10.0 * MM))
 }
 
 /// Life outside the fitted range, below and above.
@@ -323,9 +348,9 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
     };
     let percent = 100.0 * exponent * check.difference;
     let words = format!(
-        "K: {:+.1} % from the energy of the plate at {} mm, {:+.0} % of da/dN there",
+        "K: {:+.1} % from the energy of the plate at {}, {:+.0} % of da/dN there",
         100.0 * check.difference,
-        two_digits(check.crack_length / MM),
+        two_digits(check.crack_length),
         percent
     );
     // A K that is too large makes lives too short.

@@ -5,7 +5,7 @@ use std::path::Path;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::axis::grouped;
+use super::format::PLAIN;
 use super::output::write_file;
 use super::pictures::plate::scale_bar;
 use super::raster::{of_share, png};
@@ -43,8 +43,7 @@ pub struct DamagePicture<'a> {
 
 /// The caption of a snapshot of cycles.
 pub fn cycles_and_length(snapshot: &Snapshot) -> [String; 2] {
-    let cycles = grouped(&format!("{:.0}", snapshot.cycles), " ");
-    [format!("N = {cycles} cycles"), format!("crack length {:.2} mm", snapshot.crack_length / MM)]
+    [format!("N = {} cycles", PLAIN.whole(snapshot.cycles)), format!("crack length {:.2} mm", snapshot.crack_length / MM)]
 }
 
 impl DamagePicture<'_> {

@@ -1,9 +1,8 @@
 //! K of every tip along a run: `factors.csv` for people and programs, `beta.txt` for AFGROW.
 
-use std::fmt::Write as _;
-
-use super::csv::{exact, number};
+use perilife_base::columns::{Table, number_text};
 use perilife_base::error::Result;
+use perilife_base::units::shown::per;
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::Case;
 use perilife_growth::cracks::steering::equivalent_factor;
@@ -17,21 +16,6 @@ use perilife_points::crack_tip::TipState;
 pub const FACTORS_FILE: &str = "factors.csv";
 /// Table of β over crack length of the tip that grows farthest.
 pub const BETA_FILE: &str = "beta.txt";
-/// Columns of [`FACTORS_FILE`].
-pub const FACTOR_COLUMNS: [&str; 11] = [
-    "tip",
-    "cycles",
-    "crack_length_mm",
-    "growth_mm",
-    "k_i_mpa_sqrt_m",
-    "k_ii_mpa_sqrt_m",
-    "k_eq_mpa_sqrt_m",
-    "delta_k_mpa_sqrt_m",
-    "beta_length_mm",
-    "beta",
-    "da_dn_mm_per_cycle",
-];
-
 /// What K of the tips of a run makes of them.
 struct Factors<'a> {
     case: &'a Case,
@@ -106,46 +90,74 @@ pub fn are_known(prediction: &Prediction) -> bool {
 /// included, or its whole length where that has one tip; empty for the end of a slot.
 /// Last comes what a crack that did not go through does in the thickness, as tip `depth`.
 /// Errors: a law whose rate is not known.
-pub fn factors(case: &Case, prediction: &Prediction) -> Result<String> {
+pub fn factors(case: &Case, prediction: &Prediction) -> Result<Table> {
     let (law, of_case) = (growth_law(case)?, Factors::of(case));
     let governing = GoverningCrack::of(&case.specimen, &prediction.curve);
-    let mut text = FACTOR_COLUMNS.join(",") + "\n";
-    for tip in 0..of_case.cracks.len() {
-        for point in &prediction.curve {
-            let record = &point.tips[tip];
-            let k_eq = Factors::equivalent(point, tip);
-            let range_share = record.response.range_share(case.loading.ratio);
+    let of_tip = |tip: usize| {
+        let of_row = |point: &CurvePoint| {
+            let (record, k_eq) = (&point.tips[tip], Factors::equivalent(point, tip));
             let rate = if k_eq.is_nan() { k_eq } else { law.mean_rate(k_eq, case.loading.ratio, &record.response) };
-            let lengths = [governing.length(point), record.growth].map(|length| number(length / MM)).join(",");
             let [k_i, k_ii] = record.factors.unwrap_or([f64::NAN; 2]);
-            let known = [k_i, k_ii, k_eq, range_share * k_eq].map(|k| number(k / MPA_SQRT_M)).join(",");
-            let beta = [of_case.length(point, tip) / MM, of_case.beta(point, tip)].map(number).join(",");
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{tip},{},{lengths},{known},{beta},{}", exact(point.cycles), number(rate / MM_PER_CYCLE));
-        }
-    }
-    text.push_str(&in_depth(case, prediction, &*law));
-    Ok(text)
+            FactorRow {
+                tip: tip.to_string(),
+                cycles: point.cycles,
+                lengths: [governing.length(point), record.growth],
+                factors: [k_i, k_ii, k_eq, record.response.range_share(case.loading.ratio) * k_eq],
+                beta: [of_case.length(point, tip), of_case.beta(point, tip)],
+                rate,
+            }
+        };
+        prediction.curve.iter().map(of_row).collect::<Vec<_>>()
+    };
+    let rows: Vec<FactorRow> = (0..of_case.cracks.len()).flat_map(of_tip).chain(in_depth(case, prediction, &*law)).collect();
+    let column = |of: fn(&FactorRow) -> f64| rows.iter().map(of);
+    Ok(Table::new(FACTORS_FILE)
+        .words("tip", rows.iter().map(|row| &row.tip))
+        .exact("cycles", column(|row| row.cycles))
+        .numbers("crack_length_mm", column(|row| row.lengths[0] / MM))
+        .numbers("growth_mm", column(|row| row.lengths[1] / MM))
+        .numbers("k_i_mpa_sqrt_m", column(|row| row.factors[0] / MPA_SQRT_M))
+        .numbers("k_ii_mpa_sqrt_m", column(|row| row.factors[1] / MPA_SQRT_M))
+        .numbers("k_eq_mpa_sqrt_m", column(|row| row.factors[2] / MPA_SQRT_M))
+        .numbers("delta_k_mpa_sqrt_m", column(|row| row.factors[3] / MPA_SQRT_M))
+        .numbers("beta_length_mm", column(|row| row.beta[0] / MM))
+        .numbers("beta", column(|row| row.beta[1]))
+        .numbers("da_dn_mm_per_cycle", column(|row| row.rate / MM_PER_CYCLE)))
+}
+
+/// A row of [`FACTORS_FILE`], SI.
+struct FactorRow {
+    tip: String,
+    cycles: f64,
+    /// Of the crack, and growth.
+    lengths: [f64; 2],
+    /// K_I, K_II, K_eq and ΔK.
+    factors: [f64; 4],
+    /// Its length and itself.
+    beta: [f64; 2],
+    rate: f64,
 }
 
 /// Rows of the deepest point of a crack that did not go through at the start, as tip `depth`: its own growth, and β with a the depth.
-fn in_depth(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> String {
-    let (mut text, stress) = (String::new(), Factors::of(case).stress.unwrap_or(f64::NAN));
+fn in_depth(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Vec<FactorRow> {
+    let stress = Factors::of(case).stress.unwrap_or(f64::NAN);
     let start = case.specimen.part_through.map_or(f64::NAN, |flaw| flaw.depth);
-    for point in &prediction.curve {
-        let Some((depth, k_i)) = point.depth.and_then(|record| Some((record.depth, record.k_i?))) else { continue };
-        let lengths = [point.crack_length, depth - start].map(|length| number(length / MM)).join(",");
-        let known = [k_i, 0.0, k_i, case.loading.range_share() * k_i].map(|k| number(k / MPA_SQRT_M)).join(",");
-        let beta = [depth / MM, k_i / (stress * (std::f64::consts::PI * depth).sqrt())].map(number).join(",");
-        let rate = law.rate(k_i, case.loading.ratio) / MM_PER_CYCLE;
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "depth,{},{lengths},{known},{beta},{}", exact(point.cycles), number(rate));
-    }
-    text
+    let of_row = |point: &CurvePoint| {
+        let (depth, k_i) = point.depth.and_then(|record| Some((record.depth, record.k_i?)))?;
+        Some(FactorRow {
+            tip: "depth".to_owned(),
+            cycles: point.cycles,
+            lengths: [point.crack_length, depth - start],
+            factors: [k_i, 0.0, k_i, case.loading.range_share() * k_i],
+            beta: [depth, k_i / (stress * (std::f64::consts::PI * depth).sqrt())],
+            rate: law.rate(k_i, case.loading.ratio),
+        })
+    };
+    prediction.curve.iter().filter_map(of_row).collect()
 }
 
-/// `beta.txt`: lines of a, mm, and β of `factors.csv` for the tip that grows farthest, with a rising: a table as AFGROW takes it for
-/// a user-defined β, without a header. `None` where there is no β.
+/// `beta.txt`: lines of a, in the unit that is shown, and β of `factors.csv` for the tip that grows farthest, with a rising: a table as AFGROW
+/// takes it for a user-defined β, without a header. `None` where there is no β.
 pub fn beta(case: &Case, prediction: &Prediction) -> Option<String> {
     let of_case = Factors::of(case);
     let last = prediction.curve.last()?;
@@ -157,7 +169,7 @@ pub fn beta(case: &Case, prediction: &Prediction) -> Option<String> {
     for point in &prediction.curve {
         let (length, beta) = (of_case.length(point, lead), of_case.beta(point, lead));
         if length > longest && beta > 0.0 {
-            let _ = writeln!(text, "{} {}", number(length / MM), number(beta)); // a String takes all
+            text += &format!("{} {}\n", number_text(length / MM * per("mm")), number_text(beta));
             longest = length;
         }
     }

@@ -6,13 +6,13 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::chart::LARGE;
-use super::output::write_file;
+use super::output::{write_file, write_json};
 use super::pictures::fit::{
     BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, law_svg, rates_fitted,
 };
 use super::pictures::plate::Plate;
-use super::units::show_folder;
 use super::{provenance, test_record};
+use perilife_base::columns::{Table, shown_text};
 use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::calibrate::Fitted;
@@ -34,7 +34,7 @@ const DA_DN_FILE: &str = "da_dn.svg";
 pub struct Kept {
     /// Content of `fit.json`.
     pub json: Value,
-    /// The law and all tables, by the names of their files.
+    /// The law and all tables in the units that are shown, by the names of their files.
     pub tables: Vec<(&'static str, String)>,
 }
 
@@ -61,21 +61,28 @@ impl Kept {
                     object.insert("criteria".to_owned(), test_record::criteria(calibration, &left_out, &delta_k).into());
                     object.insert("plate".to_owned(), json!(Plate::of(&calibration.case)));
                 }
-                let listed: Vec<(&str, &str)> = tables.iter().map(|(name, text)| (*name, &**text)).collect();
-                provenance::add(&mut json, &calibration.case.provenance, &listed);
+                let tables = shown_of(tables)?;
+                provenance::add(&mut json, &calibration.case.provenance, tables.iter().map(|(name, text)| (*name, &**text)));
                 tables
             }
             Fitted::Rates(case, fits) => {
-                vec![(LAW_FILE, law), (RATES_FITTED_FILE, rates_csv(case, fits)), (RATES_FILE, rates_taken_csv(case))]
+                shown_of(vec![(LAW_FILE, law), (RATES_FITTED_FILE, rates_csv(case, fits)), (RATES_FILE, rates_taken_csv(case))])?
             }
         };
         Ok(Kept { json, tables })
     }
 
     /// A table by the name of its file.
-    pub fn table(&self, name: &str) -> &str {
-        self.tables.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text)
+    pub fn table(&self, name: &str) -> Result<Table> {
+        Table::read(self.tables.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text), Path::new(name))
     }
+}
+
+fn shown_of(mut tables: Vec<(&'static str, String)>) -> Result<Vec<(&'static str, String)>> {
+    for (name, text) in tables.iter_mut().filter(|(name, _)| *name != LAW_FILE) {
+        *text = shown_text(text, name)?.into_owned();
+    }
+    Ok(tables)
 }
 
 /// Writes all files of a fit into `folder`.
@@ -86,14 +93,14 @@ pub fn write(folder: &Path, fitted: &Fitted<'_>, kept: &Kept) -> Result<()> {
         Fitted::Lives(calibration, fit) => {
             provenance::write(folder, "calibrate", calibration.input.clone(), &calibration.case.provenance)?;
             write_tables(folder, calibration, fit)?;
-            let tables = FitTables::read(&kept.json, [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| kept.table(name)))?;
+            let [curves, band, readings] = [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| kept.table(name));
+            let tables = FitTables::read(&kept.json, [&curves?, &band?, &readings?])?;
             put("fit.svg", &tables.lives_svg(LARGE))?;
             put(DA_DN_FILE, &tables.rates_svg(LARGE))?;
         }
-        Fitted::Rates(..) => put(DA_DN_FILE, &law_svg(&rates_fitted(kept.table(RATES_FITTED_FILE))?, LARGE))?,
+        Fitted::Rates(..) => put(DA_DN_FILE, &law_svg(&rates_fitted(&kept.table(RATES_FITTED_FILE)?)?, LARGE))?,
     }
-    put(FIT_FILE, &format!("{:#}\n", kept.json))?;
-    show_folder(folder, &mut kept.json.clone())
+    write_json(folder, FIT_FILE, &kept.json)
 }
 
 /// Standard errors from the middle of a 95 % band to its ends.

@@ -1,19 +1,18 @@
 //! A fleet as it is written: `fleet.csv`, `fleet.svg`, `fleet` of `result.json`.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use super::band::{Lives as Band, every_words};
 use super::chart::{COMPUTED, Frame, LARGE, Mark, SECOND};
-use super::csv;
+use super::format::{PLAIN, chance, clean};
 use super::inspections::Asked;
-use super::model_words::{chance, clean};
-use super::output::write_file;
-use super::sweep::Lives;
+use super::output::{write_file, write_table};
+use super::sweep::{LifeQuantiles, Lives};
+use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
 use perilife_calibration::inspection::Inspection;
@@ -26,6 +25,36 @@ use perilife_plate::specimen::Point;
 pub const FLEET_FILE: &str = "fleet.csv";
 /// The picture.
 pub const FLEET_CHART_FILE: &str = "fleet.svg";
+
+/// `fleet` of a result: quantiles as those of a sweep, unlimited and cut-off lives ranked behind the others.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FleetRecord {
+    pub plates: usize,
+    pub seed: u64,
+    pub life_cycles: LifeQuantiles,
+    pub unlimited: usize,
+    pub lower_bounds: usize,
+    pub shorter_than_known: usize,
+    pub ended_by: BTreeMap<String, usize>,
+    pub laws_drawn: bool,
+    pub one_law_because: Option<String>,
+    pub inspections: Option<FleetInspections>,
+    /// Probability that all inspections miss the crack of a plate.
+    pub missed: Option<f64>,
+}
+
+/// What inspections make of a fleet.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FleetInspections {
+    pub detectable_mm: f64,
+    pub factor: f64,
+    pub detectable_to_critical_cycles: LifeQuantiles,
+    pub break_before_detectable: usize,
+    pub first_inspection_cycles: Option<f64>,
+    pub break_before_first_inspection: Option<usize>,
+    pub interval_cycles: Option<f64>,
+    pub missed_after: Vec<f64>,
+}
 
 /// Lives of a fleet with what they were drawn by.
 #[derive(Debug, Clone)]
@@ -80,70 +109,63 @@ impl FleetReport {
     }
 
     /// What inspections make of the fleet.
-    fn looked_json(&self) -> Value {
-        let Some(looks) = self.looks else { return Value::Null };
+    fn inspections(&self, looks: Looks) -> FleetInspections {
         let looked = self.lives.looked.as_ref();
-        json!({
-            "detectable_mm": clean(looks.detectable / MM),
-            "factor": looks.factor,
-            "detectable_to_critical_cycles": self.windows().figures(),
-            "break_before_detectable": self.never_found(),
-            "first_inspection_cycles": looked.map(|looked| looked.first),
-            "break_before_first_inspection": looked.map(|looked| looked.before_first),
-            "interval_cycles": looked.map(|looked| looked.every),
-            "missed_after": looked.map_or(&[][..], |looked| &looked.missed_after),
-        })
+        FleetInspections {
+            detectable_mm: clean(looks.detectable / MM),
+            factor: looks.factor,
+            detectable_to_critical_cycles: self.windows().figures(),
+            break_before_detectable: self.never_found(),
+            first_inspection_cycles: looked.map(|looked| looked.first),
+            break_before_first_inspection: looked.map(|looked| looked.before_first),
+            interval_cycles: looked.map(|looked| looked.every),
+            missed_after: looked.map_or_else(Vec::new, |looked| looked.missed_after.clone()),
+        }
     }
 
-    /// The object of `result.json`: quantiles as those of a sweep, unlimited and cut-off lives ranked behind the others.
-    pub fn json(&self) -> Value {
+    /// `fleet` of the result.
+    pub fn record(&self) -> FleetRecord {
         let ranked = self.ranked();
-        let mut ends: BTreeMap<&str, usize> = BTreeMap::new();
-        self.lives.plates.iter().for_each(|plate| *ends.entry(plate.life.stop.name()).or_default() += 1);
-        json!({
-            "plates": self.lives.plates.len(),
-            "seed": self.fleet.seed,
-            "life_cycles": ranked.figures(),
-            "unlimited": ranked.unlimited,
-            "lower_bounds": ranked.bounds,
-            "shorter_than_known": self.clipped(),
-            "ended_by": ends,
-            "laws_drawn": self.lives.one_law.is_none(),
-            "one_law_because": self.lives.one_law,
-            "inspections": self.looked_json(),
-            "missed": self.lives.looked.as_ref().map(|looked| looked.missed),
-        })
+        let mut ended_by: BTreeMap<String, usize> = BTreeMap::new();
+        self.lives.plates.iter().for_each(|plate| *ended_by.entry(plate.life.stop.name().to_owned()).or_default() += 1);
+        FleetRecord {
+            plates: self.lives.plates.len(),
+            seed: self.fleet.seed,
+            life_cycles: ranked.figures(),
+            unlimited: ranked.unlimited,
+            lower_bounds: ranked.bounds,
+            shorter_than_known: self.clipped(),
+            ended_by,
+            laws_drawn: self.lives.one_law.is_none(),
+            one_law_because: self.lives.one_law.clone(),
+            inspections: self.looks.map(|looks| self.inspections(looks)),
+            missed: self.lives.looked.as_ref().map(|looked| looked.missed),
+        }
     }
 
     /// `fleet.csv`: a row for each plate in the order in which they are drawn; no life where it is unlimited.
-    pub fn table(&self) -> String {
-        let mut text =
-            "plate,initial_length_mm,load_factor,rate_factor,life_cycles,ended_by,life_is_lower_bound,critical_length_mm,\
-                        detectable_to_critical_cycles,missed\n"
-                .to_owned();
-        for (i, plate) in self.lives.plates.iter().enumerate() {
-            let FleetPlate { initial_length, load, rate_factor, life, critical_length, window, missed } = plate;
-            let field = |value: Option<f64>| value.filter(|value| value.is_finite()).map_or_else(String::new, csv::exact);
-            let (cycles, missed, window) = (field(Some(life.cycles)), field(*missed), field(window.map(|[_, left]| left)));
-            let critical = field(critical_length.map(|length| length / MM));
-            // Writing to a String cannot fail.
-            let _ = writeln!(
-                text,
-                "{},{},{},{},{cycles},{},{},{critical},{window},{missed}",
-                i + 1,
-                csv::exact(initial_length / MM),
-                csv::exact(*load),
-                csv::exact(*rate_factor),
-                life.stop.name(),
-                life.is_bound
-            );
-        }
-        text
+    pub fn table(&self) -> Table {
+        let plates = &self.lives.plates;
+        let numbers = |of: &dyn Fn(&FleetPlate) -> f64| {
+            let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
+            plates.iter().map(|plate| finite(of(plate))).collect::<Vec<_>>()
+        };
+        Table::new(FLEET_FILE)
+            .counts("plate", 1..=plates.len())
+            .exact("initial_length_mm", numbers(&|plate| plate.initial_length / MM))
+            .exact("load_factor", numbers(&|plate| plate.load))
+            .exact("rate_factor", numbers(&|plate| plate.rate_factor))
+            .exact("life_cycles", numbers(&|plate| plate.life.cycles))
+            .words("ended_by", plates.iter().map(|plate| plate.life.stop))
+            .words("life_is_lower_bound", plates.iter().map(|plate| plate.life.is_bound))
+            .exact("critical_length_mm", numbers(&|plate| plate.critical_length.map_or(f64::NAN, |length| length / MM)))
+            .exact("detectable_to_critical_cycles", numbers(&|plate| plate.window.map_or(f64::NAN, |[_, left]| left)))
+            .exact("missed", numbers(&|plate| plate.missed.unwrap_or(f64::NAN)))
     }
 
     /// Writes table and picture into the folder of a run.
     pub fn write(&self, folder: &Path, case: &Case) -> Result<()> {
-        write_file(&folder.join(FLEET_FILE), self.table().as_bytes())?;
+        write_table(folder, &self.table())?;
         write_file(&folder.join(FLEET_CHART_FILE), self.picture(&case.name).as_bytes())
     }
 
@@ -195,7 +217,7 @@ impl FleetReport {
     /// How long cracks can be found, and how likely they are not.
     fn looked_words(&self, looks: Looks) -> String {
         let [low, middle, high] = words_of(&self.windows());
-        let length = looks.detectable / MM;
+        let length = PLAIN.length(looks.detectable, 3);
         let missed = match &self.lives.looked {
             Some(Looked { first, every, before_first, missed, .. }) => format!(
                 "; all plates inspected after {first:.0} cycles, then every {}: all inspections miss the crack of a plate: {} ({before_first} \
@@ -206,14 +228,14 @@ impl FleetReport {
             None if self.never_found() > 0 => format!("; {} plates break before", self.never_found()),
             None => String::new(),
         };
-        format!("  fleet          from {length:.3} mm to the end 5 % take {low}, half {middle}, 95 % {high} cycles{missed}")
+        format!("  fleet          from {length} to the end 5 % take {low}, half {middle}, 95 % {high} cycles{missed}")
     }
 }
 
 /// 5 %, median and 95 % in words.
 fn words_of(lives: &Lives) -> [String; 3] {
-    let figures = lives.figures();
-    ["p05", "p50", "p95"].map(|quantile| figures["words"][quantile].as_str().unwrap_or("unknown").to_owned())
+    let words = lives.figures().words;
+    [words.p05, words.p50, words.p95].map(|words| words.unwrap_or_else(|| "unknown".to_owned()))
 }
 
 /// Length of the crack that ends the life when the one that is inspected has its length, m: the way is that of the run.

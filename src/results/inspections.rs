@@ -1,8 +1,8 @@
 //! Inspections of the plate of a run, and the probability that all of them miss its crack.
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
-use super::model_words::{chance, clean, mm};
+use super::format::{chance, clean, mm};
 use perilife_base::units::MM;
 use perilife_calibration::inspection::Inspection;
 use perilife_calibration::sweep::detection::{Detection, Schedule};
@@ -20,27 +20,31 @@ pub struct Asked {
     pub sensitivities: bool,
 }
 
-/// Inspections of a run from a crack length on.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Inspections {
-    /// When they are, and how they find cracks.
-    pub schedule: Schedule,
-    rows: Vec<Row>,
+/// `inspections` of a result: those of a run from a crack length on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InspectionsRecord {
+    /// Crack lengths that are found with 50 and with 90 %.
+    pub a50_mm: f64,
+    pub a90_mm: f64,
+    pub interval_cycles: f64,
+    /// Probability that all of them miss the crack.
+    pub missed: f64,
+    pub rows: Vec<InspectionRow>,
 }
 
 /// One inspection.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Row {
-    cycles: f64,
-    /// Of the tip whose crack is inspected, m.
-    crack_length: f64,
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct InspectionRow {
+    pub cycles: f64,
+    /// Of the tip whose crack is inspected.
+    pub crack_length_mm: f64,
     /// Probability that it is found now.
-    found: f64,
+    pub pod: f64,
     /// Probability that it has been missed so far.
-    missed: f64,
+    pub missed: f64,
 }
 
-impl Inspections {
+impl InspectionsRecord {
     /// Of a run: the first at the length that the plate is inspected from or after the cycles that are asked, the others by the interval; `None`
     /// where nobody asked. From that length on the crack grows by the quantile of the interval: the cycles of the run, stretched to its end.
     pub fn of(case: &Case, prediction: &Prediction, inspection: &Inspection, asked: Asked) -> Option<Self> {
@@ -53,7 +57,9 @@ impl Inspections {
         let length = |row: &CurvePoint| of_tip(row).unwrap_or(row.crack_length);
         let (mut inspected, mut rows) = (schedule.begin(), Vec::new());
         for pair in prediction.curve.windows(2) {
-            let told = |cycles, crack_length, found, missed| rows.push(Row { cycles, crack_length, found, missed });
+            let told = |cycles, crack_length: f64, pod, missed| {
+                rows.push(InspectionRow { cycles, crack_length_mm: clean(crack_length / MM), pod, missed });
+            };
             let ([from, to], [start, end]) = ([pair[0].cycles, pair[1].cycles], [length(&pair[0]), length(&pair[1])]);
             let places = if from < at && at < to {
                 // What lies before the length is not stretched.
@@ -66,31 +72,15 @@ impl Inspections {
                 inspected.grow([cycles(part[0].0), cycles(part[1].0)], [part[0].1, part[1].1], &mut told);
             }
         }
-        Some(Inspections { schedule, rows })
-    }
-
-    /// Probability that all of them miss the crack.
-    pub fn missed(&self) -> f64 {
-        self.rows.last().map_or(1.0, |row| row.missed)
-    }
-
-    /// The object of `result.json`.
-    pub fn json(&self) -> Value {
-        let Detection { a50, a90 } = self.schedule.detection;
-        let row = |row: &Row| json!({ "cycles": row.cycles, "crack_length_mm": clean(row.crack_length / MM), "pod": row.found, "missed": row.missed });
-        json!({
-            "a50_mm": clean(a50 / MM),
-            "a90_mm": clean(a90 / MM),
-            "interval_cycles": self.schedule.cycles[1],
-            "missed": self.missed(),
-            "rows": self.rows.iter().map(row).collect::<Vec<_>>(),
-        })
+        let [a50_mm, a90_mm] = [detection.a50, detection.a90].map(|length| clean(length / MM));
+        let missed = rows.last().map_or(1.0, |row| row.missed);
+        Some(InspectionsRecord { a50_mm, a90_mm, interval_cycles: schedule.cycles[1], missed, rows })
     }
 
     /// A line of a summary.
     pub fn words(&self) -> String {
-        let (count, missed) = (self.rows.len(), chance(self.missed()));
-        let [half, most] = [self.schedule.detection.a50, self.schedule.detection.a90].map(mm);
+        let (count, missed) = (self.rows.len(), chance(self.missed));
+        let [half, most] = [self.a50_mm, self.a90_mm].map(|length| mm(length * MM));
         format!(
             "  detection      all {count} inspections miss the crack: {missed} (independent; found with 50 % at {half} mm, with 90 % at {most} mm)"
         )

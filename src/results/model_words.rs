@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-pub use perilife_base::units::us::clean;
+pub use super::format::{chance, clean, mm, short};
 use perilife_base::units::{KN, MM, MPA};
 use perilife_growth::case::{Case, LawSource, Method, Model, PointSettings};
 use perilife_growth::predict::RunFigures;
@@ -30,12 +30,12 @@ pub struct Choice {
 }
 
 /// The choices as one object, reasons under `why`.
-pub fn object(choices: &[Choice]) -> Value {
+pub fn object(choices: &[Choice]) -> Map<String, Value> {
     let why = |choice: &Choice| Some((choice.key.to_owned(), choice.why.clone()?.into()));
     let why: Map<String, Value> = choices.iter().filter_map(why).collect();
     let mut object: Map<String, Value> = choices.iter().map(|choice| (choice.key.to_owned(), choice.value.clone())).collect();
     object.insert("why".to_owned(), why.into());
-    object.into()
+    object
 }
 
 /// The choices of these keys in words: the first value, then key and value of the others.
@@ -257,20 +257,4 @@ fn moved(specimen: &Specimen) -> &'static str {
     let by_mean = !is_gripped && specimen.load_measure == LoadMeasure::Stress;
     let otherwise = if by_mean { "edge under uniform stress, by its mean:" } else { "loaded places" };
     specimen.supports.iter().find_map(of_edge).unwrap_or(otherwise)
-}
-
-/// A number with at most four decimals.
-pub fn short(value: f64) -> String {
-    let text = format!("{value:.4}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-/// A probability that a crack is missed; below 1e-3 none is claimed, since inspections are hardly independent of each other.
-pub fn chance(probability: f64) -> String {
-    if probability < 1e-3 { "below 1e-3".to_owned() } else { format!("{probability:.2e}") }
-}
-
-/// A length in millimetres.
-pub fn mm(metres: f64) -> String {
-    short(metres / MM)
 }

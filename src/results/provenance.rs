@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use toml::Table;
 
 use super::output::write_file;
@@ -22,18 +23,64 @@ pub fn built_from(commit: &'static str) {
     let _ = COMMIT.set(commit);
 }
 
-/// Adds to the object of a result what made it; `tables` are those that it is read from later, by name and text.
-pub fn add(object: &mut Value, provenance: &Provenance, tables: &[(&str, &str)]) {
-    let names = kept_names(&provenance.files);
-    let input = |(file, kept): (&OpenedFile, &String)| json!({ "file": file.name, "sha256": file.sha256(), "bytes": file.content.len(), "kept_as": kept });
-    let table = |(name, text): &(&str, &str)| json!({ "file": name, "sha256": sha256(text.as_bytes()), "bytes": text.len() });
-    let Some(fields) = object.as_object_mut() else { return };
-    let inputs: Vec<Value> = provenance.files.iter().zip(&names).map(input).collect();
-    fields.insert("tables".to_owned(), tables.iter().map(table).collect());
-    fields.insert("inputs".to_owned(), inputs.into());
-    fields.insert("overrides".to_owned(), json!(provenance.overrides));
-    fields.insert("finished".to_owned(), time::now().into());
-    fields.insert("commit".to_owned(), json!(COMMIT.get()));
+/// A table that a result is read from later.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TableEntry {
+    pub file: String,
+    pub sha256: String,
+    pub bytes: usize,
+}
+
+/// A file that was read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InputEntry {
+    pub file: String,
+    pub sha256: String,
+    pub bytes: usize,
+    pub kept_as: String,
+}
+
+/// What made a result.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct MadeBy {
+    #[serde(default)]
+    pub tables: Vec<TableEntry>,
+    #[serde(default)]
+    pub inputs: Vec<InputEntry>,
+    #[serde(default)]
+    pub overrides: Vec<String>,
+    pub finished: Option<String>,
+    pub commit: Option<String>,
+}
+
+impl MadeBy {
+    /// Of what was read, and the texts of its tables by their names.
+    pub fn of<'t>(provenance: &Provenance, tables: impl IntoIterator<Item = (&'t str, &'t str)>) -> Self {
+        let input = |(file, kept_as): (&OpenedFile, String)| InputEntry {
+            file: file.name.clone(),
+            sha256: file.sha256(),
+            bytes: file.content.len(),
+            kept_as,
+        };
+        let table =
+            |(file, text): (&str, &str)| TableEntry { file: file.to_owned(), sha256: sha256(text.as_bytes()), bytes: text.len() };
+        MadeBy {
+            tables: tables.into_iter().map(table).collect(),
+            inputs: provenance.files.iter().zip(kept_names(&provenance.files)).map(input).collect(),
+            overrides: provenance.overrides.clone(),
+            finished: Some(time::now()),
+            commit: COMMIT.get().map(|commit| (*commit).to_owned()),
+        }
+    }
+}
+
+/// Adds to the object of a result what made it.
+pub fn add<'t>(object: &mut Value, provenance: &Provenance, tables: impl IntoIterator<Item = (&'t str, &'t str)>) {
+    if let (Some(fields), Ok(Value::Object(made_by))) =
+        (object.as_object_mut(), serde_json::to_value(MadeBy::of(provenance, tables)))
+    {
+        fields.extend(made_by);
+    }
 }
 
 /// Writes the texts as they were read, and the input as it was run: `perilife` with that file repeats the run.

@@ -1,7 +1,9 @@
 //! How far a life can be trusted as a solution of its case: bounds of its error, and the life by the other engine.
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
+use super::format::two_digits;
+use super::record::RunRecord;
 use perilife_base::units::MM;
 use perilife_growth::case::{Case, Method, Model, coarse_points, usual_nodes};
 use perilife_growth::predict::error_estimate::{ErrorEstimate, error_estimate};
@@ -15,12 +17,20 @@ pub struct Quality {
     second: Option<SecondOpinion>,
 }
 
-/// The life by the other engine.
-#[derive(Debug, Clone)]
-struct SecondOpinion {
-    method: &'static str,
-    /// Its cycles to the crack length that both reach, and those of the run; in words why there are none.
-    cycles: std::result::Result<[f64; 2], String>,
+/// `cross_check` of a result: the life by the other engine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SecondOpinion {
+    pub method: String,
+    /// Its cycles to the crack length that both reach, and those of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycles: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycles_of_run: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub difference_percent: Option<f64>,
+    /// Why there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
 }
 
 impl Quality {
@@ -31,24 +41,13 @@ impl Quality {
         Quality { estimate, second }
     }
 
-    /// Adds it to `result.json`.
-    pub fn add_to(&self, result: &mut Value) {
-        let Some(object) = result.as_object_mut() else { return };
+    /// Adds it to the record of the run.
+    pub fn add_to(&self, record: &mut RunRecord) {
         let stated = self.estimate.as_ref().and_then(|estimate| estimate.as_ref().ok());
-        let two_digits = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
-        object.insert("error_estimate_percent".to_owned(), json!(stated.map(|estimate| two_digits(estimate.life_percent))));
-        object.insert("path_error_estimate_mm".to_owned(), json!(stated.map(|estimate| two_digits(estimate.path / MM))));
-        if let Some(Err(why)) = &self.estimate {
-            object.insert("no_error_estimate".to_owned(), json!(why));
-        }
-        let Some(SecondOpinion { method, cycles }) = &self.second else { return };
-        let found = match cycles {
-            Ok([other, own]) => json!({
-                "method": method, "cycles": other, "cycles_of_run": own, "difference_percent": 100.0 * (other / own - 1.0),
-            }),
-            Err(why) => json!({ "method": method, "failed": why }),
-        };
-        object.insert("cross_check".to_owned(), found);
+        record.error_estimate_percent = stated.map(|estimate| two_digits(estimate.life_percent));
+        record.path_error_estimate_mm = stated.map(|estimate| two_digits(estimate.path / MM));
+        record.no_error_estimate = self.estimate.as_ref().and_then(|estimate| estimate.as_ref().err().cloned());
+        record.cross_check.clone_from(&self.second);
     }
 
     /// In words: what the program chose, and how wrong it may be.
@@ -62,12 +61,14 @@ impl Quality {
             }
             Err(why) => format!("  error          not stated: {why}"),
         }));
-        lines.extend(self.second.as_ref().map(|SecondOpinion { method, cycles }| match cycles {
-            Ok([other, own]) => {
-                let percent = 100.0 * (other / own - 1.0);
-                format!("  second opinion {method}, coarse: {other:.0} cycles where this run has {own:.0} ({percent:+.1} %)")
+        lines.extend(self.second.as_ref().map(|second| match (second.cycles, second.cycles_of_run, second.difference_percent) {
+            (Some(other), Some(own), Some(percent)) => {
+                format!(
+                    "  second opinion {}, coarse: {other:.0} cycles where this run has {own:.0} ({percent:+.1} %)",
+                    second.method
+                )
             }
-            Err(why) => format!("  second opinion {method}: none, {why}"),
+            _ => format!("  second opinion {}: none, {}", second.method, second.failed.as_deref().unwrap_or_default()),
         }));
         lines
     }
@@ -75,9 +76,14 @@ impl Quality {
 
 /// The life by the engine that shares nothing with that of the run: nodes beside points and handbook, points beside nodes.
 fn second_opinion(case: &Case, prediction: &Prediction) -> SecondOpinion {
+    let of = |method: Method, found: std::result::Result<[f64; 2], String>| {
+        let (cycles, failed) = (found.as_ref().ok().copied(), found.err());
+        let difference_percent = cycles.map(|[other, own]| 100.0 * (other / own - 1.0));
+        let [cycles, cycles_of_run] = [0, 1].map(|place| cycles.map(|both| both[place]));
+        SecondOpinion { method: method.name().to_owned(), cycles, cycles_of_run, difference_percent, failed }
+    };
     if !case.specimen.is_through() {
-        let cycles = Err("no other method knows a crack that does not go through".to_owned());
-        return SecondOpinion { method: Method::ElementFreeGalerkin.name(), cycles };
+        return of(Method::ElementFreeGalerkin, Err("no other method knows a crack that does not go through".to_owned()));
     }
     let model = match case.model {
         Model::Nodes(_) => Model::Points(coarse_points(case)),
@@ -89,5 +95,5 @@ fn second_opinion(case: &Case, prediction: &Prediction) -> SecondOpinion {
         let at = |run: &Prediction| run.cycles_at(common).filter(|cycles| *cycles > 0.0);
         at(&second).zip(at(prediction)).map(|(other, own)| [other, own]).ok_or_else(|| "its crack did not grow".to_owned())
     });
-    SecondOpinion { method: model.method().name(), cycles }
+    of(model.method(), cycles)
 }

@@ -4,7 +4,7 @@
 //! on straight lines between them cycles were read up to 2.5 % short at a quarter of the growth. ΔK and da/dN are linear in crack length. First and last row are
 //! kept exactly.
 
-use super::csv::{self, Row};
+use super::curve::{Row, curve};
 use perilife_base::error::{Result, input};
 use perilife_base::monotone::Monotone;
 
@@ -74,8 +74,8 @@ fn at(curve: &[Row], table: &Monotone, cycles: f64) -> Row {
 }
 
 /// Cycles over crack length of a curve, mm.
-pub fn cycles_over_length(curve: &[Row]) -> Monotone {
-    Monotone::new(csv::curve(curve).into_iter())
+pub fn cycles_over_length(rows: &[Row]) -> Monotone {
+    Monotone::new(curve(rows).into_iter())
 }
 
 /// `clamp` refuses NaN bounds, so an unknown end makes the value unknown before it is asked.

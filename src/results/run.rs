@@ -1,45 +1,46 @@
-//! A run of cycles: all its files.
+//! A run of cycles with all that was found about it: judged once, its record and tables made once, then its files, pictures and words.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value};
 
-use super::answers::Answers;
+use super::answers::{Answers, Asked};
 use super::band::Lives;
 use super::chart::{self, LARGE, Mark, Series};
-use super::csv;
+use super::checks::{self, Judgement};
+use super::curve::{self, RunTables};
 use super::damage::{DamagePicture, cycles_and_length};
-pub use super::json::result;
-use super::output::{Room, write_file};
+use super::format::PLAIN;
+use super::output::{Room, write_file, write_json, write_table};
 use super::pictures::curves::{a_n_svg, k_svg};
-use super::pictures::plate::{self, Plate, growth_svg, plate_svg};
+use super::pictures::plate::{self, growth_svg, plate_svg};
 use super::pictures::section::section_svg;
 use super::pictures::spectrum::spectrum_svg;
 use super::pictures::stress::stress_svg;
-use super::pictures::tables::RunTables;
+use super::provenance::{self, MadeBy};
 use super::quality::Quality;
+use super::record::{RESULT_FILE, RunRecord};
 use super::specimen_picture::{nodes_svg, tip_svg};
-use super::{checks, factors, json, provenance, spectrum, vtk};
-use perilife_base::error::Result;
+use super::{factors, spectrum, vtk};
+use perilife_base::columns::Table;
+use perilife_base::error::{Error, Result};
 use perilife_base::units::{KN, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
+use perilife_calibration::inspection::InspectFrom;
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, Model, RECORD};
 use perilife_growth::predict::fit_use;
-use perilife_growth::predict::judgement::{breaks_at_once, refusal};
+use perilife_growth::predict::judgement::breaks_at_once;
 use perilife_growth::predict::moment::stress_field;
 use perilife_growth::predict::part_through::PartThroughLife;
 use perilife_growth::predict::plastic_zone::{self, PlasticZone};
-use perilife_growth::predict::residual_strength::Strength;
+use perilife_growth::predict::residual_strength::{Strength, residual_strength};
 use perilife_growth::predict::{Prediction, StopReason};
+use perilife_measured::MeasuredCurve;
 use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::part_through::{SOURCE, STATED_ERROR};
 use perilife_plate::specimen::{LengthConvention, LoadMeasure, Point};
 
-/// Table of the ways of the tips.
-pub const CRACK_PATH_FILE: &str = "crack_path.csv";
-
-/// Keys of `result.json` that a listing of runs shows.
+/// Keys of the record that a listing of runs shows.
 pub const FIGURES: [&str; 29] = [
     "life_cycles",
     "passes",
@@ -72,60 +73,217 @@ pub const FIGURES: [&str; 29] = [
     "memory_mb",
 ];
 
-/// A run as its folder keeps it: what is drawn and read from later.
-#[derive(Debug, Clone)]
-pub struct Kept {
-    /// Content of `result.json`.
-    pub result: Value,
-    /// `a_n.csv`.
-    pub a_n: String,
-    /// `crack_path.csv`.
-    pub crack_path: String,
+/// What is wanted beside a run of cycles.
+#[derive(Debug, Clone, Default)]
+pub struct Wanted {
+    /// Residual strength over crack length.
+    pub strength: bool,
+    /// Readings of the plate itself, set against its case, that narrow the band of what it has left.
+    pub readings: Option<MeasuredCurve>,
+    /// What is left from a crack length on, and how often to look.
+    pub inspection: Option<InspectFrom>,
+    /// How and when inspections find cracks, and lives at other input.
+    pub asked: Asked,
+    /// No bounds of the error of the life.
+    pub no_estimate: bool,
+    /// The life by the other engine, too.
+    pub cross_check: bool,
 }
 
-impl Kept {
-    /// Of a run and what was found about it.
-    pub fn of(case: &Case, prediction: &Prediction, (lives, quality, answers): (&Lives, &Quality, &Answers)) -> Self {
-        let mut result = json::result(case, prediction);
-        lives.add_to(&mut result);
-        quality.add_to(&mut result);
-        answers.add_to(&mut result);
-        let a_n = lives.beside(csv::a_n(case, prediction));
-        let crack_path = csv::crack_path(prediction, &case.specimen.cracks);
-        if let Some(object) = result.as_object_mut() {
-            object.insert("plate".to_owned(), json!(Plate::of(case)));
-        }
-        provenance::add(&mut result, &case.provenance, &[(csv::A_N_FILE, &a_n), (CRACK_PATH_FILE, &crack_path)]);
-        if let (Some(refusal), Some(object)) = (refusal(case, prediction), result.as_object_mut()) {
-            object.insert("refused".to_owned(), refusal.to_string().into());
-        }
-        Kept { result, a_n, crack_path }
-    }
+/// A run with all that was found about it.
+#[derive(Debug)]
+pub struct Judged {
+    /// Its figures.
+    pub record: RunRecord,
+    /// What the user is told of it where it ran.
+    pub told: Vec<String>,
+    /// Curve and paths, each with its text.
+    kept: [(Table, String); 2],
+    judgement: Judgement,
+    /// Its life and band, and what was asked of them.
+    pub lives: Lives,
+    quality: Quality,
+    answers: Answers,
+    strengths: Option<Vec<Strength>>,
 }
 
-/// Writes all files of a run into `folder`.
-pub fn write(folder: &Path, case: &Case, prediction: &Prediction, answers: &Answers, kept: &Kept) -> Result<()> {
-    let Kept { result, a_n, crack_path } = kept;
-    // Tables and figures first: what a full disk cuts off are pictures.
-    write_file(&folder.join(csv::A_N_FILE), a_n.as_bytes())?;
-    write_file(&folder.join(CRACK_PATH_FILE), crack_path.as_bytes())?;
-    if factors::are_known(prediction) {
-        write_file(&folder.join(factors::FACTORS_FILE), factors::factors(case, prediction)?.as_bytes())?;
-        if let Some(beta) = factors::beta(case, prediction) {
-            write_file(&folder.join(factors::BETA_FILE), beta.as_bytes())?;
+impl Judged {
+    /// Of a run.
+    /// Errors: as [`Judgement::of`]; a damaged record.
+    pub fn of(case: &Case, prediction: &Prediction, wanted: &Wanted) -> Result<Self> {
+        let mut judgement = Judgement::of(case, prediction)?;
+        // What a check says in a line stands in the file at length.
+        let by_checks = told_by_checks(case, prediction);
+        let at_length = prediction.warnings.iter().chain(&judgement.warnings).filter(|line| !by_checks.contains(line)).cloned();
+        let told = at_length.chain(checks::lines(&judgement.checks)).collect();
+        // If that fails, the run itself is written all the same.
+        let strengths = wanted.strength.then(|| residual_strength(case, &prediction.curve)).transpose();
+        let mut lives = Lives::of(case, prediction, judgement.is_lower_bound)?;
+        let quality = Quality::of(case, prediction, [!wanted.no_estimate, wanted.cross_check]);
+        let narrowed = wanted.readings.as_ref().map_or(Ok(()), |curve| lives.narrow(curve));
+        // A length that the crack never has is wrong input, and no result is written for it.
+        if narrowed.is_ok() {
+            wanted.inspection.map_or(Ok(()), |from| lives.inspect(from))?;
         }
+        let answers = narrowed.and_then(|()| Answers::of(case, prediction, &lives, wanted.asked));
+        let mut record = RunRecord::of(case, prediction, &judgement, &lives);
+        quality.add_to(&mut record);
+        let (strengths, missed) = strengths.map_or_else(|error| (None, Some(error)), |strengths| (strengths, None));
+        let (answers, unanswered) = answers.map_or_else(|error| (Answers::default(), Some(error)), |answers| (answers, None));
+        answers.add_to(&mut record);
+        judgement.refusal = judgement.refusal.or(missed).or(unanswered);
+        let with_text = |table: Table| {
+            let text = table.csv();
+            (table, text)
+        };
+        let kept = [curve::a_n(case, prediction, lives.columns()), curve::crack_path(prediction, &case.specimen.cracks)];
+        let kept = kept.map(with_text);
+        record.made_by = MadeBy::of(
+            &case.provenance,
+            [curve::A_N_FILE, curve::CRACK_PATH_FILE].into_iter().zip(kept.iter().map(|(_, text)| &**text)),
+        );
+        Ok(Judged { record, told, kept, judgement, lives, quality, answers, strengths })
     }
-    write_file(&folder.join(json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
-    let mut input = provenance::table_of(&case.echo);
-    let fitted = input.get_mut("fatigue").and_then(|fatigue| fatigue.as_table_mut()?.get_mut("fitted"));
-    if let Some(record) = fitted.filter(|record| record.is_table()) {
-        // A record that came with no file stands in one beside it.
-        *record = RECORD.into();
+
+    /// Why the run does not count, though its files are written; taken once.
+    pub fn take_refusal(&mut self) -> Option<Error> {
+        self.judgement.refusal.take()
     }
-    provenance::write(folder, "predict", input, &case.provenance)?;
-    answers.write(folder, case)?;
-    draw(folder, case, prediction, result, [a_n, crack_path])?;
-    vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)
+
+    /// The part of the record that a listing of runs shows, all that the user should know under `warnings`.
+    pub fn figures(&self) -> Value {
+        let Ok(Value::Object(mut all)) = serde_json::to_value(&self.record) else { return Value::Null };
+        let warnings = self.record.refused.iter().chain(&self.record.warnings).cloned().collect::<Vec<_>>();
+        let shown = FIGURES.iter().filter_map(|key| Some(((*key).to_owned(), all.remove(*key)?)));
+        let mut figures: Map<String, Value> = shown.collect();
+        figures.insert("warnings".to_owned(), warnings.into());
+        figures.into()
+    }
+
+    /// Its tables.
+    /// Errors: a law whose rate is not known.
+    pub fn tables(&self, case: &Case, prediction: &Prediction) -> Result<Vec<Table>> {
+        let mut tables = self.kept.each_ref().map(|(table, _)| table.clone()).to_vec();
+        if factors::are_known(prediction) {
+            tables.push(factors::factors(case, prediction)?);
+        }
+        tables.extend(self.strengths.iter().map(|strengths| strength_table(case, strengths)));
+        Ok(tables)
+    }
+
+    /// Writes its files into an empty folder.
+    /// Errors: files that cannot be written.
+    pub fn write(&self, folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
+        // Tables and figures first: what a full disk cuts off are pictures.
+        self.kept.iter().try_for_each(|(table, text)| write_file(&folder.join(&table.file), text.as_bytes()))?;
+        if factors::are_known(prediction) {
+            write_table(folder, &factors::factors(case, prediction)?)?;
+            if let Some(beta) = factors::beta(case, prediction) {
+                write_file(&folder.join(factors::BETA_FILE), beta.as_bytes())?;
+            }
+        }
+        write_json(folder, RESULT_FILE, &self.record)?;
+        let mut input = provenance::table_of(&case.echo);
+        let fitted = input.get_mut("fatigue").and_then(|fatigue| fatigue.as_table_mut()?.get_mut("fitted"));
+        if let Some(record) = fitted.filter(|record| record.is_table()) {
+            // A record that came with no file stands in one beside it.
+            *record = RECORD.into();
+        }
+        provenance::write(folder, "predict", input, &case.provenance)?;
+        self.answers.write(folder, case)?;
+        self.draw(folder, case, prediction)?;
+        vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)?;
+        self.strengths.as_ref().map_or(Ok(()), |strengths| write_strength(folder, case, strengths))
+    }
+
+    /// The pictures of a run: plate, crack length, K and rates; damage where bonds drive the cracks by their own strain; nodes and stress of
+    /// a plate of nodes.
+    fn draw(&self, folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
+        let tables = RunTables::of(&self.kept[0].0, &self.kept[1].0)?;
+        let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
+        put("a_n.svg", &a_n_svg(&self.record, &tables, LARGE))?;
+        if let Some(k) = k_svg(&self.record, &tables, LARGE) {
+            put("k.svg", &k)?;
+        }
+        // Of the tip that leads, whose rate the law is of.
+        let points: Vec<(f64, f64)> =
+            prediction.curve.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.growth_rate / MM_PER_CYCLE)).collect();
+        if points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
+            let rates = Series { name: "predicted, one point per cycle block".to_owned(), mark: Mark::Dots, points };
+            chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
+        }
+        if let Some(spectrum) = &case.loading.spectrum {
+            put("spectrum.svg", &spectrum_svg(spectrum, LARGE))?;
+        }
+        let places = |path: Vec<(f64, Point)>| path.into_iter().map(|(_, position)| position).collect();
+        let paths: Vec<Vec<Point>> = curve::paths(prediction, &case.specimen.cracks).into_iter().map(places).collect();
+        if let Some(plate) = &self.record.plate {
+            put("plate.svg", &plate_svg(plate, &tables, plate::SIZE))?;
+            if case.output.animation {
+                put("growth.svg", &growth_svg(plate, &self.record, &tables, plate::MOVING))?;
+            }
+        }
+        if let Some(section) = section_svg(case, prediction) {
+            put("section.svg", &section)?;
+        }
+        if let Some(snapshot) = prediction.snapshots.last().filter(|_| case.spends_bond_life()) {
+            let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
+            DamagePicture { grid: &prediction.grid, snapshot, cracks, paths: &paths, caption: &caption }
+                .write(&folder.join("damage.svg"))?;
+        }
+        match stress_field(case, prediction) {
+            Ok(Some(field)) => put("stress.svg", &stress_svg(&field, &case.material))?,
+            Ok(None) => {}
+            // The answer counts without this picture.
+            Err(error) => tracing::warn!("stress.svg is left out: {error}"),
+        }
+        if matches!(case.model, Model::Nodes(_)) {
+            put("nodes.svg", &nodes_svg(case, &paths)?)?;
+            if let Some(around_tip) = tip_svg(case, &paths)? {
+                put("nodes_tip.svg", &around_tip)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The result in words.
+    pub fn words(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
+        let (is_refused, record) = (self.record.refused.is_some(), &self.record);
+        let by_error = |life: f64| format!("{} cycles", PLAIN.by_error(life, record.error_estimate_percent));
+        let life = record.life_cycles.map(|life| self.lives.life_words().unwrap_or_else(|| by_error(life)));
+        let run = match life {
+            _ if breaks_at_once(case, prediction).is_some() => "no life, the first load breaks the plate".to_owned(),
+            Some(life) if is_refused => format!("no life that counts, {life} were computed"),
+            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{life} to the hole"),
+            Some(life) if record.life_is_lower_bound => format!("life at least {life}"),
+            Some(life) if prediction.stop.is_lower_bound() => format!("{life} to the end of the run"),
+            Some(life) => format!("life {life}"),
+            None => "life unlimited".to_owned(),
+        };
+        let name = &case.name;
+        let mut lines = match self.answers.headline().filter(|_| self.judgement.refusal.is_none()) {
+            // The run is one plate, and may live longer than all of a fleet.
+            Some(fleet) => {
+                vec![format!("{name}: fleet, {fleet}"), format!("  this run       {run}: the plate of the case alone")]
+            }
+            None => vec![format!("{name}: {run}")],
+        };
+        lines.extend([
+            format!("  crack length   {}", length_words(case, prediction)),
+            format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
+            format!("  verdict        {}", record.verdict),
+        ]);
+        lines.extend(through_words(case, prediction).map(|words| format!("  break-through  {words}")));
+        lines.extend(phase_words(prediction).map(|words| format!("  phase I        {words}")));
+        lines.extend(spectrum::words(case, prediction).map(|passes| format!("  spectrum       {passes}")));
+        lines.extend(self.lives.words());
+        lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
+        lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
+        lines.extend(self.quality.words(case));
+        lines.push(format!("  computed       {}", computed(case, prediction)));
+        lines.extend(self.answers.words());
+        lines
+    }
 }
 
 /// Bytes that a run of this case will write, roughly.
@@ -133,88 +291,6 @@ pub fn room(case: &Case) -> Room {
     let texts: usize = case.provenance.files.iter().map(|file| file.content.len()).sum();
     let tables = 32_000 + texts as u64;
     Room { tables, all: tables + needs::of_case(case).disk_bytes as u64 }
-}
-
-/// The pictures of a run: plate, crack length, K and rates; damage where bonds drive the cracks by their own strain; nodes and stress of a
-/// plate of nodes.
-fn draw(folder: &Path, case: &Case, prediction: &Prediction, result: &Value, [a_n, path]: [&str; 2]) -> Result<()> {
-    let tables = RunTables::read([a_n, csv::A_N_FILE], [path, CRACK_PATH_FILE])?;
-    let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
-    put("a_n.svg", &a_n_svg(result, &tables, LARGE))?;
-    if let Some(k) = k_svg(result, &tables, LARGE) {
-        put("k.svg", &k)?;
-    }
-    // Of the tip that leads, whose rate the law is of.
-    let points: Vec<(f64, f64)> =
-        prediction.curve.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.growth_rate / MM_PER_CYCLE)).collect();
-    if points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
-        let rates = Series { name: "predicted, one point per cycle block".to_owned(), mark: Mark::Dots, points };
-        chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
-    }
-    if let Some(spectrum) = &case.loading.spectrum {
-        put("spectrum.svg", &spectrum_svg(spectrum, LARGE))?;
-    }
-    let paths: Vec<Vec<Point>> = csv::paths(prediction, &case.specimen.cracks)
-        .into_iter()
-        .map(|path| path.into_iter().map(|(_, position)| position).collect())
-        .collect();
-    let plate = Plate::of(case);
-    put("plate.svg", &plate_svg(&plate, &tables, plate::SIZE))?;
-    if let Some(section) = section_svg(case, prediction) {
-        put("section.svg", &section)?;
-    }
-    if case.output.animation {
-        put("growth.svg", &growth_svg(&plate, result, &tables, plate::MOVING))?;
-    }
-    if let Some(snapshot) = prediction.snapshots.last().filter(|_| case.spends_bond_life()) {
-        let (cracks, caption) = (&case.specimen.cracks, cycles_and_length(snapshot));
-        DamagePicture { grid: &prediction.grid, snapshot, cracks, paths: &paths, caption: &caption }
-            .write(&folder.join("damage.svg"))?;
-    }
-    match stress_field(case, prediction) {
-        Ok(Some(field)) => put("stress.svg", &stress_svg(&field, &case.material))?,
-        Ok(None) => {}
-        // The answer counts without this picture.
-        Err(error) => tracing::warn!("stress.svg is left out: {error}"),
-    }
-    if matches!(case.model, Model::Nodes(_)) {
-        put("nodes.svg", &nodes_svg(case, &paths)?)?;
-        if let Some(around_tip) = tip_svg(case, &paths)? {
-            put("nodes_tip.svg", &around_tip)?;
-        }
-    }
-    Ok(())
-}
-
-/// What came of a run, in words.
-pub fn words(case: &Case, prediction: &Prediction, lives: &Lives, quality: &Quality) -> Vec<String> {
-    let checks = checks::of_run(case, prediction);
-    let cycles = prediction.life().map(|life| lives.life_words().unwrap_or_else(|| format!("{life:.1} cycles")));
-    let mut lines = vec![
-        match cycles {
-            _ if breaks_at_once(case, prediction).is_some() => format!("{}: no life, the first load breaks the plate", case.name),
-            Some(life) if refusal(case, prediction).is_some() => {
-                format!("{}: no life that counts, {life} were computed", case.name)
-            }
-            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{}: {life} to the hole", case.name),
-            Some(life) if checks::is_bound_below(case, prediction) => format!("{}: life at least {life}", case.name),
-            Some(life) if prediction.stop.is_lower_bound() => format!("{}: {life} to the end of the run", case.name),
-            Some(life) => format!("{}: life {life}", case.name),
-            None => format!("{}: life unlimited", case.name),
-        },
-        format!("  crack length   {}", length_words(case, prediction)),
-        format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
-        format!("  verdict        {}", checks::verdict(&checks)),
-    ];
-    lines.extend(through_words(case, prediction).map(|words| format!("  break-through  {words}")));
-    lines.extend(phase_words(prediction).map(|words| format!("  phase I        {words}")));
-    lines.extend(spectrum::words(case, prediction).map(|passes| format!("  spectrum       {passes}")));
-    lines.extend(lives.words());
-    lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
-    lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
-    lines.extend(quality.words(case));
-    lines.push(format!("  computed       {}", computed(case, prediction)));
-    lines
 }
 
 /// Both parts of a life that begins before its cracks have formed.
@@ -236,7 +312,7 @@ fn phase_words(prediction: &Prediction) -> Option<String> {
 }
 
 /// Warnings of a run that its checks say in a line each.
-pub fn told_by_checks(case: &Case, prediction: &Prediction) -> Vec<String> {
+fn told_by_checks(case: &Case, prediction: &Prediction) -> Vec<String> {
     let yielding = plastic_zone::warnings(case, &prediction.curve).into_iter().filter(|line| line.starts_with("small-scale"));
     let cross_check = prediction.cross_check.and_then(|check| check.warning());
     yielding.chain(cross_check).chain(fit_use::extrapolated(case, prediction)).collect()
@@ -324,28 +400,19 @@ fn unit(case: &Case) -> (&'static str, &'static str, f64) {
 
 /// `crack_length_mm,residual_strength_*,by_toughness_*,by_net_section_*,governed_by` with `mpa` of gross stress or `kn` of force;
 /// empty where a strength is not known.
-pub fn strength_table(case: &Case, curve: &[Strength]) -> String {
+pub fn strength_table(case: &Case, strengths: &[Strength]) -> Table {
     let (unit, _, size) = unit(case);
-    let mut text = format!("crack_length_mm,residual_strength_{unit},by_toughness_{unit},by_net_section_{unit},governed_by\n");
-    let field = |load: Option<f64>| load.map_or_else(String::new, |load| csv::number(load / size));
-    for strength in curve {
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{}",
-            csv::number(strength.crack_length / MM),
-            csv::number(strength.load() / size),
-            field(strength.by_toughness),
-            field(strength.by_net_section),
-            strength.governed_by()
-        );
-    }
-    text
+    Table::new(RESIDUAL_STRENGTH_FILE)
+        .numbers("crack_length_mm", strengths.iter().map(|strength| strength.crack_length / MM))
+        .numbers(format!("residual_strength_{unit}"), strengths.iter().map(|strength| strength.load() / size))
+        .known(format!("by_toughness_{unit}"), strengths.iter().map(|strength| Some(strength.by_toughness? / size)))
+        .known(format!("by_net_section_{unit}"), strengths.iter().map(|strength| Some(strength.by_net_section? / size)))
+        .words("governed_by", strengths.iter().map(Strength::governed_by))
 }
 
 /// Writes `residual_strength.csv` and its picture into the folder of a run.
-pub fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> {
-    write_file(&folder.join(RESIDUAL_STRENGTH_FILE), strength_table(case, curve).as_bytes())?;
+fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> {
+    write_table(folder, &strength_table(case, curve))?;
     let (_, axis, size) = unit(case);
     let series = |name: &str, mark, pick: &dyn Fn(&Strength) -> Option<f64>| Series {
         name: name.to_owned(),

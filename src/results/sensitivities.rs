@@ -1,21 +1,20 @@
 //! What the life makes of somewhat other input: `sensitivities.csv` and a tornado, on the K(a) of the run ([`perilife_growth::predict::recorded`]).
 
-use std::fmt::Write as _;
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use super::chart::{COMPUTED, INK, SECOND};
-use super::csv;
-use super::output::write_file;
+use super::output::{write_file, write_table};
 use super::specimen_picture::sketch::Sketch;
+use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::units::MPA_SQRT_M;
 use perilife_growth::case::{Case, LawSource};
-use perilife_growth::predict::Prediction;
 use perilife_growth::predict::laws::growth_law;
 use perilife_growth::predict::recorded::{Change, Recorded, RecordedLife};
+use perilife_growth::predict::{Prediction, StopReason};
 
 /// The table.
 pub const SENSITIVITIES_FILE: &str = "sensitivities.csv";
@@ -35,6 +34,18 @@ pub struct Sensitivity {
     pub life: RecordedLife,
     /// By how much the life changes, share of that of the run; NaN where one is unlimited.
     pub change_of_life: f64,
+}
+
+/// An entry of `sensitivities` of a result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SensitivityRecord {
+    pub input: String,
+    pub change: String,
+    /// `None` of a life without end.
+    pub life_cycles: Option<f64>,
+    pub change_of_life_percent: Option<f64>,
+    pub ended_by: StopReason,
+    pub life_is_lower_bound: bool,
 }
 
 /// Lives at other inputs, downwards and upwards by turns.
@@ -78,37 +89,35 @@ impl Sensitivities {
         pairs
     }
 
-    /// The list of `result.json`.
-    pub fn json(&self) -> Value {
+    /// The list of the result, the widest first.
+    pub fn record(&self) -> Vec<SensitivityRecord> {
         let finite = |value: f64| value.is_finite().then_some(value);
-        let row = |entry: &Sensitivity| {
-            json!({
-                "input": entry.input,
-                "change": entry.change,
-                "life_cycles": finite(entry.life.cycles),
-                "change_of_life_percent": finite(100.0 * entry.change_of_life),
-                "ended_by": entry.life.stop.name(),
-                "life_is_lower_bound": entry.life.is_bound,
-            })
+        let row = |entry: &Sensitivity| SensitivityRecord {
+            input: entry.input.to_owned(),
+            change: entry.change.clone(),
+            life_cycles: finite(entry.life.cycles),
+            change_of_life_percent: finite(100.0 * entry.change_of_life),
+            ended_by: entry.life.stop,
+            life_is_lower_bound: entry.life.is_bound,
         };
         self.widest().into_iter().flatten().map(row).collect()
     }
 
-    /// `sensitivities.csv`, the widest first; no life where it is unlimited.
-    pub fn table(&self) -> String {
-        let mut text = "input,change,life_cycles,change_of_life_percent,ended_by,life_is_lower_bound\n".to_owned();
-        let field = |value: f64| if value.is_finite() { csv::exact(value) } else { String::new() };
-        for Sensitivity { input, change, life, change_of_life } in self.widest().into_iter().flatten() {
-            let (cycles, percent) = (field(life.cycles), field(100.0 * change_of_life));
-            // Writing to a String cannot fail.
-            let _ = writeln!(text, "{input},{change},{cycles},{percent},{},{}", life.stop.name(), life.is_bound);
-        }
-        text
+    /// `sensitivities.csv`; no life where it is unlimited.
+    pub fn table(&self) -> Table {
+        let rows = self.record();
+        Table::new(SENSITIVITIES_FILE)
+            .words("input", rows.iter().map(|row| &row.input))
+            .words("change", rows.iter().map(|row| &row.change))
+            .exact("life_cycles", rows.iter().map(|row| row.life_cycles.unwrap_or(f64::NAN)))
+            .exact("change_of_life_percent", rows.iter().map(|row| row.change_of_life_percent.unwrap_or(f64::NAN)))
+            .words("ended_by", rows.iter().map(|row| row.ended_by))
+            .words("life_is_lower_bound", rows.iter().map(|row| row.life_is_lower_bound))
     }
 
     /// Writes table and picture into the folder of a run.
     pub fn write(&self, folder: &Path, case: &Case) -> Result<()> {
-        write_file(&folder.join(SENSITIVITIES_FILE), self.table().as_bytes())?;
+        write_table(folder, &self.table())?;
         write_file(&folder.join("sensitivities.svg"), self.picture(&case.name).as_bytes())
     }
 

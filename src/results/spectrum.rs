@@ -1,8 +1,9 @@
 //! A spectrum in words and figures: what a case was understood to load its plate with, and how often its passes came.
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
-use super::model_words::{clean, short};
+use super::format::{clean, short};
 use perilife_growth::case::Case;
 use perilife_growth::predict::Prediction;
 use perilife_plate::loading::spectrum::Spectrum;
@@ -17,13 +18,44 @@ const MAXIMA_MOST: usize = 200;
 
 /// How often a pass has a maximum as large or larger, by falling maximum over the largest load, and how many of its cycles have a range in each of
 /// equal parts of the largest range, all over the largest load.
-pub fn curves(spectrum: &Spectrum) -> Value {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpectrumCurves {
+    pub maxima: Vec<[f64; 2]>,
+    pub largest_range: f64,
+    pub cycles_by_range: Vec<f64>,
+}
+
+/// `spectrum` of a result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpectrumRecord {
+    pub file: String,
+    pub format: String,
+    pub cycles_per_pass: f64,
+    pub cycles_omitted_per_pass: f64,
+    pub kinds_of_cycles: usize,
+    pub classes_of_mean_rate: usize,
+    pub largest: f64,
+    pub smallest_over_largest: f64,
+    pub stress_ratio_min: f64,
+    pub stress_ratio_max: f64,
+    pub repeats: Option<f64>,
+    /// Share of the largest load, and maxima of a pass above it.
+    pub exceedances: Vec<[f64; 2]>,
+    pub curves: SpectrumCurves,
+    pub truncated_at: Option<f64>,
+    pub life_cycles_without_retardation: Option<f64>,
+    /// Model and constants.
+    pub retardation: Map<String, Value>,
+}
+
+/// The curves of a spectrum.
+pub fn curves(spectrum: &Spectrum) -> SpectrumCurves {
     let levels = spectrum.exceedances();
     let each = levels.len().div_ceil(MAXIMA_MOST);
     let kept = levels.iter().enumerate().filter(|(place, _)| place % each == 0 || place + 1 == levels.len());
     let maxima: Vec<[f64; 2]> = kept.map(|(_, (level, count))| [clean(*level), clean(*count)]).collect();
     let (cycles, largest) = spectrum.ranges(BARS);
-    json!({ "maxima": maxima, "largest_range": clean(largest), "cycles_by_range": cycles })
+    SpectrumCurves { maxima, largest_range: clean(largest), cycles_by_range: cycles }
 }
 
 /// How many maxima of a pass are larger than each of the levels.
@@ -59,31 +91,34 @@ pub fn words(case: &Case, prediction: &Prediction) -> Option<String> {
     Some(format!("{passes:.2} passes of {} cycles, retardation {model}", short(spectrum.per_pass)))
 }
 
-/// Passes in a life; `null` without a spectrum, and of a life without end.
-pub fn passes(case: &Case, prediction: &Prediction) -> Value {
+/// Passes in a life; `None` without a spectrum, and of a life without end.
+pub fn passes(case: &Case, prediction: &Prediction) -> Option<f64> {
     let spectrum = case.loading.spectrum.as_ref();
-    json!(spectrum.zip(prediction.life()).map(|(spectrum, life)| life / spectrum.per_pass))
+    spectrum.zip(prediction.life()).map(|(spectrum, life)| life / spectrum.per_pass)
 }
 
-/// The object `spectrum` of a result; `null` where the loads are none.
-pub fn json(case: &Case, prediction: &Prediction) -> Value {
-    let Some(spectrum) = &case.loading.spectrum else { return Value::Null };
-    json!({
-        "file": spectrum.file,
-        "format": spectrum.format,
-        "cycles_per_pass": clean(spectrum.per_pass),
-        "cycles_omitted_per_pass": clean(spectrum.omitted),
-        "kinds_of_cycles": spectrum.kinds,
-        "classes_of_mean_rate": spectrum.classes.iter().filter(|class| class.max > 0.0).count(),
-        "largest": clean(spectrum.largest[1]),
-        "smallest_over_largest": clean(spectrum.smallest()),
-        "stress_ratio_min": clean(spectrum.ratios[0]),
-        "stress_ratio_max": clean(spectrum.ratios[1]),
-        "repeats": spectrum.repeats,
-        "exceedances": LEVELS.iter().zip(exceedances(spectrum)).map(|(level, count)| json!([level, clean(count)])).collect::<Vec<_>>(),
-        "curves": curves(spectrum),
-        "truncated_at": (spectrum.largest[1] < spectrum.largest[0]).then(|| clean(spectrum.largest[1] / spectrum.largest[0])),
-        "life_cycles_without_retardation": prediction.unretarded_cycles,
-        "retardation": case.retardation.as_ref().map_or_else(|| json!({ "model": "none" }), |model| model.json()),
-    })
+impl SpectrumRecord {
+    /// Of a run; `None` of one under other loads.
+    pub fn of(case: &Case, prediction: &Prediction) -> Option<Self> {
+        let spectrum = case.loading.spectrum.as_ref()?;
+        let none = || Map::from_iter([("model".to_owned(), "none".into())]);
+        Some(SpectrumRecord {
+            file: spectrum.file.clone(),
+            format: spectrum.format.to_string(),
+            cycles_per_pass: clean(spectrum.per_pass),
+            cycles_omitted_per_pass: clean(spectrum.omitted),
+            kinds_of_cycles: spectrum.kinds,
+            classes_of_mean_rate: spectrum.classes.iter().filter(|class| class.max > 0.0).count(),
+            largest: clean(spectrum.largest[1]),
+            smallest_over_largest: clean(spectrum.smallest()),
+            stress_ratio_min: clean(spectrum.ratios[0]),
+            stress_ratio_max: clean(spectrum.ratios[1]),
+            repeats: spectrum.repeats,
+            exceedances: LEVELS.iter().zip(exceedances(spectrum)).map(|(level, count)| [*level, clean(count)]).collect(),
+            curves: curves(spectrum),
+            truncated_at: (spectrum.largest[1] < spectrum.largest[0]).then(|| clean(spectrum.largest[1] / spectrum.largest[0])),
+            life_cycles_without_retardation: prediction.unretarded_cycles.filter(|cycles| cycles.is_finite()),
+            retardation: case.retardation.as_ref().map_or_else(none, |model| model.json()),
+        })
+    }
 }

@@ -5,10 +5,10 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::output::{Room, write_file};
+use super::output::{Room, write_file, write_json};
 use super::pictures::stress::stress_svg;
 use super::specimen_picture::nodes_svg;
-use super::{json::RESULT_FILE, provenance, vtk};
+use super::{provenance, record::RESULT_FILE, vtk};
 use perilife_base::error::Result;
 use perilife_base::raster::Snapshot;
 use perilife_base::units::shown::{column, per, told};
@@ -116,8 +116,8 @@ pub fn room(case: &Case) -> Room {
 /// Writes all files into `folder`; `result` is the content of `result.json` but for what made it.
 pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) -> Result<()> {
     let mut result = result.clone();
-    provenance::add(&mut result, &case.provenance, &[]);
-    write_file(&folder.join(RESULT_FILE), format!("{result:#}\n").as_bytes())?;
+    provenance::add(&mut result, &case.provenance, []);
+    write_json(folder, RESULT_FILE, &result)?;
     let command = "sif --method element_free_galerkin";
     provenance::write(folder, command, provenance::table_of(&case.echo), &case.provenance)?;
     let field = StressField { cycles: 0.0, cracks: case.specimen.crack_lines(), pieces: stressed.pieces.clone() };

@@ -1,17 +1,14 @@
 //! Results of a sweep: plan, outcome of every case, `sweep.csv`, `sweep.json`, `life.svg`.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::chart::{self, Mark, Series};
-use super::csv;
-use super::output::write_file;
-use super::units::{shown_result, shown_table};
-use perilife_base::cells::field;
+use super::output::{write_json, write_table};
+use perilife_base::columns::{Table, exact_text};
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_calibration::sweep::distribution::quantile;
 use perilife_calibration::sweep::draw::label;
@@ -129,35 +126,33 @@ impl Plan {
 /// A value as the table writes it.
 fn written(value: &toml::Value) -> String {
     match value {
-        toml::Value::Float(number) => csv::exact(*number),
+        toml::Value::Float(number) => exact_text(*number),
         toml::Value::String(text) => text.clone(),
         other => other.to_string(),
     }
 }
 
 /// `sweep.csv`: a row for each case in order; one that is not there yet says so.
-pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> String {
-    let columns: String = plan.columns.iter().map(|key| format!("{},", field(key))).collect();
-    let mut text = format!("case,{columns}life_cycles,stop_reason,crack_length_final_mm,wall_s,problem,life_is_lower_bound\n");
-    for (i, (case, outcome)) in plan.cases.iter().zip(outcomes).enumerate() {
-        let values: String = case.values.iter().map(|value| format!("{},", field(value))).collect();
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{},{values}", label(i + 1));
-        let _ = match outcome {
-            Some(outcome) => writeln!(
-                text,
-                "{},{},{},{},{},{}",
-                outcome.life_cycles.map_or_else(String::new, csv::exact),
-                outcome.stop_reason.as_deref().unwrap_or_default(),
-                outcome.crack_length_final_mm.map_or_else(String::new, csv::number),
-                csv::exact(outcome.wall_s),
-                field(&outcome.problem.as_deref().unwrap_or_default().replace('\n', " ")),
-                outcome.life_is_lower_bound.map_or_else(String::new, |is_lower| is_lower.to_string())
-            ),
-            None => writeln!(text, ",,,,not run yet,"),
-        };
-    }
-    text
+pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> Table {
+    let of = |value: &dyn Fn(&Outcome) -> Option<f64>| {
+        outcomes.iter().map(|outcome| outcome.as_ref().and_then(value).unwrap_or(f64::NAN)).collect::<Vec<_>>()
+    };
+    let words = |value: &dyn Fn(&Outcome) -> Option<String>, missing: &str| {
+        let of_case = |outcome: &Option<Outcome>| outcome.as_ref().map_or(Some(missing.to_owned()), value).unwrap_or_default();
+        outcomes.iter().map(of_case).collect::<Vec<_>>()
+    };
+    let table = Table::new(TABLE_FILE).words("case", (1..=plan.cases.len()).map(label));
+    let with_key = |table: Table, (place, key): (usize, &String)| {
+        table.words(key.clone(), plan.cases.iter().map(|case| case.values[place].clone()))
+    };
+    let table = plan.columns.iter().enumerate().fold(table, with_key);
+    table
+        .exact("life_cycles", of(&|outcome| outcome.life_cycles))
+        .words("stop_reason", words(&|outcome| outcome.stop_reason.clone(), ""))
+        .numbers("crack_length_final_mm", of(&|outcome| outcome.crack_length_final_mm))
+        .exact("wall_s", of(&|outcome| Some(outcome.wall_s)))
+        .words("problem", words(&|outcome| outcome.problem.as_ref().map(|problem| problem.replace('\n', " ")), "not run yet"))
+        .words("life_is_lower_bound", words(&|outcome| outcome.life_is_lower_bound.map(|is_lower| is_lower.to_string()), ""))
 }
 
 /// `sweep.json`: the design, counts, quantiles of life, failures. `wall_s` is the time of this call, `computing_s` that of the
@@ -190,6 +185,25 @@ pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value 
         "wall_s": wall_s,
         "computing_s": there().map(|outcome| outcome.wall_s).sum::<f64>(),
     })
+}
+
+/// Quantiles of lives: null where the lives do not say them, and in words.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LifeQuantiles {
+    pub p05: Option<f64>,
+    pub p50: Option<f64>,
+    pub p95: Option<f64>,
+    pub words: QuantileWords,
+    pub least: Option<f64>,
+    pub most: Option<f64>,
+}
+
+/// The same in words.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct QuantileWords {
+    pub p05: Option<String>,
+    pub p50: Option<String>,
+    pub p95: Option<String>,
 }
 
 /// Lives of the cases that have one.
@@ -232,28 +246,28 @@ impl Lives {
         if is_bound { (None, Some(format!("above {value:.0}"))) } else { (Some(value), Some(format!("{value:.0}"))) }
     }
 
-    /// Quantiles by [`quantile`], null where the cases do not say them, and in words.
-    pub fn figures(&self) -> Value {
+    /// Quantiles by [`quantile`].
+    pub fn figures(&self) -> LifeQuantiles {
         let [p05, p50, p95] = [0.05, 0.5, 0.95].map(|q| self.quantile(q));
         let ends = || self.sorted.iter().filter(|(life, _)| life.is_finite()).map(|(life, _)| *life);
-        json!({
-            "p05": p05.0,
-            "p50": p50.0,
-            "p95": p95.0,
-            "words": { "p05": p05.1, "p50": p50.1, "p95": p95.1 },
-            "least": ends().next(),
-            "most": ends().next_back(),
-        })
+        LifeQuantiles {
+            p05: p05.0,
+            p50: p50.0,
+            p95: p95.0,
+            words: QuantileWords { p05: p05.1, p50: p50.1, p95: p95.1 },
+            least: ends().next(),
+            most: ends().next_back(),
+        }
     }
 }
 
 /// Writes table, figures and picture into the folder of a sweep; returns the figures.
 pub fn write(folder: &Path, plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Result<Value> {
     let figures = figures(plan, outcomes, wall_s);
-    write_file(&folder.join(TABLE_FILE), shown_table(&table(plan, outcomes)).as_bytes())?;
+    write_table(folder, &table(plan, outcomes))?;
     draw(&folder.join(CHART_FILE), plan, outcomes)?;
     // Last, so that whoever waits for it finds the others.
-    write_file(&folder.join(FIGURES_FILE), format!("{:#}\n", shown_result(&figures)).as_bytes())?;
+    write_json(folder, FIGURES_FILE, &figures)?;
     Ok(figures)
 }
 

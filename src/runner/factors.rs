@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::{Summary, Watcher};
+use super::{Done, Summary, Watcher};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::units::shown::{column, per, told};
 use perilife_base::units::{MM, MPA, MPA_SQRT_M};
@@ -15,11 +15,10 @@ use perilife_growth::predict::tip_factors::{MethodResult, StressIntensityMethod,
 use perilife_growth::stress_concentration::stressed;
 use perilife_plate::specimen::handbook::handbook_beside;
 use perilife_points::crack_tip::TipState;
-use perilife_results::units::show_folder;
 use perilife_results::{model_words, stresses};
 
 /// Factors of the tips, and stresses where a folder for them is given or there is no crack.
-pub(super) fn run(
+pub(super) fn of(
     case: &Case,
     methods: &[StressIntensityMethod],
     on_nodes: bool,
@@ -31,7 +30,7 @@ pub(super) fn run(
         return Err(input("--out", folder.display(), problem, "leave it out"));
     }
     let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);
-    let (mut found, mut tables, mut lines) = (Map::new(), String::new(), Vec::new());
+    let (mut found, mut tables, mut lines, mut done) = (Map::new(), String::new(), Vec::new(), Done::Nothing);
     if has_cracks || !on_nodes {
         let tips = stress_intensity(case, methods)?;
         for warning in notes(case, &tips)?.into_iter().chain(pin_arcs::line(case)) {
@@ -56,14 +55,11 @@ pub(super) fn run(
         tables.push_str(&stresses::table(&stressed));
         lines.push(stresses::words(case, &stressed));
         found.insert("stresses".to_owned(), stresses::object(&stressed));
-        if let Some(folder) = folder {
-            stresses::write(folder, case, &stressed, &Value::Object(found.clone()))?;
-            show_folder(folder, &mut Value::Null)?;
-        }
+        done = Done::Stresses(Box::new(stressed));
     }
     let mut figures = Value::Object(found.clone());
     figures["name"] = json!(case.name);
-    Ok(Summary { result: Value::Object(found), figures, tables, lines, refusal: None })
+    Ok(Summary { result: Value::Object(found), figures, printed: tables, lines, refusal: None, done })
 }
 
 /// What the methods say of their results, each once.

@@ -9,7 +9,6 @@
 mod draft;
 pub mod factor_sweep;
 mod factors;
-mod judged;
 pub mod sweep;
 pub mod scene_model;
 pub mod scene_picture;
@@ -22,27 +21,31 @@ mod task;
 pub use perilife_scenes as scenes;
 
 pub use draft::{Draft, put_law};
-pub use judged::Judged;
-pub use task::{Kind, Task, Wanted};
+pub use perilife_results::run::{Judged, Wanted};
+pub use task::{Kind, Task};
 
 use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use perilife_base::error::{Error, Result};
+use perilife_base::columns::Table;
+use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::units::MM;
 use perilife_calibration::calibrate::{Calibration, Fitted};
 use perilife_calibration::case::CalibrationCase;
+use perilife_calibration::fit::Fit;
+use perilife_calibration::laws::LawFits;
 use perilife_calibration::population::plate::lot_of;
 use perilife_calibration::sweep::fleet;
 use perilife_growth::case::Case;
 use perilife_growth::predict::checkpoint::Checkpoint;
 use perilife_growth::predict::residual_strength::check_strength;
 use perilife_growth::predict::{Observer, Prediction, Silent, predict, resume};
+use perilife_growth::stress_concentration::Stressed;
 use perilife_results::output::Share;
 use perilife_results::sweep::Plan;
-use perilife_results::units::show_folder;
+use perilife_results::{fit, stresses};
 use perilife_scenes::checkpoint::SceneCheckpoint;
 use perilife_scenes::{Fracture, Scene, SceneEnd, SceneObserver};
 use sweep_folder::SweepFolder;
@@ -62,12 +65,25 @@ pub struct Summary {
     pub result: Value,
     /// The part of it that a listing of runs shows, all that the user should know under `warnings`.
     pub figures: Value,
-    /// Tables that were asked for on standard output.
-    pub tables: String,
+    /// What is printed as it is.
+    pub printed: String,
     /// The result in words.
     pub lines: Vec<String>,
     /// Why the run does not count, though its files are written.
     pub refusal: Option<Error>,
+    done: Done,
+}
+
+/// What its files are made of.
+#[derive(Debug, Default)]
+enum Done {
+    #[default]
+    Nothing,
+    Cycles(Box<Prediction>, Box<Judged>),
+    Scene(Box<Fracture>),
+    Lives(Box<Fit>, fit::Kept),
+    Rates(Box<LawFits>, fit::Kept),
+    Stresses(Box<Stressed>),
 }
 
 impl Summary {
@@ -75,6 +91,39 @@ impl Summary {
     /// Errors: its refusal.
     pub fn counted(mut self) -> Result<Summary> {
         self.refusal.take().map_or(Ok(self), Err)
+    }
+
+    /// Texts of its tables by the names of their files.
+    /// Errors: a law whose rate is not known.
+    pub fn tables(&self, task: &Task) -> Result<Vec<(String, String)>> {
+        let texts = |tables: Vec<Table>| {
+            tables.into_iter().map(|table| (table.file.display().to_string(), table.csv())).collect::<Vec<_>>()
+        };
+        Ok(match (&self.done, task) {
+            (Done::Cycles(prediction, judged), Task::Prediction { case, .. }) => texts(judged.tables(case, prediction)?),
+            (Done::Scene(fracture), _) => texts(scene_results::tables(fracture).into()),
+            (Done::Lives(_, kept) | Done::Rates(_, kept), _) => {
+                kept.tables.iter().map(|(name, text)| ((*name).to_owned(), text.clone())).collect()
+            }
+            _ => Vec::new(),
+        })
+    }
+
+    /// Writes all files of its results into an empty folder.
+    /// Errors: files that cannot be written.
+    pub fn write(&self, task: &Task, folder: &Path) -> Result<()> {
+        match (&self.done, task) {
+            (Done::Cycles(prediction, judged), Task::Prediction { case, .. }) => judged.write(folder, case, prediction),
+            (Done::Scene(fracture), Task::Scene(scene)) => scene_results::write(folder, scene, fracture, &self.result),
+            (Done::Lives(found, kept), Task::Fit(Calibration::Lives(case))) => {
+                fit::write(folder, &Fitted::Lives(case, found.clone()), kept)
+            }
+            (Done::Rates(found, kept), Task::Fit(Calibration::Rates(case))) => {
+                fit::write(folder, &Fitted::Rates(case, (**found).clone()), kept)
+            }
+            (Done::Stresses(stressed), Task::Factors { case, .. }) => stresses::write(folder, case, stressed, &self.result),
+            _ => Err(Error::Mechanics(format!("{}: factors of tips have no folder of results", task.name()))),
+        }
     }
 }
 
@@ -114,6 +163,23 @@ impl TaskCheckpoint {
 /// Runs a task, from a checkpoint of it if there is one, and writes all files of its results into an empty folder if one is given.
 /// Errors: mechanics without a result, wrong input that shows only now, files that cannot be written.
 pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
+    if let Task::Sweep { sweep, cases } = task {
+        let Some(folder) = folder else { return Err(Error::Mechanics(format!("{}: a sweep needs a folder", sweep.name))) };
+        let begun = Instant::now();
+        let read = sweep.document.folder.opened().so_far();
+        let folder = SweepFolder::open(folder, Plan::new(sweep, cases), &read, Share::Alone)?;
+        let threads = rayon::current_num_threads();
+        sweep::run(&cases.iter().collect::<Vec<_>>(), &folder, threads, true, &|| ())?;
+        return sweep::collect(&folder, begun, watcher);
+    }
+    let summary = of(task, from, folder, watcher)?;
+    folder.map_or(Ok(()), |folder| summary.write(task, folder))?;
+    Ok(summary)
+}
+
+/// Runs a task, from a checkpoint of it if there is one; `folder` is where its files will be, if they will.
+/// Errors: mechanics without a result, wrong input that shows only now.
+pub fn of(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
     match task {
         Task::Prediction { case, wanted } => {
             check_wanted(case, wanted)?;
@@ -121,26 +187,18 @@ pub fn run(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, wat
                 Some(TaskCheckpoint::Cycles(checkpoint)) => resume(case, *checkpoint, watcher)?,
                 _ => predict(case, watcher)?,
             };
-            of_prediction(case, &prediction, wanted, folder, watcher)
+            of_prediction(case, prediction, wanted, watcher)
         }
         Task::Scene(scene) => {
             let fracture = match from {
                 Some(TaskCheckpoint::Scene(checkpoint)) => perilife_scenes::resume(scene, *checkpoint, watcher)?,
                 _ => perilife_scenes::run(scene, watcher)?,
             };
-            of_scene(scene, &fracture, folder, watcher)
+            Ok(of_scene(scene, fracture, watcher))
         }
-        Task::Fit(calibration) => of_fit(calibration, folder, watcher),
-        Task::Factors { case, methods, on_nodes } => factors::run(case, methods, *on_nodes, folder, watcher),
-        Task::Sweep { sweep, cases } => {
-            let Some(folder) = folder else { return Err(Error::Mechanics(format!("{}: a sweep needs a folder", sweep.name))) };
-            let begun = Instant::now();
-            let read = sweep.document.folder.opened().so_far();
-            let folder = SweepFolder::open(folder, Plan::new(sweep, cases), &read, Share::Alone)?;
-            let threads = rayon::current_num_threads();
-            sweep::run(&cases.iter().collect::<Vec<_>>(), &folder, threads, true, &|| ())?;
-            sweep::collect(&folder, begun, watcher)
-        }
+        Task::Fit(calibration) => of_fit(calibration, watcher),
+        Task::Factors { case, methods, on_nodes } => factors::of(case, methods, *on_nodes, folder, watcher),
+        Task::Sweep { .. } => Err(input_missing("design", "asks for many cases", "run `perilife sweep`")),
     }
 }
 
@@ -158,47 +216,37 @@ pub fn check_wanted(case: &Case, wanted: &Wanted) -> Result<()> {
     perilife_growth::predict::judgement::refuse_beforehand(case)
 }
 
-/// Judges a run of cycles and writes its files.
-/// Errors: as [`Judged::of`]; files that cannot be written.
-pub fn of_prediction(
-    case: &Case,
-    prediction: &Prediction,
-    wanted: &Wanted,
-    folder: Option<&Path>,
-    watcher: &dyn Watcher,
-) -> Result<Summary> {
-    let mut judged = Judged::of(case, prediction, wanted, watcher)?;
-    if let Some(folder) = folder {
-        judged.write(folder, case, prediction)?;
-        judged.show(folder)?;
-    }
-    Ok(judged.summary(case, prediction))
+/// Judges a run of cycles.
+/// Errors: as [`Judged::of`].
+pub fn of_prediction(case: &Case, prediction: Prediction, wanted: &Wanted, watcher: &dyn Watcher) -> Result<Summary> {
+    let mut judged = Judged::of(case, &prediction, wanted)?;
+    judged.told.iter().for_each(|line| watcher.warn(line));
+    let (figures, lines) = (judged.figures(), judged.words(case, &prediction));
+    let refusal = judged.take_refusal();
+    // Figures and text have a form in JSON.
+    let result = serde_json::to_value(&judged.record).unwrap_or_default();
+    let done = Done::Cycles(Box::new(prediction), Box::new(judged));
+    Ok(Summary { result, figures, lines, refusal, done, ..Summary::default() })
 }
 
-/// Writes the files of a scene that was run.
-pub fn of_scene(scene: &Scene, fracture: &Fracture, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
+/// What came of a scene.
+pub fn of_scene(scene: &Scene, fracture: Fracture, watcher: &dyn Watcher) -> Summary {
     fracture.warnings.iter().for_each(|warning| watcher.warn(warning));
-    let mut result = crate::scene_results::result(scene, fracture);
-    if let Some(folder) = folder {
-        crate::scene_results::write(folder, scene, fracture, &result)?;
-        show_folder(folder, &mut result)?;
-    }
+    let result = scene_results::result(scene, &fracture);
     let is_bad = matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable);
     let bad = || Error::Mechanics(format!("{}: {}: {}", scene.name, fracture.end, fracture.end.meaning()));
-    let (figures, lines) = (result.clone(), crate::scene_results::words(scene, fracture));
-    Ok(Summary { result, figures, lines, refusal: is_bad.then(bad), ..Summary::default() })
+    let (figures, lines, refusal) = (result.clone(), scene_results::words(scene, &fracture), is_bad.then(bad));
+    Summary { result, figures, lines, refusal, done: Done::Scene(Box::new(fracture)), ..Summary::default() }
 }
 
-fn of_fit(calibration: &Calibration, folder: Option<&Path>, watcher: &dyn Watcher) -> Result<Summary> {
+fn of_fit(calibration: &Calibration, watcher: &dyn Watcher) -> Result<Summary> {
     let started = Instant::now();
     let fitted = calibration.fit(watcher)?;
     let wall_s = started.elapsed().as_secs_f64();
     fitted.warnings().iter().for_each(|warning| watcher.warn(warning));
-    let result = fitted.report(wall_s);
-    folder.map_or(Ok(()), |folder| {
-        perilife_results::fit::write(folder, &fitted, &perilife_results::fit::Kept::of(&fitted, &result)?)
-    })?;
-    let mut figures = result.clone();
+    let report = fitted.report(wall_s);
+    let (kept, lines) = (fit::Kept::of(&fitted, &report)?, fitted.summary(wall_s));
+    let (result, mut figures) = (kept.json.clone(), report);
     if let Fitted::Lives(CalibrationCase { case, .. }, _) = fitted {
         // What the law is of.
         figures["material"] = json!(case.material.name);
@@ -206,5 +254,9 @@ fn of_fit(calibration: &Calibration, folder: Option<&Path>, watcher: &dyn Watche
         figures["stress_ratio"] = json!(case.loading.ratio);
         figures["thickness_mm"] = json!(case.specimen.thickness / MM);
     }
-    Ok(Summary { result, figures, lines: fitted.summary(wall_s), ..Summary::default() })
+    let done = match fitted {
+        Fitted::Lives(_, found) => Done::Lives(found, kept),
+        Fitted::Rates(_, found) => Done::Rates(Box::new(found), kept),
+    };
+    Ok(Summary { result, figures, lines, done, ..Summary::default() })
 }

@@ -1,29 +1,24 @@
 //! Results of a fracture scene: `history.csv`, `crack_path.csv`, `cracking.csv`, `result.json`, charts and the damaged plate.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::scene_model;
+use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::raster::Snapshot;
 use perilife_base::units::{KN, MM};
 use perilife_plate::specimen::Point;
 use perilife_results::chart::{self, Mark, Series};
-use perilife_results::csv::{exact, number};
 use perilife_results::damage::DamagePicture;
 use perilife_results::model_words::{self, clean};
-use perilife_results::output::{Room, write_file};
+use perilife_results::output::{Room, write_json, write_table};
+use perilife_results::record::RESULT_FILE;
 use perilife_results::{provenance, vtk};
 use perilife_scenes::outcome::{HistoryRow, PathPoint};
 use perilife_scenes::scene::{Action, Procedure, SceneLaw};
 use perilife_scenes::{Fracture, Scene, SceneEnd};
-
-/// Columns of `history.csv`.
-pub const HISTORY_COLUMNS: &str = "step,time_s,displacement_mm,load_n,broken_bonds,kinetic_j,strain_j,fracture_j,work_j";
-/// Columns of `crack_path.csv` and `cracking.csv`.
-pub const PATH_COLUMNS: &str = "tip,step,time_s,x_mm,y_mm,damage,speed_m_s";
 
 /// Rows of the history that are numbers: the last ones of a motion that blew up may not be.
 fn rows(fracture: &Fracture) -> impl Iterator<Item = &HistoryRow> {
@@ -34,36 +29,37 @@ fn rows(fracture: &Fracture) -> impl Iterator<Item = &HistoryRow> {
 }
 
 /// `history.csv`: one row a recorded step.
-pub fn history(fracture: &Fracture) -> String {
-    let mut text = format!("{HISTORY_COLUMNS}\n");
-    for row in rows(fracture) {
-        let energies = [row.kinetic, row.strain, row.fracture, row.work].map(number).join(",");
-        let (time, displacement, load) = (exact(row.time), number(row.displacement / MM), number(row.load));
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{},{time},{displacement},{load},{},{energies}", row.step, row.broken_bonds);
-    }
-    text
+fn history(fracture: &Fracture) -> Table {
+    let column = |of: fn(&HistoryRow) -> f64| rows(fracture).map(of);
+    Table::new("history.csv")
+        .counts("step", rows(fracture).map(|row| row.step))
+        .exact("time_s", column(|row| row.time))
+        .numbers("displacement_mm", column(|row| row.displacement / MM))
+        .numbers("load_n", column(|row| row.load))
+        .counts("broken_bonds", rows(fracture).map(|row| row.broken_bonds))
+        .numbers("kinetic_j", column(|row| row.kinetic))
+        .numbers("strain_j", column(|row| row.strain))
+        .numbers("fracture_j", column(|row| row.fracture))
+        .numbers("work_j", column(|row| row.work))
 }
 
 /// `crack_path.csv` of [`Fracture::path`] and `cracking.csv` of [`Fracture::cracking`]: where every crack front stood and how
 /// fast it came there, in the order of time.
-pub fn crack_path(path: &[PathPoint]) -> String {
-    let mut text = format!("{PATH_COLUMNS}\n");
-    for point in path {
-        let [x, y] = point.position.map(|metres| number(metres / MM));
-        let (time, damage, speed) = (exact(point.time), number(point.damage), number(point.speed));
-        let _ = writeln!(text, "{},{},{time},{x},{y},{damage},{speed}", point.tip, point.step);
-    }
-    text
+fn crack_path(file: &'static str, path: &[PathPoint]) -> Table {
+    let column = |of: fn(&PathPoint) -> f64| path.iter().map(of);
+    Table::new(file)
+        .counts("tip", path.iter().map(|point| point.tip))
+        .counts("step", path.iter().map(|point| point.step))
+        .exact("time_s", column(|point| point.time))
+        .numbers("x_mm", column(|point| point.position[0] / MM))
+        .numbers("y_mm", column(|point| point.position[1] / MM))
+        .numbers("damage", column(|point| point.damage))
+        .numbers("speed_m_s", column(|point| point.speed))
 }
 
-/// All tables by the names of their files.
-pub fn tables(fracture: &Fracture) -> [(&'static str, String); 3] {
-    [
-        ("history.csv", history(fracture)),
-        ("crack_path.csv", crack_path(&fracture.path)),
-        ("cracking.csv", crack_path(&fracture.cracking)),
-    ]
+/// All tables.
+pub fn tables(fracture: &Fracture) -> [Table; 3] {
+    [history(fracture), crack_path("crack_path.csv", &fracture.path), crack_path("cracking.csv", &fracture.cracking)]
 }
 
 /// Bytes that a scene will write, roughly.
@@ -74,10 +70,8 @@ pub fn room(scene: &Scene) -> Room {
 /// Writes all files of a scene into `folder`.
 pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &Value) -> Result<()> {
     // Tables and figures first: what a full disk cuts off are pictures.
-    for (file, text) in tables(fracture) {
-        write_file(&folder.join(file), text.as_bytes())?;
-    }
-    write_file(&folder.join(perilife_results::json::RESULT_FILE), format!("{result:#}\n").as_bytes())?;
+    tables(fracture).iter().try_for_each(|table| write_table(folder, table))?;
+    write_json(folder, RESULT_FILE, result)?;
     provenance::write(folder, "fracture", provenance::table_of(&scene.echo), &scene.provenance)?;
     draw_charts(folder, scene, fracture)?;
     // The last state of a motion that blew up is no number.
@@ -227,9 +221,8 @@ pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
         "version": env!("CARGO_PKG_VERSION"),
         "case": scene.echo,
     });
-    let tables = tables(fracture);
-    let tables: Vec<(&str, &str)> = tables.iter().map(|(name, text)| (*name, &**text)).collect();
-    provenance::add(&mut result, &scene.provenance, &tables);
+    let texts = tables(fracture).map(|table| (table.file.display().to_string(), table.csv()));
+    provenance::add(&mut result, &scene.provenance, texts.iter().map(|(name, text)| (&**name, &**text)));
     result
 }
 

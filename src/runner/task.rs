@@ -8,19 +8,18 @@ use crate::scene_results;
 use perilife_base::error::{Result, input};
 use perilife_base::input::Document;
 use perilife_calibration::calibrate::Calibration;
-use perilife_calibration::inspection::InspectFrom;
 use perilife_calibration::population::plate::lot_of;
 use perilife_calibration::sweep::design::{CASES_MAX, is_sweep};
 use perilife_calibration::sweep::{DrawnCase, Sweep};
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, Method};
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
-use perilife_measured::{Import, MeasuredCurve};
+use perilife_measured::Import;
 use perilife_points::budget::Budget;
-use perilife_results::answers::Asked;
 use perilife_results::band::no_band_to_narrow;
 use perilife_results::output::{Room, RunKind};
-use perilife_results::{run, stresses};
+use perilife_results::run::{self, Wanted};
+use perilife_results::stresses;
 use perilife_scenes::Scene;
 use perilife_scenes::read::is_scene;
 
@@ -62,23 +61,6 @@ impl Kind {
     pub fn options(self) -> &'static [&'static str] {
         if self == Kind::Sif { &["method"] } else { &[] }
     }
-}
-
-/// What is wanted beside a run of cycles.
-#[derive(Debug, Clone, Default)]
-pub struct Wanted {
-    /// Residual strength over crack length.
-    pub strength: bool,
-    /// Readings of the plate itself, set against its case, that narrow the band of what it has left.
-    pub readings: Option<MeasuredCurve>,
-    /// What is left from a crack length on, and how often to look.
-    pub inspection: Option<InspectFrom>,
-    /// How and when inspections find cracks, and lives at other input.
-    pub asked: Asked,
-    /// No bounds of the error of the life.
-    pub no_estimate: bool,
-    /// The life by the other engine, too.
-    pub cross_check: bool,
 }
 
 /// A document read as what it asks for.

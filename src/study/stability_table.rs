@@ -4,8 +4,8 @@ use serde_json::{Value, json};
 
 use crate::stability::Record;
 use perilife_base::cells::field;
+use perilife_base::columns::number_text as number;
 use perilife_base::limits;
-use perilife_results::csv::number;
 use perilife_results::time;
 
 /// One record as a line on the console.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use perilife_growth::case::record::FittedRecord;
-use perilife_results::csv::read_a_n;
+use perilife_results::curve::read_a_n;
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use perilife_results::csv::{self, Row};
+use perilife_results::curve::{self, Row};
 use perilife_results::resample::cycles_over_length;
 use tempfile::{TempDir, tempdir};
 
@@ -14,12 +14,13 @@ use crate::support::{made_up_case, made_up_run};
 fn fabricated() -> TempDir {
     let dir = tempdir().unwrap();
     fs::create_dir(dir.path().join("run")).unwrap();
-    fs::write(dir.path().join("run/a_n.csv"), csv::a_n(&made_up_case::case(), &made_up_run::prediction(0.0))).unwrap();
+    fs::write(dir.path().join("run/a_n.csv"), curve::a_n(&made_up_case::case(), &made_up_run::prediction(0.0), None).csv())
+        .unwrap();
     dir
 }
 
 fn rows(folder: &Path, file: &str) -> Vec<Row> {
-    csv::read_a_n(&folder.join(file)).unwrap()
+    curve::read_a_n(&folder.join(file)).unwrap()
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use perilife_results::csv::read_a_n;
+use perilife_results::curve::read_a_n;
 use serde_json::Value;
 use tempfile::tempdir;
 

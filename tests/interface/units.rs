@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use perilife_base::units::us::{System, renamed};
-use perilife_results::csv::read_a_n;
+use perilife_results::curve::read_a_n;
 use serde_json::Value;
 use tempfile::tempdir;
 

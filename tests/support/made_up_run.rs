@@ -4,10 +4,12 @@
 use std::f64::consts::PI;
 
 use perilife_base::raster::{PointGrid, Snapshot};
+use perilife_growth::case::Case;
 use perilife_growth::predict::{CurvePoint, Prediction, RunFigures, StopReason, TipRecord};
 use perilife_laws::response::Response;
 use perilife_plate::specimen::{Crack, Point};
 use perilife_points::solver::SolverUsed;
+use perilife_results::run::{Judged, Wanted};
 
 const SPACING: f64 = 1e-3;
 
@@ -131,4 +133,14 @@ fn snapshot(grid: &PointGrid, curve: &[CurvePoint], at: usize) -> Snapshot {
         remaining_life: Vec::new(),
         stress: Vec::new(),
     }
+}
+
+/// What was found about a run, without bounds of its error.
+pub fn judged(case: &Case, run: &Prediction) -> Judged {
+    Judged::of(case, run, &Wanted { no_estimate: true, ..Wanted::default() }).unwrap()
+}
+
+/// `result.json` of a run.
+pub fn result(case: &Case, run: &Prediction) -> serde_json::Value {
+    serde_json::to_value(judged(case, run).record).unwrap()
 }

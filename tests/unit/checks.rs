@@ -105,11 +105,8 @@ fn extrapolation_has_two_sides() {
     assert!(verdict(&of_run(&case, &run)).starts_with("not to be used: "));
     assert_eq!(of_run(&case, &run)[0].name, "extrapolation_above", "what fails comes first");
     assert_eq!(refusal(&case, &run).unwrap().exit_code(), 2);
-    let lives = perilife_results::band::Lives::of(&case, &run).unwrap();
-    assert!(
-        perilife_results::run::words(&case, &run, &lives, &perilife_results::quality::Quality::default())[0]
-            .contains(": no life that counts, 100.0 cycles were computed")
-    );
+    let words = made_up_run::judged(&case, &run).words(&case, &run);
+    assert!(words[0].contains(": no life that counts, 100 cycles were computed"), "{}", words[0]);
     // All of it on the safe side counts, with a word.
     case.law = made_up_case::fitted(21.0, 30.0);
     assert_eq!(named(&case, &run, "extrapolation_below").verdict, Verdict::Doubtful);

@@ -10,7 +10,7 @@ use perilife_growth::case::Case;
 use perilife_growth::predict::{Prediction, StopReason};
 use perilife_results::output::{OutputFolder, RunKind};
 use perilife_runner::catalogue;
-use perilife_runner::{Wanted, of_prediction};
+use perilife_runner::{Task, Wanted, of_prediction};
 use tempfile::tempdir;
 
 use crate::support::{made_up_case, made_up_run};
@@ -20,7 +20,13 @@ const QUIET: Console = Console { json: false, quiet: true };
 
 fn keep(case: &Case, run: Prediction, out: &Path) -> Result<(), perilife_base::error::Error> {
     let folder = OutputFolder::create(out, RunKind::Predict)?;
-    QUIET.keep(folder, &[], |path| of_prediction(case, &run, &Wanted::default(), Some(path), &QUIET))?.counted().map(drop)
+    let task = Task::Prediction { case: Box::new(case.clone()), wanted: Box::default() };
+    let files = |path: &Path| {
+        let summary = of_prediction(case, run, &Wanted::default(), &QUIET)?;
+        summary.write(&task, path)?;
+        Ok(summary)
+    };
+    QUIET.keep(folder, &[], files)?.counted().map(drop)
 }
 
 #[test]

@@ -6,7 +6,6 @@ use perilife_growth::case::Case;
 use perilife_growth::predict::fit_use;
 use perilife_growth::predict::plastic_zone::{plastic_zone, warnings};
 use perilife_growth::predict::{Silent, predict};
-use perilife_results::json;
 
 use crate::support::hand_cases::{PANEL, hand_case, hand_run};
 use crate::support::{made_up_case, made_up_run};
@@ -29,7 +28,7 @@ fn life_outside_the_fitted_range_is_told_side_by_side_with_a_remedy() {
         told[1].starts_with("20.0 % of the life is spent at ΔK below 12.00 MPa√m") && told[1].contains("threshold_mpa"),
         "{told:?}"
     );
-    let all = &json::result(&case, &run)["warnings"];
+    let all = &made_up_run::result(&case, &run)["warnings"];
     assert!(told.iter().all(|line| all.as_array().unwrap().iter().any(|told| told == line)), "{all}");
     case.fatigue.threshold = 3e6;
     assert!(!fit_use::extrapolated(&case, &run)[1].contains("threshold_mpa"));
@@ -63,7 +62,7 @@ fn the_plastic_zone_is_told_and_warned_about() {
     // Lives to 59.54 and to 62.87 mm differ by half a percent.
     assert!((0.003..0.007).contains(&zone.life_share_too_large), "{}", zone.life_share_too_large);
     assert!(run.warnings.iter().any(|line| line.contains("small-scale yielding does not hold")), "{:?}", run.warnings);
-    let told = &json::result(&case, &run)["plastic_zone"];
+    let told = &made_up_run::result(&case, &run)["plastic_zone"];
     assert!((told["first"]["over_thickness"].as_f64().unwrap() - zone.first.size / 2.54e-3).abs() < 1e-9);
     assert_eq!(told["small_scale_yielding"], false);
     // In the range of the tests it holds.
@@ -76,7 +75,7 @@ fn the_plastic_zone_is_told_and_warned_about() {
     // Without a yield strength nothing is known.
     assert!(
         plastic_zone(&hand_case(PANEL, &[]), &run.curve).is_none()
-            && json::result(&hand_case(PANEL, &[]), &run)["plastic_zone"].is_null()
+            && made_up_run::result(&hand_case(PANEL, &[]), &run)["plastic_zone"].is_null()
     );
 }
 
@@ -106,7 +105,7 @@ fn a_short_crack_at_a_rim_is_not_called_a_ligament() {
     let lines = warnings(&case(10.0), &run.curve);
     assert!(lines[0].contains("the crack length is smaller than ASTM E647 asks of a ligament"), "{lines:?}");
     assert!(lines[0].contains("from a crack length of 1.5 mm to 1.5 mm (") && !lines[0].contains("100.00 %"), "{lines:?}");
-    let told = &json::result(&case(10.0), &run)["plastic_zone"];
+    let told = &made_up_run::result(&case(10.0), &run)["plastic_zone"];
     assert!((told["first"]["ligament_mm"].as_f64().unwrap() - 13.5).abs() < 5e-3, "{told}");
     assert!(told["first"]["over_crack"].as_f64().unwrap() > told["first"]["over_ligament"].as_f64().unwrap());
 }

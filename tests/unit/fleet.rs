@@ -16,7 +16,7 @@ const ALIKE: Fleet = Fleet { plates: 4000, seed: 3, initial_length: None, load_s
 
 fn fleet(case: &Case, fleet: &Fleet, looks: Option<Looks>) -> (FleetLives, Lives) {
     let run = predict(case, &Silent).unwrap();
-    let band = Lives::of(case, &run).unwrap();
+    let band = Lives::of(case, &run, false).unwrap();
     let plate = band.band.as_ref().map(|(plate, _)| plate);
     (lives(case, &run, fleet, plate, looks).unwrap(), band)
 }

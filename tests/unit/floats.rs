@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use perilife_base::columns::Table;
 use perilife_base::input::{Document, Folder};
 use perilife_base::sealed::Seal;
 use perilife_calibration::calibrate::calibrate;
@@ -10,7 +11,7 @@ use perilife_calibration::results::record;
 use perilife_growth::case::Case;
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::predict::Silent;
-use perilife_results::csv::{Row, parse_a_n, table};
+use perilife_results::curve::{Row, table};
 use perilife_results::provenance::table_of;
 use serde_json::Value;
 
@@ -67,7 +68,9 @@ fn a_thousand_doubles_survive_every_document() {
     let mut cycles: Vec<f64> = given.iter().map(|x| x.abs()).collect();
     cycles.sort_by(f64::total_cmp);
     let row = |&cycles: &f64| Row { cycles, crack_length_mm: 9.0, delta_k_mpa_sqrt_m: 1.0, da_dn_mm_per_cycle: 1.0 };
-    let rows = parse_a_n(&table(&cycles.iter().map(row).collect::<Vec<_>>()), Path::new("a_n.csv")).unwrap();
+    let rows =
+        Row::of_table(&Table::read(&table(&cycles.iter().map(row).collect::<Vec<_>>()).csv(), Path::new("a_n.csv")).unwrap())
+            .unwrap();
     same(&rows.iter().map(|row| row.cycles).collect::<Vec<_>>(), &cycles, "a_n.csv");
 }
 

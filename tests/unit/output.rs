@@ -46,7 +46,7 @@ fn kept_files_can_be_unpacked_everywhere() {
     ] {
         let mut object = serde_json::json!({});
         let files = ["case.toml", given, "case.TOML"].map(file).to_vec();
-        provenance::add(&mut object, &Provenance { files, ..Provenance::default() }, &[]);
+        provenance::add(&mut object, &Provenance { files, ..Provenance::default() }, []);
         let names: Vec<&str> = object["inputs"].as_array().unwrap().iter().map(|one| one["kept_as"].as_str().unwrap()).collect();
         assert_eq!(names, ["inputs/case.toml", &format!("inputs/{kept}"), "inputs/2_case.TOML"], "{given}");
     }

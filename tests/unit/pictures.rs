@@ -5,18 +5,20 @@ use std::fs;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use perilife_growth::case::Case;
+use perilife_growth::predict::StopReason;
 use perilife_plate::specimen::Point;
 use perilife_results::chart::{self, Mark, Series};
 use perilife_results::chart::{COMPUTED, LARGE};
-use perilife_results::csv::Row;
+use perilife_results::curve::Row;
+use perilife_results::curve::{RunTables, TipRows};
 use perilife_results::damage::{DamagePicture, cycles_and_length};
 use perilife_results::labels::{Box2, along, place_labels};
 use perilife_results::pictures::curves::{a_n_svg, k_svg};
 use perilife_results::pictures::plate::{HoleDrawn, LoadDrawn, Plate, SIZE, plate_svg};
-use perilife_results::pictures::tables::{RunTables, TipRows};
+use perilife_results::record::RunRecord;
 use perilife_results::specimen_picture::sketch::{CRACK, Sketch};
 use perilife_results::specimen_picture::specimen_svg;
-use perilife_results::{csv, vtk};
+use perilife_results::{curve, vtk};
 use tempfile::tempdir;
 
 use crate::support::{made_up_case, made_up_run};
@@ -28,8 +30,8 @@ const ANGLES: [f64; 2] = [0.0, 0.35];
 fn charts_name_axes_units_and_series() {
     let dir = tempdir().unwrap();
     let run = made_up_run::prediction(0.0);
-    let rows: Vec<csv::Row> = csv::Row::of_run(&made_up_case::case(), &run);
-    let series = |name: &str, mark, pick: fn(&csv::Row) -> (f64, f64)| Series {
+    let rows: Vec<curve::Row> = curve::Row::of_run(&made_up_case::case(), &run);
+    let series = |name: &str, mark, pick: fn(&curve::Row) -> (f64, f64)| Series {
         name: name.into(),
         mark,
         points: rows.iter().map(pick).collect(),
@@ -72,7 +74,7 @@ fn the_damage_picture_shows_plate_crack_and_scale() {
     for angle in ANGLES {
         let (run, cracks) = (made_up_run::prediction(angle), made_up_run::cracks());
         let paths: Vec<Vec<Point>> =
-            csv::paths(&run, &cracks).into_iter().map(|path| path.into_iter().map(|(_, p)| p).collect()).collect();
+            curve::paths(&run, &cracks).into_iter().map(|path| path.into_iter().map(|(_, p)| p).collect()).collect();
         let caption = cycles_and_length(&run.snapshots[2]);
         let picture =
             DamagePicture { grid: &run.grid, snapshot: &run.snapshots[2], cracks: &cracks, paths: &paths, caption: &caption };
@@ -243,7 +245,15 @@ fn straight_growth() -> (Plate, RunTables) {
     let factors = steps().map(|step| if step == 4.0 { [f64::NAN; 2] } else { [12.0 + step, -0.5] }).collect();
     let path = [[0.0, -50.0, 0.0]].into_iter().chain(steps().map(|step| [1e3 * step, -40.0 + 5.0 * step, 0.0])).collect();
     let tips = vec![TipRows { growth_mm: steps().map(|step| 5.0 * step).collect(), factors }];
-    (plate, RunTables { rows: steps().map(row).collect(), tips, band: None, depths_mm: None, paths: vec![path] })
+    (plate, RunTables { rows: steps().map(row).collect(), tips, paths: vec![path], ..RunTables::default() })
+}
+
+/// Of the made-up run, had it ended by fracture.
+fn broken() -> RunRecord {
+    let mut run = made_up_run::prediction(0.0);
+    run.stop = StopReason::Toughness;
+    run.curve.iter_mut().for_each(|row| row.tips.truncate(1));
+    made_up_run::judged(&made_up_case::case(), &run).record
 }
 
 fn numbers_of(svg: &str, element: &str, key: &str) -> Vec<f64> {
@@ -289,7 +299,7 @@ fn a_small_crack_gets_a_picture_of_its_own() {
 fn no_line_is_drawn_where_k_was_not_read() {
     let (_, mut tables) = straight_growth();
     let pieces = |svg: &str| svg.matches(&format!("stroke=\"{COMPUTED}\" stroke-width=\"2\"")).count();
-    let result = serde_json::json!({ "stop_reason": "toughness", "tips": [{ "crack": 0, "leads": true }] });
+    let result = broken();
     assert_eq!(pieces(&k_svg(&result, &tables, LARGE).unwrap()), 2, "K is unknown in one row");
     tables.tips[0].factors[4] = [16.0, -0.5];
     assert_eq!(pieces(&k_svg(&result, &tables, LARGE).unwrap()), 1);
@@ -304,7 +314,7 @@ fn no_line_is_drawn_where_k_was_not_read() {
 #[test]
 fn the_curve_has_its_band_and_says_why_it_ends() {
     let (_, mut tables) = straight_growth();
-    let result = serde_json::json!({ "stop_reason": "toughness" });
+    let result = broken();
     let bare = a_n_svg(&result, &tables, LARGE);
     assert!(bare.contains("fracture") && !bare.contains("fill-opacity"), "no band, none drawn");
     tables.band = Some(tables.rows.iter().map(|row| [0.8 * row.cycles, 1.3 * row.cycles]).collect());

@@ -8,9 +8,11 @@ use perilife_calibration::population::plate::Plate;
 use perilife_growth::case::{Case, LawSource, Lot};
 use perilife_growth::predict::{Prediction, Silent, predict};
 use perilife_results::answers::Asked;
-use perilife_results::band::{COLUMNS, Lives, band_words, left_of_table};
-use perilife_results::csv::{self, Row};
-use perilife_results::inspections::Inspections;
+use perilife_results::band::{Lives, band_words};
+use perilife_results::checks::Judgement;
+use perilife_results::curve::{self, BAND_COLUMNS, Row, left_of_table};
+use perilife_results::inspections::InspectionsRecord;
+use perilife_results::record::RunRecord;
 use toml::Table;
 
 use crate::support::hand_cases::{PANEL, hand_case};
@@ -47,7 +49,7 @@ pub fn panel(specimens: usize, set: &[&str]) -> Case {
 
 fn lives(case: &Case) -> (Prediction, Lives) {
     let run = predict(case, &Silent).unwrap();
-    let lives = Lives::of(case, &run).unwrap();
+    let lives = Lives::of(case, &run, false).unwrap();
     (run, lives)
 }
 
@@ -125,7 +127,7 @@ fn a_plate_without_band_says_why() {
     let mut damaged = case.clone();
     record(&mut damaged).population.as_mut().unwrap().remove("law");
     let run = predict(&case, &Silent).unwrap();
-    let error = Lives::of(&damaged, &run).unwrap_err().to_string();
+    let error = Lives::of(&damaged, &run, false).unwrap_err().to_string();
     assert!(
         error.contains("fatigue.fitted") && error.contains("missing field `law`") && error.contains("calibrate again"),
         "{error}"
@@ -138,11 +140,11 @@ fn an_end_without_k_takes_the_scatter_of_the_rest() {
     let (mut run, whole) = lives(&case);
     let last = run.curve.len() - 1;
     run.curve[last].delta_k = f64::NAN;
-    let cut = Lives::of(&case, &run).unwrap();
+    let cut = Lives::of(&case, &run, false).unwrap();
     let [a, b] = [whole.life().unwrap(), cut.life().unwrap()];
     assert!(a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 2e-3), "{a:?} {b:?}");
     run.curve.iter_mut().skip(last / 2).for_each(|row| row.delta_k = f64::NAN);
-    let why = Lives::of(&case, &run).unwrap().band.unwrap_err();
+    let why = Lives::of(&case, &run, false).unwrap().band.unwrap_err();
     assert!(why.starts_with("ΔK is not known, over ") && why.ends_with("% of the life"), "{why}");
 }
 
@@ -152,17 +154,17 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     let (run, mut lives) = lives(&case);
     let rows: Vec<Row> = Row::of_run(&case, &run);
     let from = InspectFrom { crack_length_mm: 20.0, tip: None, factor: 4.0, names: ["--inspect-from", "--factor", "--tip"] };
-    let point = Inspection::of(&csv::curve(&rows), None, None, from, false).unwrap();
+    let point = Inspection::of(&curve::curve(&rows), None, None, from, false).unwrap();
     assert!(!point.has_band && (4.0 * point.inspection_interval_cycles - point.remaining_cycles).abs() < 1e-6);
     // What a service reads from the table is what the run itself says.
-    let table = lives.beside(csv::a_n(&case, &run));
-    assert!(table.lines().next().unwrap().ends_with(&COLUMNS.join(",")));
-    let with_band = Inspection::of(&csv::curve(&rows), None, left_of_table(&table).as_deref(), from, false).unwrap();
+    let table = curve::a_n(&case, &run, lives.columns());
+    assert!(table.csv().lines().next().unwrap().ends_with(&BAND_COLUMNS.join(",")));
+    let with_band = Inspection::of(&curve::curve(&rows), None, left_of_table(&table).unwrap().as_deref(), from, false).unwrap();
     let plate = &lives.band.as_ref().unwrap().0;
     let exact = plate.left(20.0 * MM, None).unwrap();
     assert!((with_band.remaining_cycles_p05.unwrap() / exact.quantiles[0] - 1.0).abs() < 2e-3, "{with_band:?} {exact:?}");
     assert!((4.0 * with_band.inspection_interval_cycles - with_band.remaining_cycles_p05.unwrap()).abs() < 1e-6);
-    assert_eq!(left_of_table(&csv::a_n(&case, &run)), None);
+    assert_eq!(left_of_table(&curve::a_n(&case, &run, None)).unwrap(), None);
     for (crack_length_mm, factor, words) in [(8.0, 3.0, "--inspect-from"), (50.0, 3.0, "9 to 49.8"), (20.0, 0.5, "--factor")] {
         let error = lives.inspect(InspectFrom { crack_length_mm, factor, ..from }).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
@@ -170,18 +172,16 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     lives.inspect(from).unwrap();
     // Inspections follow the crack of the interval, a quarter of its 5 % life each; on that of the run there would be more of them.
     let asked = Asked { detection: Some("20,40".parse().unwrap()), ..Asked::default() };
-    let inspections = Inspections::of(&case, &run, lives.inspection().unwrap(), asked).unwrap().json();
-    let rows = inspections["rows"].as_array().unwrap();
+    let inspections = InspectionsRecord::of(&case, &run, lives.inspection().unwrap(), asked).unwrap();
+    let rows = &inspections.rows;
     let share = with_band.remaining_cycles_p05.unwrap() / with_band.remaining_cycles;
-    assert!(rows.len() == 4 && share < 0.9, "{inspections}");
-    let third = run.cycles_at(rows[2]["crack_length_mm"].as_f64().unwrap() * MM).unwrap() - with_band.cycles_at;
-    assert!((third / (0.5 * with_band.remaining_cycles) - 1.0).abs() < 5e-3, "half of either life: {inspections}");
+    assert!(rows.len() == 4 && share < 0.9, "{inspections:?}");
+    let third = run.cycles_at(rows[2].crack_length_mm * MM).unwrap() - with_band.cycles_at;
+    assert!((third / (0.5 * with_band.remaining_cycles) - 1.0).abs() < 5e-3, "half of either life: {inspections:?}");
     let words = lives.words().join("\n");
     assert!(words.contains("inspection     every ") && words.contains("5 % remaining life over 4"), "{words}");
-    let mut result = serde_json::json!({});
-    lives.add_to(&mut result);
-    assert_eq!(result["inspection"]["has_band"], true);
-    assert_eq!(result["band"]["lot"], "same");
+    let record = RunRecord::of(&case, &run, &Judgement::default(), &lives);
+    assert!(record.inspection.unwrap().has_band && record.band.unwrap().lot == Lot::Same);
 }
 
 #[test]

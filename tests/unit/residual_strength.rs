@@ -32,7 +32,7 @@ fn the_table_names_the_unit_of_the_load() {
     for specimen in ALL {
         let set = ["material.yield_strength_mpa=345", "material.toughness_mpa_sqrt_m=45"];
         let case = hand_case(specimen, &set);
-        let text = table(&case, &residual_strength(&case, &hand_run(specimen, &set).curve).unwrap());
+        let text = table(&case, &residual_strength(&case, &hand_run(specimen, &set).curve).unwrap()).csv();
         let unit = if specimen.contains("compact") { "_kn" } else { "_mpa" };
         assert!(text.starts_with(&format!("crack_length_mm,residual_strength{unit},by_toughness{unit}")), "{text}");
         let row: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();

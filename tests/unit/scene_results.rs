@@ -6,7 +6,7 @@ use std::path::Path;
 use perilife::commands::console::Console;
 use perilife_growth::predict::Silent;
 use perilife_results::output::{OutputFolder, RunKind};
-use perilife_runner::of_scene;
+use perilife_runner::{Task, of_scene};
 use perilife_scenes::outcome::HistoryRow;
 use perilife_scenes::{Scene, SceneEnd, run};
 use serde_json::Value;
@@ -30,7 +30,13 @@ fn histories_of_a_bad_end_are_kept() {
         let out = dir.path().join("run");
         let folder = OutputFolder::create(&out, RunKind::Fracture).unwrap();
         let quiet = Console { json: false, quiet: true };
-        let summary = quiet.keep(folder, &[], |path| of_scene(&scene, &fracture, Some(path), &quiet)).unwrap();
+        let task = Task::Scene(Box::new(scene.clone()));
+        let files = |path: &Path| {
+            let summary = of_scene(&scene, fracture, &quiet);
+            summary.write(&task, path)?;
+            Ok(summary)
+        };
+        let summary = quiet.keep(folder, &[], files).unwrap();
         let error = summary.counted().unwrap_err();
         assert_eq!(error.exit_code(), 3);
         assert!(error.to_string().contains(end.name()) && error.to_string().contains("histories so far are kept"), "{error}");

@@ -1,11 +1,14 @@
 //! US customary units: keys of input files, names of columns and keys, quantities in words.
 
+use std::path::Path;
+
+use perilife_base::columns::Table;
 use perilife_base::input::{Document, Folder};
 use perilife_base::units::us::{System, renamed};
 use perilife_base::units::words::{in_units, with_keys};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{Silent, predict};
-use perilife_results::units::{of_result, of_table};
+use perilife_results::units::of_result;
 use serde_json::json;
 use toml::Value;
 
@@ -201,10 +204,15 @@ fn keys_in_words_are_those_of_the_units() {
 fn tables_and_results_go_there_and_back() {
     let table = "tip,cycles,crack_length_mm,k_i_mpa_sqrt_m,da_dn_mm_per_cycle,load_work_j,paris_c_mm_per_cycle,paris_m,left_out\n\
                  0,100.5,25.40000000,10.98843,,1.5,1e-8,3,\"at 5.08 mm, late\"\n";
-    let us = of_table(table, System::Us);
+    let read = |text: &str| Table::read(text, Path::new("table.csv")).unwrap();
+    let us = read(table).csv_in(System::Us);
     assert!(us.starts_with("tip,cycles,crack_length_in,k_i_ksi_sqrt_in,da_dn_in_per_cycle,load_work_in_lbf,paris_c_in_per_cycle,paris_m,left_out\n"), "{us}");
-    assert!(us.contains("\n0,100.5,1.000000000,") && us.contains(",,13.2761") && us.contains("\"at 0.2000 inch, late\""), "{us}");
-    assert_eq!(of_table(&of_table(&us, System::Si), System::Us), us);
+    assert!(
+        us.contains("\n0,100.5000000,1.000000000,") && us.contains(",,13.2761") && us.contains("\"at 0.2000 inch, late\""),
+        "{us}"
+    );
+    assert_eq!(read(&us).csv_in(System::Us), us);
+    assert!(read(&us).csv_in(System::Si).contains("\"at 5.080 mm, late\""), "{}", read(&us).csv_in(System::Si));
     let result = json!({
         "life_cycles": 5.0, "plate": { "outline_mm": [[25.4, 0.0]] }, "largest_displacement": { "mm": 2.54 }, "case": { "width_mm": 1.0 },
         "constants": { "nasgro_n": 3.0, "nasgro_c_mm_per_cycle": 1e-8 }, "standard_errors": { "nasgro_n": 0.1, "nasgro_c_mm_per_cycle": 1e-9 },

@@ -5,7 +5,7 @@ use perilife_base::units::MM;
 use perilife_growth::case::Case;
 use perilife_growth::predict::factor_sweep::{FactorSweep, factor_sweep};
 use perilife_growth::predict::{Silent, predict};
-use perilife_results::factor_sweep::{COLUMNS, beta_table, table};
+use perilife_results::factor_sweep::{SIGN, beta_table, table};
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case, try_hand_case_in};
 use crate::support::plates::try_case;
@@ -33,7 +33,7 @@ fn a_handbook_read_back_gives_its_own_life() {
         let case = hand_case(specimen, &[&stop]);
         let own = predict(&case, &Silent).unwrap().life_cycles();
         let steps = (range[1] - range[0]) as usize;
-        let text = beta_table(&sweep(&case, range, steps));
+        let text = beta_table(&sweep(&case, range, steps)).csv();
         assert_eq!(text.lines().count(), steps + 2, "{text}");
         let ratio = life(specimen, &[&stop], &text) / own;
         println!("{specimen}: {:e}", ratio - 1.0);
@@ -58,7 +58,7 @@ fn a_run_on_nodes_read_back_gives_the_life_of_its_own_factors() {
     let found = sweep(&by_nodes, [16.0, 40.0], 96);
     let first = &found.rows[0];
     assert!((first.beta_length / MM - 8.0).abs() < 1e-9 && (first.crack_length / MM - 16.0).abs() < 1e-9, "{first:?}");
-    let ratio = life(plate, &set[1..], &beta_table(&found)) / own;
+    let ratio = life(plate, &set[1..], &beta_table(&found).csv()) / own;
     println!("nodes: {:e}", ratio - 1.0);
     assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
 }
@@ -89,7 +89,7 @@ fn a_sweep_has_the_factors_of_every_length() {
     let stop = "stop.crack_length_mm=20";
     let by_nodes = try_hand_case_in(hole, &["model.method=element_free_galerkin", stop], Folder::none()).unwrap();
     let own = predict(&by_nodes, &Silent).unwrap().life_cycles();
-    let ratio = life(hole, &[stop], &beta_table(&sweep(&by_nodes, [2.0, 20.0], 18))) / own;
+    let ratio = life(hole, &[stop], &beta_table(&sweep(&by_nodes, [2.0, 20.0], 18)).csv()) / own;
     println!("crack at a hole: {:e}", ratio - 1.0);
     assert!((ratio - 1.0).abs() < 2e-3, "{ratio}");
 }
@@ -135,9 +135,9 @@ fn compliance_is_that_of_the_standard() {
 #[test]
 fn the_table_has_the_columns_of_the_contract() {
     let case = hand_case(PANEL, &[]);
-    let text = table(&factor_sweep(&case, &lengths([9.0, 11.0], 1), true, &Silent).unwrap());
+    let text = table(&factor_sweep(&case, &lengths([9.0, 11.0], 1), true, &Silent).unwrap()).csv();
     let contract = "crack_length_mm,tip,x_mm,y_mm,k_i_mpa_sqrt_m,k_ii_mpa_sqrt_m,t_stress_mpa,beta,cmod_mm";
-    assert!(text.starts_with(contract) && text.lines().next() == Some(COLUMNS) && text.lines().count() == 5, "{text}");
+    assert!(text.starts_with(contract) && text.starts_with(SIGN) && text.lines().count() == 5, "{text}");
     let row: Vec<f64> = text.lines().nth(4).unwrap().split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
     // σ √(πa) of 60.35 MPa and 11 mm times √(sec(π 11/152.4)).
     assert!((row[4] - 11.3653).abs() < 0.001 && row[2] == 11.0 && (row[7] - 1.01305).abs() < 1e-4 && row[8] > 0.0, "{row:?}");

@@ -13,9 +13,14 @@ pub fn show(system: System) {
     let _ = SHOWN.set(system);
 }
 
+/// The units that were asked for.
+pub fn asked() -> Option<System> {
+    SHOWN.get().copied()
+}
+
 /// The units that are shown.
 pub fn shown() -> System {
-    SHOWN.get().copied().unwrap_or(System::Si)
+    asked().unwrap_or(System::Si)
 }
 
 /// Words with their quantities in the units that are shown, and keys as they are in these.

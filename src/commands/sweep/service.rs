@@ -11,9 +11,10 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 
+use perilife_base::columns::Table;
 use perilife_base::error::{Error, Result};
 use perilife_calibration::sweep::DrawnCase;
-use perilife_results::csv::{A_N_FILE, parse_a_n};
+use perilife_results::curve::{A_N_FILE, Row};
 use perilife_results::output::write_file;
 use perilife_results::provenance::INPUTS;
 use perilife_results::sweep::Outcome;
@@ -166,7 +167,7 @@ async fn fetch(
 fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Result<Outcome> {
     let curve = files.iter().find(|(name, _)| name == A_N_FILE);
     let text = curve.map(|(_, content)| String::from_utf8_lossy(content)).unwrap_or_default();
-    let rows = parse_a_n(&text, Path::new(A_N_FILE))?;
+    let rows = Row::of_table(&Table::read(&text, Path::new(A_N_FILE))?)?;
     let summary = job.summary.clone().unwrap_or_default();
     if let Some(refused) = summary["refused"].as_str() {
         return Ok(Outcome::failed(case, refused, summary["wall_s"].as_f64().unwrap_or(0.0)));

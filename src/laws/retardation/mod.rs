@@ -120,11 +120,11 @@ impl Retardation {
     }
 
     /// Name and constants, by the keys of `[loading]`.
-    pub fn json(&self) -> Value {
+    pub fn json(&self) -> Map<String, Value> {
         let constants = self.kind.0.constants.iter().zip(&self.constants);
         let mut all: Map<String, Value> =
             constants.map(|(constant, value)| (constant.key.to_owned(), json!(value / constant.quantity.si))).collect();
         all.insert("model".to_owned(), json!(self.kind));
-        all.into()
+        all
     }
 }

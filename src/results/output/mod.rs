@@ -20,7 +20,26 @@ pub use lock::Share;
 pub use marker::{MARKER, Marker, RunKind, is_temporary};
 pub use place::Room;
 
+use std::path::Path;
+
+use serde::Serialize;
+
+use perilife_base::columns::Table;
+use perilife_base::error::Result;
+
 use perilife_base::error::Error;
+
+/// Writes a table into a folder in the making, in the units that are shown.
+pub fn write_table(folder: &Path, table: &Table) -> Result<()> {
+    write_file(&folder.join(&table.file), table.csv().as_bytes())
+}
+
+/// Writes a result into a folder in the making, in the units that are shown.
+pub fn write_json(folder: &Path, name: &str, result: &impl Serialize) -> Result<()> {
+    // Results are numbers, text and keys, which all have a form in JSON.
+    let result = serde_json::to_value(result).unwrap_or_default();
+    write_file(&folder.join(name), format!("{:#}\n", super::units::shown_result(&result)).as_bytes())
+}
 
 /// An error with something more to say at its end.
 fn said(error: Error, more: &str) -> Error {

@@ -2,12 +2,11 @@
 
 use serde_json::Value;
 
-use super::numbers::{fixed, level, rate, short, sized, whole};
-use super::{CHART, Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
+use super::{CHART, PRINT, Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
 use crate::chart::Size;
+use crate::curve::RunTables;
 use crate::pictures::fit::{FitTables, RateFitted, Reading, law_svg};
 use crate::pictures::plate::{Plate, plate_svg};
-use crate::pictures::tables::RunTables;
 use crate::units::shown_result;
 use perilife_base::units::shown::per;
 use perilife_growth::case::record::CurveRecord;
@@ -67,19 +66,19 @@ pub fn of_lives(fit: &Value, tables: &FitTables, signed: &Signed) -> (String, St
 
 fn answer(fit: &Value) -> String {
     let number = |key: &str| fit[key].as_f64().unwrap_or(f64::NAN);
-    let ratio = fit["test"]["stress_ratio"].as_f64().map_or_else(|| recorded(None), short);
+    let ratio = fit["test"]["stress_ratio"].as_f64().map_or_else(|| recorded(None), |value| PRINT.short(value));
     format!(
         "<div class=\"answer fit\"><div><h2>Growth rate at ΔK = {} MPa√m</h2><p class=\"big\">{} <small>mm/cycle</small></p>\
          <p>± {} % (one standard error)</p></div><div><h2>Exponent m</h2><p class=\"big\">{}</p><p>± {}; C = {}</p></div>\
          <div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p><p>MPa√m, R = {ratio}</p></div></div>\n",
-        fixed(number("pivot_delta_k_mpa_sqrt_m"), 2),
-        rate(number("rate_at_pivot_mm_per_cycle"), 4),
-        fixed(100.0 * number("rate_at_pivot_relative_error"), 1),
-        fixed(number("paris_m"), 3),
-        fixed(number("paris_m_error"), 3),
-        level(number("paris_c_mm_per_cycle"), fit["paris_m"].as_f64(), 4),
-        fixed(number("delta_k_min_mpa_sqrt_m") * per("MPa√m"), 2),
-        fixed(number("delta_k_max_mpa_sqrt_m") * per("MPa√m"), 2),
+        PRINT.fixed(number("pivot_delta_k_mpa_sqrt_m"), 2),
+        PRINT.rate(number("rate_at_pivot_mm_per_cycle"), 4),
+        PRINT.fixed(100.0 * number("rate_at_pivot_relative_error"), 1),
+        PRINT.fixed(number("paris_m"), 3),
+        PRINT.fixed(number("paris_m_error"), 3),
+        PRINT.level(number("paris_c_mm_per_cycle"), fit["paris_m"].as_f64(), 4),
+        PRINT.fixed(number("delta_k_min_mpa_sqrt_m") * per("MPa√m"), 2),
+        PRINT.fixed(number("delta_k_max_mpa_sqrt_m") * per("MPa√m"), 2),
     )
 }
 
@@ -112,8 +111,9 @@ fn criteria(fit: &Value) -> String {
 fn details(fit: &Value) -> String {
     let test = &fit["test"];
     let text = |key: &str| recorded(test[key].as_str());
-    let number =
-        |key: &str, unit: &str| test[key].as_f64().map_or_else(|| recorded(None), |value| format!("{} {unit}", short(value)));
+    let number = |key: &str, unit: &str| {
+        test[key].as_f64().map_or_else(|| recorded(None), |value| format!("{} {unit}", PRINT.short(value)))
+    };
     let specimen = [
         ("Type", text("specimen_kind").replace('_', " ")),
         ("Material", text("material")),
@@ -122,8 +122,8 @@ fn details(fit: &Value) -> String {
         ("Yield strength", number("yield_strength_mpa", "MPa (of the material file)")),
         ("First reading a", number("first_reading_mm", "mm")),
         ("Last reading a", number("last_reading_mm", "mm")),
-        ("Specimens", test["specimens"].as_f64().map_or_else(|| recorded(None), whole)),
-        ("Readings", test["readings"].as_f64().map_or_else(|| recorded(None), whole)),
+        ("Specimens", test["specimens"].as_f64().map_or_else(|| recorded(None), |value| PRINT.whole(value))),
+        ("Readings", test["readings"].as_f64().map_or_else(|| recorded(None), |value| PRINT.whole(value))),
     ];
     let mut of_test =
         vec![("Load", text("load")), ("Largest load", text("load_max")), ("Stress ratio R", number("stress_ratio", ""))];
@@ -135,9 +135,8 @@ fn details(fit: &Value) -> String {
     );
     let plate: Option<Plate> = fit.get("plate").and_then(|plate| serde_json::from_value(plate.clone()).ok());
     let drawing = plate.map_or_else(String::new, |plate| {
-        let bare = RunTables { rows: Vec::new(), tips: Vec::new(), band: None, depths_mm: None, paths: Vec::new() };
         figure(
-            &plate_svg(&plate, &bare, SPECIMEN),
+            &plate_svg(&plate, &RunTables::default(), SPECIMEN),
             "Figure 3. The specimen to scale with its first crack, as it was computed.",
             "",
         )
@@ -149,7 +148,7 @@ fn details(fit: &Value) -> String {
         page += &format!("<h2>Remarks of the fit</h2>\n<ul class=\"small\"><li>{}</li></ul>\n", warnings.join("</li><li>"));
     }
     page += "<h2>Readings and input as they were read</h2>\n";
-    page += &hashes(if fit["inputs"].is_array() { &fit["inputs"] } else { &fit["sources"] }, HASHES_MOST);
+    page += &hashes(files(if fit["inputs"].is_array() { &fit["inputs"] } else { &fit["sources"] }), HASHES_MOST);
     let commit = fit["commit"]
         .as_str()
         .map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())));
@@ -171,14 +170,14 @@ fn how(fit: &Value) -> String {
     let life = match (number("life_measured"), number("life_fitted"), number("rms_life_error")) {
         (Some(measured), Some(fitted), Some(rms)) => format!(
             " Life over the window: measured {}, fitted {} cycles; rms over the readings {} %.",
-            whole(measured),
-            whole(fitted),
-            fixed(100.0 * rms, 2)
+            PRINT.whole(measured),
+            PRINT.whole(fitted),
+            PRINT.fixed(100.0 * rms, 2)
         ),
         _ => String::new(),
     };
     let window = match (number("from_crack_length_mm"), number("to_crack_length_mm")) {
-        (Some(from), Some(to)) => format!(" Window: a from {} to {} mm.", short(from), short(to)),
+        (Some(from), Some(to)) => format!(" Window: a from {} to {} mm.", PRINT.short(from), PRINT.short(to)),
         _ => String::new(),
     };
     let criterion = fit["criterion"].as_str().unwrap_or("").replace('_', " ");
@@ -193,9 +192,9 @@ fn how(fit: &Value) -> String {
         let of = &fit["misfit_at_ends"][end];
         Some(format!(
             "{} % at ΔK {} to {}",
-            fixed(of["rate_over_law_percent"].as_f64()?, 1),
-            fixed(of["delta_k_from_mpa_sqrt_m"].as_f64()?, 1),
-            fixed(of["delta_k_to_mpa_sqrt_m"].as_f64()?, 1)
+            PRINT.fixed(of["rate_over_law_percent"].as_f64()?, 1),
+            PRINT.fixed(of["delta_k_from_mpa_sqrt_m"].as_f64()?, 1),
+            PRINT.fixed(of["delta_k_to_mpa_sqrt_m"].as_f64()?, 1)
         ))
     };
     let ends: Vec<String> = ["low", "high"].into_iter().filter_map(misfit).collect();
@@ -215,11 +214,11 @@ fn curve(fit: &Value) -> String {
     let row = |i: usize| {
         format!(
             "<tr><td class=\"n\">{}</td><td class=\"n\">{} ± {} %</td><td class=\"n\">{} ± {}</td></tr>\n",
-            fixed(curve.delta_k_mpa_sqrt_m[i] * per("MPa√m"), 3),
-            rate(curve.da_dn_mm_per_cycle[i], 4),
-            fixed(100.0 * curve.da_dn_relative_error[i], 1),
-            fixed(curve.m[i], 2),
-            fixed(curve.m_error[i], 2)
+            PRINT.fixed(curve.delta_k_mpa_sqrt_m[i] * per("MPa√m"), 3),
+            PRINT.rate(curve.da_dn_mm_per_cycle[i], 4),
+            PRINT.fixed(100.0 * curve.da_dn_relative_error[i], 1),
+            PRINT.fixed(curve.m[i], 2),
+            PRINT.fixed(curve.m_error[i], 2)
         )
     };
     format!(
@@ -242,9 +241,9 @@ fn specimens(fit: &Value) -> String {
         let name = quoted(one["name"].as_str().unwrap_or(""));
         format!(
             "<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-            whole(measured),
-            whole(fitted),
-            fixed(100.0 * rms, 2)
+            PRINT.whole(measured),
+            PRINT.whole(fitted),
+            PRINT.fixed(100.0 * rms, 2)
         )
     };
     format!(
@@ -259,8 +258,8 @@ fn readings(readings: &[Reading]) -> String {
     let known = |value: f64, words: String| if value.is_finite() { words } else { "–".to_owned() };
     let row = |(place, reading): (usize, &Reading)| {
         let out = if reading.left_out.is_empty() { "" } else { " class=\"out\"" };
-        let delta_k = reading.delta_k_mpa_sqrt_m.map_or("–".to_owned(), |delta_k| fixed(delta_k * per("MPa√m"), 2));
-        let growth = reading.da_dn_mm_per_cycle.map_or("–".to_owned(), |growth| rate(growth, 3));
+        let delta_k = reading.delta_k_mpa_sqrt_m.map_or("–".to_owned(), |delta_k| PRINT.fixed(delta_k * per("MPa√m"), 2));
+        let growth = reading.da_dn_mm_per_cycle.map_or("–".to_owned(), |growth| PRINT.rate(growth, 3));
         let by = if reading.method == "secant" { " secant" } else { "" };
         let marks = quoted(&reading.marks.replace('_', " "));
         let left_out =
@@ -271,8 +270,8 @@ fn readings(readings: &[Reading]) -> String {
             "<tr{out}><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{delta_k}</td><td class=\"n\">{growth}</td><td>{}</td></tr>\n",
             place + 1,
             quoted(&reading.specimen),
-            known(reading.cycles, whole(reading.cycles)),
-            known(reading.crack_length_mm, fixed(reading.crack_length_mm * per("mm"), 3)),
+            known(reading.cycles, PRINT.whole(reading.cycles)),
+            known(reading.crack_length_mm, PRINT.fixed(reading.crack_length_mm * per("mm"), 3)),
             remarks.join("; ")
         )
     };
@@ -295,16 +294,16 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
     page += &format!("<h1>Law of fatigue crack growth: {}</h1>\n", quoted(&name));
     let number = |key: &str| fit[key].as_f64().unwrap_or(f64::NAN);
     let ratios: Vec<String> =
-        fit["stress_ratios"].as_array().into_iter().flatten().filter_map(Value::as_f64).map(short).collect();
+        fit["stress_ratios"].as_array().into_iter().flatten().filter_map(Value::as_f64).map(|value| PRINT.short(value)).collect();
     page += &format!(
         "<div class=\"answer\"><div><h2>Law</h2><p class=\"big\">{}</p><p>fitted to {} rates</p></div><div><h2>Scatter of ln(da/dN)</h2>\
          <p class=\"big\">{}</p><p>root mean square</p></div><div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p>\
          <p>MPa√m, R = {}</p></div></div>\n",
         quoted(law),
-        whole(number("rates")),
-        fixed(number("rms_log_rate"), 3),
-        fixed(number("delta_k_min_mpa_sqrt_m") * per("MPa√m"), 2),
-        fixed(number("delta_k_max_mpa_sqrt_m") * per("MPa√m"), 2),
+        PRINT.whole(number("rates")),
+        PRINT.fixed(number("rms_log_rate"), 3),
+        PRINT.fixed(number("delta_k_min_mpa_sqrt_m") * per("MPa√m"), 2),
+        PRINT.fixed(number("delta_k_max_mpa_sqrt_m") * per("MPa√m"), 2),
         ratios.join(", ")
     );
     let caption = "Figure 1. Growth rate over ΔK: rates (circles), the law over its range (lines), by stress ratio.";
@@ -313,16 +312,16 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
     page += &candidates(fit);
     page += &signatures(signed, "Tested by");
     page += "<h2>Rates as they were read</h2>\n";
-    page += &hashes(&fit["sources"], HASHES_MOST);
+    page += &hashes(files(&fit["sources"]), HASHES_MOST);
     let row = |(place, row): (usize, &RateFitted)| {
         format!(
             "<tr><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
             place + 1,
             quoted(&row.series),
-            short(row.stress_ratio),
-            fixed(row.delta_k_mpa_sqrt_m * per("MPa√m"), 3),
-            rate(row.da_dn_mm_per_cycle, 3),
-            rate(row.da_dn_fitted_mm_per_cycle, 3)
+            PRINT.short(row.stress_ratio),
+            PRINT.fixed(row.delta_k_mpa_sqrt_m * per("MPa√m"), 3),
+            PRINT.rate(row.da_dn_mm_per_cycle, 3),
+            PRINT.rate(row.da_dn_fitted_mm_per_cycle, 3)
         )
     };
     page += &format!(
@@ -333,18 +332,28 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
     (format!("Law of fatigue crack growth, {name}"), page, version)
 }
 
+/// Names and hashes of files.
+fn files(all: &Value) -> impl Iterator<Item = (&str, &str)> {
+    let of = |file| -> (&str, &str) {
+        let file: &Value = file;
+        (file["file"].as_str().unwrap_or(""), file["sha256"].as_str().unwrap_or("not recorded"))
+    };
+    all.as_array().into_iter().flatten().map(of)
+}
+
 fn constants(fit: &Value) -> String {
     let fit = &*shown_result(fit);
     let rows = fit["constants"].as_object().into_iter().flatten().map(|(key, value)| {
-        let error = fit["standard_errors"][key].as_f64().map_or_else(String::new, |error| format!(" ± {}", sized(error, 2)));
-        let value = value.as_f64().map_or_else(|| quoted(&value.to_string()), |value| sized(value, 5));
+        let error =
+            fit["standard_errors"][key].as_f64().map_or_else(String::new, |error| format!(" ± {}", PRINT.sized(error, 2)));
+        let value = value.as_f64().map_or_else(|| quoted(&value.to_string()), |value| PRINT.sized(value, 5));
         format!("<tr><td>{}</td><td>{value}{error}</td></tr>\n", quoted(key))
     });
     format!("<h2>Constants (± one standard error)</h2>\n<table><tbody>\n{}</tbody></table>\n", rows.collect::<String>())
 }
 
 fn candidates(fit: &Value) -> String {
-    let number = |value: &Value, decimals: usize| value.as_f64().map_or("–".to_owned(), |value| fixed(value, decimals));
+    let number = |value: &Value, decimals: usize| value.as_f64().map_or("–".to_owned(), |value| PRINT.fixed(value, decimals));
     let row = |one: &Value| {
         let name = quoted(one["law"].as_str().unwrap_or(""));
         let left_out = quoted(one["left_out"].as_str().unwrap_or(""));

@@ -1,19 +1,18 @@
 //! What a report is made of, read from the folder of a run or a fit.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::Value;
 
 use super::Drawings;
-use crate::csv::{A_N_FILE, check_listed, listed};
-use crate::json::RESULT_FILE;
+use crate::curve::{A_N_FILE, CRACK_PATH_FILE, RunTables};
+use crate::kept::{check_listed, listed};
 use crate::pictures::fit::{
     BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, RateFitted, rates_fitted,
 };
-use crate::pictures::plate::Plate;
-use crate::pictures::tables::RunTables;
-use crate::run::CRACK_PATH_FILE;
+use crate::record::{RESULT_FILE, RunRecord};
 use crate::units::metric_result;
+use perilife_base::columns::Table;
 use perilife_base::error::{Error, InputError, Result, input};
 use perilife_base::input::Opened;
 
@@ -22,7 +21,7 @@ pub enum Source {
     /// Of `perilife predict`.
     Run {
         /// `result.json`.
-        result: Value,
+        run: Box<RunRecord>,
         /// Its tables.
         tables: RunTables,
         /// Its pictures that the tables do not say.
@@ -80,25 +79,17 @@ impl Files<'_> {
                 "give the --out folder of `perilife predict` or `perilife calibrate`",
             ));
         }
-        let wanted: [Key; 6] = [
-            ("name", Value::is_string, "text"),
-            ("stop_reason", Value::is_string, "text"),
-            ("life_cycles", |value| value.is_null() || value.as_f64().is_some_and(|life| life >= 0.0), "cycles"),
-            ("crack_length_final_mm", |value| value.is_null() || value.is_number(), "a length"),
-            ("checks", Value::is_array, "an array"),
-            ("version", Value::is_string, "text"),
-        ];
-        self.check_keys(&result, RESULT_FILE, &wanted)?;
-        if let Some(plate) = result.get("plate")
-            && let Err(error) = serde_json::from_value::<Plate>(plate.clone())
-        {
-            return Err(self.bad(RESULT_FILE, "plate", plate, &format!("is not as it was written: {error}")));
+        let run: RunRecord = serde_path_to_error::deserialize(&result).map_err(|error| {
+            let path = error.path().to_string();
+            let value = result.pointer(&format!("/{}", path.replace('.', "/"))).unwrap_or(&Value::Null);
+            self.bad(RESULT_FILE, &path, value, &format!("is not as it was written: {}", error.inner()))
+        })?;
+        if let Some(life) = run.life_cycles.filter(|life| *life < 0.0) {
+            return Err(self.bad(RESULT_FILE, "life_cycles", &life.into(), "is below zero"));
         }
-        let curve = self.table(A_N_FILE, &result, RESULT_FILE)?;
-        let path = self.table(CRACK_PATH_FILE, &result, RESULT_FILE)?;
-        let [curve_name, path_name] = [A_N_FILE, CRACK_PATH_FILE].map(|name| self.folder.join(name).display().to_string());
-        let tables = RunTables::read([&curve, &curve_name], [&path, &path_name])?;
-        Ok(Source::Run { result, tables, drawings: Drawings::read(self.folder, self.opened)? })
+        let (curve, path) = (self.table(A_N_FILE, &result, RESULT_FILE)?, self.table(CRACK_PATH_FILE, &result, RESULT_FILE)?);
+        let (tables, drawings) = (RunTables::of(&curve, &path)?, Drawings::read(self.folder, self.opened)?);
+        Ok(Source::Run { run: Box::new(run), tables, drawings })
     }
 
     fn fit(&self) -> Result<Source> {
@@ -110,7 +101,7 @@ impl Files<'_> {
                 ("version", Value::is_string, "text"),
             ];
             self.check_keys(&fit, FIT_FILE, &wanted)?;
-            let rates = rates_fitted(&self.table(RATES_FITTED_FILE, &fit, FIT_FILE)?).map_err(|error| self.within(error))?;
+            let rates = rates_fitted(&self.table(RATES_FITTED_FILE, &fit, FIT_FILE)?)?;
             return Ok(Source::Laws { fit, rates });
         }
         let is_positive: fn(&Value) -> bool = |value| value.as_f64().is_some_and(|number| number > 0.0);
@@ -126,12 +117,12 @@ impl Files<'_> {
         ];
         self.check_keys(&fit, FIT_FILE, &wanted)?;
         let [curves, band, readings] = [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| self.table(name, &fit, FIT_FILE));
-        let tables = FitTables::read(&fit, [&curves?, &band?, &readings?]).map_err(|error| self.within(error))?;
+        let tables = FitTables::read(&fit, [&curves?, &band?, &readings?])?;
         Ok(Source::Lives { fit, tables })
     }
 
     /// A table of the folder, as it was written by what the result beside it says.
-    fn table(&self, name: &str, result: &Value, by: &str) -> Result<String> {
+    fn table(&self, name: &str, result: &Value, by: &str) -> Result<Table> {
         let path = self.folder.join(name);
         if !path.is_file() {
             return Err(self.damaged(name, format!("is missing beside {by}")));
@@ -140,7 +131,8 @@ impl Files<'_> {
         if let Some(entry) = listed(result, name) {
             check_listed(&path, &bytes, entry, by)?;
         }
-        String::from_utf8(bytes).map_err(|_| self.damaged(name, "is not text".to_owned()))
+        let text = String::from_utf8(bytes).map_err(|_| self.damaged(name, "is not text".to_owned()))?;
+        Table::read(&text, &path)
     }
 
     fn object(&self, name: &str, command: &str) -> Result<Value> {
@@ -174,17 +166,6 @@ impl Files<'_> {
     fn damaged(&self, name: &str, problem: String) -> Error {
         let (file, remedy) = (Some(self.folder.join(name)), AGAIN.to_owned());
         Error::Input(Box::new(InputError { file, problem, remedy, ..InputError::default() }))
-    }
-
-    /// The error with the folder before the name of its file.
-    fn within(&self, error: Error) -> Error {
-        match error {
-            Error::Input(mut trouble) => {
-                trouble.file = trouble.file.map(|file: PathBuf| self.folder.join(file));
-                Error::Input(trouble)
-            }
-            other => other,
-        }
     }
 }
 

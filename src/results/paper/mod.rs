@@ -7,7 +7,6 @@ mod answers;
 mod drawings;
 mod fit;
 mod folder;
-mod numbers;
 mod part_through;
 mod prediction;
 mod spectrum;
@@ -18,6 +17,7 @@ pub use folder::{Source, read};
 use std::path::Path;
 
 use super::chart::Size;
+use super::format::{self, Format};
 use super::output::{OutputFile, Sort};
 use super::specimen_picture::sketch::escaped;
 use perilife_base::error::Result;
@@ -27,6 +27,8 @@ use perilife_base::units::shown::told;
 /// What stands near the beginning of a report, and of no other file.
 pub const SIGN: &str = "<meta name=\"generator\" content=\"perilife report\">";
 const STYLE: &str = include_str!("paper.css");
+/// Numbers of a report.
+const PRINT: Format = format::PRINT;
 /// Size of a chart in a report, px.
 const CHART: Size = Size { width: 330.0, height: 215.0, text: 10.5 };
 
@@ -46,7 +48,7 @@ pub struct Signed {
 /// The report of a run or a fit, in the units that are shown.
 pub fn html(source: &Source, signed: &Signed) -> String {
     let (title, body, version) = match source {
-        Source::Run { result, tables, drawings } => prediction::body(result, tables, drawings, signed),
+        Source::Run { run, tables, drawings } => prediction::body(run, tables, drawings, signed),
         Source::Lives { fit, tables } => fit::of_lives(fit, tables, signed),
         Source::Laws { fit, rates } => fit::of_laws(fit, rates, signed),
     };
@@ -185,16 +187,16 @@ fn mark(holds: Option<bool>) -> String {
 }
 
 /// Files with their hashes, at most so many.
-fn hashes(files: &serde_json::Value, most: usize) -> String {
-    let all: Vec<&serde_json::Value> = files.as_array().map(|files| files.iter().collect()).unwrap_or_default();
-    let line = |file: &&serde_json::Value| {
-        let name = file["file"].as_str().unwrap_or("");
-        let name = std::path::Path::new(name).file_name().map_or(name.into(), |last| last.to_string_lossy());
-        format!("{} SHA-256 {}", quoted(&name), quoted(file["sha256"].as_str().unwrap_or("not recorded")))
+fn hashes<'f>(files: impl Iterator<Item = (&'f str, &'f str)>, most: usize) -> String {
+    let line = |(name, hash): (&str, &str)| {
+        let name = Path::new(name).file_name().map_or(name.into(), |last| last.to_string_lossy());
+        format!("{} SHA-256 {}", quoted(&name), quoted(hash))
     };
-    let mut lines: Vec<String> = all.iter().take(most).map(line).collect();
-    if all.len() > most {
-        lines.push(format!("and {} more in the folder", all.len() - most));
+    let mut lines: Vec<String> = files.map(line).collect();
+    let more = lines.len().saturating_sub(most);
+    lines.truncate(most);
+    if more > 0 {
+        lines.push(format!("and {more} more in the folder"));
     }
     if lines.is_empty() {
         lines.push(recorded(None));

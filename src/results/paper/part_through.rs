@@ -1,71 +1,61 @@
 //! What a report says of a crack that did not go through at the start: its section, both lengths over cycles, break-through, and what the error of its
 //! K does to the life.
 
-use serde_json::Value;
-
-use super::numbers::{fixed, short, whole};
-use super::{CHART, Sheets, quoted, terms};
+use super::{CHART, PRINT, Sheets, quoted, terms};
 use crate::axis::Axis;
 use crate::chart::{COMPUTED, Frame, SECOND, Size};
-use crate::pictures::tables::RunTables;
+use crate::curve::RunTables;
+use crate::record::{OutsideRange, PartThroughEnds, RunRecord};
 use perilife_plate::specimen::Point;
-use perilife_plate::specimen::part_through::{BREAK_THROUGH, SOURCE};
+use perilife_plate::specimen::part_through::SOURCE;
 
 /// Size of both lengths over cycles, px.
 const LENGTHS: Size = Size { width: 2.0 * CHART.width, ..CHART };
 
 /// The section; nothing of a crack that went through from the start.
-pub fn section(result: &Value, tables: &RunTables, sheets: &mut Sheets<'_>) -> String {
-    let found = &result["part_through"];
-    if !found.is_object() {
-        return String::new();
-    }
+pub fn section(run: &RunRecord, tables: &RunTables, sheets: &mut Sheets<'_>) -> String {
+    let Some(found) = &run.part_through else { return String::new() };
     let mut page = sheets.title("Crack that is not through");
     page += &sheets.picture("section.svg", "Section through the crack, its front at quarters of the cycles; grey: at the start");
     if let Some(svg) = lengths_svg(tables) {
         page += &sheets.figure(&svg, "Length c on the face and depth a over cycles; a ends where the crack is through");
     }
-    page + "<h2>Break-through, and the error of K</h2>" + &terms(&rows(result, found))
+    page + "<h2>Break-through, and the error of K</h2>" + &terms(&rows(run, found))
 }
 
-fn rows(result: &Value, found: &Value) -> Vec<(&'static str, String)> {
-    let number = |key: &str| found[key].as_f64();
-    let mm = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{} mm", fixed(value, 3)));
-    let cycles = |value: f64| format!("{} cycles", whole(value));
-    let kind = found["kind"].as_str().unwrap_or("").replace('_', " ");
-    let start = format!("a {}, c {}", mm(number("crack_depth_initial_mm")), mm(result["crack_length_initial_mm"].as_f64()));
-    let last = format!("a {}", mm(number("crack_depth_final_mm")));
-    let depth = number("depth_over_thickness").map_or_else(String::new, |share| format!(", a/t = {}", fixed(share, 3)));
-    let mut rows = vec![("Kind", quoted(&kind)), ("At the start", start)];
-    match number("cycles_at_break_through") {
+fn rows(run: &RunRecord, found: &PartThroughEnds) -> Vec<(&'static str, String)> {
+    let mm = |length: Option<f64>| length.map_or_else(|| "–".to_owned(), |length| format!("{} mm", PRINT.fixed(length, 3)));
+    let cycles = |value: f64| format!("{} cycles", PRINT.whole(value));
+    let start = format!("a {}, c {}", mm(Some(found.crack_depth_initial_mm)), mm(run.crack_length_initial_mm));
+    let (last, share) = (mm(Some(found.crack_depth_final_mm)), PRINT.fixed(found.depth_over_thickness, 3));
+    let last = format!("a {last}, a/t = {share}");
+    let mut rows = vec![("Kind", quoted(&found.kind.replace('_', " "))), ("At the start", start)];
+    match found.cycles_at_break_through {
         Some(through) => {
-            let left = result["life_cycles"]
-                .as_f64()
-                .map_or_else(String::new, |life| format!("{} as a through crack", cycles(life - through)));
-            let length = mm(number("crack_length_at_break_through_mm"));
-            rows.push(("Break-through", format!("after {}: {last}{depth}, c {length}", cycles(through))));
-            rows.push(("Then", left));
+            let length = mm(found.crack_length_at_break_through_mm);
+            let left = |life: f64| format!("{} as a through crack", cycles(life - through));
+            rows.push(("Break-through", format!("after {}: {last}, c {length}", cycles(through))));
+            rows.push(("Then", run.life_cycles.map_or_else(String::new, left)));
         }
-        None => rows.push(("Break-through", format!("not reached; at the end {last}{depth}"))),
+        None => rows.push(("Break-through", format!("not reached; at the end {last}"))),
     }
-    rows.push(("Rule", quoted(BREAK_THROUGH)));
+    rows.push(("Rule", quoted(&found.rule)));
     rows.push(("K", quoted(SOURCE)));
-    let (percent, shorter) = (number("k_error_percent").map(short), number("life_cycles_if_k_is_larger").map(cycles));
-    if let (Some(percent), Some(shorter)) = (percent, shorter) {
-        let longer = number("life_cycles_if_k_is_smaller").map_or_else(|| "no end".to_owned(), cycles);
+    if let Some(shorter) = found.life_cycles_if_k_is_larger.map(cycles) {
+        let percent = PRINT.short(found.k_error_percent);
+        let longer = found.life_cycles_if_k_is_smaller.map_or_else(|| "no end".to_owned(), cycles);
         rows.push(("Its error", format!("K +{percent} %: life {shorter}; K −{percent} %: {longer}")));
     }
-    let outside: Vec<String> = found["outside_range"].as_array().into_iter().flatten().filter_map(outside).collect();
+    let outside: Vec<String> = found.outside_range.iter().filter_map(outside).collect();
     let outside = if outside.is_empty() { "all of the life".to_owned() } else { format!("but for {}", outside.join(", ")) };
     rows.push(("Within its range", outside));
     rows
 }
 
-/// How much of a life lies outside of a range of the formulas.
-fn outside(limit: &Value) -> Option<String> {
-    let [low, high] = [0, 1].map(|end| limit["range"][end].as_f64().map_or_else(|| "–".to_owned(), short));
-    let share = fixed(100.0 * limit["life_share"].as_f64()?, 1);
-    Some(format!("{share} % of it ({} not within {low} to {high})", quoted(limit["of"].as_str()?)))
+fn outside(limit: &OutsideRange) -> Option<String> {
+    let [low, high] = limit.range.map(|end| end.map_or_else(|| "–".to_owned(), |end| PRINT.short(end)));
+    let share = PRINT.fixed(100.0 * limit.life_share?, 1);
+    Some(format!("{share} % of it ({} not within {low} to {high})", quoted(&limit.of)))
 }
 
 /// Both lengths of the front over cycles, named at their ends; `None` of tables without depth.

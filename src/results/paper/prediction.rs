@@ -3,16 +3,18 @@
 use serde_json::Value;
 
 use super::answers::quantile_words;
-use super::numbers::{self, by_band, fixed, level, short, sized, whole};
 use super::{
-    Drawings, Sheets, Signed, answers, figure, hashes, letter, mark, part_through, prose, quoted, recorded, signatures, spectrum,
-    terms,
+    Drawings, PRINT, Sheets, Signed, answers, figure, hashes, letter, mark, part_through, prose, quoted, recorded, signatures,
+    spectrum, terms,
 };
-use crate::band::interval_of;
+use crate::band::interval_words;
 use crate::chart::Size;
+use crate::checks::{Check, Side, Verdict};
+use crate::curve::RunTables;
 use crate::pictures::curves::{a_n_svg, end_words, k_svg};
 use crate::pictures::plate::{Plate, plate_svg};
-use crate::pictures::tables::RunTables;
+use crate::record::RunRecord;
+use perilife_growth::predict::StopReason;
 
 /// Conditions that do not hold and are printed, at the most.
 const CHECKS_MOST: usize = 5;
@@ -24,43 +26,37 @@ const CONSTANTS_MOST: usize = 8;
 const PLATE: Size = Size { width: 365.0, height: 262.0, text: 10.5 };
 /// Size of the charts beside it, px.
 const CHART: Size = Size { width: 315.0, height: 130.0, text: 10.0 };
-/// Reasons to end at which a run was cut off by its model, not by the plate or by what was asked for.
-const CUT_OFF: [&str; 4] = ["ligament_unresolved", "left_refinement", "no_growth", "no_convergence"];
-
 /// Figures of the first sheet.
 const FIGURES: usize = 3;
 
 /// Title, page and version of the program that ran.
-pub fn body(result: &Value, tables: &RunTables, drawings: &Drawings, signed: &Signed) -> (String, String, String) {
-    let name = result["name"].as_str().unwrap_or("run");
-    let version = result["version"].as_str().unwrap_or("").to_owned();
-    let plate: Option<Plate> = result.get("plate").and_then(|plate| serde_json::from_value(plate.clone()).ok());
-    let mut page = letter(signed, name, result["finished"].as_str());
+pub fn body(run: &RunRecord, tables: &RunTables, drawings: &Drawings, signed: &Signed) -> (String, String, String) {
+    let (name, plate) = (&run.name, run.plate.as_ref());
+    let mut page = letter(signed, name, run.made_by.finished.as_deref());
     page += &format!("<h1>Crack growth life: {}</h1>\n", quoted(name));
-    page += &format!("<p class=\"lead\">{}</p>\n", lead(plate.as_ref()));
-    page += &answer(result, tables);
-    page += &figures(result, tables, plate.as_ref());
-    let law = terms(&law(result));
+    page += &format!("<p class=\"lead\">{}</p>\n", lead(plate));
+    page += &answer(run, tables);
+    page += &figures(run, tables, plate);
+    let law = terms(&law(run));
     page += &format!(
         "<div class=\"cols\"><div><h2>As understood</h2>{}</div><div><h2>Law</h2>{law}</div></div>\n",
-        terms(&understood(result, plate.as_ref()))
+        terms(&understood(run, plate))
     );
-    page += &checks(result);
-    page += &messages(&result["warnings"]);
+    page += &checks(run);
+    page += &messages(&run.warnings);
     page += &signatures(signed, "Computed by");
-    let commit = result["commit"]
-        .as_str()
-        .map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())));
+    let commit = |commit: &String| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>()));
     page += &format!(
-        "<p class=\"small quiet\">perilife {}{commit}. Units: mm, MPa, MPa√m, mm/cycle. Input and law as they were read:</p>\n",
-        quoted(&version)
+        "<p class=\"small quiet\">perilife {}{}. Units: mm, MPa, MPa√m, mm/cycle. Input and law as they were read:</p>\n",
+        quoted(&run.version),
+        run.made_by.commit.as_ref().map_or_else(String::new, commit)
     );
-    page += &hashes(&result["inputs"], HASHES_MOST);
+    page += &hashes(run.made_by.inputs.iter().map(|file| (&*file.file, &*file.sha256)), HASHES_MOST);
     let mut sheets = Sheets::begin(drawings, FIGURES);
-    page += &spectrum::section(result, &mut sheets);
-    page += &part_through::section(result, tables, &mut sheets);
-    page += &answers::sections(result, &mut sheets);
-    (format!("Crack growth life, {name}"), page, version)
+    page += &spectrum::section(run, &mut sheets);
+    page += &part_through::section(run, tables, &mut sheets);
+    page += &answers::sections(run, &mut sheets);
+    (format!("Crack growth life, {name}"), page, run.version.clone())
 }
 
 fn lead(plate: Option<&Plate>) -> String {
@@ -78,17 +74,19 @@ fn capital(text: &str) -> String {
 }
 
 /// Life, end, validity.
-fn answer(result: &Value, tables: &RunTables) -> String {
-    let reason = result["stop_reason"].as_str().unwrap_or("");
-    let [_, sentence] = end_words(reason);
-    let verdict = result["verdict"].as_str();
-    let holds = verdict.map(|verdict| verdict.starts_with("stands: ")).filter(|holds| *holds);
-    let fails = verdict.is_some_and(|verdict| verdict.starts_with("not to be used")) || result["refused"].is_string();
-    let error = match (result["error_estimate_percent"].as_f64(), result["no_error_estimate"].as_str()) {
+fn answer(run: &RunRecord, tables: &RunTables) -> String {
+    let [_, sentence] = end_words(run.stop_reason);
+    let is = |verdict: Verdict| run.checks.iter().any(|check| check.verdict == verdict);
+    let holds = match (is(Verdict::Fails) || run.refused.is_some(), is(Verdict::Doubtful) || is(Verdict::NotChecked)) {
+        (true, _) => Some(false),
+        (false, true) => None,
+        (false, false) => Some(true),
+    };
+    let error = match (run.error_estimate_percent, &run.no_error_estimate) {
         (Some(percent), _) => {
-            let path = result["path_error_estimate_mm"].as_f64().filter(|path| *path > 0.0);
-            let path = path.map_or_else(String::new, |path| format!(", {} mm of the path", short(path)));
-            format!("Numerical error at most {} % of life{path}", short(percent))
+            let path = run.path_error_estimate_mm.filter(|path| *path > 0.0);
+            let path = path.map_or_else(String::new, |path| format!(", {} mm of the path", PRINT.short(path)));
+            format!("Numerical error at most {} % of life{path}", PRINT.short(percent))
         }
         (None, Some(why)) => format!("Numerical error not stated: {}", quoted(why)),
         (None, None) => "Numerical error not estimated".to_owned(),
@@ -96,69 +94,59 @@ fn answer(result: &Value, tables: &RunTables) -> String {
     format!(
         "<div class=\"answer\"><div>{}</div><div><h2>It ends because</h2><p class=\"why\">{sentence}</p><p>{}</p></div>\
          <div><h2>Is it valid?</h2><p>{} {}</p><p>{error}</p></div></div>\n",
-        life(result, reason),
-        end_length(result, tables),
-        mark(if fails { Some(false) } else { holds }),
-        recorded(verdict),
+        life(run),
+        end_length(run, tables),
+        mark(holds),
+        recorded(Some(&run.verdict)),
     )
 }
 
-/// The crack that ends the life, in a plate with several tips; their sum is nobody's crack.
-fn leading_crack(result: &Value) -> Option<(usize, [f64; 2])> {
-    let tips = result["tips"].as_array().filter(|tips| tips.len() > 1)?;
-    let leads = tips.iter().position(|tip| tip["leads"] == true && !tip["crack"].is_null())?;
-    let length = |key: &str| tips[leads][key].as_f64();
-    Some((leads, [length("crack_length_initial_mm")?, length("crack_length_final_mm")?]))
-}
-
-fn end_length(result: &Value, tables: &RunTables) -> String {
-    match (leading_crack(result), tables.rows.last()) {
-        (Some((tip, [_, last])), _) => format!("crack of tip {tip}: {} mm long", fixed(last, 1)),
-        (None, Some(row)) => format!("crack length {} mm", fixed(row.crack_length_mm, 1)),
+fn end_length(run: &RunRecord, tables: &RunTables) -> String {
+    match (run.leading_crack(), tables.rows.last()) {
+        (Some((tip, [_, last])), _) => format!("crack of tip {tip}: {} mm long", PRINT.fixed(last, 1)),
+        (None, Some(row)) => format!("crack length {} mm", PRINT.fixed(row.crack_length_mm, 1)),
         (None, None) => String::new(),
     }
 }
 
-fn life(result: &Value, reason: &str) -> String {
+fn life(run: &RunRecord) -> String {
     let card = |title: &str, value: &str, below: &str| format!("<h2>{title}</h2><p class=\"big\">{value}</p><p>{below}</p>");
-    if let Some(refused) = result["refused"].as_str() {
+    if let Some(refused) = &run.refused {
         return card("Life", "none that counts", &quoted(refused));
     }
-    let Some(life) = result["life_cycles"].as_f64() else {
-        return card("Life", "unlimited", "no crack grows under this load");
-    };
-    let title = match reason {
-        "entered_hole" => "Cycles to the hole",
-        "crack_length_reached" | "run_out" => "Cycles to what was asked for",
-        _ if CUT_OFF.contains(&reason) => "Cycles to where the computation ends",
-        _ if result["life_is_lower_bound"] == true => "Life, at least",
+    let Some(life) = run.life_cycles else { return card("Life", "unlimited", "no crack grows under this load") };
+    let title = match run.stop_reason {
+        StopReason::EnteredHole => "Cycles to the hole",
+        StopReason::CrackLengthReached | StopReason::CrackDepthReached | StopReason::RunOut => "Cycles to what was asked for",
+        // Cut off by the model, not by the plate.
+        StopReason::LigamentUnresolved | StopReason::NoGrowth | StopReason::NoConvergence => {
+            "Cycles to where the computation ends"
+        }
+        _ if run.life_is_lower_bound => "Life, at least",
         _ => "Life",
     };
-    let cycles = |value: String| format!("{value} <small>cycles</small>");
-    if let Some(plates) = result["fleet"]["plates"].as_f64() {
-        let [low, middle, high] = ["p05", "p50", "p95"].map(|name| quantile_words(&result["fleet"]["life_cycles"], name));
-        let (plates, run) = (whole(plates), whole(life));
+    let cycles = |value: &str| format!("{value} <small>cycles</small>");
+    if let Some(fleet) = &run.fleet {
+        let [low, middle, high] = quantile_words(&fleet.life_cycles);
+        let (plates, run) = (PRINT.whole(fleet.plates as f64), PRINT.whole(life));
         let below = format!("median {middle}, 95 % {high} cycles, {plates} plates; this run, one plate: {run}");
-        return card("Life of the fleet, 5 % of plates", &cycles(low), &below);
+        return card("Life of the fleet, 5 % of plates", &cycles(&low), &below);
     }
-    let [low, middle, high] = ["cycles_p05", "cycles_p50", "cycles_p95"].map(|key| result["band"][key].as_f64());
-    if let (Some(low), Some(middle), Some(high)) = (low, middle, high) {
-        let of = |value: f64| by_band(value, &[low, middle, high]);
-        let below = format!("9 of 10 plates: {} to {}; the fitted constants alone give {}", of(low), of(high), whole(life));
-        return card(&format!("{title}, median"), &cycles(of(middle)), &below);
+    if let Some(band) = &run.band {
+        let [low, middle, high] = band.cycles().map(|value| PRINT.by_band(value, &band.cycles()));
+        let below = format!("9 of 10 plates: {low} to {high}; the fitted constants alone give {}", PRINT.whole(life));
+        return card(&format!("{title}, median"), &cycles(&middle), &below);
     }
-    let error = result["error_estimate_percent"].as_f64().unwrap_or(1.0) / 100.0;
-    let below = match result["no_band"].as_str() {
+    let below = match &run.no_band {
         Some(why) => format!("no band of plates: {}", quoted(why)),
         None => "no band of plates".to_owned(),
     };
-    card(title, &cycles(by_band(life, &[1.0 - error, 1.0, 1.0 + error])), &below)
+    card(title, &cycles(&PRINT.by_error(life, run.error_estimate_percent)), &below)
 }
 
-fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String {
+fn figures(run: &RunRecord, tables: &RunTables, plate: Option<&Plate>) -> String {
     let band = if tables.band.is_some() { "; band: 9 of 10 plates" } else { "" };
-    let mut figures = String::new();
-    figures += &match plate {
+    let mut figures = match plate {
         Some(plate) => figure(
             &plate_svg(plate, tables, PLATE),
             "Figure 1. Plate to scale, load, first crack (black) and its way, coloured by cycles; marks at 25, 50, 75 and 90 % of the life.",
@@ -166,8 +154,8 @@ fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String 
         ),
         None => format!("<p class=\"tall\">Figure 1, the plate: {}</p>", recorded(None)),
     };
-    figures += &figure(&a_n_svg(result, tables, CHART), &format!("Figure 2. Crack length over cycles{band}."), "");
-    figures += &match k_svg(result, tables, CHART) {
+    figures += &figure(&a_n_svg(run, tables, CHART), &format!("Figure 2. Crack length over cycles{band}."), "");
+    figures += &match k_svg(run, tables, CHART) {
         Some(svg) => {
             let hatched = if svg.contains("of the law") { "; hatched: outside the ΔK of the law" } else { "" };
             figure(&svg, &format!("Figure 3. K at maximum load over crack length{hatched}."), "")
@@ -178,124 +166,119 @@ fn figures(result: &Value, tables: &RunTables, plate: Option<&Plate>) -> String 
 }
 
 /// The case as it was understood.
-fn understood(result: &Value, plate: Option<&Plate>) -> Vec<(&'static str, String)> {
-    let text = |value: Option<&str>| recorded(value);
-    let two_decimals = |length: f64| short((100.0 * length).round() / 100.0);
-    let lengths = match leading_crack(result) {
+fn understood(run: &RunRecord, plate: Option<&Plate>) -> Vec<(&'static str, String)> {
+    let two_decimals = |length: f64| PRINT.short((100.0 * length).round() / 100.0);
+    let lengths = match run.leading_crack() {
         Some((tip, [first, last])) => format!("of tip {tip}: {} mm to {} mm", two_decimals(first), two_decimals(last)),
         None => {
-            let [first, last] = ["crack_length_initial_mm", "crack_length_final_mm"]
-                .map(|key| result[key].as_f64().map_or("–".to_owned(), two_decimals));
+            let [first, last] = [run.crack_length_initial_mm, run.crack_length_final_mm]
+                .map(|length| length.map_or_else(|| "–".to_owned(), two_decimals));
             format!("{first} mm to {last} mm")
         }
     };
     let mut rows = vec![
-        ("Specimen", text(plate.map(|plate| &*plate.specimen))),
+        ("Specimen", recorded(plate.map(|plate| &*plate.specimen))),
         ("Material", plate.map_or_else(|| recorded(None), |plate| prose(&plate.material))),
-        ("Load", text(plate.map(|plate| &*plate.load))),
+        ("Load", recorded(plate.map(|plate| &*plate.load))),
         ("Crack length", lengths),
-        ("Computed on", model(result)),
+        ("Computed on", model(run)),
     ];
-    if let Some(overrides) = result["overrides"].as_array().filter(|overrides| !overrides.is_empty()) {
-        let given: Vec<String> = overrides.iter().filter_map(|one| Some(quoted(one.as_str()?))).collect();
+    let given: Vec<String> = run.made_by.overrides.iter().map(|one| quoted(one)).collect();
+    if !given.is_empty() {
         rows.push(("Overrides", given.join(", ")));
     }
     rows
 }
 
-fn model(result: &Value) -> String {
-    let model = &result["model"];
-    let points = result["points"].as_f64().map_or("–".to_owned(), whole);
-    let spacing = model["spacing_mm"].as_f64().map_or("–".to_owned(), short);
-    match model["method"].as_str() {
-        Some("handbook") => format!("formula: {}", recorded(model["formula"].as_str())),
+/// By what its K was found; of a crack that is through after a part of its life both methods, with their shares of it.
+fn model(run: &RunRecord) -> String {
+    let text = |key: &str| run.model.get(key).and_then(Value::as_str);
+    let points = PRINT.whole(run.points as f64);
+    match text("method") {
+        Some("handbook") => {
+            let formula = format!("formula: {}", recorded(text("formula")));
+            let through = run.part_through.as_ref().and_then(|found| found.cycles_at_break_through).zip(run.life_cycles);
+            match through.filter(|(through, life)| through < life && run.points > 0) {
+                Some((through, life)) => {
+                    let share = |cycles: f64| PRINT.fixed(100.0 * cycles / life, 0);
+                    let (before, behind) = (share(through), share(life - through));
+                    format!("{formula} ({before} % of the life), then {points} nodes, element-free Galerkin ({behind} %)")
+                }
+                None => formula,
+            }
+        }
         Some("element_free_galerkin") => format!("{points} nodes at the end (element-free Galerkin)"),
-        Some(method) => format!("{points} points, {spacing} mm apart ({})", quoted(method)),
+        Some(method) => {
+            let spacing = run.model.get("spacing_mm").and_then(Value::as_f64);
+            let spacing = spacing.map_or_else(|| "–".to_owned(), |spacing| PRINT.short(spacing));
+            format!("{points} points, {spacing} mm apart ({})", quoted(method))
+        }
         None => recorded(None),
     }
 }
 
-fn law(result: &Value) -> Vec<(&'static str, String)> {
-    let law = &result["law"];
-    let number = |key: &str| law[key].as_f64().or_else(|| law["record"][key].as_f64());
+fn law(run: &RunRecord) -> Vec<(&'static str, String)> {
+    let law = &run.law;
     let mut rows = Vec::new();
-    if let (Some(rate), Some(pivot)) = (number("rate_at_pivot_mm_per_cycle"), number("pivot_delta_k_mpa_sqrt_m")) {
-        let error =
-            number("rate_at_pivot_relative_error").map_or_else(String::new, |error| format!(" ± {} %", fixed(100.0 * error, 1)));
-        rows.push(("Growth rate", format!("{} mm/cycle{error} at ΔK {} MPa√m", numbers::rate(rate, 3), fixed(pivot, 1))));
+    if let (Some(rate), Some(pivot)) = (law.rate_at_pivot_mm_per_cycle, law.pivot_delta_k_mpa_sqrt_m) {
+        let error = law
+            .rate_at_pivot_relative_error
+            .map_or_else(String::new, |error| format!(" ± {} %", PRINT.significant(100.0 * error, 2, f64::round)));
+        rows.push(("Growth rate", format!("{} mm/cycle{error} at ΔK {} MPa√m", PRINT.rate(rate, 3), PRINT.fixed(pivot, 1))));
     }
-    if let Some(c) = number("paris_c_used_mm_per_cycle").or(number("paris_c_mm_per_cycle")) {
-        rows.push(("C as used", level(c, number("paris_m").or(number("p")), 4)));
+    let exponent = law.paris_m.or(law.p);
+    if let Some(c) = law.paris_c_used_mm_per_cycle.or(law.paris_c_mm_per_cycle) {
+        rows.push(("C as used", PRINT.level(c, exponent, 4)));
     }
-    if let Some(m) = number("paris_m").or(number("p")) {
-        let error = number("paris_m_error")
-            .filter(|error| *error > 0.0)
-            .map_or_else(String::new, |error| format!(" ± {}", fixed(error, 2)));
-        rows.push(("Exponent m", format!("{}{error}", fixed(m, 3))));
-    }
-    let constants = law["constants_si"].as_object().or_else(|| law["record"]["fatigue"].as_object());
+    rows.extend(exponent.map(|m| ("Exponent m", PRINT.with_error(m, law.paris_m_error))));
+    let of_record = law.record.as_ref().and_then(|record| serde_json::to_value(&record.fatigue).ok());
+    let constants = law.constants_si.as_ref().or(of_record.as_ref()).and_then(Value::as_object);
     for (key, value) in constants.into_iter().flatten().take(CONSTANTS_MOST) {
         let value = match value {
-            Value::Number(number) => sized(number.as_f64().unwrap_or(f64::NAN), 4),
+            Value::Number(number) => PRINT.sized(number.as_f64().unwrap_or(f64::NAN), 4),
             Value::String(text) => quoted(text),
             Value::Array(rows) => format!("{} tables", rows.len()),
             _ => continue,
         };
         rows.push(("Constant", format!("{} {value}", quoted(key))));
     }
-    let range = (number("delta_k_min_mpa_sqrt_m"), number("delta_k_max_mpa_sqrt_m"));
-    rows.push((
-        "Calibrated",
-        match range {
-            (Some(low), Some(high)) => format!("ΔK {} to {} MPa√m", fixed(low, 1), fixed(high, 1)),
-            _ => recorded(None),
-        },
-    ));
-    let band = &result["band"];
-    let specimens = band["specimens"].as_u64().map(|count| {
-        let assumed = if band["assumed_scatter"] == true { ", scatter assumed" } else { "" };
-        format!("{count} specimen{}{assumed}", if count == 1 { "" } else { "s" })
+    let range = |[low, high]: [f64; 2]| format!("ΔK {} to {} MPa√m", PRINT.fixed(low, 1), PRINT.fixed(high, 1));
+    rows.push(("Calibrated", law.range().map_or_else(|| recorded(None), range)));
+    let specimens = run.band.as_ref().map(|band| {
+        let assumed = if band.assumed_scatter { ", scatter assumed" } else { "" };
+        format!("{} specimen{}{assumed}", band.specimens, if band.specimens == 1 { "" } else { "s" })
     });
     rows.push((
         "From",
-        match law["source"].as_str() {
-            Some("fitted") => specimens.unwrap_or_else(|| "a fit; number of specimens not recorded".to_owned()),
-            Some("inline") => "constants given in the case".to_owned(),
-            other => recorded(other),
+        match &*law.source {
+            "fitted" => specimens.unwrap_or_else(|| "a fit; number of specimens not recorded".to_owned()),
+            "inline" => "constants given in the case".to_owned(),
+            other => recorded(Some(other)),
         },
     ));
-    if let (Some(interval), Some(length)) = (interval_of(result), result["inspection"]["crack_length_mm"].as_f64()) {
-        rows.push(("Inspect every", format!("{interval}, from a crack of {} mm", short(length))));
+    if let Some(inspection) = &run.inspection {
+        let interval = interval_words(inspection, run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass));
+        let from = PRINT.short(inspection.crack_length_mm);
+        rows.push(("Inspect every", format!("{interval}, from a crack of {from} mm")));
     }
     rows
 }
 
 /// Conditions that do not hold, at most five, and the names of those that do.
-fn checks(result: &Value) -> String {
-    let none = Vec::new();
-    let all = result["checks"].as_array().unwrap_or(&none);
-    let is_open = |check: &&Value| check["verdict"] != "holds";
-    let open: Vec<&Value> = all.iter().filter(is_open).collect();
-    let row = |check: &&Value| {
-        let holds = if check["verdict"] == "fails" { Some(false) } else { None };
-        format!(
-            "<tr><td>{} {}</td><td>{}</td><td>{}</td></tr>\n",
-            mark(holds),
-            prose(check["words"].as_str().unwrap_or("")),
-            effect(check),
-            quoted(check["remedy"].as_str().unwrap_or(""))
-        )
+fn checks(run: &RunRecord) -> String {
+    let is_open = |check: &&Check| check.verdict != Verdict::Holds;
+    let open: Vec<&Check> = run.checks.iter().filter(is_open).collect();
+    let row = |check: &&Check| {
+        let holds = if check.verdict == Verdict::Fails { Some(false) } else { None };
+        let (words, remedy) = (prose(&check.words), quoted(check.remedy.as_deref().unwrap_or("")));
+        format!("<tr><td>{} {words}</td><td>{}</td><td>{remedy}</td></tr>\n", mark(holds), effect(check))
     };
     let mut rows: String = open.iter().take(CHECKS_MOST).map(row).collect();
     if open.len() > CHECKS_MOST {
         rows += &format!("<tr><td colspan=\"3\">and {} more in result.json</td></tr>\n", open.len() - CHECKS_MOST);
     }
-    let names: Vec<String> = all
-        .iter()
-        .filter(|check| !is_open(check))
-        .filter_map(|check| check["name"].as_str())
-        .map(|name| quoted(&name.replace('_', " ")))
-        .collect();
+    let held = run.checks.iter().filter(|check| !is_open(check));
+    let names: Vec<String> = held.map(|check| quoted(&check.name.replace('_', " "))).collect();
     if !names.is_empty() {
         rows += &format!("<tr><td colspan=\"3\">{} holds: {}</td></tr>\n", mark(Some(true)), names.join(", "));
     }
@@ -306,21 +289,21 @@ fn checks(result: &Value) -> String {
 }
 
 /// Every message of the run, as the console has them.
-fn messages(warnings: &Value) -> String {
-    let line = |line: &Value| Some(format!("<li>{}</li>\n", prose(line.as_str()?)));
-    let lines: String = warnings.as_array().into_iter().flatten().filter_map(line).collect();
+fn messages(warnings: &[String]) -> String {
+    let lines: String = warnings.iter().map(|line| format!("<li>{}</li>\n", prose(line))).collect();
     if lines.is_empty() { lines } else { format!("<h2>Messages</h2>\n<ul class=\"small\">\n{lines}</ul>\n") }
 }
 
-fn effect(check: &Value) -> String {
-    let side = match check["side"].as_str() {
-        Some("safe") => "too short",
-        Some("unsafe") => "too long",
-        Some(_) => "too long or too short",
+fn effect(check: &Check) -> String {
+    let side = match check.side {
+        Some(Side::Safe) => "too short",
+        Some(Side::Unsafe) => "too long",
+        Some(Side::Either) => "too long or too short",
         None => "",
     };
-    match check["effect_percent"].as_f64() {
-        Some(percent) => format!("{} %, {side}", short((10.0 * percent.abs()).round() / 10.0)),
+    match check.effect_percent {
+        Some(percent) => format!("{} %, {side}", PRINT.short((10.0 * percent.abs()).round() / 10.0)),
+        None if side.is_empty() => "not known".to_owned(),
         None => format!("not known, {side}"),
     }
 }

@@ -1,12 +1,12 @@
 //! `a_n.svg` and `k.svg` of a run.
 
-use serde_json::Value;
-
-use super::tables::RunTables;
 use crate::axis::Axis;
 use crate::chart::{COMPUTED, Frame, SECOND, Size};
+use crate::curve::RunTables;
+use crate::record::RunRecord;
 use crate::specimen_picture::sketch::Sketch;
 use perilife_base::monotone::Monotone;
+use perilife_growth::predict::StopReason;
 use perilife_plate::specimen::Point;
 
 /// Share of an area that the band of the specimens covers with its colour.
@@ -21,38 +21,39 @@ const USUAL_PERCENT: usize = 90;
 /// See [`USUAL_PERCENT`].
 const BEYOND: f64 = 10.0;
 
-/// Why a run ended, in the words of a picture and as a sentence, by its `stop_reason`.
-pub fn end_words(reason: &str) -> [&'static str; 2] {
+/// Why a run ended, in the words of a picture and as a sentence.
+pub fn end_words(reason: StopReason) -> [&'static str; 2] {
     match reason {
-        "toughness" => ["fracture", "the plate fractures"],
-        "net_section_yield" => ["net section yields", "the remaining section yields throughout"],
-        "severed" => ["severed", "the plate is in two"],
-        "left_plate" => ["at the rim", "the crack has reached the rim"],
-        "entered_hole" => ["into the hole", "the crack runs into a hole"],
-        "cracks_joined" => ["cracks join", "the cracks have joined"],
-        "crack_length_reached" => ["length asked for", "the crack has the length that was asked for"],
-        "run_out" => ["cycles asked for", "the cycles that were asked for are over"],
-        "nothing_ages" => ["no growth", "no crack grows"],
-        "ligament_unresolved" => ["ligament not resolved", "the rest of the section is less than a spacing wide"],
-        "left_refinement" => ["left the refined part", "the crack has left the refined part of the plate"],
-        "no_growth" => ["stands still", "no tip grew any more, though bonds went on breaking"],
-        "no_convergence" => ["no convergence", "the equations could not be solved any further"],
-        _ => ["end of the run", "the run ended"],
+        StopReason::Toughness => ["fracture", "the plate fractures"],
+        StopReason::NetSectionYield => ["net section yields", "the remaining section yields throughout"],
+        StopReason::Severed => ["severed", "the plate is in two"],
+        StopReason::LeftPlate => ["at the rim", "the crack has reached the rim"],
+        StopReason::EnteredHole => ["into the hole", "the crack runs into a hole"],
+        StopReason::CracksJoined => ["cracks join", "the cracks have joined"],
+        StopReason::CrackLengthReached => ["length asked for", "the crack has the length that was asked for"],
+        StopReason::CrackDepthReached => ["depth asked for", "the crack has the depth that was asked for"],
+        StopReason::BrokenThrough => ["through the thickness", "the crack has grown through the thickness"],
+        StopReason::RequiredStrength => ["required strength", "the plate no longer bears the load that it has to"],
+        StopReason::RunOut => ["cycles asked for", "the cycles that were asked for are over"],
+        StopReason::NothingAges => ["no growth", "no crack grows"],
+        StopReason::LigamentUnresolved => ["ligament not resolved", "the rest of the section is less than a spacing wide"],
+        StopReason::NoGrowth => ["stands still", "no tip grew any more, though bonds went on breaking"],
+        StopReason::NoConvergence => ["no convergence", "the equations could not be solved any further"],
     }
 }
 
 /// Whether lengths are told by tip: a plate with several, whose sum is nobody's crack.
-fn by_tip(result: &Value, tables: &RunTables) -> bool {
-    tables.tips.len() > 1 && result["tips"].as_array().is_some_and(|tips| tips.iter().any(|tip| !tip["crack"].is_null()))
+fn by_tip(run: &RunRecord, tables: &RunTables) -> bool {
+    tables.tips.len() > 1 && run.tips.iter().any(|tip| tip.crack.is_some())
 }
 
 /// The curves of a chart over cycles: length at every row, mm, and whether it ends the life.
-fn lengths(result: &Value, tables: &RunTables) -> Vec<(Vec<f64>, bool)> {
-    if !by_tip(result, tables) {
+fn lengths(run: &RunRecord, tables: &RunTables) -> Vec<(Vec<f64>, bool)> {
+    if !by_tip(run, tables) {
         return vec![(tables.rows.iter().map(|row| row.crack_length_mm).collect(), true)];
     }
-    let leads = |tip: usize| result["tips"][tip]["leads"] == true;
-    let of_tip = |(tip, rows): (usize, &super::tables::TipRows)| (rows.growth_mm.clone(), leads(tip));
+    let leads = |tip: usize| run.tips.get(tip).is_some_and(|tip| tip.leads);
+    let of_tip = |(tip, rows): (usize, &crate::curve::TipRows)| (rows.growth_mm.clone(), leads(tip));
     tables.tips.iter().enumerate().map(of_tip).collect()
 }
 
@@ -106,26 +107,26 @@ fn spans(points: &[Point]) -> Point {
 }
 
 /// Crack length over cycles: band of the specimens where there is one, curve, and a cross at the end with the reason.
-pub fn a_n_svg(result: &Value, tables: &RunTables, size: Size) -> String {
-    let [_, sentence] = end_words(result["stop_reason"].as_str().unwrap_or(""));
-    let name = if by_tip(result, tables) { "Growth of each tip" } else { "Crack length" };
-    a_n(result, tables, size).finish(&format!("{name} in mm over cycles to {:.0}; it ends because {sentence}", tables.life()))
+pub fn a_n_svg(run: &RunRecord, tables: &RunTables, size: Size) -> String {
+    let [_, sentence] = end_words(run.stop_reason);
+    let name = if by_tip(run, tables) { "Growth of each tip" } else { "Crack length" };
+    a_n(run, tables, size).finish(&format!("{name} in mm over cycles to {:.0}; it ends because {sentence}", tables.life()))
 }
 
 /// The same with a dot on every curve that follows the cycles.
-pub(super) fn a_n_moving(result: &Value, tables: &RunTables, size: Size) -> Sketch {
-    let mut frame = a_n(result, tables, size);
+pub(super) fn a_n_moving(run: &RunRecord, tables: &RunTables, size: Size) -> Sketch {
+    let mut frame = a_n(run, tables, size);
     let life = tables.life();
     let times: Vec<f64> = tables.rows.iter().map(|row| row.cycles / life).collect();
-    for (lengths, _) in lengths(result, tables) {
+    for (lengths, _) in lengths(run, tables) {
         let places: Vec<Point> = tables.rows.iter().zip(lengths).map(|(row, length)| frame.at([row.cycles, length])).collect();
         frame.sketch().moving(&places, &times, 4.5, COMPUTED);
     }
     frame.into_sketch()
 }
 
-fn a_n(result: &Value, tables: &RunTables, size: Size) -> Frame {
-    let curves = lengths(result, tables);
+fn a_n(run: &RunRecord, tables: &RunTables, size: Size) -> Frame {
+    let curves = lengths(run, tables);
     let cycles: Vec<f64> = tables.rows.iter().map(|row| row.cycles).collect();
     let ends = tables.band.iter().flatten().flatten().copied();
     let all_cycles = cycles.iter().copied().chain(ends).chain([0.0]);
@@ -143,8 +144,10 @@ fn a_n(result: &Value, tables: &RunTables, size: Size) -> Frame {
             frame.band(&of(0), &of(1), BAND);
         }
     }
-    if let Some(from) = result["plastic_zone"]["too_large_from_mm"].as_f64().filter(|_| !is_by_tip) {
-        let begins = result["plastic_zone"]["too_large_to_mm"].as_f64();
+    if let Some((from, zone)) =
+        run.plastic_zone.as_ref().and_then(|zone| Some((zone.too_large_from_mm?, zone))).filter(|_| !is_by_tip)
+    {
+        let begins = zone.too_large_to_mm;
         frame.limit(
             begins.unwrap_or(from),
             if begins.is_some() { "small-scale yielding begins" } else { "small-scale yielding ends" },
@@ -153,7 +156,7 @@ fn a_n(result: &Value, tables: &RunTables, size: Size) -> Frame {
     for (lengths, _) in &curves {
         frame.line(&smooth(&cycles, lengths), COMPUTED, 2.0, "");
     }
-    let [why, _] = end_words(result["stop_reason"].as_str().unwrap_or(""));
+    let [why, _] = end_words(run.stop_reason);
     let mut ends = Vec::new();
     let mut is_ended = false;
     for (tip, (lengths, leads)) in curves.iter().enumerate() {
@@ -172,8 +175,8 @@ fn a_n(result: &Value, tables: &RunTables, size: Size) -> Frame {
 }
 
 /// K_I and K_II of every tip at maximum load over crack length; `None` where no K was read.
-pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
-    let is_by_tip = by_tip(result, tables);
+pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> {
+    let is_by_tip = by_tip(run, tables);
     let length: Vec<f64> = tables.rows.iter().map(|row| row.crack_length_mm).collect();
     let along = |tip: usize| if is_by_tip { &tables.tips[tip].growth_mm } else { &length };
     let points = |tip: usize, mode: usize| -> Vec<Point> {
@@ -201,7 +204,7 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
     ];
     let names = [if is_by_tip { "Growth of the tip, mm" } else { "Crack length a, mm" }, "K at maximum load, MPa√m"];
     let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 13 } else { 4 });
-    if let Some([low, high]) = calibrated(result) {
+    if let Some([low, high]) = calibrated(run) {
         frame.unknown(high, true, "above the ΔK of the law");
         if tips.iter().any(|tip| points(*tip, 0).iter().any(|point| point[1] < low)) {
             frame.unknown(low, false, "below the ΔK of the law");
@@ -225,11 +228,7 @@ pub fn k_svg(result: &Value, tables: &RunTables, size: Size) -> Option<String> {
 }
 
 /// K at maximum load between which the law was fitted, MPa√m; `None` where that is not known.
-fn calibrated(result: &Value) -> Option<[f64; 2]> {
-    let law = &result["law"];
-    let record = &law["record"];
-    let limit = |key: &str| law[key].as_f64().or_else(|| record[key].as_f64());
-    let ratio = result["case"]["loading"]["stress_ratio"].as_f64()?;
-    let share = 1.0 - ratio.max(0.0);
-    Some([limit("delta_k_min_mpa_sqrt_m")? / share, limit("delta_k_max_mpa_sqrt_m")? / share])
+fn calibrated(run: &RunRecord) -> Option<[f64; 2]> {
+    let share = 1.0 - run.case["loading"]["stress_ratio"].as_f64()?.max(0.0);
+    Some(run.law.range()?.map(|k| k / share))
 }

@@ -1,18 +1,13 @@
 //! Pictures of a fit to readings: `fit.svg`, crack length over cycles of every specimen, and `da_dn.svg`.
 
-use std::path::Path;
-
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::curves::smooth;
 use crate::axis::Axis;
 use crate::chart::{COMPUTED, Frame, INK, OF_RATES, Size};
-use crate::model_words::short;
-use crate::units::of_table;
-use perilife_base::error::{Error, InputError, Result};
-use perilife_base::units::us::System;
+use crate::format::short;
+use perilife_base::columns::Table;
+use perilife_base::error::Result;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::record::CurveRecord;
 use perilife_laws::curve::ROWS;
@@ -111,7 +106,7 @@ pub fn rates_svg(readings: &[Point], laws: &[LawCurve], size: Size) -> String {
 }
 
 /// A row of `readings.csv`.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
     /// Specimen.
     pub specimen: String,
@@ -131,12 +126,26 @@ pub struct Reading {
     pub left_out: String,
 }
 
-#[derive(Deserialize)]
-struct CurveRow {
-    specimen: String,
-    crack_length_mm: f64,
-    cycles_measured: f64,
-    cycles_fitted: f64,
+impl Reading {
+    fn all_of(table: &Table) -> Result<Vec<Self>> {
+        let [cycles, lengths, delta_k, rates] =
+            ["cycles", "crack_length_mm", "delta_k_mpa_sqrt_m", "da_dn_mm_per_cycle"].map(|name| table.get(name));
+        let (cycles, lengths, delta_k, rates) = (cycles?, lengths?, delta_k?, rates?);
+        let [specimens, methods, marks, left_out] = ["specimen", "method", "marks", "left_out"].map(|name| table.text(name));
+        let (specimens, methods, marks, left_out) = (specimens?, methods?, marks?, left_out?);
+        let known = |value: f64| Some(value).filter(|value| !value.is_nan());
+        let row = |row: usize| Reading {
+            specimen: specimens[row].clone(),
+            cycles: cycles[row],
+            crack_length_mm: lengths[row],
+            delta_k_mpa_sqrt_m: known(delta_k[row]),
+            da_dn_mm_per_cycle: known(rates[row]),
+            method: methods[row].clone(),
+            marks: marks[row].clone(),
+            left_out: left_out[row].clone(),
+        };
+        Ok((0..table.rows()).map(row).collect())
+    }
 }
 
 /// What the tables of a fit to readings say.
@@ -151,20 +160,24 @@ pub struct FitTables {
 }
 
 impl FitTables {
-    /// Of `fit.json` and the texts of `fit_curves.csv`, `fit_band.csv` and `readings.csv`.
-    /// Errors: a line that is not as the fit wrote it, by file, line and what is wrong with it.
-    pub fn read(fit: &Value, [curves, band, readings]: [&str; 3]) -> Result<Self> {
+    /// Of `fit.json` and the tables `fit_curves.csv`, `fit_band.csv` and `readings.csv`.
+    /// Errors: a cell that is not as the fit wrote it, by file, line and what is wrong with it.
+    pub fn read(fit: &Value, [curves, band, readings]: [&Table; 3]) -> Result<Self> {
         let mut all: Vec<Lives> = Vec::new();
-        for row in rows::<CurveRow>(curves, CURVES_FILE)? {
-            if all.last().is_none_or(|curve| curve.name != row.specimen) {
-                all.push(Lives { name: row.specimen, ..Lives::default() });
+        let [lengths, measured, fitted] = ["crack_length_mm", "cycles_measured", "cycles_fitted"].map(|name| curves.full(name));
+        let (lengths, measured, fitted) = (lengths?, measured?, fitted?);
+        for (row, name) in curves.text("specimen")?.into_iter().enumerate() {
+            if all.last().is_none_or(|curve| curve.name != name) {
+                all.push(Lives { name, ..Lives::default() });
             }
             if let Some(curve) = all.last_mut() {
-                curve.measured.push([row.cycles_measured, row.crack_length_mm]);
-                curve.fitted.push([row.cycles_fitted, row.crack_length_mm]);
+                curve.measured.push([measured[row], lengths[row]]);
+                curve.fitted.push([fitted[row], lengths[row]]);
             }
         }
-        let band = rows::<[f64; 4]>(band, BAND_FILE)?.into_iter().map(|[length, _, low, high]| [length, low, high]).collect();
+        let [lengths, low, high] = ["crack_length_mm", "cycles_low", "cycles_high"].map(|name| band.full(name));
+        let (lengths, low, high) = (lengths?, low?, high?);
+        let band = (0..lengths.len()).map(|row| [lengths[row], low[row], high[row]]).collect();
         let figure = |key: &str| fit[key].as_f64();
         let point = |delta_k: f64, rate: Option<f64>| Some([delta_k, rate?]);
         let rate = |delta_k: f64| Some(figure("paris_c_mm_per_cycle")? * delta_k.powf(figure("paris_m")?));
@@ -179,7 +192,7 @@ impl FitTables {
                 .and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
         };
         let fitted_to = fit["fitted_to"].as_str().unwrap_or("").to_owned();
-        Ok(FitTables { readings: rows(readings, READINGS_FILE)?, curves: all, band, law, fitted_to })
+        Ok(FitTables { readings: Reading::all_of(readings)?, curves: all, band, law, fitted_to })
     }
 
     /// Crack length over cycles.
@@ -196,7 +209,7 @@ impl FitTables {
 }
 
 /// A row of `fit_rates.csv`: a rate that a law was fitted to, and that of the law.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct RateFitted {
     /// Test that it is from.
     pub series: String,
@@ -210,10 +223,20 @@ pub struct RateFitted {
     pub da_dn_fitted_mm_per_cycle: f64,
 }
 
-/// Rates of a fit of laws over K, by the text of `fit_rates.csv`.
-/// Errors: a line that is not as the fit wrote it.
-pub fn rates_fitted(text: &str) -> Result<Vec<RateFitted>> {
-    rows(text, RATES_FITTED_FILE)
+/// Rates of a fit of laws over K, by `fit_rates.csv`.
+/// Errors: a cell that is not as the fit wrote it.
+pub fn rates_fitted(table: &Table) -> Result<Vec<RateFitted>> {
+    let [ratios, delta_k, rates, fitted] =
+        ["stress_ratio", "delta_k_mpa_sqrt_m", "da_dn_mm_per_cycle", "da_dn_fitted_mm_per_cycle"].map(|name| table.full(name));
+    let (ratios, delta_k, rates, fitted) = (ratios?, delta_k?, rates?, fitted?);
+    let row = |(row, series): (usize, String)| RateFitted {
+        series,
+        stress_ratio: ratios[row],
+        delta_k_mpa_sqrt_m: delta_k[row],
+        da_dn_mm_per_cycle: rates[row],
+        da_dn_fitted_mm_per_cycle: fitted[row],
+    };
+    Ok(table.text("series")?.into_iter().enumerate().map(row).collect())
 }
 
 /// `da_dn.svg` of a fit of laws over K: rates as circles, the law over the rates of every stress ratio.
@@ -238,20 +261,4 @@ fn along(curve: &CurveRecord) -> Vec<Point> {
     let (law, [low, high]) = (curve.law(), [0, ROWS - 1].map(|end| curve.delta_k_mpa_sqrt_m[end]));
     let place = |i: usize| low * (high / low).powf(i as f64 / CURVE_POINTS as f64);
     (0..=CURVE_POINTS).map(place).map(|k| [k, law.log_rate(k * MPA_SQRT_M).exp() / MM_PER_CYCLE]).collect()
-}
-
-/// Rows of a table with a header.
-fn rows<R: DeserializeOwned>(text: &str, name: &str) -> Result<Vec<R>> {
-    let bad = |error: csv::Error| {
-        let line = error.position().and_then(|position| usize::try_from(position.line()).ok());
-        Error::Input(Box::new(InputError {
-            file: Some(Path::new(name).to_path_buf()),
-            line,
-            problem: format!("is not as `perilife calibrate` wrote it: {error}"),
-            remedy: "run `perilife calibrate` again to write the table anew".to_owned(),
-            ..InputError::default()
-        }))
-    };
-    let text = of_table(text, System::Si);
-    csv::Reader::from_reader(text.as_bytes()).deserialize().map(|row| row.map_err(bad)).collect()
 }

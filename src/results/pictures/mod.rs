@@ -8,4 +8,3 @@ pub mod plate;
 pub mod section;
 pub mod spectrum;
 pub mod stress;
-pub mod tables;

@@ -1,7 +1,8 @@
 //! `stress.svg`: von Mises stress and σ_y over the deformed plate in named bands, flanks of cracks open, the yield strength as a line.
 
-use crate::axis::{grouped, nice_step};
+use crate::axis::nice_step;
 use crate::chart::{INK, Size};
+use crate::format::PLAIN;
 use crate::specimen_picture::sketch::Sketch;
 use perilife_base::units::shown::per;
 use perilife_base::units::{MM, MPA};
@@ -73,8 +74,7 @@ pub fn stress_svg(field: &StressField, material: &Material) -> String {
     let scale = (width / size(0)).min((HEIGHTS[1] - HEAD - FOOT) / size(1));
     let height = (size(1) * scale + HEAD + FOOT).max(HEIGHTS[0]);
     let mut sketch = Sketch::new(1.0, [0.0; 2]);
-    let when =
-        if field.cycles > 0.0 { format!(", {} cycles", grouped(&format!("{:.0}", field.cycles), " ")) } else { String::new() };
+    let when = if field.cycles > 0.0 { format!(", {} cycles", PLAIN.whole(field.cycles)) } else { String::new() };
     let lengthened = format!("Stress at maximum load{when}: displacements × {factor}");
     sketch.name([8.0, 1.5 * SIZE.text], &lengthened, "start", 1.15 * SIZE.text, INK);
     for (place, of) in [Of::VonMises, Of::AlongY].into_iter().enumerate() {

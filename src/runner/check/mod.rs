@@ -28,7 +28,7 @@ use perilife_results::checks;
 use perilife_results::model_words::{self, mm, short};
 use perilife_results::pictures::plate::Plate;
 use perilife_results::specimen_picture::specimen_svg;
-use perilife_results::spectrum::curves;
+use perilife_results::spectrum::{SpectrumCurves, curves};
 use perilife_scenes::Scene;
 use perilife_scenes::assembly::preview as preview_scene;
 use perilife_scenes::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
@@ -49,7 +49,7 @@ pub struct Checked {
     /// The same for others to draw; none of scenes.
     pub plate: Option<Plate>,
     /// Exceedances and ranges of a pass of a spectrum, for others to draw; none of other loads.
-    pub spectrum: Option<Value>,
+    pub spectrum: Option<SpectrumCurves>,
     /// The input as it was given.
     pub echo: Value,
     /// Files that were read for it.

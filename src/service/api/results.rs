@@ -18,10 +18,11 @@ use super::sending::Stored;
 use crate::job::{Job, State, is_id};
 use crate::problem::{Answer, Problem};
 use crate::store::{Origin, media_type};
+use perilife_base::columns::Table;
 use perilife_base::error::input;
 use perilife_calibration::inspection::{self, InspectFrom, Inspection};
-use perilife_results::band;
-use perilife_results::csv::{self, A_N_FILE};
+use perilife_results::curve::{self, A_N_FILE, Row};
+use perilife_results::record::TipEnds;
 use perilife_results::resample::Sampling;
 
 /// Rows of a resampled curve: as many as a table can show.
@@ -103,8 +104,8 @@ async fn resampled(app: &App, id: &str, sampling: Sampling) -> Answer<Option<Str
         let problem = format!("is not {} to {}", POINTS.start(), POINTS.end());
         return Err(input("points", points, problem, "give for example 400").into());
     }
-    let Some((text, room)) = curve(app, id).await? else { return Ok(None) };
-    let rows = csv::parse_a_n(&text, FilePath::new(A_N_FILE))?;
+    let Some((table, room)) = table(app, id).await? else { return Ok(None) };
+    let rows = Row::of_table(&table)?;
     if let Sampling::EveryCycles(step) = sampling {
         let count = (rows[rows.len() - 1].cycles - rows[0].cycles) / step;
         if count > *POINTS.end() as f64 {
@@ -114,13 +115,13 @@ async fn resampled(app: &App, id: &str, sampling: Sampling) -> Answer<Option<Str
     }
     let work = move || {
         let _room = room;
-        Ok(Some(csv::table(&sampling.of(&rows, "every_cycles")?)))
+        Ok(Some(curve::table(&sampling.of(&rows, "every_cycles")?).csv()))
     };
     tokio::task::spawn_blocking(work).await.map_err(|_| Problem::internal())?
 }
 
 /// The table of a stored curve, with its room among those that may be in memory; `None` if there is no curve.
-async fn curve(app: &App, id: &str) -> Answer<Option<(String, OwnedSemaphorePermit)>> {
+async fn table(app: &App, id: &str) -> Answer<Option<(Table, OwnedSemaphorePermit)>> {
     if !is_id(id) {
         return Ok(None);
     }
@@ -128,7 +129,7 @@ async fn curve(app: &App, id: &str) -> Answer<Option<(String, OwnedSemaphorePerm
     let room = app.curves.clone().acquire_owned().await.map_err(|_| Problem::internal())?;
     let Some(table) = app.store.whole_file(id, Origin::Result, A_N_FILE).await? else { return Ok(None) };
     let text = String::from_utf8(table).map_err(|_| Problem::internal())?;
-    Ok(Some((text, room)))
+    Ok(Some((Table::read(&text, FilePath::new(A_N_FILE))?, room)))
 }
 
 fn must_have_result(job: &Job) -> Answer<()> {
@@ -199,11 +200,11 @@ pub async fn remaining(
     let factor = from.factor.unwrap_or(inspection::FACTOR);
     let from = InspectFrom { crack_length_mm: from.crack_length_mm, tip: from.tip, factor, names };
     from.check()?;
-    let Some((text, _room)) = curve(&app, &id).await? else {
+    let Some((table, _room)) = table(&app, &id).await? else {
         must_have_result(&job_of(&app, "predictions", &id).await?)?;
         return Err(Problem::not_found("curve"));
     };
-    let (rows, left) = (csv::parse_a_n(&text, FilePath::new(A_N_FILE))?, band::left_of_table(&text));
+    let (rows, left) = (Row::of_table(&table)?, curve::left_of_table(&table)?);
     let summary = job_of(&app, "predictions", &id).await?.summary;
     if summary.as_ref().is_some_and(|summary| summary["life_cycles"].is_null()) {
         return Err(Problem::conflict("the cracks stand still under these loads: the life is unlimited"));
@@ -211,7 +212,8 @@ pub async fn remaining(
     if let Some(refused) = summary.as_ref().and_then(|summary| summary["refused"].as_str()) {
         return Err(Problem::conflict(format!("the run has no life: {refused}")));
     }
-    let tips = summary.as_ref().and_then(|summary| band::tip_lengths_of_table(&text, &summary["tips"]));
+    let tips = summary.as_ref().and_then(|summary| Vec::<TipEnds>::deserialize(&summary["tips"]).ok());
+    let tips = curve::tip_lengths_of_table(&table, &tips.unwrap_or_default())?;
     let is_lower_bound = summary.is_some_and(|summary| summary["life_is_lower_bound"] == true);
-    Ok(Json(Inspection::of(&csv::curve(&rows), tips.as_ref(), left.as_deref(), from, is_lower_bound)?))
+    Ok(Json(Inspection::of(&curve::curve(&rows), tips.as_ref(), left.as_deref(), from, is_lower_bound)?))
 }

@@ -21,9 +21,9 @@ use crate::store::{Growth, free_bytes};
 use perilife_base::error::{Error, Result};
 use perilife_base::input::Opened;
 use perilife_calibration::calibrate::Calibration;
-use perilife_results::json::RESULT_FILE;
-use perilife_results::output::{Room, write_file};
+use perilife_results::output::{Room, write_file, write_json};
 use perilife_results::paper::{self, Signed};
+use perilife_results::record::RESULT_FILE;
 use perilife_runner::{Task, TaskCheckpoint};
 
 /// The report of a run or a fit among its files.
@@ -146,7 +146,7 @@ fn run_task(folder: &Path, task: &Task, from: Option<TaskCheckpoint>, teller: &T
     let is_of_factors = matches!(task, Task::Factors { .. });
     let summary = perilife_runner::run(task, from, (!is_of_factors).then_some(folder), teller)?;
     if is_of_factors {
-        write_file(&folder.join(RESULT_FILE), format!("{:#}\n", summary.result).as_bytes())?;
+        write_json(folder, RESULT_FILE, &summary.result)?;
     }
     // A run of cycles that is refused is shown as such.
     let summary = if matches!(task, Task::Prediction { .. }) { summary } else { summary.counted()? };

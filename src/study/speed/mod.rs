@@ -8,8 +8,8 @@ use std::path::Path;
 use crate::chart::run::Model;
 use crate::chart::{Chart, Point};
 use perilife_base::cells::defused;
+use perilife_base::columns::exact_text as exact;
 use perilife_base::error::Result;
-use perilife_results::csv::exact;
 use perilife_results::output::write_file;
 use perilife_results::time;
 

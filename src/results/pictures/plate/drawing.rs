@@ -1,11 +1,10 @@
 //! `plate.svg`: the plate to scale with its loads, the first crack and the way of every tip, coloured by cycles.
 
-use serde_json::Value;
-
 use super::Plate;
 use crate::chart::{COMPUTED, INK, Size};
+use crate::curve::RunTables;
 use crate::pictures::curves::a_n_moving;
-use crate::pictures::tables::RunTables;
+use crate::record::RunRecord;
 use crate::specimen_picture::sketch::Sketch;
 use perilife_base::monotone::Monotone;
 use perilife_base::units::shown::{name_of, per};
@@ -113,7 +112,7 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
 }
 
 /// The plate at the left with cracks that grow as cycles go by, and at the right the curve with a dot that follows; SVG that moves by itself.
-pub fn growth_svg(plate: &Plate, result: &Value, tables: &RunTables, size: Size) -> String {
+pub fn growth_svg(plate: &Plate, run: &RunRecord, tables: &RunTables, size: Size) -> String {
     let ways: Vec<Way> = tables.paths.iter().filter(|path| !path.is_empty()).map(|path| Way::of(path)).collect();
     let [low, high] = bounds(plate.outline_mm.iter());
     let (width, life) = (0.5 * size.width, tables.life());
@@ -132,7 +131,7 @@ pub fn growth_svg(plate: &Plate, result: &Value, tables: &RunTables, size: Size)
         sketch.growing(&places, &times, COMPUTED, 3.5);
     }
     scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
-    sketch.within([width, 0.0], [width, size.height], a_n_moving(result, tables, Size { width, ..size }));
+    sketch.within([width, 0.0], [width, size.height], a_n_moving(run, tables, Size { width, ..size }));
     sketch.picture([size.width, size.height], &format!("Cracks as they grow over {life:.0} cycles, {}", plate.load))
 }
 

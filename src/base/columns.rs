@@ -1,0 +1,303 @@
+//! A table of results: columns whose names end in their units, written to CSV in the units that are shown, read back in metric ones.
+
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+use crate::cells::field;
+use crate::error::{Error, InputError, Result};
+use crate::units::shown::shown;
+use crate::units::us::{Renamed, System, renamed};
+use crate::units::words::in_units;
+
+/// Significant digits of a number at the least.
+const DIGITS: usize = 10;
+
+/// How numbers are written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Digits {
+    /// With 10 to 15 significant digits: unit conversion may disturb the last of the 17 that a double carries.
+    Some,
+    /// So that they read back bit for bit.
+    All,
+    /// Whole.
+    None,
+}
+
+/// Cells of a column.
+#[derive(Debug, Clone, PartialEq)]
+enum Cells {
+    Numbers(Vec<f64>, Digits),
+    Words(Vec<String>),
+}
+
+/// A column.
+#[derive(Debug, Clone, PartialEq)]
+struct Column {
+    name: Cow<'static, str>,
+    cells: Cells,
+}
+
+/// Columns of equal length under the name of their file; an empty cell is NaN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// Name of the file, or the path that it was read from.
+    pub file: PathBuf,
+    columns: Vec<Column>,
+}
+
+impl Table {
+    /// One without columns.
+    pub fn new(file: impl Into<PathBuf>) -> Self {
+        Table { file: file.into(), columns: Vec::new() }
+    }
+
+    /// Adds quantities in the unit of their name.
+    pub fn numbers(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
+        self.with(name, Cells::Numbers(values.into_iter().collect(), Digits::Some))
+    }
+
+    /// Adds quantities that may not be known.
+    pub fn known(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = Option<f64>>) -> Self {
+        self.numbers(name, values.into_iter().map(|value| value.unwrap_or(f64::NAN)))
+    }
+
+    /// Adds numbers that read back bit for bit.
+    pub fn exact(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
+        self.with(name, Cells::Numbers(values.into_iter().collect(), Digits::All))
+    }
+
+    /// Adds whole numbers.
+    pub fn counts(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = usize>) -> Self {
+        self.with(name, Cells::Numbers(values.into_iter().map(|count| count as f64).collect(), Digits::None))
+    }
+
+    /// Adds text.
+    pub fn words<W: ToString>(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = W>) -> Self {
+        self.with(name, Cells::Words(values.into_iter().map(|words| words.to_string()).collect()))
+    }
+
+    fn with(mut self, name: impl Into<Cow<'static, str>>, cells: Cells) -> Self {
+        self.columns.push(Column { name: name.into(), cells });
+        self
+    }
+
+    /// Rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.cells.len())
+    }
+
+    /// Whether it has a column.
+    pub fn has(&self, name: &str) -> bool {
+        self.columns.iter().any(|column| column.name == name)
+    }
+
+    /// Numbers of a column; NaN in empty cells.
+    /// Errors: a column that is missing, a cell that is no number, by file, line, column and value.
+    pub fn get(&self, name: &str) -> Result<Cow<'_, [f64]>> {
+        match self.cells(name)? {
+            Cells::Numbers(values, _) => Ok(values.into()),
+            Cells::Words(words) => {
+                let number = |(row, cell): (usize, &String)| {
+                    number(cell).ok_or_else(|| self.bad(row + 2, Some(name), Some(cell), "is not a number"))
+                };
+                words.iter().enumerate().map(number).collect()
+            }
+        }
+    }
+
+    /// The same with a number in every row.
+    /// Errors: also an empty cell.
+    pub fn full(&self, name: &str) -> Result<Cow<'_, [f64]>> {
+        let numbers = self.get(name)?;
+        match numbers.iter().position(|value| value.is_nan()) {
+            Some(row) => Err(self.bad(row + 2, Some(name), Some(""), "is not a number")),
+            None => Ok(numbers),
+        }
+    }
+
+    /// Numbers of a column that may be missing.
+    /// Errors: a cell that is no number.
+    pub fn optional(&self, name: &str) -> Result<Option<Cow<'_, [f64]>>> {
+        self.has(name).then(|| self.get(name)).transpose()
+    }
+
+    /// Cells of a column as text.
+    /// Errors: a column that is missing.
+    pub fn text(&self, name: &str) -> Result<Vec<String>> {
+        let cells = self.cells(name)?;
+        Ok((0..self.rows()).map(|row| cells.written(row).into_owned()).collect())
+    }
+
+    fn cells(&self, name: &str) -> Result<&Cells> {
+        let found = self.columns.iter().find(|column| column.name == name);
+        found.map(|column| &column.cells).ok_or_else(|| self.bad(1, Some(name), None, "is missing"))
+    }
+
+    /// A line or cell that is not as it was written.
+    pub fn bad(&self, line: usize, column: Option<&str>, value: Option<&str>, problem: &str) -> Error {
+        Error::Input(Box::new(InputError {
+            file: Some(self.file.clone()),
+            line: Some(line),
+            key: column.map(str::to_owned),
+            value: value.map(|text| format!("\"{text}\"")),
+            problem: problem.to_owned(),
+            remedy: "copy the folder again, or run the command again that wrote it".to_owned(),
+        }))
+    }
+
+    /// The text in the units that are shown.
+    pub fn csv(&self) -> String {
+        self.csv_in(shown())
+    }
+
+    /// The text in the units of a system.
+    pub fn csv_in(&self, units: System) -> String {
+        // The level of a law whose exponent is not in the table stays.
+        let change = |column: &Column| {
+            renamed(&column.name, units).filter(|new| new.factor(|name| self.sibling(name, 0)).is_ok() || self.rows() == 0)
+        };
+        let changes: Vec<Option<Renamed>> = match units {
+            System::Si => vec![None; self.columns.len()],
+            System::Us => self.columns.iter().map(change).collect(),
+        };
+        let names = self.columns.iter().zip(&changes).map(|(column, new)| new.as_ref().map_or(&*column.name, |new| &new.name));
+        let mut text = names.map(field).collect::<Vec<_>>().join(",") + "\n";
+        for row in 0..self.rows() {
+            let cell = |(column, new): (&Column, &Option<Renamed>)| match (new, &column.cells) {
+                (Some(new), Cells::Numbers(values, _)) => new
+                    .factor(|name| self.sibling(name, row))
+                    .map_or_else(|_| String::new(), |factor| number_text(values[row] * factor)),
+                (_, Cells::Words(words)) if units == System::Us => field(&in_units(&words[row], units)),
+                _ => column.cells.written(row).into_owned(),
+            };
+            let cells: Vec<String> = self.columns.iter().zip(&changes).map(cell).collect();
+            text.push_str(&cells.join(","));
+            text.push('\n');
+        }
+        text
+    }
+
+    /// The number that stands in a row under a name.
+    fn sibling(&self, name: &str, row: usize) -> Option<f64> {
+        self.get(name).ok()?.get(row).copied()
+    }
+
+    /// Of a text with a header, whichever units it is in; `path` stands in messages.
+    /// Errors: a row with more or fewer cells than the header.
+    pub fn read(text: &str, path: &Path) -> Result<Self> {
+        let mut table = Table::new(path);
+        let mut reader =
+            csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
+        let mut columns: Vec<(String, Vec<String>)> = Vec::new();
+        for record in reader.records() {
+            let at = |position: Option<&csv::Position>| position.map_or(1, |position| position.line() as usize);
+            let record = record
+                .map_err(|error| table.bad(at(error.position()), None, None, &format!("is no line of a table: {error}")))?;
+            if columns.is_empty() {
+                columns = record.iter().map(|name| (name.to_owned(), Vec::new())).collect();
+                continue;
+            }
+            if record.len() != columns.len() {
+                let problem = format!("has {} cells under {} columns", record.len(), columns.len());
+                return Err(table.bad(at(record.position()), None, None, &problem));
+            }
+            columns.iter_mut().zip(&record).for_each(|((_, cells), cell)| cells.push(cell.to_owned()));
+        }
+        table.columns = columns.into_iter().map(|(name, cells)| Column { name: name.into(), cells: Cells::of(cells) }).collect();
+        table.into_metric();
+        Ok(table)
+    }
+
+    /// Columns in US units in metric ones.
+    fn into_metric(&mut self) {
+        let changes: Vec<(usize, Renamed, Vec<f64>)> = (0..self.columns.len())
+            .filter_map(|place| {
+                let column = &self.columns[place];
+                let new = renamed(&column.name, System::Si)?;
+                let Cells::Numbers(values, _) = &column.cells else { return None };
+                let metric = |(row, value): (usize, &f64)| Some(value * new.factor(|name| self.sibling(name, row)).ok()?);
+                let values = values.iter().enumerate().map(metric).collect::<Option<_>>()?;
+                Some((place, new, values))
+            })
+            .collect();
+        if !changes.is_empty() {
+            for column in &mut self.columns {
+                if let Cells::Words(words) = &mut column.cells {
+                    words.iter_mut().for_each(|text| *text = in_units(text, System::Si));
+                }
+            }
+        }
+        for (place, new, values) in changes {
+            self.columns[place] = Column { name: new.name.into(), cells: Cells::Numbers(values, Digits::Some) };
+        }
+    }
+}
+
+impl Cells {
+    /// Numbers where all are, text else.
+    fn of(cells: Vec<String>) -> Self {
+        match cells.iter().map(|cell| number(cell)).collect() {
+            Some(numbers) => Cells::Numbers(numbers, Digits::Some),
+            None => Cells::Words(cells),
+        }
+    }
+
+    fn len(&self) -> usize {
+        match self {
+            Cells::Numbers(values, _) => values.len(),
+            Cells::Words(words) => words.len(),
+        }
+    }
+
+    fn written(&self, row: usize) -> Cow<'_, str> {
+        match self {
+            Cells::Numbers(values, Digits::Some) => number_text(values[row]).into(),
+            Cells::Numbers(values, Digits::All) => exact_text(values[row]).into(),
+            Cells::Numbers(values, Digits::None) => format!("{}", values[row]).into(),
+            Cells::Words(words) => field(&words[row]).into(),
+        }
+    }
+}
+
+/// A table in metric units as text in those that are shown.
+/// Errors: as [`Table::read`].
+pub fn shown_text<'t>(text: &'t str, file: &str) -> Result<Cow<'t, str>> {
+    Ok(if shown() == System::Si { text.into() } else { Table::read(text, Path::new(file))?.csv().into() })
+}
+
+/// The number of a cell, NaN of an empty one.
+fn number(cell: &str) -> Option<f64> {
+    if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok().filter(|value: &f64| value.is_finite()) }
+}
+
+/// A number so that it reads back bit for bit, with at least ten significant digits; empty for NaN.
+pub fn exact_text(value: f64) -> String {
+    if value.is_nan() {
+        return String::new();
+    }
+    if value == 0.0 || !value.is_finite() || (1e-4..1e15).contains(&value.abs()) {
+        return padded(format!("{value}"));
+    }
+    let text = format!("{value:e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    format!("{}e{exponent}", padded(mantissa.to_owned()))
+}
+
+/// A quantity with 10 to 15 significant digits, so that 9 mm stay 9.000000000.
+pub fn number_text(value: f64) -> String {
+    // A decimal of 15 digits always parses; the fallback only spares a panic path.
+    exact_text(format!("{value:.14e}").parse().unwrap_or(value))
+}
+
+/// With zeros behind the decimal point up to the digits that are wanted.
+fn padded(mut text: String) -> String {
+    let significant = text.trim_start_matches(['-', '0', '.']).bytes().filter(u8::is_ascii_digit).count();
+    if significant == 0 || significant >= DIGITS || !text.bytes().all(|b| b.is_ascii_digit() || b == b'.' || b == b'-') {
+        return text;
+    }
+    if !text.contains('.') {
+        text.push('.');
+    }
+    text.push_str(&"0".repeat(DIGITS - significant));
+    text
+}
