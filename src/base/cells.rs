@@ -47,8 +47,12 @@ pub fn restored(cell: &str) -> &str {
     cell.strip_prefix('\'').filter(|_| is_formula(cell)).unwrap_or(cell)
 }
 
-/// Text as a field of a CSV file: [`defused`], in quotes where it holds a separator.
+/// Text of others as a field of a CSV file: [`defused`], in quotes where it holds a separator.
 pub fn field(text: &str) -> String {
-    let text = defused(text);
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into_owned() }
+    quoted(&defused(text)).into_owned()
+}
+
+/// Text as a field of a CSV file: in quotes where it holds a separator.
+pub fn quoted(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")).into() } else { text.into() }
 }

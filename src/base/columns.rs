@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use crate::cells::field;
+use crate::cells::{defused, quoted};
 use crate::error::{Error, InputError, Result};
 use crate::units::shown::shown;
 use crate::units::us::{Renamed, System, renamed};
@@ -71,7 +71,12 @@ impl Table {
         self.with(name, Cells::Numbers(values.into_iter().map(|count| count as f64).collect(), Digits::None))
     }
 
-    /// Adds text.
+    /// Adds text of others, which no spreadsheet shall run.
+    pub fn foreign<W: ToString>(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = W>) -> Self {
+        self.words(name, values.into_iter().map(|words| defused(&words.to_string()).into_owned()))
+    }
+
+    /// Adds text of this program.
     pub fn words<W: ToString>(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = W>) -> Self {
         self.with(name, Cells::Words(values.into_iter().map(|words| words.to_string()).collect()))
     }
@@ -124,8 +129,10 @@ impl Table {
     /// Cells of a column as text.
     /// Errors: a column that is missing.
     pub fn text(&self, name: &str) -> Result<Vec<String>> {
-        let cells = self.cells(name)?;
-        Ok((0..self.rows()).map(|row| cells.written(row).into_owned()).collect())
+        Ok(match self.cells(name)? {
+            Cells::Words(words) => words.clone(),
+            numbers => (0..self.rows()).map(|row| numbers.written(row).into_owned()).collect(),
+        })
     }
 
     fn cells(&self, name: &str) -> Result<&Cells> {
@@ -161,13 +168,13 @@ impl Table {
             System::Us => self.columns.iter().map(change).collect(),
         };
         let names = self.columns.iter().zip(&changes).map(|(column, new)| new.as_ref().map_or(&*column.name, |new| &new.name));
-        let mut text = names.map(field).collect::<Vec<_>>().join(",") + "\n";
+        let mut text = names.map(quoted).collect::<Vec<_>>().join(",") + "\n";
         for row in 0..self.rows() {
             let cell = |(column, new): (&Column, &Option<Renamed>)| match (new, &column.cells) {
                 (Some(new), Cells::Numbers(values, _)) => new
                     .factor(|name| self.sibling(name, row))
                     .map_or_else(|_| String::new(), |factor| number_text(values[row] * factor)),
-                (_, Cells::Words(words)) if units == System::Us => field(&in_units(&words[row], units)),
+                (_, Cells::Words(words)) if units == System::Us => quoted(&in_units(&words[row], units)).into_owned(),
                 _ => column.cells.written(row).into_owned(),
             };
             let cells: Vec<String> = self.columns.iter().zip(&changes).map(cell).collect();
@@ -204,12 +211,12 @@ impl Table {
             columns.iter_mut().zip(&record).for_each(|((_, cells), cell)| cells.push(cell.to_owned()));
         }
         table.columns = columns.into_iter().map(|(name, cells)| Column { name: name.into(), cells: Cells::of(cells) }).collect();
-        table.into_metric();
+        table.go_metric();
         Ok(table)
     }
 
     /// Columns in US units in metric ones.
-    fn into_metric(&mut self) {
+    fn go_metric(&mut self) {
         let changes: Vec<(usize, Renamed, Vec<f64>)> = (0..self.columns.len())
             .filter_map(|place| {
                 let column = &self.columns[place];
@@ -254,7 +261,7 @@ impl Cells {
             Cells::Numbers(values, Digits::Some) => number_text(values[row]).into(),
             Cells::Numbers(values, Digits::All) => exact_text(values[row]).into(),
             Cells::Numbers(values, Digits::None) => format!("{}", values[row]).into(),
-            Cells::Words(words) => field(&words[row]).into(),
+            Cells::Words(words) => quoted(&words[row]),
         }
     }
 }

@@ -6,15 +6,12 @@ use std::path::Path;
 use perilife_base::columns::Table;
 use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
-use perilife_calibration::inspection::TipLengths;
 use perilife_calibration::population::plate::{PlateBand, Quantiles};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{CurvePoint, GoverningCrack, Prediction};
 use perilife_growth::record::TipRecord;
 use perilife_plate::loading::LoadControl;
 use perilife_plate::specimen::{Crack, LoadMeasure, Point};
-
-use super::record::TipEnds;
 
 /// Name of the table of a run's a-N curve.
 pub const A_N_FILE: &str = "a_n.csv";
@@ -206,18 +203,6 @@ pub fn left_of_table(table: &Table) -> Result<Option<Vec<Quantiles>>> {
     let [low, middle, high] = [3, 4, 5].map(|place| table.optional(BAND_COLUMNS[place]));
     let Some(((low, middle), high)) = low?.zip(middle?).zip(high?) else { return Ok(None) };
     Ok(Some((0..low.len()).map(|row| [low[row], middle[row], high[row]]).collect()))
-}
-
-/// Lengths of the cracks of the tips, mm, by the table of a run and the tips of its record; `None` of a standard specimen.
-pub fn tip_lengths_of_table(table: &Table, tips: &[TipEnds]) -> Result<Option<TipLengths>> {
-    let Some(leads) = tips.iter().position(|tip| tip.leads && tip.crack.is_some()) else { return Ok(None) };
-    let of_tip = |tip: &TipEnds| {
-        let Some(start) = tip.crack_length_initial_mm else { return Ok(Vec::new()) };
-        let same = (0..tips.len()).filter(|other| tips[*other].crack == tip.crack);
-        let growth = same.map(|other| table.get(&format!("tip{other}_growth_mm"))).collect::<Result<Vec<_>>>()?;
-        Ok((0..table.rows()).map(|row| start + growth.iter().map(|column| column[row]).sum::<f64>()).collect())
-    };
-    Ok(Some(TipLengths { lengths: tips.iter().map(of_tip).collect::<Result<_>>()?, leads }))
 }
 
 /// Growth and K of a tip over the rows of a curve.

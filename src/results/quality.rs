@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::format::two_digits;
-use super::record::RunRecord;
 use perilife_base::units::MM;
 use perilife_growth::case::{Case, Method, Model, coarse_points, usual_nodes};
 use perilife_growth::predict::error_estimate::{ErrorEstimate, error_estimate};
@@ -14,7 +13,7 @@ use perilife_growth::predict::{Prediction, Silent, predict};
 pub struct Quality {
     /// Bounds of the error, or why there are none; `None` where nobody asked.
     estimate: Option<std::result::Result<ErrorEstimate, String>>,
-    second: Option<SecondOpinion>,
+    pub(super) second: Option<SecondOpinion>,
 }
 
 /// `cross_check` of a result: the life by the other engine.
@@ -41,13 +40,11 @@ impl Quality {
         Quality { estimate, second }
     }
 
-    /// Adds it to the record of the run.
-    pub fn add_to(&self, record: &mut RunRecord) {
+    /// Bounds of the error of life, percent, and path, mm; why there are none.
+    pub(super) fn stated(&self) -> ([Option<f64>; 2], Option<&String>) {
         let stated = self.estimate.as_ref().and_then(|estimate| estimate.as_ref().ok());
-        record.error_estimate_percent = stated.map(|estimate| two_digits(estimate.life_percent));
-        record.path_error_estimate_mm = stated.map(|estimate| two_digits(estimate.path / MM));
-        record.no_error_estimate = self.estimate.as_ref().and_then(|estimate| estimate.as_ref().err().cloned());
-        record.cross_check.clone_from(&self.second);
+        let bounds = stated.map(|estimate| [estimate.life_percent, estimate.path / MM].map(two_digits));
+        ([0, 1].map(|place| bounds.map(|both| both[place])), self.estimate.as_ref().and_then(|estimate| estimate.as_ref().err()))
     }
 
     /// In words: what the program chose, and how wrong it may be.

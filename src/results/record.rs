@@ -13,11 +13,13 @@ use super::inspections::InspectionsRecord;
 use super::model_words;
 use super::pictures::plate::Plate;
 use super::provenance::MadeBy;
-use super::quality::SecondOpinion;
+use super::quality::{Quality, SecondOpinion};
 use super::sensitivities::SensitivityRecord;
 use super::spectrum::SpectrumRecord;
+use perilife_base::columns::Table;
+use perilife_base::error::Result;
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
-use perilife_calibration::inspection::Inspection;
+use perilife_calibration::inspection::{Inspection, TipLengths};
 use perilife_growth::case::record::{CurveRecord, LawRecord};
 use perilife_growth::case::{Case, LawSource};
 use perilife_growth::end_of_life::{critical_length, critical_lengths};
@@ -119,6 +121,21 @@ pub struct TipEnds {
     pub x_mm: f64,
     pub y_mm: f64,
     pub growth_mm: f64,
+}
+
+impl TipEnds {
+    /// Lengths of the cracks of all tips, mm, by the table of their run; `None` of a standard specimen.
+    /// Errors: a table without their growth.
+    pub fn lengths(tips: &[TipEnds], table: &Table) -> Result<Option<TipLengths>> {
+        let Some(leads) = tips.iter().position(|tip| tip.leads && tip.crack.is_some()) else { return Ok(None) };
+        let of_tip = |tip: &TipEnds| {
+            let Some(start) = tip.crack_length_initial_mm else { return Ok(Vec::new()) };
+            let same = (0..tips.len()).filter(|other| tips[*other].crack == tip.crack);
+            let growth = same.map(|other| table.get(&format!("tip{other}_growth_mm"))).collect::<Result<Vec<_>>>()?;
+            Ok((0..table.rows()).map(|row| start + growth.iter().map(|column| column[row]).sum::<f64>()).collect())
+        };
+        Ok(Some(TipLengths { lengths: tips.iter().map(of_tip).collect::<Result<_>>()?, leads }))
+    }
 }
 
 /// What became of a crack that did not go through at the start.
@@ -227,8 +244,9 @@ fn known(value: f64) -> Option<f64> {
 }
 
 impl RunRecord {
-    /// Of a run, what it was judged to be, and its lives; what was asked beside them is added by who asked.
-    pub fn of(case: &Case, prediction: &Prediction, judgement: &Judgement, lives: &Lives) -> Self {
+    /// Of a run, what it was judged to be, its lives and how good they are; what was asked beside them is added by who asked.
+    pub fn of(case: &Case, prediction: &Prediction, judgement: &Judgement, lives: &Lives, quality: &Quality) -> Self {
+        let ([error_estimate_percent, path_error_estimate_mm], not_stated) = quality.stated();
         let figures = &prediction.figures;
         let governing = GoverningCrack::of(&case.specimen, &prediction.curve);
         let length = |row: Option<&CurvePoint>| row.and_then(|row| known(governing.length(row) / MM));
@@ -275,10 +293,10 @@ impl RunRecord {
             no_band: lives.band.as_ref().err().cloned(),
             measured: lives.own_record(),
             inspection: lives.inspection().cloned(),
-            error_estimate_percent: None,
-            path_error_estimate_mm: None,
-            no_error_estimate: None,
-            cross_check: None,
+            error_estimate_percent,
+            path_error_estimate_mm,
+            no_error_estimate: not_stated.cloned(),
+            cross_check: quality.second.clone(),
             inspections: None,
             fleet: None,
             sensitivities: None,

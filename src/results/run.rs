@@ -126,8 +126,7 @@ impl Judged {
             wanted.inspection.map_or(Ok(()), |from| lives.inspect(from))?;
         }
         let answers = narrowed.and_then(|()| Answers::of(case, prediction, &lives, wanted.asked));
-        let mut record = RunRecord::of(case, prediction, &judgement, &lives);
-        quality.add_to(&mut record);
+        let mut record = RunRecord::of(case, prediction, &judgement, &lives, &quality);
         let (strengths, missed) = strengths.map_or_else(|error| (None, Some(error)), |strengths| (strengths, None));
         let (answers, unanswered) = answers.map_or_else(|error| (Answers::default(), Some(error)), |answers| (answers, None));
         answers.add_to(&mut record);

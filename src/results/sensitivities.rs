@@ -145,7 +145,7 @@ impl Sensitivities {
                 let side = if to < from { ("start", 6.0) } else { ("end", -6.0) };
                 // Words of a bar that is too short for them would stand on the other one.
                 if (to - from).abs() > 60.0 {
-                    sketch.text([to + side.1, middle + 5.0], &short, side.0, 13, "#ffffff");
+                    sketch.name([to + side.1, middle + 5.0], &short, side.0, 13.0, INK);
                 }
             }
         }

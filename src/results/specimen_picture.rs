@@ -3,14 +3,17 @@
 mod nodes;
 pub mod sketch;
 
+use super::format::{PLAIN, trimmed};
 use super::model_words::loading;
+use super::pictures::plate::{Drawing, Plate};
 pub use nodes::{nodes_svg, tip_svg};
-use sketch::{CRACK, EDGE, HELD, LOAD, PLATE, Sketch, WORDS};
+use sketch::{CRACK, EDGE, LOAD, Sketch, WORDS};
 
 use perilife_base::units::MM;
+use perilife_base::units::shown::{name_of, per};
 use perilife_growth::case::Case;
-use perilife_plate::specimen::geometry::{along, bounding_box, distance};
-use perilife_plate::specimen::{Crack, Load, LoadMeasure, Point, Specimen, SpecimenKind, Support};
+use perilife_plate::specimen::geometry::{bounding_box, distance};
+use perilife_plate::specimen::{Crack, Point, Specimen, SpecimenKind, Support};
 
 /// What a drawing says of itself, so that it is known again.
 pub const SIGN: &str = "drawn by perilife check";
@@ -18,13 +21,12 @@ pub const SIGN: &str = "drawn by perilife check";
 const MARGIN: [f64; 4] = [110.0, 190.0, 150.0, 122.0];
 /// Largest size of the plate itself, pixels.
 const PLATE_MAX: Point = [460.0, 520.0];
-/// Length of a load arrow of the nominal stress, pixels.
-const ARROW: f64 = 38.0;
+/// Height of words, pixels.
+const TEXT: f64 = 12.0;
 
 /// SVG text of the specimen of `case`.
 ///
-/// Red: cracks, with a dot at each tip that can grow, numbered as in `crack_path.csv`. Blue: loads. Green hatching: what
-/// is held.
+/// Red: cracks, with a dot at each tip that can grow, numbered as in `crack_path.csv`. Arrows: loads. Hatching: what is held.
 pub fn specimen_svg(case: &Case) -> String {
     drawing(&case.name, &loading(case), &case.specimen, &[], |_| {})
 }
@@ -44,35 +46,32 @@ pub fn drawing(name: &str, loads: &str, specimen: &Specimen, lines: &[String], m
     let plate_height = MARGIN[2] + MARGIN[3] + size[1] * scale;
     let height = plate_height + 21.0 * rows.len() as f64;
 
-    sketch.text([width / 2.0, 30.0], &format!("{name} ({})", specimen.kind), "middle", 18, EDGE);
-    sketch.text([width / 2.0, 52.0], loads, "middle", 13, LOAD);
-    sketch.polygon(&specimen.outline, PLATE, EDGE);
-    for hole in &specimen.holes {
-        sketch.circle(hole.centre, hole.radius, "white", EDGE);
-    }
+    let plate = Plate::of_specimen(specimen, loads.to_owned());
+    let drawn = Drawing::of(&plate, TEXT);
+    sketch.name([width / 2.0, 30.0], &format!("{name} ({})", specimen.kind), "middle", 18.0, EDGE);
+    sketch.name([width / 2.0, 52.0], loads, "middle", 13.0, LOAD);
+    sketch.in_mm(|sketch| drawn.body(sketch));
     number_holes(&mut sketch, specimen);
-    sketch.clip(&specimen.outline);
-    for slot in &specimen.slots {
-        sketch.slot(&slot.corners());
-    }
-    draw_supports(&mut sketch, specimen);
     more(&mut sketch);
     draw_cracks(&mut sketch, specimen);
-    draw_loads(&mut sketch, specimen);
+    sketch.in_mm(|sketch| drawn.arrows(sketch));
     draw_sizes(&mut sketch, specimen, [low, high]);
     draw_axes(&mut sketch);
     draw_legend(&mut sketch, &rows, plate_height);
-    sketch.finish(width, height)
+    sketch.picture([width, height], &format!("{name}, {}, {SIGN}", specimen.kind))
 }
 
 /// A number with at most two decimals.
 fn short(value: f64) -> String {
-    let text = format!("{value:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    trimmed(&format!("{value:.2}")).to_owned()
 }
 
+/// A length in the unit that is shown, to a hundredth of a millimetre.
 fn mm(metres: f64) -> String {
-    format!("{} mm", short(metres / MM))
+    match per("mm") {
+        1.0 => format!("{} mm", short(metres / MM)),
+        factor => format!("{} {}", trimmed(&PLAIN.fixed(metres / MM * factor, 4)), name_of("mm")),
+    }
 }
 
 /// Numbers of the holes as in `specimen.holes` and `loading.pins`, where there is room and more than one.
@@ -84,7 +83,7 @@ fn number_holes(sketch: &mut Sketch, specimen: &Specimen) {
         let ([x, y], radius) = (sketch.place(hole.centre), hole.radius * sketch.scale);
         // Inside a large hole off its centre, where a pin load starts; beside a small one.
         let place = if radius > 20.0 { [x - 0.6 * radius, y + 4.0] } else { [x + radius + 8.0, y + radius + 8.0] };
-        sketch.text(place, &number.to_string(), "middle", 12, WORDS);
+        sketch.name(place, &number.to_string(), "middle", 12.0, WORDS);
     }
 }
 
@@ -98,128 +97,31 @@ fn draw_cracks(sketch: &mut Sketch, specimen: &Specimen) {
         sketch.dot(place, 3.6, CRACK);
         // Ahead of the tip and a little above the path, so that the number does not hide it.
         let words = [place[0] + 13.0 * tip.direction[0], place[1] - 13.0 * tip.direction[1] - 4.0];
-        sketch.text(words, &number.to_string(), "middle", 12, CRACK);
+        sketch.name(words, &number.to_string(), "middle", 12.0, CRACK);
     }
 }
 
-fn draw_loads(sketch: &mut Sketch, specimen: &Specimen) {
-    let largest = specimen.loads.iter().fold(1e-12_f64, |largest, load| match load {
-        Load::Edge { .. } | Load::Bent { .. } => {
-            let ends = load.on_edge().map_or([[0.0; 2]; 2], |(.., ends)| ends);
-            ends.iter().fold(largest, |largest, [x, y]| largest.max(x.hypot(*y)))
+/// What holds a plate, in words.
+fn held_words(specimen: &Specimen) -> Vec<String> {
+    let at = |from: &Point, to: &Point| {
+        let [[a, b], [c, d]] = [from, to].map(|point| point.map(mm));
+        format!("from ({a}, {b}) to ({c}, {d})")
+    };
+    let words = |support: &Support| match support {
+        Support::Fixed { from, to, x, y, .. } => {
+            let ways = match (x, y) {
+                (true, true) => "x and y",
+                (true, false) => "x",
+                _ => "y",
+            };
+            Some(format!("held in {ways} {}", at(from, to)))
         }
-        // Beside loaded edges forces are per stress: what an arrow shows of them is their direction.
-        Load::Pin { .. } if specimen.load_measure == LoadMeasure::Stress => largest,
-        Load::Pin { force, .. } => largest.max(force.abs()),
-    });
-    let mut named = false;
-    for load in &specimen.loads {
-        match load {
-            Load::Edge { .. } | Load::Bent { .. } => {
-                let Some((from, to, [first, last])) = load.on_edge() else { continue };
-                let (from, to) = (&from, &to);
-                let count = (distance(*from, *to) * sketch.scale / 34.0).round().clamp(1.0, 25.0) as usize;
-                let mut vector = [0.0; 2];
-                for i in 0..count {
-                    let share = (i as f64 + 0.5) / count as f64;
-                    let traction = along(first, last, share);
-                    let size = traction[0].hypot(traction[1]);
-                    if size == 0.0 || first != last && size < 0.02 * largest {
-                        continue;
-                    }
-                    let reach = ARROW * (size / largest).max(0.4) / size;
-                    vector = [traction[0] * reach, -traction[1] * reach];
-                    let foot = sketch.place(along(*from, *to, share));
-                    // Tension pulls out of the plate: the arrow starts 8 pixels off the edge so that grips stay visible.
-                    let start = [foot[0] + 0.2 * vector[0], foot[1] + 0.2 * vector[1]];
-                    sketch.arrow(start, [start[0] + vector[0], start[1] + vector[1]], LOAD, 1.6);
-                }
-                if !named && vector != [0.0; 2] {
-                    let middle = sketch.place(along(*from, *to, 0.5));
-                    sketch.text([middle[0] + 1.5 * vector[0], middle[1] + 1.5 * vector[1] + 4.0], "σ", "middle", 16, LOAD);
-                    named = true;
-                }
-            }
-            Load::Pin { hole, direction, force, .. } => {
-                let Some(hole) = specimen.holes.get(*hole) else { continue };
-                let centre = sketch.place(hole.centre);
-                let share = if specimen.load_measure == LoadMeasure::Stress { 1.0 } else { force / largest };
-                let reach = hole.radius * sketch.scale + ARROW * share.max(0.5);
-                let end = [centre[0] + reach * direction[0], centre[1] - reach * direction[1]];
-                sketch.dot(centre, 3.6, LOAD);
-                sketch.arrow(centre, end, LOAD, 2.4);
-                sketch.text([end[0] + 14.0, end[1] + 4.0], "P", "middle", 16, LOAD);
-            }
-        }
-    }
-}
-
-fn draw_supports(sketch: &mut Sketch, specimen: &Specimen) {
-    let [low, high] = bounding_box(&specimen.outline);
-    for support in &specimen.supports {
-        match support {
-            Support::Fixed { from, to, depth, x, y } => {
-                hold(sketch, *from, *to, *depth, middle_of(specimen));
-                let held = match (x, y) {
-                    (true, true) => "held in x and y",
-                    (true, false) => "held in x",
-                    _ => "held in y",
-                };
-                let right = if from[0] > to[0] { from } else { to };
-                let [px, py] = sketch.place(*right);
-                sketch.text([px + 12.0, py + 14.0], held, "start", 12, HELD);
-            }
-            Support::Moved { from, to, .. } => {
-                hold(sketch, *from, *to, 0.0, middle_of(specimen));
-                let right = if from[0] > to[0] { from } else { to };
-                let [px, py] = sketch.place(*right);
-                sketch.text([px + 12.0, py + 14.0], "moved straight", "start", 12, HELD);
-            }
-            Support::Elsewhere => {}
-            Support::ClampedEnds | Support::RigidEnds => {
-                let words =
-                    if *support == Support::ClampedEnds { "rigid grip, cannot rotate" } else { "rigid grip, turns on a pin" };
-                for (y, sign) in [(high[1], 1.0), (low[1], -1.0)] {
-                    let band = 7.0 / sketch.scale * sign;
-                    sketch.polygon(&[[low[0], y], [high[0], y], [high[0], y + band], [low[0], y + band]], HELD, HELD);
-                    let [px, py] = sketch.place([high[0], y + band]);
-                    sketch.text([px + 12.0, py + 4.0], words, "start", 12, HELD);
-                    if *support == Support::RigidEnds {
-                        let [cx, cy] = sketch.place([(low[0] + high[0]) / 2.0, y + band / 2.0]);
-                        sketch.dot([cx, cy], 5.0, "white");
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn middle_of(specimen: &Specimen) -> Point {
-    let [low, high] = bounding_box(&specimen.outline);
-    along(low, high, 0.5)
-}
-
-/// Hatching outside a held stretch, and a tinted band as deep as the hold.
-fn hold(sketch: &mut Sketch, from: Point, to: Point, depth: f64, inside: Point) {
-    let length = distance(from, to);
-    let mut normal = [-(to[1] - from[1]) / length, (to[0] - from[0]) / length];
-    if normal[0] * (inside[0] - from[0]) + normal[1] * (inside[1] - from[1]) < 0.0 {
-        normal = [-normal[0], -normal[1]];
-    }
-    let inward = |p: Point| [p[0] + normal[0] * depth, p[1] + normal[1] * depth];
-    if depth > 0.0 {
-        sketch.polygon(&[from, to, inward(to), inward(from)], "#c9d19a", HELD);
-    }
-    let (a, b) = (sketch.place(from), sketch.place(to));
-    sketch.line(a, b, HELD, 3.0);
-    let count = ((length * sketch.scale) / 9.0).ceil().clamp(2.0, 200.0);
-    // Pixels run downwards: outward is minus the normal in x and plus in y.
-    let out = [-normal[0] * 9.0, normal[1] * 9.0];
-    let lean = [(b[0] - a[0]) / count, (b[1] - a[1]) / count];
-    for i in 0..count as usize {
-        let foot = [a[0] + lean[0] * (i as f64 + 1.0), a[1] + lean[1] * (i as f64 + 1.0)];
-        sketch.line(foot, [foot[0] + out[0] - lean[0], foot[1] + out[1] - lean[1]], HELD, 1.0);
-    }
+        Support::Moved { from, to, .. } => Some(format!("moved straight {}", at(from, to))),
+        Support::ClampedEnds => Some("rigid grips at both ends, which cannot rotate".to_owned()),
+        Support::RigidEnds => Some("rigid grips at both ends, which turn on pins".to_owned()),
+        Support::Elsewhere => None,
+    };
+    specimen.supports.iter().filter_map(words).collect()
 }
 
 fn draw_sizes(sketch: &mut Sketch, specimen: &Specimen, [low, high]: [Point; 2]) {
@@ -231,7 +133,7 @@ fn draw_sizes(sketch: &mut Sketch, specimen: &Specimen, [low, high]: [Point; 2])
         // The standard measures from the load line.
         let line = sketch.place([0.0, 0.0])[0];
         sketch.line([line, top - 10.0], [line, below + 6.0], "#9aa4ae", 0.8);
-        sketch.text([line, top - 16.0], "load line", "middle", 12, WORDS);
+        sketch.name([line, top - 16.0], "load line", "middle", 12.0, WORDS);
         let tip = sketch.place([specimen.crack_length, 0.0])[0];
         sketch.measure([line, below - 36.0], [tip, below - 36.0], &format!("a = {}", mm(specimen.crack_length)));
         sketch.measure([line, below], [right, below], &format!("W = {}", mm(specimen.width)));
@@ -245,14 +147,14 @@ fn draw_sizes(sketch: &mut Sketch, specimen: &Specimen, [low, high]: [Point; 2])
             sketch.line([a[0], a[1] + 5.0], [a[0], a[1] + 24.0], WORDS, 0.8);
             sketch.line([b[0], b[1] + 5.0], [b[0], b[1] + 24.0], WORDS, 0.8);
             sketch.measure([a[0], a[1] + 20.0], [b[0], b[1] + 20.0], "");
-            sketch.text([b[0] + 6.0, b[1] + 24.0], &format!("a = {}", mm(specimen.crack_length)), "start", 13, CRACK);
+            sketch.name([b[0] + 6.0, b[1] + 24.0], &format!("a = {}", mm(specimen.crack_length)), "start", 13.0, CRACK);
         }
         SpecimenKind::SingleEdgeTension | SpecimenKind::DoubleEdgeTension => {
             for crack in &specimen.cracks {
                 let [x, y] = sketch.place(crack.from);
                 // Words start at the cracked edge and stay inside the plate.
                 let (x, anchor) = if crack.from[0] < crack.to[0] { (x + 5.0, "start") } else { (x - 5.0, "end") };
-                sketch.text([x, y + 20.0], &format!("a = {}", mm(specimen.crack_length)), anchor, 13, CRACK);
+                sketch.name([x, y + 20.0], &format!("a = {}", mm(specimen.crack_length)), anchor, 13.0, CRACK);
             }
         }
         _ => {}
@@ -313,8 +215,8 @@ fn draw_axes(sketch: &mut Sketch) {
     let corner = [34.0, 112.0];
     sketch.arrow(corner, [corner[0] + 32.0, corner[1]], WORDS, 1.2);
     sketch.arrow(corner, [corner[0], corner[1] - 32.0], WORDS, 1.2);
-    sketch.text([corner[0] + 41.0, corner[1] + 4.0], "x", "middle", 13, WORDS);
-    sketch.text([corner[0], corner[1] - 38.0], "y", "middle", 13, WORDS);
+    sketch.name([corner[0] + 41.0, corner[1] + 4.0], "x", "middle", 13.0, WORDS);
+    sketch.name([corner[0], corner[1] - 38.0], "y", "middle", 13.0, WORDS);
 }
 
 /// Lines of the flaw list that fit below the picture.
@@ -327,6 +229,7 @@ fn legend_rows(specimen: &Specimen) -> Vec<String> {
         format!("crack through the thickness; dots: numbered tips that can grow{slots}"),
         format!("thickness {}; drawn to scale", mm(specimen.thickness)),
     ];
+    rows.extend(held_words(specimen));
     let list = flaw_list(specimen);
     let more = list.len().saturating_sub(LIST_MAX);
     rows.extend(list.into_iter().take(LIST_MAX));
@@ -341,6 +244,6 @@ fn draw_legend(sketch: &mut Sketch, rows: &[String], top: f64) {
     sketch.dot([54.0, top], 3.6, CRACK);
     for (i, row) in rows.iter().enumerate() {
         let x = if i == 0 { 66.0 } else { 30.0 };
-        sketch.text([x, top + 4.0 + 21.0 * i as f64], row, "start", 12, WORDS);
+        sketch.name([x, top + 4.0 + 21.0 * i as f64], row, "start", 12.0, WORDS);
     }
 }

@@ -143,7 +143,7 @@ pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> Table {
     };
     let table = Table::new(TABLE_FILE).words("case", (1..=plan.cases.len()).map(label));
     let with_key = |table: Table, (place, key): (usize, &String)| {
-        table.words(key.clone(), plan.cases.iter().map(|case| case.values[place].clone()))
+        table.foreign(key.clone(), plan.cases.iter().map(|case| case.values[place].clone()))
     };
     let table = plan.columns.iter().enumerate().fold(table, with_key);
     table
@@ -151,7 +151,7 @@ pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> Table {
         .words("stop_reason", words(&|outcome| outcome.stop_reason.clone(), ""))
         .numbers("crack_length_final_mm", of(&|outcome| outcome.crack_length_final_mm))
         .exact("wall_s", of(&|outcome| Some(outcome.wall_s)))
-        .words("problem", words(&|outcome| outcome.problem.as_ref().map(|problem| problem.replace('\n', " ")), "not run yet"))
+        .foreign("problem", words(&|outcome| outcome.problem.as_ref().map(|problem| problem.replace('\n', " ")), "not run yet"))
         .words("life_is_lower_bound", words(&|outcome| outcome.life_is_lower_bound.map(|is_lower| is_lower.to_string()), ""))
 }
 

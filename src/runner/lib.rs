@@ -219,7 +219,8 @@ pub fn check_wanted(case: &Case, wanted: &Wanted) -> Result<()> {
 /// Judges a run of cycles.
 /// Errors: as [`Judged::of`].
 pub fn of_prediction(case: &Case, prediction: Prediction, wanted: &Wanted, watcher: &dyn Watcher) -> Result<Summary> {
-    let mut judged = Judged::of(case, &prediction, wanted)?;
+    let by_run = || prediction.warnings.iter().for_each(|line| watcher.warn(line));
+    let mut judged = Judged::of(case, &prediction, wanted).inspect_err(|_| by_run())?;
     judged.told.iter().for_each(|line| watcher.warn(line));
     let (figures, lines) = (judged.figures(), judged.words(case, &prediction));
     let refusal = judged.take_refusal();

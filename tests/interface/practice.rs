@@ -69,7 +69,7 @@ const ROWS: &[Row] = &[
     // Beyond the end.
     row("fracture_reading", &["calibrate", "ct.toml"], 0, &["line 26", "of the fracture"], &[(FIT, M, 3.0, 1e-3)]),
     row("fracture_reading", &["calibrate", "mt.toml"], 0, &["49.95 mm", "of the fracture"], &[(FIT, M, 3.0, 1e-3)]),
-    row("run_out", &["predict", "run_out.toml"], 0, &["at least 40000"], &[]),
+    row("run_out", &["predict", "run_out.toml"], 0, &["at least 40 000"], &[]),
     row("unlimited_lives", &["sweep", "eifs.toml"], 0, &["95 % unlimited", "138 (46 %)"], &[]),
     // What is wrong.
     row("typing_error", &["calibrate", "tens.toml"], 0, &["line 12", "27.5 mm"], &[(FIT, M, 3.0, 1e-3)]),

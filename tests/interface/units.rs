@@ -13,8 +13,9 @@ use crate::interface::cli::{perilife, texts};
 
 /// Names without a unit: counts, cycles, shares, ratios and exponents. A number under any other name without one would be a length, a stress or the
 /// like that nobody converts.
-const WITHOUT_UNIT: [&str; 68] = [
+const WITHOUT_UNIT: [&str; 69] = [
     "back_face_strain",
+    "shares",
     "beta",
     "blocks",
     "bonds",

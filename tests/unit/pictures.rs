@@ -223,7 +223,7 @@ fn drawn_to_scale_with_y_up() {
 
 /// A square plate of 100 mm with a crack from its left side that grows 40 mm, as far in every thousand cycles.
 fn straight_growth() -> (Plate, RunTables) {
-    let arrow = |y: f64, way: f64| LoadDrawn { from_mm: [-50.0, y], to_mm: [50.0, y], direction: [0.0, way] };
+    let arrow = |y: f64, way: f64| LoadDrawn { from_mm: [-50.0, y], to_mm: [50.0, y], direction: [0.0, way], shares: [1.0; 2] };
     let plate = Plate {
         outline_mm: vec![[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]],
         holes: vec![HoleDrawn { x_mm: 20.0, y_mm: 30.0, diameter_mm: 10.0 }],

@@ -12,6 +12,7 @@ use perilife_results::band::{Lives, band_words};
 use perilife_results::checks::Judgement;
 use perilife_results::curve::{self, BAND_COLUMNS, Row, left_of_table};
 use perilife_results::inspections::InspectionsRecord;
+use perilife_results::quality::Quality;
 use perilife_results::record::RunRecord;
 use toml::Table;
 
@@ -180,7 +181,7 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     assert!((third / (0.5 * with_band.remaining_cycles) - 1.0).abs() < 5e-3, "half of either life: {inspections:?}");
     let words = lives.words().join("\n");
     assert!(words.contains("inspection     every ") && words.contains("5 % remaining life over 4"), "{words}");
-    let record = RunRecord::of(&case, &run, &Judgement::default(), &lives);
+    let record = RunRecord::of(&case, &run, &Judgement::default(), &lives, &Quality::default());
     assert!(record.inspection.unwrap().has_band && record.band.unwrap().lot == Lot::Same);
 }
 

@@ -81,8 +81,10 @@ impl Files<'_> {
         }
         let run: RunRecord = serde_path_to_error::deserialize(&result).map_err(|error| {
             let path = error.path().to_string();
-            let value = result.pointer(&format!("/{}", path.replace('.', "/"))).unwrap_or(&Value::Null);
-            self.bad(RESULT_FILE, &path, value, &format!("is not as it was written: {}", error.inner()))
+            match result.pointer(&format!("/{}", path.replace('.', "/"))) {
+                Some(value) => self.bad(RESULT_FILE, &path, value, &format!("is not as it was written: {}", error.inner())),
+                None => self.damaged(RESULT_FILE, format!("is not as it was written: {}", error.inner())),
+            }
         })?;
         if let Some(life) = run.life_cycles.filter(|life| *life < 0.0) {
             return Err(self.bad(RESULT_FILE, "life_cycles", &life.into(), "is below zero"));

@@ -3,7 +3,7 @@
 mod drawing;
 
 pub(super) use drawing::colour;
-pub(crate) use drawing::scale_bar;
+pub(crate) use drawing::{Drawing, scale_bar};
 pub use drawing::{MOVING, SIZE, growth_svg, plate_svg};
 
 use std::path::Path;
@@ -61,12 +61,24 @@ pub struct LoadDrawn {
     pub to_mm: Point,
     /// Unit vector of the load on the plate.
     pub direction: Point,
+    /// Load at both ends over the larger of them.
+    #[serde(default = "even")]
+    pub shares: [f64; 2],
+}
+
+fn even() -> [f64; 2] {
+    [1.0; 2]
 }
 
 impl Plate {
     /// Of a case.
     pub fn of(case: &Case) -> Self {
-        let specimen = &case.specimen;
+        let (specimen, material) = (specimen_words(case), material_words(case));
+        Plate { specimen, material, ..Plate::of_specimen(&case.specimen, loading(case)) }
+    }
+
+    /// Of a specimen under a load, in words.
+    pub fn of_specimen(specimen: &Specimen, load: String) -> Self {
         let hole = |hole: &perilife_plate::specimen::Hole| HoleDrawn {
             x_mm: clean(hole.centre[0] / MM),
             y_mm: clean(hole.centre[1] / MM),
@@ -79,9 +91,9 @@ impl Plate {
             cracks_mm: specimen.cracks.iter().map(|crack| [mm(&crack.from), mm(&crack.to)]).collect(),
             loads: loads(specimen),
             held_mm: held(specimen),
-            load: loading(case),
-            specimen: specimen_words(case),
-            material: material_words(case),
+            load,
+            specimen: String::new(),
+            material: String::new(),
         }
     }
 }
@@ -114,26 +126,23 @@ fn mm(point: &Point) -> Point {
 }
 
 fn loads(specimen: &Specimen) -> Vec<LoadDrawn> {
-    let unit = |[x, y]: Point| [x / x.hypot(y), y / x.hypot(y)];
+    let stretch = |from: &Point, to: &Point, ends: [Point; 2]| {
+        let larger = if ends[0][0].hypot(ends[0][1]) < ends[1][0].hypot(ends[1][1]) { ends[1] } else { ends[0] };
+        let size = larger[0].hypot(larger[1]);
+        let direction = larger.map(|part| part / size);
+        let shares = ends.map(|[x, y]| (x * direction[0] + y * direction[1]) / size);
+        (size > 0.0).then(|| LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction, shares })
+    };
     let of_load = |load: &Load| match load {
-        Load::Edge { from, to, traction } if traction[0].hypot(traction[1]) > 0.0 => {
-            Some(LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction: unit(*traction) })
-        }
-        Load::Edge { .. } => None,
-        Load::Bent { from, to, tractions: [a, b] } => {
-            // Of the end with the larger traction.
-            let largest = if a[0].hypot(a[1]) > b[0].hypot(b[1]) { a } else { b };
-            Some(LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction: unit(*largest) })
-        }
+        Load::Edge { from, to, traction } => stretch(from, to, [*traction; 2]),
+        Load::Bent { from, to, tractions } => stretch(from, to, *tractions),
         Load::Pin { hole, direction, .. } => {
             let centre = mm(&specimen.holes.get(*hole)?.centre);
-            Some(LoadDrawn { from_mm: centre, to_mm: centre, direction: *direction })
+            Some(LoadDrawn { from_mm: centre, to_mm: centre, direction: *direction, shares: even() })
         }
     };
     let of_support = |support: &Support| match support {
-        Support::Moved { from, to, direction, way, .. } if *way > 0.0 => {
-            Some(LoadDrawn { from_mm: mm(from), to_mm: mm(to), direction: *direction })
-        }
+        Support::Moved { from, to, direction, way, .. } if *way > 0.0 => stretch(from, to, [*direction; 2]),
         _ => None,
     };
     specimen.loads.iter().filter_map(of_load).chain(specimen.supports.iter().filter_map(of_support)).collect()
@@ -146,6 +155,7 @@ fn held(specimen: &Specimen) -> Vec<[Point; 2]> {
         Support::ClampedEnds | Support::RigidEnds => {
             vec![[low, [high[0], low[1]]], [[low[0], high[1]], high]]
         }
+        Support::Moved { from, to, way, .. } if *way == 0.0 => vec![[mm(from), mm(to)]],
         Support::Moved { .. } | Support::Elsewhere => Vec::new(),
     };
     specimen.supports.iter().flat_map(of_support).collect()

@@ -47,8 +47,8 @@ pub fn tip_svg(case: &Case, paths: &[Vec<Point>]) -> Result<Option<String>> {
         }
     }
     let words = format!("{}: tip 0, spacing {:.3} mm; red: nodes with near-tip fields", case.name, axes.spacing / MM);
-    sketch.text([0.5 * TIP_PIXELS, 22.0], &words, "middle", 14, NODE);
-    Ok(Some(sketch.finish(TIP_PIXELS, TIP_PIXELS)))
+    sketch.name([0.5 * TIP_PIXELS, 22.0], &words, "middle", 14.0, NODE);
+    Ok(Some(sketch.picture([TIP_PIXELS; 2], &words)))
 }
 
 fn draw(sketch: &mut Sketch, case: &Case, plate: &Discretisation, paths: &[Vec<Point>]) {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::SIGN;
+use perilife_base::units::MM;
 use perilife_base::units::shown::told;
 use perilife_plate::specimen::Point;
 
@@ -39,6 +39,13 @@ impl Sketch {
         [self.origin[0] + p[0] * self.scale, self.origin[1] - p[1] * self.scale]
     }
 
+    /// Draws what has its coordinates in millimetres into a drawing in metres.
+    pub fn in_mm(&mut self, draw: impl FnOnce(&mut Sketch)) {
+        self.scale *= MM;
+        draw(self);
+        self.scale /= MM;
+    }
+
     fn push(&mut self, element: std::fmt::Arguments<'_>) {
         // Writing to a String cannot fail.
         let _ = writeln!(self.body, "  {element}");
@@ -48,21 +55,6 @@ impl Sketch {
     pub fn polygon(&mut self, corners: &[Point], fill: &str, stroke: &str) {
         let points = self.points(corners);
         self.push(format_args!(r#"<polygon points="{points}" fill="{fill}" stroke="{stroke}" stroke-width="1.4"/>"#));
-    }
-
-    /// Declares the plate as the area that [`slot`](Self::slot) outlines are cut to.
-    pub fn clip(&mut self, outline: &[Point]) {
-        let points = self.points(outline);
-        self.push(format_args!(r#"<clipPath id="plate"><polygon points="{points}"/></clipPath>"#));
-    }
-
-    /// A slot: all white, so that its mouth in an edge is open, its walls drawn only inside the plate.
-    pub fn slot(&mut self, corners: &[Point]) {
-        let points = self.points(corners);
-        self.push(format_args!(r#"<polygon points="{points}" fill="white"/>"#));
-        self.push(format_args!(
-            r#"<polygon points="{points}" fill="none" stroke="{EDGE}" stroke-width="1.4" clip-path="url(#plate)"/>"#
-        ));
     }
 
     fn points(&self, corners: &[Point]) -> String {
@@ -239,14 +231,6 @@ impl Sketch {
         )
     }
 
-    /// Words at a pixel; `anchor` is start, middle or end.
-    pub fn text(&mut self, [x, y]: Point, words: &str, anchor: &str, size: u32, fill: &str) {
-        let words = escaped(&told(words));
-        self.push(format_args!(
-            r#"<text x="{x:.2}" y="{y:.2}" text-anchor="{anchor}" font-size="{size}" fill="{fill}">{words}</text>"#
-        ));
-    }
-
     /// Measure line with arrows at both ends between two pixels, and its words beside the middle.
     pub fn measure(&mut self, from: Point, to: Point, words: &str) {
         let middle = [(from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0];
@@ -258,19 +242,10 @@ impl Sketch {
             self.line(from, to, WORDS, 1.0);
         }
         if (to[0] - from[0]).abs() > (to[1] - from[1]).abs() {
-            self.text([middle[0], middle[1] - 6.0], words, "middle", 13, WORDS);
+            self.name([middle[0], middle[1] - 6.0], words, "middle", 13.0, WORDS);
         } else {
-            self.text([middle[0] + 7.0, middle[1] + 4.0], words, "start", 13, WORDS);
+            self.name([middle[0] + 7.0, middle[1] + 4.0], words, "start", 13.0, WORDS);
         }
-    }
-
-    /// The whole file.
-    pub fn finish(self, width: f64, height: f64) -> String {
-        format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
-             font-family=\"Helvetica, Arial, sans-serif\">\n  <!-- {SIGN} -->\n  <rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n{}</svg>\n",
-            self.body
-        )
     }
 }
 

@@ -213,7 +213,7 @@ pub async fn remaining(
         return Err(Problem::conflict(format!("the run has no life: {refused}")));
     }
     let tips = summary.as_ref().and_then(|summary| Vec::<TipEnds>::deserialize(&summary["tips"]).ok());
-    let tips = curve::tip_lengths_of_table(&table, &tips.unwrap_or_default())?;
+    let tips = TipEnds::lengths(&tips.unwrap_or_default(), &table)?;
     let is_lower_bound = summary.is_some_and(|summary| summary["life_is_lower_bound"] == true);
     Ok(Json(Inspection::of(&curve::curve(&rows), tips.as_ref(), left.as_deref(), from, is_lower_bound)?))
 }

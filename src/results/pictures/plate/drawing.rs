@@ -1,6 +1,6 @@
 //! `plate.svg`: the plate to scale with its loads, the first crack and the way of every tip, coloured by cycles.
 
-use super::Plate;
+use super::{LoadDrawn, Plate};
 use crate::chart::{COMPUTED, INK, Size};
 use crate::curve::RunTables;
 use crate::pictures::curves::a_n_moving;
@@ -30,6 +30,8 @@ const FRAMES: usize = 40;
 /// Room around the plate for loads, and below it for the scale, px.
 const AROUND: f64 = 44.0;
 const BELOW: f64 = 26.0;
+/// Length of the arrow of the largest load, px.
+const ARROW: f64 = 18.0;
 
 /// The way of a tip from its start on.
 struct Way {
@@ -140,7 +142,8 @@ fn bounds<'p>(points: impl Iterator<Item = &'p Point>) -> [Point; 2] {
     points.fold(start, |[low, high], p| [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]])
 }
 
-struct Drawing<'a> {
+/// A plate in the making; coordinates in mm.
+pub(crate) struct Drawing<'a> {
     plate: &'a Plate,
     ways: &'a [Way],
     life: f64,
@@ -149,9 +152,14 @@ struct Drawing<'a> {
     width: f64,
 }
 
-impl Drawing<'_> {
+impl<'a> Drawing<'a> {
+    /// Of a plate alone.
+    pub(crate) fn of(plate: &'a Plate, text: f64) -> Self {
+        Drawing { plate, ways: &[], life: 0.0, text, width: f64::INFINITY }
+    }
+
     /// Outline, holes and slots.
-    fn body(&self, sketch: &mut Sketch) {
+    pub(crate) fn body(&self, sketch: &mut Sketch) {
         sketch.polygon(&self.plate.outline_mm, PLATE, EDGE);
         for hole in &self.plate.holes {
             sketch.circle([hole.x_mm, hole.y_mm], 0.5 * hole.diameter_mm, "white", EDGE);
@@ -231,54 +239,58 @@ impl Drawing<'_> {
 
     /// Arrows, what is held, and the load in words once.
     fn loads(&self, sketch: &mut Sketch) {
-        for [from, to] in &self.plate.held_mm {
-            self.hold(sketch, *from, *to);
-        }
-        let mut is_named = false;
+        self.arrows(sketch);
         // Words wider than the picture are written smaller.
         let letters = self.plate.load.chars().count() as f64;
         let text = self.text.min((self.width - 8.0) / (0.54 * letters.max(1.0)));
+        // The upper of two that pull against each other, where it has room for words.
+        let is_up = |load: &&LoadDrawn| load.direction[1] > 0.5 || self.plate.loads.iter().all(|load| load.direction[1] < 0.5);
+        let at = |load: &LoadDrawn| {
+            let middle = along(sketch.place(load.from_mm), sketch.place(load.to_mm), 0.5);
+            let tip = self.start(load, sketch.scale) + ARROW + 4.0;
+            let place = [middle[0] + tip * load.direction[0], middle[1] - tip * load.direction[1] - 3.0];
+            // Words wider than the plate stay within the picture.
+            [place[0].max(4.0 + 0.27 * text * letters), place[1].max(1.2 * text)]
+        };
+        match self.plate.loads.iter().find(is_up).map(at) {
+            Some(place) => sketch.name(place, &self.plate.load, "middle", text, INK),
+            None => sketch.name([8.0, 1.2 * self.text], &self.plate.load, "start", text, INK),
+        }
+    }
+
+    /// Pixels from the place of a load to the foot of its arrow.
+    fn start(&self, load: &LoadDrawn, scale: f64) -> f64 {
+        let hole = self.plate.holes.iter().find(|hole| load.from_mm == load.to_mm && [hole.x_mm, hole.y_mm] == load.from_mm);
+        let held = self.plate.held_mm.iter().any(|[one, other]| *one == load.from_mm || *other == load.from_mm);
+        hole.map_or(if held { 11.0 } else { 3.0 }, |hole| 0.5 * hole.diameter_mm * scale + 3.0)
+    }
+
+    /// What is held, and arrows of the loads, as long as the load is large there.
+    pub(crate) fn arrows(&self, sketch: &mut Sketch) {
+        for [from, to] in &self.plate.held_mm {
+            self.hold(sketch, *from, *to);
+        }
         for load in &self.plate.loads {
             let way = [load.direction[0], -load.direction[1]];
             let (from, to) = (sketch.place(load.from_mm), sketch.place(load.to_mm));
-            let reach = distance(from, to);
+            let (reach, start) = (distance(from, to), self.start(load, sketch.scale));
             let is_pin = reach < 1e-9;
-            let held = self.plate.held_mm.iter().any(|[one, other]| *one == load.from_mm || *other == load.from_mm);
-            let hole = self.plate.holes.iter().find(|hole| is_pin && [hole.x_mm, hole.y_mm] == load.from_mm);
-            let radius = hole.map_or(0.0, |hole| 0.5 * hole.diameter_mm * sketch.scale);
-            let start = if is_pin {
-                radius + 3.0
-            } else if held {
-                11.0
-            } else {
-                3.0
-            };
-            let count = if is_pin { 1 } else { (reach / 28.0).round().clamp(1.0, 9.0) as usize };
             if is_pin {
-                sketch.dot(from, (radius - 2.0).max(2.0), "#7b8794");
+                sketch.dot(from, (start - 5.0).max(2.0), "#7b8794");
             }
-            for arrow in 0..count {
-                let foot = along(from, to, (arrow as f64 + 0.5) / count as f64);
-                let [near, far] = [start, start + 18.0].map(|out| [foot[0] + out * way[0], foot[1] + out * way[1]]);
+            let count = if is_pin { 1.0 } else { (reach / 28.0).round().clamp(1.0, 25.0) };
+            for arrow in 0..count as usize {
+                let at = (arrow as f64 + 0.5) / count;
+                let share = load.shares[0] + at * (load.shares[1] - load.shares[0]);
+                if share.abs() < 0.05 {
+                    continue;
+                }
+                let foot = along(from, to, at);
+                let ends =
+                    [start, start + ARROW * share.abs().max(0.4)].map(|out| [foot[0] + out * way[0], foot[1] + out * way[1]]);
+                let [near, far] = if share > 0.0 { ends } else { [ends[1], ends[0]] };
                 sketch.arrow(near, far, QUIET, 1.3);
             }
-            // The upper of two that pull against each other comes first where it has room for words.
-            if !is_named && (way[1] < -0.5 || self.plate.loads.iter().all(|load| load.direction[1] < 0.5)) {
-                is_named = true;
-                let middle = along(from, to, 0.5);
-                let place = [middle[0] + (start + 22.0) * way[0], middle[1] + (start + 22.0) * way[1] - 3.0];
-                let (place, anchor) = if is_pin {
-                    ([middle[0] + 12.0, place[1] + 14.0], "start")
-                } else {
-                    // Words wider than the plate stay within the picture.
-                    ([place[0].max(4.0 + 0.27 * text * letters), place[1]], "middle")
-                };
-                sketch.name(place, &self.plate.load, anchor, text, INK);
-            }
-        }
-        if !is_named {
-            let place = [8.0, 1.2 * self.text];
-            sketch.name(place, &self.plate.load, "start", text, INK);
         }
     }
 
