@@ -69,8 +69,8 @@ impl Run {
                 let fitted = calibration.fit(told)?;
                 let wall_s = begun.elapsed().as_secs_f64();
                 fitted.warnings().iter().for_each(|warning| perilife_runner::Watcher::warn(told, warning));
-                let (kept, lines) = (perilife_results::fit::Kept::of(&fitted, &fitted.report(wall_s))?, fitted.summary(wall_s));
-                let result = kept.json.to_string();
+                let kept = perilife_results::fit::Kept::of(&fitted, wall_s)?;
+                let (result, lines) = (kept.json().to_string(), kept.record.words());
                 let done = match fitted {
                     Fitted::Lives(_, fit) => Done::Lives(fit, kept),
                     Fitted::Rates(_, fits) => Done::Rates(Box::new(fits), kept),

@@ -19,6 +19,7 @@ use perilife_calibration::calibrate::Fitted;
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::fit::Fit;
 use perilife_calibration::readings::readings_csv;
+use perilife_calibration::record::FitRecord;
 use perilife_calibration::results::{fit_curves_csv, fitted_rates_csv, left_out, rates_csv, rates_taken_csv};
 use perilife_growth::case::RECORD;
 
@@ -32,20 +33,20 @@ const DA_DN_FILE: &str = "da_dn.svg";
 /// A fit as its folder keeps it.
 #[derive(Debug, Clone)]
 pub struct Kept {
-    /// Content of `fit.json`.
-    pub json: Value,
+    /// What `fit.json` holds.
+    pub record: FitRecord,
     /// The law and all tables, by the names of their files.
     pub tables: Vec<(&'static str, String)>,
 }
 
 impl Kept {
-    /// Of a fit and its report.
+    /// Of a fit that took `wall_s` seconds.
     /// Errors: a law that has no form in TOML.
-    pub fn of(fitted: &Fitted<'_>, report: &Value) -> Result<Self> {
+    pub fn of(fitted: &Fitted<'_>, wall_s: f64) -> Result<Self> {
         let unwritable =
             |error: toml::ser::Error| Error::file(Path::new(LAW_FILE), "cannot write", std::io::Error::other(error.to_string()));
         let law = fitted.record_text().map_err(unwritable)?;
-        let mut json = report.clone();
+        let mut record = fitted.record(wall_s);
         let tables = match fitted {
             Fitted::Lives(calibration, fit) => {
                 let (delta_k, left_out) = (|length: f64| fit.delta_k(calibration, length), left_out(calibration, fit));
@@ -56,20 +57,28 @@ impl Kept {
                     (RATES_FILE, fitted_rates_csv(calibration, fit)),
                     (READINGS_FILE, readings_csv(calibration, &left_out, &delta_k)),
                 ];
-                if let Some(object) = json.as_object_mut() {
-                    object.insert("test".to_owned(), test_record::test(calibration));
-                    object.insert("criteria".to_owned(), test_record::criteria(calibration, &left_out, &delta_k).into());
-                    object.insert("plate".to_owned(), json!(Plate::of(&calibration.case)));
-                }
+                let mut beside = json!({
+                    "test": test_record::test(calibration),
+                    "criteria": test_record::criteria(calibration, &left_out, &delta_k),
+                    "plate": Plate::of(&calibration.case),
+                });
                 let listed: Vec<(&str, &str)> = tables.iter().map(|(name, text)| (*name, &**text)).collect();
-                provenance::add(&mut json, &calibration.case.provenance, &listed);
+                provenance::add(&mut beside, &calibration.case.provenance, &listed);
+                if let FitRecord::Lives(lives) = &mut record {
+                    lives.beside = beside;
+                }
                 tables
             }
             Fitted::Rates(case, fits) => {
                 vec![(LAW_FILE, law), (RATES_FITTED_FILE, rates_csv(case, fits)), (RATES_FILE, rates_taken_csv(case))]
             }
         };
-        Ok(Kept { json, tables })
+        Ok(Kept { record, tables })
+    }
+
+    /// Content of `fit.json`.
+    pub fn json(&self) -> Value {
+        json!(self.record)
     }
 
     /// A table by the name of its file.
@@ -82,18 +91,19 @@ impl Kept {
 pub fn write(folder: &Path, fitted: &Fitted<'_>, kept: &Kept) -> Result<()> {
     let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
     kept.tables.iter().try_for_each(|(name, text)| put(name, text))?;
-    match fitted {
-        Fitted::Lives(calibration, fit) => {
+    match (fitted, &kept.record) {
+        (Fitted::Lives(calibration, fit), FitRecord::Lives(record)) => {
             provenance::write(folder, "calibrate", calibration.input.clone(), &calibration.case.provenance)?;
             write_tables(folder, calibration, fit)?;
-            let tables = FitTables::read(&kept.json, [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| kept.table(name)))?;
+            let tables = FitTables::read(record, [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| kept.table(name)))?;
             put("fit.svg", &tables.lives_svg(LARGE))?;
             put(DA_DN_FILE, &tables.rates_svg(LARGE))?;
         }
-        Fitted::Rates(..) => put(DA_DN_FILE, &law_svg(&rates_fitted(kept.table(RATES_FITTED_FILE))?, LARGE))?,
+        _ => put(DA_DN_FILE, &law_svg(&rates_fitted(kept.table(RATES_FITTED_FILE))?, LARGE))?,
     }
-    put(FIT_FILE, &format!("{:#}\n", kept.json))?;
-    show_folder(folder, &mut kept.json.clone())
+    let mut record = kept.json();
+    put(FIT_FILE, &format!("{record:#}\n"))?;
+    show_folder(folder, &mut record)
 }
 
 /// Standard errors from the middle of a 95 % band to its ends.

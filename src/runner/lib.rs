@@ -194,10 +194,11 @@ fn of_fit(calibration: &Calibration, folder: Option<&Path>, watcher: &dyn Watche
     let fitted = calibration.fit(watcher)?;
     let wall_s = started.elapsed().as_secs_f64();
     fitted.warnings().iter().for_each(|warning| watcher.warn(warning));
-    let result = fitted.report(wall_s);
     folder.map_or(Ok(()), |folder| {
-        perilife_results::fit::write(folder, &fitted, &perilife_results::fit::Kept::of(&fitted, &result)?)
+        perilife_results::fit::write(folder, &fitted, &perilife_results::fit::Kept::of(&fitted, wall_s)?)
     })?;
+    let record = fitted.record(wall_s);
+    let (result, lines) = (json!(record), record.words());
     let mut figures = result.clone();
     if let Fitted::Lives(CalibrationCase { case, .. }, _) = fitted {
         // What the law is of.
@@ -206,5 +207,5 @@ fn of_fit(calibration: &Calibration, folder: Option<&Path>, watcher: &dyn Watche
         figures["stress_ratio"] = json!(case.loading.ratio);
         figures["thickness_mm"] = json!(case.specimen.thickness / MM);
     }
-    Ok(Summary { result, figures, lines: fitted.summary(wall_s), ..Summary::default() })
+    Ok(Summary { result, figures, lines, ..Summary::default() })
 }

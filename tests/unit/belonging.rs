@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use crate::support::fits::report;
 use perilife_base::input::Folder;
 use perilife_calibration::calibrate::calibrate;
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::fit::Fit;
 use perilife_calibration::lack_of_fit::Misfit;
-use perilife_calibration::results::{record, report};
+use perilife_calibration::results::record;
 use perilife_growth::predict::Silent;
 
 use crate::support::fatigue_test::{calibration, lengths, readings};

@@ -3,13 +3,14 @@
 use std::fs;
 use std::path::Path;
 
+use crate::support::fits::report;
 use perilife_base::input::Folder;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::criterion::Criterion;
 use perilife_calibration::fit::{Bonds, Fit, FitTask, fit};
 use perilife_calibration::power_law::PowerLaw;
-use perilife_calibration::results::{fit_curves_csv, record, report};
+use perilife_calibration::results::{fit_curves_csv, record};
 use perilife_growth::case::record::FittedRecord;
 use tempfile::tempdir;
 

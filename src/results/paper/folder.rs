@@ -16,6 +16,7 @@ use crate::run::CRACK_PATH_FILE;
 use crate::units::metric_result;
 use perilife_base::error::{Error, InputError, Result, input};
 use perilife_base::input::Opened;
+use perilife_calibration::record::{FitRecord, LivesRecord, RatesRecord};
 
 /// A run or a fit with its tables.
 pub enum Source {
@@ -31,14 +32,14 @@ pub enum Source {
     /// Of `perilife calibrate`, to readings.
     Lives {
         /// `fit.json`.
-        fit: Value,
+        fit: Box<LivesRecord>,
         /// Its tables.
         tables: FitTables,
     },
     /// Of `perilife calibrate`, to rates.
     Laws {
         /// `fit.json`.
-        fit: Value,
+        fit: Box<RatesRecord>,
         /// Its rates.
         rates: Vec<RateFitted>,
     },
@@ -103,31 +104,31 @@ impl Files<'_> {
 
     fn fit(&self) -> Result<Source> {
         let fit = self.object(FIT_FILE, "perilife calibrate")?;
-        if fit.get("candidates").is_some() {
-            let wanted: [Key; 3] = [
-                ("law", Value::is_string, "text"),
-                ("constants", Value::is_object, "a table"),
-                ("version", Value::is_string, "text"),
-            ];
-            self.check_keys(&fit, FIT_FILE, &wanted)?;
-            let rates = rates_fitted(&self.table(RATES_FITTED_FILE, &fit, FIT_FILE)?).map_err(|error| self.within(error))?;
-            return Ok(Source::Laws { fit, rates });
-        }
         let is_positive: fn(&Value) -> bool = |value| value.as_f64().is_some_and(|number| number > 0.0);
-        let number = "a number above 0";
-        let wanted = [
-            ("paris_m", is_positive, number),
-            ("paris_c_mm_per_cycle", is_positive, number),
-            ("pivot_delta_k_mpa_sqrt_m", is_positive, number),
-            ("rate_at_pivot_mm_per_cycle", is_positive, number),
-            ("delta_k_min_mpa_sqrt_m", is_positive, number),
-            ("delta_k_max_mpa_sqrt_m", is_positive, number),
-            ("version", Value::is_string, "text"),
+        let figures = [
+            "paris_m",
+            "paris_c_mm_per_cycle",
+            "pivot_delta_k_mpa_sqrt_m",
+            "rate_at_pivot_mm_per_cycle",
+            "delta_k_min_mpa_sqrt_m",
+            "delta_k_max_mpa_sqrt_m",
         ];
-        self.check_keys(&fit, FIT_FILE, &wanted)?;
-        let [curves, band, readings] = [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| self.table(name, &fit, FIT_FILE));
-        let tables = FitTables::read(&fit, [&curves?, &band?, &readings?]).map_err(|error| self.within(error))?;
-        Ok(Source::Lives { fit, tables })
+        if fit.get("candidates").is_none() {
+            self.check_keys(&fit, FIT_FILE, &figures.map(|key| (key, is_positive, "a number above 0")))?;
+        }
+        let table = |name: &str| self.table(name, &fit, FIT_FILE);
+        let record = serde_json::from_value::<FitRecord>(fit.clone());
+        match record.map_err(|error| self.damaged(FIT_FILE, format!("is not as `perilife calibrate` wrote it: {error}")))? {
+            FitRecord::Rates(fit) => {
+                let rates = rates_fitted(&table(RATES_FITTED_FILE)?).map_err(|error| self.within(error))?;
+                Ok(Source::Laws { fit, rates })
+            }
+            FitRecord::Lives(fit) => {
+                let tables = [&*table(CURVES_FILE)?, &*table(BAND_FILE)?, &*table(READINGS_FILE)?];
+                let tables = FitTables::read(&fit, tables).map_err(|error| self.within(error))?;
+                Ok(Source::Lives { fit, tables })
+            }
+        }
     }
 
     /// A table of the folder, as it was written by what the result beside it says.

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde_json::Value;
 
 use super::curves::smooth;
 use crate::axis::Axis;
@@ -14,6 +13,7 @@ use crate::units::of_table;
 use perilife_base::error::{Error, InputError, Result};
 use perilife_base::units::us::System;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_calibration::record::LivesRecord;
 use perilife_growth::case::record::CurveRecord;
 use perilife_laws::curve::ROWS;
 use perilife_plate::specimen::Point;
@@ -153,7 +153,7 @@ pub struct FitTables {
 impl FitTables {
     /// Of `fit.json` and the texts of `fit_curves.csv`, `fit_band.csv` and `readings.csv`.
     /// Errors: a line that is not as the fit wrote it, by file, line and what is wrong with it.
-    pub fn read(fit: &Value, [curves, band, readings]: [&str; 3]) -> Result<Self> {
+    pub fn read(fit: &LivesRecord, [curves, band, readings]: [&str; 3]) -> Result<Self> {
         let mut all: Vec<Lives> = Vec::new();
         for row in rows::<CurveRow>(curves, CURVES_FILE)? {
             if all.last().is_none_or(|curve| curve.name != row.specimen) {
@@ -165,21 +165,12 @@ impl FitTables {
             }
         }
         let band = rows::<[f64; 4]>(band, BAND_FILE)?.into_iter().map(|[length, _, low, high]| [length, low, high]).collect();
-        let figure = |key: &str| fit[key].as_f64();
-        let point = |delta_k: f64, rate: Option<f64>| Some([delta_k, rate?]);
-        let rate = |delta_k: f64| Some(figure("paris_c_mm_per_cycle")? * delta_k.powf(figure("paris_m")?));
-        let ends = ["delta_k_min_mpa_sqrt_m", "delta_k_max_mpa_sqrt_m"].map(figure);
-        let of_power = || ends.into_iter().flatten().filter_map(|delta_k| point(delta_k, rate(delta_k))).collect();
-        let curve = serde_json::from_value::<CurveRecord>(fit["curve"].clone()).ok();
-        let law = LawCurve {
-            name: String::new(),
-            points: curve.as_ref().map_or_else(of_power, along),
-            pivot: figure("pivot_delta_k_mpa_sqrt_m")
-                .filter(|_| curve.is_none())
-                .and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
-        };
-        let fitted_to = fit["fitted_to"].as_str().unwrap_or("").to_owned();
-        Ok(FitTables { readings: rows(readings, READINGS_FILE)?, curves: all, band, law, fitted_to })
+        let of_power = |delta_k: f64| [delta_k, fit.paris_c_mm_per_cycle * delta_k.powf(fit.paris_m)];
+        let ends = || [fit.delta_k_min_mpa_sqrt_m, fit.delta_k_max_mpa_sqrt_m].map(of_power).to_vec();
+        let pivot = [fit.pivot_delta_k_mpa_sqrt_m, fit.rate_at_pivot_mm_per_cycle];
+        let (points, pivot) = fit.curve.as_ref().map_or_else(|| (ends(), Some(pivot)), |curve| (along(curve), None));
+        let law = LawCurve { name: String::new(), points, pivot };
+        Ok(FitTables { readings: rows(readings, READINGS_FILE)?, curves: all, band, law, fitted_to: fit.fitted_to.clone() })
     }
 
     /// Crack length over cycles.
