@@ -13,6 +13,7 @@ mod support {
     pub mod daily;
     pub mod fatigue_test;
     pub mod field;
+    pub mod fits;
     pub mod hand_cases;
     pub mod made_up_case;
     pub mod made_up_run;

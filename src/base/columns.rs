@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
+
 use crate::cells::{defused, quoted};
 use crate::error::{Error, InputError, Result};
 use crate::units::shown::shown;
@@ -129,10 +131,21 @@ impl Table {
     /// Cells of a column as text.
     /// Errors: a column that is missing.
     pub fn text(&self, name: &str) -> Result<Vec<String>> {
-        Ok(match self.cells(name)? {
-            Cells::Words(words) => words.clone(),
-            numbers => (0..self.rows()).map(|row| numbers.written(row).into_owned()).collect(),
-        })
+        let cells = self.cells(name)?;
+        Ok((0..self.rows()).map(|row| cells.text(row).into_owned()).collect())
+    }
+
+    /// Rows by the names of their columns.
+    /// Errors: a row that is not as it was written.
+    pub fn records<R: DeserializeOwned>(&self) -> Result<Vec<R>> {
+        let names: csv::StringRecord = self.columns.iter().map(|column| &*column.name).collect();
+        let record = |row: usize| {
+            let cells: csv::StringRecord = self.columns.iter().map(|column| column.cells.text(row)).collect::<Vec<_>>().into();
+            cells
+                .deserialize(Some(&names))
+                .map_err(|error| self.bad(row + 2, None, None, &format!("is not as it was written: {error}")))
+        };
+        (0..self.rows()).map(record).collect()
     }
 
     fn cells(&self, name: &str) -> Result<&Cells> {
@@ -175,7 +188,7 @@ impl Table {
                     .factor(|name| self.sibling(name, row))
                     .map_or_else(|_| String::new(), |factor| number_text(values[row] * factor)),
                 (_, Cells::Words(words)) if units == System::Us => quoted(&in_units(&words[row], units)).into_owned(),
-                _ => column.cells.written(row).into_owned(),
+                (_, cells) => quoted(&cells.text(row)).into_owned(),
             };
             let cells: Vec<String> = self.columns.iter().zip(&changes).map(cell).collect();
             text.push_str(&cells.join(","));
@@ -256,20 +269,14 @@ impl Cells {
         }
     }
 
-    fn written(&self, row: usize) -> Cow<'_, str> {
+    fn text(&self, row: usize) -> Cow<'_, str> {
         match self {
             Cells::Numbers(values, Digits::Some) => number_text(values[row]).into(),
             Cells::Numbers(values, Digits::All) => exact_text(values[row]).into(),
             Cells::Numbers(values, Digits::None) => format!("{}", values[row]).into(),
-            Cells::Words(words) => quoted(&words[row]),
+            Cells::Words(words) => (&*words[row]).into(),
         }
     }
-}
-
-/// A table in metric units as text in those that are shown.
-/// Errors: as [`Table::read`].
-pub fn shown_text<'t>(text: &'t str, file: &str) -> Result<Cow<'t, str>> {
-    Ok(if shown() == System::Si { text.into() } else { Table::read(text, Path::new(file))?.csv().into() })
 }
 
 /// The number of a cell, NaN of an empty one.

@@ -1,13 +1,12 @@
 //! A calibration from its file to the fit: of lives, by K(a) of a peridynamic run, of nodes or of the handbook; or of rates by laws over K.
 
-use serde_json::Value;
-
 use super::case::CalibrationCase;
 use super::fit::{Bonds, Fit, FitTask, OwnPath, fit};
 use super::laws::LawFits;
 use super::laws::case::{LawCase, is_law_fit};
 use super::paris;
 use super::power_law::PowerLaw;
+use super::record::{FitRecord, LivesRecord, RatesRecord};
 use super::results;
 use super::search::Constants;
 use perilife_base::error::{Result, input_missing};
@@ -96,19 +95,11 @@ impl Fitted<'_> {
         }
     }
 
-    /// `fit.json` of a fit that took `wall_s` seconds.
-    pub fn report(&self, wall_s: f64) -> Value {
+    /// What it found, in `wall_s` seconds.
+    pub fn record(&self, wall_s: f64) -> FitRecord {
         match self {
-            Fitted::Lives(calibration, fit) => results::report(calibration, fit, wall_s),
-            Fitted::Rates(case, fits) => results::law_report(case, fits, wall_s),
-        }
-    }
-
-    /// The fit in words.
-    pub fn summary(&self, wall_s: f64) -> Vec<String> {
-        match self {
-            Fitted::Lives(calibration, fit) => results::summary(calibration, fit, wall_s),
-            Fitted::Rates(case, fits) => results::law_summary(case, fits),
+            Fitted::Lives(calibration, fit) => FitRecord::Lives(Box::new(LivesRecord::of(calibration, fit, wall_s))),
+            Fitted::Rates(case, fits) => FitRecord::Rates(Box::new(RatesRecord::of(case, fits, wall_s))),
         }
     }
 

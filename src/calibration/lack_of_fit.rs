@@ -4,7 +4,7 @@
 //! Rates are sums: the cycles that the law takes for the growth of every specimen through that end, over those that were counted. Rates of
 //! single readings would not do, since noise makes some of them negative, which have no logarithm.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::median::huber_mean;
 use perilife_base::units::MPA_SQRT_M;
@@ -14,7 +14,7 @@ use perilife_measured::MeasuredCurve;
 const END: f64 = 0.1;
 
 /// Growth through an end of the readings that were fitted, against the law.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Misfit {
     /// ΔK at the reading where the end begins.
     pub delta_k_from_mpa_sqrt_m: f64,
@@ -28,7 +28,7 @@ pub struct Misfit {
 }
 
 /// Misfit at both ends, whatever its standard error; `None` without growth there.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MisfitAtEnds {
     /// The first readings.
     pub low: Option<Misfit>,

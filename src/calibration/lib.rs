@@ -8,7 +8,8 @@
 //! In the order data flows: [`median`] and [`rates`] of readings ([`perilife_measured`]); [`outliers`] among them; the [`power_law`] over K(a)
 //! that is fitted; [`criterion`], [`search`] and [`confidence`]; [`fit`], the page that calls them in turn; what it means as C and m
 //! ([`paris`]). [`laws`] over K are fitted to rates. [`case`] and [`exponent`] read the input file, [`mod@calibrate`] goes from it to the fit,
-//! also as A and p of bonds, and [`results`] are what is written: among them the record that predictions read.
+//! also as A and p of bonds, [`mod@record`] is what they tell, in `fit.json` and in words, and [`results`] are the other files: among them
+//! the law that predictions read.
 
 pub mod calibrate;
 pub mod case;
@@ -25,6 +26,7 @@ pub mod paris;
 pub mod population;
 pub mod power_law;
 pub mod rates;
+pub mod record;
 pub mod readings;
 pub mod results;
 pub mod search;

@@ -9,12 +9,11 @@
 //!
 //! Below 1e-5 mm/cycle, in K-decreasing tests, steps count down to ten times the precision of a reading, as the user says it or as readings scatter.
 
-use std::fmt::Write as _;
 use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Vector3};
 
-use perilife_base::cells::field;
+use perilife_base::columns::Table;
 use perilife_base::line::{Line, line};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::Case;
@@ -259,16 +258,15 @@ pub fn threshold(rates: impl Iterator<Item = (f64, f64)>) -> Option<(f64, String
 
 /// A table of rates, each with its specimen, that [`perilife_measured::RateFile`] reads back:
 /// `specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio`; cells are empty where nothing is known.
-pub fn table<'a>(rows: impl Iterator<Item = (&'a str, &'a RatePoint)>) -> String {
-    let known = |value: f64, text: String| if value.is_finite() { text } else { String::new() };
-    let mut text = HEADER.to_owned();
-    for (specimen, point) in rows {
-        let [length, delta_k] =
-            [point.crack_length / MM, point.delta_k / MPA_SQRT_M].map(|value| known(value, format!("{value:.10}")));
-        let [cycles, ratio] = [point.cycles, point.ratio].map(|value| known(value, value.to_string()));
-        let (rate, flags) = (point.rate / MM_PER_CYCLE, point.flags.words());
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{},{cycles},{length},{delta_k},{rate:.10e},{flags},{ratio}", field(specimen));
-    }
-    text
+pub fn table<'a>(rows: impl Iterator<Item = (&'a str, &'a RatePoint)>) -> Table {
+    let rows: Vec<(&str, &RatePoint)> = rows.collect();
+    let column = |of: fn(&RatePoint) -> f64| rows.iter().map(move |(_, point)| Some(of(point)).filter(|value| value.is_finite()));
+    Table::new("rates.csv")
+        .foreign("specimen", rows.iter().map(|(specimen, _)| specimen))
+        .known("cycles", column(|point| point.cycles))
+        .known("crack_length_mm", column(|point| point.crack_length / MM))
+        .known("delta_k_mpa_sqrt_m", column(|point| point.delta_k / MPA_SQRT_M))
+        .known("da_dn_mm_per_cycle", column(|point| point.rate / MM_PER_CYCLE))
+        .words("flags", rows.iter().map(|(_, point)| point.flags.words()))
+        .known("stress_ratio", column(|point| point.ratio))
 }

@@ -30,44 +30,51 @@ pub struct Constants {
     pub p: f64,
 }
 
-/// A curve, cycles counted from the first reading, beside the law that is fitted to it.
-#[derive(Clone, Copy)]
+/// Specimens of one law: each with its own loads and level, cycles counted from the first reading, all with one p.
 struct Search<'a> {
-    law: &'a PowerLaw,
-    cycles: &'a [f64],
-    lengths: &'a [f64],
+    specimens: Vec<(Cow<'a, PowerLaw>, Vec<f64>, &'a [f64])>,
     criterion: Criterion,
+    /// Power of the misfits whose mean is least: 2, of a specimen's own fit 1. Both have one minimum, which is found to 1e-8 only.
+    power: i32,
 }
 
-impl CostFunction for Search<'_> {
+impl<'a> Search<'a> {
+    fn of(curves: &'a [MeasuredCurve], criterion: Criterion, law: &'a PowerLaw, power: i32) -> Self {
+        let specimen = |curve: &'a MeasuredCurve| (own_law(law, curve), curve.cycles_counted(), &*curve.crack_length);
+        Search { specimens: curves.iter().map(specimen).collect(), criterion, power }
+    }
+
+    /// The p within [`STEADY_EXPONENTS`] of the smallest misfit, and the median of the levels A at it.
+    fn constants(self, fixed_p: Option<f64>) -> Result<Constants> {
+        let level = |p: f64, (law, cycles, lengths): &(Cow<'_, PowerLaw>, Vec<f64>, &[f64])| {
+            Ok((1.0 / inverse_a(self.criterion, &law.cycles(p, lengths)?, cycles)).ln())
+        };
+        let p = fixed_p.map_or_else(|| self.least(), Ok)?;
+        let levels = self.specimens.iter().map(|specimen| level(p, specimen)).collect::<Result<Vec<f64>>>()?;
+        Ok(Constants { a: median(&levels).exp(), p })
+    }
+
+    fn least(&self) -> Result<f64> {
+        let solver = BrentOpt::new(*STEADY_EXPONENTS.start(), *STEADY_EXPONENTS.end()).set_tolerance(TOLERANCE, TOLERANCE);
+        let outcome = Executor::new(self, solver).configure(|state| state.max_iters(200)).run();
+        let failed = |reason: String| Error::Mechanics(format!("the search for p failed: {reason}"));
+        let outcome = outcome.map_err(|error| error.downcast::<Error>().unwrap_or_else(|error| failed(error.to_string())))?;
+        outcome.state().get_best_param().copied().ok_or_else(|| failed("no p was tried".to_owned()))
+    }
+}
+
+impl CostFunction for &Search<'_> {
     type Param = f64;
     type Output = f64;
 
+    /// Mean over specimens of a power of the misfit.
     fn cost(&self, p: &f64) -> std::result::Result<f64, argmin::core::Error> {
-        Ok(misfit(self.criterion, &self.law.cycles(*p, self.lengths)?, self.cycles))
+        let mut sum = 0.0;
+        for (law, cycles, lengths) in &self.specimens {
+            sum += misfit(self.criterion, &law.cycles(*p, lengths)?, cycles).powi(self.power);
+        }
+        Ok(sum / self.specimens.len() as f64)
     }
-}
-
-impl Search<'_> {
-    /// A at a given p.
-    fn constants(&self, p: f64) -> Result<Constants> {
-        let model = self.law.cycles(p, self.lengths)?;
-        Ok(Constants { a: 1.0 / inverse_a(self.criterion, &model, self.cycles), p })
-    }
-
-    /// A and p of the smallest misfit.
-    fn smallest(self) -> Result<Constants> {
-        self.constants(least(self)?)
-    }
-}
-
-/// The p within [`STEADY_EXPONENTS`] of the smallest cost.
-fn least(cost: impl CostFunction<Param = f64, Output = f64>) -> Result<f64> {
-    let solver = BrentOpt::new(*STEADY_EXPONENTS.start(), *STEADY_EXPONENTS.end()).set_tolerance(TOLERANCE, TOLERANCE);
-    let outcome = Executor::new(cost, solver).configure(|state| state.max_iters(200)).run();
-    let failed = |reason: String| Error::Mechanics(format!("the search for p failed: {reason}"));
-    let outcome = outcome.map_err(|error| error.downcast::<Error>().unwrap_or_else(|error| failed(error.to_string())))?;
-    outcome.state().get_best_param().copied().ok_or_else(|| failed("no p was tried".to_owned()))
 }
 
 /// Whether a searched p is an end of [`STEADY_EXPONENTS`], so that the curve follows no such law.
@@ -114,13 +121,14 @@ pub(super) fn own_law<'l>(law: &'l PowerLaw, curve: &MeasuredCurve) -> Cow<'l, P
     if curve.is_plain() { Cow::Borrowed(law) } else { Cow::Owned(law.under(curve)) }
 }
 
+/// Constants of all readings of some specimens.
+pub(super) fn fit_all(curves: &[MeasuredCurve], criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<Constants> {
+    Search::of(curves, criterion, law, 2).constants(fixed_p)
+}
+
 /// Fits one curve: A and p, or A at a fixed p.
 pub(super) fn fit_one(curve: &MeasuredCurve, criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<FittedCurve> {
-    let cycles = curve.cycles_counted();
-    let own = own_law(law, curve);
-    let search = Search { law: &own, cycles: &cycles, lengths: &curve.crack_length, criterion };
-    let constants = fixed_p.map_or_else(|| search.smallest(), |p| search.constants(p))?;
-    fitted_curve(curve, constants, law)
+    fitted_curve(curve, Search::of(std::slice::from_ref(curve), criterion, law, 1).constants(fixed_p)?, law)
 }
 
 pub(super) fn fitted_curve(curve: &MeasuredCurve, constants: Constants, law: &PowerLaw) -> Result<FittedCurve> {
@@ -138,48 +146,6 @@ pub(super) fn fitted_curve(curve: &MeasuredCurve, constants: Constants, law: &Po
 /// The curve as it would be by a rate, m/cycle, over ΔK, MPa√m.
 pub(super) fn as_fitted(curve: &MeasuredCurve, rate: &dyn Fn(f64) -> f64, law: &PowerLaw) -> Result<MeasuredCurve> {
     Ok(MeasuredCurve { cycles: own_law(law, curve).cycles_by(rate, &curve.crack_length)?, ..curve.clone() })
-}
-
-/// Specimens of one law: each with its own loads and level, all with one p.
-struct Common<'a> {
-    specimens: Vec<(Cow<'a, PowerLaw>, Vec<f64>, &'a [f64])>,
-    criterion: Criterion,
-}
-
-impl CostFunction for Common<'_> {
-    type Param = f64;
-    type Output = f64;
-
-    /// Mean over specimens of the squared misfit.
-    fn cost(&self, p: &f64) -> std::result::Result<f64, argmin::core::Error> {
-        let mut sum = 0.0;
-        for (law, cycles, lengths) in &self.specimens {
-            sum += misfit(self.criterion, &law.cycles(*p, lengths)?, cycles).powi(2);
-        }
-        Ok(sum / self.specimens.len() as f64)
-    }
-}
-
-/// Constants of all readings of several specimens: the p that their misfits together are least at, and the median of their levels at it.
-pub(super) fn fit_all(curves: &[MeasuredCurve], criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<Constants> {
-    let specimen = |curve: &'_ MeasuredCurve| (own_law(law, curve), curve.cycles_counted());
-    let common = Common {
-        specimens: curves
-            .iter()
-            .map(|curve| {
-                let (law, cycles) = specimen(curve);
-                (law, cycles, curve.crack_length.as_slice())
-            })
-            .collect(),
-        criterion,
-    };
-    let p = match fixed_p {
-        Some(p) => p,
-        None => least(common)?,
-    };
-    let level = |curve: &MeasuredCurve| Ok(fit_one(curve, criterion, Some(p), law)?.constants.a.ln());
-    let levels = curves.iter().map(level).collect::<Result<Vec<f64>>>()?;
-    Ok(Constants { a: median(&levels).exp(), p })
 }
 
 /// Median of the specimens at the load of the case, for pictures and errors of life. Growth by a power p of ΔK takes `(ΔP / ΔP_case)^p` times

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use rayon::prelude::*;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::console::Console;
 use perilife_base::error::{Error, Result, input, input_missing};
@@ -68,16 +68,16 @@ pub fn run(args: &Args) -> Result<()> {
     for warning in fitted.warnings() {
         console.warn(warning);
     }
-    let report = fitted.report(wall_s);
-    folder.fill(|path| fit::write(path, &fitted, &fit::Kept::of(&fitted, &report)?))?;
+    folder.fill(|path| fit::write(path, &fitted, &fit::Kept::of(&fitted, wall_s)?))?;
     // Nobody else writes there until the predictions stand in it.
     let place = folder.finish()?;
-    for line in fitted.summary(wall_s) {
+    let record = fitted.record(wall_s);
+    for line in record.words() {
         console.say(&line);
     }
     console.say(&format!("  results        {}", args.out.display()));
     let cases = cases.into_iter().map(|document| with_law(document, &fitted, args)).collect::<Result<_>>()?;
-    predict_each(cases, report, args, &place)
+    predict_each(cases, json!(record), args, &place)
 }
 
 /// A case with the law that has just been fitted.

@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 use super::case_without_law;
 use super::console::Console;
 use super::rates_of_materials::{self, MaterialRates};
-use perilife_base::columns::shown_text;
 use perilife_base::error::{Result, input};
 use perilife_base::input::{Opened, STREAM, number};
 use perilife_base::table::{
@@ -127,7 +126,7 @@ pub fn run(args: &Args) -> Result<()> {
         rates_of_materials::draw(path, &materials, ratio, points.map(in_units).collect())?;
     }
     if !materials.is_empty() {
-        args.console.say(&shown_text(&rates_of_materials::table(&materials, ratio), "materials.csv")?);
+        args.console.say(&rates_of_materials::table(&materials, ratio));
     }
     let of_specimens = first_of(specimens.iter().flat_map(|specimen| specimen.warnings.iter().cloned()).collect());
     for warning in of_materials.iter().chain(&measured.warnings).chain(&of_specimens) {
@@ -139,9 +138,9 @@ pub fn run(args: &Args) -> Result<()> {
             let mut read = opened.so_far();
             read.files.extend(case.iter().flat_map(|case| case.provenance.files.clone()));
             let sort = Sort { option: "--out", sign: HEADER.as_bytes() };
-            OutputFile::claim(path, sort, &read)?.write(shown_text(&table, "rates.csv")?.as_bytes())?;
+            OutputFile::claim(path, sort, &read)?.write(table.csv().as_bytes())?;
         }
-        None => args.console.result(&shown_text(&table, "rates.csv")?)?,
+        None => args.console.result(&table.csv())?,
     }
     if args.out.as_deref().is_some_and(|path| path != Path::new(STREAM)) {
         specimens.iter().for_each(|specimen| args.console.say(&specimen.summary()));

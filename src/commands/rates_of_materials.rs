@@ -4,7 +4,7 @@ use std::path::Path;
 
 use perilife_base::error::Result;
 use perilife_base::input::Folder;
-use perilife_base::units::shown::per;
+use perilife_base::units::shown::{column, per};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::library_law;
 use perilife_results::chart::{Mark, Series, growth_rate};
@@ -72,12 +72,15 @@ fn files(name: &str) -> Vec<String> {
 
 /// A line a material: rates at some ΔK, these in the unit that is shown.
 pub fn table(materials: &[MaterialRates], ratio: f64) -> String {
-    let head: String = LISTED.iter().map(|k| format!(",da_dn_at_{k}_mm_per_cycle")).collect();
+    let head: String = LISTED.iter().map(|k| format!(",{}", column(&format!("da_dn_at_{k}_mm_per_cycle")))).collect();
     let row = |one: &MaterialRates| {
         format!(
             "{},{ratio}{}\n",
             one.name,
-            one.listed.iter().map(|rate| rate.map_or(",".to_owned(), |rate| format!(",{rate:.4e}"))).collect::<String>()
+            one.listed
+                .iter()
+                .map(|rate| rate.map_or(",".to_owned(), |rate| format!(",{:.4e}", rate * per("mm/cycle"))))
+                .collect::<String>()
         )
     };
     format!("material,stress_ratio{head}\n{}", materials.iter().map(row).collect::<String>())

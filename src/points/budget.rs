@@ -74,7 +74,7 @@ const RIM_PLAIN: f64 = 14e3;
 /// Bytes of a spacing of rim under `balanced`, whose equations couple m rows of points. With the window: 77, 132 and 241 MB at 1e4, 4e4
 /// and 1.6e5 points, m = 3.015; 290, 576 and 1166 MB at m = 6; 1237 and 2744 MB at 1e4 and m = 9 and 12.
 const RIM_BALANCED: &Curve = &[(3.015, 94e3), (6.0, 545e3), (9.0, 2.55e6), (12.0, 5.9e6)];
-/// Bytes over P ln P of a sparse factor of all points, which nested dissection fills in so. `solver = "direct"`: 242 MB at 1e4 points, m =
+/// Bytes over P ln P of a sparse factor of all points, which nested dissection fills in so: 242 MB at 1e4 points, m =
 /// 3.015. Three levels, whose equilibrium is factorised whole: 232 and 982 MB at 8848 and 34 300 points, m = 3.015; 422 MB at 8848 and m = 5.
 const FACTOR: &Curve = &[(3.015, 2.7e3), (5.0, 4.9e3)];
 /// Bytes of a node of the element-free method: 247 MB with `nodes = 5000`.

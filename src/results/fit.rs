@@ -1,106 +1,110 @@
 //! A fit: all its files.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::chart::LARGE;
 use super::output::{write_file, write_json};
-use super::pictures::fit::{
-    BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, law_svg, rates_fitted,
-};
+use super::pictures::fit::{FIT_FILE, FitTables, law_svg};
 use super::pictures::plate::Plate;
 use super::{provenance, test_record};
-use perilife_base::columns::{Table, shown_text};
+use perilife_base::columns::Table;
 use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::calibrate::Fitted;
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::fit::Fit;
-use perilife_calibration::readings::readings_csv;
-use perilife_calibration::results::{fit_curves_csv, fitted_rates_csv, left_out, rates_csv, rates_taken_csv};
+use perilife_calibration::readings::readings;
+use perilife_calibration::record::FitRecord;
+use perilife_calibration::results::{fit_curves, fitted_rates, left_out, rates_beside_law, rates_taken};
 use perilife_growth::case::RECORD;
 
 /// The law, for `fatigue.fitted`.
 pub const LAW_FILE: &str = RECORD;
-/// Table of the rates that a law was fitted to.
-const RATES_FILE: &str = "rates.csv";
 /// Growth rate over ΔK with the law.
 const DA_DN_FILE: &str = "da_dn.svg";
 
 /// A fit as its folder keeps it.
 #[derive(Debug, Clone)]
 pub struct Kept {
-    /// Content of `fit.json`.
-    pub json: Value,
-    /// The law and all tables in the units that are shown, by the names of their files.
-    pub tables: Vec<(&'static str, String)>,
+    /// What `fit.json` holds.
+    pub record: FitRecord,
+    /// The law, for `fatigue.fitted`.
+    law: String,
+    /// All tables, each with its text.
+    tables: Vec<(Table, String)>,
 }
 
 impl Kept {
-    /// Of a fit and its report.
+    /// Of a fit that took `wall_s` seconds.
     /// Errors: a law that has no form in TOML.
-    pub fn of(fitted: &Fitted<'_>, report: &Value) -> Result<Self> {
+    pub fn of(fitted: &Fitted<'_>, wall_s: f64) -> Result<Self> {
         let unwritable =
             |error: toml::ser::Error| Error::file(Path::new(LAW_FILE), "cannot write", std::io::Error::other(error.to_string()));
         let law = fitted.record_text().map_err(unwritable)?;
-        let mut json = report.clone();
+        let with_text = |table: Table| {
+            let text = table.csv();
+            (table, text)
+        };
+        let mut record = fitted.record(wall_s);
         let tables = match fitted {
             Fitted::Lives(calibration, fit) => {
                 let (delta_k, left_out) = (|length: f64| fit.delta_k(calibration, length), left_out(calibration, fit));
-                let tables = vec![
-                    (LAW_FILE, law),
-                    (CURVES_FILE, fit_curves_csv(fit)),
-                    (BAND_FILE, band(calibration, fit)),
-                    (RATES_FILE, fitted_rates_csv(calibration, fit)),
-                    (READINGS_FILE, readings_csv(calibration, &left_out, &delta_k)),
-                ];
-                if let Some(object) = json.as_object_mut() {
-                    object.insert("test".to_owned(), test_record::test(calibration));
-                    object.insert("criteria".to_owned(), test_record::criteria(calibration, &left_out, &delta_k).into());
-                    object.insert("plate".to_owned(), json!(Plate::of(&calibration.case)));
+                let tables = [
+                    fit_curves(fit),
+                    band(calibration, fit),
+                    fitted_rates(calibration, fit),
+                    readings(calibration, &left_out, &delta_k),
+                ]
+                .map(with_text)
+                .to_vec();
+                let mut beside = json!({
+                    "test": test_record::test(calibration),
+                    "criteria": test_record::criteria(calibration, &left_out, &delta_k),
+                    "plate": Plate::of(&calibration.case),
+                });
+                let names: Vec<String> = tables.iter().map(|(table, _)| table.file.display().to_string()).collect();
+                let texts = names.iter().map(|name| &**name).zip(tables.iter().map(|(_, text)| &**text));
+                provenance::add(&mut beside, &calibration.case.provenance, std::iter::once((LAW_FILE, &*law)).chain(texts));
+                if let FitRecord::Lives(lives) = &mut record {
+                    lives.beside = beside;
                 }
-                let tables = shown_of(tables)?;
-                provenance::add(&mut json, &calibration.case.provenance, tables.iter().map(|(name, text)| (*name, &**text)));
                 tables
             }
-            Fitted::Rates(case, fits) => {
-                shown_of(vec![(LAW_FILE, law), (RATES_FITTED_FILE, rates_csv(case, fits)), (RATES_FILE, rates_taken_csv(case))])?
-            }
+            Fitted::Rates(case, fits) => [rates_beside_law(case, fits), rates_taken(case)].map(with_text).to_vec(),
         };
-        Ok(Kept { json, tables })
+        Ok(Kept { record, law, tables })
     }
 
-    /// A table by the name of its file.
-    pub fn table(&self, name: &str) -> Result<Table> {
-        Table::read(self.tables.iter().find(|(known, _)| *known == name).map_or("", |(_, text)| text), Path::new(name))
+    /// Content of `fit.json`.
+    pub fn json(&self) -> Value {
+        json!(self.record)
     }
-}
 
-fn shown_of(mut tables: Vec<(&'static str, String)>) -> Result<Vec<(&'static str, String)>> {
-    for (name, text) in tables.iter_mut().filter(|(name, _)| *name != LAW_FILE) {
-        *text = shown_text(text, name)?.into_owned();
+    /// Texts of the law and all tables by the names of their files.
+    pub fn texts(&self) -> impl Iterator<Item = (&Path, &str)> {
+        let law = (Path::new(LAW_FILE), &*self.law);
+        std::iter::once(law).chain(self.tables.iter().map(|(table, text)| (&*table.file, &**text)))
     }
-    Ok(tables)
 }
 
 /// Writes all files of a fit into `folder`.
 pub fn write(folder: &Path, fitted: &Fitted<'_>, kept: &Kept) -> Result<()> {
-    let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
-    kept.tables.iter().try_for_each(|(name, text)| put(name, text))?;
-    match fitted {
-        Fitted::Lives(calibration, fit) => {
+    let put = |name: &Path, text: &str| write_file(&folder.join(name), text.as_bytes());
+    kept.texts().try_for_each(|(name, text)| put(name, text))?;
+    let draw = |name: &str, svg: String| put(Path::new(name), &svg);
+    match (fitted, &kept.record, &*kept.tables) {
+        (Fitted::Lives(calibration, fit), FitRecord::Lives(record), [(curves, _), (band, _), _, (readings, _)]) => {
             provenance::write(folder, "calibrate", calibration.input.clone(), &calibration.case.provenance)?;
             write_tables(folder, calibration, fit)?;
-            let [curves, band, readings] = [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| kept.table(name));
-            let tables = FitTables::read(&kept.json, [&curves?, &band?, &readings?])?;
-            put("fit.svg", &tables.lives_svg(LARGE))?;
-            put(DA_DN_FILE, &tables.rates_svg(LARGE))?;
+            let tables = FitTables::of(record, [curves, band, readings])?;
+            draw("fit.svg", tables.lives_svg(LARGE))?;
+            draw(DA_DN_FILE, tables.rates_svg(LARGE))?;
         }
-        Fitted::Rates(..) => put(DA_DN_FILE, &law_svg(&rates_fitted(&kept.table(RATES_FITTED_FILE)?)?, LARGE))?,
+        (_, _, tables) => draw(DA_DN_FILE, law_svg(&tables[0].0.records()?, LARGE))?,
     }
-    write_json(folder, FIT_FILE, &kept.json)
+    write_json(folder, FIT_FILE, &kept.record)
 }
 
 /// Standard errors from the middle of a 95 % band to its ends.
@@ -111,21 +115,24 @@ const BAND: f64 = 1.96;
 ///
 /// The rate at the pivot and the exponent m have errors of their own, without correlation, which is what makes it the pivot. With
 /// N(a) = ∫ da / rate, the relative error of N is s_N² = s_rate² + (s_m w)², w the mean of ln(ΔK/ΔK_pivot) over the cycles so far.
-fn band(calibration: &CalibrationCase, fit: &Fit) -> String {
-    let mut text = "crack_length_mm,cycles_fitted,cycles_low,cycles_high\n".to_owned();
+fn band(calibration: &CalibrationCase, fit: &Fit) -> Table {
     let (lengths, cycles) = (&fit.record.crack_length, &fit.record.cycles_fitted);
     let m_error = fit.paris.m_error.max(calibration.exponent.error);
     let mut weighted = 0.0;
-    for (i, (&length, &n)) in lengths.iter().zip(cycles).enumerate() {
+    let mut factor = |i: usize| {
         if i > 0 {
-            let delta_k = fit.delta_k(calibration, 0.5 * (length + lengths[i - 1])) * fit.record.load_factor[i] / MPA_SQRT_M;
-            weighted += (n - cycles[i - 1]) * (delta_k / fit.paris.pivot).ln();
+            let delta_k = fit.delta_k(calibration, 0.5 * (lengths[i] + lengths[i - 1])) * fit.record.load_factor[i] / MPA_SQRT_M;
+            weighted += (cycles[i] - cycles[i - 1]) * (delta_k / fit.paris.pivot).ln();
         }
-        let w = if n > 0.0 { weighted / n } else { 0.0 };
-        let factor = (BAND * fit.paris.rate_at_pivot_error.hypot(m_error * w)).exp();
-        let _ = writeln!(text, "{:.12e},{n:.12e},{:.12e},{:.12e}", length / MM, n / factor, n * factor); // a String takes all
-    }
-    text
+        let w = if cycles[i] > 0.0 { weighted / cycles[i] } else { 0.0 };
+        (BAND * fit.paris.rate_at_pivot_error.hypot(m_error * w)).exp()
+    };
+    let factors: Vec<f64> = (0..lengths.len()).map(&mut factor).collect();
+    Table::new("fit_band.csv")
+        .numbers("crack_length_mm", lengths.iter().map(|length| length / MM))
+        .numbers("cycles_fitted", cycles.iter().copied())
+        .numbers("cycles_low", cycles.iter().zip(&factors).map(|(n, factor)| n / factor))
+        .numbers("cycles_high", cycles.iter().zip(&factors).map(|(n, factor)| n * factor))
 }
 
 /// The same curves as Parquet beside their constants, and for several specimens quantiles of their cycles.

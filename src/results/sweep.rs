@@ -91,6 +91,25 @@ impl Outcome {
         self.stop_reason.as_deref().and_then(|reason| reason.parse::<StopReason>().ok()).is_some_and(StopReason::is_lower_bound)
     }
 
+    /// A case by the figures of its run; one that was refused has no result.
+    pub fn of(case: &DrawnCase, figures: &Value, has_files: bool) -> Self {
+        let wall_s = figures["wall_s"].as_f64().unwrap_or(0.0);
+        if let Some(refused) = figures["refused"].as_str() {
+            return Self::failed(case, refused, wall_s);
+        }
+        let text = |value: &Value| value.as_str().map(str::to_owned);
+        Outcome {
+            life_cycles: figures["life_cycles"].as_f64(),
+            stop_reason: text(&figures["stop_reason"]),
+            life_is_lower_bound: figures["life_is_lower_bound"].as_bool(),
+            crack_length_final_mm: figures["crack_length_final_mm"].as_f64(),
+            problem: None,
+            warnings: figures["warnings"].as_array().into_iter().flatten().filter_map(text).collect(),
+            has_files,
+            ..Self::failed(case, "", wall_s)
+        }
+    }
+
     /// A case without a result.
     pub fn failed(case: &DrawnCase, problem: &str, wall_s: f64) -> Self {
         Outcome {

@@ -103,7 +103,7 @@ impl Summary {
             (Done::Cycles(prediction, judged), Task::Prediction { case, .. }) => texts(judged.tables(case, prediction)?),
             (Done::Scene(fracture), _) => texts(scene_results::tables(fracture).into()),
             (Done::Lives(_, kept) | Done::Rates(_, kept), _) => {
-                kept.tables.iter().map(|(name, text)| ((*name).to_owned(), text.clone())).collect()
+                kept.texts().map(|(name, text)| (name.display().to_string(), text.to_owned())).collect()
             }
             _ => Vec::new(),
         })
@@ -245,9 +245,10 @@ fn of_fit(calibration: &Calibration, watcher: &dyn Watcher) -> Result<Summary> {
     let fitted = calibration.fit(watcher)?;
     let wall_s = started.elapsed().as_secs_f64();
     fitted.warnings().iter().for_each(|warning| watcher.warn(warning));
-    let report = fitted.report(wall_s);
-    let (kept, lines) = (fit::Kept::of(&fitted, &report)?, fitted.summary(wall_s));
-    let (result, mut figures) = (kept.json.clone(), report);
+    let kept = fit::Kept::of(&fitted, wall_s)?;
+    let (result, lines) = (kept.json(), kept.record.words());
+    // Readings, criteria and plate of its files are none of a listing.
+    let mut figures = json!(fitted.record(wall_s));
     if let Fitted::Lives(CalibrationCase { case, .. }, _) = fitted {
         // What the law is of.
         figures["material"] = json!(case.material.name);

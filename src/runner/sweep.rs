@@ -53,20 +53,7 @@ fn outcome(case: &DrawnCase, files: Option<&Path>) -> Result<Outcome> {
     let run = || -> Result<Outcome> {
         let task = Task::Prediction { case: Box::new(case.read()?), wanted: Box::default() };
         let summary = super::run(&task, None, files, &Silent)?.counted()?;
-        let (result, text) = (&summary.result, |value: &Value| value.as_str().map(str::to_owned));
-        let warnings = summary.figures["warnings"].as_array().into_iter().flatten();
-        Ok(Outcome {
-            input: case.hash.clone(),
-            life_cycles: result["life_cycles"].as_f64(),
-            stop_reason: text(&result["stop_reason"]),
-            life_is_lower_bound: result["life_is_lower_bound"].as_bool(),
-            crack_length_final_mm: result["crack_length_final_mm"].as_f64(),
-            wall_s: result["wall_s"].as_f64().unwrap_or(0.0),
-            problem: None,
-            try_again: false,
-            warnings: warnings.filter_map(text).collect(),
-            has_files: files.is_some(),
-        })
+        Ok(Outcome::of(case, &summary.figures, files.is_some()))
     };
     let failed = |problem: &str| Ok(Outcome::failed(case, problem, begun.elapsed().as_secs_f64()));
     match catch_unwind(AssertUnwindSafe(run)) {

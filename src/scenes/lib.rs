@@ -12,7 +12,6 @@
 pub mod assembly;
 pub mod bonds;
 pub mod boundary;
-mod budget;
 pub mod levels;
 pub mod checkpoint;
 pub mod contact;

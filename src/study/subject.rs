@@ -333,7 +333,7 @@ impl<'o> Subject<'o> {
         let (specimen, points) = (&self.case.specimen, self.on_points()?);
         let plate = strip(specimen.width, specimen.length());
         let resolution = (points.spacing, points.horizon_ratio, points.lattice_angle);
-        let by = (points.solver, points.symmetry);
+        let by = (Some(points.solver), points.symmetry);
         Ok(uniform_tension_with(by, &plate, &points.bond_law, self.case.material.poisson_ratio, resolution)?.along)
     }
 

@@ -38,13 +38,12 @@ pub fn uniform_tension(
     horizon_ratio: f64,
     angle: f64,
 ) -> Result<Errors> {
-    let by = (SolverKind::Direct, Symmetry::Auto);
-    uniform_tension_with(by, specimen, law, poisson_ratio, (spacing, horizon_ratio, angle))
+    uniform_tension_with((None, Symmetry::Auto), specimen, law, poisson_ratio, (spacing, horizon_ratio, angle))
 }
 
-/// [`uniform_tension`] by any solver, with or without symmetry; a lattice of `(spacing, horizon_ratio, angle)`.
+/// [`uniform_tension`] by any solver, by factorisation without one, with or without symmetry; a lattice of `(spacing, horizon_ratio, angle)`.
 pub fn uniform_tension_with(
-    (solver, symmetry): (SolverKind, Symmetry),
+    (solver, symmetry): (Option<SolverKind>, Symmetry),
     specimen: &Specimen,
     law: &BondLaw,
     poisson_ratio: f64,

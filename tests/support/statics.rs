@@ -55,19 +55,19 @@ pub struct Loaded {
     pub solved: usize,
 }
 
-/// The plate of a case at maximum load.
-pub fn loaded(case: &Case, solver: SolverKind) -> Result<Loaded> {
+/// The plate of a case at maximum load, by factorisation without a solver.
+pub fn loaded(case: &Case, solver: impl Into<Option<SolverKind>>) -> Result<Loaded> {
     let body = body(case);
     let bonds = Bonds::new(&body);
     loaded_by(body, bonds, case.loading.maximum, solver, case.points().symmetry)
 }
 
 /// A plate with these bonds under a load, solved as a whole.
-pub fn loaded_with(body: Body, bonds: Bonds, load: f64, solver: SolverKind) -> Result<Loaded> {
+pub fn loaded_with(body: Body, bonds: Bonds, load: f64, solver: impl Into<Option<SolverKind>>) -> Result<Loaded> {
     loaded_by(body, bonds, load, solver, Symmetry::Off)
 }
 
-fn loaded_by(body: Body, bonds: Bonds, load: f64, solver: SolverKind, symmetry: Symmetry) -> Result<Loaded> {
+fn loaded_by(body: Body, bonds: Bonds, load: f64, solver: impl Into<Option<SolverKind>>, symmetry: Symmetry) -> Result<Loaded> {
     let mut displacement = Vec::new();
     let mut equilibrium = Equilibrium::new(solver, symmetry, &body, &bonds, load);
     let iterations = equilibrium.solve(&body, &bonds, &mut displacement)?;

@@ -58,7 +58,6 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
     let cases = [
         ("thin arms", THIN_ARMS, "model = { spacing_mm = 0.5 }\n"),
         ("long bonds", SQUARE, "model = { spacing_mm = 0.07, horizon_ratio = 12.0 }\n"),
-        ("direct", SQUARE, "model = { spacing_mm = 0.035, solver = \"direct\" }\n"),
     ];
     for (name, specimen, model) in cases {
         let large = case(specimen, model);

@@ -3,13 +3,14 @@
 use std::fs;
 use std::path::Path;
 
+use crate::support::fits::report;
 use perilife_base::input::Folder;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::criterion::Criterion;
 use perilife_calibration::fit::{Bonds, Fit, FitTask, fit};
 use perilife_calibration::power_law::PowerLaw;
-use perilife_calibration::results::{fit_curves_csv, record, report};
+use perilife_calibration::results::{fit_curves, record};
 use perilife_growth::case::record::FittedRecord;
 use tempfile::tempdir;
 
@@ -94,7 +95,7 @@ fn results_have_every_promised_key_and_read_back() {
     assert_eq!((back.a, back.p, back.stress_ratio), (fit.record.constants.a, fit.record.constants.p, 0.2));
     assert!((back.delta_k_min_mpa_sqrt_m - 8.1888).abs() < 1e-4);
 
-    let csv = fit_curves_csv(&fit);
+    let csv = fit_curves(&fit).csv();
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(lines[0], "specimen,crack_length_mm,cycles_measured,cycles_fitted");
     assert_eq!(lines.len(), 1 + 3 * 5, "two specimens and their median:\n{csv}");

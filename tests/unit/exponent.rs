@@ -3,9 +3,10 @@
 use std::fs;
 use std::path::Path;
 
+use crate::support::fits::report;
 use perilife_calibration::calibrate::calibrate;
 use perilife_calibration::case::CalibrationCase;
-use perilife_calibration::results::{record, report};
+use perilife_calibration::results::record;
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, fitted_record};
 use perilife_growth::predict::{Silent, predict};

@@ -3,12 +3,14 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use crate::support::fits::read_back;
 use perilife_base::input::{Document, Folder};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_calibration::laws::case::LawCase;
 use perilife_calibration::laws::fit::LawFit;
 use perilife_calibration::laws::{FitLaw, Given, LawFits, fit_laws};
-use perilife_calibration::results::{law_record, law_report, law_summary, rates_csv};
+use perilife_calibration::record::{FitRecord, RatesRecord};
+use perilife_calibration::results::{law_record, rates_beside_law};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{Silent, predict};
 use perilife_laws::growth_law::nasgro::opening;
@@ -352,12 +354,13 @@ fn predictions_read_the_fitted_law() {
         let text = format!("[measured]\nrates = [\"all.csv\"]\n[material]\nname = \"sheet\"\n[fit]\nlaw = \"{kind}\"\n");
         let calibration = case(&text, &[("all.csv", all)]).unwrap();
         let fits = calibration.fit().unwrap();
-        let report = law_report(&calibration, &fits, 0.1);
+        let found = FitRecord::Rates(Box::new(RatesRecord::of(&calibration, &fits, 0.1)));
+        let report = read_back(&found);
         assert_eq!(report["candidates"].as_array().unwrap().len(), 4);
         assert_eq!(report["law"], kind.name());
         assert!(report["constants"].as_object().unwrap().len() >= 2 && report["material"] == "sheet", "{report}");
-        assert_eq!(rates_csv(&calibration, &fits).lines().count(), calibration.rows.len() + 1);
-        assert!(law_summary(&calibration, &fits).iter().any(|line| line.contains("delta AICc")));
+        assert_eq!(rates_beside_law(&calibration, &fits).rows(), calibration.rows.len());
+        assert!(found.words().iter().any(|line| line.contains("delta AICc")));
         let record = toml::to_string(&law_record(&calibration, &fits)).unwrap();
         let folder = Folder::at_hand([("fitted.toml".to_owned(), record.into_bytes())]);
         let life = |fatigue: &str, set: &[&str]| {

@@ -29,7 +29,7 @@ fn run(wall_s: f64, error_percent: f64) -> Run {
 fn answer(request: &Request) -> Outcome<Run> {
     let has = |word: &str| request.set.iter().any(|key| key.contains(word));
     match () {
-        () if has("direct") => Outcome::Failed("no \"factor\", <none>".to_owned()),
+        () if has("kernel=constant") => Outcome::Failed("no \"factor\", <none>".to_owned()),
         () if has("one_bond") => Outcome::Refused("not with this material".to_owned()),
         () if has("multigrid") => Outcome::Stopped("not done after 120 s".to_owned()),
         () if has("element_free") && request.set.iter().any(|key| key == "model.tolerance_percent=1") => {

@@ -5,8 +5,9 @@ use std::path::Path;
 
 use perilife_base::input::{Document, Folder};
 use perilife_base::units::{MM, MM_PER_CYCLE};
+use perilife_calibration::record::SpecimenRecord;
 use perilife_calibration::sweep::distribution::{Distribution, hypercube, normal_quantile, quantile};
-use perilife_calibration::sweep::scatter::{LawScatter, SpecimenFit, SpecimenFits, slope};
+use perilife_calibration::sweep::scatter::{LawScatter, SpecimenFits, slope};
 use perilife_calibration::sweep::{DrawnCase, Sweep};
 use perilife_growth::case::record::FittedRecord;
 use perilife_growth::case::{Case, fitted_record};
@@ -212,7 +213,11 @@ fn the_scatter_is_that_of_the_specimens() {
         let specimens =
             [(0.05, 0.10), (-0.02, 0.18), (0.08, -0.15), (0.01, 0.02), (-0.06, -0.20), (0.03, -0.05), (-0.1, 0.12), (0.02, 0.0)];
         let at = slope(&record).unwrap();
-        let fits = specimens.map(|(rate, p): (f64, f64)| SpecimenFit { a: middle * (rate - at * p).exp(), p: record.p + p });
+        let fits = specimens.map(|(rate, p): (f64, f64)| SpecimenRecord {
+            a: middle * (rate - at * p).exp(),
+            p: record.p + p,
+            ..SpecimenRecord::default()
+        });
         let of_fits = fits.clone().map(|fit| [fit.a.ln(), fit.p]);
         let scatter = LawScatter::of_specimens(record.clone(), &SpecimenFits { p: record.p, specimens: fits.to_vec() }).unwrap();
         let expected = moments(&specimens.map(|(rate, p)| [record.rate_at_pivot_mm_per_cycle.ln() + rate, record.p + p]));
@@ -248,7 +253,10 @@ fn the_scatter_is_that_of_the_specimens() {
 
 #[test]
 fn too_few_specimens_and_strangers_are_refused() {
-    let fits = |p: f64, count: usize| SpecimenFits { p, specimens: vec![SpecimenFit { a: 7000.0, p: 3.0 }; count] };
+    let fits = |p: f64, count: usize| SpecimenFits {
+        p,
+        specimens: vec![SpecimenRecord { a: 7000.0, p: 3.0, ..SpecimenRecord::default() }; count],
+    };
     let refused = |fits: SpecimenFits| LawScatter::of_specimens(record(), &fits).unwrap_err().to_string();
     assert!(refused(fits(record().p, 4)).contains("4 specimens: are too few"));
     assert!(refused(fits(3.1, 9)).contains("is not the exponent of the record beside it"));

@@ -146,7 +146,7 @@ impl Draw {
                 text += &format!("kernel = \"{}\"\n", self.one_of(&["constant", "conical"]));
             }
             if self.chance(0.5) {
-                text += &format!("solver = \"{}\"\n", self.one_of(&["window", "multigrid", "direct"]));
+                text += &format!("solver = \"{}\"\n", self.one_of(&["window", "multigrid"]));
             } else if self.chance(0.4) {
                 text += &format!("surface_correction = \"{}\"\n", self.one_of(&["none", "volume_and_surface", "balanced"]));
             }

@@ -128,7 +128,7 @@ fn all() -> Vec<Scene> {
             SLANT,
             vec![BONDS, "model.solver=multigrid", "fatigue.ageing=everywhere", "stop.crack_length_mm=28"],
         ),
-        ("direct, two cracks", TWO, vec![BONDS, "model.spacing_mm=2.5", "model.solver=direct", "stop.crack_length_mm=22"]),
+        ("multigrid, two cracks", TWO, vec![BONDS, "model.spacing_mm=2.5", "model.solver=multigrid", "stop.crack_length_mm=22"]),
         ("tips, slant", SLANT, vec![TIPS, SHORT, FINE]),
         ("tips, two cracks, state-based", TWO, vec![TIPS, SHORT, FINE, "model.bond_law=state_based"]),
         ("tips, hole, window", HOLE, vec![TIPS, SHORT, "model.spacing_mm=0.8", "model.solver=window"]),

@@ -1,11 +1,12 @@
 //! Calibration on plates that no handbook has: K along the crack's own path, and the constants that curves were made with found again.
 
+use crate::support::fits::report;
 use perilife_base::input::Folder;
 use perilife_base::units::{GPA, MM, MPA_SQRT_M};
 use perilife_calibration::calibrate::calibrate;
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::fit::Fit;
-use perilife_calibration::results::{record, report};
+use perilife_calibration::results::record;
 use perilife_calibration::search::Constants;
 use perilife_growth::case::Case;
 use perilife_growth::predict::{GoverningCrack, Silent, predict};

@@ -46,7 +46,7 @@ fn a_closed_crack_above_an_open_one_changes_nothing() {
     assert!(both.warnings.iter().any(|warning| warning.contains("presses the crack shut at tip 2, 3")), "{:?}", both.warnings);
 }
 
-/// By the part of the plate that stands for it, by the whole, and by a factorisation, whose time asks for coarse points.
+/// By the part of the plate that stands for it and by the whole.
 #[test]
 fn contact_is_the_same_by_every_solver() {
     let Some(path) = shared("field/mechanics/closed_crack/closed_above.toml") else { return };
@@ -58,8 +58,8 @@ fn contact_is_the_same_by_every_solver() {
         let tips = stress_intensity(&case, &[StressIntensityMethod::Ring]).unwrap();
         tips.iter().map(|tip| [tip.methods[0].intensity.k_i.unwrap(), tip.methods[0].intensity.k_ii.unwrap()]).collect::<Vec<_>>()
     };
-    let reference = factors(SolverKind::Direct, Symmetry::Off);
-    for (solver, symmetry) in [(SolverKind::Window, Symmetry::Auto), (SolverKind::Multigrid, Symmetry::Off)] {
+    let reference = factors(SolverKind::Multigrid, Symmetry::Off);
+    for (solver, symmetry) in [(SolverKind::Window, Symmetry::Auto), (SolverKind::Window, Symmetry::Off)] {
         for (tip, reference) in factors(solver, symmetry).iter().zip(&reference) {
             let differs = (0..2).map(|mode| (tip[mode] - reference[mode]).abs()).fold(0.0, f64::max);
             assert!(differs < 1e-5 * reference[0].max(1e6), "{solver}, {symmetry}: {tip:?}, {reference:?}");

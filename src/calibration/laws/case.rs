@@ -3,8 +3,7 @@
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::candidate::Given;
-use super::{FitLaw, LawFits, fit_laws};
+use super::{FitLaw, Given, LawFits, fit_laws};
 use crate::case::{CalibrationCase, source};
 use crate::outliers::{StepRate, step_rates};
 use perilife_base::error::{Result, input, input_missing};
@@ -86,7 +85,7 @@ impl LawCase {
         let mut rest = document.clone();
         let rates: RatesSlice = slice(&taken(&mut rest.table, "measured", &OF_RATES)?, "measured")?;
         let laws: LawSlice = slice(&taken(&mut rest.table, "fit", &OF_LAWS)?, "fit")?;
-        super::candidate::check_given(&laws.given)?;
+        super::fit::check_given(&laws.given)?;
         let mut case = LawCase {
             name: document.name.clone(),
             rows: Vec::new(),

@@ -11,7 +11,6 @@
 //! smooth curve through each test, a polynomial in ln ΔK: what all laws miss is no scatter. A law whose residuals are twice those of another
 //! is not chosen, whatever the criterion says.
 
-mod candidate;
 pub mod case;
 pub mod fit;
 mod least_squares;
@@ -20,7 +19,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::paris::doubt_of_exponent;
 use crate::rates::threshold;
-pub use candidate::Given;
+pub use fit::Given;
 use fit::{LawFit, fit};
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
@@ -104,7 +103,7 @@ impl LawFits {
 /// Fits every law and chooses the one asked for, or the best.
 /// Errors: [`Error::Mechanics`] where the rates do not tell the law asked for, or none; constants that no law has, or no metal.
 pub fn fit_laws(rows: &[RateRow], wanted: FitLaw, given: &Given) -> Result<LawFits> {
-    candidate::check_given(given)?;
+    fit::check_given(given)?;
     let smooth = Smooth::through(rows);
     let effective = smooth.effective_rates(rows);
     let candidates: Vec<LawFit> = kinds().map(|kind| judged(kind, given, rows, effective)).collect();

@@ -5,23 +5,9 @@ use perilife_base::quadrature::integrate;
 /// Halvings of an interval of quantiles.
 const HALVINGS: usize = 80;
 
-/// Standard normal distribution (Marsaglia 2004, J. Stat. Softw. 11(4)).
+/// Standard normal distribution.
 pub fn normal_cdf(x: f64) -> f64 {
-    // Terms of the series grow as e^(x²/2) before they fall.
-    if x.abs() > 8.0 {
-        return if x > 0.0 { 1.0 } else { 0.0 };
-    }
-    let (mut sum, mut term, mut i) = (x, x, 1.0);
-    loop {
-        i += 2.0;
-        term *= x * x / i;
-        let next = sum + term;
-        if next == sum {
-            break;
-        }
-        sum = next;
-    }
-    0.5 + sum * (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt()
+    0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
 }
 
 /// Probability that `(z + shift) / √(χ²_ν / ν)` stays below t.

@@ -17,6 +17,7 @@ use serde::Deserialize;
 
 use super::design::Scatter;
 use super::distribution::normal_quantile;
+use crate::record::SpecimenRecord;
 use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::units::{GPA, MM, MM_PER_CYCLE, MPA_SQRT_M};
@@ -36,16 +37,7 @@ pub struct SpecimenFits {
     /// Exponent of the record.
     pub p: f64,
     /// Each specimen with its own fit.
-    pub specimens: Vec<SpecimenFit>,
-}
-
-/// A specimen's own fit.
-#[derive(Debug, Clone, Deserialize)]
-pub struct SpecimenFit {
-    /// A at the horizon of the record, 1/cycle; C in m/cycle of a fit by hand calculation.
-    pub a: f64,
-    /// p, or m.
-    pub p: f64,
+    pub specimens: Vec<SpecimenRecord>,
 }
 
 /// Normal distribution of (ln rate at the pivot, exponent) about a record.
@@ -75,7 +67,7 @@ impl LawScatter {
         let of_record = if record.a.is_finite() { record.a } else { record.paris_c_mm_per_cycle * MM_PER_CYCLE };
         let slope = slope(&record)?;
         let rate =
-            |fit: &SpecimenFit| record.rate_at_pivot_mm_per_cycle.ln() + (fit.a / of_record).ln() + slope * (fit.p - record.p);
+            |fit: &SpecimenRecord| record.rate_at_pivot_mm_per_cycle.ln() + (fit.a / of_record).ln() + slope * (fit.p - record.p);
         let pairs: Vec<[f64; 2]> = fits.specimens.iter().map(|fit| [rate(fit), fit.p]).collect();
         if pairs.iter().flatten().any(|value| !value.is_finite()) {
             return Err(input_missing("specimens", "hold an a or p that is no number above zero", "calibrate again"));

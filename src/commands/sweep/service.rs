@@ -11,10 +11,8 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 
-use perilife_base::columns::Table;
 use perilife_base::error::{Error, Result};
 use perilife_calibration::sweep::DrawnCase;
-use perilife_results::curve::{A_N_FILE, Row};
 use perilife_results::output::write_file;
 use perilife_results::provenance::INPUTS;
 use perilife_results::sweep::Outcome;
@@ -149,43 +147,16 @@ async fn fetch(
         return Ok(folder.keep(case, |_| Ok(outcome)));
     }
     let mut files = Vec::new();
-    for FileEntry { name, .. } in patiently(async || store.file_entries(&job.id, Origin::Result).await).await? {
-        if with_files || name == A_N_FILE {
+    if with_files {
+        for FileEntry { name, .. } in patiently(async || store.file_entries(&job.id, Origin::Result).await).await? {
             let content = patiently(async || store.whole_file(&job.id, Origin::Result, &name).await).await?;
             files.extend(content.map(|content| (name, content)));
         }
     }
     Ok(folder.keep(case, |path| {
-        if with_files {
-            files.iter().try_for_each(|file| unpacked(path, file))?;
-        }
-        outcome(case, &job, &files, with_files)
+        files.iter().try_for_each(|file| unpacked(path, file))?;
+        Ok(Outcome::of(case, &job.summary.unwrap_or_default(), with_files))
     }))
-}
-
-/// What the table says, from the a-N curve: the digits of JSON may lose the last bit.
-fn outcome(case: &DrawnCase, job: &Job, files: &[File], has_files: bool) -> Result<Outcome> {
-    let curve = files.iter().find(|(name, _)| name == A_N_FILE);
-    let text = curve.map(|(_, content)| String::from_utf8_lossy(content)).unwrap_or_default();
-    let rows = Row::of_table(&Table::read(&text, Path::new(A_N_FILE))?)?;
-    let summary = job.summary.clone().unwrap_or_default();
-    if let Some(refused) = summary["refused"].as_str() {
-        return Ok(Outcome::failed(case, refused, summary["wall_s"].as_f64().unwrap_or(0.0)));
-    }
-    let warnings = summary["warnings"].as_array().into_iter().flatten();
-    Ok(Outcome {
-        input: case.hash.clone(),
-        // The summary says whether there is an end.
-        life_cycles: rows.last().map(|row| row.cycles).filter(|_| !summary["life_cycles"].is_null()),
-        stop_reason: summary["stop_reason"].as_str().map(str::to_owned),
-        life_is_lower_bound: summary["life_is_lower_bound"].as_bool(),
-        crack_length_final_mm: rows.last().map(|row| row.crack_length_mm),
-        wall_s: summary["wall_s"].as_f64().unwrap_or(0.0),
-        problem: None,
-        try_again: false,
-        warnings: warnings.filter_map(|warning| warning.as_str().map(str::to_owned)).collect(),
-        has_files,
-    })
 }
 
 /// Writes a file of a job; an archive becomes the folder that it was made of.

@@ -3,7 +3,6 @@
 use super::{Case, Model, PointSettings};
 use perilife_nodes::resolution::ElementFreeSettings;
 use perilife_points::budget::{Budget, PointPlate};
-use perilife_points::solver::SolverKind;
 
 /// What a case takes up.
 pub fn of_case(case: &Case) -> Budget {
@@ -21,8 +20,7 @@ pub fn of_case(case: &Case) -> Budget {
 /// What the plate of a case takes up on points, whatever its model.
 pub fn on_points(case: &Case) -> Budget {
     let points = case.points();
-    let is_direct = points.solver == SolverKind::Direct;
     let PointSettings { spacing, horizon_ratio, lattice_angle, .. } = points;
     let plate = PointPlate { specimen: &case.specimen, spacing, horizon_ratio, lattice_angle, refinement: None };
-    plate.budget(points.bond_law.surface_correction, 0.0, is_direct).with_files(case.output)
+    plate.budget(points.bond_law.surface_correction, 0.0, false).with_files(case.output)
 }

@@ -26,10 +26,7 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
             warnings.push("the equilibrium solver did not converge; the curve ends where it last did".to_owned());
         }
         StopReason::NoConvergence => {
-            return no_curve(
-                "the equilibrium solver did not converge",
-                "try model.solver = \"direct\" or another model.spacing_mm",
-            );
+            return no_curve("the equilibrium solver did not converge", "try another model.spacing_mm");
         }
         StopReason::NoGrowth if grown => {
             warnings.push(format!(

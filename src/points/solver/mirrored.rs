@@ -33,7 +33,7 @@ pub(super) struct Mirrored {
     copies: Vec<Copied>,
     /// Whether bonds broke on one side only: then `inner` works on the whole plate.
     is_lost: bool,
-    kind: SolverKind,
+    kind: Option<SolverKind>,
     load: f64,
     tolerance: Option<f64>,
 }
@@ -48,7 +48,7 @@ struct Copied {
 
 impl Mirrored {
     /// The part of a plate under `load` times its unit load; `None` where the plate is not symmetric.
-    pub(super) fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Option<Self> {
+    pub(super) fn new(kind: Option<SolverKind>, body: &Body, bonds: &Bonds, load: f64) -> Option<Self> {
         if !body.boundary.ties.is_empty() {
             // A held sum may reach across a line of symmetry.
             return None;

@@ -39,7 +39,9 @@ pub struct Equilibrium {
 
 impl Equilibrium {
     /// Equilibrium of a body under `load` times its unit load (Pa or N, as the specimen measures load).
-    pub fn new(kind: SolverKind, symmetry: Symmetry, body: &Body, bonds: &Bonds, load: f64) -> Self {
+    /// Without a kind every solve factorises the whole plate, the reference of tests.
+    pub fn new(kind: impl Into<Option<SolverKind>>, symmetry: Symmetry, body: &Body, bonds: &Bonds, load: f64) -> Self {
+        let kind = kind.into();
         let inner = in_pool(|| -> Box<dyn EquilibriumBackend> {
             let mirrored = match symmetry {
                 Symmetry::Auto => Mirrored::new(kind, body, bonds, load),

@@ -42,8 +42,8 @@ struct Grips {
     scale: f64,
 }
 
-/// Load, supports and linear solver of a body under `load` times its unit load.
-pub(super) fn balance(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn EquilibriumBackend> {
+/// Load, supports and linear solver of a body under `load` times its unit load; without a kind by factorisation.
+pub(super) fn balance(kind: Option<SolverKind>, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn EquilibriumBackend> {
     match body.stencil.unknowns {
         3 => Box::new(ConstrainedSystem::<3>::new(kind, body, bonds, load)),
         _ => Box::new(ConstrainedSystem::<2>::new(kind, body, bonds, load)),
@@ -51,7 +51,7 @@ pub(super) fn balance(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -
 }
 
 impl<const N: usize> ConstrainedSystem<N> {
-    fn new(kind: SolverKind, body: &Body, bonds: &Bonds, load: f64) -> Self {
+    fn new(kind: Option<SolverKind>, body: &Body, bonds: &Bonds, load: f64) -> Self {
         let layout = Layout::of(&body.lattice, N);
         let mut fixed: Vec<usize> = Vec::new();
         for &(place, held) in &body.boundary.fixed {
@@ -99,10 +99,10 @@ impl<const N: usize> ConstrainedSystem<N> {
         product.ties = ties;
         let solver: Box<dyn LinearSolver<N>> = match kind {
             // A window is condensed bond by bond, and knows no held sums.
-            SolverKind::Window if is_tied => Box::new(MultigridSolver::for_few_solves(body, bonds, &product)),
-            SolverKind::Window => Box::new(WindowSolver::new(body, bonds, &product)),
-            SolverKind::Multigrid => Box::new(MultigridSolver::new(body, bonds, &product)),
-            SolverKind::Direct => Box::new(DirectSolver::default()),
+            Some(SolverKind::Window) if is_tied => Box::new(MultigridSolver::for_few_solves(body, bonds, &product)),
+            Some(SolverKind::Window) => Box::new(WindowSolver::new(body, bonds, &product)),
+            Some(SolverKind::Multigrid) => Box::new(MultigridSolver::new(body, bonds, &product)),
+            None => Box::new(DirectSolver::default()),
         };
         let (u, points) = (layout.zeros(), body.points.len());
         ConstrainedSystem { product, solver, f, without_pressure: None, grips, u, work: 0.0, points }

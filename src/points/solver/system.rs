@@ -12,7 +12,6 @@ perilife_base::kinds! {
     pub enum SolverKind for "model.solver" {
         Window = "window": "exact updates of the plate condensed onto the points around the crack tips; multigrid for whole solves",
         Multigrid = "multigrid": "conjugate gradients on a matrix-free stencil, preconditioned by crack-aware lattice multigrid",
-        Direct = "direct": "sparse Cholesky factorisation, the reference",
     }
 }
 

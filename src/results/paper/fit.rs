@@ -1,15 +1,18 @@
 //! The report of a fit: law, readings, criteria of ASTM E647, specimen and test, and every reading with its rate.
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::{CHART, PRINT, Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
 use crate::chart::Size;
 use crate::curve::RunTables;
-use crate::pictures::fit::{FitTables, RateFitted, Reading, law_svg};
+use crate::pictures::fit::{FitTables, RateFitted, law_svg};
 use crate::pictures::plate::{Plate, plate_svg};
 use crate::units::shown_result;
 use perilife_base::units::shown::per;
-use perilife_growth::case::record::CurveRecord;
+use perilife_calibration::lack_of_fit::Misfit;
+use perilife_calibration::readings::Reading;
+use perilife_calibration::record::{CandidateRecord, LivesRecord, RatesRecord, SpecimenRecord};
+use perilife_growth::case::record::{FittedLaw, SourceFile};
 
 /// Files whose hashes are printed, at the most.
 const HASHES_MOST: usize = 12;
@@ -29,18 +32,17 @@ const UNRECORDED: [&str; 9] = [
 ];
 
 /// Title, page and version of the program that fitted readings.
-pub fn of_lives(fit: &Value, tables: &FitTables, signed: &Signed) -> (String, String, String) {
-    let fitted_to = fit["fitted_to"].as_str().unwrap_or("readings");
-    let material = fit["test"]["material"].as_str().unwrap_or("");
-    let version = fit["version"].as_str().unwrap_or("").to_owned();
-    let fitted_to = match fit["test"]["specimens"].as_u64() {
-        Some(count) if count > 1 => format!("{fitted_to} of {count} specimens"),
-        _ => fitted_to.to_owned(),
+pub fn of_lives(fit: &LivesRecord, tables: &FitTables, signed: &Signed) -> (String, String, String) {
+    let test = &fit.beside["test"];
+    let material = test["material"].as_str().unwrap_or("");
+    let fitted_to = match test["specimens"].as_u64() {
+        Some(count) if count > 1 => format!("{} of {count} specimens", fit.fitted_to),
+        _ => fit.fitted_to.clone(),
     };
     let name = if material.is_empty() { fitted_to } else { format!("{material}, {fitted_to}") };
-    let mut page = letter(signed, &name, fit["finished"].as_str());
+    let mut page = letter(signed, &name, fit.beside["finished"].as_str());
     page += &format!("<h1>Fatigue crack growth rate: {}</h1>\n", quoted(&name));
-    let (kind, load) = (fit["test"]["specimen_kind"].as_str().unwrap_or(""), fit["test"]["load"].as_str().unwrap_or(""));
+    let (kind, load) = (test["specimen_kind"].as_str().unwrap_or(""), test["load"].as_str().unwrap_or(""));
     page += &format!("<p class=\"lead\">{} specimen, {}.</p>\n", quoted(&kind.replace('_', " ")), quoted(load));
     page += &answer(fit);
     page += "<div class=\"figs\">\n";
@@ -55,34 +57,33 @@ pub fn of_lives(fit: &Value, tables: &FitTables, signed: &Signed) -> (String, St
         "",
     );
     page += "</div>\n";
-    page += &criteria(fit);
+    page += &criteria(&fit.beside["criteria"]);
     page += &signatures(signed, "Tested by");
     page += &details(fit);
     page += &curve(fit);
     page += &specimens(fit);
     page += &readings(&tables.readings);
-    (format!("Fatigue crack growth rate, {name}"), page, version)
+    (format!("Fatigue crack growth rate, {name}"), page, fit.version.clone())
 }
 
-fn answer(fit: &Value) -> String {
-    let number = |key: &str| fit[key].as_f64().unwrap_or(f64::NAN);
-    let ratio = fit["test"]["stress_ratio"].as_f64().map_or_else(|| recorded(None), |value| PRINT.short(value));
+fn answer(fit: &LivesRecord) -> String {
+    let ratio = fit.beside["test"]["stress_ratio"].as_f64().map_or_else(|| recorded(None), |value| PRINT.short(value));
     format!(
         "<div class=\"answer fit\"><div><h2>Growth rate at ΔK = {} MPa√m</h2><p class=\"big\">{} <small>mm/cycle</small></p>\
          <p>± {} % (one standard error)</p></div><div><h2>Exponent m</h2><p class=\"big\">{}</p><p>± {}; C = {}</p></div>\
          <div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p><p>MPa√m, R = {ratio}</p></div></div>\n",
-        PRINT.fixed(number("pivot_delta_k_mpa_sqrt_m"), 2),
-        PRINT.rate(number("rate_at_pivot_mm_per_cycle"), 4),
-        PRINT.fixed(100.0 * number("rate_at_pivot_relative_error"), 1),
-        PRINT.fixed(number("paris_m"), 3),
-        PRINT.fixed(number("paris_m_error"), 3),
-        PRINT.level(number("paris_c_mm_per_cycle"), fit["paris_m"].as_f64(), 4),
-        PRINT.fixed(number("delta_k_min_mpa_sqrt_m") * per("MPa√m"), 2),
-        PRINT.fixed(number("delta_k_max_mpa_sqrt_m") * per("MPa√m"), 2),
+        PRINT.fixed(fit.pivot_delta_k_mpa_sqrt_m, 2),
+        PRINT.rate(fit.rate_at_pivot_mm_per_cycle, 4),
+        PRINT.fixed(100.0 * fit.rate_at_pivot_relative_error.unwrap_or(f64::NAN), 1),
+        PRINT.fixed(fit.paris_m, 3),
+        PRINT.fixed(fit.paris_m_error, 3),
+        PRINT.level(fit.paris_c_mm_per_cycle, Some(fit.paris_m), 4),
+        PRINT.fixed(fit.delta_k_min_mpa_sqrt_m * per("MPa√m"), 2),
+        PRINT.fixed(fit.delta_k_max_mpa_sqrt_m * per("MPa√m"), 2),
     )
 }
 
-fn criteria(fit: &Value) -> String {
+fn criteria(criteria: &Value) -> String {
     let row = |criterion: &Value| {
         let text = |key: &str| prose(criterion[key].as_str().unwrap_or(""));
         let holds = match criterion["holds"].as_bool() {
@@ -99,7 +100,7 @@ fn criteria(fit: &Value) -> String {
             text("remark")
         )
     };
-    let rows: String = fit["criteria"].as_array().into_iter().flatten().map(row).collect();
+    let rows: String = criteria.as_array().into_iter().flatten().map(row).collect();
     let rows = if rows.is_empty() { format!("<tr><td colspan=\"4\">{}</td></tr>", recorded(None)) } else { rows };
     format!(
         "<h2>Criteria of ASTM E647</h2>\n<div class=\"scroll\"><table><thead><tr><th>Criterion</th><th>Asked</th><th>Found</th><th></th></tr></thead>\
@@ -108,8 +109,9 @@ fn criteria(fit: &Value) -> String {
 }
 
 /// Specimen, test, how the law came about, deviations, hashes.
-fn details(fit: &Value) -> String {
-    let test = &fit["test"];
+fn details(fit: &LivesRecord) -> String {
+    let beside = &fit.beside;
+    let test = &beside["test"];
     let text = |key: &str| recorded(test[key].as_str());
     let number = |key: &str, unit: &str| {
         test[key].as_f64().map_or_else(|| recorded(None), |value| format!("{} {unit}", PRINT.short(value)))
@@ -133,7 +135,7 @@ fn details(fit: &Value) -> String {
         terms(&specimen),
         terms(&of_test)
     );
-    let plate: Option<Plate> = fit.get("plate").and_then(|plate| serde_json::from_value(plate.clone()).ok());
+    let plate: Option<Plate> = beside.get("plate").and_then(|plate| serde_json::from_value(plate.clone()).ok());
     let drawing = plate.map_or_else(String::new, |plate| {
         figure(
             &plate_svg(&plate, &RunTables::default(), SPECIMEN),
@@ -142,23 +144,29 @@ fn details(fit: &Value) -> String {
         )
     });
     page += &format!("<div class=\"figs\"><div>{drawing}</div><div>{}</div></div>\n", how(fit));
-    let warnings: Vec<String> =
-        fit["warnings"].as_array().into_iter().flatten().filter_map(|one| Some(quoted(one.as_str()?))).collect();
+    let warnings: Vec<String> = fit.warnings.iter().map(|one| quoted(one)).collect();
     if !warnings.is_empty() {
         page += &format!("<h2>Remarks of the fit</h2>\n<ul class=\"small\"><li>{}</li></ul>\n", warnings.join("</li><li>"));
     }
     page += "<h2>Readings and input as they were read</h2>\n";
-    page += &hashes(files(if fit["inputs"].is_array() { &fit["inputs"] } else { &fit["sources"] }), HASHES_MOST);
-    let commit = fit["commit"]
+    let inputs = beside["inputs"].as_array().into_iter().flatten();
+    let inputs: Vec<(&str, &str)> = inputs.filter_map(|file| Some((file["file"].as_str()?, file["sha256"].as_str()?))).collect();
+    page += &hashes(if inputs.is_empty() { sources(&fit.sources) } else { inputs }.into_iter(), HASHES_MOST);
+    let commit = beside["commit"]
         .as_str()
         .map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())));
-    let version = recorded(fit["version"].as_str());
+    let version = recorded(Some(&fit.version));
     page += &format!("<p class=\"small quiet\">perilife {version}{commit}. Units: mm, MPa√m, mm/cycle.</p>\n");
     page
 }
 
-fn how(fit: &Value) -> String {
-    let test = &fit["test"];
+/// Names and hashes of files.
+fn sources(all: &[SourceFile]) -> Vec<(&str, &str)> {
+    all.iter().map(|file| (&*file.file, &*file.sha256)).collect()
+}
+
+fn how(fit: &LivesRecord) -> String {
+    let test = &fit.beside["test"];
     let formula = match (test["formula"].as_str(), test["formula_source"].as_str()) {
         (Some(formula), Some(source)) => {
             let range = test["formula_range"].as_str().map_or_else(String::new, |range| format!(" ({})", quoted(range)));
@@ -166,8 +174,7 @@ fn how(fit: &Value) -> String {
         }
         _ => "Of a computed plate of this shape; no formula is known for it.".to_owned(),
     };
-    let number = |key: &str| fit[key].as_f64();
-    let life = match (number("life_measured"), number("life_fitted"), number("rms_life_error")) {
+    let life = match (fit.life_measured, fit.life_fitted, fit.rms_life_error) {
         (Some(measured), Some(fitted), Some(rms)) => format!(
             " Life over the window: measured {}, fitted {} cycles; rms over the readings {} %.",
             PRINT.whole(measured),
@@ -176,28 +183,21 @@ fn how(fit: &Value) -> String {
         ),
         _ => String::new(),
     };
-    let window = match (number("from_crack_length_mm"), number("to_crack_length_mm")) {
-        (Some(from), Some(to)) => format!(" Window: a from {} to {} mm.", PRINT.short(from), PRINT.short(to)),
-        _ => String::new(),
-    };
-    let criterion = fit["criterion"].as_str().unwrap_or("").replace('_', " ");
-    let method = match fit["law"].as_str() {
-        Some("curve") => {
+    let window =
+        format!(" Window: a from {} to {} mm.", PRINT.short(fit.from_crack_length_mm), PRINT.short(fit.to_crack_length_mm));
+    let criterion = fit.criterion.name().replace('_', " ");
+    let method = match fit.law {
+        FittedLaw::Curve => {
             "Natural spline of the rates over ln ΔK by restricted maximum likelihood, at the level of the lives; C and m by least \
                           squares on cycles at equal crack length"
         }
-        _ => "Least squares on cycles at equal crack length",
+        FittedLaw::Paris => "Least squares on cycles at equal crack length",
     };
-    let misfit = |end: &str| {
-        let of = &fit["misfit_at_ends"][end];
-        Some(format!(
-            "{} % at ΔK {} to {}",
-            PRINT.fixed(of["rate_over_law_percent"].as_f64()?, 1),
-            PRINT.fixed(of["delta_k_from_mpa_sqrt_m"].as_f64()?, 1),
-            PRINT.fixed(of["delta_k_to_mpa_sqrt_m"].as_f64()?, 1)
-        ))
+    let misfit = |of: Misfit| {
+        let [from, to] = [of.delta_k_from_mpa_sqrt_m, of.delta_k_to_mpa_sqrt_m].map(|k| PRINT.fixed(k, 1));
+        format!("{} % at ΔK {from} to {to}", PRINT.fixed(of.rate_over_law_percent, 1))
     };
-    let ends: Vec<String> = ["low", "high"].into_iter().filter_map(misfit).collect();
+    let ends: Vec<String> = [fit.misfit_at_ends.low, fit.misfit_at_ends.high].into_iter().flatten().map(misfit).collect();
     let ends = if ends.is_empty() { String::new() } else { format!(" Rate over law at the ends: {} MPa√m.", ends.join("; ")) };
     format!(
         "<h2>Stress intensity</h2><p>{formula}</p><h2>Growth rates</h2><p>Seven-point incremental polynomial (Appendix X1); secants where \
@@ -209,8 +209,8 @@ fn how(fit: &Value) -> String {
 }
 
 /// The curve of the rates by its knots.
-fn curve(fit: &Value) -> String {
-    let Ok(curve) = serde_json::from_value::<CurveRecord>(fit["curve"].clone()) else { return String::new() };
+fn curve(fit: &LivesRecord) -> String {
+    let Some(curve) = &fit.curve else { return String::new() };
     let row = |i: usize| {
         format!(
             "<tr><td class=\"n\">{}</td><td class=\"n\">{} ± {} %</td><td class=\"n\">{} ± {}</td></tr>\n",
@@ -230,17 +230,16 @@ fn curve(fit: &Value) -> String {
 }
 
 /// Lives of several specimens, measured and fitted.
-fn specimens(fit: &Value) -> String {
-    let all = fit["specimens"].as_array().map_or(&[][..], Vec::as_slice);
-    if all.len() < 2 {
+fn specimens(fit: &LivesRecord) -> String {
+    if fit.specimens.len() < 2 {
         return String::new();
     }
-    let row = |one: &Value| {
+    let row = |one: &SpecimenRecord| {
         let [measured, fitted, rms] =
-            ["life_measured", "life_fitted", "rms_life_error"].map(|key| one[key].as_f64().unwrap_or(f64::NAN));
-        let name = quoted(one["name"].as_str().unwrap_or(""));
+            [one.life_measured, one.life_fitted, one.rms_life_error].map(|figure| figure.unwrap_or(f64::NAN));
         format!(
-            "<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
+            "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
+            quoted(&one.name),
             PRINT.whole(measured),
             PRINT.whole(fitted),
             PRINT.fixed(100.0 * rms, 2)
@@ -249,13 +248,13 @@ fn specimens(fit: &Value) -> String {
     format!(
         "<h2>Specimens</h2>\n<table class=\"readings\"><thead><tr><th>Specimen</th><th class=\"n\">Life measured, cycles</th>\
          <th class=\"n\">Life fitted, cycles</th><th class=\"n\">rms error of life, %</th></tr></thead><tbody>\n{}</tbody></table>\n",
-        all.iter().map(row).collect::<String>()
+        fit.specimens.iter().map(row).collect::<String>()
     )
 }
 
 /// Every reading.
 fn readings(readings: &[Reading]) -> String {
-    let known = |value: f64, words: String| if value.is_finite() { words } else { "–".to_owned() };
+    let known = |value: Option<f64>, words: fn(f64) -> String| value.map_or_else(|| "–".to_owned(), words);
     let row = |(place, reading): (usize, &Reading)| {
         let out = if reading.left_out.is_empty() { "" } else { " class=\"out\"" };
         let delta_k = reading.delta_k_mpa_sqrt_m.map_or("–".to_owned(), |delta_k| PRINT.fixed(delta_k * per("MPa√m"), 2));
@@ -270,8 +269,8 @@ fn readings(readings: &[Reading]) -> String {
             "<tr{out}><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{delta_k}</td><td class=\"n\">{growth}</td><td>{}</td></tr>\n",
             place + 1,
             quoted(&reading.specimen),
-            known(reading.cycles, PRINT.whole(reading.cycles)),
-            known(reading.crack_length_mm, PRINT.fixed(reading.crack_length_mm * per("mm"), 3)),
+            known(reading.cycles, |cycles| PRINT.whole(cycles)),
+            known(reading.crack_length_mm, |length| PRINT.fixed(length * per("mm"), 3)),
             remarks.join("; ")
         )
     };
@@ -285,25 +284,21 @@ fn readings(readings: &[Reading]) -> String {
 }
 
 /// Title, page and version of the program that fitted rates.
-pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, String, String) {
-    let law = fit["law"].as_str().unwrap_or("law");
-    let material = fit["material"].as_str().filter(|material| !material.is_empty());
-    let version = fit["version"].as_str().unwrap_or("").to_owned();
-    let name = material.map_or_else(|| law.to_owned(), |material| format!("{material}, {law}"));
-    let mut page = letter(signed, &name, fit["finished"].as_str());
+pub fn of_laws(fit: &RatesRecord, rates: &[RateFitted], signed: &Signed) -> (String, String, String) {
+    let law = fit.law.name();
+    let name = if fit.material.is_empty() { law.to_owned() } else { format!("{}, {law}", fit.material) };
+    let mut page = letter(signed, &name, None);
     page += &format!("<h1>Law of fatigue crack growth: {}</h1>\n", quoted(&name));
-    let number = |key: &str| fit[key].as_f64().unwrap_or(f64::NAN);
-    let ratios: Vec<String> =
-        fit["stress_ratios"].as_array().into_iter().flatten().filter_map(Value::as_f64).map(|value| PRINT.short(value)).collect();
+    let ratios: Vec<String> = fit.stress_ratios.iter().copied().map(|value| PRINT.short(value)).collect();
     page += &format!(
         "<div class=\"answer\"><div><h2>Law</h2><p class=\"big\">{}</p><p>fitted to {} rates</p></div><div><h2>Scatter of ln(da/dN)</h2>\
          <p class=\"big\">{}</p><p>root mean square</p></div><div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p>\
          <p>MPa√m, R = {}</p></div></div>\n",
         quoted(law),
-        PRINT.whole(number("rates")),
-        PRINT.fixed(number("rms_log_rate"), 3),
-        PRINT.fixed(number("delta_k_min_mpa_sqrt_m") * per("MPa√m"), 2),
-        PRINT.fixed(number("delta_k_max_mpa_sqrt_m") * per("MPa√m"), 2),
+        PRINT.whole(fit.rates as f64),
+        PRINT.fixed(fit.rms_log_rate.unwrap_or(f64::NAN), 3),
+        PRINT.fixed(fit.delta_k_min_mpa_sqrt_m * per("MPa√m"), 2),
+        PRINT.fixed(fit.delta_k_max_mpa_sqrt_m * per("MPa√m"), 2),
         ratios.join(", ")
     );
     let caption = "Figure 1. Growth rate over ΔK: rates (circles), the law over its range (lines), by stress ratio.";
@@ -312,7 +307,7 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
     page += &candidates(fit);
     page += &signatures(signed, "Tested by");
     page += "<h2>Rates as they were read</h2>\n";
-    page += &hashes(files(&fit["sources"]), HASHES_MOST);
+    page += &hashes(sources(&fit.sources).into_iter(), HASHES_MOST);
     let row = |(place, row): (usize, &RateFitted)| {
         format!(
             "<tr><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
@@ -329,20 +324,12 @@ pub fn of_laws(fit: &Value, rates: &[RateFitted], signed: &Signed) -> (String, S
          <th class=\"n\">ΔK, MPa√m</th><th class=\"n\">da/dN, mm/cycle</th><th class=\"n\">by the law</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
         rates.iter().enumerate().map(row).collect::<String>()
     );
-    (format!("Law of fatigue crack growth, {name}"), page, version)
+    (format!("Law of fatigue crack growth, {name}"), page, fit.version.clone())
 }
 
-/// Names and hashes of files.
-fn files(all: &Value) -> impl Iterator<Item = (&str, &str)> {
-    let of = |file| -> (&str, &str) {
-        let file: &Value = file;
-        (file["file"].as_str().unwrap_or(""), file["sha256"].as_str().unwrap_or("not recorded"))
-    };
-    all.as_array().into_iter().flatten().map(of)
-}
-
-fn constants(fit: &Value) -> String {
-    let fit = &*shown_result(fit);
+fn constants(fit: &RatesRecord) -> String {
+    let both = json!({ "constants": fit.constants, "standard_errors": fit.standard_errors });
+    let fit = &*shown_result(&both);
     let rows = fit["constants"].as_object().into_iter().flatten().map(|(key, value)| {
         let error =
             fit["standard_errors"][key].as_f64().map_or_else(String::new, |error| format!(" ± {}", PRINT.sized(error, 2)));
@@ -352,20 +339,19 @@ fn constants(fit: &Value) -> String {
     format!("<h2>Constants (± one standard error)</h2>\n<table><tbody>\n{}</tbody></table>\n", rows.collect::<String>())
 }
 
-fn candidates(fit: &Value) -> String {
-    let number = |value: &Value, decimals: usize| value.as_f64().map_or("–".to_owned(), |value| PRINT.fixed(value, decimals));
-    let row = |one: &Value| {
-        let name = quoted(one["law"].as_str().unwrap_or(""));
-        let left_out = quoted(one["left_out"].as_str().unwrap_or(""));
+fn candidates(fit: &RatesRecord) -> String {
+    let number = |value: Option<f64>, decimals: usize| value.map_or("–".to_owned(), |value| PRINT.fixed(value, decimals));
+    let row = |one: &CandidateRecord| {
+        let (name, left_out) = (one.law.name(), quoted(one.left_out.as_deref().unwrap_or("")));
         format!(
             "<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{left_out}</td></tr>\n",
-            number(&one["rms_log_rate"], 3),
-            number(&one["delta_aicc"], 1)
+            number(one.rms_log_rate, 3),
+            number(one.delta_aicc, 1)
         )
     };
     format!(
         "<h2>Laws compared</h2>\n<div class=\"scroll\"><table><thead><tr><th>Law</th><th class=\"n\">scatter of ln(da/dN)</th><th class=\"n\">AICc over the least</th>\
          <th>Left out because</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
-        fit["candidates"].as_array().into_iter().flatten().map(row).collect::<String>()
+        fit.candidates.iter().map(row).collect::<String>()
     )
 }

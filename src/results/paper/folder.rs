@@ -2,19 +2,19 @@
 
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::Drawings;
 use crate::curve::{A_N_FILE, CRACK_PATH_FILE, RunTables};
 use crate::kept::{check_listed, listed};
-use crate::pictures::fit::{
-    BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, RateFitted, rates_fitted,
-};
+use crate::pictures::fit::{BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, RateFitted};
 use crate::record::{RESULT_FILE, RunRecord};
 use crate::units::metric_result;
 use perilife_base::columns::Table;
 use perilife_base::error::{Error, InputError, Result, input};
 use perilife_base::input::Opened;
+use perilife_calibration::record::{LivesRecord, RatesRecord};
 
 /// A run or a fit with its tables.
 pub enum Source {
@@ -30,14 +30,14 @@ pub enum Source {
     /// Of `perilife calibrate`, to readings.
     Lives {
         /// `fit.json`.
-        fit: Value,
+        fit: Box<LivesRecord>,
         /// Its tables.
         tables: FitTables,
     },
     /// Of `perilife calibrate`, to rates.
     Laws {
         /// `fit.json`.
-        fit: Value,
+        fit: Box<RatesRecord>,
         /// Its rates.
         rates: Vec<RateFitted>,
     },
@@ -59,9 +59,6 @@ pub fn read(folder: &Path, opened: &Opened) -> Result<Source> {
     Err(input("DIR", folder.display(), problem, "give the --out folder of `perilife predict` or `perilife calibrate`"))
 }
 
-/// A key that has to be there: its name, whether a value is right, and what it should be.
-type Key = (&'static str, fn(&Value) -> bool, &'static str);
-
 struct Files<'f> {
     folder: &'f Path,
     opened: &'f Opened,
@@ -79,13 +76,7 @@ impl Files<'_> {
                 "give the --out folder of `perilife predict` or `perilife calibrate`",
             ));
         }
-        let run: RunRecord = serde_path_to_error::deserialize(&result).map_err(|error| {
-            let path = error.path().to_string();
-            match result.pointer(&format!("/{}", path.replace('.', "/"))) {
-                Some(value) => self.bad(RESULT_FILE, &path, value, &format!("is not as it was written: {}", error.inner())),
-                None => self.damaged(RESULT_FILE, format!("is not as it was written: {}", error.inner())),
-            }
-        })?;
+        let run: RunRecord = self.typed(&result, RESULT_FILE)?;
         if let Some(life) = run.life_cycles.filter(|life| *life < 0.0) {
             return Err(self.bad(RESULT_FILE, "life_cycles", &life.into(), "is below zero"));
         }
@@ -96,31 +87,36 @@ impl Files<'_> {
 
     fn fit(&self) -> Result<Source> {
         let fit = self.object(FIT_FILE, "perilife calibrate")?;
+        let table = |name: &str| self.table(name, &fit, FIT_FILE);
         if fit.get("candidates").is_some() {
-            let wanted: [Key; 3] = [
-                ("law", Value::is_string, "text"),
-                ("constants", Value::is_object, "a table"),
-                ("version", Value::is_string, "text"),
-            ];
-            self.check_keys(&fit, FIT_FILE, &wanted)?;
-            let rates = rates_fitted(&self.table(RATES_FITTED_FILE, &fit, FIT_FILE)?)?;
-            return Ok(Source::Laws { fit, rates });
+            return Ok(Source::Laws { fit: self.typed(&fit, FIT_FILE)?, rates: table(RATES_FITTED_FILE)?.records()? });
         }
-        let is_positive: fn(&Value) -> bool = |value| value.as_f64().is_some_and(|number| number > 0.0);
-        let number = "a number above 0";
-        let wanted = [
-            ("paris_m", is_positive, number),
-            ("paris_c_mm_per_cycle", is_positive, number),
-            ("pivot_delta_k_mpa_sqrt_m", is_positive, number),
-            ("rate_at_pivot_mm_per_cycle", is_positive, number),
-            ("delta_k_min_mpa_sqrt_m", is_positive, number),
-            ("delta_k_max_mpa_sqrt_m", is_positive, number),
-            ("version", Value::is_string, "text"),
+        let record: Box<LivesRecord> = self.typed(&fit, FIT_FILE)?;
+        let figures = [
+            ("paris_m", record.paris_m),
+            ("paris_c_mm_per_cycle", record.paris_c_mm_per_cycle),
+            ("pivot_delta_k_mpa_sqrt_m", record.pivot_delta_k_mpa_sqrt_m),
+            ("rate_at_pivot_mm_per_cycle", record.rate_at_pivot_mm_per_cycle),
+            ("delta_k_min_mpa_sqrt_m", record.delta_k_min_mpa_sqrt_m),
+            ("delta_k_max_mpa_sqrt_m", record.delta_k_max_mpa_sqrt_m),
         ];
-        self.check_keys(&fit, FIT_FILE, &wanted)?;
-        let [curves, band, readings] = [CURVES_FILE, BAND_FILE, READINGS_FILE].map(|name| self.table(name, &fit, FIT_FILE));
-        let tables = FitTables::read(&fit, [&curves?, &band?, &readings?])?;
-        Ok(Source::Lives { fit, tables })
+        if let Some((key, value)) = figures.into_iter().find(|(_, value)| *value <= 0.0) {
+            return Err(self.bad(FIT_FILE, key, &value.into(), "is not a number above 0"));
+        }
+        let tables = FitTables::of(&record, [&table(CURVES_FILE)?, &table(BAND_FILE)?, &table(READINGS_FILE)?])?;
+        Ok(Source::Lives { fit: record, tables })
+    }
+
+    /// A record as its command wrote it.
+    fn typed<R: DeserializeOwned>(&self, object: &Value, name: &str) -> Result<R> {
+        serde_path_to_error::deserialize(object).map_err(|error| {
+            let path = error.path().to_string();
+            let problem = format!("is not as it was written: {}", error.inner());
+            match object.pointer(&format!("/{}", path.replace('.', "/"))) {
+                Some(value) => self.bad(name, &path, value, &problem),
+                None => self.damaged(name, problem),
+            }
+        })
     }
 
     /// A table of the folder, as it was written by what the result beside it says.
@@ -144,13 +140,6 @@ impl Files<'_> {
         let is_object = value.is_object();
         let refuse = || self.damaged(name, format!("is no object that `{command}` wrote"));
         is_object.then(|| metric_result(value)).ok_or_else(refuse)
-    }
-
-    fn check_keys(&self, object: &Value, name: &str, wanted: &[Key]) -> Result<()> {
-        match wanted.iter().find(|(key, is_right, _)| object.get(key).is_none_or(|value| !is_right(value))) {
-            Some((key, _, what)) => Err(self.bad(name, key, &object[*key], &format!("is not {what}"))),
-            None => Ok(()),
-        }
     }
 
     fn bad(&self, name: &str, key: &str, value: &Value, problem: &str) -> Error {

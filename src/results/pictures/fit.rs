@@ -1,6 +1,6 @@
 //! Pictures of a fit to readings: `fit.svg`, crack length over cycles of every specimen, and `da_dn.svg`.
 
-use serde_json::Value;
+use serde::Deserialize;
 
 use super::curves::smooth;
 use crate::axis::Axis;
@@ -9,6 +9,8 @@ use crate::format::short;
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
+use perilife_calibration::readings::Reading;
+use perilife_calibration::record::LivesRecord;
 use perilife_growth::case::record::CurveRecord;
 use perilife_laws::curve::ROWS;
 use perilife_plate::specimen::Point;
@@ -105,47 +107,12 @@ pub fn rates_svg(readings: &[Point], laws: &[LawCurve], size: Size) -> String {
     frame.finish(&format!("Growth rate over the range of K: {} readings and the law over their range", readings.len()))
 }
 
-/// A row of `readings.csv`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Reading {
-    /// Specimen.
-    pub specimen: String,
-    /// Cycles as read.
-    pub cycles: f64,
-    /// Crack length as read, mm.
-    pub crack_length_mm: f64,
-    /// ΔK, MPa√m: in the middle of the readings that the rate was taken from; `None` where no formula gives it.
-    pub delta_k_mpa_sqrt_m: Option<f64>,
-    /// Growth rate, mm/cycle; `None` at the ends of a record.
-    pub da_dn_mm_per_cycle: Option<f64>,
-    /// How the rate was taken.
-    pub method: String,
-    /// What speaks against it.
-    pub marks: String,
-    /// Why it does not count; empty where it does.
-    pub left_out: String,
-}
-
-impl Reading {
-    fn all_of(table: &Table) -> Result<Vec<Self>> {
-        let [cycles, lengths, delta_k, rates] =
-            ["cycles", "crack_length_mm", "delta_k_mpa_sqrt_m", "da_dn_mm_per_cycle"].map(|name| table.get(name));
-        let (cycles, lengths, delta_k, rates) = (cycles?, lengths?, delta_k?, rates?);
-        let [specimens, methods, marks, left_out] = ["specimen", "method", "marks", "left_out"].map(|name| table.text(name));
-        let (specimens, methods, marks, left_out) = (specimens?, methods?, marks?, left_out?);
-        let known = |value: f64| Some(value).filter(|value| !value.is_nan());
-        let row = |row: usize| Reading {
-            specimen: specimens[row].clone(),
-            cycles: cycles[row],
-            crack_length_mm: lengths[row],
-            delta_k_mpa_sqrt_m: known(delta_k[row]),
-            da_dn_mm_per_cycle: known(rates[row]),
-            method: methods[row].clone(),
-            marks: marks[row].clone(),
-            left_out: left_out[row].clone(),
-        };
-        Ok((0..table.rows()).map(row).collect())
-    }
+#[derive(Deserialize)]
+struct CurveRow {
+    specimen: String,
+    crack_length_mm: f64,
+    cycles_measured: f64,
+    cycles_fitted: f64,
 }
 
 /// What the tables of a fit to readings say.
@@ -161,38 +128,25 @@ pub struct FitTables {
 
 impl FitTables {
     /// Of `fit.json` and the tables `fit_curves.csv`, `fit_band.csv` and `readings.csv`.
-    /// Errors: a cell that is not as the fit wrote it, by file, line and what is wrong with it.
-    pub fn read(fit: &Value, [curves, band, readings]: [&Table; 3]) -> Result<Self> {
+    /// Errors: a line that is not as the fit wrote it, by file, line and what is wrong with it.
+    pub fn of(fit: &LivesRecord, [curves, band, readings]: [&Table; 3]) -> Result<Self> {
         let mut all: Vec<Lives> = Vec::new();
-        let [lengths, measured, fitted] = ["crack_length_mm", "cycles_measured", "cycles_fitted"].map(|name| curves.full(name));
-        let (lengths, measured, fitted) = (lengths?, measured?, fitted?);
-        for (row, name) in curves.text("specimen")?.into_iter().enumerate() {
-            if all.last().is_none_or(|curve| curve.name != name) {
-                all.push(Lives { name, ..Lives::default() });
+        for row in curves.records::<CurveRow>()? {
+            if all.last().is_none_or(|curve| curve.name != row.specimen) {
+                all.push(Lives { name: row.specimen, ..Lives::default() });
             }
             if let Some(curve) = all.last_mut() {
-                curve.measured.push([measured[row], lengths[row]]);
-                curve.fitted.push([fitted[row], lengths[row]]);
+                curve.measured.push([row.cycles_measured, row.crack_length_mm]);
+                curve.fitted.push([row.cycles_fitted, row.crack_length_mm]);
             }
         }
-        let [lengths, low, high] = ["crack_length_mm", "cycles_low", "cycles_high"].map(|name| band.full(name));
-        let (lengths, low, high) = (lengths?, low?, high?);
-        let band = (0..lengths.len()).map(|row| [lengths[row], low[row], high[row]]).collect();
-        let figure = |key: &str| fit[key].as_f64();
-        let point = |delta_k: f64, rate: Option<f64>| Some([delta_k, rate?]);
-        let rate = |delta_k: f64| Some(figure("paris_c_mm_per_cycle")? * delta_k.powf(figure("paris_m")?));
-        let ends = ["delta_k_min_mpa_sqrt_m", "delta_k_max_mpa_sqrt_m"].map(figure);
-        let of_power = || ends.into_iter().flatten().filter_map(|delta_k| point(delta_k, rate(delta_k))).collect();
-        let curve = serde_json::from_value::<CurveRecord>(fit["curve"].clone()).ok();
-        let law = LawCurve {
-            name: String::new(),
-            points: curve.as_ref().map_or_else(of_power, along),
-            pivot: figure("pivot_delta_k_mpa_sqrt_m")
-                .filter(|_| curve.is_none())
-                .and_then(|pivot| point(pivot, figure("rate_at_pivot_mm_per_cycle"))),
-        };
-        let fitted_to = fit["fitted_to"].as_str().unwrap_or("").to_owned();
-        Ok(FitTables { readings: Reading::all_of(readings)?, curves: all, band, law, fitted_to })
+        let band = band.records::<[f64; 4]>()?.into_iter().map(|[length, _, low, high]| [length, low, high]).collect();
+        let of_power = |delta_k: f64| [delta_k, fit.paris_c_mm_per_cycle * delta_k.powf(fit.paris_m)];
+        let ends = || [fit.delta_k_min_mpa_sqrt_m, fit.delta_k_max_mpa_sqrt_m].map(of_power).to_vec();
+        let pivot = [fit.pivot_delta_k_mpa_sqrt_m, fit.rate_at_pivot_mm_per_cycle];
+        let (points, pivot) = fit.curve.as_ref().map_or_else(|| (ends(), Some(pivot)), |curve| (along(curve), None));
+        let law = LawCurve { name: String::new(), points, pivot };
+        Ok(FitTables { readings: readings.records()?, curves: all, band, law, fitted_to: fit.fitted_to.clone() })
     }
 
     /// Crack length over cycles.
@@ -209,7 +163,7 @@ impl FitTables {
 }
 
 /// A row of `fit_rates.csv`: a rate that a law was fitted to, and that of the law.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct RateFitted {
     /// Test that it is from.
     pub series: String,
@@ -221,22 +175,6 @@ pub struct RateFitted {
     pub da_dn_mm_per_cycle: f64,
     /// Rate of the law there, mm/cycle.
     pub da_dn_fitted_mm_per_cycle: f64,
-}
-
-/// Rates of a fit of laws over K, by `fit_rates.csv`.
-/// Errors: a cell that is not as the fit wrote it.
-pub fn rates_fitted(table: &Table) -> Result<Vec<RateFitted>> {
-    let [ratios, delta_k, rates, fitted] =
-        ["stress_ratio", "delta_k_mpa_sqrt_m", "da_dn_mm_per_cycle", "da_dn_fitted_mm_per_cycle"].map(|name| table.full(name));
-    let (ratios, delta_k, rates, fitted) = (ratios?, delta_k?, rates?, fitted?);
-    let row = |(row, series): (usize, String)| RateFitted {
-        series,
-        stress_ratio: ratios[row],
-        delta_k_mpa_sqrt_m: delta_k[row],
-        da_dn_mm_per_cycle: rates[row],
-        da_dn_fitted_mm_per_cycle: fitted[row],
-    };
-    Ok(table.text("series")?.into_iter().enumerate().map(row).collect())
 }
 
 /// `da_dn.svg` of a fit of laws over K: rates as circles, the law over the rates of every stress ratio.
