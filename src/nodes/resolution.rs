@@ -337,6 +337,8 @@ pub struct ElementFreeSettings {
     pub tolerance: f64,
     /// Whether the case says how fine they are.
     pub is_given: bool,
+    /// Whether they stay as they are, however K changes when they get finer.
+    pub is_final: bool,
     /// Growth of a tip in an increment at the most, over the length of its crack and the room ahead of it.
     pub step_share: f64,
 }
