@@ -195,7 +195,7 @@ impl Scales {
                 change: [0.5, 2.0],
                 share,
                 // K rises fast between tips that join, and both come.
-                share_to_joint: 0.08,
+                share_to_joint: 0.12,
                 near: [0.0, f64::INFINITY],
                 turning: f64::INFINITY,
                 // Between two equilibria a path is straight.
