@@ -48,6 +48,8 @@ const GAP_SHARE: f64 = 0.3;
 const GAP_SHARE_OF_POINTS: f64 = 0.15;
 /// Percent of the life of a part-through crack at most that K has no stated error for.
 const UNSTATED_MOST: f64 = 25.0;
+/// Rate of a tip over that of the fastest from which it may end the life as well.
+const ALIKE: f64 = 0.8;
 /// Share of a life that must be looked at.
 const LOOKED_AT_LEAST: f64 = 0.3;
 
@@ -219,7 +221,7 @@ fn rim_passed(case: &Case, curve: &[CurvePoint]) -> Option<f64> {
 
 /// What finer nodes say at the cracks of a row.
 struct Difference {
-    /// ln of the rate of the leading tip by them over that of the run.
+    /// ln of the rate of a tip by them over that of the run: of the tips that grow about as fast as the fastest the one that differs most.
     rate: f64,
     /// The same by the loads between which K is linear.
     of_loads: f64,
@@ -248,14 +250,16 @@ impl Difference {
         };
         let own = &rows[row].tips;
         let active = |tip: &usize| own[*tip].state == TipState::Active;
-        let leads = (0..own.len()).filter(active).max_by(|a, b| rate_of(&own[*a]).total_cmp(&rate_of(&own[*b])));
-        let lead = leads.ok_or("no tip is open")?;
+        let ratio = |a: &TipRecord, b: &TipRecord| (rate_of(a) / rate_of(b)).ln();
+        let fastest = (0..own.len()).filter(active).map(|tip| rate_of(&own[tip])).fold(0.0, f64::max);
+        let leads = (0..own.len()).filter(active).filter(|tip| rate_of(&own[*tip]) >= ALIKE * fastest);
+        let off = |tip: &usize| ratio(&tips[*tip], &own[*tip]).abs();
+        let lead = leads.max_by(|a, b| off(a).total_cmp(&off(b))).ok_or("no tip is open")?;
         let (Some(before), Some(now)) = (own[lead].factors, tips[lead].factors) else {
             return Err("K of the leading tip is not known on finer nodes".to_owned());
         };
         let (response, (_, are_all)) = (tips[lead].response, case.loading.lower_loads());
         let coarser = TipRecord { response: if are_all { response } else { response.coarser() }, ..tips[lead] };
-        let ratio = |a: &TipRecord, b: &TipRecord| (rate_of(a) / rate_of(b)).ln();
         let (rate, of_loads) = (ratio(&tips[lead], &own[lead]), ratio(&coarser, &tips[lead]) / 3.0);
         let difference = Difference {
             rate,
