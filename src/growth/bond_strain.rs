@@ -363,7 +363,13 @@ impl CrackGrowth for BondStrain<'_> {
     fn statistics(&self) -> SolverStatistics {
         let RunState { solves, iterations, had_window, .. } = self.run;
         let solver = if had_window { SolverUsed::Window } else { self.equilibrium.used() };
-        SolverStatistics { points_solved: self.equilibrium.points(&self.body), solves, iterations, solver: Some(solver) }
+        SolverStatistics {
+            points_solved: self.equilibrium.points(&self.body),
+            solves,
+            iterations,
+            refined: 0,
+            solver: Some(solver),
+        }
     }
 
     fn warnings(&self) -> Vec<String> {

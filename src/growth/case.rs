@@ -21,7 +21,7 @@ pub use fleet::{Fleet, InitialLength};
 pub(crate) use law_source::ratio_line;
 pub use law_source::{LIBRARY, fitted_record, library_law};
 pub use model::coarse_points;
-pub use model_keys::{finer_nodes, usual_nodes};
+pub use model_keys::{REFINED, finer_nodes, usual_nodes};
 pub use pins::initial_plate;
 pub use read::{RECORD, SECTIONS};
 

@@ -172,6 +172,8 @@ pub struct SolverStatistics {
     pub solves: usize,
     /// Solver iterations.
     pub iterations: usize,
+    /// Times that nodes were made finer than usual.
+    pub refined: u32,
     /// What solved; `None` of a hand calculation.
     pub solver: Option<SolverUsed>,
 }

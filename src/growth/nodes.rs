@@ -8,7 +8,7 @@ use super::cracks::scales::Scales;
 use super::cracks::tip::{AtLoad, CracksState, Reading};
 use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment};
 use super::{Fields, SolverStatistics, State};
-use crate::case::{Case, suits_points};
+use crate::case::{Case, REFINED, suits_points};
 use crate::cross_check::largest_difference;
 use perilife_base::error::{Error, Result};
 use perilife_base::raster::PointGrid;
@@ -23,7 +23,7 @@ use perilife_plate::williams::Elasticity;
 use perilife_points::solver::SolverUsed;
 
 /// Factor by which nodes get finer where K asks for it.
-const FINER: f64 = 1.5;
+const FINER: f64 = REFINED;
 /// Times that they do at the most: of few nodes, and of many.
 const REFINEMENTS_MOST: [usize; 2] = [4, 2];
 /// Nodes from which they are many.
@@ -117,6 +117,9 @@ impl CrackedPlate for NodePlate {
     /// Makes the nodes as fine as K of the initial tips asks for: until it changes by no more than the tolerance when they get finer by
     /// half of themselves. What is then still open is said in a warning.
     fn open(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
+        if self.settings.is_final {
+            return self.solve(case, cracks);
+        }
         self.state.fineness = 1.0 / FINER;
         // Where they are too coarse to tell anything, the next ones say so.
         let mut before = self.factors(case, cracks).unwrap_or_else(|_| vec![[f64::NAN; 2]; cracks.tips.len()]);
@@ -272,7 +275,8 @@ impl CrackedPlate for NodePlate {
 
     fn statistics(&self) -> SolverStatistics {
         let NodeState { solves, nodes, .. } = self.state;
-        SolverStatistics { points_solved: nodes, solves, iterations: 0, solver: Some(SolverUsed::Direct) }
+        let refined = (self.state.fineness.ln() / FINER.ln()).round().max(0.0) as u32;
+        SolverStatistics { points_solved: nodes, solves, iterations: 0, refined, solver: Some(SolverUsed::Direct) }
     }
 
     fn warnings(&self) -> Vec<String> {

@@ -305,6 +305,7 @@ impl CrackedPlate for PointPlate {
             points_solved: self.equilibrium.points(&self.body),
             solves: self.solves,
             iterations: self.iterations,
+            refined: 0,
             solver: Some(self.equilibrium.used()),
         }
     }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::boundary::motions;
 use super::dissection::Factor;
 use super::field::Discretisation;
-use super::front::dot;
+use super::front::columns_product;
 use perilife_base::error::{Error, Result};
 use perilife_plate::specimen::geometry::{along, direction, distance, distance_to_segment, meeting_share, segments_touch};
 use perilife_plate::specimen::{Point, Specimen};
@@ -135,7 +135,7 @@ pub fn press(specimen: &Specimen, plate: &Discretisation, factor: &Factor, y: &[
         let forces = compliance.forces(&active, &free)?;
         let mut sum = y.to_vec();
         for (&k, force) in active.iter().zip(&forces) {
-            sum.iter_mut().zip(&compliance.columns[k]).for_each(|(sum, value)| *sum += force * value);
+            sum.iter_mut().zip(compliance.column(k)).for_each(|(sum, value)| *sum += force * value);
         }
         factor.backward(&mut sum);
         let is_wrong = |k: &usize| match active.binary_search(k) {
@@ -177,8 +177,9 @@ struct Compliance<'a> {
     segments: &'a [Segment],
     factor: &'a Factor,
     unknowns: usize,
-    /// `L⁻¹ Gᵀ`; empty of segments that have not been in contact yet.
-    columns: Vec<Vec<f64>>,
+    /// `L⁻¹ Gᵀ` of the segments that have been in contact so far, one after the other, and which column is that of a segment.
+    columns: Vec<f64>,
+    place: Vec<Option<usize>>,
     products: DMatrix<f64>,
     known: Vec<usize>,
 }
@@ -186,13 +187,18 @@ struct Compliance<'a> {
 impl<'a> Compliance<'a> {
     fn new(segments: &'a [Segment], factor: &'a Factor, unknowns: usize) -> Self {
         let n = segments.len();
-        let (columns, products) = (vec![Vec::new(); n], DMatrix::zeros(n, n));
-        Compliance { segments, factor, unknowns, columns, products, known: Vec::new() }
+        let (place, products) = (vec![None; n], DMatrix::zeros(n, n));
+        Compliance { segments, factor, unknowns, columns: Vec::new(), place, products, known: Vec::new() }
+    }
+
+    /// `L⁻¹ Gᵀ` of a segment; nothing of one that has not been in contact yet.
+    fn column(&self, segment: usize) -> &[f64] {
+        self.place[segment].map_or(&[], |place| &self.columns[place * self.unknowns..(place + 1) * self.unknowns])
     }
 
     /// Resultants with which the active segments neither open nor overlap, N, from their openings without contact, m.
     fn forces(&mut self, active: &[usize], free: &[f64]) -> Result<Vec<f64>> {
-        let new: Vec<usize> = active.iter().copied().filter(|&k| self.columns[k].is_empty()).collect();
+        let new: Vec<usize> = active.iter().copied().filter(|&k| self.place[k].is_none()).collect();
         let load = |&k: &usize| {
             let mut column = vec![0.0; self.unknowns];
             self.segments[k].row.iter().for_each(|&(unknown, weight)| column[unknown as usize] = weight);
@@ -200,11 +206,15 @@ impl<'a> Compliance<'a> {
         };
         let mut found: Vec<Vec<f64>> = new.iter().map(load).collect();
         found.par_chunks_mut(TOGETHER).for_each(|columns| self.factor.forward_together(columns));
-        new.iter().zip(found).for_each(|(&k, column)| self.columns[k] = column);
-        for &k in &new {
+        let before = self.known.len();
+        for (&k, column) in new.iter().zip(&found) {
+            self.place[k] = Some(self.known.len());
             self.known.push(k);
-            let of_k: Vec<f64> = self.known.par_iter().map(|&j| dot(&self.columns[k], &self.columns[j])).collect();
-            for (&j, value) in self.known.iter().zip(of_k) {
+            self.columns.extend_from_slice(column);
+        }
+        let products = columns_product(&self.columns[before * self.unknowns..], &self.columns, self.unknowns);
+        for (&k, of_k) in new.iter().zip(products.chunks_exact(self.known.len().max(1))) {
+            for (&j, &value) in self.known.iter().zip(of_k) {
                 (self.products[(k, j)], self.products[(j, k)]) = (value, value);
             }
         }

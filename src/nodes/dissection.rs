@@ -7,12 +7,16 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
 use super::front::Front;
 use perilife_base::error::{Error, Result};
 use perilife_plate::specimen::Point;
 
 /// Matrices of a part that is not divided, at the most.
 const UNDIVIDED: usize = 40;
+/// Unknowns eliminated in a part below which it is dissolved.
+const OWN_LEAST: u32 = 40;
 /// Distance of a cut from the middle at the most, in shares of the members: around a tip the middle would pass right through fine nodes.
 const OFF_MIDDLE: f64 = 0.4;
 
@@ -39,7 +43,8 @@ struct Plan {
     members: Range<usize>,
     /// Nodes that are eliminated in it.
     own: Vec<u32>,
-    halves: Option<Box<[Plan; 2]>>,
+    /// Its parts, one after the other; none of a part that is not divided.
+    parts: Vec<Plan>,
 }
 
 /// A part of the plate with its factor.
@@ -48,7 +53,7 @@ struct Part {
     front: Front,
     /// Unknowns of the front, those that are eliminated first.
     unknowns: Vec<u32>,
-    halves: Option<Box<[Part; 2]>>,
+    parts: Vec<Part>,
 }
 
 /// Factor L of a positive definite matrix `A = L Lᵀ`.
@@ -87,6 +92,7 @@ impl Factor {
             }
             plan.give(node, &span);
         }
+        plan.merge(first);
         let mut ranks = vec![0; nodes];
         plan.rank(&mut ranks, &mut 0);
         Dissection { members, order, first, ranks, matrices }.part(&plan).map(|(part, _)| Factor(part))
@@ -117,16 +123,36 @@ impl Factor {
 impl Plan {
     /// Gives a node to the smallest part that holds its members.
     fn give(&mut self, node: u32, span: &Range<usize>) {
-        let holds = |half: &&mut Plan| half.members.start <= span.start && span.end <= half.members.end;
-        match self.halves.iter_mut().flat_map(|halves| halves.iter_mut()).find(holds) {
-            Some(half) => half.give(node, span),
+        let holds = |part: &&mut Plan| part.members.start <= span.start && span.end <= part.members.end;
+        match self.parts.iter_mut().find(holds) {
+            Some(part) => part.give(node, span),
             None => self.own.push(node),
         }
     }
 
-    /// Numbers the nodes in the order of their elimination: those of both halves before those of the whole.
+    /// Dissolves parts in which few unknowns are eliminated: their matrix costs more to fill and to take up than it saves.
+    fn merge(&mut self, first: &[u32]) {
+        let unknowns = |own: &[u32]| own.iter().map(|&node| first[node as usize + 1] - first[node as usize]).sum::<u32>();
+        self.parts.iter_mut().for_each(|part| part.merge(first));
+        let of_parts: u32 = self.parts.iter().map(|part| unknowns(&part.own)).sum();
+        let are_whole = self.parts.iter().all(|part| part.parts.is_empty());
+        if !self.parts.is_empty() && are_whole && of_parts < OWN_LEAST {
+            self.parts.drain(..).for_each(|part| self.own.extend(part.own));
+            return;
+        }
+        for part in std::mem::take(&mut self.parts) {
+            if !part.parts.is_empty() && unknowns(&part.own) < OWN_LEAST {
+                self.own.extend(part.own);
+                self.parts.extend(part.parts);
+            } else {
+                self.parts.push(part);
+            }
+        }
+    }
+
+    /// Numbers the nodes in the order of their elimination: those of all parts before those of the whole.
     fn rank(&self, ranks: &mut [u32], next: &mut u32) {
-        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.rank(ranks, next));
+        self.parts.iter().for_each(|part| part.rank(ranks, next));
         for &node in &self.own {
             ranks[node as usize] = *next;
             *next += 1;
@@ -145,12 +171,12 @@ impl Bisection<'_> {
     fn plan(&self, members: &mut [u32], start: usize) -> Plan {
         let range = start..start + members.len();
         if members.len() <= UNDIVIDED {
-            return Plan { members: range, own: Vec::new(), halves: None };
+            return Plan { members: range, own: Vec::new(), parts: Vec::new() };
         }
         let (left, right) = self.halves(members);
         let middle = start + left.len();
         let (left, right) = rayon::join(|| self.plan(left, start), || self.plan(right, middle));
-        Plan { members: range, own: Vec::new(), halves: Some(Box::new([left, right])) }
+        Plan { members: range, own: Vec::new(), parts: vec![left, right] }
     }
 
     /// Divides a part across x or y where its two parts have the fewest unknowns in common, times 1 and how far that is from the middle.
@@ -202,33 +228,32 @@ impl Bisection<'_> {
 
 impl Part {
     fn solve_forward(&self, b: &mut [f64]) {
-        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.solve_forward(b));
+        self.parts.iter().for_each(|part| part.solve_forward(b));
         self.front.solve_forward(&self.unknowns, b);
     }
 
     fn solve_forward_together(&self, sides: &mut [Vec<f64>]) {
-        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.solve_forward_together(sides));
+        self.parts.iter().for_each(|part| part.solve_forward_together(sides));
         self.front.solve_forward_together(&self.unknowns, sides);
     }
 
     fn solve_backward(&self, b: &mut [f64]) {
         self.front.solve_backward(&self.unknowns, b);
-        self.halves.iter().flat_map(|halves| halves.iter()).for_each(|half| half.solve_backward(b));
+        self.parts.iter().for_each(|part| part.solve_backward(b));
     }
 }
 
 impl<M: Matrices> Dissection<'_, M> {
     /// Sums the matrices of a part and eliminates its nodes; gives the nodes that are left as well, by rank.
     fn part(&self, plan: &Plan) -> Result<(Part, Vec<u32>)> {
-        let (mut nodes, mut halves) = (Vec::new(), None);
         let members = &self.order[plan.members.clone()];
-        if let Some(plans) = &plan.halves {
-            let (left, right) = rayon::join(|| self.part(&plans[0]), || self.part(&plans[1]));
-            let both = [left?, right?];
-            both.iter().for_each(|(_, open)| nodes.extend(open));
-            halves = Some(both);
-        } else {
-            members.iter().for_each(|&member| nodes.extend(&self.members[member as usize].nodes));
+        let parts = plan.parts.par_iter().with_max_len(1).map(|part| self.part(part)).collect::<Result<Vec<_>>>()?;
+        let mut nodes = Vec::new();
+        parts.iter().for_each(|(_, open)| nodes.extend(open));
+        if parts.is_empty() {
+            let mut is_new = vec![true; self.ranks.len()];
+            let of_members = members.iter().flat_map(|&member| &self.members[member as usize].nodes);
+            nodes.extend(of_members.filter(|node| std::mem::take(&mut is_new[**node as usize])));
         }
         nodes.sort_unstable_by_key(|&node| self.ranks[node as usize]);
         nodes.dedup();
@@ -242,21 +267,19 @@ impl<M: Matrices> Dissection<'_, M> {
         let open = nodes.split_off(plan.own.len());
         let own = open.first().map_or(unknowns.len(), |&node| places[node as usize] as usize);
         let mut front = Front::new(own, unknowns.len() - own);
-        let halves = match halves {
-            None => {
-                self.matrices.add(members, &places, &mut front)?;
-                None
-            }
-            Some(both) => Some(Box::new(both.map(|(mut half, open)| {
-                let of_node = |&node: &u32| {
-                    let place = places[node as usize];
-                    place..place + self.unknowns(node).len() as u32
-                };
-                front.take(&mut half.front, &open.iter().flat_map(of_node).collect::<Vec<u32>>());
-                half
-            }))),
+        if parts.is_empty() {
+            self.matrices.add(members, &places, &mut front)?;
+        }
+        let take = |(mut part, open): (Part, Vec<u32>)| {
+            let of_node = |&node: &u32| {
+                let place = places[node as usize];
+                place..place + self.unknowns(node).len() as u32
+            };
+            front.take(&mut part.front, &open.iter().flat_map(of_node).collect::<Vec<u32>>());
+            part
         };
-        if front.eliminate() { Ok((Part { front, unknowns, halves }, open)) } else { Err(Error::LossOfStiffness) }
+        let parts = parts.into_iter().map(take).collect();
+        if front.eliminate() { Ok((Part { front, unknowns, parts }, open)) } else { Err(Error::LossOfStiffness) }
     }
 
     fn unknowns(&self, node: u32) -> Range<u32> {

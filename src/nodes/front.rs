@@ -153,6 +153,15 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     rest + sums.iter().sum::<f64>()
 }
 
+/// Products of the columns of A with those of B, all of `size` numbers: those of one column of A after the other.
+pub fn columns_product(a: &[f64], b: &[f64], size: usize) -> Vec<f64> {
+    let [m, n] = [a, b].map(|of| of.len() / size.max(1));
+    let mut product = vec![0.0; m * n];
+    let (a, b) = (MatRef::from_column_major_slice(a, size, m), MatRef::from_column_major_slice(b, size, n));
+    matmul(MatMut::from_column_major_slice_mut(&mut product, n, m), Accum::Replace, b.transpose(), a, 1.0, Par::Seq);
+    product
+}
+
 /// Lower triangle of the columns of `Aᵀ B`, both of `rows` rows of length `n` that follow one another.
 pub fn lower_product(a: &[f64], b: &[f64], [rows, n]: [usize; 2], product: &mut Vec<f64>) {
     product.resize(n * n, 0.0);

@@ -62,11 +62,18 @@ impl Grid {
         let cells = roots.map(|place| Cell { level: 0, place, children: None }).collect();
         let mut grid = Grid { low, size, count, cells };
         let mut next = 0;
+        // What halves a cell has halved the one that it is of, since no reach is less than one: of every halved cell its sources, all first.
+        let mut sources_of: Vec<Vec<u32>> = vec![(0..sources.len() as u32).collect()];
+        let mut parents = vec![0; grid.cells.len()];
         while next < grid.cells.len() && grid.cells.len() <= most {
             let Cell { level, place, .. } = grid.cells[next];
             let (middle, spacing) = (grid.middle(next), grid.spacing(next));
-            if level < LEVELS_MAX && sources.iter().any(|source| source.divides(middle, spacing)) {
+            let divides = |source: &&u32| level < LEVELS_MAX && sources[**source as usize].divides(middle, spacing);
+            let dividing: Vec<u32> = sources_of[parents[next]].iter().filter(divides).copied().collect();
+            if !dividing.is_empty() {
                 grid.cells[next].children = Some(grid.cells.len() as u32);
+                parents.extend([sources_of.len(); 4]);
+                sources_of.push(dividing);
                 for [x, y] in [[0, 0], [1, 0], [0, 1], [1, 1]] {
                     let place = [2 * place[0] + x, 2 * place[1] + y];
                     grid.cells.push(Cell { level: level + 1, place, children: None });

@@ -109,7 +109,8 @@ impl Nodes {
         let mut flanks: Vec<Point> = Vec::new();
         for (k, (&at, &spacing)) in self.at.iter().zip(&self.spacing).enumerate() {
             let reach = FLANK_SHARE * spacing;
-            let piece = cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]);
+            let is_near = |[a, b]: &[Point; 2]| (0..2).all(|i| at[i] > a[i].min(b[i]) - reach && at[i] < a[i].max(b[i]) + reach);
+            let piece = cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]).filter(is_near);
             let nearest = piece.map(|[a, b]| (distance_to_segment(at, a, b), [a, b])).min_by(|a, b| a.0.total_cmp(&b.0));
             let Some((_, [a, b])) = nearest.filter(|near| at_tip[k].is_none() && near.0 < reach) else {
                 parted.push(at, spacing);

@@ -43,6 +43,11 @@ const ACROSS_MEMBER: f64 = 6.0;
 const FACING: f64 = -0.8;
 /// Spacings at a sharp re-entrant corner in the way to the nearest tip, and in the shorter of its sides.
 const AT_CORNER: f64 = 8.0;
+/// Way to the nearest tip over a gap beside a crack from which the gap is away from tips: at four one of two equal cracks has 0.1 % more K, which
+/// the other loses in the end.
+const AWAY: f64 = 6.0;
+/// Spacings across such a gap.
+const ACROSS_GAP_AWAY: f64 = 1.5;
 /// Gap over the way along a crack to its mouth below which it is the wedge between the crack and the rim that it starts from: no load
 /// goes there.
 const WEDGE: f64 = 0.7;
@@ -283,7 +288,11 @@ impl Resolution {
                     if narrow >= reach {
                         continue;
                     }
-                    sources.push(Source::point(along(a, b, middle), narrow / across, RIM_REACH));
+                    let at = along(a, b, middle);
+                    let to_tip = |tip: &Tip| distance(at, lines[tip.end.line].end(tip.end.at_last));
+                    let is_away = tips.iter().map(to_tip).fold(f64::INFINITY, f64::min) > AWAY * narrow;
+                    let across = if is_away { self.fineness * ACROSS_GAP_AWAY } else { across };
+                    sources.push(Source::point(at, narrow / across, RIM_REACH));
                     let stretch = (to - from) * length;
                     // Beside a line that crosses, the gap goes to nothing: what is fine there helps nobody.
                     let is_alongside = || gap(from).min(gap(to)) > ALONGSIDE * narrow;
@@ -337,6 +346,8 @@ pub struct ElementFreeSettings {
     pub tolerance: f64,
     /// Whether the case says how fine they are.
     pub is_given: bool,
+    /// Whether they stay as they are, however K changes when they get finer.
+    pub is_final: bool,
     /// Growth of a tip in an increment at the most, over the length of its crack and the room ahead of it.
     pub step_share: f64,
 }

@@ -32,6 +32,7 @@ pub fn prediction(angle: f64) -> Prediction {
         blocks: curve.len() - 1,
         solves: curve.len(),
         iterations: 9 * curve.len(),
+        refined: 0,
         solver: Some(SolverUsed::Multigrid),
         spacing: SPACING,
         horizon: 3.015 * SPACING,

@@ -30,6 +30,10 @@ const TOLERANCE_PERCENT: f64 = 2.0;
 const TOLERANCE_LEAST: f64 = 0.5;
 /// Nodes over those of a run that asks for nearly that error, by which it is judged.
 const FINER: f64 = 1.5;
+/// Reach of a tip with them, in spacings: with four, bounds are nearly the same.
+const REACH_OF_FINER: f64 = 3.0;
+/// How much finer nodes get each time that K of the initial tips asks for it.
+pub const REFINED: f64 = 1.5;
 /// Share of the error of a life that K may have: its cube or fourth power makes the life.
 const FACTOR_SHARE: f64 = 0.3;
 /// Nodes far from cracks beyond which a spacing was hardly meant for nodes.
@@ -157,16 +161,20 @@ pub fn usual_nodes(specimen: &Specimen) -> ElementFreeSettings {
     nodes_for(specimen, TOLERANCE_PERCENT, basis)
 }
 
-/// Nodes by which K of a case on points or nodes is judged: those for the least error that can be asked for, finer still beside a run that
-/// asks for nearly that.
-pub fn finer_nodes(case: &Case) -> ElementFreeSettings {
+/// Nodes by which K of a case on points is judged, those for the least error that can be asked for; of one on nodes that were made finer
+/// `refined` times: with the radius of influence of those and as fine, finer still beside a run with such a radius.
+pub fn finer_nodes(case: &Case, refined: u32) -> ElementFreeSettings {
     let mut nodes = nodes_for(&case.specimen, TOLERANCE_LEAST, BasisKind::Linear);
-    let is_as_fine = matches!(case.model, Model::Nodes(own) if own.is_given || own.tolerance < 2.0 * nodes.tolerance);
+    let Model::Nodes(own) = case.model else { return nodes };
+    let of_own = own.resolution;
+    let is_as_fine = own.is_given || of_own.support >= nodes.resolution.support;
     let times = if is_as_fine { FINER } else { 1.0 };
-    let far =
-        if let Model::Nodes(own) = case.model { nodes.resolution.far.min(own.resolution.far) } else { nodes.resolution.far };
-    nodes.resolution.far = far / times;
+    nodes.resolution.far = nodes.resolution.far.min(of_own.far) / times;
     nodes.resolution.hold *= times;
+    nodes.resolution.reach = REACH_OF_FINER.max(of_own.reach);
+    nodes.resolution.support = nodes.resolution.support.max(of_own.support);
+    nodes.resolution = nodes.resolution.finer(REFINED.powi(refined as i32));
+    nodes.is_final = true;
     nodes
 }
 
@@ -196,6 +204,7 @@ fn nodes_for(specimen: &Specimen, percent: f64, basis: BasisKind) -> ElementFree
         step_share,
         tolerance: percent / 100.0 * FACTOR_SHARE,
         is_given: false,
+        is_final: false,
     }
 }
 

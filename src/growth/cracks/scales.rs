@@ -66,6 +66,8 @@ pub struct StepScales {
     pub last: [f64; 2],
     /// How near a rim is that is reached in one step though it lies aside.
     pub last_aside: f64,
+    /// Slack of a tip by far slower than the fastest, at the most.
+    pub slack_most: f64,
 }
 
 /// Scales of directions.
@@ -140,6 +142,7 @@ impl Scales {
                 // What is left of the plate there is nearly a mechanism, and says nothing about its life.
                 last: [4.0 * horizon, 0.0],
                 last_aside: 4.0 * horizon,
+                slack_most: 1.0,
             },
             steering: SteeringScales {
                 // Steps are short where a crack curves; a line through more than that would trail behind. Like all lengths here no multiple
@@ -192,7 +195,7 @@ impl Scales {
                 change: [0.5, 2.0],
                 share,
                 // K rises fast between tips that join, and both come.
-                share_to_joint: 0.08,
+                share_to_joint: 0.12,
                 near: [0.0, f64::INFINITY],
                 turning: f64::INFINITY,
                 // Between two equilibria a path is straight.
@@ -201,6 +204,7 @@ impl Scales {
                 share_left: 2e-3,
                 last: [4.0 * Discretisation::size(&case.specimen), 2e-3 * far],
                 last_aside: 2e-3 * far,
+                slack_most: 4.0,
             },
             steering: SteeringScales {
                 memory_steps: 0.0,

@@ -8,6 +8,7 @@
 //! ([`super::kink::cycles`]).
 
 use super::ahead;
+use super::scales::StepScales;
 use super::{CrackedPlate, Cracks, Tip};
 use perilife_base::quadrature::integrate;
 
@@ -16,6 +17,14 @@ const CURVATURE_SHARE_MOST: f64 = 0.02;
 /// Growth of a tip over that of the fastest, at the most, where rates are extrapolated.
 const SHARE_MOST: f64 = 1.5;
 
+impl StepScales {
+    /// By how much longer the step of a slow tip may be than its surroundings allow, the fastest growing at `fastest`, m/cycle: a tip in the
+    /// shadow of another crack hardly counts, and would halve the steps of all again and again.
+    fn slack(&self, fastest: f64, tip: &Tip) -> f64 {
+        (fastest / tip.rate).sqrt().min(self.slack_most)
+    }
+}
+
 impl<P: CrackedPlate> Cracks<'_, P> {
     /// Growth of every tip in the next increment, m, and until the crack has the length `until` at the latest.
     pub(super) fn next_lengths(&self, fastest: usize, until: f64) -> Vec<f64> {
@@ -23,7 +32,9 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let of_lead = |(tip, length): (&Tip, f64)| length * lead.rate / tip.rate;
         let growing = || self.state.tips.iter().enumerate().filter(|(_, tip)| tip.is_growing());
         let last = |index: usize| self.last_way(index).map(|way| way.length);
-        let most = |index: usize| last(index).unwrap_or_else(|| self.limit(index));
+        let most = |index: usize| {
+            last(index).unwrap_or_else(|| self.limit(index) * self.scales.step.slack(lead.rate, &self.state.tips[index]))
+        };
         let limits: Vec<(f64, bool)> =
             growing().map(|(index, tip)| (of_lead((tip, most(index))), last(index).is_some())).collect();
         let limit = limits.iter().map(|limit| limit.0).fold(f64::INFINITY, f64::min);
@@ -78,7 +89,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     pub(super) fn first_step(&self) -> f64 {
         let Some(fastest) = self.fastest().map(|lead| self.state.tips[lead].rate) else { return 0.0 };
         let of_tip = |(index, tip): (usize, &Tip)| {
-            let most = self.limit(index) * fastest / tip.rate;
+            let most = self.limit(index) * self.scales.step.slack(fastest, tip) * fastest / tip.rate;
             if tip.begins_kink() { most } else { self.scales.step.first_share * most }
         };
         let growing = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.is_growing());

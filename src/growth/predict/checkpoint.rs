@@ -18,7 +18,7 @@ use perilife_base::sealed::{Seal, dense, refused, sparse};
 
 /// First bytes of a checkpoint.
 pub const SIGN: &[u8] = b"perilife checkpoint\n";
-const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 7 };
+const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 8 };
 
 /// State of a run at one of the places where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

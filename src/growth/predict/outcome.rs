@@ -30,6 +30,8 @@ pub struct RunFigures {
     pub solves: usize,
     /// Solver iterations in all (0 for a direct solver).
     pub iterations: usize,
+    /// Times that nodes were made finer than usual.
+    pub refined: u32,
     /// What solved; `None` of a hand calculation.
     pub solver: Option<SolverUsed>,
     /// Actual lattice spacing, m.
@@ -54,6 +56,7 @@ impl RunFigures {
             blocks,
             solves: statistics.solves,
             iterations: statistics.iterations,
+            refined: statistics.refined,
             solver: statistics.solver,
             spacing: body.map_or(f64::NAN, |body| body.lattice.spacing),
             horizon: body.map_or(f64::NAN, Body::horizon),

@@ -7,7 +7,9 @@ use super::{Point, Slot, Specimen};
 /// Distance between two points, m.
 #[inline]
 pub fn distance(a: Point, b: Point) -> f64 {
-    (b[0] - a[0]).hypot(b[1] - a[1])
+    let [x, y] = [b[0] - a[0], b[1] - a[1]];
+    // Not `hypot`, which guards against an overflow that there cannot be.
+    (x * x + y * y).sqrt()
 }
 
 /// Point at share `t` of the way from `a` to `b`.
