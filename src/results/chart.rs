@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use super::axis::Axis;
+use super::labels::{Box2, place_labels};
 use super::output::write_file;
 use super::specimen_picture::sketch::Sketch;
 use perilife_base::error::Result;
@@ -21,6 +22,9 @@ pub const INK: &str = "#12171d";
 const QUIET: &str = "#55606d";
 const AXIS: &str = "#7b8794";
 const GRID: &str = "#e3e7ec";
+/// Width of a broad line, px, and its cover.
+const BROAD: f64 = 7.0;
+const FAINT: &str = "66";
 /// Colours of several series, which differ in lightness too.
 pub const COLOURS: [&str; 6] = [COMPUTED, SECOND, "#1b8a6b", "#8a4fa3", NOTE, "#4fa3d1"];
 /// Size of a chart in a file of its own, px, and of its numbers.
@@ -42,6 +46,8 @@ pub struct Size {
 pub enum Mark {
     /// Computed: a line through the points.
     Line,
+    /// What counts of several lines: a broad one below them.
+    Broad,
     /// Straight relation or bound: a dashed line.
     Dashes,
     /// Measured: open circles.
@@ -61,11 +67,6 @@ pub struct Series {
     pub mark: Mark,
 }
 
-/// Crack length in mm against cycles, both linear.
-pub fn crack_length(path: &Path, title: &str, series: &[Series]) -> Result<()> {
-    linear(path, title, ["Cycles N", "Crack length a, mm"], series)
-}
-
 /// Any quantities, both linear; `names` says what stands along x and y in which units.
 pub fn linear(path: &Path, title: &str, names: [&str; 2], series: &[Series]) -> Result<()> {
     let axes = [Axis::linear(values(series, |p| p.0)), Axis::linear(values(series, |p| p.1))];
@@ -80,8 +81,8 @@ pub fn growth_rate(path: &Path, title: &str, series: &[Series]) -> Result<()> {
     let positive: Vec<Series> = series
         .iter()
         .map(|s| {
-            let points = s.points.iter().copied().filter(|(x, y)| *x > 0.0 && *y > 0.0).collect();
-            Series { points, ..s.clone() }
+            let or_gap = |(x, y): &(f64, f64)| if *x > 0.0 && *y > 0.0 { (*x, *y) } else { (f64::NAN, f64::NAN) };
+            Series { points: s.points.iter().map(or_gap).collect(), ..s.clone() }
         })
         .collect();
     let axes = [Axis::logarithmic(values(&positive, |p| p.0)), Axis::logarithmic(values(&positive, |p| p.1))];
@@ -111,8 +112,9 @@ fn draw(path: &Path, title: &str, axes: [Axis; 2], names: [&str; 2], series: &[S
     for (series, colour) in series.iter().zip(colours) {
         let points: Vec<Point> = series.points.iter().map(|(x, y)| [*x, *y]).collect();
         match series.mark {
-            Mark::Line => frame.line(&points, colour, 2.0, ""),
-            Mark::Dashes => frame.line(&points, colour, 2.0, "8 5"),
+            Mark::Line => frame.pieces(&points, colour, 2.0, ""),
+            Mark::Broad => frame.pieces(&points, &format!("{colour}{FAINT}"), BROAD, ""),
+            Mark::Dashes => frame.pieces(&points, colour, 2.0, "8 5"),
             Mark::Circles => frame.circles(&points),
             Mark::Dots => frame.dots(&points, colour),
         }
@@ -127,8 +129,6 @@ pub struct Frame {
     /// Left, top, right and bottom of the plot, px.
     room: [f64; 4],
     size: Size,
-    /// Places at which names stand beside curves.
-    named: Vec<Point>,
 }
 
 /// Width of words, px, about.
@@ -152,7 +152,7 @@ impl Frame {
         }
         top = Self::legend(&mut sketch, legend, size, top);
         let room = [widest + 1.4 * text, top + 2.5 * text, size.width - 1.2 * text, size.height - 3.8 * text];
-        let mut frame = Frame { sketch, axes: [x, y], room, size, named: Vec::new() };
+        let mut frame = Frame { sketch, axes: [x, y], room, size };
         frame.draw_axes(names);
         frame
     }
@@ -179,6 +179,7 @@ impl Frame {
             let height = top - 0.35 * text;
             match mark {
                 Mark::Line => sketch.path(&[[from, height], [to, height]], colour, 2.0, ""),
+                Mark::Broad => sketch.path(&[[from, height], [to, height]], &format!("{colour}{FAINT}"), BROAD, ""),
                 Mark::Dashes => sketch.path(&[[from, height], [to, height]], colour, 2.0, "8 5"),
                 Mark::Circles => sketch.ring([middle, height], 3.0, colour, 1.1),
                 Mark::Dots => sketch.dot([middle, height], 2.5, colour),
@@ -335,16 +336,25 @@ impl Frame {
         self.sketch.name([left + 6.0, bottom - 0.5 * text], words, "start", text, NOTE);
     }
 
-    /// The name of a curve right of its last point, moved down where another one stands.
-    pub fn name(&mut self, point: Point, words: &str, colour: &str) {
-        let text = self.size.text;
-        for [x, mut y] in self.pixels(&[point]) {
-            while self.named.iter().any(|other| (other[1] - y).abs() < 1.05 * text && (other[0] - x).abs() < 5.0 * text) {
-                y += 0.3 * text;
-            }
-            self.named.push([x, y]);
-            self.sketch.name([x + 6.0, y + 0.35 * text], words, "start", text, colour);
+    /// Names of curves beside their last points, where they cover no curve and no other name.
+    pub fn names(&mut self, named: &[(String, Point, &str)], curves: &[Vec<Point>]) {
+        let ([left, top, _, bottom], text) = (self.room, self.size.text);
+        let room = Box2 { low: [left, top], high: [self.size.width, bottom] };
+        let ends: Vec<Point> = named.iter().map(|(_, end, _)| self.at(*end)).collect();
+        let line: Vec<Point> = curves.iter().flat_map(|curve| self.pixels(curve).into_iter().chain([[f64::NAN; 2]])).collect();
+        let sizes: Vec<Point> = named.iter().map(|(words, ..)| [width_of(words, text), 1.1 * text]).collect();
+        let all: Vec<usize> = (0..named.len()).collect();
+        for (place, (words, _, colour)) in place_labels(room, &ends, &line, &all, &sizes).into_iter().zip(named) {
+            self.sketch.name([place.low[0], place.centre()[1] + 0.35 * text], words, "start", text, colour);
         }
+    }
+
+    /// A dashed line up at a value along x, named beside its foot.
+    pub fn mark(&mut self, x: f64, name: &str) {
+        let ([_, top, _, bottom], text) = (self.room, self.size.text);
+        let x = self.at([x, self.axes[1].ends()[0]])[0];
+        self.sketch.path(&[[x, top], [x, bottom]], NOTE, 1.0, "3 3");
+        self.sketch.name([x + 5.0, bottom - 0.5 * text], name, "start", text, NOTE);
     }
 
     /// Puts what was drawn beside other charts into a picture, at a pixel.

@@ -200,16 +200,13 @@ impl Judged {
     fn draw(&self, folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
         let tables = RunTables::of(&self.kept[0].0, &self.kept[1].0)?;
         let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
-        put("a_n.svg", &a_n_svg(&self.record, &tables, LARGE))?;
-        if let Some(k) = k_svg(&self.record, &tables, LARGE) {
-            put("k.svg", &k)?;
-        }
-        // Of the tip that leads, whose rate the law is of.
-        let points: Vec<(f64, f64)> =
-            prediction.curve.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.growth_rate / MM_PER_CYCLE)).collect();
-        if points.iter().any(|(x, y)| *x > 0.0 && *y > 0.0) {
-            let rates = Series { name: "predicted, one point per cycle block".to_owned(), mark: Mark::Dots, points };
-            chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &[rates])?;
+        // Where nothing grew there is no curve.
+        if tables.rows.len() > 1 {
+            put("a_n.svg", &a_n_svg(&self.record, &tables, LARGE))?;
+            if let Some(k) = k_svg(&self.record, &tables, LARGE) {
+                put("k.svg", &k)?;
+            }
+            self.draw_rates(folder, case, prediction)?;
         }
         if let Some(spectrum) = &case.loading.spectrum {
             put("spectrum.svg", &spectrum_svg(spectrum, LARGE))?;
@@ -231,7 +228,7 @@ impl Judged {
                 .write(&folder.join("damage.svg"))?;
         }
         match stress_field(case, prediction) {
-            Ok(Some(field)) => put("stress.svg", &stress_svg(&field, &case.material))?,
+            Ok(Some(field)) => put("stress.svg", &stress_svg(&field, &case.material, &case.specimen.holes))?,
             Ok(None) => {}
             // The answer counts without this picture.
             Err(error) => tracing::warn!("stress.svg is left out: {error}"),
@@ -243,6 +240,26 @@ impl Judged {
             }
         }
         Ok(())
+    }
+
+    /// `da_dn.svg`: rates of the tip that leads, whose rate the law is of, within the ΔK of the tests of the law and outside.
+    fn draw_rates(&self, folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
+        let rates = prediction.curve.iter().map(|row| (row.delta_k / MPA_SQRT_M, row.growth_rate / MM_PER_CYCLE));
+        let rates: Vec<(f64, f64)> = rates.filter(|(k, rate)| *k > 0.0 && *rate > 0.0).collect();
+        let is_tested = |k: f64| self.record.law.range().is_none_or(|[low, high]| (low..=high).contains(&k));
+        let of = |tested: bool| {
+            rates.iter().map(move |&(k, rate)| if is_tested(k) == tested { (k, rate) } else { (f64::NAN, f64::NAN) })
+        };
+        let name = if self.record.law.range().is_some() { "within the ΔK of the tests" } else { "ΔK of the tests not known" };
+        let series = [
+            Series { name: format!("predicted, {name}"), mark: Mark::Line, points: of(true).collect() },
+            Series { name: "predicted, outside".to_owned(), mark: Mark::Dashes, points: of(false).collect() },
+        ];
+        let shown: Vec<Series> = series.into_iter().filter(|series| series.points.iter().any(|(k, _)| k.is_finite())).collect();
+        if shown.is_empty() {
+            return Ok(());
+        }
+        chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &shown)
     }
 
     /// The result in words.
@@ -418,11 +435,17 @@ fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> 
         mark,
         points: curve.iter().filter_map(|s| Some((s.crack_length / MM, pick(s)? / size))).collect(),
     };
+    let has = |pick: fn(&Strength) -> Option<f64>| curve.iter().any(|strength| pick(strength).is_some());
+    let name = match [has(|s| s.by_toughness), has(|s| s.by_net_section)] {
+        [true, true] => "residual strength, the lesser of both",
+        [true, false] => "residual strength by toughness alone: no yield strength given",
+        [false, _] => "residual strength by net-section yield alone: no toughness given",
+    };
     let all = [
-        series("residual strength", Mark::Line, &|s| Some(s.load())),
-        series("by toughness", Mark::Dashes, &|s| s.by_toughness),
+        series(name, Mark::Broad, &|s| Some(s.load())),
+        series("by toughness", Mark::Line, &|s| s.by_toughness),
         series("by net-section yield", Mark::Dashes, &|s| s.by_net_section),
-        series("maximum load of the cycle", Mark::Dots, &|s| Some(case.loading.at(s.crack_length))),
+        series("maximum load of the cycle", Mark::Line, &|s| Some(case.loading.at(s.crack_length))),
         series("required strength", Mark::Dashes, &|s| case.stop.required.map(|factor| factor * case.loading.at(s.crack_length))),
     ];
     let known: Vec<Series> = all.into_iter().filter(|series| !series.points.is_empty()).collect();

@@ -1,6 +1,7 @@
 //! Charts, the damage picture and ParaView files of the made-up run.
 
 use std::fs;
+use std::path::Path;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -23,6 +24,7 @@ use tempfile::tempdir;
 
 use crate::support::{made_up_case, made_up_run};
 
+const LENGTHS: [&str; 2] = ["Cycles N", "Crack length a, mm"];
 /// Lattice angles that matter: the image and the mesh.
 const ANGLES: [f64; 2] = [0.0, 0.35];
 
@@ -43,7 +45,7 @@ fn charts_name_axes_units_and_series() {
             words.iter().for_each(|word| assert!(svg.contains(word), "{mark:?}: {word}"));
             assert!(svg.contains("width=\"900\"") && svg.contains("viewBox"), "shown at its size");
         };
-        chart::crack_length(&path, "plate", &[series("predicted", mark, |r| (r.cycles, r.crack_length_mm))]).unwrap();
+        chart::linear(&path, "plate", LENGTHS, &[series("predicted", mark, |r| (r.cycles, r.crack_length_mm))]).unwrap();
         has(&["plate", "predicted", "Cycles N", "Crack length a, mm", "500\u{2009}000"]);
         chart::growth_rate(&path, "plate", &[series("rates", mark, |r| (r.delta_k_mpa_sqrt_m, r.da_dn_mm_per_cycle))]).unwrap();
         has(&["rates", "MPa√m", "mm/cycle", "10⁻⁵"]);
@@ -61,7 +63,8 @@ fn charts_survive_what_has_no_extent() {
         vec![(5.0, 5.0); 3],
     ];
     for points in points {
-        for draw in [chart::crack_length, chart::growth_rate] {
+        type Draw = fn(&Path, &str, &[Series]) -> perilife_base::error::Result<()>;
+        for draw in [(|path, title, series| chart::linear(path, title, LENGTHS, series)) as Draw, chart::growth_rate] {
             for mark in [Mark::Line, Mark::Dashes, Mark::Circles] {
                 draw(&dir.path().join("chart.svg"), "", &[Series { name: "n".into(), points: points.clone(), mark }]).unwrap();
             }

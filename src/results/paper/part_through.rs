@@ -68,9 +68,11 @@ fn lengths_svg(tables: &RunTables) -> Option<String> {
     let all = along.iter().chain(&deep).map(|point| point[1]).chain([0.0]);
     let axes = [Axis::linear_in(cycles().chain([0.0]), 6.0), Axis::linear_in(all, 5.0)];
     let mut frame = Frame::with_names(LENGTHS, axes, ["Cycles N", "Length c and depth a, mm"], 3);
-    for (points, colour, dash, name) in [(&along, COMPUTED, "", "c"), (&deep, SECOND, "6 3", "a")] {
-        frame.line(points, colour, 2.0, dash);
-        points.last().into_iter().for_each(|end| frame.name(*end, name, colour));
-    }
+    let lines = [(along, COMPUTED, "", "c"), (deep, SECOND, "6 3", "a")];
+    lines.iter().for_each(|(points, colour, dash, _)| frame.line(points, colour, 2.0, dash));
+    let end =
+        |(points, colour, _, name): &(Vec<Point>, &'static str, _, &str)| Some(((*name).to_owned(), *points.last()?, *colour));
+    let names: Vec<(String, Point, &str)> = lines.iter().filter_map(end).collect();
+    frame.names(&names, &lines.map(|(points, ..)| points));
     Some(frame.finish("Length c on the face and depth a of the crack in mm over cycles"))
 }

@@ -154,11 +154,15 @@ fn figures(run: &RunRecord, tables: &RunTables, plate: Option<&Plate>) -> String
         ),
         None => format!("<p class=\"tall\">Figure 1, the plate: {}</p>", recorded(None)),
     };
+    if tables.rows.len() < 2 {
+        return format!("<div class=\"figs run\">\n{figures}<p>Figures 2 and 3: no crack grew.</p></div>\n");
+    }
     figures += &figure(&a_n_svg(run, tables, CHART), &format!("Figure 2. Crack length over cycles{band}."), "");
     figures += &match k_svg(run, tables, CHART) {
         Some(svg) => {
             let hatched = if svg.contains("of the law") { "; hatched: outside the ΔK of the law" } else { "" };
-            figure(&svg, &format!("Figure 3. K at maximum load over crack length{hatched}."), "")
+            let over = if run.leading_crack().is_some() { "growth of the tips" } else { "crack length" };
+            figure(&svg, &format!("Figure 3. K at maximum load over {over}{hatched}."), "")
         }
         None => format!("<p>Figure 3, K over crack length: {}; bonds drive the crack by their own strain.</p>", recorded(None)),
     };

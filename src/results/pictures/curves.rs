@@ -1,7 +1,7 @@
 //! `a_n.svg` and `k.svg` of a run.
 
 use crate::axis::Axis;
-use crate::chart::{COMPUTED, Frame, SECOND, Size};
+use crate::chart::{COLOURS, COMPUTED, Frame, SECOND, Size};
 use crate::curve::RunTables;
 use crate::record::RunRecord;
 use crate::specimen_picture::sketch::Sketch;
@@ -9,6 +9,8 @@ use perilife_base::monotone::Monotone;
 use perilife_growth::predict::StopReason;
 use perilife_plate::specimen::Point;
 
+/// Colour of K at the deepest point of a crack that is not through.
+const THIRD: &str = COLOURS[2];
 /// Share of an area that the band of the specimens covers with its colour.
 const BAND: f64 = 0.18;
 /// Parts of the cubic between two rows.
@@ -81,8 +83,13 @@ fn parts(pixels: f64, each: f64) -> f64 {
     (pixels / each).clamp(2.0, 6.0)
 }
 
+/// Colour of the curves of a tip.
+fn colour_of(tip: usize) -> &'static str {
+    COLOURS[tip % COLOURS.len()]
+}
+
 /// Names of the tips whose curves end within a fiftieth of the chart of each other, so that both could not be told apart.
-fn tips_together(ends: &[(usize, Point)], spans: Point) -> Vec<(String, Point)> {
+fn tips_together(ends: &[(usize, Point)], spans: Point) -> Vec<(String, Point, &'static str)> {
     let mut groups: Vec<(Vec<usize>, Point)> = Vec::new();
     for (tip, end) in ends {
         let is_near = |(_, other): &&mut (Vec<usize>, Point)| (0..2).all(|i| (other[i] - end[i]).abs() < 0.02 * spans[i]);
@@ -95,7 +102,7 @@ fn tips_together(ends: &[(usize, Point)], spans: Point) -> Vec<(String, Point)> 
         [tip] => format!("tip {tip}"),
         tips => format!("tips {}", tips.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
     };
-    groups.into_iter().map(|(tips, end)| (name(&tips), end)).collect()
+    groups.into_iter().map(|(tips, end)| (name(&tips), end, colour_of(tips[0]))).collect()
 }
 
 /// Largest distance of points along both axes.
@@ -153,9 +160,8 @@ fn a_n(run: &RunRecord, tables: &RunTables, size: Size) -> Frame {
             if begins.is_some() { "small-scale yielding begins" } else { "small-scale yielding ends" },
         );
     }
-    for (lengths, _) in &curves {
-        frame.line(&smooth(&cycles, lengths), COMPUTED, 2.0, "");
-    }
+    let lines: Vec<Vec<Point>> = curves.iter().map(|(lengths, _)| smooth(&cycles, lengths)).collect();
+    lines.iter().enumerate().for_each(|(tip, line)| frame.line(line, colour_of(tip), 2.0, ""));
     let [why, _] = end_words(run.stop_reason);
     let mut ends = Vec::new();
     let mut is_ended = false;
@@ -169,7 +175,7 @@ fn a_n(run: &RunRecord, tables: &RunTables, size: Size) -> Frame {
     }
     if is_by_tip {
         let all: Vec<Point> = ends.iter().map(|(_, end)| *end).chain([[0.0; 2]]).collect();
-        tips_together(&ends, spans(&all)).iter().for_each(|(name, end)| frame.name(*end, name, COMPUTED));
+        frame.names(&tips_together(&ends, spans(&all)), &lines);
     }
     frame
 }
@@ -185,7 +191,15 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
     // Tips of a standard specimen are alike: the first stands for both.
     let tips: Vec<usize> = (0..if is_by_tip { tables.tips.len() } else { 1.min(tables.tips.len()) }).collect();
     let known = |point: &Point| point.iter().all(|value| value.is_finite());
-    let read: Vec<Point> = tips.iter().flat_map(|tip| [0, 1].map(|mode| points(*tip, mode))).flatten().filter(known).collect();
+    let in_depth = tables.depth_factors.iter().flatten().zip(&length).map(|(k, length)| [*length, *k]);
+    let in_depth: Vec<Point> = in_depth.collect();
+    let read: Vec<Point> = tips
+        .iter()
+        .flat_map(|tip| [0, 1].map(|mode| points(*tip, mode)))
+        .flatten()
+        .chain(in_depth.iter().copied())
+        .filter(known)
+        .collect();
     if read.is_empty() {
         return None;
     }
@@ -203,7 +217,7 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
         Axis::linear_in(all.iter().map(|point| point[1]).chain([0.0]), parts(size.height, 45.0)),
     ];
     let names = [if is_by_tip { "Growth of the tip, mm" } else { "Crack length a, mm" }, "K at maximum load, MPa√m"];
-    let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 13 } else { 4 });
+    let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 13 } else { 5 });
     if let Some([low, high]) = calibrated(run) {
         frame.unknown(high, true, "above the ΔK of the law");
         if tips.iter().any(|tip| points(*tip, 0).iter().any(|point| point[1] < low)) {
@@ -213,17 +227,31 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
     if largest > most {
         frame.remark(&format!("at the end to {largest:.1e}, not drawn"));
     }
-    for (mode, colour, dash) in [(1, SECOND, "6 3"), (0, COMPUTED, "")] {
-        tips.iter().for_each(|tip| frame.pieces(&points(*tip, mode), colour, 2.0, dash));
-    }
-    for (mode, name, colour) in [(0, "K_I", COMPUTED), (1, "K_II", SECOND)] {
+    let mut lines: Vec<Vec<Point>> = Vec::new();
+    let mut named_ends: Vec<(String, Point, &str)> = Vec::new();
+    for (mode, name, dash) in [(1, "K_II", "6 3"), (0, "K_I", "")] {
+        let colour = |tip: usize| if is_by_tip || mode == 0 { colour_of(tip) } else { SECOND };
+        for &tip in &tips {
+            let line = points(tip, mode);
+            frame.pieces(&line, colour(tip), 2.0, dash);
+            lines.push(line);
+        }
         let last = |tip: &usize| Some((*tip, points(*tip, mode).into_iter().rfind(known)?));
         let ends: Vec<(usize, Point)> = tips.iter().filter_map(last).collect();
-        for (of_tips, end) in tips_together(&ends, spans(&all)) {
-            let words = if is_by_tip { format!("{name} {of_tips}") } else { name.to_owned() };
-            frame.name(end, &words, colour);
-        }
+        let named = |(of_tips, end, of_group): (String, Point, &'static str)| match is_by_tip {
+            true => (format!("{name} {of_tips}"), end, of_group),
+            false => (name.to_owned(), end, colour(0)),
+        };
+        named_ends.extend(tips_together(&ends, spans(&all)).into_iter().map(named));
     }
+    if let Some(through) = run.part_through.as_ref().and_then(|found| found.crack_length_at_break_through_mm) {
+        frame.mark(through, "through the thickness");
+    }
+    if let Some(last) = in_depth.iter().rfind(|point| known(point)) {
+        frame.pieces(&in_depth, THIRD, 2.0, "2 3");
+        named_ends.push(("K_I in depth".to_owned(), *last, THIRD));
+    }
+    frame.names(&named_ends, &lines);
     Some(frame.finish(&format!("{} over {}", names[1], names[0])))
 }
 

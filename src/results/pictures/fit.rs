@@ -99,11 +99,11 @@ pub fn rates_svg(readings: &[Point], laws: &[LawCurve], size: Size) -> String {
     }
     for law in laws {
         frame.line(&law.points, COMPUTED, 2.0, "");
-        if let Some(last) = law.points.last().filter(|_| !law.name.is_empty()) {
-            frame.name(*last, &law.name, COMPUTED);
-        }
         law.pivot.into_iter().for_each(|pivot| frame.ring(pivot, COMPUTED));
     }
+    let of_law = |law: &LawCurve| Some((law.name.clone(), *law.points.last()?, COMPUTED)).filter(|(name, ..)| !name.is_empty());
+    let lines: Vec<Vec<Point>> = laws.iter().map(|law| law.points.clone()).collect();
+    frame.names(&laws.iter().filter_map(of_law).collect::<Vec<_>>(), &lines);
     frame.finish(&format!("Growth rate over the range of K: {} readings and the law over their range", readings.len()))
 }
 

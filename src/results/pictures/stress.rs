@@ -10,8 +10,8 @@ use perilife_growth::predict::moment::StressField;
 use perilife_nodes::solve::Stress;
 use perilife_nodes::stress_field::Corner;
 use perilife_plate::material::Material;
-use perilife_plate::specimen::geometry::{along, bounding_box, polygon_area};
-use perilife_plate::specimen::{CrackLine, Point};
+use perilife_plate::specimen::geometry::{along, bounding_box, distance, polygon_area};
+use perilife_plate::specimen::{CrackLine, Hole, Point};
 
 /// Size of the picture, px; it is as high as the plate asks for between two bounds.
 const SIZE: Size = Size { width: 1120.0, height: 0.0, text: 13.0 };
@@ -27,8 +27,8 @@ const YIELD: &str = "#d9001b";
 const ONE_SIGN: [&str; 9] = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#fde725"];
 const BELOW_ZERO: [&str; 4] = ["#b9d3e8", "#7fb0d6", "#4a8bc2", "#2166ac"];
 const ABOVE_ZERO: [&str; 8] = ["#e4e7ea", "#f6cdb0", "#ef9f78", "#dd6a4f", "#c03a3a", "#971b31", "#6a0a27", "#3f0216"];
-/// Parts of the plate's area below and above which stress is in the bands at the ends, which have no other bound.
-const ENDS: [f64; 2] = [0.01, 0.97];
+/// Parts of the area that is seen below and above which stress is in the bands at the ends, which have no other bound.
+const ENDS: [f64; 2] = [0.01, 0.98];
 /// Displacement over the size of what is seen to which it is enlarged, about.
 const SHOWN: f64 = 0.04;
 /// Size of cracks over that of the plate below which their surroundings alone are seen, and how many times as large these are.
@@ -65,8 +65,8 @@ fn in_shown(stress: f64) -> f64 {
 }
 
 /// SVG text.
-pub fn stress_svg(field: &StressField, material: &Material) -> String {
-    let seen = seen(field);
+pub fn stress_svg(field: &StressField, material: &Material, holes: &[Hole]) -> String {
+    let seen = seen(field, holes);
     let factor = factor(field, &seen);
     let moved = deformed(field, factor);
     let size = |i: usize| seen[1][i] - seen[0][i];
@@ -81,7 +81,7 @@ pub fn stress_svg(field: &StressField, material: &Material) -> String {
         let left = place as f64 * 0.5 * (SIZE.width + GAP) + 8.0;
         sketch.name([left, HEAD - 12.0], of.title(), "start", SIZE.text, INK);
         let mut inner = Sketch::new(scale, [-seen[0][0] * scale, seen[1][1] * scale]);
-        let bands = Bands { seen: [size(0) * scale, size(1) * scale], ..Bands::of(field, of) };
+        let bands = Bands { seen: [size(0) * scale, size(1) * scale], ..Bands::of(field, &seen, of) };
         draw(&mut inner, field, &moved, &bands, material.yield_strength.filter(|_| of == Of::VonMises));
         sketch.within([left, HEAD], [size(0) * scale, size(1) * scale], inner);
         bands.bar(&mut sketch, [left + size(0) * scale + 16.0, HEAD], (size(1) * scale).clamp(120.0, 320.0));
@@ -94,11 +94,17 @@ pub fn stress_svg(field: &StressField, material: &Material) -> String {
     sketch.picture([SIZE.width, height], &format!("{lengthened}; von Mises stress and stress along y in bands"))
 }
 
-/// What is seen of the plate, m: all of it, or the surroundings of cracks that are small in it; with room for the displacement.
-fn seen(field: &StressField) -> [Point; 2] {
+/// What is seen of the plate, m: all of it, or the surroundings of cracks that are small in it, with the holes beside them; with room for the
+/// displacement.
+fn seen(field: &StressField, holes: &[Hole]) -> [Point; 2] {
     let [low, high] = bounding_box(&field.pieces.iter().flatten().map(|corner| corner.at).collect::<Vec<Point>>());
-    let cracks: Vec<Point> = field.cracks.iter().flat_map(CrackLine::pieces).flatten().collect();
+    let mut cracks: Vec<Point> = field.cracks.iter().flat_map(CrackLine::pieces).flatten().collect();
     let largest = |[low, high]: [Point; 2]| (high[0] - low[0]).max(high[1] - low[1]);
+    let reach = largest(bounding_box(&cracks));
+    let is_beside = |hole: &&Hole| cracks.iter().any(|end| distance(*end, hole.centre) < hole.radius + reach);
+    let rims =
+        holes.iter().filter(is_beside).flat_map(|hole| [-1.0, 1.0].map(|side| hole.centre.map(|x| x + side * hole.radius)));
+    cracks.extend(rims.collect::<Vec<Point>>());
     let of_cracks = bounding_box(&cracks);
     let plate = largest([low, high]);
     let room = 1.5 * SHOWN * plate;
@@ -177,10 +183,13 @@ struct Bands {
 }
 
 impl Bands {
-    fn of(field: &StressField, of: Of) -> Self {
+    fn of(field: &StressField, [low, high]: &[Point; 2], of: Of) -> Self {
+        let is_seen =
+            |piece: &&Vec<Corner>| piece.iter().any(|corner| (0..2).all(|i| (low[i]..=high[i]).contains(&corner.at[i])));
         let mut values: Vec<(f64, f64)> = field
             .pieces
             .iter()
+            .filter(is_seen)
             .map(|piece| {
                 let corners: Vec<Point> = piece.iter().map(|corner| corner.at).collect();
                 (piece.iter().map(|corner| of.value(&corner.stress)).sum::<f64>() / piece.len() as f64, polygon_area(&corners))
@@ -222,8 +231,13 @@ impl Bands {
             sketch.area(&[[x, y], [x + 16.0, y], [x + 16.0, y + step + 0.4], [x, y + step + 0.4]], colour, 1.0);
             if let Some(level) = self.levels.get(band) {
                 sketch.path(&[[x + 16.0, y], [x + 21.0, y]], INK, 1.0, "");
-                let words = format!("{}", (1e6 * level).round() / 1e6).replace('-', "−");
-                sketch.name([x + 25.0, y + 0.35 * SIZE.text], &words, "start", SIZE.text, INK);
+                let words = |level: f64| format!("{}", (1e6 * level).round() / 1e6).replace('-', "−");
+                sketch.name([x + 25.0, y + 0.35 * SIZE.text], &words(*level), "start", SIZE.text, INK);
+                // Nothing bounds the last band from above.
+                if band + 1 == self.levels.len() {
+                    let middle = y - 0.5 * step + 0.35 * SIZE.text;
+                    sketch.name([x + 25.0, middle], &format!("≥ {}", words(*level)), "start", SIZE.text, INK);
+                }
             }
         }
     }

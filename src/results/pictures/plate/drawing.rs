@@ -194,9 +194,12 @@ impl<'a> Drawing<'a> {
             sketch.path(&[sketch.place(*from), sketch.place(*to)], INK, if is_large { 5.0 } else { 3.2 }, "");
         }
         let mut taken = Vec::new();
+        // Shares of the life stand beside the longest way, which is that of the crack that ends it but for equals.
+        let longest = self.ways.iter().map(Way::whole).fold(0.0, f64::max);
+        let named = self.ways.iter().position(|way| way.whole() >= longest && longest > 0.0);
         for (number, way) in self.ways.iter().enumerate() {
-            if is_large {
-                self.marks(sketch, way, &mut taken);
+            if is_large && way.whole() > 0.0 {
+                self.marks(sketch, way, named == Some(number), &mut taken);
             }
             let end = sketch.place(way.at(way.whole()));
             sketch.ring(end, if is_large { 4.5 } else { 3.0 }, INK, 1.8);
@@ -210,7 +213,7 @@ impl<'a> Drawing<'a> {
     }
 
     /// Where the tip was at shares of the life; `taken` are the middles of words that stand already.
-    fn marks(&self, sketch: &mut Sketch, way: &Way, taken: &mut Vec<Point>) {
+    fn marks(&self, sketch: &mut Sketch, way: &Way, is_named: bool, taken: &mut Vec<Point>) {
         for share in MARKS {
             let Some(length) = way.length_at(share / 100.0 * self.life) else { continue };
             let at = sketch.place(way.at(length));
@@ -227,7 +230,7 @@ impl<'a> Drawing<'a> {
                 |middle: &Point| !taken.iter().any(|other| (0..2).all(|i| (other[i] - middle[i]).abs() < 2.0 * half[i]));
             let places = [(1.0, 10.0), (-1.0, 10.0), (1.0, 24.0), (-1.0, 24.0)];
             // Where all is taken the mark has no words.
-            if let Some((side, out)) = places.into_iter().find(|(side, out)| is_free(&place(*side, *out))) {
+            if let Some((side, out)) = places.into_iter().find(|(side, out)| is_named && is_free(&place(*side, *out))) {
                 let middle = place(side, out);
                 sketch.path(&[at, [0, 1].map(|i| at[i] + side * out * upper[i])], INK, 1.0, "");
                 sketch.name([middle[0], middle[1] + 0.35 * self.text], &format!("{share:.0} %"), "middle", self.text, INK);
