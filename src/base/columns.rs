@@ -19,6 +19,8 @@ const DIGITS: usize = 10;
 enum Digits {
     /// With 10 to 15 significant digits: unit conversion may disturb the last of the 17 that a double carries.
     Some,
+    /// With ten to twelve: of measured quantities.
+    Few,
     /// So that they read back bit for bit.
     All,
     /// Whole.
@@ -56,6 +58,11 @@ impl Table {
     /// Adds quantities in the unit of their name.
     pub fn numbers(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
         self.with(name, Cells::Numbers(values.into_iter().collect(), Digits::Some))
+    }
+
+    /// Adds measured quantities, and what is made of them, that may not be known.
+    pub fn measured(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = Option<f64>>) -> Self {
+        self.with(name, Cells::Numbers(values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(), Digits::Few))
     }
 
     /// Adds quantities that may not be known.
@@ -272,6 +279,7 @@ impl Cells {
     fn text(&self, row: usize) -> Cow<'_, str> {
         match self {
             Cells::Numbers(values, Digits::Some) => number_text(values[row]).into(),
+            Cells::Numbers(values, Digits::Few) => rounded_text(values[row], 11).into(),
             Cells::Numbers(values, Digits::All) => exact_text(values[row]).into(),
             Cells::Numbers(values, Digits::None) => format!("{}", values[row]).into(),
             Cells::Words(words) => (&*words[row]).into(),
@@ -299,8 +307,13 @@ pub fn exact_text(value: f64) -> String {
 
 /// A quantity with 10 to 15 significant digits, so that 9 mm stay 9.000000000.
 pub fn number_text(value: f64) -> String {
-    // A decimal of 15 digits always parses; the fallback only spares a panic path.
-    exact_text(format!("{value:.14e}").parse().unwrap_or(value))
+    rounded_text(value, 14)
+}
+
+/// With so many digits behind the first.
+fn rounded_text(value: f64, digits: usize) -> String {
+    // Such a decimal always parses; the fallback only spares a panic path.
+    exact_text(format!("{value:.digits$e}").parse().unwrap_or(value))
 }
 
 /// With zeros behind the decimal point up to the digits that are wanted.

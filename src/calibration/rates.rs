@@ -263,10 +263,10 @@ pub fn table<'a>(rows: impl Iterator<Item = (&'a str, &'a RatePoint)>) -> Table 
     let column = |of: fn(&RatePoint) -> f64| rows.iter().map(move |(_, point)| Some(of(point)).filter(|value| value.is_finite()));
     Table::new("rates.csv")
         .foreign("specimen", rows.iter().map(|(specimen, _)| specimen))
-        .known("cycles", column(|point| point.cycles))
-        .known("crack_length_mm", column(|point| point.crack_length / MM))
-        .known("delta_k_mpa_sqrt_m", column(|point| point.delta_k / MPA_SQRT_M))
-        .known("da_dn_mm_per_cycle", column(|point| point.rate / MM_PER_CYCLE))
+        .measured("cycles", column(|point| point.cycles))
+        .measured("crack_length_mm", column(|point| point.crack_length / MM))
+        .measured("delta_k_mpa_sqrt_m", column(|point| point.delta_k / MPA_SQRT_M))
+        .measured("da_dn_mm_per_cycle", column(|point| point.rate / MM_PER_CYCLE))
         .words("flags", rows.iter().map(|(_, point)| point.flags.words()))
-        .known("stress_ratio", column(|point| point.ratio))
+        .measured("stress_ratio", column(|point| point.ratio))
 }

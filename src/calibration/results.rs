@@ -137,8 +137,8 @@ pub fn rates_beside_law(case: &LawCase, fits: &LawFits) -> Table {
     let rows = || case.rows.iter().zip(&fits.law().residuals);
     Table::new("fit_rates.csv")
         .foreign("series", rows().map(|(row, _)| &row.series))
-        .numbers("stress_ratio", rows().map(|(row, _)| row.ratio))
-        .numbers("delta_k_mpa_sqrt_m", rows().map(|(row, _)| row.delta_k / MPA_SQRT_M))
-        .numbers("da_dn_mm_per_cycle", rows().map(|(row, _)| row.rate / MM_PER_CYCLE))
-        .numbers("da_dn_fitted_mm_per_cycle", rows().map(|(row, residual)| row.rate / MM_PER_CYCLE * (-residual).exp()))
+        .measured("stress_ratio", rows().map(|(row, _)| Some(row.ratio)))
+        .measured("delta_k_mpa_sqrt_m", rows().map(|(row, _)| Some(row.delta_k / MPA_SQRT_M)))
+        .measured("da_dn_mm_per_cycle", rows().map(|(row, _)| Some(row.rate / MM_PER_CYCLE)))
+        .measured("da_dn_fitted_mm_per_cycle", rows().map(|(row, residual)| Some(row.rate / MM_PER_CYCLE * (-residual).exp())))
 }

@@ -31,6 +31,9 @@ pub struct Args {
     /// Folder for the results; replaced if an earlier run made it
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: PathBuf,
+    /// Replace the results of another input in DIR
+    #[arg(long, help_heading = "Output")]
+    pub force: bool,
     /// Case to run with the fit, into DIR/CASE/ (repeatable)
     #[arg(long, value_name = "CASE.toml", num_args = 1.., help_heading = "Input")]
     pub predict: Vec<PathBuf>,
@@ -58,7 +61,8 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let mut read = document.folder.opened().so_far();
     read.files.extend(cases.iter().flat_map(|document| document.folder.opened().so_far().files));
-    let mut folder = OutputFolder::claim(&args.out, RunKind::Calibrate, &read, Room { tables: 64_000, all: 1_000_000 })?;
+    let mut folder =
+        OutputFolder::claim(&args.out, RunKind::Calibrate, &read, Room { tables: 64_000, all: 1_000_000 }, args.force)?;
     for warning in calibration.warnings().iter().map(String::as_str).chain(folder.warning()) {
         console.warn(warning);
     }
@@ -111,8 +115,9 @@ fn check_no_gamma(document: &Document) -> Result<()> {
 fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finished) -> Result<()> {
     let console = &args.console;
     // Claimed first: a folder that cannot be written should not cost a run.
-    let claim =
-        |case: &Case| OutputFolder::claim(&args.out.join(&case.name), RunKind::Predict, &case.provenance, run::room(case));
+    let claim = |case: &Case| {
+        OutputFolder::claim(&args.out.join(&case.name), RunKind::Predict, &case.provenance, run::room(case), args.force)
+    };
     let folders: Vec<OutputFolder> = cases.iter().map(claim).collect::<Result<_>>()?;
     let bars = console.progress_of_each(cases.iter().map(|case| &*case.name));
     let runs: Vec<Result<Prediction>> =

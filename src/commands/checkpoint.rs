@@ -30,6 +30,9 @@ pub struct Args {
     /// Least time between two writings; they wait for a place from which the run can go on
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = seconds, requires = "checkpoint")]
     pub checkpoint_every: f64,
+    /// Replace the results of another input in DIR
+    #[arg(long, help_heading = "Output")]
+    pub force: bool,
     /// Time after which the run is asked to end, building the plate included; with a checkpoint the same command goes on later
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
@@ -50,7 +53,7 @@ impl Args {
         // Claimed first: a folder that cannot be written should not cost a run.
         self.check_outside(out)?;
         let read = document.folder.opened().so_far();
-        let folder = OutputFolder::claim(out, task.run_kind(), &read, task.room())?;
+        let folder = OutputFolder::claim(out, task.run_kind(), &read, task.room(), self.force)?;
         let mut checkpoint = None;
         let summary = console.keep(folder, task.warnings(), |folder| {
             let (summary, kept) = self.run_kept(task, &read, folder, console).map_err(|error| document.locate(error))?;

@@ -38,6 +38,9 @@ pub struct Args {
     /// Also write β over crack length of the tip that grows farthest, for AFGROW and specimen.beta_file (with --sweep)
     #[arg(long, value_name = "FILE.csv", requires = "sweep", help_heading = "Output")]
     pub beta: Option<PathBuf>,
+    /// Replace the results of another input in DIR
+    #[arg(long, requires = "out", help_heading = "Output")]
+    pub force: bool,
     /// Also write displacement and stress for ParaView (paraview/run.pvd), as the key output.paraview does
     #[arg(long, requires = "out", help_heading = "Output")]
     pub paraview: bool,
@@ -72,7 +75,7 @@ pub fn run(args: &Args) -> Result<()> {
                 return Err(input("--out", out.display(), problem, remedy));
             }
             // Claimed first: a folder that cannot be written should not cost a run.
-            let folder = OutputFolder::claim(out, task.run_kind(), &document.folder.opened().so_far(), task.room())?;
+            let folder = OutputFolder::claim(out, task.run_kind(), &document.folder.opened().so_far(), task.room(), args.force)?;
             console.keep(folder, task.warnings(), |path| work(Some(path)))?
         }
     };

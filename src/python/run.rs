@@ -46,10 +46,11 @@ impl Run {
         py.detach(|| self.summary.tables(&self.task)).map_err(raised)
     }
 
-    /// Writes what its command writes into `--out`.
-    fn save(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
+    /// Writes what its command writes into `--out`; results of another input are replaced by `force` alone.
+    #[pyo3(signature = (folder, force=false))]
+    fn save(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<()> {
         let save = || {
-            let mut claimed = OutputFolder::claim(&folder, self.task.run_kind(), &self.read, self.task.room())?;
+            let mut claimed = OutputFolder::claim(&folder, self.task.run_kind(), &self.read, self.task.room(), force)?;
             claimed.fill(|path| self.summary.write(&self.task, path))?;
             claimed.finish().map(drop)
         };

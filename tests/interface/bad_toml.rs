@@ -278,7 +278,7 @@ const BAD: &[Bad] = &[
     panel(
         "spacing_mm = 1.0",
         "solver = \"adaptive_dynamic_relaxation\"",
-        &[":13:", "model.solver", "fracture scenes", "perilife fracture", "window, multigrid, direct"],
+        &[":13:", "model.solver", "fracture scenes", "perilife fracture", "window, multigrid"],
     ),
     plate(
         "[fatigue]",

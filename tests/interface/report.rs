@@ -188,7 +188,7 @@ fn what_cannot_be_reported_is_refused_with_words() {
         ("run/a_n.csv", Some(text("run/a_n.csv").replace(",9.000", ",8.000")), "run", 2, &["run/a_n.csv", "is not the table"]),
         ("run/a_n.csv", None, "run", 2, &["run/a_n.csv", "is missing"]),
         (fit, cut(fit), "fit", 2, &["fit/fit.json", "cut off or damaged"]),
-        (fit, with(fit, "paris_m", Value::Null), "fit", 2, &["fit/fit.json", "paris_m", "null", "is not a number above 0"]),
+        (fit, with(fit, "paris_m", Value::Null), "fit", 2, &["fit/fit.json", "paris_m", "null", "expected f64"]),
         ("fit/readings.csv", cut("fit/readings.csv"), "fit", 2, &["fit/readings.csv", "is cut off"]),
         ("fit/readings.csv", None, "fit", 2, &["fit/readings.csv", "is missing"]),
     ];
@@ -248,8 +248,11 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
     let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/cases");
     let run = |case: &str, more: &str| {
         let file = cases.join(case);
-        let arguments =
-            [&["predict", file.to_str().unwrap(), "--out", "run"][..], &more.split_whitespace().collect::<Vec<_>>()[..]].concat();
+        let arguments = [
+            &["predict", file.to_str().unwrap(), "--out", "run", "--force"][..],
+            &more.split_whitespace().collect::<Vec<_>>()[..],
+        ]
+        .concat();
         let output = perilife(dir.path(), &arguments);
         assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
         let page = report(dir.path(), "run", &[]);

@@ -238,7 +238,7 @@ fn a_run_in_us_units_is_the_same_run() {
     ] {
         let case = root.join(case);
         for units in ["si", "us"] {
-            let arguments = [&["predict", case.to_str().unwrap(), "--out", units, "--units", units], &*flags].concat();
+            let arguments = [&["predict", case.to_str().unwrap(), "--out", units, "--units", units, "--force"], &*flags].concat();
             let printed = run(here, &arguments);
             if units == "us" {
                 no_metric_unit_in(&printed, "predict");
@@ -254,6 +254,12 @@ fn a_run_in_us_units_is_the_same_run() {
             run(here, &["report", folder, "--out", &page, "--units", units]);
         }
         same_table(&here.join("si_si.csv"), &here.join("si_us.csv"));
+        // Where no units are asked for, an export has those of its run.
+        for units in ["si", "us"] {
+            run(here, &["export", units, "--points", "20", "--out", "own.csv"]);
+            let asked = here.join(format!("{units}_{units}.csv"));
+            assert_eq!(fs::read(here.join("own.csv")).unwrap(), fs::read(asked).unwrap(), "{units}");
+        }
         for (own, other) in [("si_si", "us_si"), ("si_us", "us_us")] {
             let [a, b] = [own, other].map(|name| read_a_n(&here.join(format!("{name}.csv"))).unwrap());
             let same = a.iter().zip(&b).all(|(a, b)| near(a.crack_length_mm, b.crack_length_mm) && near(a.cycles, b.cycles));

@@ -99,7 +99,12 @@ fn results_have_every_promised_key_and_read_back() {
     let lines: Vec<&str> = csv.lines().collect();
     assert_eq!(lines[0], "specimen,crack_length_mm,cycles_measured,cycles_fitted");
     assert_eq!(lines.len(), 1 + 3 * 5, "two specimens and their median:\n{csv}");
-    assert!(lines[1].starts_with("A,9,0,0") && lines[6].starts_with("B,9,0,0") && lines[11].starts_with("median,9,0,0"), "{csv}");
+    assert!(
+        lines[1].starts_with("A,9.000000000,0,0")
+            && lines[6].starts_with("B,9.000000000,0,0")
+            && lines[11].starts_with("median,9.000000000,0,0"),
+        "{csv}"
+    );
 }
 
 #[test]

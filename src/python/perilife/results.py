@@ -64,7 +64,7 @@ class _Written:
     def tables(self) -> list[tuple[str, str]]:
         return self._tables
 
-    def save(self, folder: Path) -> None:
+    def save(self, folder: Path, force: bool = False) -> None:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             raise FileError(f"{folder}: is there already; name a new folder", filename=str(folder))
         for name, content in self._files.items():
@@ -85,9 +85,9 @@ class _Run(_Result):
         """All tables by the names of their files without ending."""
         return {Path(name).stem: Table(text) for name, text in self._run.tables() if name.endswith(".csv")}
 
-    def save(self, folder: StrPath) -> Path:
-        """Writes what the command line writes into ``--out``: tables, figures, pictures, inputs."""
-        self._run.save(Path(folder))
+    def save(self, folder: StrPath, *, force: bool = False) -> Path:
+        """Writes what the command line writes into ``--out``; results of another input are replaced by ``force`` alone."""
+        self._run.save(Path(folder), force)
         return Path(folder)
 
 

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::lock::{Lock, Share};
-use super::marker::{MARKER, Marker, OLD, PARTIAL, RunKind, parent_of, temporary_beside, visible_beside};
+use super::marker::{InputOf, MARKER, Marker, OLD, PARTIAL, RunKind, parent_of, temporary_beside, visible_beside};
 use super::pending::{self, Pending};
 use super::place::{Room, folder_for, occupied, room};
 use super::{said, write_file};
@@ -20,6 +20,7 @@ pub struct OutputFolder {
     name: PathBuf,
     target: PathBuf,
     kind: RunKind,
+    input: Option<InputOf>,
     partial: PathBuf,
     /// Folders above the target that did not exist before, deepest first; removed again if nothing comes of the run.
     new_parents: Vec<PathBuf>,
@@ -49,17 +50,25 @@ impl Finished {
 impl OutputFolder {
     /// Claims `path` for a run that read nothing and writes little.
     pub fn create(path: &Path, kind: RunKind) -> Result<OutputFolder> {
-        Self::claim(path, kind, &Provenance::default(), Room::default())
+        Self::claim(path, kind, &Provenance::default(), Room::default(), false)
     }
 
     /// Claims `path` for a run of this kind, before anything is computed. It may be new, empty, or the result of an earlier run of that
-    /// kind, which stays until [`OutputFolder::finish`]. What processes left there that were killed goes.
+    /// kind, which stays until [`OutputFolder::finish`]; one of another input only by `force`. What processes left there that were killed goes.
     /// Errors: [`Error::Input`] if the path is a file, a mount point, holds anything this program did not make, results of
-    /// another kind or an input of this run, or if another process writes there; [`Error::File`] if it cannot be written or has
+    /// another kind, of another input, or an input of this run, or if another process writes there; [`Error::File`] if it cannot be written or has
     /// no room.
-    pub fn claim(path: &Path, kind: RunKind, read: &Provenance, wanted: Room) -> Result<OutputFolder> {
+    pub fn claim(path: &Path, kind: RunKind, read: &Provenance, wanted: Room, force: bool) -> Result<OutputFolder> {
         let cannot = |e| Error::file(path, "cannot create the folder", e);
         let target = folder_for(path, kind, read)?;
+        let input = InputOf::of(read);
+        if let Some(other) =
+            Marker::read(&target).filter(|_| !force).and_then(|marker| Some(marker.other_input(input.as_ref())?.to_owned()))
+        {
+            let (problem, remedy) =
+                (format!("holds {} of another input, {other}", kind.words()), "give another folder, or --force to replace it");
+            return Err(perilife_base::error::input("--out", path.display(), problem, remedy));
+        }
         let parent = parent_of(&target);
         let is_new = |above: &&Path| !above.as_os_str().is_empty() && !above.exists();
         let new_parents: Vec<PathBuf> = parent.ancestors().take_while(is_new).map(PathBuf::from).collect();
@@ -68,6 +77,7 @@ impl OutputFolder {
         let mut folder = OutputFolder {
             name: path.to_path_buf(),
             kind,
+            input,
             partial: PathBuf::new(),
             target,
             new_parents,
@@ -155,7 +165,7 @@ impl OutputFolder {
 
     /// Writes the marker with all files.
     fn list(&self) -> io::Result<()> {
-        let marker = Marker::of(self.kind, &self.partial)?;
+        let marker = Marker { input: self.input.clone(), ..Marker::of(self.kind, &self.partial)? };
         fs::write(self.partial.join(MARKER), marker.text())
     }
 

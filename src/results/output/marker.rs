@@ -8,6 +8,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::{Deserialize, Serialize};
 
+use perilife_base::input::Provenance;
+
 /// File that marks a folder as made by this program.
 pub const MARKER: &str = ".perilife";
 
@@ -55,11 +57,38 @@ impl RunKind {
     }
 }
 
+/// The input file of a run: where it is, and what it holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct InputOf {
+    /// Absolute path; the name of a stream.
+    pub file: String,
+    /// Hash of its content.
+    pub sha256: String,
+}
+
+impl InputOf {
+    /// Of the first file that was read.
+    pub fn of(read: &Provenance) -> Option<Self> {
+        let first = read.files.first()?;
+        let path = first.path.as_ref().and_then(|path| fs::canonicalize(path).ok());
+        let file = path.map_or_else(|| first.name.clone(), |path| path.display().to_string());
+        Some(InputOf { file, sha256: first.sha256() })
+    }
+
+    /// Whether a run of one may take the place of that of the other: the same file, changed or not, or a copy of it.
+    fn is_alike(&self, other: &InputOf) -> bool {
+        self.file == other.file || self.sha256 == other.sha256
+    }
+}
+
 /// Content of the marker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Marker {
     /// What made the folder.
     pub kind: RunKind,
+    /// The input that it was made of, where that was one file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub input: Option<InputOf>,
     /// Files by their path in the folder; a name that ends in `/` is a folder of other runs, each of which has a marker of its own.
     #[serde(default)]
     pub files: BTreeSet<String>,
@@ -75,12 +104,18 @@ impl Marker {
     pub fn of(kind: RunKind, folder: &Path) -> io::Result<Marker> {
         let mut files = BTreeSet::new();
         list(folder, "", &mut files)?;
-        Ok(Marker { kind, files })
+        Ok(Marker { kind, input: None, files })
     }
 
     /// The marker of a folder that will hold these; names of folders of other runs end in `/`.
     pub fn listing(kind: RunKind, files: &[&str]) -> Marker {
-        Marker { kind, files: files.iter().map(|file| (*file).to_owned()).collect() }
+        Marker { kind, input: None, files: files.iter().map(|file| (*file).to_owned()).collect() }
+    }
+
+    /// The file of another input that a folder was made of.
+    pub fn other_input(&self, input: Option<&InputOf>) -> Option<&str> {
+        let (own, new) = self.input.as_ref().zip(input)?;
+        (!own.is_alike(new)).then_some(&*own.file)
     }
 
     /// As it is written.

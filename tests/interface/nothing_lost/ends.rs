@@ -82,7 +82,7 @@ fn what_appears_meanwhile_stays() {
             let earlier = perilife(here, &["predict", "panel.toml", "--out", "out", "-q"]);
             assert!(earlier.status.success(), "{}", texts(&earlier).1);
         }
-        let process = started(here, &["predict", "small.toml", "--out", "out", "-q", "--set", "model.spacing_mm=0.5"]);
+        let process = started(here, &["predict", "small.toml", "--out", "out", "-q", "--force", "--set", "model.spacing_mm=0.5"]);
         appear(&here.join("out"));
         let before = content(&here.join("out"));
         let (code, stderr) = ended(process);

@@ -77,6 +77,25 @@ fn another_kind_is_not_replaced() {
 
 /// A marker that came along with a copy covers nothing else, and a list that cannot be read covers nothing at all.
 #[test]
+fn a_run_of_another_input_is_replaced_by_force_alone() {
+    let dir = inputs();
+    let here = dir.path();
+    let predict = |input: &str, more: &[&str]| perilife(here, &[&["predict", input, "--out", "other", "-q"], more].concat());
+    assert!(predict("panel.toml", &[]).status.success());
+    // The same file, changed by an override or in itself, and a copy of it.
+    let text = fs::read_to_string(here.join("panel.toml")).unwrap();
+    fs::write(here.join("copy.toml"), &text).unwrap();
+    fs::write(here.join("changed.toml"), text.clone() + "\n# another\n").unwrap();
+    assert!(predict("panel.toml", &["--set", "loading.stress_ratio=0.3"]).status.success());
+    assert!(predict("copy.toml", &[]).status.success() && predict("panel.toml", &[]).status.success());
+    let before = content(&here.join("other"));
+    let refused = predict("changed.toml", &[]);
+    assert_refused(&refused, 2, &["--out = other", "a prediction of another input", "panel.toml", "--force"]);
+    assert!(content(&here.join("other")) == before);
+    assert!(predict("changed.toml", &["--force"]).status.success());
+}
+
+#[test]
 fn a_marker_in_a_strange_folder_covers_its_files_alone() {
     let dir = inputs();
     let here = dir.path();
