@@ -27,7 +27,6 @@ pub mod population;
 pub mod power_law;
 pub mod rates;
 pub mod record;
-pub mod readings;
 pub mod results;
 pub mod search;
 pub mod sweep;

@@ -18,9 +18,8 @@ use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::calibrate::Fitted;
 use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::fit::Fit;
-use perilife_calibration::readings::readings_csv;
 use perilife_calibration::record::FitRecord;
-use perilife_calibration::results::{fit_curves_csv, fitted_rates_csv, left_out, rates_csv, rates_taken_csv};
+use perilife_calibration::results::{fit_curves_csv, fitted_rates_csv, left_out, rates_csv, rates_taken_csv, readings_csv};
 use perilife_growth::case::RECORD;
 
 /// The law, for `fatigue.fitted`.

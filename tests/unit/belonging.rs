@@ -124,7 +124,7 @@ fn readings_that_do_not_belong_are_named_and_left_out() {
         // What is left out stands in the record and beside the readings.
         let case = case(&csv, "").unwrap();
         let record = record(&case, &fit);
-        let table = perilife_calibration::readings::readings_csv(&case, &record.left_out, &|_| f64::NAN);
+        let table = perilife_calibration::results::readings_csv(&case, &record.left_out, &|_| f64::NAN);
         assert!(record.left_out.len() == 1 && record.left_out[0].reason.starts_with("by the program: "), "{:?}", record.left_out);
         let marked = |line: &str| line.ends_with("times the rate of the other readings");
         let first = table.lines().position(marked).unwrap_or_else(|| panic!("{name}: {table}"));
@@ -178,7 +178,7 @@ fn rows_are_left_out_by_line_value_and_reason() {
     assert_eq!((fit.paris.m, fit.record.life_measured()), (plain.paris.m, plain.record.life_measured()));
     assert_eq!(report(&bad, &fit, 0.0)["left_out"][0]["value"], "abc");
     assert_eq!(bad.sources[0].sha256, perilife_base::input::sha256(csv.as_bytes()));
-    let table = perilife_calibration::readings::readings_csv(&bad, &bad.left_out, &|_| f64::NAN);
+    let table = perilife_calibration::results::readings_csv(&bad, &bad.left_out, &|_| f64::NAN);
     assert!(table.contains(",line 5: abc,typing error\n"), "{table}");
     let record = toml::to_string(&record(&bad, &fit)).unwrap();
     assert!(
