@@ -1,4 +1,5 @@
-//! Files of a calibration beside `fit.json`: `fitted.toml`, `fit_curves.csv` of lives, `fit_rates.csv` of rates, `rates.csv` of both.
+//! Files of a calibration beside `fit.json`: `fitted.toml`, `fit_curves.csv` and `readings.csv` of lives, `fit_rates.csv` of rates,
+//! `rates.csv` of both.
 
 use super::case::CalibrationCase;
 use super::fit::{Bonds, Fit};

@@ -2,8 +2,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::intervals::{Interval, Specimen};
-use super::law::{Row, rows};
+use super::intervals::{Interval, Row, Specimen, rows};
 use super::noise::{Noise, cholesky, whiten};
 use super::reml::{departures, estimate, likelihood, variances};
 use super::{Found, Member, Population, SLOPE_SAME, SPECIMENS_FOR_SCATTER, groups, lots, penalty, slope_of_readings};

@@ -8,8 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::Population;
-use super::intervals::{Interval, Specimen};
-use super::law::{Row, rows};
+use super::intervals::{Interval, Row, Specimen, rows};
 use super::lots::BETWEEN_LOTS;
 use super::noise::{cholesky, whiten};
 use super::student::{noncentral_t_quantile, t_quantile};

@@ -9,7 +9,6 @@
 mod assess;
 pub mod forecast;
 pub mod intervals;
-pub mod law;
 pub mod lots;
 pub mod noise;
 pub mod plate;
@@ -20,8 +19,7 @@ use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 
 use assess::assess;
-use intervals::Specimen;
-use law::{Row, rows};
+use intervals::{Row, Specimen, rows};
 use noise::Noise;
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::units::{MM, MPA_SQRT_M};

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::law::Row;
+use super::intervals::Row;
 
 /// Noise of ln da/dN along one crack.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -12,7 +12,7 @@ use argmin::solver::quasinewton::LBFGS;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use rayon::prelude::*;
 
-use super::law::Row;
+use super::intervals::Row;
 use super::noise::{Noise, cholesky, whiten};
 use super::{Between, Priors};
 use perilife_laws::curve::EFFECTS;
