@@ -233,7 +233,8 @@ pub fn of_prediction(case: &Case, prediction: Prediction, wanted: &Wanted, watch
 /// What came of a scene.
 pub fn of_scene(scene: &Scene, fracture: Fracture, watcher: &dyn Watcher) -> Summary {
     fracture.warnings.iter().for_each(|warning| watcher.warn(warning));
-    let result = scene_results::result(scene, &fracture);
+    // Figures and text have a form in JSON.
+    let result = serde_json::to_value(scene_results::record(scene, &fracture)).unwrap_or_default();
     let is_bad = matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable);
     let bad = || Error::Mechanics(format!("{}: {}: {}", scene.name, fracture.end, fracture.end.meaning()));
     let (figures, lines, refusal) = (result.clone(), scene_results::words(scene, &fracture), is_bad.then(bad));

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use super::scene_model;
 use perilife_base::columns::Table;
@@ -14,10 +15,11 @@ use perilife_results::chart::{self, Mark, Series};
 use perilife_results::damage::DamagePicture;
 use perilife_results::model_words::{self, clean};
 use perilife_results::output::{Room, write_json, write_table};
+use perilife_results::provenance::{self, MadeBy};
 use perilife_results::record::RESULT_FILE;
-use perilife_results::{provenance, vtk};
+use perilife_results::vtk;
 use perilife_scenes::outcome::{HistoryRow, PathPoint};
-use perilife_scenes::scene::{Action, Procedure, SceneLaw};
+use perilife_scenes::scene::{Action, Procedure, SceneLaw, SceneLoad};
 use perilife_scenes::{Fracture, Scene, SceneEnd};
 
 /// Rows of the history that are numbers: the last ones of a motion that blew up may not be.
@@ -185,45 +187,117 @@ pub fn words(scene: &Scene, fracture: &Fracture) -> Vec<String> {
     lines
 }
 
-/// The whole object. A figure that does not exist is `null`.
-pub fn result(scene: &Scene, fracture: &Fracture) -> Value {
+/// `result.json` of a scene; a figure that does not exist is `null`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneRecord {
+    pub name: String,
+    pub stop_reason: SceneEnd,
+    pub stop_meaning: String,
+    pub converged: bool,
+    pub peak_load_n: Option<f64>,
+    pub peak_step: Option<usize>,
+    pub peak_displacement_mm: Option<f64>,
+    pub onset_step: Option<usize>,
+    pub onset_time_s: Option<f64>,
+    pub separated_step: Option<usize>,
+    pub separated_time_s: Option<f64>,
+    pub broken_bonds: Option<usize>,
+    pub energy_balance_error: Option<f64>,
+    pub flanks_pressed_share: Option<f64>,
+    pub fronts: Vec<FrontEnd>,
+    pub points: usize,
+    pub bonds: usize,
+    pub steps: Option<usize>,
+    pub evaluations: usize,
+    pub time_step_s: Option<f64>,
+    pub wall_s: f64,
+    pub memory_mb: f64,
+    pub loading: LoadingRecord,
+    pub model: Map<String, Value>,
+    pub damage: DamageRecord,
+    pub warnings: Vec<String>,
+    pub version: String,
+    /// The scene as it was given.
+    pub case: Value,
+    #[serde(flatten)]
+    pub made_by: MadeBy,
+}
+
+/// Where a crack front stands at the end.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FrontEnd {
+    pub tip: usize,
+    pub step: usize,
+    pub time_s: f64,
+    pub x_mm: f64,
+    pub y_mm: f64,
+    pub damage: f64,
+}
+
+/// How a scene is loaded.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct LoadingRecord {
+    pub procedure: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steps: Option<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub iterations_per_step: Option<usize>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
+    pub kinds: Vec<String>,
+}
+
+/// By what bonds break.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DamageRecord {
+    pub law: String,
+    pub enters: Option<String>,
+    pub critical_stretch: Option<f64>,
+    pub calibration: Option<String>,
+    pub trapping: Option<f64>,
+    pub elastic_stretch: Option<f64>,
+    pub peak_stretch: Option<f64>,
+    pub final_stretch: Option<f64>,
+    pub printed_law: Option<bool>,
+}
+
+/// The record of a scene.
+pub fn record(scene: &Scene, fracture: &Fracture) -> SceneRecord {
     let figures = &fracture.figures;
     let peak = rows(fracture).max_by(|a, b| a.load.total_cmp(&b.load));
     let last = rows(fracture).last();
-    let warnings: Vec<&String> = scene.warnings.iter().chain(&fracture.warnings).collect();
-    let mut result = json!({
-        "name": scene.name,
-        "stop_reason": fracture.end.name(),
-        "stop_meaning": fracture.end.meaning(),
-        "converged": !matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable),
-        "peak_load_n": peak.map(|row| clean(row.load.max(0.0))),
-        "peak_step": peak.map(|row| row.step),
-        "peak_displacement_mm": peak.map(|row| clean(row.displacement / MM)),
-        "onset_step": fracture.onset_step,
-        "onset_time_s": fracture.onset_step.and_then(|step| time_of(step, fracture)),
-        "separated_step": fracture.separated_step,
-        "separated_time_s": fracture.separated_step.and_then(|step| time_of(step, fracture)),
-        "broken_bonds": last.map(|row| row.broken_bonds),
-        "energy_balance_error": energy_error(fracture),
-        "flanks_pressed_share": figures.touching.map(|flanks| clean(flanks.share())),
-        "fronts": fronts(fracture),
-        "points": figures.points,
-        "bonds": figures.bonds,
-        "steps": last.map(|row| row.step),
-        "evaluations": figures.evaluations,
-        "time_step_s": (figures.time_step > 0.0).then_some(figures.time_step),
-        "wall_s": figures.wall_s,
-        "memory_mb": figures.memory_mb,
-        "loading": loading(scene),
-        "model": model_words::object(&scene_model::of_scene(scene, Some(fracture.grid.spacing))),
-        "damage": damage(scene),
-        "warnings": warnings,
-        "version": env!("CARGO_PKG_VERSION"),
-        "case": scene.echo,
-    });
     let texts = tables(fracture).map(|table| (table.file.display().to_string(), table.csv()));
-    provenance::add(&mut result, &scene.provenance, texts.iter().map(|(name, text)| (&**name, &**text)));
-    result
+    SceneRecord {
+        name: scene.name.clone(),
+        stop_reason: fracture.end,
+        stop_meaning: fracture.end.meaning().to_owned(),
+        converged: !matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable),
+        peak_load_n: peak.map(|row| clean(row.load.max(0.0))),
+        peak_step: peak.map(|row| row.step),
+        peak_displacement_mm: peak.map(|row| clean(row.displacement / MM)),
+        onset_step: fracture.onset_step,
+        onset_time_s: fracture.onset_step.and_then(|step| time_of(step, fracture)),
+        separated_step: fracture.separated_step,
+        separated_time_s: fracture.separated_step.and_then(|step| time_of(step, fracture)),
+        broken_bonds: last.map(|row| row.broken_bonds),
+        energy_balance_error: energy_error(fracture),
+        flanks_pressed_share: figures.touching.map(|flanks| clean(flanks.share())),
+        fronts: fronts(fracture),
+        points: figures.points,
+        bonds: figures.bonds,
+        steps: last.map(|row| row.step),
+        evaluations: figures.evaluations,
+        time_step_s: (figures.time_step > 0.0).then_some(figures.time_step),
+        wall_s: figures.wall_s,
+        memory_mb: figures.memory_mb,
+        loading: loading(scene),
+        model: model_words::object(&scene_model::of_scene(scene, Some(fracture.grid.spacing))),
+        damage: damage(scene),
+        warnings: scene.warnings.iter().chain(&fracture.warnings).cloned().collect(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        case: scene.echo.clone(),
+        made_by: MadeBy::of(&scene.provenance, texts.iter().map(|(name, text)| (&**name, &**text))),
+    }
 }
 
 /// Time of a step where there is time.
@@ -238,51 +312,50 @@ fn energy_error(fracture: &Fracture) -> Option<f64> {
     (largest > 0.0).then(|| left / largest).filter(|error| error.is_finite())
 }
 
-/// Where every crack front stands at the end.
-fn fronts(fracture: &Fracture) -> Value {
+fn fronts(fracture: &Fracture) -> Vec<FrontEnd> {
     let count = fracture.path.iter().map(|point| point.tip + 1).max().unwrap_or(0);
     let last = |tip: usize| fracture.path.iter().rev().find(|point| point.tip == tip);
-    let words = |point: &PathPoint| {
-        json!({
-            "tip": point.tip, "step": point.step, "time_s": point.time,
-            "x_mm": clean(point.position[0] / MM), "y_mm": clean(point.position[1] / MM), "damage": clean(point.damage),
-        })
+    let of = |point: &PathPoint| FrontEnd {
+        tip: point.tip,
+        step: point.step,
+        time_s: point.time,
+        x_mm: clean(point.position[0] / MM),
+        y_mm: clean(point.position[1] / MM),
+        damage: clean(point.damage),
     };
-    (0..count).filter_map(last).map(words).collect()
+    (0..count).filter_map(last).map(of).collect()
 }
 
-fn loading(scene: &Scene) -> Value {
-    let kinds: Vec<&str> = scene
-        .drives
-        .iter()
-        .map(|drive| match drive.action {
-            Action::Traction(_) => "traction",
-            Action::Displacement(_) => "displacement",
-            Action::Velocity(_) => "velocity",
-            Action::Platen(_) => "platens",
-        })
-        .collect();
+fn loading(scene: &Scene) -> LoadingRecord {
+    let kind = |load: &SceneLoad| match load.action {
+        Action::Traction(_) => "traction",
+        Action::Displacement(_) => "displacement",
+        Action::Velocity(_) => "velocity",
+        Action::Platen(_) => "platens",
+    };
+    let kinds = scene.drives.iter().map(|load| kind(load).to_owned()).collect();
+    let of = |procedure: &str| LoadingRecord { procedure: procedure.to_owned(), kinds, ..LoadingRecord::default() };
     match scene.procedure {
-        Procedure::Static => json!({ "procedure": "static", "kinds": kinds }),
+        Procedure::Static => of("static"),
         Procedure::QuasiStatic { steps, iterations } => {
-            json!({ "procedure": "quasi_static", "steps": steps, "iterations_per_step": iterations, "kinds": kinds })
+            LoadingRecord { steps: Some(steps), iterations_per_step: iterations, ..of("quasi_static") }
         }
-        Procedure::Dynamic { duration, .. } => json!({ "procedure": "dynamic", "duration_s": duration, "kinds": kinds }),
+        Procedure::Dynamic { duration, .. } => LoadingRecord { duration_s: Some(duration), ..of("dynamic") },
     }
 }
 
-fn damage(scene: &Scene) -> Value {
+fn damage(scene: &Scene) -> DamageRecord {
     let damage = &scene.damage;
     let by_points = matches!(scene.model.law, SceneLaw::Correspondence { .. });
-    json!({
-        "law": damage.law.name(),
-        "enters": by_points.then(|| damage.enters.name()),
-        "critical_stretch": damage.stretch,
-        "calibration": scene.takes_fracture_energy().then(|| damage.calibration.name()),
-        "trapping": scene.takes_fracture_energy().then(|| scene.trapping()),
-        "elastic_stretch": damage.nonlinear.map(|law| law.elastic),
-        "peak_stretch": damage.nonlinear.map(|law| law.peak),
-        "final_stretch": damage.nonlinear.map(|law| law.last),
-        "printed_law": damage.nonlinear.map(|law| law.printed),
-    })
+    DamageRecord {
+        law: damage.law.name().to_owned(),
+        enters: by_points.then(|| damage.enters.name().to_owned()),
+        critical_stretch: damage.stretch,
+        calibration: scene.takes_fracture_energy().then(|| damage.calibration.name().to_owned()),
+        trapping: scene.takes_fracture_energy().then(|| scene.trapping()),
+        elastic_stretch: damage.nonlinear.map(|law| law.elastic),
+        peak_stretch: damage.nonlinear.map(|law| law.peak),
+        final_stretch: damage.nonlinear.map(|law| law.last),
+        printed_law: damage.nonlinear.map(|law| law.printed),
+    }
 }
