@@ -189,6 +189,7 @@ fn what_cannot_be_reported_is_refused_with_words() {
         ("run/a_n.csv", None, "run", 2, &["run/a_n.csv", "is missing"]),
         (fit, cut(fit), "fit", 2, &["fit/fit.json", "cut off or damaged"]),
         (fit, with(fit, "paris_m", Value::Null), "fit", 2, &["fit/fit.json", "paris_m", "null", "is not a number above 0"]),
+        (fit, with(fit, "specimens", "34".into()), "fit", 2, &["fit/fit.json", "is not as `perilife calibrate` wrote it", "34"]),
         ("fit/readings.csv", cut("fit/readings.csv"), "fit", 2, &["fit/readings.csv", "is cut off"]),
         ("fit/readings.csv", None, "fit", 2, &["fit/readings.csv", "is missing"]),
     ];
