@@ -1,4 +1,4 @@
-//! Sparse factorisation by faer, the reference that other solvers are compared with: Cholesky, and LU for a state-based law,
+//! Sparse factorisation by faer, the reference of tests and what a window falls back on: Cholesky, and LU for a state-based law,
 //! whose matrix with the stresses as unknowns is not positive definite.
 
 use std::collections::HashSet;
@@ -17,9 +17,6 @@ use crate::body::{Body, Bond};
 use crate::state::Bonds;
 use perilife_base::error::{Error, Result};
 use perilife_base::watch::{self, Stage};
-
-/// Solves after which it begins anew: it remembers nothing, so that this costs one more solve.
-const SOLVES_MOST: usize = 32;
 
 /// Stiffness of a held sum over the largest of the matrix.
 const TIE: f64 = 1e7;
@@ -45,10 +42,6 @@ impl<const N: usize> LinearSolver<N> for DirectSolver {
     }
 
     fn broke(&mut self, _: &Body, _: &Bonds, _: &Product<N>, _: &[Bond]) {}
-
-    fn is_due(&self, _: &Body, _: &[Bond], solves: usize) -> bool {
-        solves >= SOLVES_MOST
-    }
 }
 
 /// Solves with M unknowns a point, of which the first N go into `u`.
