@@ -83,13 +83,18 @@ fn parts(pixels: f64, each: f64) -> f64 {
     (pixels / each).clamp(2.0, 6.0)
 }
 
-/// Colour of the curves of a tip.
-fn colour_of(tip: usize) -> &'static str {
-    COLOURS[tip % COLOURS.len()]
+/// Colours of the curves of the tips, one for those that grew alike.
+fn colours(tables: &RunTables) -> Vec<&'static str> {
+    let ends: Vec<f64> = tables.tips.iter().map(|tip| tip.growth_mm.last().copied().unwrap_or(0.0)).collect();
+    let near = 0.02 * ends.iter().fold(0.0, |a: f64, b| a.max(*b));
+    let first = |tip: usize| ends.iter().position(|end| (end - ends[tip]).abs() <= near).unwrap_or(tip);
+    let firsts: Vec<usize> = (0..ends.len()).filter(|tip| first(*tip) == *tip).collect();
+    let place = |tip| firsts.iter().position(|own| *own == first(tip)).unwrap_or(0);
+    (0..ends.len().max(1)).map(|tip| COLOURS[if ends.is_empty() { 0 } else { place(tip) } % COLOURS.len()]).collect()
 }
 
 /// Names of the tips whose curves end within a fiftieth of the chart of each other, so that both could not be told apart.
-fn tips_together(ends: &[(usize, Point)], spans: Point) -> Vec<(String, Point, &'static str)> {
+fn tips_together(ends: &[(usize, Point)], spans: Point, colours: &[&'static str]) -> Vec<(String, Point, &'static str)> {
     let mut groups: Vec<(Vec<usize>, Point)> = Vec::new();
     for (tip, end) in ends {
         let is_near = |(_, other): &&mut (Vec<usize>, Point)| (0..2).all(|i| (other[i] - end[i]).abs() < 0.02 * spans[i]);
@@ -102,7 +107,7 @@ fn tips_together(ends: &[(usize, Point)], spans: Point) -> Vec<(String, Point, &
         [tip] => format!("tip {tip}"),
         tips => format!("tips {}", tips.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
     };
-    groups.into_iter().map(|(tips, end)| (name(&tips), end, colour_of(tips[0]))).collect()
+    groups.into_iter().map(|(tips, end)| (name(&tips), end, colours[tips[0]])).collect()
 }
 
 /// Largest distance of points along both axes.
@@ -161,7 +166,9 @@ fn a_n(run: &RunRecord, tables: &RunTables, size: Size) -> Frame {
         );
     }
     let lines: Vec<Vec<Point>> = curves.iter().map(|(lengths, _)| smooth(&cycles, lengths)).collect();
-    lines.iter().enumerate().for_each(|(tip, line)| frame.line(line, colour_of(tip), 2.0, ""));
+    let colours = colours(tables);
+    let drawn = lines.iter().zip(colours.iter().chain(std::iter::repeat(&COMPUTED)));
+    drawn.for_each(|(line, colour)| frame.line(line, if is_by_tip { colour } else { COMPUTED }, 2.0, ""));
     let [why, _] = end_words(run.stop_reason);
     let mut ends = Vec::new();
     let mut is_ended = false;
@@ -175,7 +182,7 @@ fn a_n(run: &RunRecord, tables: &RunTables, size: Size) -> Frame {
     }
     if is_by_tip {
         let all: Vec<Point> = ends.iter().map(|(_, end)| *end).chain([[0.0; 2]]).collect();
-        frame.names(&tips_together(&ends, spans(&all)), &lines);
+        frame.names(&tips_together(&ends, spans(&all), &colours), &lines);
     }
     frame
 }
@@ -229,8 +236,13 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
     }
     let mut lines: Vec<Vec<Point>> = Vec::new();
     let mut named_ends: Vec<(String, Point, &str)> = Vec::new();
+    let of_tips = colours(tables);
     for (mode, name, dash) in [(1, "K_II", "6 3"), (0, "K_I", "")] {
-        let colour = |tip: usize| if is_by_tip || mode == 0 { colour_of(tip) } else { SECOND };
+        let colour = |tip: usize| match (is_by_tip, mode) {
+            (true, _) => of_tips[tip],
+            (false, 0) => COMPUTED,
+            (false, _) => SECOND,
+        };
         for &tip in &tips {
             let line = points(tip, mode);
             frame.pieces(&line, colour(tip), 2.0, dash);
@@ -238,11 +250,11 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
         }
         let last = |tip: &usize| Some((*tip, points(*tip, mode).into_iter().rfind(known)?));
         let ends: Vec<(usize, Point)> = tips.iter().filter_map(last).collect();
-        let named = |(of_tips, end, of_group): (String, Point, &'static str)| match is_by_tip {
-            true => (format!("{name} {of_tips}"), end, of_group),
+        let named = |(tips, end, of_group): (String, Point, &'static str)| match is_by_tip {
+            true => (format!("{name} {tips}"), end, of_group),
             false => (name.to_owned(), end, colour(0)),
         };
-        named_ends.extend(tips_together(&ends, spans(&all)).into_iter().map(named));
+        named_ends.extend(tips_together(&ends, spans(&all), &of_tips).into_iter().map(named));
     }
     if let Some(through) = run.part_through.as_ref().and_then(|found| found.crack_length_at_break_through_mm) {
         frame.mark(through, "through the thickness");
