@@ -252,6 +252,7 @@ pub(super) fn bad_table(path: &Path, line: usize, column: Option<&str>, value: O
         value: value.map(|text| format!("\"{text}\"")),
         problem: problem.to_owned(),
         remedy: "run `perilife predict` again to write the table anew".to_owned(),
+        more: Vec::new(),
     }))
 }
 
