@@ -27,6 +27,7 @@ mod guard;
 mod hand_case;
 mod handbook;
 mod import;
+mod keys;
 mod laws;
 mod house;
 mod length_average;

@@ -169,6 +169,7 @@ impl Table {
             value: value.map(|text| format!("\"{text}\"")),
             problem: problem.to_owned(),
             remedy: "copy the folder again, or run the command again that wrote it".to_owned(),
+            ..InputError::default()
         }))
     }
 

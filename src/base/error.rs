@@ -46,11 +46,20 @@ impl Error {
         Error::File { path: path.to_path_buf(), action, source }
     }
 
+    /// Several mistakes as one error.
+    /// Errors: these; none where there is none.
+    pub fn of_all(mistakes: Vec<InputError>) -> Result<()> {
+        let mut all = mistakes.into_iter();
+        all.next().map_or(Ok(()), |first| Err(Error::Input(Box::new(InputError { more: all.collect(), ..first }))))
+    }
+
     /// Names the file an input error came from, where it is not named yet.
     pub fn in_file(self, path: &Path) -> Self {
         match self {
             Error::Input(mut input) => {
-                input.file.get_or_insert_with(|| path.to_path_buf());
+                std::iter::once(&mut input.file).chain(input.more.iter_mut().map(|one| &mut one.file)).for_each(|file| {
+                    file.get_or_insert_with(|| path.to_path_buf());
+                });
                 Error::Input(input)
             }
             other => other,
@@ -73,7 +82,12 @@ pub struct InputError {
     pub problem: String,
     /// What would be right.
     pub remedy: String,
+    /// Other mistakes of the same file, which do not depend on this one.
+    pub more: Vec<InputError>,
 }
+
+/// Mistakes of one file that are told at once; the rest is counted.
+const TOLD_AT_ONCE: usize = 10;
 
 /// Most characters of a key or value that a message repeats: what a user gave may be a whole file.
 pub const VALUE_MAX: usize = 200;
@@ -82,9 +96,26 @@ pub const SENTENCE_MAX: usize = 2000;
 
 impl std::error::Error for InputError {}
 
+impl InputError {
+    /// This mistake and all beside it, one by one.
+    pub fn each(mut self) -> Vec<InputError> {
+        let more = std::mem::take(&mut self.more);
+        std::iter::once(self).chain(more).collect()
+    }
+}
+
 impl fmt::Display for InputError {
-    /// `file:line: key = value: problem; remedy`, leaving out what is not known.
+    /// `file:line: key = value: problem; remedy`, leaving out what is not known; of several mistakes a numbered line each.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.more.is_empty() {
+            let count = 1 + self.more.len();
+            write!(f, "{count} mistakes")?;
+            for (i, one) in self.clone().each().iter().enumerate().take(TOLD_AT_ONCE) {
+                write!(f, "\n{}. {one}", i + 1)?;
+            }
+            let rest = count.saturating_sub(TOLD_AT_ONCE);
+            return if rest == 0 { Ok(()) } else { write!(f, "\nand {rest} more") };
+        }
         if let Some(file) = &self.file {
             write!(f, "{}", file.display())?;
             if let Some(line) = self.line {

@@ -85,6 +85,13 @@ macro_rules! kinds {
             }
         }
 
+        impl $crate::keys::Field for $Kind {
+            const SHAPE: $crate::keys::Shape = $crate::keys::Shape::Choice(Self::lines);
+            fn take(_: &$crate::keys::Key, path: &str, value: &$crate::keys::Value) -> $crate::Result<Self> {
+                $crate::keys::choice(path, value, Self::lines, |text| Self::all().find(|k| k.name() == text))
+            }
+        }
+
         impl serde::Serialize for $Kind {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> { serializer.serialize_str(self.name()) }
         }

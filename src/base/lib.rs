@@ -7,6 +7,7 @@
 //! Imports no member; all others import it.
 
 pub mod error;
+pub mod keys;
 pub mod kinds;
 pub mod units;
 pub mod cells;

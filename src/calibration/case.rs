@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
 use toml::{Table, Value};
 
 use crate::criterion::Criterion;
-use crate::exponent::{Exponent, FitSlice, delta_k_ratio, exponent};
+use crate::exponent::{Exponent, FitKeys, delta_k_ratio, exponent};
 use perilife_base::error::{input, input_missing};
-use perilife_base::input::{Document, Folder, LENGTH, sha256, slice};
+use perilife_base::input::{Document, Folder, sha256};
+use perilife_base::keys::{Plain, key, length, section};
 use perilife_base::units::MM;
 use perilife_base::{
     table::{
@@ -19,6 +19,7 @@ use perilife_base::{
 };
 use perilife_growth::case::record::SourceFile;
 use perilife_growth::case::{Case, LawSource};
+use perilife_measured::rates::{COLUMNS, DECIMAL, SHEET};
 use perilife_measured::{ColumnNames, Import, LeaveOut, Measured, MeasuredCurve, check_left_out, parse};
 use perilife_plate::specimen::Specimen;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
@@ -58,26 +59,24 @@ pub struct CalibrationCase {
     formula: Option<HandbookFormula>,
 }
 
-/// `[measured]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct MeasuredSlice {
-    files: Vec<String>,
-    from_crack_length_mm: Option<f64>,
-    to_crack_length_mm: Option<f64>,
-    length_unit: Option<LengthUnit>,
-    cycle_unit: Option<CycleUnit>,
-    precision_mm: Option<f64>,
-    load_unit: Option<LoadUnit>,
-    #[serde(default)]
-    columns: ColumnNames,
-    decimal: Option<Decimal>,
-    sheet: Option<Sheet>,
-    #[serde(default)]
-    leave_out: Vec<LeaveOut>,
+perilife_base::keys! {
+    /// Keys of `[measured]` of readings.
+    pub struct MeasuredKeys {
+        files: Vec<String> = key("files", "Files of readings: CSV or workbooks, one or more specimens each");
+        from: Option<f64> = length("from_crack_length_mm", "Fit window: from this crack length");
+        to: Option<f64> = length("to_crack_length_mm", "Fit window: to this crack length");
+        length_unit: Option<LengthUnit> = key("length_unit", "Unit of crack length: where the header has none");
+        cycle_unit: Option<CycleUnit> = key("cycle_unit", "Unit of cycles: where the header has none");
+        precision: Option<Plain> = length("precision_mm", "Precision of the crack lengths");
+        load_unit: Option<LoadUnit> = key("load_unit", "Unit of loads: where the header has none");
+        columns: ColumnNames = COLUMNS, or "found by their names" ColumnNames::default();
+        decimal: Option<Decimal> = DECIMAL;
+        sheet: Option<Sheet> = SHEET;
+        leave_out: Vec<LeaveOut> = key("leave_out", "Readings left out: with the reason"), or "none" Vec::new();
+    }
 }
 
-impl MeasuredSlice {
+impl MeasuredKeys {
     fn import(&self) -> Import {
         Import {
             length: self.length_unit,
@@ -114,15 +113,15 @@ impl CalibrationCase {
                 .as_ref()
                 .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
             let case = Case::from_table(document.table.clone(), &document.name, &document.folder)?;
-            Self::build(case, slice(measured, "measured")?, slice(&fit, "fit")?, &document.folder, input)
+            Self::build(case, section(measured, "measured")?, section(&fit, "fit")?, &document.folder, input)
         };
         build().map_err(|error| document.locate(error))
     }
 
     fn build(
         mut case: Case,
-        keys: MeasuredSlice,
-        fit: FitSlice,
+        keys: MeasuredKeys,
+        fit: FitKeys,
         folder: &Folder,
         input: Table,
     ) -> perilife_base::error::Result<Self> {
@@ -140,7 +139,7 @@ impl CalibrationCase {
         measured.leave_standing_out()?;
         let read = measured.curves.clone();
         measured.leave_out(&keys.leave_out)?;
-        let window_ends = window_ends(&keys)?;
+        let window_ends = window_ends(&keys);
         let Measured { mut curves, mut warnings } = window(&measured, &keys)?;
         check_start(&case.specimen, &mut curves)?;
         let longest = curves.iter().flat_map(|curve| &curve.crack_length).copied().fold(0.0, f64::max);
@@ -153,7 +152,7 @@ impl CalibrationCase {
             formula.as_ref().map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
         let exponent = exponent(&fit, folder, case.model.method(), delta_k_ratio)?;
         warnings.extend(exponent.warning.clone());
-        let criterion = fit.criterion.unwrap_or(Criterion::BothEnds);
+        let criterion = fit.criterion;
         case.stop.crack_length = longest;
         case.stop.required = None;
         case.material.toughness = None;
@@ -233,7 +232,7 @@ fn unrecorded(case: &Case) -> Option<String> {
 }
 
 /// Curves of the measured files, and what the record says about the files.
-fn readings(keys: &MeasuredSlice, folder: &Folder) -> perilife_base::error::Result<(Measured, Vec<SourceFile>)> {
+fn readings(keys: &MeasuredKeys, folder: &Folder) -> perilife_base::error::Result<(Measured, Vec<SourceFile>)> {
     if keys.files.is_empty() {
         return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
     }
@@ -249,7 +248,7 @@ fn readings(keys: &MeasuredSlice, folder: &Folder) -> perilife_base::error::Resu
         measured.add(parse(&bytes, &folder.path(file), &import)?)?;
         sources.push(source(file, &bytes));
     }
-    Ok((measured.of_precision("measured.precision_mm", keys.precision_mm)?, sources))
+    Ok((measured.of_precision("measured.precision_mm", keys.precision.map(|precision| precision.0))?, sources))
 }
 
 /// What the record says about a measured file.
@@ -258,15 +257,12 @@ pub fn source(file: &str, bytes: &[u8]) -> SourceFile {
 }
 
 /// Ends of the fit window with their slack, m.
-fn window_ends(keys: &MeasuredSlice) -> perilife_base::error::Result<[f64; 2]> {
-    let from = LENGTH.read_optional("measured.from_crack_length_mm", keys.from_crack_length_mm)?;
-    let to = LENGTH.read_optional("measured.to_crack_length_mm", keys.to_crack_length_mm)?;
-    Ok([from.unwrap_or(0.0) - LENGTH_SLACK, to.unwrap_or(f64::INFINITY) + LENGTH_SLACK])
+fn window_ends(keys: &MeasuredKeys) -> [f64; 2] {
+    [keys.from.unwrap_or(0.0) - LENGTH_SLACK, keys.to.unwrap_or(f64::INFINITY) + LENGTH_SLACK]
 }
 
-fn window(measured: &Measured, keys: &MeasuredSlice) -> perilife_base::error::Result<Measured> {
-    let from = LENGTH.read_optional("measured.from_crack_length_mm", keys.from_crack_length_mm)?;
-    let to = LENGTH.read_optional("measured.to_crack_length_mm", keys.to_crack_length_mm)?;
+fn window(measured: &Measured, keys: &MeasuredKeys) -> perilife_base::error::Result<Measured> {
+    let MeasuredKeys { from, to, .. } = *keys;
     if let (Some(from), Some(to)) = (from, to)
         && from >= to
     {

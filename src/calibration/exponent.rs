@@ -1,11 +1,10 @@
 //! `[fit]` of a calibration file, and where the exponent comes from: fitted, given, or of a record because the window does not identify it.
 
-use serde::Deserialize;
-
 use super::criterion::Criterion;
 use super::laws::FitLaw;
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::Folder;
+use perilife_base::keys::key;
 use perilife_growth::case::{Method, fitted_record};
 use perilife_measured::MeasuredCurve;
 
@@ -20,22 +19,20 @@ perilife_base::kinds! {
     }
 }
 
-/// `[fit]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FitSlice {
-    pub parameters: Option<Vec<Parameter>>,
-    pub p: Option<f64>,
-    pub record: Option<String>,
-    pub criterion: Option<Criterion>,
-    /// Looked at before ([`crate::laws::case::is_law_fit`]): no other law comes here.
-    #[serde(rename = "law")]
-    _law: Option<FitLaw>,
+perilife_base::keys! {
+    /// Keys of `[fit]`.
+    pub struct FitKeys {
+        parameters: Vec<Parameter> = key("parameters", "Fitted constants"), or "a, p" vec![Parameter::A, Parameter::P];
+        p: Option<f64> = key("p", "Exponent p: given, not fitted");
+        record: Option<String> = key("record", "Record of the exponent: fitted.toml of another calibration");
+        criterion: Criterion = key("criterion", "Criterion: which lives count"), or "both_ends" Criterion::BothEnds;
+        law: Option<FitLaw> = key("law", "Growth law to fit: paris where it is left out");
+    }
 }
 
 /// The exponent of `[fit]` for a window with this ratio of the largest to the smallest ΔK; `None` where a run has to tell it.
-pub(super) fn exponent(fit: &FitSlice, folder: &Folder, method: Method, delta_k_ratio: Option<f64>) -> Result<Exponent> {
-    let parameters = fit.parameters.clone().unwrap_or_else(|| vec![Parameter::A, Parameter::P]);
+pub(super) fn exponent(fit: &FitKeys, folder: &Folder, method: Method, delta_k_ratio: Option<f64>) -> Result<Exponent> {
+    let parameters = &fit.parameters;
     let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
     if !parameters.contains(&Parameter::A) {
         let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";

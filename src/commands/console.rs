@@ -168,7 +168,7 @@ pub fn error_words(error: &Error) -> String {
 
 /// The message with the file's line shown; `None` if file or line are not known or the file has gone.
 pub fn with_source_line(input: &InputError) -> Option<String> {
-    let (file, line) = (input.file.as_ref()?, input.line?);
+    let (file, line) = (input.file.as_ref().filter(|_| input.more.is_empty())?, input.line?);
     // A pipe is empty by now, and a terminal would wait.
     let text = Some(file).filter(|file| file.is_file()).and_then(|file| std::fs::read_to_string(file).ok())?;
     let start: usize = text.split_inclusive('\n').take(line.checked_sub(1)?).map(str::len).sum();

@@ -1,15 +1,22 @@
-//! `perilife list`: every kind of every key.
+//! `perilife list`: every kind of every key, every key of every section, the JSON Schema of input files.
 
 use super::console::Console;
 use perilife_base::error::{Result, input};
+use perilife_base::keys::nearest;
 use perilife_runner::catalogue;
 
 /// Arguments of `perilife list`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// Only keys whose name contains this: `materials`, `loading`, `growth_law`
+    /// `keys`: every key with its range; else only keys whose name contains this: `materials`, `loading`, `growth_law`
     #[arg(value_name = "WHAT")]
     pub what: Option<String>,
+    /// Of `keys`: those of a section, or of a kind of specimen: `loading`, `specimen.lug`
+    #[arg(value_name = "SECTION")]
+    pub section: Option<String>,
+    /// JSON Schema of case and calibration files, by which editors complete and check them
+    #[arg(long)]
+    pub schema: bool,
     /// What is printed.
     #[command(flatten)]
     pub console: Console,
@@ -17,17 +24,67 @@ pub struct Args {
 
 /// Prints the list in aligned columns, or as JSON.
 pub fn run(args: &Args) -> Result<()> {
+    if args.schema {
+        args.console.result(&format!("{:#}\n", catalogue::schema()))?;
+        return args.console.object(&catalogue::schema());
+    }
     let what = args.what.as_deref().map(|what| what.to_lowercase().trim_end_matches('s').to_owned());
+    if what.as_deref() == Some("key") {
+        return keys(args);
+    }
     let is_asked = |key: &str| what.as_ref().is_none_or(|what| key.contains(what.as_str()));
     let all = [catalogue::lines(), perilife_study::catalogue::lines()].concat();
-    let lines: Vec<_> = all.iter().filter(|(key, ..)| is_asked(key)).cloned().collect();
-    if let (true, Some(given)) = (lines.is_empty(), &args.what) {
-        return Err(input("WHAT", given, "is part of no key", "use `perilife list` for all of them"));
+    let mut lines: Vec<Vec<String>> = all
+        .iter()
+        .filter(|(key, ..)| is_asked(key))
+        .map(|(key, name, meaning)| vec![key.clone(), name.clone(), meaning.clone()])
+        .collect();
+    if lines.is_empty() {
+        let told = catalogue::told();
+        lines = told.iter().flat_map(|told| told.lines()).map(Vec::from).filter(|line| is_asked(&line[0])).collect();
     }
-    let widest =
-        |pick: fn(&(String, String, String)) -> &String| lines.iter().map(|line| pick(line).chars().count()).max().unwrap_or(0);
-    let (key_width, name_width) = (widest(|line| &line.0), widest(|line| &line.1));
-    let line = |(key, name, meaning): &(String, String, String)| format!("{key:<key_width$}  {name:<name_width$}  {meaning}\n");
-    args.console.result(&lines.iter().map(line).collect::<String>())?;
+    if let (true, Some(given)) = (lines.is_empty(), &args.what) {
+        return Err(input(
+            "WHAT",
+            given,
+            "is part of no key",
+            "use `perilife list` for all choices, `perilife list keys` for all keys",
+        ));
+    }
+    args.console.result(&aligned(&lines))?;
     args.console.object(&catalogue::json(all))
+}
+
+/// Keys of all sections, or of one.
+fn keys(args: &Args) -> Result<()> {
+    let told = catalogue::told();
+    let is_asked =
+        |section: &str| args.section.as_deref().is_none_or(|asked| section == asked || section.split('.').next() == Some(asked));
+    let asked: Vec<_> = told.iter().filter(|told| is_asked(&told.section)).collect();
+    if let (true, Some(given)) = (asked.is_empty(), &args.section) {
+        let near = nearest(given, told.iter().map(|told| told.section.as_str()));
+        let list = || told.iter().map(|told| told.section.as_str()).collect::<Vec<_>>().join(", ");
+        let remedy = near.map_or_else(|| format!("use one of {}", list()), |near| format!("did you mean {near}?"));
+        return Err(input("SECTION", given, "is no section", remedy));
+    }
+    let lines: Vec<Vec<String>> = asked.iter().flat_map(|told| told.lines()).map(Vec::from).collect();
+    args.console.result(&aligned(&lines))?;
+    let rows =
+        lines.iter().map(|line| serde_json::json!({ "key": line[0], "range": line[1], "left_out": line[2], "meaning": line[3] }));
+    args.console.object(&rows.collect())
+}
+
+/// Lines of cells in columns, the last one as long as it is; one that is far longer than most does not widen its column.
+fn aligned(lines: &[Vec<String>]) -> String {
+    const WIDEST: usize = 44;
+    let width = |column: usize| {
+        let lengths = lines.iter().map(|line| line[column].chars().count());
+        if column == 0 { lengths.max() } else { lengths.filter(|length| *length <= WIDEST).max() }.unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..lines.first().map_or(0, Vec::len)).map(width).collect();
+    let line = |line: &Vec<String>| {
+        let cells = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
+    };
+    lines.iter().map(line).collect()
 }

@@ -23,7 +23,7 @@ pub use law_source::{LIBRARY, fitted_record, library_law};
 pub use model::coarse_points;
 pub use model_keys::{REFINED, finer_nodes, usual_nodes};
 pub use pins::initial_plate;
-pub use read::{RECORD, SECTIONS};
+pub use read::{RECORD, SECTIONS, keys};
 
 use crate::case::record::{FittedRecord, LawRecord};
 use perilife_base::error::Result;

@@ -5,51 +5,27 @@
 //! their own concentration multiplied in. No crack forms at a range up to `limit_mpa`. What "has formed" means is the
 //! length that the cracks of the case have from their rims, which the S-N tests have to share.
 
-use serde::Deserialize;
-use toml::Value;
-
-use perilife_base::error::Result;
-use perilife_base::input::{STRESS, number, slice};
+use perilife_base::keys::{number, stress};
 
 /// Key of a case.
 pub const KEY: &str = "fatigue.initiation";
 
-/// Keys of `[fatigue.initiation]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    range_mpa: f64,
-    cycles: f64,
-    slope: f64,
-    limit_mpa: Option<f64>,
-}
-
-/// An S-N law of local stress.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SnLaw {
-    /// Range Δσ_D of a point of the line, Pa.
-    pub range: f64,
-    /// Cycles N_D of that point.
-    pub cycles: f64,
-    /// Slope k of log N over -log Δσ.
-    pub slope: f64,
-    /// Range up to which no crack forms, Pa; 0 without one.
-    pub limit: f64,
+perilife_base::keys! {
+    /// An S-N law of local stress, the keys of `[fatigue.initiation]`.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct SnLaw {
+        /// Range Δσ_D of a point of the line, Pa.
+        range: f64 = stress("range_mpa", "Range ΔσD: of the local stress at one point of the S-N line");
+        /// Cycles N_D of that point.
+        cycles: f64 = number("cycles", "Cycles ND: of that point", "a number of cycles", 1.0, 1e12);
+        /// Slope k of log N over -log Δσ.
+        slope: f64 = number("slope", "Slope k: of log N over −log Δσ", "a slope", 0.5, 50.0);
+        /// Range up to which no crack forms, Pa; 0 without one.
+        limit: f64 = stress("limit_mpa", "Fatigue limit: range up to which no crack forms"), or "none" 0.0;
+    }
 }
 
 impl SnLaw {
-    /// Reads `[fatigue.initiation]`.
-    /// Errors: a key that is missing or beyond reason.
-    pub fn read(value: &Value) -> Result<Self> {
-        let input: Input = slice(value, KEY)?;
-        Ok(SnLaw {
-            range: STRESS.read("fatigue.initiation.range_mpa", input.range_mpa)?,
-            cycles: number("a number of cycles", 1.0, 1e12).read("fatigue.initiation.cycles", input.cycles)?,
-            slope: number("a slope", 0.5, 50.0).read("fatigue.initiation.slope", input.slope)?,
-            limit: STRESS.read_optional("fatigue.initiation.limit_mpa", input.limit_mpa)?.unwrap_or(0.0),
-        })
-    }
-
     /// Cycles N_I at a range, Pa; `None` where no crack forms.
     pub fn cycles_at(&self, range: f64) -> Option<f64> {
         (range > self.limit).then(|| self.cycles * (self.range / range).powf(self.slope))

@@ -1,14 +1,14 @@
 //! What a user says about measured files: units, columns by name, the decimal sign, the sheet. Keys of `[measured]`, options of `rates`
 //! and fields of the service's form are all read into this.
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::shorten;
+use perilife_base::keys::{Field, Key, Shape, Value, key, nearest, refuse};
 use perilife_base::table::names::Role;
 use perilife_base::table::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
-use perilife_base::table::{Decimal, Sheet, TextOrNumber};
+use perilife_base::table::{Decimal, Sheet, text_or_number};
 
 /// What the user says about files of readings; a header that names its own unit must agree.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -37,24 +37,25 @@ pub struct Import {
     pub of_plate: bool,
 }
 
-/// Cycles of a specimen that do not count, or a row of a file.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct LeaveOut {
-    /// Name of the specimen; may be left out where there is one.
-    pub specimen: Option<String>,
-    /// First cycles, as the file counts them.
-    pub from_cycles: Option<f64>,
-    /// Last cycles.
-    pub to_cycles: Option<f64>,
-    /// File of the row; may be missing where there is one.
-    pub file: Option<String>,
-    /// Line of the row in it.
-    pub line: Option<usize>,
-    /// A cell of the row, which shows that the line is the one that is meant.
-    pub value: Option<String>,
-    /// Why.
-    pub reason: String,
+perilife_base::keys! {
+    /// Cycles of a specimen that do not count, or a row of a file.
+    #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+    pub struct LeaveOut {
+        /// Name of the specimen; may be left out where there is one.
+        specimen: Option<String> = key("specimen", "Specimen: may be left out where there is one");
+        /// First cycles, as the file counts them.
+        from_cycles: Option<f64> = key("from_cycles", "First cycles: as the file counts them");
+        /// Last cycles.
+        to_cycles: Option<f64> = key("to_cycles", "Last cycles");
+        /// File of the row; may be missing where there is one.
+        file: Option<String> = key("file", "File of the row: may be left out where there is one");
+        /// Line of the row in it.
+        line: Option<usize> = key("line", "Line of the row");
+        /// A cell of the row, which shows that the line is the one that is meant.
+        value: Option<String> = key("value", "A cell of the row: shows that the line is the one that is meant");
+        /// Why.
+        reason: String = key("reason", "Reason");
+    }
 }
 
 impl LeaveOut {
@@ -94,8 +95,7 @@ pub fn check_left_out(all: &[LeaveOut], files: &[String]) -> Result<()> {
 
 /// Which column is which, by a key and the name in the header, or the number from 1; what is left out is found by the names that
 /// laboratories use. Several columns of crack length are readings of one crack on several sides.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
-#[serde(try_from = "BTreeMap<String, OneOrMany>")]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ColumnNames(Vec<((&'static str, Role), String)>);
 
 impl ColumnNames {
@@ -162,29 +162,25 @@ impl ColumnNames {
     }
 }
 
-impl TryFrom<BTreeMap<String, OneOrMany>> for ColumnNames {
-    type Error = String;
-
-    fn try_from(table: BTreeMap<String, OneOrMany>) -> std::result::Result<Self, String> {
+impl Field for ColumnNames {
+    const SHAPE: Shape = Shape::Other("a table of columns, such as { cycles = \"N\", length = [\"a left\", \"a right\"] }");
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        let Some(table) = value.as_table() else { return refuse(key, path, value, Self::SHAPE) };
         let mut names = Vec::new();
-        for (key, columns) in table {
-            let known =
-                Self::key(&key).ok_or_else(|| format!("unknown field `{key}`, expected one of `{}`", Self::names("`, `")))?;
-            match columns {
-                OneOrMany::One(name) => names.push((known, name.into())),
-                OneOrMany::Many(several) if known.1 == Role::Length => {
-                    names.extend(several.into_iter().map(|name| (known, name.into())))
-                }
-                OneOrMany::Many(_) => return Err("a column, expected the name of a column or its number".to_owned()),
-            }
+        for (name, columns) in table {
+            let at = format!("{path}.{name}");
+            let known = Self::key(name).ok_or_else(|| {
+                let near = nearest(name, Self::KEYS.iter().map(|(key, _)| *key));
+                let remedy =
+                    near.map_or_else(|| format!("known here: {}", Self::names(", ")), |near| format!("did you mean {near}?"));
+                input(&at, shorten(columns), "is not a known key", remedy)
+            })?;
+            let several = columns.as_array().filter(|_| known.1 == Role::Length).map(|list| list.iter().collect());
+            let all: Option<Vec<String>> = several.unwrap_or_else(|| vec![columns]).into_iter().map(text_or_number).collect();
+            let problem = "is not the name of a column or its number";
+            let all = all.ok_or_else(|| input(&at, shorten(columns), problem, "give the name of a column or its number"))?;
+            names.extend(all.into_iter().map(|name| (known, name)));
         }
         Ok(ColumnNames(names))
     }
-}
-
-#[derive(Deserialize)]
-#[serde(untagged, expecting = "columns, expected the name of a column or its number, or a list of them")]
-enum OneOrMany {
-    One(TextOrNumber),
-    Many(Vec<TextOrNumber>),
 }

@@ -5,8 +5,6 @@
 
 use std::path::Path;
 
-use serde::Deserialize;
-
 use super::columns::column_in_unit;
 use super::header::columns_of;
 use super::import::{ColumnNames, Import};
@@ -16,6 +14,7 @@ use super::table;
 use super::wide_rates;
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, number};
+use perilife_base::keys::{Field, Key, Shape, Value, key, refuse, section};
 use perilife_base::table::decimal::decide;
 use perilife_base::table::names::{Column, Named, Role};
 use perilife_base::table::{
@@ -87,8 +86,7 @@ pub struct RateTable {
 }
 
 /// A table of rates in an input file: its name, or with what it does not say itself.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged, expecting = "a table of rates, expected the name of a file or { file = \"...\", stress_ratio = ..., ... }")]
+#[derive(Debug, Clone)]
 pub enum RateFile {
     /// Name of the file.
     Name(String),
@@ -96,28 +94,46 @@ pub enum RateFile {
     Keys(Box<RateFileKeys>),
 }
 
-/// What a user says of a table of rates.
-#[derive(Debug, Clone, Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub struct RateFileKeys {
-    /// Name of the file.
-    pub file: String,
-    /// R of all rows.
-    pub stress_ratio: Option<f64>,
-    /// Unit of ΔK.
-    pub intensity_unit: Option<IntensityUnit>,
-    /// Unit of da/dN.
-    pub rate_unit: Option<RateUnit>,
-    /// Which range ΔK is at negative R.
-    pub delta_k: Option<RangeKind>,
-    /// Columns by name.
-    #[serde(default)]
-    pub columns: ColumnNames,
-    /// The decimal sign.
-    pub decimal: Option<Decimal>,
-    /// Sheet of a workbook.
-    pub sheet: Option<Sheet>,
+impl Field for RateFile {
+    const SHAPE: Shape = Shape::Other("the name of a file or { file = \"...\", stress_ratio = ..., ... }");
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        match value {
+            Value::String(name) => Ok(RateFile::Name(name.clone())),
+            Value::Table(_) => section(value, path).map(|keys| RateFile::Keys(Box::new(keys))),
+            _ => refuse(key, path, value, Self::SHAPE),
+        }
+    }
 }
+
+perilife_base::keys! {
+    /// What a user says of a table of rates.
+    #[derive(Debug, Clone, Default)]
+    pub struct RateFileKeys {
+        /// Name of the file.
+        file: String = key("file", "File of rates");
+        /// R of all rows.
+        stress_ratio: Option<f64> = key("stress_ratio", "Stress ratio R: of all rows");
+        /// Unit of ΔK.
+        intensity_unit: Option<IntensityUnit> = key("intensity_unit", "Unit of ΔK");
+        /// Unit of da/dN.
+        rate_unit: Option<RateUnit> = key("rate_unit", "Unit of da/dN");
+        /// Which range ΔK is at negative R.
+        delta_k: Option<RangeKind> = key("delta_k", "ΔK at negative R");
+        /// Columns by name.
+        columns: ColumnNames = COLUMNS, or "found by their names" ColumnNames::default();
+        /// The decimal sign.
+        decimal: Option<Decimal> = DECIMAL;
+        /// Sheet of a workbook.
+        sheet: Option<Sheet> = SHEET;
+    }
+}
+
+/// Columns by name.
+pub const COLUMNS: Key = key("columns", "Columns: by their names or numbers");
+/// The decimal sign.
+pub const DECIMAL: Key = key("decimal", "Decimal sign");
+/// Sheet of a workbook.
+pub const SHEET: Key = key("sheet", "Sheet of a workbook: its name or number");
 
 impl RateFile {
     /// All that is said.

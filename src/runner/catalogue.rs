@@ -3,20 +3,24 @@
 use serde_json::{Value, json};
 
 use perilife_base::input::{Folder, Quantity};
+use perilife_base::keys::told::{self, Told};
+use perilife_base::keys::{Field, Key, Need, Section, key};
 use perilife_base::kinds::KindLine;
 use perilife_base::table::{
     Decimal,
     units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit},
 };
-use perilife_base::units::shown::told;
+use perilife_base::units::shown;
 use perilife_base::units::us::System;
+use perilife_calibration::case::MeasuredKeys;
 use perilife_calibration::criterion::Criterion;
-use perilife_calibration::exponent::Parameter;
+use perilife_calibration::exponent::{FitKeys, Parameter};
 use perilife_calibration::laws::FitLaw;
+use perilife_calibration::laws::case::{LawKeys, RatesKeys};
 use perilife_calibration::rates::RateMethod;
 use perilife_calibration::sweep::{DesignKind, DistributionKind, Scale, Scatter};
 use perilife_growth::case::record::FittedLaw;
-use perilife_growth::case::{Failure, LIBRARY, Lot, Method};
+use perilife_growth::case::{self, Failure, LIBRARY, Lot, Method};
 use perilife_growth::predict::StopReason;
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
 use perilife_laws::growth_law::GrowthLawKind;
@@ -27,11 +31,12 @@ use perilife_laws::{Ageing, Driver};
 use perilife_measured::RangeKind;
 use perilife_nodes::basis::{BasisKind, Enrichment};
 use perilife_plate::loading::spectrum::SpectrumFormat;
-use perilife_plate::loading::{Grip, LoadingKind, Transverse};
+use perilife_plate::loading::{Grip, LoadingKind, SupportEntry, Transverse};
 use perilife_plate::material::growth_data::{self, GrowthRecord};
 use perilife_plate::material::{Plane, library};
 use perilife_plate::specimen::beta;
 use perilife_plate::specimen::drawing::{DrawingUnit, SymmetryPlane};
+use perilife_plate::specimen::keys::BETA_FILE;
 use perilife_plate::specimen::{Component, Edge, Ends, Head, SpecimenKind};
 use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife_points::crack_tip::TipState;
@@ -109,7 +114,9 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.extend(library::names().into_iter().map(|name| {
         let meaning = library::find(&name, &Folder::none()).map_or_else(
             |error| error.to_string(),
-            |file| told(&format!("{}; E {} GPa, nu {}", file.title, file.youngs_modulus_gpa.value, file.poisson_ratio.value)),
+            |file| {
+                shown::told(&format!("{}; E {} GPa, nu {}", file.title, file.youngs_modulus_gpa.value, file.poisson_ratio.value))
+            },
         );
         ("material.name".to_owned(), name, meaning)
     }));
@@ -142,6 +149,60 @@ pub fn lines() -> Vec<(String, String, String)> {
     all
 }
 
+/// Every section of case, calibration and sweep files with its keys.
+pub fn told() -> Vec<Told> {
+    let told = |section: &str, meaning: &str, keys: Vec<Key>| Told {
+        section: section.to_owned(),
+        meaning: meaning.to_owned(),
+        tag: None,
+        is_needed: ["material", "loading"].contains(&section),
+        keys,
+    };
+    let of_kind = |kind: &SpecimenKind| {
+        let beta = kind.takes_beta().then_some(Key { need: Need::Optional, ..BETA_FILE });
+        let keys = kind.keys().iter().copied().chain(beta).collect();
+        Told { tag: Some(("kind", kind.name())), is_needed: true, ..told(&format!("specimen.{kind}"), kind.meaning(), keys) }
+    };
+    let meaning = |section: &str| match section {
+        "material" => "What the plate is made of: a name, constants, or both (constants go before the name's)",
+        "loading" => "Cycles of a load or displacement, or a spectrum, and where they act",
+        "model" => "Method and resolution",
+        "fatigue" => "Growth law, driver, initiation",
+        "stop" => "When the analysis ends",
+        "fleet" => "Many plates that differ",
+        _ => "What is written beside results",
+    };
+    let sides = Edge::ALL.iter().map(|edge| Key {
+        shape: SupportEntry::SHAPE,
+        need: Need::Optional,
+        ..key(edge.name(), "Side that is held")
+    });
+    let measured = [MeasuredKeys::KEYS, RatesKeys::KEYS].concat().into_iter().map(|key| Key { need: Need::Optional, ..key });
+    let fit = FitKeys::KEYS.iter().copied().chain(LawKeys::KEYS[1..].iter().copied());
+    let mut all: Vec<Told> = SpecimenKind::ALL.iter().map(of_kind).collect();
+    all.extend(case::keys().into_iter().map(|(section, keys)| told(section, meaning(section), keys)));
+    all.push(told("supports", "Sides of a plate that are held, each by its name", sides.collect()));
+    all.push(told("measured", "Test data of a calibration: a-N readings, or tables of rates", measured.collect()));
+    all.push(told("fit", "What a calibration fits", fit.collect()));
+    all
+}
+
+/// The JSON Schema of case and calibration files.
+pub fn schema() -> Value {
+    told::schema("perilife case or calibration", &told())
+}
+
+/// Every key in tables of the guide.
+pub fn manual() -> String {
+    told().iter().map(Told::manual).collect()
+}
+
+/// Every section as a class of the Python stub.
+pub fn stub() -> String {
+    let head = "\"\"\"Sections of input files as dicts (written by a test from the keys of the program).\"\"\"\n\nfrom typing import Literal, Required, TypedDict\n\n";
+    format!("{head}{}", told().iter().map(Told::stub).collect::<String>().trim_end().to_owned() + "\n")
+}
+
 /// Such lines as one object, with the constants of every growth law and model of retardation: keys of `[fatigue]` and `[loading]`, units, and whether a
 /// case has to give them.
 pub fn json(lines: Vec<(String, String, String)>) -> Value {
@@ -160,6 +221,7 @@ pub fn json(lines: Vec<(String, String, String)>) -> Value {
     json!({
         "kinds": kinds.collect::<Vec<_>>(),
         "laws": GrowthLawKind::all().map(law).collect::<Vec<_>>(),
+        "form": schema(),
         "retardations": RetardationKind::all().map(retardation).collect::<Vec<_>>(),
     })
 }

@@ -5,13 +5,13 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 use crate::job::{JobKind, Submission};
 use crate::problem::{Answer, Place};
 use perilife_base::error::input;
+use perilife_base::keys::{Field, Key, Value};
 use perilife_base::units::{KN, MM, MPA};
 use perilife_base::{
     table::{
@@ -149,10 +149,11 @@ fn import(fields: &BTreeMap<String, String>) -> Answer<Import> {
 }
 
 /// What a field holds as JSON of a form; the default where it is missing.
-fn json_of<T: DeserializeOwned + Default>(key: &str, text: Option<&String>, form: &str) -> Answer<T> {
+fn json_of<T: Field + Default>(key: &str, text: Option<&String>, form: &str) -> Answer<T> {
     let Some(text) = text else { return Ok(T::default()) };
-    let wrong = |error| input(key, text, format!("names no {key}: {error}"), format!("give a JSON {form}")).into();
-    serde_json::from_str(text).map_err(wrong)
+    let wrong = |error| input(key, text, format!("names no {key}: {error}"), format!("give a JSON {form}"));
+    let value = serde_json::from_str::<Value>(text).map_err(wrong)?;
+    Ok(T::take(&Key::new("", ""), key, &value)?)
 }
 
 /// The kind of this name.

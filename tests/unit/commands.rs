@@ -96,6 +96,7 @@ fn an_error_shows_its_line_where_there_is_one() {
         value: Some("-1".to_owned()),
         problem: "must be above zero".to_owned(),
         remedy: "give a width".to_owned(),
+        more: Vec::new(),
     };
     let shown = with_source_line(&error(2)).unwrap();
     for words in ["case.toml", "width_mm = -1", "specimen.width_mm = -1: must be above zero", "give a width"] {

@@ -81,10 +81,19 @@ impl Document {
 
     /// Names file and line in an error about a key of this document.
     pub fn locate(&self, error: Error) -> Error {
-        let Error::Input(mut trouble) = error else { return error };
+        let Error::Input(trouble) = error else { return error };
+        let mut all: Vec<InputError> = trouble.each().into_iter().map(|one| self.locate_one(one)).collect();
+        all.sort_by_key(|one| one.line.unwrap_or(usize::MAX));
+        let first = all.remove(0);
+        Error::Input(Box::new(InputError { more: all, ..first }))
+    }
+
+    /// The same of one mistake.
+    fn locate_one(&self, trouble: InputError) -> InputError {
+        let mut trouble = Box::new(trouble);
         // An option of the command line stands in no file.
         if trouble.file.is_some() || trouble.key.as_ref().is_some_and(|key| key.starts_with("--")) {
-            return Error::Input(trouble);
+            return *trouble;
         }
         trouble.file.clone_from(&self.file);
         let is_overridden = trouble.key.as_ref().is_some_and(|key| self.is_overridden(&metric(key)));
@@ -99,7 +108,7 @@ impl Document {
                 trouble.line = line_of_key(&self.text, key);
             }
         }
-        Error::Input(trouble)
+        *trouble
     }
 
     /// Applies overrides on top of those that it was read with.
@@ -196,6 +205,7 @@ fn syntax_error(error: &toml::de::Error, text: &str, file: Option<&Path>) -> Err
         value,
         problem: format!("is not TOML: {}", error.message().replace('\n', ", ")),
         remedy: "write key = value lines under [section] headings, each key once, text in quotes".into(),
+        ..InputError::default()
     }))
 }
 

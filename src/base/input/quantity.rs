@@ -68,7 +68,8 @@ impl Quantity {
         value.map(|value| self.read(key, value)).transpose()
     }
 
-    fn remedy(&self) -> String {
+    /// What would be right.
+    pub fn remedy(&self) -> String {
         let text = format!("give {} between {} and {} {}", self.what, self.low, self.high, self.unit);
         text.trim_end().to_owned()
     }

@@ -129,6 +129,7 @@ impl Fault<'_> {
             value: self.value.map(shown),
             problem: problem.into(),
             remedy: remedy.into(),
+            ..InputError::default()
         }))
     }
 }

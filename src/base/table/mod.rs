@@ -17,7 +17,7 @@ mod workbook;
 
 use std::path::Path;
 
-use serde::Deserialize;
+use toml::Value;
 
 pub use cells::{Fault, Row, Separator, Table, whole_file};
 pub use lines::decoded;
@@ -25,6 +25,7 @@ pub use numerals::Decimal;
 pub use workbook::is_workbook;
 
 use crate::error::Result;
+use crate::keys::{Field, Key, Shape, refuse};
 
 /// What the reader of a table knows of it before it is cut.
 pub trait Vocabulary {
@@ -60,31 +61,18 @@ pub fn read(bytes: &[u8], file: &Path, words: &dyn Vocabulary) -> Result<Table> 
 }
 
 /// A sheet by name, or by number from 1.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[serde(from = "TextOrNumber")]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Sheet(pub String);
 
+impl Field for Sheet {
+    const SHAPE: Shape = Shape::Other("the name of a sheet or its number");
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        text_or_number(value).map(Sheet).map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
+    }
+}
+
 /// Text, or the number that a name may be.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged, expecting = "a name, expected the name of a sheet or its number")]
-pub enum TextOrNumber {
-    /// Text.
-    Text(String),
-    /// A number.
-    Number(u32),
-}
-
-impl From<TextOrNumber> for String {
-    fn from(value: TextOrNumber) -> Self {
-        match value {
-            TextOrNumber::Text(text) => text,
-            TextOrNumber::Number(number) => number.to_string(),
-        }
-    }
-}
-
-impl From<TextOrNumber> for Sheet {
-    fn from(value: TextOrNumber) -> Self {
-        Sheet(value.into())
-    }
+pub fn text_or_number(value: &Value) -> Option<String> {
+    let number = || value.as_integer().and_then(|number| u32::try_from(number).ok()).map(|number| number.to_string());
+    value.as_str().map(str::to_owned).or_else(number)
 }

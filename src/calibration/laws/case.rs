@@ -1,25 +1,19 @@
 //! A calibration file whose fit is a law over K: rates of tables, or of readings, and which law.
 
-use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::{FitLaw, Given, LawFits, fit_laws};
 use crate::case::{CalibrationCase, source};
 use crate::outliers::{StepRate, step_rates};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{Document, INTENSITY, slice, value_at};
+use perilife_base::input::{Document, value_at};
+use perilife_base::keys::{Key, Section, intensity, key, section};
 use perilife_base::table::units::{IntensityUnit, RateUnit};
 use perilife_base::units::MPA_SQRT_M;
 use perilife_growth::case::record::SourceFile;
 use perilife_laws::growth_law::{GrowthLawKind, paris};
 use perilife_measured::rates::lacks_ratio;
 use perilife_measured::{MeasuredCurve, RangeKind, RateFile, RateFileKeys, RateRow};
-
-/// Keys of `[measured]` that only tables of rates have.
-const OF_RATES: [&str; 6] =
-    ["rates", "intensity_unit", "rate_unit", "delta_k", "from_delta_k_mpa_sqrt_m", "to_delta_k_mpa_sqrt_m"];
-/// Keys of `[fit]` that only laws have.
-const OF_LAWS: [&str; 2] = ["law", "given"];
 
 /// A checked fit of laws.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,22 +44,28 @@ pub struct LawCase {
     pub echo: serde_json::Value,
 }
 
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields, default)]
-struct RatesSlice {
-    rates: Vec<RateFile>,
-    intensity_unit: Option<IntensityUnit>,
-    rate_unit: Option<RateUnit>,
-    delta_k: Option<RangeKind>,
-    from_delta_k_mpa_sqrt_m: Option<f64>,
-    to_delta_k_mpa_sqrt_m: Option<f64>,
+perilife_base::keys! {
+    /// Keys of `[measured]` that only tables of rates have.
+    pub struct RatesKeys {
+        rates: Vec<RateFile> = key("rates", "Tables of rates: da/dN over ΔK"), or "none" Vec::new();
+        intensity_unit: Option<IntensityUnit> = key("intensity_unit", "Unit of ΔK: of all tables");
+        rate_unit: Option<RateUnit> = key("rate_unit", "Unit of da/dN: of all tables");
+        delta_k: Option<RangeKind> = key("delta_k", "ΔK at negative R: of all tables");
+        from: Option<f64> = intensity("from_delta_k_mpa_sqrt_m", "Fit window: from this ΔK");
+        to: Option<f64> = intensity("to_delta_k_mpa_sqrt_m", "Fit window: to this ΔK");
+    }
+}
+perilife_base::keys! {
+    /// Keys of `[fit]` that only laws have.
+    pub struct LawKeys {
+        law: Option<FitLaw> = key("law", "Growth law to fit: paris where it is left out");
+        given: Given = key("given", "Constants that are given, not fitted: by their keys in [fatigue]"), or "none" Given::new();
+    }
 }
 
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields, default)]
-struct LawSlice {
-    law: Option<FitLaw>,
-    given: Given,
+/// Names of keys.
+fn names(keys: &'static [Key]) -> Vec<&'static str> {
+    keys.iter().map(|key| key.name).collect()
 }
 
 /// Whether a calibration file asks for a law over K: it names tables of rates, or another law than that of Paris.
@@ -83,8 +83,8 @@ impl LawCase {
 
     fn build(document: &Document) -> Result<Self> {
         let mut rest = document.clone();
-        let rates: RatesSlice = slice(&taken(&mut rest.table, "measured", &OF_RATES)?, "measured")?;
-        let laws: LawSlice = slice(&taken(&mut rest.table, "fit", &OF_LAWS)?, "fit")?;
+        let rates: RatesKeys = section(&taken(&mut rest.table, "measured", &names(RatesKeys::KEYS))?, "measured")?;
+        let laws: LawKeys = section(&taken(&mut rest.table, "fit", &names(LawKeys::KEYS))?, "fit")?;
         super::fit::check_given(&laws.given)?;
         let mut case = LawCase {
             name: document.name.clone(),
@@ -157,9 +157,8 @@ impl LawCase {
         Ok(())
     }
 
-    fn window(&mut self, keys: &RatesSlice) -> Result<()> {
-        let from = INTENSITY.read_optional("measured.from_delta_k_mpa_sqrt_m", keys.from_delta_k_mpa_sqrt_m)?.unwrap_or(0.0);
-        let to = INTENSITY.read_optional("measured.to_delta_k_mpa_sqrt_m", keys.to_delta_k_mpa_sqrt_m)?.unwrap_or(f64::INFINITY);
+    fn window(&mut self, keys: &RatesKeys) -> Result<()> {
+        let (from, to) = (keys.from.unwrap_or(0.0), keys.to.unwrap_or(f64::INFINITY));
         if from >= to {
             let problem = format!("is not above from_delta_k_mpa_sqrt_m = {}", from / MPA_SQRT_M);
             return Err(input("measured.to_delta_k_mpa_sqrt_m", to / MPA_SQRT_M, problem, "give a window that holds rates"));
@@ -217,7 +216,7 @@ fn alone(table: &Table) -> Result<String> {
         match (section.as_str(), keys) {
             ("material", _) | ("measured" | "fit", None) => {}
             ("measured" | "fit", Some(key)) => {
-                let known = if section == "measured" { OF_RATES.join(", ") } else { OF_LAWS.join(", ") };
+                let known = names(if section == "measured" { RatesKeys::KEYS } else { LawKeys::KEYS }).join(", ");
                 let problem = "is no key of a fit to tables of rates";
                 return Err(input_missing(&format!("{section}.{key}"), problem, format!("known here: {known}")));
             }

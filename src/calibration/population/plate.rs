@@ -321,6 +321,7 @@ impl Plate {
                     remedy:
                         "give readings of this plate within it, or the crack length of the first one as specimen.crack_length_mm"
                             .to_owned(),
+                    more: Vec::new(),
                 })));
             }
         }

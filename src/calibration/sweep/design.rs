@@ -1,11 +1,11 @@
 //! `SWEEP.toml`: the base case and the design of a sweep.
 
-use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::vary::{DesignKind, Spread, Vary};
-use perilife_base::error::{Error, Result, input, input_missing};
-use perilife_base::input::{Document, slice};
+use perilife_base::error::{Result, input, input_missing};
+use perilife_base::input::Document;
+use perilife_base::keys::{self, key};
 
 perilife_base::kinds! {
     /// Where the scatter of a fatigue law comes from.
@@ -53,24 +53,22 @@ pub fn is_sweep(table: &Table) -> bool {
     table.contains_key("design")
 }
 
-/// The sweep file as a whole.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    case: String,
-    design: Value,
-    #[serde(default)]
-    vary: Vec<Value>,
+perilife_base::keys! {
+    /// The sweep file as a whole.
+    pub struct SweepKeys {
+        case: String = key("case", "Base case: its file");
+        design: DesignKeys = key("design", "Design: how cases are chosen");
+        vary: Vec<Value> = key("vary", "Keys that vary"), or "none" Vec::new();
+    }
 }
-
-/// Keys of `[design]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DesignInput {
-    kind: DesignKind,
-    samples: Option<usize>,
-    seed: Option<u64>,
-    scatter: Option<Scatter>,
+perilife_base::keys! {
+    /// Keys of `[design]`.
+    pub struct DesignKeys {
+        kind: DesignKind = key("kind", "Design");
+        samples: Option<usize> = key("samples", "Number of cases: of a random design");
+        seed: Option<u64> = key("seed", "Seed: of a random design; 1 where it is left out");
+        scatter: Option<Scatter> = key("scatter", "Scatter of the law: specimens where it is left out");
+    }
 }
 
 impl Sweep {
@@ -82,7 +80,7 @@ impl Sweep {
         let (own, of_case): (Vec<String>, Vec<String>) = overrides.iter().cloned().partition(of_sweep);
         document.set_all(&own)?;
         let read = || -> Result<(String, Design)> {
-            let input: Input = slice(&Value::Table(document.table.clone()), "file").map_err(at_top)?;
+            let input: SweepKeys = keys::section(&Value::Table(document.table.clone()), "")?;
             Ok((input.case, read_design(&input.design, &input.vary, most)?))
         };
         let (case, design) = read().map_err(|error| document.locate(error))?;
@@ -91,19 +89,7 @@ impl Sweep {
     }
 }
 
-/// Keys of the file itself have nothing above them.
-fn at_top(error: Error) -> Error {
-    match error {
-        Error::Input(mut trouble) => {
-            trouble.key = trouble.key.map(|key| key.trim_start_matches("file.").to_owned());
-            Error::Input(trouble)
-        }
-        other => other,
-    }
-}
-
-fn read_design(design: &Value, vary: &[Value], most: usize) -> Result<Design> {
-    let keys: DesignInput = slice(design, "design")?;
+fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design> {
     let kind = keys.kind;
     let vary: Vec<Vary> =
         vary.iter().enumerate().map(|(i, value)| Vary::read(value, &format!("vary[{i}]"), kind, most)).collect::<Result<_>>()?;
@@ -121,7 +107,7 @@ fn read_design(design: &Value, vary: &[Value], most: usize) -> Result<Design> {
         return Err(input("design.scatter", format!("\"{scatter}\""), format!("does not go with kind = \"{kind}\""), remedy));
     }
     let cases = match kind {
-        DesignKind::Grid => grid_size(&keys, &vary, most)?,
+        DesignKind::Grid => grid_size(keys, &vary, most)?,
         DesignKind::LatinHypercube | DesignKind::FittedScatter => {
             let samples = keys.samples.ok_or_else(|| {
                 input_missing("design.samples", format!("is missing, and kind is \"{kind}\""), "give the number of cases")
@@ -133,7 +119,7 @@ fn read_design(design: &Value, vary: &[Value], most: usize) -> Result<Design> {
 }
 
 /// Number of combinations.
-fn grid_size(keys: &DesignInput, vary: &[Vary], most: usize) -> Result<usize> {
+fn grid_size(keys: &DesignKeys, vary: &[Vary], most: usize) -> Result<usize> {
     let stranger = keys.samples.map(|n| ("design.samples", n as u64)).or(keys.seed.map(|seed| ("design.seed", seed)));
     if let Some((key, value)) = stranger {
         let remedy = "leave it out: the values of the keys say what a grid has";

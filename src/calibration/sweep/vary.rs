@@ -1,11 +1,10 @@
 //! One key that varies: `[[vary]]` of a sweep file.
 
-use serde::Deserialize;
 use toml::Value;
 
 use super::distribution::Distribution;
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::slice;
+use perilife_base::keys::{Given, key, section};
 use perilife_growth::case::SECTIONS;
 use perilife_laws::growth_law::description::law_keys;
 
@@ -54,30 +53,30 @@ pub enum Spread {
     Random(Distribution),
 }
 
-/// Keys of `[[vary]]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    key: String,
-    values: Option<Vec<Value>>,
-    from: Option<f64>,
-    to: Option<f64>,
-    count: Option<usize>,
-    scale: Option<Scale>,
-    distribution: Option<DistributionKind>,
-    mean: Option<f64>,
-    standard_deviation: Option<f64>,
-    median: Option<f64>,
-    factor: Option<f64>,
-    standard_deviation_ln: Option<f64>,
+perilife_base::keys! {
+    /// Keys of `[[vary]]`.
+    pub struct VaryKeys {
+        key: String = key("key", "Key of the case: section.key");
+        values: Option<Vec<Value>> = key("values", "Values: of a grid");
+        from: Option<f64> = key("from", "Least value");
+        to: Option<f64> = key("to", "Largest value");
+        count: Option<usize> = key("count", "Number of values: of a grid, both ends among them");
+        scale: Option<Scale> = key("scale", "Scale: of a grid");
+        distribution: Option<DistributionKind> = key("distribution", "Distribution: of a random design");
+        mean: Option<f64> = key("mean", "Mean: of a normal distribution");
+        standard_deviation: Option<f64> = key("standard_deviation", "Standard deviation: of a normal distribution");
+        median: Option<f64> = key("median", "Median: of a log-normal distribution");
+        factor: Option<f64> = key("factor", "Factor: exp of the standard deviation of ln");
+        standard_deviation_ln: Option<f64> = key("standard_deviation_ln", "Standard deviation of ln");
+    }
 }
 
 impl Vary {
     /// Reads one of a design of this kind; `path` is its place in the file, `most` the number of cases that there may be.
     pub(super) fn read(value: &Value, path: &str, kind: DesignKind, most: usize) -> Result<Self> {
-        let input: Input = slice(value, path)?;
+        let (input, given) = (section::<VaryKeys>(value, path)?, Given::of(value, path)?);
         check_key(&input.key, path, kind)?;
-        let reader = Reader { input: &input, path };
+        let reader = Reader { input: &input, given };
         let spread = match kind {
             DesignKind::Grid => reader.grid(most)?,
             DesignKind::LatinHypercube | DesignKind::FittedScatter => reader.random(kind)?,
@@ -103,20 +102,22 @@ fn check_key(key: &str, path: &str, kind: DesignKind) -> Result<()> {
 
 /// A `[[vary]]` with its place in the file.
 struct Reader<'a> {
-    input: &'a Input,
-    path: &'a str,
+    input: &'a VaryKeys,
+    given: Given<'a>,
 }
+
+/// Keys of random designs.
+const OF_DISTRIBUTIONS: [&str; 6] = ["distribution", "mean", "standard_deviation", "median", "factor", "standard_deviation_ln"];
+/// Keys of grids without values.
+const OF_SPACING: [&str; 4] = ["from", "to", "count", "scale"];
 
 impl Reader<'_> {
     fn grid(&self, most: usize) -> Result<Spread> {
         let input = self.input;
-        self.refuse(
-            &self.of_distributions(),
-            "belongs to a random design, and this is a grid",
-            "give values, or from, to and count",
-        )?;
+        let problem = "belongs to a random design, and this is a grid";
+        self.given.refuse_any(&OF_DISTRIBUTIONS, problem, "give values, or from, to and count")?;
         let Some(values) = &input.values else { return self.spaced(most) };
-        self.refuse(&self.of_spacing(), "stands beside values", "give values, or from, to and count")?;
+        self.given.refuse_any(&OF_SPACING, "stands beside values", "give values, or from, to and count")?;
         if values.is_empty() {
             return Err(perilife_base::error::input(&self.key("values"), "[]", "is empty", "give at least one value"));
         }
@@ -161,17 +162,18 @@ impl Reader<'_> {
 
     fn random(&self, kind: DesignKind) -> Result<Spread> {
         let input = self.input;
-        let of_grids = perilife_base::given!(input: values, count, scale);
-        self.refuse(&of_grids, &format!("belongs to a grid, and this is a design of kind \"{kind}\""), "give a distribution")?;
+        let problem = format!("belongs to a grid, and this is a design of kind \"{kind}\"");
+        self.given.refuse_any(&["values", "count", "scale"], &problem, "give a distribution")?;
         let shape = input.distribution.ok_or_else(|| self.missing("distribution"))?;
         let own: &[&str] = match shape {
             DistributionKind::Uniform | DistributionKind::LogUniform => &["from", "to"],
             DistributionKind::Normal => &["mean", "standard_deviation"],
             DistributionKind::LogNormal => &["median", "factor", "standard_deviation_ln"],
         };
-        let all = [&self.of_distributions()[1..], &self.of_spacing()].concat();
-        let strangers: Vec<(&str, bool)> = all.into_iter().filter(|(key, _)| !own.contains(key)).collect();
-        self.refuse(&strangers, &format!("does not go with distribution = \"{shape}\""), &format!("give {}", own.join(" and ")))?;
+        let strangers: Vec<&str> =
+            OF_DISTRIBUTIONS[1..].iter().chain(&OF_SPACING).copied().filter(|key| !own.contains(key)).collect();
+        let problem = format!("does not go with distribution = \"{shape}\"");
+        self.given.refuse_any(&strangers, &problem, &format!("give {}", own.join(" and ")))?;
         Ok(Spread::Random(match shape {
             DistributionKind::Uniform => {
                 let [from, to] = self.rising()?;
@@ -238,7 +240,7 @@ impl Reader<'_> {
     }
 
     fn key(&self, key: &str) -> String {
-        format!("{}.{key}", self.path)
+        self.given.path_of(key)
     }
 
     fn missing(&self, key: &str) -> perilife_base::error::Error {
@@ -248,23 +250,5 @@ impl Reader<'_> {
             _ => "give the parameters of the distribution; `perilife list` names them",
         };
         input_missing(&self.key(key), "is missing", remedy)
-    }
-
-    /// Refuses the first of these keys that is given.
-    fn refuse(&self, keys: &[(&str, bool)], problem: &str, remedy: &str) -> Result<()> {
-        match keys.iter().find(|(_, given)| *given) {
-            Some((key, _)) => Err(input_missing(&self.key(key), problem, remedy)),
-            None => Ok(()),
-        }
-    }
-
-    fn of_distributions(&self) -> [(&'static str, bool); 6] {
-        let input = self.input;
-        perilife_base::given!(input: distribution, mean, standard_deviation, median, factor, standard_deviation_ln)
-    }
-
-    fn of_spacing(&self) -> [(&'static str, bool); 4] {
-        let input = self.input;
-        perilife_base::given!(input: from, to, count, scale)
     }
 }

@@ -1,15 +1,15 @@
 //! `[fatigue]` and `[stop]` of an input file: how bonds age, where the law comes from, when a run stops.
 
-use serde::Deserialize;
 use toml::Value;
 
 use super::fatigue_keys::{FatigueKeys, Lot};
 use super::model_keys::KEYS_OF_BONDS;
 use super::{Choices, LawSource, Method, Stop, law_source};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{Folder, INTENSITY, LENGTH, number, refuse_given, slice, slice_beside};
+use perilife_base::input::{Folder, Quantity, STRESS};
+use perilife_base::keys::{Given, Plain, key, length, number, section, section_beside};
 use perilife_base::units::MPA;
-use perilife_laws::growth_law::description::{Given, law_keys};
+use perilife_laws::growth_law::description::{Given as GivenLaw, law_keys};
 use perilife_laws::initiation::{self, SnLaw};
 use perilife_laws::{Ageing, Driver, FatigueSettings, OVERLOAD_STRETCH, STEP_ERROR_PERCENT, ZONE_RADIUS_HORIZONS};
 use perilife_plate::loading::{LoadControl, Loading};
@@ -36,35 +36,28 @@ pub(super) fn from_value(
     folder: &Folder,
     choices: &mut Choices,
 ) -> Result<Fatigue> {
-    let input: FatigueKeys = slice_beside(value, "fatigue", &law_keys().collect::<Vec<_>>())?;
+    let input: FatigueKeys = section_beside(value, "fatigue", &law_keys().collect::<Vec<_>>(), None)?;
     choices.ageing = input.ageing;
-    choices.zone_radius_horizons =
-        number("a radius in horizons", 0.05, 10.0).read_optional("fatigue.zone_radius_horizons", input.zone_radius_horizons)?;
-    choices.walker_gamma = number("a Walker exponent", 0.0, 2.0).read_optional("fatigue.walker_gamma", input.walker_gamma)?;
-    let stretch = number("a stretch", 1e-9, 10.0).read_optional("fatigue.critical_stretch", input.critical_stretch)?;
-    let threshold = INTENSITY.read_optional(
-        "fatigue.delta_k_threshold_mpa_sqrt_m",
-        input.delta_k_threshold_mpa_sqrt_m.filter(|value| *value != 0.0),
-    )?;
+    choices.zone_radius_horizons = input.zone_radius_horizons;
+    choices.walker_gamma = input.walker_gamma;
     let driver = read_driver(&input, method, specimen)?;
     let mut settings = FatigueSettings {
         driver,
         ageing: choices.ageing.unwrap_or(Ageing::CrackTip),
         zone_radius_horizons: choices.zone_radius_horizons.unwrap_or(ZONE_RADIUS_HORIZONS),
         step_error_percent: STEP_ERROR_PERCENT,
-        critical_stretch: stretch.unwrap_or(OVERLOAD_STRETCH),
+        critical_stretch: input.critical_stretch.unwrap_or(OVERLOAD_STRETCH),
         walker_gamma: choices.walker_gamma.unwrap_or(1.0),
-        threshold: threshold.unwrap_or(0.0),
+        threshold: input.threshold.as_ref().map_or(0.0, |threshold| threshold.0),
         initiation: read_initiation(&input, (driver, specimen, loading))?,
     };
-    let allow_extrapolation = input.allow_extrapolation.unwrap_or(false);
     // What is driven by bonds to the end needs no rate over K.
     let by_bonds = method == Method::Peridynamics && driver == Driver::BondStrain;
     let hands_over = by_bonds.then(|| settings.hands_over(specimen));
     settings.step_error_percent = read_step_error(&input, driver == Driver::TipField || hands_over == Some(true))?;
-    let given = Given { section: value, material, ratios: loading.ratios(), folder, rates: law_source::rates };
+    let given = GivenLaw { section: value, material, ratios: loading.ratios(), folder, rates: law_source::rates };
     let law = law_source::read(settings.threshold, hands_over, &given)?;
-    Ok(Fatigue { settings, law, allow_extrapolation, lot: input.lot.unwrap_or(Lot::Same) })
+    Ok(Fatigue { settings, law, allow_extrapolation: input.allow_extrapolation, lot: input.lot })
 }
 
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of
@@ -100,7 +93,7 @@ fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Resu
 /// Reads the law by which the cracks of the case form.
 /// Errors: a plate whose cracks nobody lets form, or drilled holes that nobody says when they crack again.
 fn read_initiation(input: &FatigueKeys, (driver, specimen, loading): (Driver, &Specimen, &Loading)) -> Result<Option<SnLaw>> {
-    let Some(value) = &input.initiation else {
+    let Some(law) = input.initiation else {
         if specimen.kind == SpecimenKind::StopHole {
             let problem = "is missing: the crack was stopped, and only an S-N law says when the holes crack again";
             return Err(input_missing(
@@ -111,7 +104,6 @@ fn read_initiation(input: &FatigueKeys, (driver, specimen, loading): (Driver, &S
         }
         return Ok(None);
     };
-    let law = SnLaw::read(value)?;
     if driver != Driver::TipField || !specimen.is_through() || loading.spectrum.is_some() || loading.control != LoadControl::Load
     {
         let problem = "goes with cycles of one load and through cracks that grow by K of their tips";
@@ -123,7 +115,7 @@ fn read_initiation(input: &FatigueKeys, (driver, specimen, loading): (Driver, &S
 /// Reads the error of a block of growth by K; bonds that break one by one are solved for after every break, without such an error.
 fn read_step_error(slice: &FatigueKeys, has_tips: bool) -> Result<f64> {
     const KEY: &str = "fatigue.step_error_percent";
-    let error = number("an error in percent", 0.001, 10.0).read_optional(KEY, slice.step_error_percent)?;
+    let error = slice.step_error_percent;
     if let Some(error) = error.filter(|_| !has_tips) {
         let problem = "belongs to growth by K of the tips, and the driver is \"bond_strain\", which solves after every break";
         return Err(input(KEY, error, problem, "leave it out, or use driver = \"tip_field\""));
@@ -131,90 +123,82 @@ fn read_step_error(slice: &FatigueKeys, has_tips: bool) -> Result<f64> {
     Ok(error.unwrap_or(STEP_ERROR_PERCENT))
 }
 
-/// Keys of `[stop]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct StopInput {
-    crack_length_mm: Option<f64>,
-    crack_depth_mm: Option<f64>,
-    at_break_through: Option<bool>,
-    cycles_max: Option<f64>,
-    required_strength_mpa: Option<f64>,
-    limit_load_factor: Option<f64>,
-    toughness: Option<bool>,
-    net_section: Option<bool>,
+/// What loads to bear are.
+const REQUIRED: &str = "the load to bear";
+
+perilife_base::keys! {
+    /// Keys of `[stop]`.
+    pub struct StopKeys {
+        crack_length: Option<f64> = length("crack_length_mm", "Final crack length");
+        crack_depth: Option<f64> = length("crack_depth_mm", "Final crack depth: of a part-through crack");
+        at_break_through: Option<bool> = key("at_break_through", "Stop at breakthrough: of a part-through crack");
+        cycles_max: f64 = number("cycles_max", "Most cycles: run-out", "a number of cycles", 1.0, 1e15), or "1e9" CYCLES_MAX;
+        required_strength: Option<Plain> = key("required_strength_mpa", "Required strength: gross stress that the plate has to carry").of(ANY_STRESS).group(REQUIRED);
+        limit_load_factor: Option<f64> = key("limit_load_factor", "Required load: over the maximum load of the cycles").group(REQUIRED);
+        toughness: bool = key("toughness", "Fracture ends the life"), or "true" true;
+        net_section: bool = key("net_section", "Net-section yield ends the life"), or "true" true;
+    }
 }
+/// What is too low is told by the load of the cycles.
+const ANY_STRESS: Quantity = Quantity { low: -STRESS.high, ..STRESS };
 
 /// Reads `[stop]`.
 pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Specimen, &Material, &Loading)) -> Result<Stop> {
-    let slice: StopInput = slice(value, "stop")?;
-    let crack_length = LENGTH.read_optional("stop.crack_length_mm", slice.crack_length_mm)?;
-    if let (Some(length), Some(given)) = (crack_length, slice.crack_length_mm) {
-        const KEY: &str = "stop.crack_length_mm";
+    let own: StopKeys = section(value, "stop")?;
+    let given = Given::of(value, "stop")?;
+    if let Some(length) = own.crack_length {
+        const KEY: &str = "crack_length_mm";
         if length <= specimen.shortest_crack() {
             let start = perilife_base::units::round_mm(specimen.shortest_crack());
-            return Err(input(
-                KEY,
-                given,
-                format!("is not beyond the initial crack length {start} mm"),
-                "give a longer crack, or leave it out",
-            ));
+            let problem = format!("is not beyond the initial crack length {start} mm");
+            return Err(given.refuse(KEY, problem, "give a longer crack, or leave it out"));
         }
         let (limit, _) = specimen.length_limit();
         if specimen.convention == LengthConvention::MeanOfTips && length >= limit {
             let limit = perilife_base::units::round_mm(limit);
-            return Err(input(
-                KEY,
-                given,
-                format!("is beyond the plate, which ends at {limit} mm"),
-                "give a shorter crack, or leave it out",
-            ));
+            let problem = format!("is beyond the plate, which ends at {limit} mm");
+            return Err(given.refuse(KEY, problem, "give a shorter crack, or leave it out"));
         }
     }
-    let (crack_depth, at_break_through) = stop_in_depth(&slice, specimen)?;
-    let cycles_max = number("a number of cycles", 1.0, 1e15).read("stop.cycles_max", slice.cycles_max.unwrap_or(CYCLES_MAX))?;
+    let (crack_depth, at_break_through) = stop_in_depth(&given, &own, specimen)?;
+    let cycles_max = own.cycles_max;
     let of_passes = loading.spectrum.as_ref().and_then(|spectrum| Some(spectrum.repeats? * spectrum.per_pass));
     let cycles_max = of_passes.map_or(cycles_max, |cycles| cycles_max.min(cycles));
-    let required = required_load(&slice, specimen, material, loading)?;
-    let [by_toughness, by_net_section] = [slice.toughness, slice.net_section].map(|asked| asked.unwrap_or(true));
-    let crack_length = crack_length.unwrap_or(f64::INFINITY);
+    let required = required_load(&own, specimen, material, loading)?;
+    let StopKeys { toughness: by_toughness, net_section: by_net_section, .. } = own;
+    let crack_length = own.crack_length.unwrap_or(f64::INFINITY);
     Ok(Stop { crack_length, crack_depth, at_break_through, cycles_max, required, by_toughness, by_net_section })
 }
 
 /// Depth, m, at which the run of a crack that does not go through ends, and whether it does where it is through.
-fn stop_in_depth(slice: &StopInput, specimen: &Specimen) -> Result<(f64, bool)> {
-    const DEPTH: &str = "stop.crack_depth_mm";
-    let depth = LENGTH.read_optional(DEPTH, slice.crack_depth_mm)?;
+fn stop_in_depth(given: &Given<'_>, own: &StopKeys, specimen: &Specimen) -> Result<(f64, bool)> {
+    const DEPTH: &str = "crack_depth_mm";
     let Some(flaw) = &specimen.part_through else {
         let problem = format!("belongs to cracks that do not go through, and that of {} does", specimen.kind);
-        let given = [("crack_depth_mm", depth.is_some()), ("at_break_through", slice.at_break_through.is_some())];
-        refuse_given("stop", &given, &problem, "leave it out")?;
+        given.refuse_any(&[DEPTH, "at_break_through"], &problem, "leave it out")?;
         return Ok((f64::INFINITY, false));
     };
-    if let Some((depth, given)) = depth.zip(slice.crack_depth_mm) {
+    if let Some(depth) = own.crack_depth {
         let [start, through] = [flaw.depth, flaw.through_depth()].map(perilife_base::units::round_mm);
         if depth <= flaw.depth {
             let problem = format!("is not beyond the initial crack depth {start} mm");
-            return Err(input(DEPTH, given, problem, "give a larger depth, or leave it out"));
+            return Err(given.refuse(DEPTH, problem, "give a larger depth, or leave it out"));
         }
         if depth > flaw.through_depth() {
             let problem = format!("is beyond {through} mm, where the crack is through");
-            return Err(input(DEPTH, given, problem, "give a smaller depth, or at_break_through = true"));
+            return Err(given.refuse(DEPTH, problem, "give a smaller depth, or at_break_through = true"));
         }
     }
-    Ok((depth.unwrap_or(f64::INFINITY), slice.at_break_through == Some(true)))
+    Ok((own.crack_depth.unwrap_or(f64::INFINITY), own.at_break_through == Some(true)))
 }
 
 /// The required residual strength, a load, over the maximum load of the cycle.
-fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<Option<f64>> {
+fn required_load(stop: &StopKeys, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<Option<f64>> {
     const FACTOR: &str = "stop.limit_load_factor";
     const STRENGTH: &str = "stop.required_strength_mpa";
-    let (key, given, factor) = match (stop.limit_load_factor, stop.required_strength_mpa) {
+    let (key, given, factor) = match (stop.limit_load_factor, stop.required_strength.map(|strength| strength.0)) {
         (None, None) => return Ok(None),
-        (Some(factor), Some(_)) => {
-            return Err(input(FACTOR, factor, format!("stands beside {STRENGTH}: the load is given twice"), "give one of them"));
-        }
-        (Some(factor), None) => (FACTOR, factor, factor),
+        (Some(factor), _) => (FACTOR, factor, factor),
         (None, Some(strength)) if specimen.load_measure == LoadMeasure::Stress => {
             (STRENGTH, strength, strength * MPA / loading.maximum)
         }
@@ -236,7 +220,7 @@ fn required_load(stop: &StopInput, specimen: &Specimen, material: &Material, loa
         return Err(input(key, given, problem, "set the required residual strength (service limit load)"));
     }
     let ends = [(stop.toughness, material.toughness), (stop.net_section, material.yield_strength)];
-    if !ends.iter().any(|(asked, strength)| asked.unwrap_or(true) && strength.is_some()) {
+    if !ends.iter().any(|(asked, strength)| *asked && strength.is_some()) {
         let remedy = "give material.toughness_mpa_sqrt_m, yield_strength_mpa or both";
         return Err(input(
             key,

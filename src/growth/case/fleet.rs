@@ -1,37 +1,34 @@
 //! Section `[fleet]`: plates that differ from the one of the case in their initial crack length, load and law.
 
-use serde::Deserialize;
 use toml::Value;
 
-use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{LENGTH, number, slice};
+use perilife_base::error::{Result, input_missing};
+use perilife_base::input::LENGTH;
+use perilife_base::keys::{key, number, section};
 
 /// Plates of a fleet where the section does not say how many.
 pub const PLATES: usize = 1000;
-/// Most plates of a fleet.
-pub const PLATES_MAX: usize = 100_000;
 /// Largest scatter of the load, over the load: few draws fall to zero, which are left out.
 const LOAD_SCATTER_MAX: f64 = 0.3;
 const LENGTH_KEY: &str = "fleet.initial_length_mm";
 
-/// Keys of `[fleet]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    plates: Option<usize>,
-    seed: Option<u64>,
-    initial_length_mm: Option<LengthInput>,
-    load_scatter: Option<f64>,
+perilife_base::keys! {
+    /// Keys of `[fleet]`.
+    pub struct FleetKeys {
+        plates: usize = number("plates", "Plates: how many", "a number", 1.0, 1e5), or "1000" PLATES;
+        seed: u64 = key("seed", "Seed of all draws"), or "0" 0;
+        initial_length: Option<LengthKeys> = key("initial_length_mm", "Initial crack length: its distribution; that of the case where it is left out");
+        load_scatter: f64 = number("load_scatter", "Scatter of the load: standard deviation over the load", "a standard deviation over the load", 0.0, LOAD_SCATTER_MAX), or "0" 0.0;
+    }
 }
-
-/// Keys of the initial length, as a sweep calls them.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LengthInput {
-    median: Option<f64>,
-    standard_deviation_ln: Option<f64>,
-    mean: Option<f64>,
-    standard_deviation: Option<f64>,
+perilife_base::keys! {
+    /// Keys of the initial length, as a sweep calls them.
+    pub struct LengthKeys {
+        median: Option<f64> = key("median", "Median, mm: of a normal logarithm").of(LENGTH);
+        deviation_ln: Option<f64> = number("standard_deviation_ln", "Standard deviation of ln", "a standard deviation of ln", 1e-6, 3.0);
+        mean: Option<f64> = key("mean", "Mean, mm: of a normal distribution above zero").of(LENGTH);
+        deviation: Option<f64> = key("standard_deviation", "Standard deviation, mm").of(LENGTH);
+    }
 }
 
 /// How initial crack lengths scatter.
@@ -71,18 +68,8 @@ impl Fleet {
     /// Reads the section.
     /// Errors: unknown keys, numbers beyond reason, an initial length that is given in part or twice.
     pub fn from_value(value: &Value) -> Result<Self> {
-        let given: Input = slice(value, "fleet")?;
-        let plates = given.plates.unwrap_or(PLATES);
-        if !(1..=PLATES_MAX).contains(&plates) {
-            return Err(input("fleet.plates", plates, "is beyond reason", format!("give a number from 1 to {PLATES_MAX}")));
-        }
-        let scatter = number("a standard deviation over the load", 0.0, LOAD_SCATTER_MAX);
-        Ok(Fleet {
-            plates,
-            seed: given.seed.unwrap_or(0),
-            initial_length: given.initial_length_mm.as_ref().map(length).transpose()?,
-            load_scatter: scatter.read_optional("fleet.load_scatter", given.load_scatter)?.unwrap_or(0.0),
-        })
+        let FleetKeys { plates, seed, initial_length, load_scatter } = section(value, "fleet")?;
+        Ok(Fleet { plates, seed, initial_length: initial_length.as_ref().map(length).transpose()?, load_scatter })
     }
 
     /// Whether its plates differ in more than their law.
@@ -91,18 +78,10 @@ impl Fleet {
     }
 }
 
-fn length(given: &LengthInput) -> Result<InitialLength> {
-    let key = |name: &str| format!("{LENGTH_KEY}.{name}");
-    let LengthInput { median, standard_deviation_ln, mean, standard_deviation } = *given;
-    match (median, standard_deviation_ln, mean, standard_deviation) {
-        (Some(median), Some(deviation), None, None) => Ok(InitialLength::LogNormal {
-            median: LENGTH.read(&key("median"), median)?,
-            deviation_ln: number("a standard deviation of ln", 1e-6, 3.0).read(&key("standard_deviation_ln"), deviation)?,
-        }),
-        (None, None, Some(mean), Some(deviation)) => Ok(InitialLength::Normal {
-            mean: LENGTH.read(&key("mean"), mean)?,
-            deviation: LENGTH.read(&key("standard_deviation"), deviation)?,
-        }),
+fn length(given: &LengthKeys) -> Result<InitialLength> {
+    match (given.median, given.deviation_ln, given.mean, given.deviation) {
+        (Some(median), Some(deviation_ln), None, None) => Ok(InitialLength::LogNormal { median, deviation_ln }),
+        (None, None, Some(mean), Some(deviation)) => Ok(InitialLength::Normal { mean, deviation }),
         _ => {
             let remedy = "give { median, standard_deviation_ln } (the logarithm is normal) or { mean, standard_deviation } (normal, above zero)";
             Err(input_missing(LENGTH_KEY, "is no distribution of two numbers", remedy))

@@ -1,9 +1,9 @@
 //! `[model]` of an input file: how the plate becomes points and bonds.
 
-use super::model_keys::{ModelKeys, read, refuse_strangers, tolerance, too_fine};
+use super::model_keys::{ModelKeys, refuse_strangers, too_fine};
 use super::{Case, Choices, Method, Model, PointSettings, RESIDUAL, choose};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::slice;
+use perilife_base::keys::{Given, section};
 use perilife_base::units::round_mm;
 use perilife_plate::loading::Loading;
 use perilife_plate::material::Material;
@@ -23,17 +23,17 @@ pub(super) fn from_value(
     choices: &mut Choices,
     warnings: &mut Vec<String>,
 ) -> Result<(Model, Option<String>)> {
-    let input: ModelKeys = slice(sections.model, "model")?;
-    let (method, why) = match input.method.unwrap_or(Method::Auto) {
+    let (given, input) = (Given::of(sections.model, "model")?, section::<ModelKeys>(sections.model, "model")?);
+    let (method, why) = match input.method {
         Method::Auto => {
-            let (method, why) = choose::choose(sections, specimen, loading, tolerance(&input)?);
+            let (method, why) = choose::choose(sections, specimen, loading, input.tolerance_percent);
             (method, Some(why))
         }
         method => (method, None),
     };
     check_part_through(specimen, method)?;
     check_beta(specimen, method)?;
-    refuse_strangers(sections.model, method, why.as_deref())?;
+    refuse_strangers(&given, method, why.as_deref())?;
     Ok((of_method(method, &input, (specimen, material), choices, warnings)?, why))
 }
 
@@ -47,17 +47,16 @@ fn of_method(
 ) -> Result<Model> {
     if method == Method::ElementFreeGalerkin {
         let nodes = input.nodes(specimen)?;
-        warnings.extend(input.spacing_mm.and_then(|spacing| too_fine(spacing, specimen, &nodes)));
+        warnings.extend(input.spacing.and_then(|spacing| too_fine(spacing, specimen, &nodes)));
         return Ok(Model::Nodes(nodes));
     }
     choices.bond_law = input.bond_law;
     choices.kernel = input.kernel;
     choices.rotation = input.rotation;
     choices.surface_correction = input.surface_correction;
-    choices.horizon_ratio = read("horizon_ratio", input.horizon_ratio)?;
+    choices.horizon_ratio = input.horizon_ratio;
     let (usual, warning) = usual_points(specimen, material);
-    let spacing = read("spacing_mm", input.spacing_mm)?;
-    let angle = read("lattice_angle_deg", input.lattice_angle_deg)?;
+    let (spacing, angle) = (input.spacing, input.lattice_angle_deg);
     let points = PointSettings {
         bond_law: BondLaw {
             kind: choices.bond_law.unwrap_or(usual.bond_law.kind),

@@ -1,11 +1,11 @@
 //! Keys of `[model]`, and what those of the element-free Galerkin method say.
 
-use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::{Case, Method, Model};
-use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{LENGTH, Quantity, number};
+use perilife_base::error::{Result, input};
+use perilife_base::keys::{Given, Key, Section, key, length, number};
+use perilife_base::units::round_mm;
 use perilife_nodes::basis::{BasisKind, Enrichment};
 use perilife_nodes::resolution::{ElementFreeSettings, IN_RADIUS, RIM_REACH, Resolution};
 use perilife_plate::specimen::Specimen;
@@ -43,93 +43,58 @@ const HOLD: f64 = 3.0;
 /// Radius of influence of a node in its spacings, of quadratic polynomials.
 const INFLUENCE_OF_QUADRATIC: f64 = 3.5;
 
-/// Keys of `[model]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ModelKeys {
-    pub method: Option<Method>,
-    pub symmetry: Option<Symmetry>,
-    pub bond_law: Option<BondLawKind>,
-    pub kernel: Option<Kernel>,
-    pub rotation: Option<Rotation>,
-    pub surface_correction: Option<SurfaceCorrection>,
-    pub spacing_mm: Option<f64>,
-    pub horizon_ratio: Option<f64>,
-    pub lattice_angle_deg: Option<f64>,
-    pub solver: Option<SolverKind>,
-    pub nodes: Option<f64>,
-    pub tolerance_percent: Option<f64>,
-    pub basis: Option<BasisKind>,
-    pub enrichment: Option<Enrichment>,
-    pub influence_radius: Option<f64>,
-}
-
-/// A key of a case: whose it is, and what kind of number.
-struct Key {
-    name: &'static str,
-    owners: &'static [Method],
-    quantity: Option<Quantity>,
-}
-
-const POINTS: &[Method] = &[Method::Peridynamics, Method::Handbook];
-const NODES: &[Method] = &[Method::ElementFreeGalerkin];
+const POINTS: &[&str] = &["peridynamics", "handbook"];
+const NODES: &[&str] = &["element_free_galerkin"];
 /// Of handbook, too, which the program takes where its formula is good enough.
-const CHOSEN: &[Method] = &[Method::ElementFreeGalerkin, Method::Handbook];
+const CHOSEN: &[&str] = &["element_free_galerkin", "handbook"];
+/// That of points, or of nodes far from cracks.
+const SPACING: &str = "spacing_mm";
 
-const fn key(name: &'static str, owners: &'static [Method], quantity: Option<Quantity>) -> Key {
-    Key { name, owners, quantity }
+const fn of(owners: &'static [&'static str], key: Key) -> Key {
+    key.only("method", owners)
 }
 
-/// Keys of `[model]` beside `method`.
-const KEYS: [Key; 14] = [
-    // That of points, or of nodes far from cracks.
-    key("spacing_mm", Method::ALL, Some(LENGTH)),
-    key("symmetry", POINTS, None),
-    key("bond_law", POINTS, None),
-    key("kernel", POINTS, None),
-    key("rotation", POINTS, None),
-    key("surface_correction", POINTS, None),
-    key("horizon_ratio", POINTS, Some(number("a horizon ratio", 1.5, 12.0))),
-    key("lattice_angle_deg", POINTS, Some(number("an angle in degrees", -90.0, 90.0))),
-    key("solver", POINTS, None),
-    key("nodes", NODES, Some(number("a number of nodes", 50.0, 1e5))),
-    key("tolerance_percent", CHOSEN, Some(number("an error in percent", TOLERANCE_LEAST, 20.0))),
-    key("basis", NODES, None),
-    key("enrichment", NODES, None),
-    key("influence_radius", NODES, Some(number("a radius of influence in spacings", 1.5, 6.0))),
-];
+perilife_base::keys! {
+    /// Keys of `[model]`.
+    pub struct ModelKeys {
+        method: Method = key("method", "Method"), or "auto" Method::Auto;
+        spacing: Option<f64> = length(SPACING, "Spacing: of points, or of nodes far from cracks");
+        symmetry: Option<Symmetry> = of(POINTS, key("symmetry", "Symmetry: whether half or a quarter stands for the plate"));
+        bond_law: Option<BondLawKind> = of(POINTS, key("bond_law", "Bond law: told by Poisson's ratio where it is left out"));
+        kernel: Option<Kernel> = of(POINTS, key("kernel", "Kernel: weight of bonds over their length"));
+        rotation: Option<Rotation> = of(POINTS, key("rotation", "Rotation: whether a rigid rotation costs energy"));
+        surface_correction: Option<SurfaceCorrection> = of(POINTS, key("surface_correction", "Surface correction: at the boundary"));
+        horizon_ratio: Option<f64> = of(POINTS, number("horizon_ratio", "Horizon ratio: horizon over spacing; 3.015 where it is left out", "a horizon ratio", 1.5, 12.0));
+        lattice_angle_deg: Option<f64> = of(POINTS, number("lattice_angle_deg", "Lattice angle, °: of rows of points against x", "an angle in degrees", -90.0, 90.0));
+        solver: Option<SolverKind> = of(POINTS, key("solver", "Solver"));
+        nodes: Option<f64> = of(NODES, number("nodes", "Number of nodes: far from cracks", "a number of nodes", 50.0, 1e5));
+        tolerance_percent: f64 = of(CHOSEN, number("tolerance_percent", "Target accuracy, % of life", "an error in percent", TOLERANCE_LEAST, 20.0)), or "2" TOLERANCE_PERCENT;
+        basis: Option<BasisKind> = of(NODES, key("basis", "Basis: polynomials of the nodes"));
+        enrichment: Option<Enrichment> = of(NODES, key("enrichment", "Enrichment: functions of the tips"));
+        influence_radius: Option<f64> = of(NODES, number("influence_radius", "Radius of influence: of a node, in spacings", "a radius of influence in spacings", 1.5, 6.0));
+    }
+}
 
 /// Keys of `[fatigue]` that belong to fatigue bonds.
 pub(super) const KEYS_OF_BONDS: &[&str] = &["ageing", "zone_radius_horizons", "critical_stretch"];
 
 /// A key of `[model]` that asks for its first owner where the method is left open; `spacing_mm` asks for points.
 pub(super) fn telling_key(model: &Value) -> Option<(&'static str, Method)> {
-    let tells = |key: &&Key| key.owners.contains(&Method::Peridynamics) || key.owners == NODES;
-    let key = KEYS.iter().filter(tells).find(|key| model.get(key.name).is_some())?;
-    let of_points = key.owners.contains(&Method::Peridynamics);
-    Some((key.name, if of_points { Method::Peridynamics } else { Method::ElementFreeGalerkin }))
-}
-
-/// Error asked for, percent of life.
-pub(super) fn tolerance(keys: &ModelKeys) -> Result<f64> {
-    Ok(read("tolerance_percent", keys.tolerance_percent)?.unwrap_or(TOLERANCE_PERCENT))
-}
-
-/// A number of `[model]` in SI units, within its range.
-pub(super) fn read(name: &str, value: Option<f64>) -> Result<Option<f64>> {
-    let quantity = KEYS.iter().find(|key| key.name == name).and_then(|key| key.quantity);
-    quantity.map_or(Ok(value), |quantity| quantity.read_optional(&format!("model.{name}"), value))
+    let owners = |key: &Key| key.only.map_or(if key.name == SPACING { POINTS } else { CHOSEN }, |(_, owners)| owners);
+    let key = ModelKeys::KEYS.iter().find(|key| owners(key) != CHOSEN && model.get(key.name).is_some())?;
+    Some((key.name, if owners(key) == POINTS { Method::Peridynamics } else { Method::ElementFreeGalerkin }))
 }
 
 /// Refuses a key of `[model]` that does not go with the method.
-pub(super) fn refuse_strangers(model: &Value, method: Method, chosen: Option<&str>) -> Result<()> {
-    let strange = KEYS.iter().find(|key| !key.owners.contains(&method) && model.get(key.name).is_some());
-    let Some(&Key { name, owners: &[owner, ..], .. }) = strange else { return Ok(()) };
-    let problem = format!(
-        "belongs to model.method = \"{owner}\", and the method is \"{method}\"{}",
-        chosen.map_or_else(String::new, |why| format!(" ({why})"))
-    );
-    Err(input_missing(&format!("model.{name}"), &problem, format!("leave it out, or use model.method = \"{owner}\"")))
+pub(super) fn refuse_strangers(model: &Given<'_>, method: Method, chosen: Option<&str>) -> Result<()> {
+    let strange =
+        |key: &&Key| key.only.is_some_and(|(_, owners)| !owners.contains(&method.name())) && model.first(&[key.name]).is_some();
+    let Some((key, (_, owners))) = ModelKeys::KEYS.iter().find(strange).and_then(|key| Some((key, key.only?))) else {
+        return Ok(());
+    };
+    let (owner, why) = (owners[0], chosen.map_or_else(String::new, |why| format!(" ({why})")));
+    let problem = format!("belongs to model.method = \"{owner}\", and the method is \"{method}\"{why}");
+    Err(model.refuse(key.name, problem, format!("leave it out, or use model.method = \"{owner}\"")))
 }
 
 /// Makes `[model]` one of nodes: what it says of points goes, but for keys that were `asked` for beside the file.
@@ -139,18 +104,21 @@ pub(super) fn on_nodes(table: &mut Table, asked: impl Fn(&str) -> bool) {
     if model.get("method").and_then(Value::as_str) == Some(name) {
         return;
     }
-    let of_points = |name: &str| KEYS.iter().any(|key| key.name == name && key.owners.contains(&Method::Peridynamics));
+    let of_points = |name: &str| {
+        name == SPACING || ModelKeys::KEYS.iter().any(|key| key.name == name && key.only.is_some_and(|own| own.1 == POINTS))
+    };
     model.retain(|name, _| !of_points(name) || asked(&format!("model.{name}")));
     model.insert("method".to_owned(), Value::String(name.to_owned()));
 }
 
 /// What is to be said of a spacing that was meant for points: nodes are refined by themselves.
-pub(super) fn too_fine(spacing_mm: f64, specimen: &Specimen, settings: &ElementFreeSettings) -> Option<String> {
+pub(super) fn too_fine(spacing: f64, specimen: &Specimen, settings: &ElementFreeSettings) -> Option<String> {
     let nodes = specimen.area() / settings.resolution.far.powi(2);
     (nodes > NODES_USUAL).then(|| {
         format!(
-            "model.spacing_mm = {spacing_mm} makes some {nodes:.0} nodes far from cracks: nodes are refined by themselves where tips, rims and \
-             ligaments ask for it; leave the key out"
+            "model.spacing_mm = {} makes some {nodes:.0} nodes far from cracks: nodes are refined by themselves where tips, rims and \
+             ligaments ask for it; leave the key out",
+            round_mm(spacing)
         )
     })
 }
@@ -211,12 +179,10 @@ fn nodes_for(specimen: &Specimen, percent: f64, basis: BasisKind) -> ElementFree
 impl ModelKeys {
     /// What the keys of nodes say, and the choice of the program where they say nothing; `spacing_mm` is that far from cracks.
     pub(super) fn nodes(&self, specimen: &Specimen) -> Result<ElementFreeSettings> {
-        let percent = tolerance(self)?;
         let usual = usual_nodes(specimen);
-        let mut settings = nodes_for(specimen, percent, self.basis.unwrap_or(usual.resolution.basis));
+        let mut settings = nodes_for(specimen, self.tolerance_percent, self.basis.unwrap_or(usual.resolution.basis));
         let resolution = &mut settings.resolution;
-        let (spacing, nodes) = (read("spacing_mm", self.spacing_mm)?, read("nodes", self.nodes)?);
-        match (spacing, self.nodes) {
+        match (self.spacing, self.nodes) {
             (Some(_), Some(nodes)) => {
                 let problem = "stands beside model.spacing_mm, which says the same in other words";
                 return Err(input("model.nodes", nodes, problem, "leave one of them out"));
@@ -230,11 +196,11 @@ impl ModelKeys {
                 }
                 resolution.far = spacing;
             }
-            (None, _) => resolution.far = nodes.map_or(resolution.far, |nodes| (specimen.area() / nodes).sqrt()),
+            (None, nodes) => resolution.far = nodes.map_or(resolution.far, |nodes| (specimen.area() / nodes).sqrt()),
         }
-        resolution.support = read("influence_radius", self.influence_radius)?.unwrap_or(resolution.support);
+        resolution.support = self.influence_radius.unwrap_or(resolution.support);
         resolution.enrichment = self.enrichment.unwrap_or(resolution.enrichment);
-        settings.is_given = spacing.is_some() || nodes.is_some();
+        settings.is_given = self.spacing.is_some() || self.nodes.is_some();
         Ok(settings)
     }
 }

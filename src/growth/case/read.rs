@@ -4,16 +4,19 @@ use std::path::{Path, PathBuf};
 
 use toml::{Table, Value};
 
-use super::fleet::Fleet;
-use super::model_keys::on_nodes;
+use super::fatigue::StopKeys;
+use super::fatigue_keys::FatigueKeys;
+use super::fleet::{Fleet, FleetKeys};
+use super::model_keys::{ModelKeys, on_nodes};
 use super::{
     Case, Choices, Engine, LawSource, Method, boundaries, choose, fatigue, law, law_source, model, pins, remove_law, residual,
 };
 use crate::case::record::FittedRecord;
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Error, InputError, Result, input, input_missing};
 use perilife_base::input::{
     Document, Folder, ForeignSections, LEVELS_OF_SCENES, OF_SCENES, OpenedFile, Output, Provenance, Sections, value_at,
 };
+use perilife_base::keys::{self, Given, Key, Section};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA};
 use perilife_laws::growth_law::description::law_keys;
 use perilife_laws::growth_law::{FactorLaw, GrowthLaw, GrowthLawKind, Walker, doubt};
@@ -108,6 +111,7 @@ impl Case {
     pub fn without_growth(table: Table, name: &str, folder: &Folder) -> Result<Self> {
         refuse_scene(&table)?;
         let sections = Sections::of(&table, SECTIONS, STRANGERS)?;
+        Error::of_all(mistakes(&sections))?;
         let echo = sections.echo()?;
         let mut warnings = Vec::new();
         let mut choices = Choices::default();
@@ -213,9 +217,50 @@ impl Case {
     }
 }
 
+/// Sections of a case whose keys are one list, those of laws and of retardation not among them.
+const KEYS: [(&str, &[Key]); 7] = [
+    ("material", material::Input::KEYS),
+    ("loading", loading::Input::KEYS),
+    ("model", ModelKeys::KEYS),
+    ("fatigue", FatigueKeys::KEYS),
+    ("stop", StopKeys::KEYS),
+    ("fleet", FleetKeys::KEYS),
+    ("output", Output::KEYS),
+];
+
+/// Every section of a case but `[specimen]` and `[supports]` with its keys.
+pub fn keys() -> Vec<(&'static str, Vec<Key>)> {
+    let more = |section: &str| match section {
+        "loading" => perilife_laws::retardation::keys_to_tell(),
+        "fatigue" => perilife_laws::growth_law::description::keys_to_tell(),
+        _ => Vec::new(),
+    };
+    KEYS.iter().map(|(section, own)| (*section, [own.to_vec(), more(section)].concat())).collect()
+}
+
+/// What is wrong with the keys of the sections by themselves, all of it at once.
+fn mistakes(sections: &Sections<'_>) -> Vec<InputError> {
+    let laws: Vec<&str> = law_keys().collect();
+    let mut all = sections.given("specimen").map_or_else(Vec::new, specimen::mistakes);
+    for (section, keys) in KEYS {
+        let Some(value) = sections.given(section) else { continue };
+        let given = Given::of(value, section);
+        all.extend(match (section, given) {
+            ("loading", _) => loading::mistakes(value, &retardation_keys()),
+            ("fatigue", Ok(given)) => keys::mistakes(given, keys, &laws, None),
+            (_, Ok(given)) => keys::mistakes(given, keys, &[], None),
+            (_, Err(_)) => Vec::new(),
+        });
+    }
+    all
+}
+
 /// A scene is told by the kind of its load, whatever else is not right for a case in it.
 fn refuse_scene(table: &Table) -> Result<()> {
     const KIND: &str = "loading.kind";
+    if let Some(given) = table.get("model").and_then(|model| value_at(model, "discretisation")) {
+        return Err(input("model.discretisation", given, "is not a key of fatigue cases", LEVELS_OF_SCENES));
+    }
     let kind = table.get("loading").and_then(|loading| value_at(loading, "kind")).and_then(Value::as_str);
     // Both have loads that are a displacement; only that of a scene has one size without maximum or range.
     let is_of_one_size = table.get("loading").is_some_and(|loading| value_at(loading, "displacement_mm").is_some());

@@ -1,13 +1,11 @@
 //! What a law of growth says of itself: its name, its constants with their keys and bounds, and how rates are fitted by it.
 
-use std::collections::BTreeMap;
-
-use serde::de::DeserializeOwned;
-use toml::{Table, Value};
+use toml::Value;
 
 use super::{FactorLaw, GrowthLawKind};
 use perilife_base::error::{Result, input_missing};
-use perilife_base::input::{Folder, INTENSITY, Quantity, number, slice, value_at};
+use perilife_base::input::{Folder, INTENSITY, Quantity, number, value_at};
+use perilife_base::keys::{Field, Key};
 use perilife_base::units::MM_PER_CYCLE;
 use perilife_plate::material::Material;
 
@@ -233,9 +231,9 @@ pub struct Given<'a> {
 impl Given<'_> {
     /// The value of a key.
     /// Errors: another kind of value.
-    pub fn get<T: DeserializeOwned>(&self, key: &str) -> Result<Option<T>> {
-        let own = value_at(self.section, key).map(|value| (key.to_owned(), value.clone()));
-        slice::<BTreeMap<String, T>>(&Value::Table(Table::from_iter(own)), "fatigue").map(|mut own| own.remove(key))
+    pub fn get<T: Field>(&self, key: &str) -> Result<Option<T>> {
+        let take = |value| T::take(&Key::new("", ""), &format!("fatigue.{key}"), value);
+        value_at(self.section, key).map(take).transpose()
     }
 
     /// The constants of a law in SI units, in their order.
@@ -285,6 +283,21 @@ pub fn keys_of_laws() -> Vec<(Vec<&'static str>, Vec<GrowthLawKind>)> {
         }
     }
     groups
+}
+
+/// Keys of `[fatigue]` that give a law, for whoever tells of them.
+pub fn keys_to_tell() -> Vec<Key> {
+    let fitted = Key::of_choice::<String>("fitted", "Fitted law: file that `perilife calibrate` wrote");
+    let mut keys =
+        vec![fitted, Key::of_choice::<GrowthLawKind>("growth_law", "Growth law: told by its constants where it is left out")];
+    for constant in GrowthLawKind::all().flat_map(|kind| kind.0.constants) {
+        if keys.iter().all(|key| key.name != constant.key) {
+            keys.push(Key::of_constant(constant.key, constant.quantity, ""));
+        }
+    }
+    let others = GrowthLawKind::all().flat_map(|kind| kind.0.others).copied().filter(|key| *key != "fitted");
+    keys.extend(others.map(|key| Key::of_choice::<Value>(key, "Table of the law")));
+    keys
 }
 
 /// Every key that gives a law, those that several laws have last.

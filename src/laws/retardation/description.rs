@@ -2,6 +2,7 @@
 
 use crate::growth_law::GrowthLaw;
 use perilife_base::input::Quantity;
+use perilife_base::keys::Key;
 use perilife_plate::material::Plane;
 
 /// da/dN, m/cycle, by the constants of a model, the law of a cycle alone, the cycle, and the zone that it lies in.
@@ -33,6 +34,13 @@ pub struct Constant {
     pub default: fn(Plane, Option<f64>) -> Option<f64>,
     /// What to give where it is missing.
     pub remedy: &'static str,
+}
+
+impl Constant {
+    /// It as a key of `[loading]`.
+    pub fn to_key(self) -> Key {
+        Key::of_constant(self.key, self.quantity, self.remedy)
+    }
 }
 
 /// A cycle at a tip.

@@ -20,6 +20,7 @@ use serde_json::{Map, Value, json};
 
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{refuse_given, value_at};
+use perilife_base::keys::{Field, Key, quantity};
 use perilife_plate::loading::Loading;
 use perilife_plate::material::{Material, Plane};
 
@@ -38,6 +39,18 @@ const KEY: &str = "retardation";
 pub fn retardation_keys() -> Vec<&'static str> {
     let of_models = RetardationKind::all().flat_map(|kind| kind.0.constants).map(|constant| constant.key);
     std::iter::once(KEY).chain(of_models).collect()
+}
+
+/// The same for whoever tells of them.
+pub fn keys_to_tell() -> Vec<Key> {
+    let mut keys =
+        vec![Key::of_choice::<RetardationKind>(KEY, "Retardation: load interaction of a spectrum; none where it is left out")];
+    for constant in RetardationKind::all().flat_map(|kind| kind.0.constants) {
+        if keys.iter().all(|key| key.name != constant.key) {
+            keys.push(constant.to_key());
+        }
+    }
+    keys
 }
 
 /// A model with its constants.
@@ -69,11 +82,8 @@ impl Retardation {
             let problem = "says how cycles of a spectrum act on later ones, and the kind of loading is another";
             return refuse_given("loading", &keys, problem, "give kind = \"spectrum\", or leave it out").map(|()| None);
         }
-        let kind: RetardationKind = match given(KEY) {
-            None => RetardationKind(&description::NONE),
-            Some(toml::Value::String(name)) => name.parse()?,
-            Some(other) => return Err(input(RetardationKind::KEY, other, "is not text in quotes", "give the name of a model")),
-        };
+        let asked = given(KEY).map(|value| RetardationKind::take(&Key::new(KEY, ""), RetardationKind::KEY, value)).transpose()?;
+        let kind = asked.unwrap_or(RetardationKind(&description::NONE));
         if kind.0.rate.is_none() {
             // Constants stay where a model is turned off.
             return Ok(None);
@@ -93,15 +103,9 @@ impl Retardation {
         })?;
         let constant = |constant: &description::Constant| {
             let path = format!("loading.{}", constant.key);
-            let value = match given(constant.key) {
-                Some(toml::Value::Integer(whole)) => Some(*whole as f64),
-                Some(toml::Value::Float(value)) => Some(*value),
-                Some(other) => return Err(input(&path, other, "is not a number", "give a number")),
-                None => None,
-            };
             let otherwise = (constant.default)(material.plane, threshold);
-            match (value, otherwise) {
-                (Some(value), _) => constant.quantity.read(&path, value),
+            match (given(constant.key), otherwise) {
+                (Some(value), _) => quantity(&constant.to_key(), &path, value),
                 (None, Some(value)) => Ok(value),
                 (None, None) => {
                     let problem = format!("is missing, and retardation is \"{kind}\"");

@@ -4,34 +4,38 @@
 //! Without supports the plate floats, so its loads must balance; with a support only the sides that are not held are
 //! loaded. The standard specimens bring their loads and grips along and take none of these keys but the parallel stress.
 
-use serde::Deserialize;
 use toml::Value;
 
-use super::{Input, LoadingKind, forces, grips};
+use super::{Input, LoadingKind, PLACES, forces, grips};
 use crate::specimen::geometry::{bounding_box, distance, unit};
 use crate::specimen::pin::SNUG_PIN;
 use crate::specimen::{Bearing, Component, Edge, Load, LoadMeasure, Point, Specimen, Support};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{number, refuse_given, shorten, slice, table_of};
-use perilife_base::units::{MM, place_mm};
+use perilife_base::input::{Quantity, number, shorten, table_of};
+use perilife_base::keys::{Given, key, section};
+use perilife_base::units::{MM, place_mm, round_mm};
+
+/// Key of bending in the plane.
+const BENT: &str = "edge_bending_ratio";
 
 /// Resultant of pins that pull against each other, over the sum of their forces.
 const BALANCED: f64 = 1e-6;
 /// Resultant of loads over the largest of them, and its moment over that times the plate, up to which they are in balance.
 const LEVEL: f64 = 1e-4;
 
-/// One entry of `[supports]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SupportInput {
-    #[serde(default)]
-    rows_mm: f64,
-    fix: Vec<Component>,
+perilife_base::keys! {
+    /// One side of `[supports]`.
+    #[derive(Debug)]
+    pub struct SupportEntry {
+        depth: f64 = key("rows_mm", "Depth of the hold: from the side into the plate").of(DEPTH), or "one row" 0.0;
+        fix: Vec<Component> = key("fix", "Held components");
+    }
 }
+const DEPTH: Quantity = Quantity { what: "a depth", unit: "mm", low: 0.0, high: 1e5, si: MM };
 
 /// Puts loads and supports on the specimen; returns the section that turns a force into the nominal stress, m².
-pub(super) fn apply(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
-    let area = apply_loads(input, supports, specimen, parallel_ratio)?;
+pub(super) fn apply(given: &Given<'_>, input: &Input, supports: Option<&Value>, specimen: &mut Specimen) -> Result<f64> {
+    let area = apply_loads(given, input, supports, specimen)?;
     fit_unknown_pins(specimen);
     Ok(area)
 }
@@ -52,9 +56,9 @@ fn fit_unknown_pins(specimen: &mut Specimen) {
 }
 
 /// Puts loads and supports on the specimen, as [`apply`].
-fn apply_loads(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+fn apply_loads(given: &Given<'_>, input: &Input, supports: Option<&Value>, specimen: &mut Specimen) -> Result<f64> {
     if specimen.kind.is_plate() {
-        return apply_to_plate(input, supports, specimen, parallel_ratio);
+        return apply_to_plate(given, input, supports, specimen);
     }
     let kind = specimen.kind;
     let problem = format!("does not go with {kind}, which brings its own loads and grips");
@@ -65,11 +69,12 @@ fn apply_loads(input: &Input, supports: Option<&Value>, specimen: &mut Specimen,
         return Err(input_missing("loading.pins", problem, remedy));
     }
     let remedy = "leave it out, or describe the specimen as kind = \"plate\"";
-    let bent = [("edge_bending_ratio", input.edge_bending_ratio.is_some())];
-    refuse_given("loading", &[&input.places()[..], &bent].concat(), &problem, remedy)?;
+    given.refuse_any(&PLACES, &problem, remedy)?;
+    given.refuse_any(&[BENT], &problem, remedy)?;
     if supports.is_some() {
         return Err(input_missing("supports", problem, remedy));
     }
+    let parallel_ratio = input.parallel_ratio;
     if parallel_ratio != 0.0 {
         if specimen.load_measure == LoadMeasure::Force {
             let problem = format!("does not go with {kind}");
@@ -81,8 +86,8 @@ fn apply_loads(input: &Input, supports: Option<&Value>, specimen: &mut Specimen,
     Ok(specimen.width * specimen.thickness)
 }
 
-fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
-    let has_places = input_.places().iter().any(|(_, is_given)| *is_given);
+fn apply_to_plate(given: &Given<'_>, input_: &Input, supports: Option<&Value>, specimen: &mut Specimen) -> Result<f64> {
+    let (has_places, parallel_ratio) = (given.first(&PLACES).is_some(), input_.parallel_ratio);
     if has_places || supports.is_some() || parallel_ratio != 0.0 || input_.edge_bending_ratio.is_some() {
         // K of a named plate is that of its own loads.
         specimen.own_formula = None;
@@ -94,14 +99,14 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
         specimen.loads.clear();
         specimen.load_measure = LoadMeasure::Stress;
     } else if !specimen.loads.is_empty() {
-        return keep_own_loads(input_, supports, specimen, parallel_ratio);
+        return keep_own_loads(given, supports, specimen, parallel_ratio);
     }
     let held = read_supports(supports, specimen)?;
     let beside_edges = input_.edges.is_some() && input_.pins.is_some();
     if beside_edges {
-        return load_edges_and_pins(input_, &held, specimen, parallel_ratio);
+        return load_edges_and_pins(given, input_, &held, specimen);
     }
-    let by_forces = forces::KEYS.into_iter().zip([&input_.pins, &input_.rollers]).find(|(_, given)| given.is_some());
+    let by_forces = forces::KEYS.into_iter().zip([input_.pins.is_some(), input_.rollers.is_some()]).find(|(_, given)| *given);
     let area = match by_forces {
         Some((key, _)) if input_.edges.is_some() => {
             let remedy = "give edges, alone or with pins, or rollers";
@@ -121,7 +126,7 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
         }
         Some((key, _)) => {
             specimen.load_measure = LoadMeasure::Force;
-            forces::read_pins(input_.pins.as_deref().unwrap_or_default(), false, specimen)?;
+            forces::read_pins(given, input_.pins.as_deref().unwrap_or_default(), false, specimen)?;
             forces::read_rollers(input_.rollers.as_deref().unwrap_or_default(), specimen)?;
             if specimen.loads.is_empty() {
                 let remedy = "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }";
@@ -129,7 +134,7 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
             }
             1.0
         }
-        None => load_edges(input_, &held, specimen, parallel_ratio)?,
+        None => load_edges(given, input_, &held, specimen)?,
     };
     if by_forces.is_none() && grips::are_balanced(input_, specimen) {
         return Ok(area);
@@ -140,18 +145,17 @@ fn apply_to_plate(input_: &Input, supports: Option<&Value>, specimen: &mut Speci
 
 /// Bearing and bypass: the first edge bears the nominal stress, pins their bearing stress, and the edge that faces the first one what is
 /// left, `σ_bypass = σ - Σ P·n / (L h)`.
-fn load_edges_and_pins(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
-    let given = [
-        ("rollers", input_.rollers.is_some()),
-        ("direction", input_.direction.is_some()),
-        ("edge_bending_ratio", input_.edge_bending_ratio.is_some()),
-        ("kind", input_.kind == Some(LoadingKind::Displacement)),
-    ];
+fn load_edges_and_pins(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut Specimen) -> Result<f64> {
+    let kind = if input_.kind == LoadingKind::Displacement { &["kind"][..] } else { &[] };
     let problem = "does not go with pins beside loaded edges, whose stress is uniform and whose cycles are of a load";
-    refuse_given("loading", &given, problem, "compute it by other means: either alone is another plate")?;
-    let area = load_edges(input_, held, specimen, parallel_ratio)?;
+    given.refuse_any(
+        &[&["rollers", "direction", BENT][..], kind].concat(),
+        problem,
+        "compute it by other means: either alone is another plate",
+    )?;
+    let area = load_edges(given, input_, held, specimen)?;
     let edges = specimen.loads.len();
-    forces::read_pins(input_.pins.as_deref().unwrap_or_default(), true, specimen)?;
+    forces::read_pins(given, input_.pins.as_deref().unwrap_or_default(), true, specimen)?;
     let first = input_.edges.as_deref().and_then(<[Edge]>::first).map_or([0.0, 1.0], |edge| edge.normal());
     let faces =
         |load: &Load| matches!(load, Load::Edge { traction, .. } if traction[0] * first[0] + traction[1] * first[1] < -0.5);
@@ -180,11 +184,10 @@ fn pin_force(load: &Load) -> Option<(usize, Point)> {
 }
 
 /// The forces that a named plate brings along, on what the case says of supports.
-fn keep_own_loads(input_: &Input, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+fn keep_own_loads(given: &Given<'_>, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     read_supports(supports, specimen)?;
-    let bent = [("edge_bending_ratio", input_.edge_bending_ratio.is_some())];
     let problem = format!("is of loaded edges, and the load is that of the forces of {}", specimen.kind);
-    refuse_given("loading", &bent, &problem, "leave it out, or give edges")?;
+    given.refuse_any(&[BENT], &problem, "leave it out, or give edges")?;
     if parallel_ratio != 0.0 {
         let problem = format!("does not go with the forces of {}", specimen.kind);
         return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out, or give edges"));
@@ -201,16 +204,20 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
         let path = format!("supports.{name}");
         let known = "known sides: top, bottom, left, right";
         let edge: Edge = name.parse().map_err(|_| input(&path, shorten(value), "is not a side of the plate", known))?;
-        let entry: SupportInput = slice(value, &path)?;
-        if entry.fix.is_empty() {
+        let SupportEntry { depth, fix } = section(value, &path)?;
+        if fix.is_empty() {
             return Err(input(&format!("{path}.fix"), "[]", "holds nothing", "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]"));
         }
-        let depth = number("a depth in mm", 0.0, 1e5).read(&format!("{path}.rows_mm"), entry.rows_mm)? * MM;
         let [low, high] = bounding_box(&specimen.outline);
-        let (x, y) = (entry.fix.contains(&Component::X), entry.fix.contains(&Component::Y));
+        let (x, y) = (fix.contains(&Component::X), fix.contains(&Component::Y));
         let along_normal = if edge.normal()[0] == 0.0 { (y, high[1] - low[1]) } else { (x, high[0] - low[0]) };
         if depth >= along_normal.1 / 2.0 {
-            return Err(input(&format!("{path}.rows_mm"), entry.rows_mm, "holds half the plate or more", "give a smaller depth"));
+            return Err(input(
+                &format!("{path}.rows_mm"),
+                round_mm(depth),
+                "holds half the plate or more",
+                "give a smaller depth",
+            ));
         }
         let stretches = stretches(edge, specimen, &path)?;
         specimen.supports.extend(stretches.into_iter().map(|(from, to)| Support::Fixed { from, to, depth, x, y }));
@@ -237,8 +244,9 @@ fn stretches(edge: Edge, specimen: &Specimen, key: &str) -> Result<Vec<(Point, P
 
 /// Uniform stress on the asked sides (default: top and bottom, less what is held), along their normals or `direction`; returns the
 /// section of the first.
-fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
+fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut Specimen) -> Result<f64> {
     const KEY: &str = "loading.edges";
+    let parallel_ratio = input_.parallel_ratio;
     let asked = input_.edges.as_deref();
     let loaded: Vec<Edge> = match asked {
         None => [Edge::Top, Edge::Bottom].into_iter().filter(|edge| !held.contains(edge)).collect(),
@@ -263,18 +271,17 @@ fn load_edges(input_: &Input, held: &[Edge], specimen: &mut Specimen, parallel_r
         areas.push(length * specimen.thickness);
     }
     match &input_.direction {
-        None => match read_edge_bending(input_, &loaded)? {
+        None => match read_edge_bending(given, input_, &loaded)? {
             Some(stresses) => loaded.iter().for_each(|edge| push_bent_edge(specimen, *edge, stresses)),
             None => push_edge_loads(specimen, &loaded, 1.0),
         },
-        Some(given) => {
-            let bent = [("edge_bending_ratio", input_.edge_bending_ratio.is_some())];
-            refuse_given("loading", &bent, "does not go with loading.direction: bending acts along the normal", "leave one out")?;
+        Some(asked) => {
+            given.refuse_any(&[BENT], "does not go with loading.direction: bending acts along the normal", "leave one out")?;
             if parallel_ratio != 0.0 {
                 let problem = "does not go with loading.direction";
                 return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "name all loaded sides in edges"));
             }
-            for (edge, traction) in loaded.iter().zip(directions(given, &loaded)?) {
+            for (edge, traction) in loaded.iter().zip(directions(asked, &loaded)?) {
                 let loads = edge.stretches(specimen).into_iter().map(|(from, to)| Load::Edge { from, to, traction });
                 specimen.loads.extend(loads.collect::<Vec<_>>());
             }
@@ -318,20 +325,20 @@ fn directions(given: &Value, loaded: &[Edge]) -> Result<Vec<Point>> {
 
 /// Stress over the nominal one at the beginning and the end of the loaded edges: with the bending ratio ρ, `1 - ρ` and `1 + ρ`; where the
 /// edges bear nothing but bending, -1 and 1. `None` where they are not bent.
-fn read_edge_bending(input_: &Input, loaded: &[Edge]) -> Result<Option<[f64; 2]>> {
+fn read_edge_bending(all: &Given<'_>, input_: &Input, loaded: &[Edge]) -> Result<Option<[f64; 2]>> {
     const KEY: &str = "loading.edge_bending_ratio";
     let Some(given) = &input_.edge_bending_ratio else { return Ok(None) };
     if loaded.iter().any(|edge| (edge.normal()[0] == 0.0) != (loaded[0].normal()[0] == 0.0)) {
         let problem = "bends sides that are not parallel: which of them is not said";
         return Err(input(KEY, shorten(given), problem, "name one side or two opposite ones in loading.edges"));
     }
-    if input_.kind == Some(LoadingKind::Displacement) {
+    if input_.kind == LoadingKind::Displacement {
         let problem = "is of a stress on edges, and these are moved by a displacement";
         return Err(input(KEY, shorten(given), problem, "leave it out, or give cycles of a load"));
     }
     if given.as_str() == Some("pure") {
-        let forces = perilife_base::given!(input_: force_max_n, force_range_n, force_max_kn, force_range_kn);
-        refuse_given("loading", &forces, "is none in pure bending", "give loading.stress_max_mpa, that at the end of the edge")?;
+        const FORCES: [&str; 4] = ["force_max_n", "force_range_n", "force_max_kn", "force_range_kn"];
+        all.refuse_any(&FORCES, "is none in pure bending", "give loading.stress_max_mpa, that at the end of the edge")?;
         return Ok(Some([-1.0, 1.0]));
     }
     let ratio = given.as_float().or_else(|| given.as_integer().map(|whole| whole as f64)).ok_or_else(|| {

@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use serde::Deserialize;
+use toml::Value;
 
 use perilife_base::error::{Result, input};
 use perilife_base::input::Quantity;
+use perilife_base::keys::{Field, Key, Shape, refuse};
 use perilife_base::units::MM;
 
 const CRACK_LENGTH: Quantity = Quantity { what: "a crack length", unit: "mm", low: 0.0, high: 1e5, si: MM };
@@ -15,9 +16,8 @@ const SAME: f64 = 1e-9;
 const CORNER: f64 = 0.01;
 
 /// How large a load is, in the unit of its key.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged, expecting = "expected a number, or rows [crack length, load] such as [[20, 3000], [30, 4000]]")]
-pub(super) enum Size {
+#[derive(Debug, Clone, PartialEq)]
+pub enum Size {
     /// The same in all cycles.
     One(f64),
     /// Crack length, mm, and load.
@@ -34,6 +34,19 @@ impl fmt::Display for Size {
                 few => write!(f, "[{}]", few.iter().map(row).collect::<String>()),
             },
         }
+    }
+}
+
+impl Field for Size {
+    const SHAPE: Shape = Shape::Other("a number, or rows [crack length, load] such as [[20, 3000], [30, 4000]]");
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+        let row = |row: &Value| match row.as_array().map(Vec::as_slice) {
+            Some([length, load]) => Some([number(length)?, number(load)?]),
+            _ => None,
+        };
+        let rows = || value.as_array()?.iter().map(row).collect::<Option<Vec<_>>>().map(Size::Rows);
+        number(value).map(Size::One).or_else(rows).map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
     }
 }
 

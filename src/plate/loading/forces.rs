@@ -1,13 +1,14 @@
 //! Forces on a `plate`: `pins` press in its holes, `rollers` on its outline.
 
-use serde::Deserialize;
-use toml::Value;
+use toml::Table;
 
 use crate::specimen::geometry::{along, distance, distance_to_segment, unit};
+use crate::specimen::pin::{ARC, POISSON, POISSON_RATIO, PinKeys, YOUNGS_MODULUS};
 use crate::specimen::{Bearing, Load, Point, Specimen};
 use perilife_base::error::{Result, input};
-use perilife_base::input::{number, slice};
-use perilife_base::units::MM;
+use perilife_base::input::{Quantity, number as plain};
+use perilife_base::keys::{Given, coordinate, key, length, modulus, number};
+use perilife_base::units::round_mm;
 
 /// Their keys.
 pub(super) const KEYS: [&str; 2] = ["loading.pins", "loading.rollers"];
@@ -15,63 +16,61 @@ pub(super) const KEYS: [&str; 2] = ["loading.pins", "loading.rollers"];
 /// Distance from the outline below which a place lies on it, m.
 const ON_OUTLINE: f64 = 1e-6;
 
-/// One entry of `pins`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PinInput {
-    hole: usize,
-    direction: [f64; 2],
-    share: Option<f64>,
-    /// Beside loaded edges: bearing stress `P/(d h)` over the nominal stress.
-    bearing_ratio: Option<f64>,
-    contact_half_angle_deg: Option<f64>,
-    pin_diameter_mm: Option<f64>,
-    friction: Option<f64>,
-    pin_youngs_modulus_gpa: Option<f64>,
-    pin_poisson_ratio: Option<f64>,
+perilife_base::keys! {
+    /// One entry of `pins`.
+    #[derive(Debug)]
+    pub struct PinEntry {
+        hole: usize = key("hole", "Hole: counted from 0 in specimen.holes");
+        direction: Point = key("direction", "Direction: [x, y] of the force on the plate");
+        share: Option<f64> = key("share", "Share of the force: 1 where it is left out").of(SHARE);
+        bearing_ratio: Option<f64> = number("bearing_ratio", "Bearing stress P/(d h) over the nominal stress: beside loaded edges", "a ratio of stresses", 1e-6, 1e4);
+        half_angle: Option<f64> = number("contact_half_angle_deg", "Half angle of contact of the pin, °: 90 for a pin that fills its hole", ARC, 1.0, 90.0);
+        diameter: Option<f64> = length("pin_diameter_mm", "Pin diameter: its clearance decides where it touches the hole");
+        friction: Option<f64> = number("friction", "Friction of the pin: 0, others are not computed", "a coefficient of friction", 0.0, 10.0);
+        youngs_modulus: f64 = modulus("pin_youngs_modulus_gpa", "Young's modulus of the pin"), or "210 (steel)" YOUNGS_MODULUS;
+        poisson_ratio: f64 = number("pin_poisson_ratio", "Poisson's ratio of the pin", POISSON, 0.0, 0.499), or "0.3 (steel)" POISSON_RATIO;
+    }
 }
-
-/// One entry of `rollers`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RollerInput {
-    at_mm: [f64; 2],
-    contact_width_mm: f64,
-    /// Straight into the plate where it is left out.
-    direction: Option<[f64; 2]>,
-    #[serde(default = "one")]
-    share: f64,
+perilife_base::keys! {
+    /// One entry of `rollers`.
+    #[derive(Debug)]
+    pub struct RollerEntry {
+        at: Point = coordinate("at_mm", "Middle of the contact: [x, y] on the outline");
+        width: f64 = length("contact_width_mm", "Width of the contact");
+        direction: Option<Point> = key("direction", "Direction: [x, y] of the force; straight into the plate where it is left out");
+        share: f64 = key("share", "Share of the force: 1 where it is left out").of(SHARE), or "1" 1.0;
+    }
 }
-
-fn one() -> f64 {
-    1.0
-}
+/// A share of the force.
+const SHARE: Quantity = plain("a share of the force", 1e-6, 1e6);
 
 /// Pins, which press on the rim of a hole; those `beside_edges` that are loaded say their force by their bearing stress.
-pub(super) fn read_pins(pins: &[Value], beside_edges: bool, specimen: &mut Specimen) -> Result<()> {
-    check_count(KEYS[0], pins, "pins { hole = 0, direction = [0, 1] }")?;
-    for (i, value) in pins.iter().enumerate() {
+pub(super) fn read_pins(given: &Given<'_>, pins: &[PinEntry], beside_edges: bool, specimen: &mut Specimen) -> Result<()> {
+    check_count(KEYS[0], pins.len(), "pins { hole = 0, direction = [0, 1] }")?;
+    for (i, pin) in pins.iter().enumerate() {
         let path = format!("{}[{i}]", KEYS[0]);
-        let pin: PinInput = slice(value, &path)?;
+        let empty = Table::new();
+        let entry = given.table.get("pins").and_then(|pins| pins.get(i)?.as_table());
+        let entry = Given { table: entry.unwrap_or(&empty), path: &path };
         if pin.hole >= specimen.holes.len() {
             let problem = format!("is not a hole of this plate, which has {}", specimen.holes.len());
             return Err(input(&format!("{path}.hole"), pin.hole, problem, "count specimen.holes from 0"));
         }
-        let force = force_of(&path, &pin, beside_edges, specimen)?;
+        let force = force_of(&path, pin, beside_edges, specimen)?;
         let direction = direction_of(&path, pin.direction)?;
-        let keys = perilife_base::keyed!(
-            pin: contact_half_angle_deg, pin_diameter_mm, friction, pin_youngs_modulus_gpa, pin_poisson_ratio);
-        let contact = Bearing::read(&path, &keys, specimen.holes[pin.hole].radius)?;
+        let &PinEntry { half_angle, diameter, friction, youngs_modulus, poisson_ratio, .. } = pin;
+        let keys = PinKeys { half_angle, diameter, friction, youngs_modulus, poisson_ratio };
+        let contact = Bearing::read(&entry, ["contact_half_angle_deg", "friction"], &keys, specimen.holes[pin.hole].radius)?;
         specimen.loads.push(Load::Pin { hole: pin.hole, direction, force, contact });
     }
     Ok(())
 }
 
 /// Force of a pin per unit of nominal load: its share of a force, N per N, or beside loaded edges `bearing_ratio d h`, N per Pa.
-fn force_of(path: &str, pin: &PinInput, beside_edges: bool, specimen: &Specimen) -> Result<f64> {
+fn force_of(path: &str, pin: &PinEntry, beside_edges: bool, specimen: &Specimen) -> Result<f64> {
     let key = format!("{path}.bearing_ratio");
     match (beside_edges, pin.bearing_ratio, pin.share) {
-        (false, None, share) => read_share(path, share.unwrap_or(1.0)),
+        (false, None, share) => Ok(share.unwrap_or(1.0)),
         (false, Some(given), _) => {
             let problem = "is bearing stress over the stress of a loaded edge, and no edge is loaded";
             Err(input(&key, given, problem, "name the loaded edges in loading.edges, or give share"))
@@ -89,40 +88,32 @@ fn force_of(path: &str, pin: &PinInput, beside_edges: bool, specimen: &Specimen)
             let remedy = "give P / (d h) of the pin over the stress of the first edge of loading.edges";
             Err(perilife_base::error::input_missing(&key, "is missing: the pin stands beside loaded edges", remedy))
         }
-        (true, Some(ratio), None) => {
-            let ratio = number("a ratio of stresses", 1e-6, 1e4).read(&key, ratio)?;
-            Ok(ratio * 2.0 * specimen.holes[pin.hole].radius * specimen.thickness)
-        }
+        (true, Some(ratio), None) => Ok(ratio * 2.0 * specimen.holes[pin.hole].radius * specimen.thickness),
     }
 }
 
 /// Rollers: uniform pressure `share / (contact width x thickness)` per unit of force on a straight stretch of the outline.
-pub(super) fn read_rollers(rollers: &[Value], specimen: &mut Specimen) -> Result<()> {
-    check_count(KEYS[1], rollers, "rollers { at_mm = [0, 40], contact_width_mm = 6 }")?;
-    for (i, value) in rollers.iter().enumerate() {
+pub(super) fn read_rollers(rollers: &[RollerEntry], specimen: &mut Specimen) -> Result<()> {
+    check_count(KEYS[1], rollers.len(), "rollers { at_mm = [0, 40], contact_width_mm = 6 }")?;
+    for (i, &RollerEntry { at, width, direction, share }) in rollers.iter().enumerate() {
         let path = format!("{}[{i}]", KEYS[1]);
-        let roller: RollerInput = slice(value, &path)?;
-        let given = format!("[{}, {}]", roller.at_mm[0], roller.at_mm[1]);
-        let at = roller.at_mm.map(|x| x * MM);
-        let width_key = format!("{path}.contact_width_mm");
-        let width = number("a length in mm", 1e-3, 1e5).read(&width_key, roller.contact_width_mm)? * MM;
-        let share = read_share(&path, roller.share)?;
         let sides = (0..specimen.outline.len()).map(|i| [i, (i + 1) % specimen.outline.len()].map(|i| specimen.outline[i]));
         let Some([from, to]) = sides.into_iter().find(|[from, to]| distance_to_segment(at, *from, *to) < ON_OUTLINE) else {
             let remedy = "give [x, y] of the middle of the contact";
+            let given = format!("[{}, {}]", round_mm(at[0]), round_mm(at[1]));
             return Err(input(&format!("{path}.at_mm"), given, "does not lie on the outline", remedy));
         };
         let (side, place) = (distance(from, to), distance(from, at));
         if place < width / 2.0 - ON_OUTLINE || side - place < width / 2.0 - ON_OUTLINE {
             let problem = "reaches beyond the end of the straight side it lies on";
             let remedy = "give a narrower contact, or place it farther from the corner";
-            return Err(input(&width_key, roller.contact_width_mm, problem, remedy));
+            return Err(input(&format!("{path}.contact_width_mm"), round_mm(width), problem, remedy));
         }
         // The outline runs counter-clockwise: the plate lies to its left.
         let inward = [-(to[1] - from[1]) / side, (to[0] - from[0]) / side];
-        let direction = roller.direction.map_or(Ok(inward), |direction| direction_of(&path, direction))?;
+        let (asked, direction) = (direction, direction.map_or(Ok(inward), |direction| direction_of(&path, direction))?);
         if direction[0] * inward[0] + direction[1] * inward[1] <= 0.0 {
-            let given = roller.direction.map_or(String::new(), |[x, y]| format!("[{x}, {y}]"));
+            let given = asked.map_or(String::new(), |[x, y]| format!("[{x}, {y}]"));
             return Err(input(&format!("{path}.direction"), given, "pulls at the plate", "a roller pushes: turn it round"));
         }
         let stretch = [-0.5, 0.5].map(|half| along(from, to, (place + half * width) / side));
@@ -132,18 +123,11 @@ pub(super) fn read_rollers(rollers: &[Value], specimen: &mut Specimen) -> Result
     Ok(())
 }
 
-fn check_count(key: &str, given: &[Value], example: &str) -> Result<()> {
-    if given.len() > 100 {
-        return Err(input(key, format!("{} entries", given.len()), "are too many", format!("give up to 100 {example}")));
+fn check_count(key: &str, given: usize, example: &str) -> Result<()> {
+    if given > 100 {
+        return Err(input(key, format!("{given} entries"), "are too many", format!("give up to 100 {example}")));
     }
     Ok(())
-}
-
-fn read_share(path: &str, share: f64) -> Result<f64> {
-    if share < 0.0 {
-        return Err(input(&format!("{path}.share"), share, "is negative", "give its size, and turn the direction round"));
-    }
-    number("a share of the force", 1e-6, 1e6).read(&format!("{path}.share"), share)
 }
 
 /// Direction of a force, of length 1.

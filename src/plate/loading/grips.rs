@@ -3,31 +3,32 @@
 use super::{Grip, Input, LoadingKind, Transverse};
 use crate::specimen::geometry::{self, unit};
 use crate::specimen::{Edge, Load, Point, Specimen, SpecimenKind, Support};
-use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::refuse_given;
+use perilife_base::error::{Result, input as error, input_missing};
+use perilife_base::keys::Given;
 
 /// Refuses the keys of grips where nothing is gripped.
-pub(super) fn refuse(input: &Input) -> Result<()> {
-    let given = perilife_base::given!(input: grip, transverse);
-    if input.kind != Some(LoadingKind::Displacement) {
-        let remedy = "leave it out, or give kind = \"displacement\"";
-        return refuse_given("loading", &given, "says how a moved edge is gripped, and the cycles are of a load", remedy);
+pub(super) fn refuse(given: &Given<'_>, input: &Input) -> Result<()> {
+    if input.kind != LoadingKind::Displacement {
+        let problem = "says how a moved edge is gripped, and the cycles are of a load";
+        return given.refuse_any(&KEYS, problem, "leave it out, or give kind = \"displacement\"");
     }
     if input.pins.is_some() || input.rollers.is_some() {
         let problem = "is of moved edges; a pin or roller follows the places it presses on";
-        return refuse_given("loading", &given, problem, "leave it out");
+        return given.refuse_any(&KEYS, problem, "leave it out");
     }
-    let by_mean = [("transverse", input.grip == Some(Grip::Mean) && input.transverse.is_some())];
-    refuse_given("loading", &by_mean, "does not go with grip = \"mean\", which holds no edge", "leave it out")
+    let by_mean = if input.grip == Some(Grip::Mean) { &KEYS[1..] } else { &[] };
+    given.refuse_any(by_mean, "does not go with grip = \"mean\", which holds no edge", "leave it out")
 }
 
+/// Keys of grips.
+const KEYS: [&str; 2] = ["grip", "transverse"];
+
 /// Holds the moved edges straight, unless the mean is asked for.
-pub(super) fn apply(given: &Input, specimen: &mut Specimen) -> Result<()> {
-    let mut across = given.transverse == Some(Transverse::Held);
-    match (specimen.kind, given.grip) {
+pub(super) fn apply(given: &Given<'_>, input: &Input, specimen: &mut Specimen) -> Result<()> {
+    let mut across = input.transverse == Some(Transverse::Held);
+    match (specimen.kind, input.grip) {
         (SpecimenKind::SingleEdgeTension, _) => {
-            let given = perilife_base::given!(given: grip, transverse);
-            refuse_given("loading", &given, "is said by specimen.ends of a single_edge_tension", "leave it out")?;
+            given.refuse_any(&KEYS, "is said by specimen.ends of a single_edge_tension", "leave it out")?;
             if !specimen.supports.contains(&Support::ClampedEnds) {
                 return Ok(());
             }
@@ -58,7 +59,7 @@ pub(super) fn apply(given: &Input, specimen: &mut Specimen) -> Result<()> {
             if (a, b) == (from, to) && ((x && direction[0].abs() > ALONG) || (y && direction[1].abs() > ALONG)) {
                 let shown = format!("[{}, {}]", direction[0], direction[1]);
                 let remedy = "leave that component out of [supports]; transverse = \"held\" holds the one across";
-                return Err(input("loading.direction", shown, "moves an edge that [supports] holds along it", remedy));
+                return Err(error("loading.direction", shown, "moves an edge that [supports] holds along it", remedy));
             }
         }
         specimen.supports.push(Support::Moved { from, to, direction, way, held: across });
@@ -69,7 +70,7 @@ pub(super) fn apply(given: &Input, specimen: &mut Specimen) -> Result<()> {
 /// Whether the grips of sides that are moved straight against each other are in equilibrium, whatever those bear: they do not turn where
 /// something holds them in their normal.
 pub(super) fn are_balanced(given: &Input, specimen: &Specimen) -> bool {
-    let is_straight = given.kind == Some(LoadingKind::Displacement) && given.grip != Some(Grip::Mean);
+    let is_straight = given.kind == LoadingKind::Displacement && given.grip != Some(Grip::Mean);
     let stretches: Vec<(Point, Point, Point)> = specimen.loads.iter().filter_map(stretch).collect();
     let Some(&(from, to, [x, y])) = stretches.first().filter(|_| is_straight) else { return false };
     let along = |d: Point, sign: f64| (sign * d[0] - x).hypot(sign * d[1] - y) < ALONG;

@@ -2,20 +2,18 @@
 
 use std::sync::Arc;
 
-use serde::Deserialize;
 use toml::Value;
 
 use super::course::{LoadCourse, Size};
 use super::residual::ResidualStress;
-use super::spectrum::{self, Spectrum};
-use super::{Input, LoadControl, Loading, LoadingKind, UNIT_FORCE, UNIT_STRESS};
+use super::spectrum::Spectrum;
+use super::{DISPLACEMENT, Input, LoadControl, Loading, LoadingKind, OF_SPECTRUM, PLACES, UNIT_FORCE, UNIT_STRESS};
 use super::{boundary, grips};
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
-use perilife_base::error::{self, Result, input, input_missing};
-use perilife_base::input::{
-    FORCE, FORCE_KN, Folder, Quantity, STRESS, number, refuse_given, shorten, slice, slice_beside, table_of,
-};
-use perilife_base::units::MM;
+use perilife_base::error::{self, Error, InputError, Result, input, input_missing};
+use perilife_base::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS, number as plain};
+use perilife_base::keys::{Given, Section};
+use perilife_base::units::MPA;
 
 /// Keys that ask for a load history.
 const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "history", "rainflow", "overloads"];
@@ -37,16 +35,8 @@ const BARE: &[&str] = &[
 
 const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";
 
-const DISPLACEMENT: Quantity = Quantity { what: "a displacement", unit: "mm", low: 1e-9, high: 1e4, si: MM };
 const SCALES: &str = "spectrum_scale_mpa, spectrum_scale_n";
 const DISPLACEMENTS: &str = "displacement_max_mm, displacement_range_mm";
-
-/// The kind alone.
-#[derive(Deserialize)]
-struct KindInput {
-    #[serde(rename = "kind")]
-    _kind: LoadingKind,
-}
 
 /// Reads `[loading]` and `[supports]`, puts loads and supports of a `plate` on `specimen`, and gives the cycles. A spectrum lies in `folder`;
 /// keys `beside` those of the loads are read by others.
@@ -56,20 +46,19 @@ pub fn from_values(
     (folder, beside): (&Folder, &[&str]),
     specimen: &mut Specimen,
 ) -> Result<Loading> {
-    if let Some(kind) = table_of(loading, "loading")?.get("kind") {
-        // First, so that a load of a fracture scene is told where it belongs.
-        let only = toml::Table::from_iter([("kind".to_owned(), kind.clone())]);
-        slice::<KindInput>(&Value::Table(only), "loading")?;
-    }
-    refuse_by_name(loading)?;
-    let input: Input = slice_beside(loading, "loading", beside)?;
-    grips::refuse(&input)?;
-    let spectrum = if input.kind == Some(LoadingKind::Spectrum) {
+    Error::of_all(mistakes(loading, beside))?;
+    let given = Given::of(loading, "loading")?;
+    let input = Input::read(&given)?;
+    grips::refuse(&given, &input)?;
+    let spectrum = if input.kind == LoadingKind::Spectrum {
         // What is missing in the case is told before what is wrong in the file.
         Magnitude::read(&input, specimen)?;
         Some(Spectrum::read(&input, folder)?)
     } else {
-        spectrum::refuse(&input)?;
+        let of_spectra: Vec<&str> =
+            Input::KEYS.iter().filter(|key| key.only == Some(OF_SPECTRUM) && key.group.is_none()).map(|key| key.name).collect();
+        let problem = "belongs to a spectrum, and the kind of loading is another";
+        given.refuse_any(&of_spectra, problem, "give kind = \"spectrum\", or leave it out")?;
         None
     };
     let ratio = match &spectrum {
@@ -77,14 +66,13 @@ pub fn from_values(
         None => read_ratio(input.stress_ratio)?,
     };
     let residual = ResidualStress::read(&input, folder)?;
-    let is_of_load = input.kind.is_none_or(|kind| kind == LoadingKind::ConstantAmplitude);
-    if is_of_load && input.crack_pressure_mpa.is_some() && input.magnitudes().all(|(_, given, ..)| given.is_none()) {
-        return Ok(Loading { residual, ..pressure_alone(&input, supports, specimen, ratio)? });
+    let is_of_load = input.kind == LoadingKind::ConstantAmplitude;
+    if is_of_load && input.crack_pressure.is_some() && input.magnitudes().all(|(_, given, ..)| given.is_none()) {
+        return Ok(Loading { residual, ..pressure_alone(&given, &input, supports, specimen, ratio)? });
     }
     let magnitude = Magnitude::read(&input, specimen)?;
-    let parallel_ratio =
-        number("a ratio", -10.0, 10.0).read("loading.stress_parallel_ratio", input.stress_parallel_ratio.unwrap_or(0.0))?;
-    let area = boundary::apply(&input, supports, specimen, parallel_ratio)?;
+    let parallel_ratio = input.parallel_ratio;
+    let area = boundary::apply(&given, &input, supports, specimen)?;
     read_bending(&input, specimen)?;
     if let Some(flaw) = specimen.part_through.as_ref().filter(|flaw| parallel_ratio != 0.0 && flaw.radius > 0.0) {
         let problem = format!("changes the stress at the hole, by which K of a {} is not known", flaw.kind());
@@ -114,15 +102,12 @@ pub fn from_values(
             return Err(error::input(&magnitude.key, &magnitude.given, problem, "give force_max_n or force_range_n (or _kn)"));
         }
         (measure, Of::Displacement) => {
-            for (key, given) in perilife_base::keyed!(input: stress_parallel_ratio, crack_pressure_mpa) {
-                if let Some(given) = given.filter(|given| *given != 0.0) {
-                    let problem = "does not go with cycles of a displacement, which one load follows";
-                    return Err(error::input(&format!("loading.{key}"), given, problem, "give cycles of the load"));
-                }
-            }
+            let beside = if parallel_ratio == 0.0 { &["crack_pressure_mpa"][..] } else { &["stress_parallel_ratio"] };
+            let problem = "does not go with cycles of a displacement, which one load follows";
+            given.refuse_any(beside, problem, "give cycles of the load")?;
             let (unit, section) = match measure {
                 LoadMeasure::Stress => {
-                    grips::apply(&input, specimen)?;
+                    grips::apply(&given, &input, specimen)?;
                     (UNIT_STRESS, specimen.moved_section().unwrap_or(area))
                 }
                 LoadMeasure::Force => (UNIT_FORCE, 1.0),
@@ -139,7 +124,7 @@ pub fn from_values(
 /// Refuses what does not follow the crack as the load does, and cracks of which none is the one that it follows.
 fn refuse_beside(key: &str, given: &Size, input: &Input, specimen: &Specimen) -> Result<()> {
     let one = "give one number";
-    let (problem, remedy) = if input.crack_pressure_mpa.is_some() {
+    let (problem, remedy) = if input.crack_pressure.is_some() {
         ("does not go with loading.crack_pressure_mpa, which is the same at every crack length", one)
     } else if specimen.part_through.is_some() {
         ("is by the length of a through crack, and the crack is part-through", one)
@@ -152,11 +137,16 @@ fn refuse_beside(key: &str, given: &Size, input: &Input, specimen: &Specimen) ->
 }
 
 /// Pressure on the cracks and no other load: the nominal load is the pressure.
-fn pressure_alone(input: &Input, supports: Option<&Value>, specimen: &mut Specimen, ratio: f64) -> Result<Loading> {
+fn pressure_alone(
+    given: &Given<'_>,
+    input: &Input,
+    supports: Option<&Value>,
+    specimen: &mut Specimen,
+    ratio: f64,
+) -> Result<Loading> {
     let problem = "says where a load acts, and none is given beside crack_pressure_mpa";
-    let beside = perilife_base::given!(input: stress_parallel_ratio, edge_bending_ratio);
-    let given = [&input.places()[..], &beside].concat();
-    refuse_given("loading", &given, problem, &format!("leave it out, or give one of {MAGNITUDES}"))?;
+    let beside = [&PLACES[..], &["stress_parallel_ratio", "edge_bending_ratio"]].concat();
+    given.refuse_any(&beside, problem, &format!("leave it out, or give one of {MAGNITUDES}"))?;
     boundary::read_supports(supports, specimen)?;
     let maximum = read_crack_pressure(input, specimen)?.unwrap_or_default();
     specimen.loads.clear();
@@ -168,8 +158,8 @@ fn pressure_alone(input: &Input, supports: Option<&Value>, specimen: &mut Specim
 /// Largest pressure on the faces of the cracks, Pa, with a plate that has cracks to press on.
 fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>> {
     const KEY: &str = "loading.crack_pressure_mpa";
-    let Some(given) = input.crack_pressure_mpa else { return Ok(None) };
-    let pressure = STRESS.read(KEY, given)?;
+    let Some(pressure) = input.crack_pressure else { return Ok(None) };
+    let given = pressure / MPA;
     if !specimen.kind.is_plate() {
         let problem = format!("does not go with {}, whose handbook K knows its own load alone", specimen.kind);
         return Err(error::input(KEY, given, problem, "describe the specimen as kind = \"plate\""));
@@ -185,7 +175,7 @@ fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
     const KEY: &str = "loading.bending_ratio";
     const UNBENT: &str = "K under bending is known for surface_crack, corner_crack and corner_crack_at_hole";
     let Some(given) = input.bending_ratio else { return Ok(()) };
-    let ratio = number("a ratio of stresses", 0.0, 1000.0).read(KEY, given)?;
+    let ratio = given;
     let (kind, all_holes) = (specimen.kind, specimen.holes.len());
     match specimen.part_through.as_mut() {
         Some(flaw) if ratio > 0.0 && all_holes > flaw.own_holes() => {
@@ -205,23 +195,24 @@ fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
     Ok(())
 }
 
-/// Keys that are refused before anything else, since "unknown key" would not tell the user what to do.
-fn refuse_by_name(loading: &Value) -> Result<()> {
-    let table = table_of(loading, "loading")?;
-    for (key, value) in table {
-        let path = format!("loading.{key}");
-        if SEQUENCES.contains(&key.as_str()) {
-            let problem = "is no key of a load sequence";
-            let remedy = "write it into a file: kind = \"spectrum\", spectrum_file = \"...\" and spectrum_scale_mpa, or give constant \
-                          amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
-            return Err(input(&path, shorten(value), problem, remedy));
-        }
-        if BARE.contains(&key.as_str()) {
-            let problem = "does not say whether the maximum or the range is meant";
-            return Err(input(&path, shorten(value), problem, format!("give exactly one of {MAGNITUDES}")));
-        }
+/// What is wrong with the keys of `[loading]` by themselves; keys `beside` those of the loads are read by others.
+pub fn mistakes(loading: &Value, beside: &[&str]) -> Vec<InputError> {
+    let one = |error: Error| if let Error::Input(error) = error { error.each() } else { Vec::new() };
+    let given = match Given::of(loading, "loading") {
+        Ok(given) => given,
+        Err(error) => return one(error),
+    };
+    // First, since "unknown key" would not tell the user what to do.
+    if let Some(key) = given.first(SEQUENCES) {
+        let remedy = "write it into a file: kind = \"spectrum\", spectrum_file = \"...\" and spectrum_scale_mpa, or give constant \
+                      amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
+        return one(given.refuse(key, "is no key of a load sequence", remedy));
     }
-    Ok(())
+    if let Some(key) = given.first(BARE) {
+        let problem = "does not say whether the maximum or the range is meant";
+        return one(given.refuse(key, problem, format!("give exactly one of {MAGNITUDES}")));
+    }
+    perilife_base::keys::mistakes(given, Input::KEYS, beside, None)
 }
 
 /// R of the largest cycle of a spectrum, beside which none is given.
@@ -242,7 +233,7 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
         let problem = "must be below 1: at R = 1 nothing changes in a cycle, above it all is compression, which is not computed";
         return Err(input(KEY, ratio, problem, "give R = minimum / maximum, below 0 where the minimum is compression"));
     }
-    number("a ratio", -100.0, 0.999).read(KEY, ratio)
+    plain("a ratio", -100.0, 0.999).read(KEY, ratio)
 }
 
 impl Input {
@@ -255,10 +246,10 @@ impl Input {
             ("force_range_n", self.force_range_n.clone(), FORCE, Of::Force),
             ("force_max_kn", self.force_max_kn.clone(), FORCE_KN, Of::Force),
             ("force_range_kn", self.force_range_kn.clone(), FORCE_KN, Of::Force),
-            ("spectrum_scale_mpa", self.spectrum_scale_mpa.map(Size::One), STRESS, Of::Stress),
-            ("spectrum_scale_n", self.spectrum_scale_n.map(Size::One), FORCE, Of::Force),
-            ("displacement_max_mm", self.displacement_max_mm.map(Size::One), DISPLACEMENT, Of::Displacement),
-            ("displacement_range_mm", self.displacement_range_mm.map(Size::One), DISPLACEMENT, Of::Displacement),
+            ("spectrum_scale_mpa", self.spectrum_scale_mpa.clone(), STRESS, Of::Stress),
+            ("spectrum_scale_n", self.spectrum_scale_n.clone(), FORCE, Of::Force),
+            ("displacement_max_mm", self.displacement_max_mm.clone(), DISPLACEMENT, Of::Displacement),
+            ("displacement_range_mm", self.displacement_range_mm.clone(), DISPLACEMENT, Of::Displacement),
         ]
         .into_iter()
     }
@@ -286,7 +277,7 @@ struct Magnitude {
 
 impl Magnitude {
     fn read(slice: &Input, specimen: &Specimen) -> Result<Self> {
-        let kind = slice.kind.unwrap_or(LoadingKind::ConstantAmplitude);
+        let kind = slice.kind;
         let (wanted, example) = match kind {
             LoadingKind::ConstantAmplitude => (MAGNITUDES, "loading.stress_max_mpa"),
             LoadingKind::Displacement => (DISPLACEMENTS, "loading.displacement_max_mm"),
@@ -301,6 +292,9 @@ impl Magnitude {
                     let remedy = format!("give exactly one of {wanted}");
                     return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
                 }
+                if kind != LoadingKind::ConstantAmplitude && matches!(given, Size::Rows(_)) {
+                    return Err(input(&path, given, "is not a number", quantity.remedy()));
+                }
                 if matches!(given, Size::One(load) if *load < 0.0) {
                     let problem =
                         "must be above zero: cracks grow by the tensile part of a cycle, and compression alone is not computed";
@@ -311,11 +305,8 @@ impl Magnitude {
                 let (value, course) = given.read(&path, *quantity, specimen.crack_length)?;
                 Ok(Magnitude { key: path, given: given.clone(), value, course, is_range: key.contains("range"), of: *of })
             }
-            [] => Err(input_missing(example, "is missing: there is no load", format!("give exactly one of {wanted}"))),
-            [(first, ..), (second, value, ..), ..] => {
-                let problem = format!("stands beside {first}: one load is given twice");
-                Err(input(&format!("loading.{second}"), value, problem, format!("give exactly one of {wanted}")))
-            }
+            // Two have been refused.
+            _ => Err(input_missing(example, "is missing: there is no load", format!("give exactly one of {wanted}"))),
         }
     }
 }

@@ -12,49 +12,50 @@
 use std::path::Path;
 
 use include_dir::{Dir, include_dir};
-use serde::Deserialize;
 use toml::Value;
 
 use super::growth_data::{self, GrowthRecord, MPA_PER_KSI};
-use perilife_base::error::{Error, InputError, Result, input};
-use perilife_base::input::{Document, Folder, slice};
+use perilife_base::error::{Result, input};
+use perilife_base::input::{Document, Folder};
+use perilife_base::keys::{key, nearest, section};
 
 static FILES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../data/materials");
 
-/// One number of a material file.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Property {
-    /// Value in the unit of its key.
-    pub value: f64,
-    /// Where it comes from.
-    pub source: String,
-    /// Thickness, orientation, heat treatment it holds for.
-    pub note: Option<String>,
+perilife_base::keys! {
+    /// One number of a material file.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Property {
+        /// Value in the unit of its key.
+        value: f64 = key("value", "Value: in the unit of its key");
+        /// Where it comes from.
+        source: String = key("source", "Source");
+        /// Thickness, orientation, heat treatment it holds for.
+        note: Option<String> = key("note", "Note: thickness, orientation, heat treatment");
+    }
 }
-
-/// A material file.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct MaterialFile {
-    /// What it is, in words.
-    pub title: String,
-    /// E, GPa.
-    pub youngs_modulus_gpa: Property,
-    /// ν.
-    pub poisson_ratio: Property,
-    /// Yield strength (0.2 % offset), MPa.
-    pub yield_strength_mpa: Option<Property>,
-    /// Fracture toughness, MPa√m.
-    pub toughness_mpa_sqrt_m: Option<Property>,
-    /// Fracture energy, J/m².
-    pub fracture_energy_j_m2: Option<Property>,
-    /// Density, kg/m³.
-    pub density_kg_m3: Option<Property>,
-    /// Tensile strength, MPa.
-    pub tensile_strength_mpa: Option<Property>,
-    /// Its growth law: keys of `[fatigue]`, files in them as seen from the folder of the case.
-    pub growth: Option<toml::Table>,
+perilife_base::keys! {
+    /// A material file.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct MaterialFile {
+        /// What it is, in words.
+        title: String = key("title", "Title");
+        /// E, GPa.
+        youngs_modulus_gpa: Property = key("youngs_modulus_gpa", "Young's modulus E");
+        /// ν.
+        poisson_ratio: Property = key("poisson_ratio", "Poisson's ratio ν");
+        /// Yield strength (0.2 % offset), MPa.
+        yield_strength_mpa: Option<Property> = key("yield_strength_mpa", "Yield strength σY: 0.2 % offset");
+        /// Fracture toughness, MPa√m.
+        toughness_mpa_sqrt_m: Option<Property> = key("toughness_mpa_sqrt_m", "Fracture toughness Kc");
+        /// Fracture energy, J/m².
+        fracture_energy_j_m2: Option<Property> = key("fracture_energy_j_m2", "Fracture energy");
+        /// Density, kg/m³.
+        density_kg_m3: Option<Property> = key("density_kg_m3", "Density");
+        /// Tensile strength, MPa.
+        tensile_strength_mpa: Option<Property> = key("tensile_strength_mpa", "Tensile strength");
+        /// Its growth law: keys of `[fatigue]`, files in them as seen from the folder of the case.
+        growth: Option<toml::Table> = key("growth", "Growth law: keys of [fatigue]");
+    }
 }
 
 /// Names of the built-in materials, sorted.
@@ -82,8 +83,11 @@ pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
         if let Some(record) = growth_data::record(name) {
             return Ok(of_record(&record));
         }
-        let files = names().join(", ");
-        let remedy = format!("use one of {files}, a record of `perilife list materials`, or the path of an own .toml file");
+        let (files, records) = (names(), growth_data::records());
+        let near = nearest(name, files.iter().map(String::as_str).chain(records.iter().map(|record| record.name.as_str())));
+        let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
+        let files = files.join(", ");
+        let remedy = format!("{near}use one of {files}, a record of `perilife list materials`, or the path of an own .toml file");
         return Err(input("material.name", format!("\"{name}\""), "is not a known material", remedy));
     };
     let document = Document::parse(text, name, Folder::none(), &[])?;
@@ -119,12 +123,5 @@ fn of_record(record: &GrowthRecord) -> MaterialFile {
 
 /// Reads a material file; keys in messages are those of that file.
 fn read(document: &Document) -> Result<MaterialFile> {
-    slice(&Value::Table(document.table.clone()), "material").map_err(|error| match error {
-        // In the file itself the keys stand at the top.
-        Error::Input(trouble) => {
-            let key = trouble.key.map(|key| key.trim_start_matches("material.").to_owned());
-            Error::Input(Box::new(InputError { key, ..*trouble }))
-        }
-        other => other,
-    })
+    section(&Value::Table(document.table.clone()), "")
 }

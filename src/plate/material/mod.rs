@@ -5,12 +5,12 @@
 pub mod growth_data;
 pub mod library;
 
-use serde::Deserialize;
 use toml::Value;
 
 use library::{MaterialFile, Property};
-use perilife_base::error::{Result, input_missing};
-use perilife_base::input::{DENSITY, FRACTURE_ENERGY, Folder, INTENSITY, MODULUS, Quantity, STRESS, number, slice};
+use perilife_base::error::Result;
+use perilife_base::input::{DENSITY, Folder};
+use perilife_base::keys::{Given, Plain, Section, energy, intensity, key, modulus, number, section, stress};
 
 perilife_base::kinds! {
     /// Plane state of the plate.
@@ -75,55 +75,56 @@ impl Material {
     }
 }
 
-/// Keys of `[material]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    name: Option<String>,
-    youngs_modulus_gpa: Option<f64>,
-    poisson_ratio: Option<f64>,
-    yield_strength_mpa: Option<f64>,
-    toughness_mpa_sqrt_m: Option<f64>,
-    fracture_energy_j_m2: Option<f64>,
-    density_kg_m3: Option<f64>,
-    tensile_strength_mpa: Option<f64>,
-    plane: Option<Plane>,
+perilife_base::keys! {
+    /// Keys of `[material]`.
+    pub struct Input {
+        name: Option<String> = key("name", "Material: a name of `perilife list materials`, or the path of an own .toml file");
+        youngs_modulus: Option<Plain> = modulus(E, "Young's modulus E");
+        poisson_ratio: Option<Plain> = number(NU, "Poisson's ratio ν", "a Poisson's ratio", 0.0, 0.499);
+        yield_strength: Option<Plain> = stress("yield_strength_mpa", "Yield strength σY");
+        toughness: Option<Plain> = intensity("toughness_mpa_sqrt_m", "Fracture toughness Kc: at this thickness");
+        fracture_energy: Option<Plain> = energy("fracture_energy_j_m2", "Fracture energy: of scenes");
+        density: Option<Plain> = key("density_kg_m3", "Density: of scenes with inertia").of(DENSITY);
+        tensile_strength: Option<Plain> = stress("tensile_strength_mpa", "Tensile strength: of scenes");
+        plane: Plane = key("plane", "Plane state"), or "stress" Plane::Stress;
+    }
 }
+const E: &str = "youngs_modulus_gpa";
+const NU: &str = "poisson_ratio";
 
 /// Reads `[material]`; own material files are looked for from `folder`. Pushes a line for every constant of the named
 /// material that the case replaces.
 pub fn from_value(value: &Value, folder: &Folder, warnings: &mut Vec<String>) -> Result<Material> {
-    let input: Input = slice(value, "material")?;
-    let file = input.name.as_deref().map(|name| library::find(name, folder)).transpose()?;
-    let name = input.name.unwrap_or_else(|| "inline".to_owned());
-    let mut pick = |key: &str, given: Option<f64>, quantity: Quantity, of: fn(&MaterialFile) -> Option<&Property>| {
+    let given = Given::of(value, "material")?;
+    let own: Input = section(value, "material")?;
+    let file = own.name.as_deref().map(|name| library::find(name, folder)).transpose()?;
+    let name = own.name.unwrap_or_else(|| "inline".to_owned());
+    let mut pick = |key: &str, given: Option<Plain>, of: fn(&MaterialFile) -> Option<&Property>| -> Result<Option<f64>> {
         let listed = file.as_ref().and_then(of).map(|listed| listed.value);
-        if let (Some(given), Some(listed)) = (given, listed)
+        if let (Some(Plain(given)), Some(listed)) = (given, listed)
             && given != listed
         {
             warnings.push(format!("material.{key} = {given} is used instead of {listed} of {name}"));
         }
-        quantity.read_optional(&format!("material.{key}"), given.or(listed))
+        let quantity = Input::KEYS.iter().find(|own| own.name == key).and_then(|own| own.quantity);
+        let value = given.map(|given| given.0).or(listed);
+        quantity.map_or(Ok(value), |quantity| quantity.read_optional(&format!("material.{key}"), value))
     };
+    let youngs_modulus = pick(E, own.youngs_modulus, |of| Some(&of.youngs_modulus_gpa))?;
     // ν = 0.5 is an incompressible material: its moduli are infinite in plane strain.
-    let ratio = number("a Poisson's ratio", 0.0, 0.499);
-    let youngs_modulus = pick("youngs_modulus_gpa", input.youngs_modulus_gpa, MODULUS, |of| Some(&of.youngs_modulus_gpa))?;
-    let poisson_ratio = pick("poisson_ratio", input.poisson_ratio, ratio, |of| Some(&of.poisson_ratio))?;
-    let yield_strength = pick("yield_strength_mpa", input.yield_strength_mpa, STRESS, |of| of.yield_strength_mpa.as_ref())?;
-    let toughness = pick("toughness_mpa_sqrt_m", input.toughness_mpa_sqrt_m, INTENSITY, |of| of.toughness_mpa_sqrt_m.as_ref())?;
-    let fracture_energy =
-        pick("fracture_energy_j_m2", input.fracture_energy_j_m2, FRACTURE_ENERGY, |of| of.fracture_energy_j_m2.as_ref())?;
-    let density = pick("density_kg_m3", input.density_kg_m3, DENSITY, |of| of.density_kg_m3.as_ref())?;
-    let tensile_strength =
-        pick("tensile_strength_mpa", input.tensile_strength_mpa, STRESS, |of| of.tensile_strength_mpa.as_ref())?;
+    let poisson_ratio = pick(NU, own.poisson_ratio, |of| Some(&of.poisson_ratio))?;
+    let yield_strength = pick("yield_strength_mpa", own.yield_strength, |of| of.yield_strength_mpa.as_ref())?;
+    let toughness = pick("toughness_mpa_sqrt_m", own.toughness, |of| of.toughness_mpa_sqrt_m.as_ref())?;
+    let fracture_energy = pick("fracture_energy_j_m2", own.fracture_energy, |of| of.fracture_energy_j_m2.as_ref())?;
+    let density = pick("density_kg_m3", own.density, |of| of.density_kg_m3.as_ref())?;
+    let tensile_strength = pick("tensile_strength_mpa", own.tensile_strength, |of| of.tensile_strength_mpa.as_ref())?;
     let missing = |key: &str| {
-        let remedy = format!("give it, or the name of a material: {}", library::names().join(", "));
-        input_missing(&format!("material.{key}"), "is missing", remedy)
+        given.refuse(key, "is missing", format!("give it, or the name of a material: {}", library::names().join(", ")))
     };
     Ok(Material {
-        youngs_modulus: youngs_modulus.ok_or_else(|| missing("youngs_modulus_gpa"))?,
-        poisson_ratio: poisson_ratio.ok_or_else(|| missing("poisson_ratio"))?,
-        plane: input.plane.unwrap_or(Plane::Stress),
+        youngs_modulus: youngs_modulus.ok_or_else(|| missing(E))?,
+        poisson_ratio: poisson_ratio.ok_or_else(|| missing(NU))?,
+        plane: own.plane,
         yield_strength,
         toughness,
         fracture_energy,

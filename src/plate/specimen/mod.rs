@@ -11,6 +11,7 @@ pub mod facets;
 pub mod geometry;
 pub mod green;
 pub mod handbook;
+pub mod keys;
 pub mod limit_load;
 pub mod named;
 pub mod net_section;
@@ -27,7 +28,7 @@ pub use cracks::LengthConvention;
 pub use geometry::{Component, Edge};
 pub use part_through::{FrontTip, PartThrough};
 pub use pin::Bearing;
-pub use read::{PART_THROUGH, from_value};
+pub use read::{PART_THROUGH, from_value, mistakes};
 
 /// A point of the plate, metres.
 pub type Point = [f64; 2];

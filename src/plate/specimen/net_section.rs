@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use super::{Load, LoadMeasure, Specimen, SpecimenKind};
 use perilife_base::error::{Result, input};
+use perilife_base::units::round_mm;
 
 impl SpecimenKind {
     /// How many cracks, or halves of one, share the width of a standard kind, and the name of what each of them has; `None` for a `plate`
@@ -101,11 +102,11 @@ pub fn ligament_needed(k_max: f64, yield_strength: f64) -> f64 {
     4.0 / PI * (k_max / yield_strength).powi(2)
 }
 
-/// Refuses a crack that would leave no ligament: `crack_length` against the length at which the plate is in two.
-pub(super) fn check_crack(crack_length_mm: f64, limit_mm: f64, limit_name: &str) -> Result<()> {
-    if crack_length_mm < limit_mm {
+/// Refuses a crack that would leave no ligament: `crack_length` against the length at which the plate is in two, m.
+pub(super) fn check_crack(crack_length: f64, limit: f64, limit_name: &str) -> Result<()> {
+    if crack_length < limit * (1.0 - 1e-9) {
         return Ok(());
     }
-    let problem = format!("is not below {limit_name} {limit_mm} mm: the crack would go through the whole plate");
-    Err(input("specimen.crack_length_mm", crack_length_mm, problem, "give a shorter crack or a wider plate"))
+    let problem = format!("is not below {limit_name} {} mm: the crack would go through the whole plate", round_mm(limit));
+    Err(input("specimen.crack_length_mm", round_mm(crack_length), problem, "give a shorter crack or a wider plate"))
 }

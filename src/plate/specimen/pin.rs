@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{LENGTH, MODULUS, number};
+use perilife_base::error::Result;
+use perilife_base::keys::{Given, length, modulus, number};
 use perilife_base::units::GPA;
 
 /// Half angle of contact of a pin that fills its hole, rad: a pin without friction pushes over half the circle.
@@ -11,10 +11,10 @@ pub const SNUG_PIN: f64 = std::f64::consts::FRAC_PI_2;
 /// Half angle of contact of pins of which nothing is known and which pull against each other, as those of a clevis, rad: Hertz contact of a steel pin with the clearance of ASTM E647 in aluminium
 /// gives `b = √(4 P' R / π E*)` = 1.4 mm at W = 50 mm and P' = 640 N/mm, or 13° of the hole (1/E* = (1-ν²)/E of both, R = 150 mm).
 pub const LOOSE_PIN: f64 = std::f64::consts::PI / 12.0;
-/// Young's modulus of a pin of which only the diameter is given, GPa: steel.
-const YOUNGS_MODULUS: f64 = 210.0;
+/// Young's modulus of a pin of which only the diameter is given, Pa: steel.
+pub const YOUNGS_MODULUS: f64 = 210e9;
 /// Poisson's ratio of the same.
-const POISSON_RATIO: f64 = 0.3;
+pub const POISSON_RATIO: f64 = 0.3;
 /// Diameter of the pin over that of the hole up to which it still goes in: round-off of the input.
 const FITS: f64 = 1.0 + 1e-9;
 
@@ -67,48 +67,52 @@ pub struct RimForce {
     pub share: f64,
 }
 
-/// Keys of a pin with their values: half angle, diameter, friction, Young's modulus, Poisson's ratio.
-pub type PinKeys<'a> = [(&'a str, Option<f64>); 5];
+perilife_base::keys! {
+    /// Keys of the pin of a specimen.
+    #[derive(Debug)]
+    pub struct PinKeys {
+        half_angle: Option<f64> = number("pin_half_angle_deg", "Half angle of contact of the pin, °: 90 for a pin that fills its hole", ARC, 1.0, 90.0);
+        diameter: Option<f64> = length("pin_diameter_mm", "Pin diameter: its clearance decides where it touches the hole");
+        friction: Option<f64> = number("pin_friction", "Friction of the pin: 0, others are not computed", "a coefficient of friction", 0.0, 10.0);
+        youngs_modulus: f64 = modulus("pin_youngs_modulus_gpa", "Young's modulus of the pin"), or "210 (steel)" YOUNGS_MODULUS;
+        poisson_ratio: f64 = number("pin_poisson_ratio", "Poisson's ratio of the pin", POISSON, 0.0, 0.499), or "0.3 (steel)" POISSON_RATIO;
+    }
+}
+
+/// What an angle of contact is.
+pub const ARC: &str = "an angle in degrees, 90 for a pin that fills its hole";
+/// What a Poisson's ratio is.
+pub const POISSON: &str = "a Poisson's ratio";
 
 impl Bearing {
-    /// What keys at `path` say of the pin in a hole of radius `hole`, m.
+    /// What the keys of a section say of the pin in a hole of radius `hole`, m; half angle and friction have other names in some.
     /// Errors: [`perilife_base::error::Error::Input`]: an arc beside a pin, friction, a pin without diameter or one larger than its hole.
-    pub fn read(path: &str, keys: &PinKeys<'_>, hole: f64) -> Result<Self> {
-        let [half_angle, diameter, friction, modulus, ratio] = *keys;
-        let full = |key: &str| format!("{path}.{key}");
-        let of_pin = [diameter, modulus, ratio];
-        if let Some(given) = friction.1.filter(|given| *given != 0.0) {
-            let problem = "is not computed: pins press without friction";
-            return Err(input(&full(friction.0), given, problem, "leave it out, or give 0"));
+    pub fn read(given: &Given<'_>, [half_angle, friction]: [&str; 2], keys: &PinKeys, hole: f64) -> Result<Self> {
+        const OF_ELASTIC: [&str; 3] = ["pin_diameter_mm", "pin_youngs_modulus_gpa", "pin_poisson_ratio"];
+        if keys.friction.is_some_and(|given| given != 0.0) {
+            return Err(given.refuse(friction, "is not computed: pins press without friction", "leave it out, or give 0"));
         }
-        if let (Some(angle), Some((key, _))) = (half_angle.1, of_pin.iter().find(|(_, given)| given.is_some())) {
-            let problem = format!("stands beside {key}, from which it follows");
-            return Err(input(&full(half_angle.0), angle, problem, "give the arc or the pin"));
-        }
-        let arc = number("an angle in degrees, 90 for a pin that fills its hole", 1.0, 90.0);
-        if let Some(angle) = arc.read_optional(&full(half_angle.0), half_angle.1)? {
-            return Ok(Bearing::Cosine(angle.to_radians()));
-        }
-        let Some(given) = diameter.1 else {
-            return match of_pin[1..].iter().find(|(_, given)| given.is_some()) {
-                Some((key, _)) => {
-                    let problem = format!("is missing beside {key}: where a pin touches depends on its clearance");
-                    Err(input_missing(&full(diameter.0), problem, "give the diameter of the pin"))
-                }
-                None => Ok(Bearing::Unknown(LOOSE_PIN)),
+        let of_elastic = given.first(&OF_ELASTIC);
+        if let (Some(angle), other) = (keys.half_angle, of_elastic) {
+            let twice = |other: &str| {
+                given.refuse(half_angle, format!("stands beside {other}, from which it follows"), "give the arc or the pin")
             };
+            return other.map_or(Ok(Bearing::Cosine(angle.to_radians())), |other| Err(twice(other)));
+        }
+        let Some(diameter) = keys.diameter else {
+            let missing = |other: &str| {
+                let problem = format!("is missing beside {other}: where a pin touches depends on its clearance");
+                Err(given.refuse(OF_ELASTIC[0], problem, "give the diameter of the pin"))
+            };
+            return of_elastic.map_or(Ok(Bearing::Unknown(LOOSE_PIN)), missing);
         };
-        let radius = LENGTH.read(&full(diameter.0), given)? / 2.0;
+        let radius = diameter / 2.0;
         if radius > hole * FITS {
             let problem = format!("is more than the hole ({} mm): a pin that is pressed in is not known", 2e3 * hole);
-            return Err(input(&full(diameter.0), given, problem, "give a pin that goes into its hole"));
+            return Err(given.refuse(OF_ELASTIC[0], problem, "give a pin that goes into its hole"));
         }
-        Ok(Bearing::Elastic(Pin {
-            radius: radius.min(hole),
-            youngs_modulus: MODULUS.read(&full(modulus.0), modulus.1.unwrap_or(YOUNGS_MODULUS))?,
-            poisson_ratio: number("a Poisson's ratio", 0.0, 0.499).read(&full(ratio.0), ratio.1.unwrap_or(POISSON_RATIO))?,
-            found: None,
-        }))
+        let PinKeys { youngs_modulus, poisson_ratio, .. } = *keys;
+        Ok(Bearing::Elastic(Pin { radius: radius.min(hole), youngs_modulus, poisson_ratio, found: None }))
     }
 
     /// Half angle of the cosine, rad; `None` of an elastic pin.

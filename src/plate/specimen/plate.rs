@@ -15,16 +15,16 @@
 //! is a tip; an end nearer to one of them than a hundredth of the crack starts there, too. The tip seed of a slot is the middle of each end face that lies in the material. Crack length is the sum of
 //! all cracks and slots inside the plate plus all growth. The load is chosen in `[loading]`.
 
-use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use toml::Value;
 
 use super::drawing::{self, DrawingUnit, Shape, SymmetryPlane};
 use super::geometry::{bounding_box, distance, polygon_area, segments_touch, self_intersection, turn};
+use super::keys::{LENGTH, THICKNESS, WIDTH};
 use super::placement::{check_holes, place_cracks, place_slots};
 use super::{Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{Folder, LENGTH, point, refuse_given, slice};
+use perilife_base::input::Folder;
+use perilife_base::keys::{Given, Section, coordinate, key, length};
 use perilife_base::units::place_mm;
 
 /// More than this is a slip, and the checks compare every item with every other.
@@ -32,52 +32,48 @@ const ITEMS_MAX: usize = 500;
 /// Corners of a drawing, whose arcs have many.
 const CORNERS_MAX: usize = 4000;
 
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    outline_mm: Option<Vec<Value>>,
-    outline_file: Option<String>,
-    outline_unit: Option<DrawingUnit>,
-    outline_symmetry: Option<SymmetryPlane>,
-    width_mm: Option<f64>,
-    length_mm: Option<f64>,
-    diameter_mm: Option<f64>,
-    thickness_mm: f64,
-    #[serde(rename = "beta_file")]
-    _beta_file: Option<String>,
-    #[serde(default)]
-    holes: Vec<Value>,
-    #[serde(default)]
-    cracks: Vec<Value>,
-    #[serde(default)]
-    notches: Vec<Value>,
-}
+/// What the keys of an outline say.
+const OUTLINE: &str = "the outline";
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct HoleInput {
-    x_mm: f64,
-    y_mm: f64,
-    diameter_mm: f64,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    pub(super) struct Keys {
+        outline: Option<Vec<Point>> = coordinate("outline_mm", "Outline: corners in order around the plate").group(OUTLINE);
+        file: Option<String> = key("outline_file", "Drawing of the plate: DXF with layers outline, holes (full circles), cracks").group(OUTLINE);
+        unit: Option<DrawingUnit> = key("outline_unit", "Unit of the drawing: where it does not say its own");
+        symmetry: Option<SymmetryPlane> = key("outline_symmetry", "Symmetry of the drawing: a half of the plate is drawn");
+        width: Option<f64> = WIDTH.said("Width W: of a rectangle about 0, with its length").group(OUTLINE);
+        length: Option<f64> = LENGTH.said("Length L: of a rectangle about 0, along y");
+        diameter: Option<f64> = length("diameter_mm", "Diameter: of a disc about 0").group(OUTLINE);
+        thickness: f64 = THICKNESS;
+        holes: Vec<HoleKeys> = key("holes", "Holes: round ones"), or "none" Vec::new();
+        cracks: Vec<CrackKeys> = key("cracks", "Cracks: straight or with bends; those that meet are joined"), or "none" Vec::new();
+        notches: Vec<NotchKeys> = key("notches", "Notches: straight slots with square ends"), or "none" Vec::new();
+    }
 }
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CrackInput {
-    from_mm: Option<[f64; 2]>,
-    to_mm: Option<[f64; 2]>,
-    path_mm: Option<Vec<[f64; 2]>>,
+perilife_base::keys! {
+    /// A hole.
+    pub(super) struct HoleKeys {
+        x: f64 = coordinate("x_mm", "Middle of the hole, x");
+        y: f64 = coordinate("y_mm", "Middle of the hole, y");
+        diameter: f64 = length("diameter_mm", "Diameter: of a hole");
+    }
 }
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct NotchInput {
-    from_mm: [f64; 2],
-    to_mm: [f64; 2],
-    width_mm: f64,
+perilife_base::keys! {
+    /// A crack.
+    struct CrackKeys {
+        from: Option<Point> = coordinate("from_mm", "One end: [x, y]");
+        to: Option<Point> = coordinate("to_mm", "Other end: [x, y]");
+        path: Option<Vec<Point>> = coordinate("path_mm", "Corners of a crack with bends: both ends included");
+    }
+}
+perilife_base::keys! {
+    /// A slot.
+    struct NotchKeys {
+        from: Point = coordinate("from_mm", "One end: [x, y]");
+        to: Point = coordinate("to_mm", "Other end: [x, y]");
+        width: f64 = length("width_mm", "Width across");
+    }
 }
 
 /// What a plate is drawn from, m.
@@ -93,20 +89,20 @@ pub(super) struct Drawing {
 }
 
 pub(super) fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Result<Specimen> {
-    let input: Input = slice(value, "specimen")?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let drawn = drawn(&input, folder)?;
+    let given = SpecimenKind::Plate.given(value)?;
+    let own = Keys::read(&given)?;
+    let drawn = drawn(&given, &own, folder)?;
     let outline = match &drawn {
         Some(shape) => simple(shape.outline.clone(), drawing::KEY)?,
-        None => outline(&input)?,
+        None => outline(&given, &own)?,
     };
     let (mut holes, mut cracks) = drawn.map(|shape| (shape.holes, shape.cracks)).unwrap_or_default();
-    holes.extend(read_holes(&input.holes)?);
-    let slots = items("specimen.notches", &input.notches, |item: NotchInput, path| {
-        let (from, to) = ends(path, item.from_mm, item.to_mm)?;
-        Ok(Slot { from, to, width: LENGTH.read(&format!("{path}.width_mm"), item.width_mm)? })
+    holes.extend(read_holes(&own.holes)?);
+    let slots = items("specimen.notches", &own.notches, |item, path| {
+        ends(path, item.from, item.to).map(|(from, to)| Slot { from, to, width: item.width })
     })?;
-    cracks.extend(items("specimen.cracks", &input.cracks, |item: CrackInput, path| crack_path(path, item))?);
+    cracks.extend(items("specimen.cracks", &own.cracks, crack_path)?);
+    let thickness = own.thickness;
     Drawing { outline, holes, slots, cracks, thickness }.specimen(SpecimenKind::Plate, notes)
 }
 
@@ -142,56 +138,35 @@ pub(super) fn rectangle(width: f64, length: f64) -> Vec<Point> {
     vec![[-x, -y], [x, -y], [x, y], [-x, y]]
 }
 
-/// `holes = [{ x_mm, y_mm, diameter_mm }]`.
-pub(super) fn read_holes(list: &[Value]) -> Result<Vec<Hole>> {
-    items("specimen.holes", list, |item: HoleInput, path| {
-        let centre = point(path, [item.x_mm, item.y_mm])?;
-        Ok(Hole { centre, radius: LENGTH.read(&format!("{path}.diameter_mm"), item.diameter_mm)? / 2.0 })
-    })
+/// Round holes.
+pub(super) fn read_holes(list: &[HoleKeys]) -> Result<Vec<Hole>> {
+    items("specimen.holes", list, |item, _| Ok(Hole { centre: [item.x, item.y], radius: item.diameter / 2.0 }))
 }
 
 /// What the drawing of a plate says, where it has one.
-fn drawn(input: &Input, folder: &Folder) -> Result<Option<Shape>> {
-    let Some(file) = &input.outline_file else {
-        let keys = perilife_base::given!(input: outline_unit, outline_symmetry);
-        refuse_given(
-            "specimen",
-            &keys,
-            "belongs to a drawing, and outline_file is missing",
-            "give outline_file, or leave it out",
-        )?;
+fn drawn(given: &Given<'_>, own: &Keys, folder: &Folder) -> Result<Option<Shape>> {
+    let Some(file) = &own.file else {
+        let problem = "belongs to a drawing, and outline_file is missing";
+        given.refuse_any(&["outline_unit", "outline_symmetry"], problem, "give outline_file, or leave it out")?;
         return Ok(None);
     };
-    let keys = perilife_base::given!(input: outline_mm, width_mm, length_mm, diameter_mm);
-    refuse_given("specimen", &keys, "stands beside outline_file", "leave one of both out")?;
-    drawing::read(file, folder, input.outline_unit, input.outline_symmetry).map(Some)
+    given.refuse_any(&["length_mm"], "stands beside outline_file", "leave one of both out")?;
+    drawing::read(file, folder, own.unit, own.symmetry).map(Some)
 }
 
 /// Outline, counter-clockwise and simple.
-fn outline(input: &Input) -> Result<Vec<Point>> {
-    if let Some(diameter) = input.diameter_mm {
-        if input.outline_mm.is_some() || input.width_mm.is_some() || input.length_mm.is_some() {
-            let problem = "stands beside outline_mm, width_mm or length_mm";
-            let remedy = "give one of outline, rectangle and diameter";
-            return Err(perilife_base::error::input("specimen.diameter_mm", diameter, problem, remedy));
+fn outline(given: &Given<'_>, own: &Keys) -> Result<Vec<Point>> {
+    const REMEDY: &str = "give width_mm and length_mm, or outline_mm, or diameter_mm, or outline_file";
+    match (own.width, own.length, own.diameter, &own.outline) {
+        (Some(width), Some(length), ..) => Ok(rectangle(width, length)),
+        (None, None, Some(diameter), _) => Ok(disc(diameter / 2.0)),
+        (None, None, None, Some(corners)) => polygon(corners),
+        (_, Some(_), Some(_), _) | (_, Some(_), _, Some(_)) => {
+            Err(given.refuse("length_mm", "stands beside another outline", "give one of outline, rectangle and diameter"))
         }
-        return Ok(disc(LENGTH.read("specimen.diameter_mm", diameter)? / 2.0));
+        (None, ..) => Err(given.refuse("width_mm", "is missing", REMEDY)),
+        (Some(_), None, ..) => Err(given.refuse("length_mm", "is missing", REMEDY)),
     }
-    let Some(corners) = &input.outline_mm else {
-        let need = |key: &str, value: Option<f64>| {
-            let value = value.ok_or_else(|| {
-                input_missing(key, "is missing", "give width_mm and length_mm, or outline_mm, or diameter_mm, or outline_file")
-            })?;
-            LENGTH.read(key, value)
-        };
-        let width = need("specimen.width_mm", input.width_mm)?;
-        return Ok(rectangle(width, need("specimen.length_mm", input.length_mm)?));
-    };
-    if input.width_mm.is_some() || input.length_mm.is_some() {
-        let remedy = "give either the outline or the rectangle";
-        return Err(input_missing("specimen.outline_mm", "stands beside width_mm or length_mm", remedy));
-    }
-    polygon(corners)
 }
 
 /// Sides of the polygon that stands for a circle: its area is 5e-5 too small.
@@ -219,14 +194,9 @@ pub(super) fn turned([x, y]: Point, quarters: usize) -> Point {
     }
 }
 
-fn polygon(corners: &[Value]) -> Result<Vec<Point>> {
+fn polygon(corners: &[Point]) -> Result<Vec<Point>> {
     const KEY: &str = "specimen.outline_mm";
-    let mut outline = Vec::with_capacity(corners.len());
-    for (i, corner) in corners.iter().enumerate().take(ITEMS_MAX + 1) {
-        let key = format!("{KEY}[{i}]");
-        let pair: [f64; 2] = corner.clone().try_into().map_err(|_| input(&key, corner, "is not a point", "give [x, y]"))?;
-        outline.push(point(&key, pair)?);
-    }
+    let mut outline = corners.to_vec();
     if outline.len() > 1 && outline.first() == outline.last() {
         outline.pop();
     }
@@ -265,26 +235,19 @@ fn simple(mut outline: Vec<Point>, key: &str) -> Result<Vec<Point>> {
     Ok(outline)
 }
 
-/// Reads a list of tables, each at its own path, so that messages name `specimen.holes[2].x_mm`.
-fn items<I: DeserializeOwned, T>(key: &str, list: &[Value], read: impl Fn(I, &str) -> Result<T>) -> Result<Vec<T>> {
+/// Reads a list of tables, each at its own path, so that messages name `specimen.holes[2]`.
+fn items<I, T>(key: &str, list: &[I], read: impl Fn(&I, &str) -> Result<T>) -> Result<Vec<T>> {
     if list.len() > ITEMS_MAX {
         return Err(input(key, format!("{} entries", list.len()), "is too long", format!("give at most {ITEMS_MAX}")));
     }
-    let one = |(i, item): (usize, &Value)| {
-        let path = format!("{key}[{i}]");
-        read(slice(item, &path)?, &path)
-    };
-    list.iter().enumerate().map(one).collect()
+    list.iter().enumerate().map(|(i, item)| read(item, &format!("{key}[{i}]"))).collect()
 }
 
 /// Corners of a crack, both ends included.
-fn crack_path(path: &str, item: CrackInput) -> Result<Vec<Point>> {
+fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
     const REMEDY: &str = "give from_mm and to_mm, or path_mm = [[x, y], [x, y], ...]";
-    let corners = match (item.from_mm, item.to_mm, item.path_mm) {
-        (Some(from), Some(to), None) => {
-            let (from, to) = ends(path, from, to)?;
-            return Ok(vec![from, to]);
-        }
+    let line = match (item.from, item.to, &item.path) {
+        (Some(from), Some(to), None) => return ends(path, from, to).map(|(from, to)| vec![from, to]),
         (None, None, Some(corners)) => corners,
         (None, None, None) => return Err(input_missing(path, "has no ends", REMEDY)),
         (from, _, None) => {
@@ -294,11 +257,9 @@ fn crack_path(path: &str, item: CrackInput) -> Result<Vec<Point>> {
         (_, _, Some(_)) => return Err(input_missing(&format!("{path}.path_mm"), "stands beside from_mm or to_mm", REMEDY)),
     };
     let key = format!("{path}.path_mm");
-    if corners.len() < 2 || corners.len() > ITEMS_MAX {
-        return Err(input(&key, format!("{} points", corners.len()), "is no path", format!("give 2 to {ITEMS_MAX} points")));
+    if line.len() < 2 || line.len() > ITEMS_MAX {
+        return Err(input(&key, format!("{} points", line.len()), "is no path", format!("give 2 to {ITEMS_MAX} points")));
     }
-    let line: Vec<Point> =
-        corners.iter().enumerate().map(|(i, &corner)| point(&format!("{key}[{i}]"), corner)).collect::<Result<_>>()?;
     if let Some(i) = (1..line.len()).find(|&i| distance(line[i - 1], line[i]) < 1e-6) {
         return Err(input_missing(&format!("{key}[{i}]"), "coincides with the point before it", "leave one of them out"));
     }
@@ -311,12 +272,11 @@ fn crack_path(path: &str, item: CrackInput) -> Result<Vec<Point>> {
             return Err(input_missing(&key, problem, "give branches as cracks of their own that share a point with this one"));
         }
     }
-    Ok(line)
+    Ok(line.clone())
 }
 
 /// Two different end points.
-fn ends(path: &str, from: [f64; 2], to: [f64; 2]) -> Result<(Point, Point)> {
-    let (from, to) = (point(&format!("{path}.from_mm"), from)?, point(&format!("{path}.to_mm"), to)?);
+fn ends(path: &str, from: Point, to: Point) -> Result<(Point, Point)> {
     if distance(from, to) < 1e-6 {
         return Err(input_missing(path, "has no length: from_mm and to_mm coincide", "give two different points"));
     }

@@ -1,10 +1,12 @@
 //! `[specimen]` of an input file to a checked [`Specimen`]: each kind reads its own keys.
 
-use toml::Value;
+use toml::{Table, Value};
 
+use super::keys::{BETA_FILE, KIND};
 use super::{LengthConvention, Specimen, SpecimenKind, named, part_through, plate, standard};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Error, InputError, Result, input, input_missing};
 use perilife_base::input::{Folder, shorten, table_of};
+use perilife_base::keys::{Field, Given};
 
 /// Other names of flaws that do not go through the thickness, never treated as through cracks.
 pub const PART_THROUGH: &[&str] = &[
@@ -18,16 +20,8 @@ pub const PART_THROUGH: &[&str] = &[
 ];
 
 /// Keys that only such a flaw has.
-const PART_THROUGH_KEYS: &[&str] = &[
-    "crack_depth_mm",
-    "crack_half_length_mm",
-    "depth_mm",
-    "surface_length_mm",
-    "crack_shape",
-    "aspect_ratio",
-    "a_over_c",
-    "corner_radius_mm",
-];
+const PART_THROUGH_KEYS: &[&str] =
+    &["depth_mm", "surface_length_mm", "crack_shape", "aspect_ratio", "a_over_c", "corner_radius_mm"];
 
 /// What to give for a flaw that does not go through.
 fn give_a_kind() -> String {
@@ -50,28 +44,41 @@ impl Specimen {
     }
 }
 
+/// The kind that `[specimen]` names.
+/// Errors: none, or one that is not known.
+fn kind_of(table: &Table) -> Result<SpecimenKind> {
+    let Some(kind) = table.get("kind") else { return Err(input_missing(SpecimenKind::KEY, "is missing", KIND.remedy())) };
+    if let Some(kind) = kind.as_str().filter(|kind| PART_THROUGH.contains(kind)) {
+        let problem = "is not the name of a crack that does not go through";
+        return Err(input(SpecimenKind::KEY, format!("\"{kind}\""), problem, give_a_kind()));
+    }
+    SpecimenKind::take(&KIND, SpecimenKind::KEY, kind)
+}
+
+/// What is wrong with the keys of `[specimen]` by themselves.
+pub fn mistakes(value: &Value) -> Vec<InputError> {
+    let found = Given::of(value, "specimen").and_then(|given| {
+        let kind = kind_of(given.table)?;
+        if let Some(key) = given.first(PART_THROUGH_KEYS).filter(|_| kind.part_through().is_none()) {
+            let problem = format!("describes a crack that does not go through, and the crack of {kind} does");
+            return Err(given.refuse(key, problem, give_a_kind()));
+        }
+        Ok(kind.mistakes(given))
+    });
+    match found {
+        Ok(found) => found,
+        Err(Error::Input(error)) => error.each(),
+        Err(_) => Vec::new(),
+    }
+}
+
 /// Reads `[specimen]`, which may be a plate without cracks or notches. The standard kinds come with their loads; a `plate` is loaded by
 /// `[loading]`. A drawing that it names lies in `folder`. What was done to ends of cracks goes into `notes`.
 pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Result<Specimen> {
     let table = table_of(value, "specimen")?;
-    let kind = match table.get("kind") {
-        None => {
-            let known: Vec<&str> = SpecimenKind::ALL.iter().map(|kind| kind.name()).collect();
-            return Err(input_missing("specimen.kind", "is missing", format!("use one of {}", known.join(", "))));
-        }
-        Some(Value::String(kind)) => kind,
-        Some(other) => return Err(input("specimen.kind", shorten(other), "is not text in quotes", "give the name of a kind")),
-    };
-    if PART_THROUGH.contains(&kind.as_str()) {
-        let problem = "is not the name of a crack that does not go through";
-        return Err(input("specimen.kind", format!("\"{kind}\""), problem, give_a_kind()));
-    }
-    let kind = kind.parse::<SpecimenKind>()?;
-    // Holes that cracks run into on their way, and fronts, have no one K over one length.
-    let takes =
-        |kind: SpecimenKind| kind.part_through().is_none() && !matches!(kind, SpecimenKind::RowOfHoles | SpecimenKind::StopHole);
-    if let Some(given) = table.get("beta_file").filter(|_| !takes(kind)) {
-        let known: Vec<&str> = SpecimenKind::ALL.iter().filter(|kind| takes(**kind)).map(|kind| kind.name()).collect();
+    let kind = kind_of(table)?;
+    if let Some(given) = table.get(BETA_FILE.name).filter(|_| !kind.takes_beta()) {
+        let known: Vec<&str> = SpecimenKind::ALL.iter().filter(|kind| kind.takes_beta()).map(|kind| kind.name()).collect();
         let problem = format!("does not go with {kind}, whose K is its own");
         let remedy = format!("leave it out, or use one of {}", known.join(", "));
         return Err(input(super::beta::KEY, shorten(given), problem, remedy));
@@ -79,17 +86,11 @@ pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Re
     if let Some(description) = kind.part_through() {
         return part_through::from_value(description, value, notes);
     }
-    if let Some(key) = PART_THROUGH_KEYS.iter().find(|key| table.contains_key(**key)) {
-        let problem = format!("describes a crack that does not go through, and the crack of {kind} does");
-        return Err(input(&format!("specimen.{key}"), shorten(&table[*key]), problem, give_a_kind()));
-    }
     if let Some(description) = kind.named() {
-        let mut own = table.clone();
-        let table_of_beta = own.remove("beta_file");
-        let specimen = named::from_value(description, &Value::Table(own), notes)?;
-        if let Some(given) = table_of_beta.filter(|_| specimen.convention == LengthConvention::SumOfTips) {
+        let specimen = named::from_value(description, value, notes)?;
+        if let Some(given) = table.get(BETA_FILE.name).filter(|_| specimen.convention == LengthConvention::SumOfTips) {
             let problem = "is one table, and cracks of unlike length have each their own K";
-            return Err(input(super::beta::KEY, shorten(&given), problem, "leave it out, or give crack_length_mm"));
+            return Err(input(super::beta::KEY, shorten(given), problem, "leave it out, or give crack_length_mm"));
         }
         return Ok(specimen);
     }

@@ -25,51 +25,37 @@
 //! a/W = 0.2, 0.25, 0.3, 0.4 (own finite elements, quadratic, K by J), while arcs of 5 to 20° agree with each other and with the formula
 //! of E647 within 0.2 %, of 45° within 1 %.
 
-use serde::Deserialize;
 use toml::Value;
 
+use super::keys::{CRACK_LENGTH, LENGTH, THICKNESS, WIDTH};
 use super::net_section::check_crack;
 use super::pin::PinKeys;
 use super::{Bearing, Crack, Ends, Hole, Load, LoadMeasure, Specimen, SpecimenKind, Support, TipSeed};
-use perilife_base::error::{Result, input_missing};
-use perilife_base::input::slice;
-use perilife_base::lengths;
+use perilife_base::error::Result;
+use perilife_base::keys::{Section, key, part};
 
-/// Keys of `[specimen]` of M(T) and DE(T).
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: f64,
-    thickness_mm: f64,
-    crack_length_mm: f64,
-    #[serde(rename = "beta_file")]
-    _beta_file: Option<String>,
+perilife_base::keys! {
+    /// Keys of `[specimen]` of M(T) and DE(T).
+    pub(super) struct Strip {
+        width: f64 = WIDTH;
+        length: f64 = LENGTH;
+        thickness: f64 = THICKNESS;
+        a: f64 = CRACK_LENGTH.said("Initial crack length a: half of a central crack, that of each edge crack");
+    }
 }
-
-/// Keys of `[specimen]` for a single edge crack.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SingleEdgeInput {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: f64,
-    thickness_mm: f64,
-    crack_length_mm: f64,
-    #[serde(rename = "beta_file")]
-    _beta_file: Option<String>,
-    ends: Option<Ends>,
+perilife_base::keys! {
+    /// Keys of `[specimen]` for a single edge crack.
+    pub(super) struct SingleEdge {
+        strip: Strip = part();
+        ends: Ends = key("ends", "Ends: how they are held, by which K differs");
+    }
 }
 
 /// A central crack, or two edge cracks.
 pub(super) fn from_value(kind: SpecimenKind, value: &Value) -> Result<Specimen> {
-    let input: Input = slice(value, "specimen")?;
-    let [width, length, thickness, a] = lengths!(input: width_mm, length_mm, thickness_mm, crack_length_mm);
+    let Strip { width, length, thickness, a } = Strip::read(&kind.given(value)?)?;
     let strip = Specimen::strip(kind, width, length, thickness);
-    check_crack(input.crack_length_mm, input.width_mm / 2.0, "the half width")?;
+    check_crack(a, width / 2.0, "the half width")?;
     if kind == SpecimenKind::DoubleEdgeTension {
         let ((left, left_tip), (right, right_tip)) = (edge_crack(strip.width, a, -1.0), edge_crack(strip.width, a, 1.0));
         return Ok(Specimen { cracks: vec![left, right], tips: vec![left_tip, right_tip], crack_length: a, ..strip });
@@ -81,19 +67,14 @@ pub(super) fn from_value(kind: SpecimenKind, value: &Value) -> Result<Specimen> 
 
 /// One edge crack.
 pub(super) fn single_edge_from_value(value: &Value) -> Result<Specimen> {
-    let input: SingleEdgeInput = slice(value, "specimen")?;
-    let [width, length, thickness, a] = lengths!(input: width_mm, length_mm, thickness_mm, crack_length_mm);
+    let SingleEdge { strip: Strip { width, length, thickness, a }, ends } =
+        SingleEdge::read(&SpecimenKind::SingleEdgeTension.given(value)?)?;
     let strip = Specimen::strip(SpecimenKind::SingleEdgeTension, width, length, thickness);
-    check_crack(input.crack_length_mm, input.width_mm, "the width")?;
-    let supports = match input.ends {
-        Some(Ends::UniformStress) => vec![],
-        Some(Ends::Pinned) => vec![Support::RigidEnds],
-        Some(Ends::Clamped) => vec![Support::ClampedEnds],
-        None => {
-            let known: Vec<&str> = Ends::ALL.iter().map(|ends| ends.name()).collect();
-            let problem = "is missing: K of a single edge crack depends on how the ends are held";
-            return Err(input_missing("specimen.ends", problem, format!("use one of {}", known.join(", "))));
-        }
+    check_crack(a, width, "the width")?;
+    let supports = match ends {
+        Ends::UniformStress => vec![],
+        Ends::Pinned => vec![Support::RigidEnds],
+        Ends::Clamped => vec![Support::ClampedEnds],
     };
     let (crack, tip) = edge_crack(strip.width, a, -1.0);
     Ok(Specimen { cracks: vec![crack], tips: vec![tip], crack_length: a, supports, ..strip })
@@ -105,33 +86,23 @@ fn edge_crack(width: f64, a: f64, side: f64) -> (Crack, TipSeed) {
     (Crack::straight(mouth, end), TipSeed { position: end, direction: [-side, 0.0], from_slot: false })
 }
 
-/// Keys of `[specimen]` of C(T); width is W, from the load line to the back face.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CompactInput {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    thickness_mm: f64,
-    crack_length_mm: f64,
-    #[serde(rename = "beta_file")]
-    _beta_file: Option<String>,
-    pin_half_angle_deg: Option<f64>,
-    pin_diameter_mm: Option<f64>,
-    pin_friction: Option<f64>,
-    pin_youngs_modulus_gpa: Option<f64>,
-    pin_poisson_ratio: Option<f64>,
+perilife_base::keys! {
+    /// Keys of `[specimen]` of C(T).
+    pub(super) struct Compact {
+        w: f64 = WIDTH.said("Width W: from the load line to the back face");
+        thickness: f64 = THICKNESS;
+        a: f64 = CRACK_LENGTH.said("Initial crack length a: from the load line");
+        pin: PinKeys = part();
+    }
 }
 
 /// C(T).
 pub(super) fn compact_from_value(value: &Value) -> Result<Specimen> {
-    let input: CompactInput = slice(value, "specimen")?;
-    let [w, thickness, a] = lengths!(input: width_mm, thickness_mm, crack_length_mm);
-    check_crack(input.crack_length_mm, input.width_mm, "the width W from the load line")?;
+    let given = SpecimenKind::CompactTension.given(value)?;
+    let Compact { w, thickness, a, pin: pin_keys } = Compact::read(&given)?;
+    check_crack(a, w, "the width W from the load line")?;
     let hole = |sign: f64| Hole { centre: [0.0, sign * 0.275 * w], radius: 0.125 * w };
-    let keys: PinKeys<'_> = perilife_base::keyed!(
-        input: pin_half_angle_deg, pin_diameter_mm, pin_friction, pin_youngs_modulus_gpa, pin_poisson_ratio);
-    let contact = Bearing::read("specimen", &keys, 0.125 * w)?;
+    let contact = Bearing::read(&given, ["pin_half_angle_deg", "pin_friction"], &pin_keys, 0.125 * w)?;
     let pin = |hole: usize, sign: f64| Load::Pin { hole, direction: [0.0, sign], force: 1.0, contact: contact.clone() };
     let (front, half_height) = (-0.25 * w, 0.6 * w);
     Ok(Specimen {

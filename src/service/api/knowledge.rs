@@ -61,6 +61,12 @@ pub async fn kinds() -> Json<Value> {
     Json(catalogue::json(catalogue::lines()))
 }
 
+/// JSON Schema of case and calibration files, by which editors complete and check them.
+#[utoipa::path(get, path = "/v1/schema", tag = "knowledge", responses((status = 200, body = Value)))]
+pub async fn schema() -> Json<Value> {
+    Json(catalogue::schema())
+}
+
 /// Materials by name, every number with its source.
 #[utoipa::path(get, path = "/v1/materials", tag = "knowledge", responses((status = 200, body = Value)))]
 pub async fn materials() -> Answer<Json<Value>> {

@@ -69,6 +69,7 @@ pub fn router(app: App) -> Router {
     let (v1, description) = OpenApiRouter::with_openapi(Description::openapi())
         .routes(routes!(knowledge::service))
         .routes(routes!(knowledge::kinds))
+        .routes(routes!(knowledge::schema))
         .routes(routes!(knowledge::materials))
         .routes(routes!(inputs::measured))
         .routes(routes!(inputs::check))

@@ -15,7 +15,6 @@ mod sub;
 
 pub use classes::Class;
 pub use content::SpectrumFormat;
-pub(super) use read::refuse;
 
 use std::fmt;
 

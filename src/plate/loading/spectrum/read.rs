@@ -9,18 +9,11 @@ use super::rainflow::rainflow;
 use super::rows::{fault, rows};
 use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, is_whole, spx, sub};
 use crate::loading::Input;
+use crate::loading::course::Size;
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::given;
-use perilife_base::input::{Folder, number, refuse_given};
+use perilife_base::input::Folder;
 use perilife_base::table::units::{LoadUnit, Unit};
 use perilife_base::table::{decoded, is_workbook};
-
-/// Refuses the keys of spectra where the loads are none.
-pub(in crate::loading) fn refuse(input: &Input) -> Result<()> {
-    let remedy = "give kind = \"spectrum\", or leave it out";
-    let given = given!(input: spectrum_file, spectrum_format, omission_percent, truncation_percent, repeats);
-    refuse_given("loading", &given, "belongs to a spectrum, and the kind of loading is another", remedy)
-}
 
 impl Spectrum {
     /// The spectrum that `[loading]` asks for, its file read from a folder.
@@ -30,15 +23,12 @@ impl Spectrum {
             let remedy = "name a file with the columns max, min, cycles, one column of turning points, or .spx, .sub, FASTRAN";
             input_missing("loading.spectrum_file", "is missing, and kind is \"spectrum\"", remedy)
         })?;
-        let percent = |key: &str, value: Option<f64>, [low, high]: [f64; 2]| {
-            number("a percentage", low, high).read_optional(&format!("loading.{key}"), value)
-        };
-        let omission = percent("omission_percent", input.omission_percent, [0.0, 99.0])?.unwrap_or(0.0) / 100.0;
-        let truncation = percent("truncation_percent", input.truncation_percent, [1.0, 100.0])?.unwrap_or(100.0) / 100.0;
-        let repeats = number("a number of passes", 1e-6, 1e12).read_optional("loading.repeats", input.repeats)?;
-        let scale = match (input.spectrum_scale_mpa, input.spectrum_scale_n) {
-            (Some(scale), _) => (Unit::Load(LoadUnit::Megapascal), scale),
-            (None, scale) => (Unit::Load(LoadUnit::Newton), scale.unwrap_or(1.0)),
+        let (omission, truncation) = (input.omission_percent / 100.0, input.truncation_percent / 100.0);
+        let repeats = input.repeats;
+        let scale = match (&input.spectrum_scale_mpa, &input.spectrum_scale_n) {
+            (Some(Size::One(scale)), _) => (Unit::Load(LoadUnit::Megapascal), *scale),
+            (_, Some(Size::One(scale))) => (Unit::Load(LoadUnit::Newton), *scale),
+            _ => (Unit::Load(LoadUnit::Newton), 1.0),
         };
         let (bytes, path) = (folder.read(file)?, folder.path(file));
         let read = || {

@@ -2,43 +2,33 @@
 
 use std::f64::consts::PI;
 
-use serde::Deserialize;
-use toml::Value;
-
-use super::shapes::{AtHole, below};
+use super::shapes::{AtHole, AtHoleKeys, below};
 use super::{Description, Layout};
 use crate::specimen::handbook::{HandbookFormula, half};
+use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
 use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
-use perilife_base::input::{COORDINATE, slice};
-use perilife_base::lengths;
+use perilife_base::keys::{Given, Section, coordinate, part};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::CrackAtHole, layout };
+pub(super) const KIND: Description = Description { kind: SpecimenKind::CrackAtHole, keys: Keys::KEYS, layout };
 
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: f64,
-    thickness_mm: f64,
-    hole_diameter_mm: f64,
-    #[serde(default)]
-    hole_offset_mm: f64,
-    crack_length_mm: Option<f64>,
-    cracks: Option<usize>,
-    crack_lengths_mm: Option<[f64; 2]>,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    struct Keys {
+        width: f64 = WIDTH;
+        length: f64 = LENGTH;
+        thickness: f64 = THICKNESS;
+        diameter: f64 = HOLE_DIAMETER;
+        x: f64 = coordinate("hole_offset_mm", "Hole from the middle: across the load"), or "0" 0.0;
+        cracks: AtHoleKeys = part();
+    }
 }
 
-fn layout(value: &Value) -> Result<Layout> {
-    let input: Input = slice(value, "specimen")?;
-    let [width, length, thickness, diameter] = lengths!(input: width_mm, length_mm, thickness_mm, hole_diameter_mm);
+fn layout(given: &Given<'_>) -> Result<Layout> {
+    let Keys { width, length, thickness, diameter, x, cracks } = Keys::read(given)?;
     let radius = diameter / 2.0;
-    let x = COORDINATE.read("specimen.hole_offset_mm", input.hole_offset_mm)?;
-    let cracks = AtHole::read(input.crack_length_mm, input.cracks, input.crack_lengths_mm)?;
+    let cracks = AtHole::read(given, &cracks)?;
     below("hole_diameter_mm", 2.0 * radius, width - 2.0 * x.abs(), "the width that the plate has there")?;
     let key = if cracks.shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
     for (length, side) in cracks.lengths.into_iter().zip([-1.0, 1.0]) {

@@ -3,43 +3,31 @@
 
 use std::f64::consts::PI;
 
-use serde::Deserialize;
-use toml::Value;
-
 use super::shapes::{arc, below};
 use super::{Description, Layout};
+use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS};
 use crate::specimen::plate::{Drawing, turned};
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
-use perilife_base::input::{number, slice};
-use perilife_base::lengths;
+use perilife_base::keys::{Given, Section, length, number};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::Cruciform, layout };
+pub(super) const KIND: Description = Description { kind: SpecimenKind::Cruciform, keys: Keys::KEYS, layout };
 
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    /// From end to end.
-    length_mm: f64,
-    arm_width_mm: f64,
-    fillet_radius_mm: f64,
-    thickness_mm: f64,
-    /// Half of it.
-    crack_length_mm: f64,
-    /// Against x.
-    #[serde(default)]
-    crack_angle_deg: f64,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    struct Keys {
+        length: f64 = LENGTH.said("Length L: from end to end of two arms");
+        arm_width: f64 = length("arm_width_mm", "Width of an arm");
+        radius: f64 = length("fillet_radius_mm", "Radius of the inner corners");
+        thickness: f64 = THICKNESS;
+        a: f64 = CRACK_LENGTH.said("Initial crack length a: half of it");
+        angle: f64 = number("crack_angle_deg", "Angle of the crack, °: against x", "an angle in degrees", -180.0, 180.0), or "0" 0.0;
+    }
 }
 
-fn layout(value: &Value) -> Result<Layout> {
-    let input: Input = slice(value, "specimen")?;
-    let [length, arm_width, radius, thickness, a] =
-        lengths!(input: length_mm, arm_width_mm, fillet_radius_mm, thickness_mm, crack_length_mm);
+fn layout(given: &Given<'_>) -> Result<Layout> {
+    let Keys { length, arm_width, radius, thickness, a, angle } = Keys::read(given)?;
     let (end, arm) = (length / 2.0, arm_width / 2.0);
-    let angle = number("an angle in degrees", -180.0, 180.0).read("specimen.crack_angle_deg", input.crack_angle_deg)?;
     below("fillet_radius_mm", radius, end - arm, "what an arm is long")?;
     below("crack_length_mm", a, arm, "half the width of an arm")?;
     // One inner corner, turned into all four; built so that the cross is its own mirror image but for round-off.

@@ -2,40 +2,30 @@
 
 use std::f64::consts::PI;
 
-use serde::Deserialize;
-use toml::Value;
-
 use super::shapes::{arc, below};
 use super::{Description, Layout};
+use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::Drawing;
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
-use perilife_base::input::{LENGTH, slice};
-use perilife_base::lengths;
+use perilife_base::keys::{Given, Section, length};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::EdgeNotch, layout };
+pub(super) const KIND: Description = Description { kind: SpecimenKind::EdgeNotch, keys: Keys::KEYS, layout };
 
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: f64,
-    thickness_mm: f64,
-    /// From the edge to the root.
-    notch_depth_mm: f64,
-    /// Of the half circle that ends it.
-    notch_radius_mm: f64,
-    crack_length_mm: Option<f64>,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    struct Keys {
+        width: f64 = WIDTH;
+        length: f64 = LENGTH;
+        thickness: f64 = THICKNESS;
+        depth: f64 = length("notch_depth_mm", "Depth of the notch: from the edge to the root");
+        radius: f64 = length("notch_radius_mm", "Radius of the root: half circle that ends the notch");
+        crack_length: Option<f64> = CRACK_LENGTH.said("Initial crack length a: from the root of the notch; none where it is left out");
+    }
 }
 
-fn layout(value: &Value) -> Result<Layout> {
-    let input: Input = slice(value, "specimen")?;
-    let [width, length, thickness, depth, radius] =
-        lengths!(input: width_mm, length_mm, thickness_mm, notch_depth_mm, notch_radius_mm);
-    let crack_length = LENGTH.read_optional("specimen.crack_length_mm", input.crack_length_mm)?;
+fn layout(given: &Given<'_>) -> Result<Layout> {
+    let Keys { width, length, thickness, depth, radius, crack_length } = Keys::read(given)?;
     below("notch_radius_mm", radius, (depth * (1.0 + 1e-9)).min(length / 2.0), "depth of the notch and half the length")?;
     below("notch_depth_mm", depth, width, "the width")?;
     below("crack_length_mm", crack_length.unwrap_or(0.0), width - depth, "what the notch leaves of the width")?;

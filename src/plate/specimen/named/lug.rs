@@ -6,56 +6,41 @@
 
 use std::f64::consts::PI;
 
-use serde::Deserialize;
-use toml::Value;
-
-use super::shapes::{AtHole, arc, below, pin};
+use super::shapes::{AtHole, AtHoleKeys, arc, below, pin};
 use super::{Description, Layout};
+use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::pin::PinKeys;
 use crate::specimen::plate::Drawing;
 use crate::specimen::{Bearing, Head, Hole, Point, SpecimenKind, Support};
-use perilife_base::error::{Result, input};
-use perilife_base::input::{LENGTH, slice};
-use perilife_base::lengths;
+use perilife_base::error::Result;
+use perilife_base::keys::{Given, Section, key, length, part};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::Lug, layout };
+pub(super) const KIND: Description = Description { kind: SpecimenKind::Lug, keys: Keys::KEYS, layout };
 
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: f64,
-    thickness_mm: f64,
-    hole_diameter_mm: f64,
-    head: Head,
-    edge_distance_mm: Option<f64>,
-    crack_length_mm: Option<f64>,
-    cracks: Option<usize>,
-    crack_lengths_mm: Option<[f64; 2]>,
-    pin_half_angle_deg: Option<f64>,
-    pin_diameter_mm: Option<f64>,
-    pin_friction: Option<f64>,
-    pin_youngs_modulus_gpa: Option<f64>,
-    pin_poisson_ratio: Option<f64>,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    struct Keys {
+        width: f64 = WIDTH;
+        length: f64 = LENGTH.said("Length L: from the middle of the hole to the held end");
+        thickness: f64 = THICKNESS;
+        diameter: f64 = HOLE_DIAMETER;
+        head: Head = key("head", "Head: end beyond the hole");
+        distance: Option<f64> = length("edge_distance_mm", "Edge distance: of a straight head, from the middle of the hole; W/2 where it is left out");
+        cracks: AtHoleKeys = part();
+        pin: PinKeys = part();
+    }
 }
 
-fn layout(value: &Value) -> Result<Layout> {
-    let input_: Input = slice(value, "specimen")?;
-    let [width, length, thickness, diameter] = lengths!(input_: width_mm, length_mm, thickness_mm, hole_diameter_mm);
+fn layout(given: &Given<'_>) -> Result<Layout> {
+    let Keys { width, length, thickness, diameter, head, distance, cracks, pin: pin_keys } = Keys::read(given)?;
     let (half_width, radius) = (width / 2.0, diameter / 2.0);
-    let distance = LENGTH.read_optional("specimen.edge_distance_mm", input_.edge_distance_mm)?;
-    let cracks = AtHole::read(input_.crack_length_mm, input_.cracks, input_.crack_lengths_mm)?;
+    let cracks = AtHole::read(given, &cracks)?;
     below("hole_diameter_mm", 2.0 * radius, (2.0 * half_width).min(2.0 * length), "width and twice the length")?;
     let key = if cracks.shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
     below(key, cracks.lengths[0].max(cracks.lengths[1]), half_width - radius, "the way from the rim to the side")?;
-    let keys: PinKeys<'_> = perilife_base::keyed!(
-        input_: pin_half_angle_deg, pin_diameter_mm, pin_friction, pin_youngs_modulus_gpa, pin_poisson_ratio);
-    let contact = Bearing::read("specimen", &keys, radius)?;
+    let contact = Bearing::read(given, ["pin_half_angle_deg", "pin_friction"], &pin_keys, radius)?;
     let mut outline: Vec<Point> = vec![[-half_width, -length], [half_width, -length]];
-    match (input_.head, distance) {
+    match (head, distance) {
         (Head::Straight, distance) => {
             let top = distance.unwrap_or(half_width);
             below("hole_diameter_mm", 2.0 * radius, 2.0 * top, "twice the edge distance")?;
@@ -63,9 +48,8 @@ fn layout(value: &Value) -> Result<Layout> {
         }
         (Head::Round, None) => outline.extend(arc([0.0, 0.0], half_width, [0.0, PI])),
         (Head::Round, Some(_)) => {
-            let given = input_.edge_distance_mm.unwrap_or_default();
             let problem = "stands beside head = \"round\", whose edge is half the width away";
-            return Err(input("specimen.edge_distance_mm", given, problem, "leave it out, or use head = \"straight\""));
+            return Err(given.refuse("edge_distance_mm", problem, "leave it out, or use head = \"straight\""));
         }
     }
     let drawing = Drawing {

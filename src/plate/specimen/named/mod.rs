@@ -26,6 +26,7 @@ use super::plate::Drawing;
 use super::{LengthConvention, Load, LoadMeasure, Specimen, SpecimenKind, Support};
 use perilife_base::error::{Error, Result};
 use perilife_base::input::shorten;
+use perilife_base::keys::{Given, Key};
 
 /// Every kind.
 const KINDS: &[&Description] = &[
@@ -44,8 +45,17 @@ const KINDS: &[&Description] = &[
 pub struct Description {
     /// Its name in `specimen.kind`.
     pub kind: SpecimenKind,
+    /// Its keys.
+    keys: &'static [Key],
     /// From its keys to what it is drawn from.
-    layout: fn(&Value) -> Result<Layout>,
+    layout: fn(&Given<'_>) -> Result<Layout>,
+}
+
+impl Description {
+    /// Its keys.
+    pub(super) fn keys(&self) -> &'static [Key] {
+        self.keys
+    }
 }
 
 /// A named plate before it is built.
@@ -87,7 +97,7 @@ impl SpecimenKind {
 /// Reads `[specimen]` of a named plate.
 /// Errors: as of a `plate`, named by the keys of the kind as far as they go.
 pub(super) fn from_value(description: &Description, value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
-    let Layout { drawing, loads, supports, crack_length, formula } = (description.layout)(value)?;
+    let Layout { drawing, loads, supports, crack_length, formula } = (description.layout)(&description.kind.given(value)?)?;
     let convention = if crack_length.is_some() { LengthConvention::MeanOfTips } else { LengthConvention::SumOfTips };
     let crack_key = description.kind.crack_key(convention);
     let first = notes.len();

@@ -1,51 +1,36 @@
 //! A plate under tension with a row of equal holes across it, cracked at their sides, such as a riveted joint: cracks of neighbours link up.
 
-use serde::Deserialize;
-use toml::Value;
-
-use super::shapes::{SLACK, below, in_mm, length_or_none};
+use super::shapes::{FROM_RIM, LENGTHS, LengthOrNone, SLACK, below, in_mm};
 use super::{Description, Layout};
+use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
 use crate::specimen::{Hole, Point, SpecimenKind};
-use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{LENGTH, slice};
-use perilife_base::lengths;
-use perilife_base::units::MM;
+use perilife_base::error::{Result, input};
+use perilife_base::keys::{Given, Section, length, number};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::RowOfHoles, layout };
+pub(super) const KIND: Description = Description { kind: SpecimenKind::RowOfHoles, keys: Keys::KEYS, layout };
 
-/// More holes than this are a slip.
-const HOLES_MAX: usize = 100;
-
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: f64,
-    thickness_mm: f64,
-    holes: usize,
-    pitch_mm: f64,
-    hole_diameter_mm: f64,
-    crack_length_mm: Option<f64>,
-    /// Of every hole [left, right].
-    crack_lengths_mm: Option<Vec<[f64; 2]>>,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    struct Keys {
+        width: f64 = WIDTH;
+        length: f64 = LENGTH;
+        thickness: f64 = THICKNESS;
+        count: usize = number("holes", "Holes: in one row across the load", "a number of holes", 2.0, 100.0)
+            .missing("give 2 to 100, or use kind = \"crack_at_hole\"");
+        pitch: f64 = length("pitch_mm", "Pitch: between the middles of neighbours");
+        diameter: f64 = HOLE_DIAMETER;
+        shared: Option<f64> = FROM_RIM;
+        lengths: Option<Vec<[LengthOrNone; 2]>> = length("crack_lengths_mm", "Cracks of unlike lengths: of every hole [left, right], 0 without one").group(LENGTHS);
+    }
 }
 
-fn layout(value: &Value) -> Result<Layout> {
-    let input_: Input = slice(value, "specimen")?;
-    let [width, length, thickness, pitch, diameter] =
-        lengths!(input_: width_mm, length_mm, thickness_mm, pitch_mm, hole_diameter_mm);
-    let count = input_.holes;
-    if !(2..=HOLES_MAX).contains(&count) {
-        let remedy = format!("give 2 to {HOLES_MAX}, or use kind = \"{}\"", SpecimenKind::CrackAtHole);
-        return Err(input("specimen.holes", count, "is no row", remedy));
-    }
+fn layout(given: &Given<'_>) -> Result<Layout> {
+    let own = Keys::read(given)?;
+    let Keys { width, length, thickness, count, pitch, diameter, shared, .. } = own;
     below("hole_diameter_mm", diameter, pitch, "the pitch of the row")?;
     below("pitch_mm", pitch, (width - diameter) / (count - 1) as f64, "what the width has room for")?;
-    let (lengths, shared) = lengths(&input_)?;
+    let lengths = lengths(given, &own)?;
     let xs: Vec<f64> = (0..count).map(|i| (i as f64 - (count - 1) as f64 / 2.0) * pitch).collect();
     let edge = (width - diameter) / 2.0 - xs[count - 1];
     let key = if shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
@@ -62,32 +47,21 @@ fn layout(value: &Value) -> Result<Layout> {
     Ok(Layout { drawing, crack_length: shared, ..Layout::default() })
 }
 
-/// Lengths of the cracks of every hole, [left, right], m, and the one of all.
-fn lengths(given: &Input) -> Result<(Vec<[f64; 2]>, Option<f64>)> {
-    const KEY: &str = "specimen.crack_lengths_mm";
+/// Lengths of the cracks of every hole, [left, right], m.
+fn lengths(given: &Given<'_>, own: &Keys) -> Result<Vec<[f64; 2]>> {
+    const KEY: &str = "crack_lengths_mm";
     const REMEDY: &str = "give crack_length_mm of all cracks, or crack_lengths_mm = [[left, right], ...], 0 without a crack";
-    match (given.crack_length_mm, &given.crack_lengths_mm) {
-        (Some(length), None) => {
-            let length = LENGTH.read("specimen.crack_length_mm", length)?;
-            let ligament = (given.pitch_mm - given.hole_diameter_mm) * MM;
-            below("crack_length_mm", length, ligament / 2.0, "half the ligament")?;
-            Ok((vec![[length; 2]; given.holes], Some(length)))
+    match (own.shared, &own.lengths) {
+        (Some(length), _) => {
+            below("crack_length_mm", length, (own.pitch - own.diameter) / 2.0, "half the ligament")?;
+            Ok(vec![[length; 2]; own.count])
         }
-        (None, Some(list)) if list.iter().flatten().all(|length| *length == 0.0) => {
-            Err(input(KEY, format!("{list:?}"), "has no crack", REMEDY))
+        (None, Some(list)) if list.iter().flatten().all(|length| length.0 == 0.0) => {
+            Err(given.refuse(KEY, "has no crack", REMEDY))
         }
-        (None, Some(list)) if list.len() == given.holes => {
-            let one = |(i, pair): (usize, &[f64; 2])| -> Result<[f64; 2]> {
-                Ok([length_or_none(&format!("{KEY}[{i}][0]"), pair[0])?, length_or_none(&format!("{KEY}[{i}][1]"), pair[1])?])
-            };
-            Ok((list.iter().enumerate().map(one).collect::<Result<_>>()?, None))
-        }
-        (None, Some(list)) => {
-            let problem = format!("are not those of {} holes", given.holes);
-            Err(input(KEY, format!("{} pairs", list.len()), problem, REMEDY))
-        }
-        (None, None) => Err(input_missing("specimen.crack_length_mm", "is missing", REMEDY)),
-        (Some(_), Some(_)) => Err(input_missing("specimen.crack_length_mm", "stands beside crack_lengths_mm", REMEDY)),
+        (None, Some(list)) if list.len() == own.count => Ok(list.iter().map(|pair| pair.map(|length| length.0)).collect()),
+        (None, Some(_)) => Err(given.refuse(KEY, format!("are not those of {} holes", own.count), REMEDY)),
+        (None, None) => Err(given.refuse("crack_length_mm", "is missing", REMEDY)),
     }
 }
 

@@ -2,10 +2,12 @@
 
 use std::f64::consts::PI;
 
+use toml::Value;
+
 use crate::specimen::geometry::distance;
 use crate::specimen::{Bearing, Load, Point};
-use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::LENGTH;
+use perilife_base::error::{Result, input};
+use perilife_base::keys::{Field, Given, Key, Shape, length, number, quantity};
 use perilife_base::units::MM;
 
 /// Angle of one side of a polygon that stands for an arc, rad: 2°, whose middle lies 1.5e-4 of the radius off the arc.
@@ -31,6 +33,21 @@ pub(super) fn roller([from, to]: [Point; 2], direction: Point, share: f64, thick
     Load::Edge { from, to, traction: direction.map(|d| pressure * d) }
 }
 
+/// What the lengths of cracks at holes say.
+pub(super) const LENGTHS: &str = "the length of the cracks";
+/// Length of all cracks at holes.
+pub(super) const FROM_RIM: Key = length("crack_length_mm", "Initial crack length a: from the rim of the hole").group(LENGTHS);
+
+perilife_base::keys! {
+    /// Keys of the cracks at the sides of a hole.
+    pub(super) struct AtHoleKeys {
+        length: Option<f64> = FROM_RIM;
+        count: Option<usize> = number("cracks", "Cracks at the hole: 1, at its right, or 2; 1 where it is left out", "a number of cracks", 1.0, 2.0)
+            .missing("give crack_length_mm with cracks = 1 or 2, or crack_lengths_mm = [left, right]");
+        lengths: Option<[LengthOrNone; 2]> = length("crack_lengths_mm", "Cracks of unlike lengths: left and right from the rim, 0 without one").group(LENGTHS);
+    }
+}
+
 /// The cracks at the sides of a hole, left first.
 pub(super) struct AtHole {
     /// Their lengths from the rim, m; 0 without one.
@@ -40,31 +57,19 @@ pub(super) struct AtHole {
 }
 
 impl AtHole {
-    /// From `crack_length_mm` with `cracks` (1, on the right, where it is left out), or `crack_lengths_mm` = [left, right].
-    pub(super) fn read(length: Option<f64>, cracks: Option<usize>, lengths: Option<[f64; 2]>) -> Result<Self> {
+    /// What the keys of a section say.
+    /// Errors: none of the lengths; a number of cracks beside lengths of each.
+    pub(super) fn read(given: &Given<'_>, keys: &AtHoleKeys) -> Result<Self> {
         const REMEDY: &str = "give crack_length_mm with cracks = 1 or 2, or crack_lengths_mm = [left, right]";
-        match (length, lengths) {
-            (Some(length), None) => {
-                let length = LENGTH.read("specimen.crack_length_mm", length)?;
-                let left = match cracks.unwrap_or(1) {
-                    1 => 0.0,
-                    2 => length,
-                    other => return Err(input("specimen.cracks", other, "is not 1 or 2", REMEDY)),
-                };
-                Ok(AtHole { lengths: [left, length], shared: Some(length) })
+        match (keys.length, &keys.lengths) {
+            (Some(length), _) => {
+                Ok(AtHole { lengths: [if keys.count == Some(2) { length } else { 0.0 }, length], shared: Some(length) })
             }
-            (None, Some(_)) if cracks.is_some() => {
-                Err(input_missing("specimen.cracks", "stands beside crack_lengths_mm, which says how many there are", REMEDY))
+            (None, Some(_)) if keys.count.is_some() => {
+                Err(given.refuse("cracks", "stands beside crack_lengths_mm, which says how many there are", REMEDY))
             }
-            (None, Some([left, right])) => {
-                let [left, right] = [
-                    length_or_none("specimen.crack_lengths_mm[0]", left)?,
-                    length_or_none("specimen.crack_lengths_mm[1]", right)?,
-                ];
-                Ok(AtHole { lengths: [left, right], shared: None })
-            }
-            (None, None) => Err(input_missing("specimen.crack_length_mm", "is missing", REMEDY)),
-            (Some(_), Some(_)) => Err(input_missing("specimen.crack_length_mm", "stands beside crack_lengths_mm", REMEDY)),
+            (None, Some([left, right])) => Ok(AtHole { lengths: [left.0, right.0], shared: None }),
+            (None, None) => Err(given.refuse("crack_length_mm", "is missing", REMEDY)),
         }
     }
 
@@ -84,9 +89,16 @@ impl AtHole {
     }
 }
 
-/// A length in mm, or 0 for no crack; m.
-pub(super) fn length_or_none(key: &str, given: f64) -> Result<f64> {
-    if given == 0.0 { Ok(0.0) } else { LENGTH.read(key, given) }
+/// A length, or 0 for no crack; m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::specimen) struct LengthOrNone(pub f64);
+
+impl Field for LengthOrNone {
+    const SHAPE: Shape = Shape::Number;
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        let is_none = value.as_float() == Some(0.0) || value.as_integer() == Some(0);
+        if is_none { Ok(LengthOrNone(0.0)) } else { quantity(key, path, value).map(LengthOrNone) }
+    }
 }
 
 /// Share of a size by which two that are equal in the file may differ.

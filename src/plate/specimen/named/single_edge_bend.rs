@@ -5,19 +5,16 @@
 
 use std::f64::consts::PI;
 
-use serde::Deserialize;
-use toml::Value;
-
 use super::shapes::{below, in_mm, roller};
 use super::{Description, Layout};
 use crate::specimen::handbook::HandbookFormula;
+use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::Drawing;
 use crate::specimen::{Load, SpecimenKind};
 use perilife_base::error::{Result, input as error};
-use perilife_base::input::{LENGTH, slice};
-use perilife_base::lengths;
+use perilife_base::keys::{Given, Section, length};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::SingleEdgeBend, layout };
+pub(super) const KIND: Description = Description { kind: SpecimenKind::SingleEdgeBend, keys: Keys::KEYS, layout };
 
 /// Width of a contact over W.
 const CONTACT: f64 = 0.05;
@@ -26,29 +23,23 @@ const SPAN: f64 = 4.0;
 /// What the beam is longer than its span, over W.
 const OVERHANG: f64 = 0.5;
 
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: Option<f64>,
-    thickness_mm: f64,
-    span_mm: Option<f64>,
-    inner_span_mm: Option<f64>,
-    crack_length_mm: f64,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    struct Keys {
+        w: f64 = WIDTH;
+        thickness: f64 = THICKNESS;
+        a: f64 = CRACK_LENGTH;
+        span: f64 = length("span_mm", "Span: of the outer rollers"), or "4 W" SPAN * w;
+        inner: Option<f64> = length("inner_span_mm", "Inner span: between two rollers; one in the middle where it is left out");
+        length: f64 = LENGTH.said("Length L: of the beam"), or "span + W/2" span + OVERHANG * w;
+    }
 }
 
-fn layout(value: &Value) -> Result<Layout> {
-    let input: Input = slice(value, "specimen")?;
-    let [w, thickness, a] = lengths!(input: width_mm, thickness_mm, crack_length_mm);
-    let span = LENGTH.read_optional("specimen.span_mm", input.span_mm)?.unwrap_or(SPAN * w);
-    let inner = LENGTH.read_optional("specimen.inner_span_mm", input.inner_span_mm)?;
-    let length = LENGTH.read_optional("specimen.length_mm", input.length_mm)?.unwrap_or(span + OVERHANG * w);
+fn layout(given: &Given<'_>) -> Result<Layout> {
+    let Keys { w, thickness, a, span, inner, length } = Keys::read(given)?;
     below("crack_length_mm", a, w, "the width")?;
     let contact = CONTACT * w;
-    if input.span_mm.is_some() {
+    if given.first(&["span_mm"]).is_some() {
         below("span_mm", span, length - contact, "the length less a contact")?;
     } else if length <= span + contact {
         let problem = format!("has no room for the span of {} mm and a contact", in_mm(span));

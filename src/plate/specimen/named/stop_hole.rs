@@ -3,37 +3,30 @@
 //! The holes stand `stopped_crack_length_mm`, half the length of the crack, from the centre. `formed_length_mm` is how long, from the rims, the cracks
 //! are that form beyond the holes in phase I ([`perilife_laws::initiation`]); from there on they grow.
 
-use serde::Deserialize;
-use toml::Value;
-
 use super::shapes::below;
 use super::{Description, Layout};
+use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
 use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
-use perilife_base::input::slice;
-use perilife_base::lengths;
+use perilife_base::keys::{Given, Section, length};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::StopHole, layout };
+pub(super) const KIND: Description = Description { kind: SpecimenKind::StopHole, keys: Keys::KEYS, layout };
 
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: f64,
-    thickness_mm: f64,
-    stopped_crack_length_mm: f64,
-    hole_diameter_mm: f64,
-    formed_length_mm: f64,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    struct Keys {
+        width: f64 = WIDTH;
+        length: f64 = LENGTH;
+        thickness: f64 = THICKNESS;
+        centre: f64 = length("stopped_crack_length_mm", "Stopped crack: half of its length, to the centres of the holes");
+        diameter: f64 = HOLE_DIAMETER;
+        formed: f64 = length("formed_length_mm", "Formed cracks: their length from the rims of the holes at the end of phase I");
+    }
 }
 
-fn layout(value: &Value) -> Result<Layout> {
-    let input: Input = slice(value, "specimen")?;
-    let [width, length, thickness, centre, diameter, formed] = lengths!(
-        input: width_mm, length_mm, thickness_mm, stopped_crack_length_mm, hole_diameter_mm, formed_length_mm);
+fn layout(given: &Given<'_>) -> Result<Layout> {
+    let Keys { width, length, thickness, centre, diameter, formed } = Keys::read(given)?;
     let radius = diameter / 2.0;
     below("hole_diameter_mm", 2.0 * radius, (2.0 * centre).min(length), "the length of the crack and of the plate")?;
     below("formed_length_mm", formed, width / 2.0 - centre - radius, "the way from the rim to the edge")?;

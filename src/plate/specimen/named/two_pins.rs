@@ -8,22 +8,20 @@
 //! room. x from the load line, W from there to the back face, 0.255 W from there to the front face. Its pins stand for bolt and clevis; a
 //! wedge that holds the opening is `loading.kind = "displacement"`.
 
-use serde::Deserialize;
-use toml::Value;
-
 use super::shapes::{below, pin};
 use super::{Description, Layout};
 use crate::specimen::handbook::HandbookFormula;
+use crate::specimen::keys::{CRACK_LENGTH, THICKNESS, WIDTH};
 use crate::specimen::pin::LOOSE_PIN;
 use crate::specimen::plate::Drawing;
 use crate::specimen::{Bearing, Hole, Point, SpecimenKind};
 use perilife_base::error::Result;
-use perilife_base::input::slice;
-use perilife_base::lengths;
+use perilife_base::keys::{Given, Section};
 
 pub(super) const ECCENTRIC: Description =
-    Description { kind: SpecimenKind::EccentricSingleEdgeTension, layout: |value| layout(value, &ESE) };
-pub(super) const WEDGE: Description = Description { kind: SpecimenKind::WedgeOpening, layout: |value| layout(value, &WOL) };
+    Description { kind: SpecimenKind::EccentricSingleEdgeTension, keys: Keys::KEYS, layout: |given| layout(given, &ESE) };
+pub(super) const WEDGE: Description =
+    Description { kind: SpecimenKind::WedgeOpening, keys: Keys::KEYS, layout: |given| layout(given, &WOL) };
 
 /// What differs between the two.
 struct Kind {
@@ -76,20 +74,17 @@ const WOL: Kind = Kind {
 /// Diameter of the holes of the pins over W.
 const DIAMETER: f64 = 0.2;
 
-/// Keys of `[specimen]`; width is W.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    thickness_mm: f64,
-    crack_length_mm: f64,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    struct Keys {
+        w: f64 = WIDTH.said("Width W: from the edge (ESE(T)) or the load line (WOL)");
+        thickness: f64 = THICKNESS;
+        a: f64 = CRACK_LENGTH.said("Initial crack length a: from where W begins");
+    }
 }
 
-fn layout(value: &Value, kind: &Kind) -> Result<Layout> {
-    let input: Input = slice(value, "specimen")?;
-    let [w, thickness, a] = lengths!(input: width_mm, thickness_mm, crack_length_mm);
+fn layout(given: &Given<'_>, kind: &Kind) -> Result<Layout> {
+    let Keys { w, thickness, a } = Keys::read(given)?;
     below("crack_length_mm", a, w, kind.width)?;
     let (front, y, [pin_x, pin_y]) = (kind.front * w, kind.half_height * w, (kind.pin)(w));
     let drawing = Drawing {

@@ -17,7 +17,7 @@ mod surface_crack;
 mod through;
 
 pub use front::{Front, FrontTip};
-pub(super) use read::from_value;
+pub(super) use read::{from_value, keys};
 
 use std::f64::consts::PI;
 

@@ -1,34 +1,43 @@
 //! `[specimen]` of a crack that does not go through: its keys, and the plate seen from the front.
 
-use serde::Deserialize;
 use toml::Value;
 
 use super::{Description, PartThrough};
+use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::placement::check_holes;
-use crate::specimen::plate::read_holes;
-use crate::specimen::{Hole, Specimen, SpecimenKind};
+use crate::specimen::plate::{HoleKeys, read_holes};
+use crate::specimen::{Hole, Specimen};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{LENGTH, slice};
-use perilife_base::units::MM;
+use perilife_base::keys::{Key, Section, key, length, number, part};
+use perilife_base::units::round_mm;
 
 /// Length of the plate over its width where the case does not say: ends so far away that they do not matter.
 const LENGTH_OVER_WIDTH: f64 = 3.0;
 
-/// Keys of `[specimen]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    #[serde(rename = "kind")]
-    _kind: SpecimenKind,
-    width_mm: f64,
-    length_mm: Option<f64>,
-    thickness_mm: f64,
-    crack_depth_mm: f64,
-    crack_half_length_mm: f64,
-    hole_diameter_mm: Option<f64>,
-    cracks: Option<usize>,
-    #[serde(default)]
-    holes: Vec<Value>,
+perilife_base::keys! {
+    /// Keys of `[specimen]`.
+    pub(super) struct Keys {
+        width: f64 = WIDTH;
+        length: Option<f64> = LENGTH.said("Length L: along the load; 3 W where it is left out");
+        thickness: f64 = THICKNESS;
+        depth: f64 = length("crack_depth_mm", "Crack depth a: into the thickness");
+        half_length: f64 = length("crack_half_length_mm", "Crack length c: along the face; half of it where it has two ends there");
+        holes: Vec<HoleKeys> = key("holes", "Further holes of the plate"), or "none" Vec::new();
+    }
+}
+perilife_base::keys! {
+    /// The same of a crack at a hole.
+    pub(super) struct KeysAtHole {
+        own: Keys = part();
+        diameter: f64 = HOLE_DIAMETER;
+        cracks: usize = number("cracks", "Cracks at the hole: 1, on one side of it, or 2, on both", "a number of cracks", 1.0, 2.0)
+            .missing("give 1, a crack on one side of the hole, or 2, one on both");
+    }
+}
+
+/// Keys of a kind.
+pub(in crate::specimen) fn keys(description: &Description) -> &'static [Key] {
+    if description.has_hole { KeysAtHole::KEYS } else { Keys::KEYS }
 }
 
 /// The plate with its crack. That the length is the program's own goes into `notes`.
@@ -37,13 +46,18 @@ pub(in crate::specimen) fn from_value(
     value: &Value,
     notes: &mut Vec<String>,
 ) -> Result<Specimen> {
-    let input: Input = slice(value, "specimen")?;
-    let width = LENGTH.read("specimen.width_mm", input.width_mm)?;
-    let length = LENGTH.read_optional("specimen.length_mm", input.length_mm)?;
-    let thickness = LENGTH.read("specimen.thickness_mm", input.thickness_mm)?;
-    let depth = LENGTH.read("specimen.crack_depth_mm", input.crack_depth_mm)?;
-    let half_length = LENGTH.read("specimen.crack_half_length_mm", input.crack_half_length_mm)?;
-    let (radius, cracks) = hole(description, &input, width)?;
+    let given = description.kind.given(value)?;
+    let (own, radius, cracks) = if description.has_hole {
+        let KeysAtHole { own, diameter, cracks } = KeysAtHole::read(&given)?;
+        if diameter >= own.width {
+            let problem = format!("is not below the width {} mm of the plate", round_mm(own.width));
+            return Err(given.refuse(HOLE_DIAMETER.name, problem, "give a smaller hole or a wider plate"));
+        }
+        (own, diameter / 2.0, cracks)
+    } else {
+        (Keys::read(&given)?, 0.0, 1)
+    };
+    let Keys { width, length, thickness, depth, half_length, holes } = own;
     let mut flaw = PartThrough {
         description,
         depth,
@@ -56,9 +70,9 @@ pub(in crate::specimen) fn from_value(
         other_holes: 0.0,
         bending_ratio: 0.0,
     };
-    check_sizes(&flaw, &input)?;
+    check_sizes(&flaw)?;
     let plate = Specimen::strip(description.kind, width, length.unwrap_or(LENGTH_OVER_WIDTH * width), thickness);
-    let mut holes = read_holes(&input.holes)?;
+    let mut holes = read_holes(&holes)?;
     holes.extend((radius > 0.0).then_some(Hole { centre: [0.0, 0.0], radius }));
     let mut specimen = Specimen { holes, ..plate };
     check_holes(&specimen)?;
@@ -95,54 +109,23 @@ fn place_beside(flaw: &mut PartThrough, holes: &[Hole]) -> Result<()> {
     Ok(())
 }
 
-/// Radius of the hole, m, and number of cracks.
-fn hole(description: &Description, input: &Input, width: f64) -> Result<(f64, usize)> {
-    const DIAMETER: &str = "specimen.hole_diameter_mm";
-    const CRACKS: &str = "specimen.cracks";
-    let kind = description.kind;
-    if !description.has_hole {
-        let problem = format!("does not go with {kind}, which lies in a plate without a hole");
-        let remedy = format!("leave it out, or use kind = \"{}\"", SpecimenKind::CornerCrackAtHole);
-        return match (input.hole_diameter_mm, input.cracks) {
-            (Some(diameter), _) => Err(perilife_base::error::input(DIAMETER, diameter, problem, remedy)),
-            (None, Some(cracks)) => Err(perilife_base::error::input(CRACKS, cracks, problem, remedy)),
-            (None, None) => Ok((0.0, 1)),
-        };
-    }
-    let diameter =
-        input.hole_diameter_mm.ok_or_else(|| input_missing(DIAMETER, "is missing", "give the diameter of the hole"))?;
-    let radius = LENGTH.read(DIAMETER, diameter)? / 2.0;
-    if 2.0 * radius >= width {
-        let problem = format!("is not below the width {} mm of the plate", input.width_mm);
-        return Err(perilife_base::error::input(DIAMETER, diameter, problem, "give a smaller hole or a wider plate"));
-    }
-    const REMEDY: &str = "give 1, a crack on one side of the hole, or 2, one on both";
-    match input.cracks {
-        Some(cracks @ (1 | 2)) => Ok((radius, cracks)),
-        Some(cracks) => Err(perilife_base::error::input(CRACKS, cracks, "is not 1 or 2", REMEDY)),
-        None => Err(input_missing(CRACKS, "is missing", REMEDY)),
-    }
-}
-
 /// The crack lies in the section.
-fn check_sizes(flaw: &PartThrough, given: &Input) -> Result<()> {
-    let mm = |length: f64| (length / MM * 1e6).round() / 1e6;
+fn check_sizes(flaw: &PartThrough) -> Result<()> {
+    let (depth, half_length) = (round_mm(flaw.depth), round_mm(flaw.half_length));
     if flaw.depth >= flaw.through_depth() {
-        let (t, half) = (mm(flaw.through_depth()), if flaw.through_depth() < flaw.thickness { "half " } else { "" });
-        let problem =
-            format!("is not below {half}the thickness, {t} mm: a/t = {:.3}, the crack is through", given.crack_depth_mm / t);
-        let remedy = "give a smaller depth, or a through crack in kind = \"plate\"";
-        return Err(input("specimen.crack_depth_mm", given.crack_depth_mm, problem, remedy));
+        let (t, half) = (round_mm(flaw.through_depth()), if flaw.through_depth() < flaw.thickness { "half " } else { "" });
+        let problem = format!("is not below {half}the thickness, {t} mm: a/t = {:.3}, the crack is through", depth / t);
+        return Err(input(
+            "specimen.crack_depth_mm",
+            depth,
+            problem,
+            "give a smaller depth, or a through crack in kind = \"plate\"",
+        ));
     }
     if flaw.half_length >= flaw.room() {
-        let problem =
-            format!("is not below the {} mm that the plate has for it: the crack is wider than the plate", mm(flaw.room()));
-        return Err(input(
-            "specimen.crack_half_length_mm",
-            given.crack_half_length_mm,
-            problem,
-            "give a shorter crack or a wider plate",
-        ));
+        let room = round_mm(flaw.room());
+        let problem = format!("is not below the {room} mm that the plate has for it: the crack is wider than the plate");
+        return Err(input("specimen.crack_half_length_mm", half_length, problem, "give a shorter crack or a wider plate"));
     }
     Ok(())
 }

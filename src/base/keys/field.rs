@@ -1,0 +1,207 @@
+//! Types that a key can have.
+
+use toml::Value;
+
+use super::{Given, Key, Need, Shape, nearest};
+use crate::error::{Error, InputError, Result, input};
+use crate::input::{OF_SCENES, PLANNED, shorten};
+use crate::kinds::KindLine;
+
+/// A type of a field of a section: which values it takes, and how it is read.
+pub trait Field: Sized {
+    /// Values that it takes.
+    const SHAPE: Shape;
+    /// Whether its key has to be there.
+    const NEED: Need = Need::Required;
+
+    /// From the value of a key, found at `path`, in SI units.
+    /// Errors: a value of another sort, or beyond reason.
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self>;
+
+    /// What it is where the key is not there; `None`: it is needed.
+    fn absent() -> Option<Self> {
+        None
+    }
+
+    /// Of a part of a section: from the keys of the section.
+    fn part(_: &Given<'_>) -> Option<Result<Self>> {
+        None
+    }
+
+    /// From the table of the section.
+    /// Errors: a key that is missing; those of [`Field::take`].
+    fn read(given: &Given<'_>, key: &Key) -> Result<Self> {
+        if let Some(part) = Some(key.name).filter(|name| name.is_empty()).and_then(|_| Self::part(given)) {
+            return part;
+        }
+        match given.table.get(key.name) {
+            Some(value) => Self::take(key, &given.path_of(key.name), value),
+            None => Self::absent().ok_or_else(|| given.missing(key)),
+        }
+    }
+
+    /// Whether a value would be taken.
+    /// Errors: as [`Field::take`].
+    fn check(key: &Key, path: &str, value: &Value) -> Result<()> {
+        Self::take(key, path, value).map(drop)
+    }
+}
+
+/// What a value of another sort is told.
+pub fn refuse<T>(key: &Key, path: &str, value: &Value, shape: Shape) -> Result<T> {
+    Err(input(path, shorten(value), format!("is not {}", shape.words()), key.remedy()))
+}
+
+/// A number of a key in SI units, within its range.
+pub fn quantity(key: &Key, path: &str, value: &Value) -> Result<f64> {
+    let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
+    let Some(number) = number else {
+        return refuse(key, path, value, if matches!(key.shape, Shape::Other(_)) { key.shape } else { Shape::Number });
+    };
+    key.quantity.map_or(Ok(number), |quantity| quantity.read(path, number))
+}
+
+impl Field for f64 {
+    const SHAPE: Shape = Shape::Number;
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        quantity(key, path, value)
+    }
+}
+
+impl<T: Field, const N: usize> Field for [T; N] {
+    const SHAPE: Shape = Shape::Numbers(N);
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        let Some(list) = value.as_array().filter(|list| list.len() == N) else { return refuse(key, path, value, Self::SHAPE) };
+        let all =
+            list.iter().enumerate().map(|(i, value)| T::take(key, &format!("{path}[{i}]"), value)).collect::<Result<Vec<T>>>()?;
+        all.try_into().or_else(|_| refuse(key, path, value, Self::SHAPE))
+    }
+}
+
+macro_rules! whole {
+    ($($T:ty),+) => { $(
+        impl Field for $T {
+            const SHAPE: Shape = Shape::Whole;
+            fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+                let Some(whole) = value.as_integer().and_then(|whole| <$T>::try_from(whole).ok()) else { return refuse(key, path, value, Self::SHAPE) };
+                match key.quantity {
+                    Some(range) if !(range.low..=range.high).contains(&(whole as f64)) => {
+                        let between = if range.high - range.low <= 1.0 { "or" } else { "to" };
+                        let remedy = if key.remedy.is_empty() { format!("give {} from {} to {}", range.what, range.low, range.high) } else { key.remedy.to_owned() };
+                        Err(input(path, whole, format!("is not {} {between} {}", range.low, range.high), remedy))
+                    }
+                    _ => Ok(whole),
+                }
+            }
+        }
+    )+ };
+}
+whole!(usize, u64);
+
+impl Field for bool {
+    const SHAPE: Shape = Shape::Flag;
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        value.as_bool().map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
+    }
+}
+
+impl Field for String {
+    const SHAPE: Shape = Shape::Text;
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        value.as_str().map_or_else(|| refuse(key, path, value, Self::SHAPE), |text| Ok(text.to_owned()))
+    }
+}
+
+impl Field for std::path::PathBuf {
+    const SHAPE: Shape = Shape::Text;
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        String::take(key, path, value).map(Into::into)
+    }
+}
+
+impl Field for std::collections::BTreeMap<String, f64> {
+    const SHAPE: Shape = Shape::Table(&[]);
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        let table = toml::Table::take(key, path, value)?;
+        table.iter().map(|(name, value)| Ok((name.clone(), f64::take(key, &format!("{path}.{name}"), value)?))).collect()
+    }
+}
+
+impl Field for toml::Table {
+    const SHAPE: Shape = Shape::Table(&[]);
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        value.as_table().cloned().map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
+    }
+}
+
+/// What its reader looks at by itself.
+impl Field for Value {
+    const SHAPE: Shape = Shape::Other("a value that its reader takes");
+    fn take(_: &Key, _: &str, value: &Value) -> Result<Self> {
+        Ok(value.clone())
+    }
+}
+
+impl<T: Field> Field for Option<T> {
+    const SHAPE: Shape = T::SHAPE;
+    const NEED: Need = Need::Optional;
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        T::take(key, path, value).map(Some)
+    }
+    fn absent() -> Option<Self> {
+        Some(None)
+    }
+}
+
+impl<T: Field> Field for Vec<T> {
+    const SHAPE: Shape = Shape::List(&T::SHAPE);
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        // One pair where a list of them belongs is told of the list.
+        let is_one =
+            |list: &&Vec<Value>| matches!(T::SHAPE, Shape::Numbers(_)) && list.first().is_some_and(|first| !first.is_array());
+        let Some(list) = value.as_array().filter(|list| !is_one(list)) else { return refuse(key, path, value, Self::SHAPE) };
+        let (mut all, mut wrong) = (Vec::with_capacity(list.len()), Vec::new());
+        for (i, value) in list.iter().enumerate() {
+            match T::take(key, &format!("{path}[{i}]"), value) {
+                Ok(one) => all.push(one),
+                Err(Error::Input(error)) => wrong.extend(error.each()),
+                Err(other) => return Err(other),
+            }
+        }
+        Error::of_all(wrong).map(|()| all)
+    }
+}
+
+/// A named choice.
+/// Errors: a name that is not known, with the one that was meant.
+pub fn choice<T>(path: &str, value: &Value, lines: fn() -> Vec<KindLine>, find: impl Fn(&str) -> Option<T>) -> Result<T> {
+    let known: Vec<&str> = lines().iter().map(|line| line.name).collect();
+    let list = format!("use one of {}", known.join(", "));
+    let Some(text) = value.as_str() else { return Err(input(path, shorten(value), "is not text in quotes", list)) };
+    let Some(found) = find(text) else {
+        let listed = |list: &[(&str, &[&str])]| list.iter().any(|(key, names)| *key == path && names.contains(&text));
+        let (problem, remedy) = if listed(OF_SCENES) {
+            ("belongs to fracture scenes, not to a fatigue case", format!("run `perilife fracture`, or {list}"))
+        } else if listed(PLANNED) {
+            ("is not built yet", list)
+        } else {
+            let near = nearest(text, known.iter().copied());
+            ("is not a known kind", near.map_or(list, |near| format!("did you mean \"{near}\"?")))
+        };
+        let (key, value) = (Some(path.to_owned()), Some(shorten(value)));
+        return Err(Error::Input(Box::new(InputError { key, value, problem: problem.into(), remedy, ..InputError::default() })));
+    };
+    Ok(found)
+}
+
+/// A number in the unit of its key, within its range, for whoever compares it with others in that unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plain(pub f64);
+
+impl Field for Plain {
+    const SHAPE: Shape = Shape::Number;
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        quantity(key, path, value)?;
+        Ok(Plain(value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)).unwrap_or(f64::NAN)))
+    }
+}

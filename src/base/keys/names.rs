@@ -1,0 +1,89 @@
+//! Names of keys that are not known here: whose they are, and which of the known ones was meant.
+
+use toml::Value;
+
+use super::{Given, Key, all};
+use crate::error::InputError;
+use crate::input::shorten;
+use crate::units::us::{System, renamed};
+
+/// The kinds of a section that comes in kinds.
+pub struct Kinds<'a> {
+    /// Key that tells the kind.
+    pub tag: &'a str,
+    /// The kind of the file.
+    pub own: &'a str,
+    /// Keys of every kind.
+    pub all: &'a [(&'static str, &'static [Key])],
+}
+
+/// What a key is told that is not known here, and the known one that was meant.
+pub(super) fn stranger(
+    given: Given<'_>,
+    name: &str,
+    value: &Value,
+    known: &[Key],
+    beside: &[&str],
+    kinds: Option<&Kinds<'_>>,
+) -> (InputError, Option<String>) {
+    let told = |problem: String, remedy: String| {
+        let (key, value) = (Some(given.path_of(name)), Some(shorten(value)));
+        InputError { key, value, problem, remedy, ..InputError::default() }
+    };
+    // The same quantity without a unit, or in another one.
+    let stem = |name: &str| name.rsplit_once('_').map(|(stem, _)| stem.to_owned());
+    let with_unit = |key: &&Key| {
+        renamed(key.name, System::Us).is_some() && (stem(key.name).as_deref() == Some(name) || stem(key.name) == stem(name))
+    };
+    if let Some(key) = known.iter().find(with_unit) {
+        let twin = renamed(key.name, System::Us).map_or_else(String::new, |twin| format!(" or {}", twin.name));
+        return (told("is not a known key".into(), format!("did you mean {}{twin}?", key.name)), Some(key.name.to_owned()));
+    }
+    let Kinds { tag, own, all: kinds } = kinds.unwrap_or(&Kinds { tag: "", own: "", all: &[] });
+    let has_it = |(_, keys): &&(&str, &'static [Key])| all(keys).iter().any(|key| key.name == name);
+    let owners: Vec<&str> = kinds.iter().filter(has_it).map(|(kind, _)| *kind).collect();
+    if let [first, ..] = owners[..] {
+        let more = if owners.len() > 3 { format!(" and {} more", owners.len() - 3) } else { String::new() };
+        let shown = owners.iter().take(3).copied().collect::<Vec<_>>().join(", ");
+        let problem = format!("is not a key of {tag} = \"{own}\": it belongs to {shown}{more}");
+        return (told(problem, format!("leave it out, or use {tag} = \"{first}\"")), None);
+    }
+    let names = || known.iter().map(|key| key.name).chain(beside.iter().copied());
+    if let Some(near) = nearest(name, names()) {
+        return (told("is not a known key".into(), format!("did you mean {near}?")), Some(near));
+    }
+    (told("is not a known key".into(), none_near(names())), None)
+}
+
+/// What is known, where none of it is near.
+pub fn none_near<'n>(known: impl Iterator<Item = &'n str>) -> String {
+    let known: Vec<&str> = known.collect();
+    format!("known here: {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })
+}
+
+/// The name that was meant, if one is near: a quarter of its letters may be wrong, three at most; names of one or two letters are too short.
+pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<String> {
+    let most = (name.chars().count() / 4).clamp(1, 3);
+    let long = known.filter(|_| name.chars().count() > 2);
+    let far = long.map(|other| (distance(name, other), other)).filter(|(far, _)| *far <= most);
+    far.min_by_key(|(far, _)| *far).map(|(_, other)| other.to_owned())
+}
+
+/// Letters to be put in, left out, changed, or swapped with the next one.
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let mut rows = vec![(0..=b.len()).collect::<Vec<_>>()];
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let change = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut least = change.min(rows[i - 1][j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                least = least.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(least);
+        }
+        rows.push(row);
+    }
+    rows[a.len()][b.len()]
+}
