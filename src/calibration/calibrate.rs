@@ -41,9 +41,7 @@ pub enum Calibration {
 
 /// A calibration with its fit.
 pub enum Fitted<'c> {
-    /// Of lives.
     Lives(&'c CalibrationCase, Box<Fit>),
-    /// Of rates.
     Rates(&'c LawCase, LawFits),
 }
 

@@ -42,7 +42,6 @@ pub struct FitTask<'a> {
 pub struct Fit {
     /// The curve that the constants are shown beside: the pointwise median of several specimens, or the only one.
     pub record: FittedCurve,
-    /// Each specimen with its own fit.
     pub specimens: Vec<FittedCurve>,
     /// Covariance of the record's (ln A, p).
     pub confidence: Confidence,

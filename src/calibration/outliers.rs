@@ -63,7 +63,6 @@ pub struct StepRate {
 struct RobustLine {
     /// ln of the rate at 1 MPa√m.
     pub intercept: f64,
-    /// Slope.
     pub m: f64,
 }
 

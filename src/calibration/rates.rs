@@ -44,7 +44,6 @@ perilife_base::kinds! {
 /// Growth rate at one crack length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatePoint {
-    /// Cycles.
     pub cycles: f64,
     /// Crack length (secant: mean of the readings; polynomial: of the parabola), m.
     pub crack_length: f64,

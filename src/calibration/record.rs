@@ -27,7 +27,6 @@ type Figure = Option<f64>;
 pub enum FitRecord {
     /// To lives of readings.
     Lives(Box<LivesRecord>),
-    /// To rates.
     Rates(Box<RatesRecord>),
 }
 

@@ -26,7 +26,6 @@ const COMMON_SHARE: f64 = 0.8;
 pub struct Constants {
     /// A, 1/cycle.
     pub a: f64,
-    /// Exponent p.
     pub p: f64,
 }
 
@@ -85,13 +84,10 @@ pub fn is_at_end(p: f64) -> bool {
 /// A curve with its fit, cycles counted from the first reading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FittedCurve {
-    /// Name of the specimen.
     pub name: String,
-    /// A and p.
     pub constants: Constants,
     /// Crack lengths, m.
     pub crack_length: Vec<f64>,
-    /// Measured cycles.
     pub cycles_measured: Vec<f64>,
     /// Fitted cycles at the same lengths.
     pub cycles_fitted: Vec<f64>,
@@ -126,7 +122,6 @@ pub(super) fn fit_all(curves: &[MeasuredCurve], criterion: Criterion, fixed_p: O
     Search::of(curves, criterion, law, 2).constants(fixed_p)
 }
 
-/// Fits one curve: A and p, or A at a fixed p.
 pub(super) fn fit_one(curve: &MeasuredCurve, criterion: Criterion, fixed_p: Option<f64>, law: &PowerLaw) -> Result<FittedCurve> {
     fitted_curve(curve, Search::of(std::slice::from_ref(curve), criterion, law, 1).constants(fixed_p)?, law)
 }

@@ -21,7 +21,6 @@ const CORE_STRAIN: f64 = 0.93;
 /// A fatigue bond and its cyclic strain ε.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FatigueBond {
-    /// Which bond.
     pub bond: Bond,
     /// Cyclic strain ε = s_max (1-R)^γ, above zero.
     pub strain: f64,

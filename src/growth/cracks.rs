@@ -142,7 +142,6 @@ pub trait CrackedPlate: Sized {
 pub struct Parted {
     /// Whether it is in two loaded pieces.
     pub is_severed: bool,
-    /// Bonds that were cut.
     pub bonds: usize,
 }
 
@@ -153,9 +152,7 @@ pub struct Cracks<'a, P: CrackedPlate> {
     /// A known end of the run.
     end: Option<End>,
     scales: Scales,
-    /// The plate.
     pub plate: P,
-    /// Cracks and tips.
     pub state: CracksState,
     curve: Vec<CurvePoint>,
     /// Rows where the solver was last built.

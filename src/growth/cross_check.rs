@@ -17,7 +17,6 @@ const WARNED: f64 = 0.03;
 /// How far two independent K lie apart.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CrossCheck {
-    /// Places that were compared.
     pub compared: usize,
     /// Largest difference, the K of the run over the other one less 1.
     pub difference: f64,
@@ -60,7 +59,6 @@ pub struct ReleasedEnergy {
     pub growth: f64,
     /// Growth in the convention of crack length, m.
     pub lengthening: f64,
-    /// Cycles.
     pub cycles: f64,
 }
 

@@ -166,11 +166,8 @@ pub struct Fields {
 /// What a run took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct SolverStatistics {
-    /// Points that were solved for.
     pub points_solved: usize,
-    /// Equilibrium solves.
     pub solves: usize,
-    /// Solver iterations.
     pub iterations: usize,
     /// Times that nodes were made finer than usual.
     pub refined: u32,

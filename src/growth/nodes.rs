@@ -54,7 +54,6 @@ pub struct NodeState {
     /// Work of the loads of the last equilibrium at the nominal load, J.
     work: f64,
     solves: usize,
-    /// Nodes at the most.
     nodes: usize,
     warnings: Vec<String>,
 }

@@ -53,12 +53,10 @@ pub struct PointPlate {
     corners: Vec<Point>,
     /// About the rings of the initial tips.
     warnings: Vec<String>,
-    /// Which bonds carry.
     pub bonds: Bonds,
     /// Those that changed since the last equilibrium.
     changed: Vec<Bond>,
     equilibrium: Equilibrium,
-    /// Where flanks are in contact.
     contact: Contact,
     /// In the layout of the equilibrium, m.
     displacement: Vec<f64>,
@@ -67,7 +65,6 @@ pub struct PointPlate {
     lower: Vec<LowerLoad>,
     /// Work of the loads of the last equilibrium, J.
     work: f64,
-    /// Of every tip.
     memory: Vec<Memory>,
     /// Remaining life λ of bonds that have spent some of it, ascending.
     remaining_life: Vec<(Bond, f64)>,

@@ -47,7 +47,6 @@ impl StopReason {
 /// State of one tip at a recorded step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipRecord {
-    /// What has become of it.
     pub state: TipState,
     /// Position, m.
     pub position: Point,

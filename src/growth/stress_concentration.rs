@@ -43,11 +43,8 @@ pub struct Stressed {
     pub moved: (f64, Point),
     /// How fine the last nodes were.
     pub resolution: Resolution,
-    /// Nodes.
     pub nodes: usize,
-    /// Unknowns.
     pub unknowns: usize,
-    /// Solves.
     pub solves: usize,
     /// Raster of the fields.
     pub grid: PointGrid,

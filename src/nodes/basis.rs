@@ -42,7 +42,6 @@ pub(super) const PIVOT_LEAST: f64 = 1e-10;
 pub struct Value {
     /// Its place in the list that was given.
     pub node: u32,
-    /// Φ_i.
     pub value: f64,
     /// Gradient of Φ_i, 1/m.
     pub gradient: Point,

@@ -30,11 +30,8 @@ pub const UNKNOWNS_OF_GRIP: usize = 3;
 /// `factor v vᵀ` of some unknowns: a support, which holds `v·u` at `way` times the displacement of the load.
 #[derive(Debug, Clone, Default)]
 pub struct Square {
-    /// Unknowns, ascending.
     pub unknowns: Vec<u32>,
-    /// v.
     pub v: Vec<f64>,
-    /// Its factor.
     pub factor: f64,
     /// Where it is held, over the displacement of the load.
     pub way: f64,

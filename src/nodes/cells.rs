@@ -66,9 +66,7 @@ pub struct Dividers {
 
 /// What divides one cell: sides of rims, pieces of cracks, and tips with the directions ahead of them.
 pub struct OfCell {
-    /// Sides of rims.
     pub sides: Vec<[Point; 2]>,
-    /// Pieces of cracks.
     pub cracks: Vec<[Point; 2]>,
     tips: Vec<(Point, Point)>,
 }

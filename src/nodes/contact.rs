@@ -57,7 +57,6 @@ impl Pressed {
         distance_to_segment(at, a, b) < SAME * distance(a, b)
     }
 
-    /// Whether a tip is one of its ends.
     pub fn ends_at(&self, tip: Point) -> bool {
         self.ends.iter().any(|end| distance(*end, tip) < SAME * distance(self.ends[0], self.ends[1]))
     }

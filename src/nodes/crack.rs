@@ -17,7 +17,6 @@ const STRAIGHT: f64 = 0.005;
 /// A tip as nodes see it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tip {
-    /// Which end of which crack.
     pub end: LineEnd,
     /// Length of its crack, half of it with two tips, or growth since the last kink if that is less, m.
     pub length: f64,

@@ -27,7 +27,6 @@ const INFLUENCE_LEAST: f64 = 2.75;
 pub struct Patch {
     /// Sides of the cracks that it is on.
     pub side: u64,
-    /// Area, m².
     pub area: f64,
     /// Node, unknown and its mean dilatation, 1/m.
     pub means: Vec<(u32, u32, f64)>,

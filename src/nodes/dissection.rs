@@ -25,7 +25,6 @@ const OFF_MIDDLE: f64 = 0.4;
 pub struct Member {
     /// Where it lies, m.
     pub at: Point,
-    /// Nodes.
     pub nodes: Vec<u32>,
 }
 

@@ -46,19 +46,15 @@ impl Neighbourhood {
 /// A plate of nodes.
 #[derive(Debug, Clone)]
 pub struct Discretisation {
-    /// Cells.
     pub grid: Grid,
-    /// Nodes.
     pub nodes: Nodes,
     /// Radius of influence of every node, m.
     pub supports: Vec<f64>,
-    /// Sides of rims.
     pub sides: Vec<[Point; 2]>,
     /// What parts nodes from points.
     pub obstacles: Obstacles,
     /// How many of the cuts are cracks; they come first.
     pub cracks: usize,
-    /// Axes of the tips.
     pub axes: Vec<TipAxes>,
     /// First unknown of every node, and the number of all.
     pub first: Vec<u32>,

@@ -23,7 +23,6 @@ pub struct Source {
 }
 
 impl Source {
-    /// A point.
     pub fn point(at: Point, spacing: f64, reach: f64) -> Self {
         Source { at, radius: 0.0, spacing, reach }
     }

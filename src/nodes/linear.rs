@@ -21,7 +21,6 @@ pub struct Room {
     length: Vec<Lanes>,
     slope: [Vec<Lanes>; 2],
     weight: Vec<Lanes>,
-    /// Φ and its gradient.
     values: [Vec<Lanes>; 3],
 }
 

@@ -130,7 +130,6 @@ fn cell(x: f64, width: f64, a: f64, b: f64) -> f64 {
 /// Seeks the forces F ≥ 0 on pieces that make `½ F·C F + F·(g₀ + u)` least and bear those of the pins: then gaps, its gradient, are 0 where
 /// F is above 0, and push it there elsewhere. Forces are over the largest of the pins, lengths over what it squeezes.
 pub struct Search {
-    /// Pins.
     pub rims: Vec<PinRim>,
     /// Rim of every piece, and its number there.
     places: Vec<(usize, usize)>,

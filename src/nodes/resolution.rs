@@ -22,7 +22,6 @@ use perilife_plate::specimen::{CrackLine, Hole, Load, Point, Specimen};
 
 /// Share of a piece of crack by which it may miss a rim that it begins at: round-off of the input.
 const ON_RIM: f64 = 1e-6;
-/// Cells at the most.
 const CELLS_MOST: usize = 200_000;
 
 /// Spacings in the radius of a hole or fillet that K of a crack nearby asks for.
@@ -79,7 +78,6 @@ pub struct Resolution {
     pub fineness: f64,
     /// Radius of influence of a node, in its spacings.
     pub support: f64,
-    /// Polynomials.
     pub basis: BasisKind,
     /// Near-tip fields.
     pub enrichment: Enrichment,
@@ -340,7 +338,6 @@ pub fn room(specimen: &Specimen, lines: &[CrackLine], tip: &Tip) -> f64 {
 /// How fine nodes are and how long steps of cracks are, of a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ElementFreeSettings {
-    /// Nodes.
     pub resolution: Resolution,
     /// Change of K of the initial tips up to which they need not be finer.
     pub tolerance: f64,

@@ -53,9 +53,7 @@ pub struct StressAt {
 /// Stress along a rim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RimStress {
-    /// Which rim.
     pub rim: Rim,
-    /// The largest.
     pub largest: StressAt,
     /// The least, in compression where it is negative.
     pub least: StressAt,

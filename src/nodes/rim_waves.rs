@@ -45,7 +45,6 @@ pub struct Shapes {
     flanks: Vec<Flank>,
     /// Of waves and decays.
     weights: DMatrix<f64>,
-    /// At all places.
     pub at_places: DMatrix<f64>,
     /// ∫ e^(-inθ) of each of them.
     pub spectrum: DMatrix<Complex<f64>>,

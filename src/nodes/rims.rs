@@ -18,7 +18,6 @@ const LOOKS: usize = 32;
 pub enum Stretch {
     /// Straight, between two corners.
     Straight([Point; 2]),
-    /// A circle.
     Circle(Hole),
 }
 

@@ -280,7 +280,6 @@ pub struct Stress {
     pub x: f64,
     /// σ_y.
     pub y: f64,
-    /// τ_xy.
     pub xy: f64,
     /// σ_z: 0 in plane stress, ν (σ_x + σ_y) in plane strain.
     pub across: f64,

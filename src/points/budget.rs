@@ -30,7 +30,6 @@ pub struct Budget {
     pub points: f64,
     /// Places of the lattices that hold them, empty ones among them.
     pub places: f64,
-    /// Bonds.
     pub bonds: f64,
     /// Memory at the peak of a run, bytes.
     pub bytes: f64,
@@ -49,7 +48,6 @@ pub struct Budget {
 /// Points and bonds of a plate, of a case or a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct PointPlate<'a> {
-    /// Plate.
     pub specimen: &'a Specimen,
     /// Spacing of the coarsest level, m.
     pub spacing: f64,

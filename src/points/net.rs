@@ -19,9 +19,7 @@ const TASK: usize = 4096;
 /// A bond of a net.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetBond {
-    /// Owner.
     pub from: u32,
-    /// Partner.
     pub to: u32,
     /// Length |ξ|, m.
     pub length: f64,
@@ -65,7 +63,6 @@ impl NetBond {
 pub struct Net {
     /// Positions, m, plate axes.
     pub positions: Vec<Point>,
-    /// Volumes, m³.
     pub volumes: Vec<f64>,
     /// Spacing of every point's own level, m.
     pub spacings: Vec<f64>,

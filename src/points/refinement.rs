@@ -162,7 +162,6 @@ pub fn corners(path: &str, [from, to]: [[f64; 2]; 2], specimen: &Specimen) -> Re
     Ok((low, high))
 }
 
-/// A point in words.
 pub fn words(p: Point) -> String {
     let round = |metres: f64| (metres / MM * 1e6).round() / 1e6;
     format!("({}, {}) mm", round(p[0]), round(p[1]))

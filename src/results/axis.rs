@@ -109,7 +109,6 @@ impl Axis {
         self.labelled.iter().map(|value| (*value, self.format(*value))).collect()
     }
 
-    /// Ends.
     pub fn ends(&self) -> [f64; 2] {
         [self.low, self.high]
     }

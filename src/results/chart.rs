@@ -11,7 +11,6 @@ use super::specimen_picture::sketch::Sketch;
 use perilife_base::error::Result;
 use perilife_plate::specimen::Point;
 
-/// Computed.
 pub const COMPUTED: &str = "#0b5fa5";
 /// A second quantity beside the computed one.
 pub const SECOND: &str = "#a8480a";
@@ -33,9 +32,7 @@ pub const LARGE: Size = Size { width: 900.0, height: 560.0, text: 14.0 };
 /// Size of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Size {
-    /// Width, px.
     pub width: f64,
-    /// Height, px.
     pub height: f64,
     /// Height of numbers and words, px.
     pub text: f64,
@@ -59,7 +56,6 @@ pub enum Mark {
 /// Named points of a chart, in the units of its axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Name in the legend.
     pub name: String,
     /// (x, y); points that are not finite (or not positive on a logarithmic axis) are left out.
     pub points: Vec<(f64, f64)>,

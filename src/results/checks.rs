@@ -43,7 +43,6 @@ pub enum Verdict {
     Doubtful,
     /// It cannot be told.
     NotChecked,
-    /// It holds.
     Holds,
 }
 
@@ -55,7 +54,6 @@ pub enum Side {
     Safe,
     /// Too long.
     Unsafe,
-    /// Either.
     Either,
 }
 
@@ -64,13 +62,11 @@ pub enum Side {
 pub struct Check {
     /// Name, the same in every run.
     pub name: Cow<'static, str>,
-    /// Whether it holds.
     pub verdict: Verdict,
     /// What it may do to the life, or the share of the life that it concerns, percent; `None` where nobody knows.
     pub effect_percent: Option<f64>,
     /// On which side of the true life the life is by that.
     pub side: Option<Side>,
-    /// In words, a line.
     pub words: String,
     /// What to do about it.
     pub remedy: Option<String>,
@@ -192,7 +188,6 @@ pub fn lines(checks: &[Check]) -> Vec<String> {
     open.take(LINES_MOST).map(|check| line(&check.words)).collect()
 }
 
-/// Whether a strength is there to be checked.
 fn strength(case: &Case, name: &'static str) -> Check {
     let of_k = name == "toughness";
     let (is_given, is_asked, [what, missing, key, off]) = if of_k {

@@ -217,7 +217,6 @@ pub struct TipRows {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RunTables {
     pub rows: Vec<Row>,
-    /// By tip.
     pub tips: Vec<TipRows>,
     /// Cycles at which 5 and 95 % of specimens have reached the length of a row; `None` without a band.
     pub band: Option<Vec<[f64; 2]>>,

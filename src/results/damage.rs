@@ -29,11 +29,9 @@ const PATH: &str = "#0096ff";
 /// What the picture shows.
 #[derive(Debug, Clone, Copy)]
 pub struct DamagePicture<'a> {
-    /// Lattice of the points.
     pub grid: &'a PointGrid,
     /// State of the plate.
     pub snapshot: &'a Snapshot,
-    /// Cracks of the start.
     pub cracks: &'a [Crack],
     /// Path of every tip, m.
     pub paths: &'a [Vec<Point>],

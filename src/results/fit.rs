@@ -32,7 +32,6 @@ pub struct Kept {
     pub record: FitRecord,
     /// The law, for `fatigue.fitted`.
     law: String,
-    /// All tables, each with its text.
     tables: Vec<(Table, String)>,
 }
 

@@ -61,7 +61,6 @@ pub struct FleetInspections {
 pub struct FleetReport {
     fleet: Fleet,
     lives: FleetLives,
-    /// How it is looked at.
     looks: Option<Looks>,
     /// Life of the run, cycles.
     run: Option<f64>,

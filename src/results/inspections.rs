@@ -14,7 +14,6 @@ use perilife_growth::predict::{CurvePoint, Prediction};
 pub struct Asked {
     /// How inspections find cracks.
     pub detection: Option<Detection>,
-    /// Cycles of the first inspection.
     pub first_inspection: Option<f64>,
     /// Life at somewhat other input.
     pub sensitivities: bool,

@@ -23,7 +23,6 @@ pub const OF_BONDS: [&str; 7] =
 pub struct Choice {
     /// Its key in the input file or of the result.
     pub key: &'static str,
-    /// What was chosen.
     pub value: Value,
     /// Whether the file asked for it or the program chose it, and why; `None` for what follows from other choices.
     pub why: Option<String>,
@@ -154,7 +153,6 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
     ]
 }
 
-/// The nodes of a case.
 fn of_nodes(case: &Case, nodes: &ElementFreeSettings) -> Vec<Choice> {
     let ElementFreeSettings { resolution, step_share, .. } = *nodes;
     let why = |key: &str| Some(if given(&case.echo, key) { "given in the case" } else { "chosen by the program" }.to_owned());

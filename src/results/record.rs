@@ -69,10 +69,8 @@ pub struct RunRecord {
     pub checks: Vec<Check>,
     pub warnings: Vec<String>,
     pub version: String,
-    /// The case as it was given.
     pub case: Value,
     pub band: Option<BandRecord>,
-    /// Why there is no band.
     pub no_band: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub measured: Option<OwnRecord>,

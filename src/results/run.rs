@@ -93,7 +93,6 @@ pub struct Wanted {
 /// A run with all that was found about it.
 #[derive(Debug)]
 pub struct Judged {
-    /// Its figures.
     pub record: RunRecord,
     /// What the user is told of it where it ran.
     pub told: Vec<String>,

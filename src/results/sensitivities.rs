@@ -26,11 +26,9 @@ const LENGTH: f64 = 0.1;
 /// The life at one other input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
-    /// What is changed.
     pub input: &'static str,
     /// By how much, in words.
     pub change: String,
-    /// Life then.
     pub life: RecordedLife,
     /// By how much the life changes, share of that of the run; NaN where one is unlimited.
     pub change_of_life: f64,

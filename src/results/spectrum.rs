@@ -48,7 +48,6 @@ pub struct SpectrumRecord {
     pub retardation: Map<String, Value>,
 }
 
-/// The curves of a spectrum.
 pub fn curves(spectrum: &Spectrum) -> SpectrumCurves {
     let levels = spectrum.exceedances();
     let each = levels.len().div_ceil(MAXIMA_MOST);

@@ -19,9 +19,7 @@ use perilife_growth::predict::StopReason;
 pub const PLAN_FILE: &str = "plan.json";
 /// File of a case that says what came of it.
 pub const OUTCOME_FILE: &str = "outcome.toml";
-/// The table.
 pub const TABLE_FILE: &str = "sweep.csv";
-/// The figures.
 pub const FIGURES_FILE: &str = "sweep.json";
 /// The picture.
 pub const CHART_FILE: &str = "life.svg";
@@ -31,22 +29,17 @@ const FAILURES_MAX: usize = 100;
 /// What a sweep consists of: all that is needed to collect its results.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// Program version.
     pub version: String,
-    /// Name of the sweep.
     pub name: String,
     /// The sweep file as it was read.
     pub design: Value,
-    /// What varies.
     pub columns: Vec<String>,
-    /// Every case.
     pub cases: Vec<PlannedCase>,
 }
 
 /// A case of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlannedCase {
-    /// Hash of its input.
     pub input: String,
     /// Its values, as the table writes them.
     pub values: Vec<String>,

@@ -11,7 +11,6 @@ use perilife_plate::specimen::SpecimenKind;
 
 /// Option that asks for it.
 const KEY: &str = "--sweep";
-/// Lengths at the most.
 const LENGTHS_MOST: f64 = 10_000.0;
 /// Share of a step by which the last one may fall short.
 const SLACK: f64 = 1e-6;

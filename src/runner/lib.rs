@@ -65,7 +65,6 @@ pub struct Summary {
     pub result: Value,
     /// The part of it that a listing of runs shows, all that the user should know under `warnings`.
     pub figures: Value,
-    /// What is printed as it is.
     pub printed: String,
     /// The result in words.
     pub lines: Vec<String>,
@@ -132,7 +131,6 @@ impl Summary {
 pub enum TaskCheckpoint {
     /// Of a run of cycles.
     Cycles(Box<Checkpoint>),
-    /// Of a scene.
     Scene(Box<SceneCheckpoint>),
 }
 

@@ -59,7 +59,6 @@ fn crack_path(file: &'static str, path: &[PathPoint]) -> Table {
         .numbers("speed_m_s", column(|point| point.speed))
 }
 
-/// All tables.
 pub fn tables(fracture: &Fracture) -> [Table; 3] {
     [history(fracture), crack_path("crack_path.csv", &fracture.path), crack_path("cracking.csv", &fracture.cracking)]
 }
@@ -261,7 +260,6 @@ pub struct DamageRecord {
     pub printed_law: Option<bool>,
 }
 
-/// The record of a scene.
 pub fn record(scene: &Scene, fracture: &Fracture) -> SceneRecord {
     let figures = &fracture.figures;
     let peak = rows(fracture).max_by(|a, b| a.load.total_cmp(&b.load));
@@ -300,7 +298,6 @@ pub fn record(scene: &Scene, fracture: &Fracture) -> SceneRecord {
     }
 }
 
-/// Time of a step where there is time.
 fn time_of(step: usize, fracture: &Fracture) -> Option<f64> {
     (fracture.figures.time_step > 0.0).then(|| clean(step as f64 * fracture.figures.time_step))
 }

@@ -29,7 +29,6 @@ pub(super) const NAMED: usize = 5;
 pub struct SweepFolder {
     /// As the user named it.
     pub path: PathBuf,
-    /// What it is to hold.
     pub plan: Plan,
     /// What goes because the plan has changed, in words.
     pub changed: Option<String>,

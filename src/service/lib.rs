@@ -51,7 +51,6 @@ const FORGET_EVERY: Duration = Duration::from_secs(60);
 /// What a service is to do.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// Address.
     pub listen: SocketAddr,
     /// `sqlite://FILE` or `postgres://...`.
     pub database: String,

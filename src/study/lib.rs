@@ -70,7 +70,6 @@ pub struct Topic {
     /// Values that its questions share.
     #[serde(default)]
     pub set: Toml,
-    /// Its questions.
     pub ask: Vec<Toml>,
 }
 
@@ -114,7 +113,6 @@ pub fn read_topics() -> Result<Vec<Topic>> {
     FILES.iter().map(topic).collect()
 }
 
-/// All topics.
 pub static TOPICS: LazyLock<Vec<Topic>> = LazyLock::new(|| read_topics().unwrap_or_default());
 
 /// The topics of these names, all where no name is given.
@@ -126,7 +124,6 @@ pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
 }
 
 impl Topic {
-    /// Its rows.
     fn rows(&self) -> Result<Vec<Row>> {
         let (mut table, asker) = (Table::new(self.name), Asker::new(&Silent));
         for questions in &self.ask {

@@ -25,11 +25,9 @@ use perilife_base::error::{Error, Result};
 pub struct Question {
     /// What computes: the case (where left out), `plate`, the same without crack and law, or a computation by its name.
     by: Option<String>,
-    /// Text of the case.
     case: String,
     /// A plate of `data/reference` in its place.
     plate: String,
-    /// Keys that are set.
     keys: String,
     /// Another case, or the same with other keys.
     beside: Option<Beside>,
@@ -41,7 +39,6 @@ pub struct Question {
     pub spread: Vec<Table>,
     /// What is compared, in words.
     pub quantity: String,
-    /// Its formula.
     pub read: String,
     /// What it should be; left out, the reading is itself an error in percent.
     pub truth: Option<Value>,
@@ -59,7 +56,6 @@ pub struct Question {
 struct Beside {
     /// Its text; that of the question where left out.
     case: Option<String>,
-    /// Its keys.
     keys: String,
 }
 
@@ -69,7 +65,6 @@ struct Beside {
 pub struct Miss {
     /// Error that is known, percent; 0 of rows that keep their bound.
     pub known: Value,
-    /// Why.
     pub reason: String,
 }
 

@@ -60,7 +60,6 @@ const FINER: (&str, &str) = ("three_point_bending", "model.spacing_mm=0.5");
 pub struct Curve(pub Vec<(f64, Point)>);
 
 impl Curve {
-    /// That of a tip of a run.
     pub fn of_tip(run: &Prediction, tip: usize) -> Self {
         Curve(run.curve.iter().map(|row| (row.cycles, row.tips[tip].position)).collect())
     }
@@ -162,7 +161,6 @@ pub fn tips_of_table(text: &str) -> Result<Vec<Curve>> {
 }
 
 impl Reference {
-    /// The reference of a name.
     pub fn named(name: &str) -> Result<&'static Reference> {
         let found = REFERENCES.iter().find(|reference| reference.name == name);
         found.ok_or_else(|| Error::Mechanics(format!("no reference {name}")))

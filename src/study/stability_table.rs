@@ -93,7 +93,6 @@ pub fn boundaries(records: &[Record]) -> String {
     text
 }
 
-/// All records as one object.
 pub fn object(records: &[Record]) -> Value {
     let record = |record: &Record| {
         let sweep = record.sweep;

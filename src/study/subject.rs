@@ -61,7 +61,6 @@ pub struct Subject<'o> {
     source: Source,
     set: Vec<String>,
     observer: &'o dyn Watcher,
-    /// The case.
     pub case: Case,
     run: OnceCell<Prediction>,
     compared: OnceCell<Vec<Compared>>,
@@ -99,7 +98,6 @@ impl<'o> Subject<'o> {
         Ok(Subject { source, set: keys, observer, case, run, compared, tips, methods, stressed, points })
     }
 
-    /// Its run.
     pub fn run(&self) -> Result<&Prediction> {
         once(&self.run, || predict(&self.case, self.observer))
     }

@@ -11,7 +11,6 @@ pub struct Row {
     pub name: &'static str,
     /// What is compared, with unit and conditions.
     pub quantity: String,
-    /// What the program computes.
     pub computed: f64,
     /// What it should be; 0 where the figure is itself an error in percent.
     pub reference: f64,

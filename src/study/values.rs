@@ -20,7 +20,6 @@ const DEPTH_MOST: usize = 8;
 pub struct Values<'a> {
     /// Values by name.
     pub table: &'a Table,
-    /// Readings by name.
     pub reading: Reading<'a>,
 }
 

@@ -34,7 +34,6 @@ pub struct Constant {
 /// A law fitted to rates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawFit {
-    /// Which law.
     pub kind: GrowthLawKind,
     /// Its constants, C first; empty where there is no fit.
     pub constants: Vec<Constant>,

@@ -24,9 +24,7 @@ pub(super) type Shape<'a> = &'a (dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync);
 /// Where a sum of squares is least.
 #[derive(Debug, Clone)]
 pub(super) struct Minimum {
-    /// Variables.
     pub at: Vec<f64>,
-    /// Level of the shape.
     pub level: f64,
     /// Measured less fitted.
     pub residuals: Vec<f64>,

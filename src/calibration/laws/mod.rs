@@ -78,7 +78,6 @@ const WORSE: f64 = 10.0;
 pub struct LawFits {
     /// Each law, fitted or left out.
     pub candidates: Vec<LawFit>,
-    /// Place of the chosen one.
     pub chosen: usize,
     /// Criterion of the next best law less that of the chosen one; `None` where no other law is left.
     pub margin: Option<(GrowthLawKind, f64)>,

@@ -46,7 +46,6 @@ pub struct Forecast {
     covariance: Vec<f64>,
     /// ν of Student's t.
     freedom: f64,
-    /// Specimens that it rests on.
     specimens: usize,
     /// Whether it is of a specimen with readings of its own, or of another lot.
     is_special: bool,
@@ -57,7 +56,6 @@ pub struct Forecast {
 /// A life and its scatter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Life {
-    /// Median, cycles.
     pub median: f64,
     /// Standard deviation of ln life where ν is large.
     pub deviation: f64,

@@ -39,7 +39,6 @@ pub type RangesOfTips<'a> = &'a dyn Fn(f64) -> Vec<f64>;
 pub struct Reading {
     /// Crack length, m.
     pub length: f64,
-    /// Cycles.
     pub cycles: f64,
     /// Whether the growth since the reading before it counts.
     pub counts: bool,
@@ -74,7 +73,6 @@ impl Interval {
 /// A specimen with its reading intervals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
-    /// Name.
     pub name: String,
     /// In the order of the test.
     pub intervals: Vec<Interval>,

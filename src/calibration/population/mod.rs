@@ -58,7 +58,6 @@ pub struct Between {
     pub level: f64,
     /// Standard deviation of the slope.
     pub slope: f64,
-    /// Correlation of both.
     pub correlation: f64,
 }
 
@@ -72,7 +71,6 @@ impl Between {
 /// One specimen in the lot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Member {
-    /// Name.
     pub name: String,
     /// ln rate at the pivot, most probable with what the others say.
     pub level: f64,
@@ -105,11 +103,9 @@ pub struct Population {
     pub slope_of_readings: f64,
     /// Law of the lot: the mean of ln rate.
     pub law: CurveLaw,
-    /// T.
     pub between: Between,
     /// Noise along a crack.
     pub noise: Noise,
-    /// Specimens.
     pub specimens: Vec<Member>,
 }
 

@@ -42,9 +42,7 @@ pub type NoBand = String;
 /// A plate that was run, seen by the lot that its law was fitted to.
 #[derive(Debug, Clone)]
 pub struct Plate {
-    /// The lot.
     pub lot: Population,
-    /// Lot of the plate.
     pub of: Lot,
     /// Cycles of every row of the run.
     cycles: Vec<f64>,

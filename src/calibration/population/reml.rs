@@ -68,7 +68,6 @@ pub(super) struct Penalty {
 
 /// Fixed effects at given variances.
 pub(super) struct Estimate {
-    /// Change of the fixed effects.
     pub change: Effects,
     /// V: covariance of the fixed effects.
     pub covariance: EffectsMatrix,

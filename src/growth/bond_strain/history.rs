@@ -28,7 +28,6 @@ const SHORT_CRACK_HORIZONS: f64 = 5.0;
 /// The plate after a block.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Cycles.
     pub cycles: f64,
     /// Crack length, m.
     pub crack_length: f64,
@@ -43,7 +42,6 @@ impl Row {
         end.length_of(specimen, self.crack_length, &self.tips)
     }
 
-    /// Where the tips are.
     pub fn tips(&self) -> &[TipRecord] {
         &self.tips
     }
@@ -281,11 +279,9 @@ fn end_at(rows: &mut Vec<Row>, end: &End, specimen: &Specimen) {
 
 /// Where a run stands.
 pub(super) struct RunState {
-    /// Which bonds carry.
     pub bonds: Bonds,
     /// What life is left to them.
     pub life: BondLife,
-    /// Tips of the cracks.
     pub tips: Vec<CrackTip>,
     /// Bonds that come near the critical stretch, also away from the tips.
     pub near_limit: Vec<Bond>,
@@ -293,9 +289,7 @@ pub(super) struct RunState {
     pub track: GrowthHistory,
     /// Bonds broken since the start, those set aside not counted.
     pub broken_bonds: usize,
-    /// Equilibrium solves.
     pub solves: usize,
-    /// Solver iterations.
     pub iterations: usize,
     /// Whether a window was condensed; a solver that is built anew has none at first.
     pub had_window: bool,

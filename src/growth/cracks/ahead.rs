@@ -10,7 +10,6 @@ use perilife_points::crack_tip::TipState;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Encounter {
     pub(crate) state: TipState,
-    /// The crack that it meets.
     pub(crate) crack: Option<usize>,
 }
 

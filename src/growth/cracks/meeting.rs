@@ -24,9 +24,7 @@ pub struct Segment {
     pub from: Point,
     /// Where it is, m.
     pub to: Point,
-    /// What it has become.
     pub state: TipState,
-    /// What it has met.
     pub(super) meets: Option<Met>,
 }
 

@@ -17,9 +17,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 pub struct Scales {
     /// Whether rates and aims are continued in the root of the length of crack, as K of kinks and short cracks asks, or in the growth.
     pub by_root: bool,
-    /// Steps.
     pub step: StepScales,
-    /// Directions.
     pub steering: SteeringScales,
     /// Obstacles and joints.
     pub meeting: MeetingScales,

@@ -94,9 +94,7 @@ impl Reading {
 /// A tip that grows by its own K.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Tip {
-    /// Which crack it ends.
     pub end: LineEnd,
-    /// What has become of it.
     pub state: TipState,
     /// Growth since the start, m.
     pub growth: f64,
@@ -114,7 +112,6 @@ pub struct Tip {
     pub length_offset: f64,
     /// Spacing of points or nodes at it, m.
     pub spacing: f64,
-    /// What it has aimed at.
     pub steering: Steering,
     /// The kink at its last corner, while K is that of a short kink.
     pub kink: Option<Kink>,
@@ -334,7 +331,6 @@ pub fn pair_twins(factors: &mut [Option<[f64; 2]>]) -> Vec<usize> {
 /// The cracks of a plate and what drives them, as far as it is the same for all engines.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CracksState {
-    /// Cracks.
     pub lines: Vec<CrackLine>,
     /// Their tips, in the order of `Specimen::tips`.
     pub tips: Vec<Tip>,

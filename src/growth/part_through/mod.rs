@@ -208,7 +208,6 @@ impl<'a> PartThroughGrowth<'a> {
         Grown { axes: [depth, row.crack_length], cycles: row.cycles }
     }
 
-    /// Row of the curve.
     fn row(&self, Grown { axes, cycles }: Grown) -> CurvePoint {
         let Fronts { case, flaw, .. } = &self.fronts;
         let (factors, rates) = (self.fronts.factors(axes), self.fronts.rates(axes));

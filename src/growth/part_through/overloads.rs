@@ -21,9 +21,7 @@ const SETTLED: f64 = 1e-3 * STEP;
 
 /// What the order of the cycles of a spectrum needs.
 pub struct Order {
-    /// The law of one cycle.
     pub law: Box<dyn GrowthLaw>,
-    /// The model of retardation.
     pub model: Retardation,
 }
 

@@ -35,7 +35,6 @@ pub(crate) struct TipRings<'a> {
     pub active: &'a [LineEnd],
     /// Whether the cracks are as they were drawn.
     pub is_new: bool,
-    /// Flanks in contact.
     pub pressures: &'a [FlankPressure],
 }
 

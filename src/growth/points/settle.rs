@@ -22,7 +22,6 @@ const REVERSED: &str = "points: growth of crack faces that the minimum displacem
 pub(super) struct LowerLoad {
     /// Over the largest.
     pub load: f64,
-    /// Where flanks are in contact.
     pub contact: Contact,
     /// In the layout of the equilibrium, m.
     pub displacement: Vec<f64>,

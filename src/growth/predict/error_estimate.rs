@@ -57,11 +57,9 @@ const LOOKED_AT_LEAST: f64 = 0.3;
 /// Upper bounds of what a run is wrong by, as a solution of the problem that its case sets: plane linear elasticity and the law given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorEstimate {
-    /// Of its cycles, percent.
     pub life_percent: f64,
     /// Of the way of its cracks, m.
     pub path: f64,
-    /// What it rests on.
     pub basis: String,
 }
 
@@ -228,7 +226,6 @@ struct Difference {
     of_loads: f64,
     /// Direction of growth of that tip by them less that of the run, rad.
     angle: f64,
-    /// Exponent of the law there.
     exponent: f64,
 }
 

@@ -27,7 +27,6 @@ pub struct FactorCurve {
     tips: Vec<TipFactors>,
     /// Whether tips of unlike K, of this crack or of others, share the growth, so that the path depends on the exponent.
     pub depends_on_exponent: bool,
-    /// Figures of the run that it comes from.
     pub figures: RunFigures,
     /// What the user should know about that run.
     pub warnings: Vec<String>,

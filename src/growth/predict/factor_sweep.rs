@@ -66,7 +66,6 @@ pub struct SweepRow {
     pub mouth_opening: Option<f64>,
     /// v_LL, m; `None` of a plate under stress.
     pub load_line: Option<f64>,
-    /// ε_BF.
     pub back_face_strain: Option<f64>,
 }
 

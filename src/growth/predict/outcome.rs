@@ -20,13 +20,10 @@ const ALIKE: f64 = 1e-3;
 pub struct RunFigures {
     /// Points of the whole body.
     pub points: usize,
-    /// Points that were solved for.
     pub points_solved: usize,
     /// Bonds of the uncracked body.
     pub bonds: usize,
-    /// Cycle blocks.
     pub blocks: usize,
-    /// Equilibrium solves.
     pub solves: usize,
     /// Solver iterations in all (0 for a direct solver).
     pub iterations: usize,
@@ -77,7 +74,6 @@ pub struct Prediction {
     pub snapshots: Vec<Snapshot>,
     /// Lattice of the snapshots.
     pub grid: PointGrid,
-    /// Figures.
     pub figures: RunFigures,
     /// Phase I, before the cracks of the case had formed: the rows of the curve begin after it.
     pub phase_one: Option<PhaseOne>,
@@ -195,7 +191,6 @@ impl<'a> GoverningCrack<'a> {
         own.filter(|_| largest > 0.0).map_or(row.delta_k, |own| row.delta_k * own.max(0.0) / largest)
     }
 
-    /// Whether a tip is one of its.
     pub fn has(&self, tip: usize) -> bool {
         self.of_several.as_ref().is_none_or(|(_, tips)| tips.contains(&tip))
     }

@@ -13,7 +13,6 @@ pub struct PartThroughLife {
     pub cycles: f64,
     /// Semi-axes a and c then, m.
     pub axes: [f64; 2],
-    /// Whether it is through.
     pub is_through: bool,
     /// The whole life over that of the run where K of the part-through crack is larger, and smaller, by its stated error: `∫ dN r(K)/r(K (1 ± e))` and what
     /// is left after break-through. Infinite where the crack would stand still.

@@ -46,7 +46,6 @@ pub struct PlasticZone {
     pub too_large_from: Option<f64>,
     /// Crack length from which it holds after all, to the end, m: a crack that was too short has grown.
     pub too_large_to: Option<f64>,
-    /// What is too small there.
     pub too_small: &'static str,
     /// Share of the life in which it does not hold.
     pub life_share_too_large: f64,

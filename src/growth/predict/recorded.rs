@@ -68,7 +68,6 @@ struct Place {
 struct Interval {
     from: Place,
     to: Place,
-    /// w.
     weight: f64,
     nodes: [Node; 3],
 }

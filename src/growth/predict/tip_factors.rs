@@ -97,9 +97,7 @@ fn of_tips(method: StressIntensityMethod, started: Instant, tips: &[TipRecord], 
 /// What one method says about one tip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MethodResult {
-    /// The method.
     pub method: StressIntensityMethod,
-    /// Its factors.
     pub intensity: Intensity,
     /// Stress along the crack T, Pa; `None` where a method cannot tell.
     pub t_stress: Option<f64>,

@@ -37,7 +37,6 @@ pub type Bond = u32;
 /// A discretised plate.
 #[derive(Debug, Clone)]
 pub struct Body {
-    /// Lattice.
     pub lattice: Lattice,
     /// Bonds of a point and their springs.
     pub stencil: Stencil,

@@ -65,12 +65,9 @@ impl BondLawKind {
 /// What a case says about the bonds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BondLaw {
-    /// Constitutive law.
     pub kind: BondLawKind,
-    /// Micromodulus kernel.
     pub kernel: Kernel,
     /// Tangential spring and rotation (two-parameter law).
     pub rotation: Rotation,
-    /// Surface correction.
     pub surface_correction: SurfaceCorrection,
 }

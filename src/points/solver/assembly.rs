@@ -16,7 +16,6 @@ pub trait Assembly<const M: usize>: Sync {
     fn point(&self, place: usize) -> f64;
     /// Whether a component of a point is held.
     fn is_held(&self, place: usize, component: usize) -> bool;
-    /// Sign of the pivots of a component.
     fn pivot_sign(&self, component: usize) -> f64;
     /// Signs of the unknowns of a mirror image.
     fn signs(&self, flips: Flips) -> [f64; M];
@@ -26,7 +25,6 @@ pub trait Assembly<const M: usize>: Sync {
 pub struct Joint<const M: usize> {
     /// The other point, or that whose mirror image is the other end.
     pub other: usize,
-    /// Whether it is an image.
     pub is_image: bool,
     /// Blocks of the row of the point: with itself, with the other.
     pub here: Blocks<M>,

@@ -278,7 +278,6 @@ impl Dilatation {
         self.family(bonds, place) / self.gain[place]
     }
 
-    /// Sign of κ.
     pub(super) fn sign(&self) -> f64 {
         self.gain.iter().copied().find(|gain| *gain != 0.0).map_or(1.0, f64::signum)
     }

@@ -21,9 +21,7 @@ pub struct Layout {
     pub unknowns: usize,
     /// Places of a padded row.
     pub stride: usize,
-    /// Padded rows.
     pub rows: usize,
-    /// Padding.
     pub padding: usize,
     /// Columns that hold points.
     pub columns: usize,

@@ -23,7 +23,6 @@ struct ConstrainedSystem<const N: usize> {
     grips: Option<Grips>,
     u: Vec<f64>,
     work: f64,
-    /// Points that are solved for.
     points: usize,
 }
 

@@ -56,11 +56,9 @@ impl Spring {
 /// End of a bond in a window's vector.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct End {
-    /// Its place, or that of which it is the image.
     pub place: usize,
     /// Index of that place's first unknown.
     pub first: usize,
-    /// Signs of its unknowns there.
     pub signs: [f64; 3],
 }
 

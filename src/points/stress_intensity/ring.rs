@@ -77,7 +77,6 @@ pub struct RingGeometry {
     loads: Vec<LoadPiece>,
     supports: Vec<[Point; 2]>,
     specimen: Specimen,
-    /// Cells that the rim cuts.
     rim_cells: HashSet<usize>,
 }
 

@@ -260,7 +260,6 @@ impl StandingFolder {
         Ok(StandingFolder { target, _lock: lock })
     }
 
-    /// Where it is.
     pub fn path(&self) -> &Path {
         &self.target
     }

@@ -32,7 +32,6 @@ enum Refused {
 /// Whether others may have it as well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Share {
-    /// One alone.
     Alone,
     /// Many, as parts of one sweep.
     Parts,

@@ -27,7 +27,6 @@ pub enum RunKind {
     Calibrate,
     /// `perilife sweep`.
     Sweep,
-    /// A case of a sweep.
     SweepCase,
     /// `perilife verify`.
     Verify,
@@ -40,7 +39,6 @@ pub enum RunKind {
 }
 
 impl RunKind {
-    /// In words.
     pub fn words(self) -> &'static str {
         match self {
             RunKind::Predict => "a prediction",

@@ -7,7 +7,6 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// A thing that stands where it will not stay.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Thing {
-    /// A file.
     File(PathBuf),
     /// A folder with all in it.
     Tree(PathBuf),

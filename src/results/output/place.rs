@@ -13,7 +13,6 @@ use perilife_base::input::{FileId, Provenance};
 pub struct Room {
     /// Its tables and figures, without which there is no result.
     pub tables: u64,
-    /// All of it.
     pub all: u64,
 }
 

@@ -252,7 +252,6 @@ fn specimens(fit: &LivesRecord) -> String {
     )
 }
 
-/// Every reading.
 fn readings(readings: &[Reading]) -> String {
     let known = |value: Option<f64>, words: fn(f64) -> String| value.map_or_else(|| "–".to_owned(), words);
     let row = |(place, reading): (usize, &Reading)| {

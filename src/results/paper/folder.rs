@@ -22,7 +22,6 @@ pub enum Source {
     Run {
         /// `result.json`.
         run: Box<RunRecord>,
-        /// Its tables.
         tables: RunTables,
         /// Its pictures that the tables do not say.
         drawings: Drawings,
@@ -31,14 +30,12 @@ pub enum Source {
     Lives {
         /// `fit.json`.
         fit: Box<LivesRecord>,
-        /// Its tables.
         tables: FitTables,
     },
     /// Of `perilife calibrate`, to rates.
     Laws {
         /// `fit.json`.
         fit: Box<RatesRecord>,
-        /// Its rates.
         rates: Vec<RateFitted>,
     },
 }

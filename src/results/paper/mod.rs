@@ -35,13 +35,10 @@ const CHART: Size = Size { width: 330.0, height: 215.0, text: 10.5 };
 /// Who made the test or the computation, and when; `None` is printed as "not recorded".
 #[derive(Debug, Clone, Default)]
 pub struct Signed {
-    /// Laboratory or office.
     pub laboratory: Option<String>,
     /// Who tested or computed.
     pub operator: Option<String>,
-    /// Who checked it.
     pub reviewer: Option<String>,
-    /// Date of the report.
     pub date: Option<String>,
 }
 
@@ -141,7 +138,6 @@ struct Sheets<'d> {
     drawings: &'d Drawings,
     /// Number of the last figure.
     last: usize,
-    /// Whether one has begun.
     has_begun: bool,
 }
 

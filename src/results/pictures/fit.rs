@@ -21,7 +21,6 @@ pub const FIT_FILE: &str = "fit.json";
 pub const CURVES_FILE: &str = "fit_curves.csv";
 /// The fitted curve with the band of its constants.
 pub const BAND_FILE: &str = "fit_band.csv";
-/// Every reading.
 pub const READINGS_FILE: &str = "readings.csv";
 /// Rates that a law over K was fitted to.
 pub const RATES_FITTED_FILE: &str = "fit_rates.csv";
@@ -41,7 +40,6 @@ const BAND: f64 = 0.3;
 /// Readings and fitted curve of one specimen: cycles and crack length, mm.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Lives {
-    /// Name.
     pub name: String,
     /// `[cycles, length]` as measured.
     pub measured: Vec<Point>,
@@ -118,7 +116,6 @@ struct CurveRow {
 /// What the tables of a fit to readings say.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitTables {
-    /// Every reading.
     pub readings: Vec<Reading>,
     curves: Vec<Lives>,
     band: Vec<[f64; 3]>,
@@ -165,9 +162,7 @@ impl FitTables {
 /// A row of `fit_rates.csv`: a rate that a law was fitted to, and that of the law.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct RateFitted {
-    /// Test that it is from.
     pub series: String,
-    /// R.
     pub stress_ratio: f64,
     /// ΔK, MPa√m.
     pub delta_k_mpa_sqrt_m: f64,

@@ -19,11 +19,8 @@ use perilife_plate::specimen::{Load, Point, Specimen, Support};
 /// The plate of a case as it is drawn: `plate` of `result.json`. Lengths in mm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plate {
-    /// Outline, not closed.
     pub outline_mm: Vec<Point>,
-    /// Round holes.
     pub holes: Vec<HoleDrawn>,
-    /// Corners of slots.
     pub slots_mm: Vec<Vec<Point>>,
     /// Ends of the pieces of cracks at the start.
     pub cracks_mm: Vec<[Point; 2]>,
@@ -31,7 +28,6 @@ pub struct Plate {
     pub loads: Vec<LoadDrawn>,
     /// Ends of stretches that are held.
     pub held_mm: Vec<[Point; 2]>,
-    /// The load in words.
     pub load: String,
     /// The specimen in words: kind and sizes.
     #[serde(default)]
@@ -71,7 +67,6 @@ fn even() -> [f64; 2] {
 }
 
 impl Plate {
-    /// Of a case.
     pub fn of(case: &Case) -> Self {
         let (specimen, material) = (specimen_words(case), material_words(case));
         Plate { specimen, material, ..Plate::of_specimen(&case.specimen, loading(case)) }

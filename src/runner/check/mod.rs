@@ -38,9 +38,7 @@ use perilife_scenes::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSuppo
 pub struct Checked {
     /// `case`, `calibration`, `fracture` or `sweep`.
     pub kind: &'static str,
-    /// Its name.
     pub name: String,
-    /// What was understood.
     pub lines: Vec<Line>,
     /// What the user should know.
     pub warnings: Vec<String>,

@@ -18,9 +18,7 @@ use perilife_results::spectrum;
 /// One line of what was understood.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// What it is about.
     pub what: &'static str,
-    /// What was understood.
     pub value: String,
 }
 

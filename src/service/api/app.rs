@@ -21,9 +21,7 @@ use crate::worker;
 pub struct Limits {
     /// Bytes of a body, all files together.
     pub body_bytes: usize,
-    /// Files of a body.
     pub files: usize,
-    /// Points of a plate.
     pub points: f64,
     /// Memory that a case may take up, bytes.
     pub case_bytes: f64,
@@ -31,7 +29,6 @@ pub struct Limits {
     pub queued: i64,
     /// Bytes of the files of one owner, inputs and results.
     pub quota_bytes: i64,
-    /// Requests a second of one caller.
     pub requests_per_second: NonZeroU32,
     /// Of them those that submit, check or upload.
     pub writes_per_second: NonZeroU32,
@@ -43,7 +40,6 @@ pub struct Limits {
     pub bodies_of_readers: usize,
     /// Streams of events, and waits for the end of a job, of one caller at a time.
     pub streams_of_caller: usize,
-    /// Connections at a time.
     pub connections: usize,
     /// Time in which an answer must begin.
     pub answer_within: Duration,
@@ -94,17 +90,14 @@ const TOKENS_REMEMBERED: usize = 1000;
 /// What every request can reach.
 #[derive(Debug, Clone)]
 pub struct App {
-    /// The store.
     pub store: Store,
     /// How much a request may ask for.
     pub limits: Limits,
-    /// Who is let in.
     pub security: Security,
     /// Told of new jobs.
     pub wake: Arc<Notify>,
     /// How workers of this process work, and what a process that looks at input may take.
     pub workers: worker::Settings,
-    /// Room for bodies.
     pub bodies: BodyPlaces,
     /// Room for whole curves that something is computed from.
     pub curves: Arc<Semaphore>,

@@ -31,13 +31,10 @@ const WAITING: usize = 16;
 /// What a reader has seen; the id of every event.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Seen {
-    /// Revision of the job.
     revision: i64,
     /// Claim whose curve it was.
     fence: i64,
-    /// Entries of that curve.
     entries: i64,
-    /// Revision of the picture.
     picture: i64,
 }
 

@@ -177,7 +177,6 @@ pub async fn picture(Shared(app): Shared<App>, Path((collection, id)): Path<(Str
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct From {
-    /// Crack length today.
     crack_length_mm: f64,
     /// What the remaining life is divided by for the inspection interval; 3 if left out.
     factor: Option<f64>,

@@ -12,15 +12,12 @@ use crate::store::{FileEntry, Origin, PART, Store};
 
 /// Whose file it is, and what is known of it.
 pub struct Stored {
-    /// Where it is.
     pub store: Store,
-    /// The job.
     pub job: String,
     /// Whether it came with the job or of it.
     pub origin: Origin,
     /// Its name and size.
     pub entry: FileEntry,
-    /// Its first part.
     pub first: Vec<u8>,
 }
 

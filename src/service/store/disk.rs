@@ -42,7 +42,6 @@ impl DatabaseFile {
         Some(DatabaseFile { path, identity })
     }
 
-    /// Its folder.
     pub fn folder(&self) -> PathBuf {
         self.path.parent().map(Path::to_path_buf).unwrap_or_default()
     }

@@ -9,7 +9,6 @@ use crate::job::{Job, JobKind, State, Submission, time};
 /// A job to be stored.
 #[derive(Debug, Clone)]
 pub struct NewJob<'a> {
-    /// What it does.
     pub kind: JobKind,
     /// Name of the token that submits it.
     pub owner: &'a str,
@@ -19,7 +18,6 @@ pub struct NewJob<'a> {
     pub idempotency_key: Option<&'a str>,
     /// Hash of the request.
     pub fingerprint: &'a str,
-    /// What was asked for.
     pub submission: &'a Submission,
     /// Bytes that its run may write.
     pub room: i64,
@@ -52,7 +50,6 @@ pub struct Room {
 /// Part of a list, newest first.
 #[derive(Debug, Clone, Default)]
 pub struct Listing {
-    /// Jobs.
     pub jobs: Vec<Job>,
     /// Where the next part begins, if there is one.
     pub next: Option<String>,
@@ -63,7 +60,6 @@ pub struct Listing {
 pub struct Wanted<'a> {
     /// Of this kind; of all where none is named.
     pub kind: Option<JobKind>,
-    /// In this state.
     pub state: Option<State>,
     /// With this text in name, note or owner; capitals of ASCII count as small letters.
     pub text: &'a str,
@@ -78,9 +74,7 @@ pub struct Wanted<'a> {
 /// What is to be said of a job from now on; nothing changes where nothing is given.
 #[derive(Debug, Clone, Default)]
 pub struct Change {
-    /// Its name.
     pub name: Option<String>,
-    /// What is noted of it.
     pub note: Option<String>,
     /// Whether it is put away.
     pub archived: Option<bool>,

@@ -14,9 +14,7 @@ use crate::problem::Problem;
 /// A job that a worker holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Claim {
-    /// The job.
     pub id: String,
-    /// What it does.
     pub kind: JobKind,
     /// Number of the claim; every writing names it.
     pub fence: i64,
@@ -58,9 +56,7 @@ pub enum Heartbeat {
 /// A file of a result, where its worker has it on disk.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ResultFile {
-    /// Its name in the store.
     pub name: String,
-    /// Where its bytes are.
     pub path: PathBuf,
 }
 
@@ -83,7 +79,6 @@ pub struct Outcome {
     pub summary: Option<String>,
     /// Why there is none, JSON.
     pub problem: Option<String>,
-    /// Its files.
     pub files: Vec<ResultFile>,
 }
 
@@ -94,7 +89,6 @@ pub struct Growth {
     pub from: usize,
     /// Cycles since N = 0.
     pub cycles: Vec<f64>,
-    /// Crack length.
     pub crack_length_mm: Vec<f64>,
     /// Position of every tip, mm.
     pub tips: Vec<Vec<[f64; 2]>>,

@@ -30,9 +30,7 @@ use perilife_base::error::{Error, Result};
 /// How workers work.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// Jobs at a time.
     pub jobs: usize,
-    /// Threads for each.
     pub threads: usize,
     /// Time without a sign of life after which a job is another worker's.
     pub lease: Duration,

@@ -210,9 +210,7 @@ pub enum Order {
 /// What is to be run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Run {
-    /// What it does.
     pub kind: JobKind,
-    /// The input.
     pub submission: Submission,
     /// Where an earlier worker stood.
     pub checkpoint: Option<Vec<u8>>,
@@ -220,7 +218,6 @@ pub struct Run {
     pub shown: Option<Vec<Growth>>,
     /// Empty folder for the results, in one of its own, which goes with the job.
     pub folder: PathBuf,
-    /// Threads.
     pub threads: usize,
     /// Least time between two checkpoints.
     pub checkpoint_every: Duration,

@@ -18,7 +18,6 @@ pub struct Choice {
     pub words: String,
     /// Keys that make it.
     pub set: Vec<String>,
-    /// Whether a quick chart has it.
     pub is_quick: bool,
 }
 

@@ -30,19 +30,15 @@ use perilife_growth::case::Case;
 pub struct Panel {
     /// Name, as `perilife chart NAME` takes it.
     pub name: String,
-    /// What it is, in words.
     pub about: String,
     /// What its choices are chosen by.
     pub tags: Vec<String>,
-    /// What its error is of.
     pub quantity: String,
-    /// Where its truth comes from.
     pub truth: String,
     /// How far that may be off, percent.
     pub uncertainty_percent: f64,
     /// Formula of the distance of the path from that of the truth, rms, mm.
     path_mm: Option<String>,
-    /// What is asked.
     ask: Question,
     /// Its values.
     #[serde(default)]
@@ -52,20 +48,16 @@ pub struct Panel {
 /// What a run of a scene found.
 #[derive(Debug)]
 pub struct Found {
-    /// The case that ran.
     pub case: Case,
-    /// Error in percent of the truth.
     pub error_percent: f64,
     /// Distance of the path from that of the truth, rms, mm.
     pub path_rms_mm: Option<f64>,
     /// Points or nodes; 0 of a hand calculation.
     pub points: usize,
-    /// Equilibrium solves.
     pub solves: usize,
 }
 
 impl Panel {
-    /// Whether it has a tag.
     pub fn is(&self, tag: &str) -> bool {
         self.tags.iter().any(|own| own == tag)
     }
@@ -141,9 +133,7 @@ perilife_base::kinds! {
 /// A point of the chart: a choice in a scene.
 #[derive(Debug, Clone)]
 pub struct Point {
-    /// Scene.
     pub panel: &'static Panel,
-    /// Choice.
     pub choice: Choice,
     /// What came of its last run.
     pub outcome: Outcome<Run>,
@@ -210,7 +200,6 @@ pub struct Chart {
     pub points: Vec<Point>,
     /// Median of all reference runs, s.
     pub reference_s: f64,
-    /// What it was measured on.
     pub machine: Machine,
 }
 
@@ -265,9 +254,7 @@ pub fn front(points: &[(f64, f64)]) -> Vec<usize> {
 /// Program, threads and vector units that a chart was measured with.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Machine {
-    /// Version of the program.
     pub version: &'static str,
-    /// Threads of the solvers.
     pub threads: usize,
     /// Instruction set of the vectors that the kernels use, chosen when they run.
     pub instruction_set: String,

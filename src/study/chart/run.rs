@@ -23,15 +23,11 @@ pub struct Run {
     pub wall_s: f64,
     /// Peak memory of the process, MB.
     pub memory_mb: f64,
-    /// Size of the error, percent.
     pub error_percent: f64,
     /// Distance of the path from that of the truth, rms, mm.
     pub path_rms_mm: Option<f64>,
-    /// Points or nodes.
     pub points: usize,
-    /// Equilibrium solves.
     pub solves: usize,
-    /// What ran.
     pub model: Model,
 }
 
@@ -42,7 +38,6 @@ pub struct Model {
     pub driver: String,
     /// Bond law; empty without bonds.
     pub bond_law: String,
-    /// Solver.
     pub solver: String,
     /// `lattice`, `nodes`, or empty.
     pub discretisation: String,
@@ -77,7 +72,6 @@ pub fn once(panel: &Panel, set: &[String]) -> Result<Run> {
 }
 
 impl Model {
-    /// That of a case.
     fn of(case: &Case, grows: bool) -> Model {
         let mm = |metres: f64| Some((1e6 * metres / MM).round() / 1e6);
         let driver = |name: &str| if grows { name.to_owned() } else { String::new() };

@@ -44,18 +44,14 @@ impl Effort {
 /// What is run: a scene by name, and keys.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Request {
-    /// Scene.
     pub scene: String,
-    /// Keys.
     pub set: Vec<String>,
 }
 
 /// A run, and the reference run beside it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// What ran.
     pub request: Request,
-    /// What came of it.
     pub outcome: Outcome<Run>,
     /// Seconds of the reference run beside it.
     pub reference_s: f64,

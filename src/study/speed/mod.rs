@@ -22,9 +22,7 @@ pub const FILES: [&str; 3] = ["chart.csv", "chart.svg", "summary.md"];
 /// Where a chart comes from.
 #[derive(Debug, Clone)]
 pub struct Origin {
-    /// The command that made it.
     pub command: String,
-    /// When.
     pub date: String,
 }
 

@@ -97,7 +97,6 @@ fn outlined(sketch: &mut Sketch, mut corners: Vec<Pixel>, fill: &str, rim: &str)
     sketch.path(&corners, rim, 1.2, "");
 }
 
-/// A panel with its points.
 fn draw(panel: &Panel, points: &[&Point], most_s: f64) -> Sketch {
     let quantity = panel.quantity.split(',').next().unwrap_or_default();
     let axes = [Axis::logarithmic_between(SECONDS_LEAST, most_s), Axis::logarithmic_between(ERRORS[0], ERRORS[1])];

@@ -12,11 +12,9 @@ const WITHIN_PERCENT: [f64; 4] = [10.0, 5.0, 2.0, 1.0];
 /// A choice over all scenes in which cracks grow and which have it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overall {
-    /// Its name.
     pub name: String,
     /// Scenes with a result.
     pub done: usize,
-    /// Scenes that have it.
     pub of: usize,
     /// Its largest error, percent.
     pub worst_percent: f64,
@@ -24,7 +22,6 @@ pub struct Overall {
     pub worst_in: &'static str,
     /// Median of its times, s.
     pub median_s: f64,
-    /// Scenes where it is on the front.
     pub on_front: usize,
 }
 

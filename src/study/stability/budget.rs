@@ -16,7 +16,6 @@ use perilife_scenes::{SceneObserver, SceneProgress};
 /// What a run may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Budget {
-    /// Seconds.
     pub seconds: f64,
     /// Cycle blocks or recorded steps.
     pub blocks: usize,

@@ -24,7 +24,6 @@ use perilife_base::error::Result;
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Method {
-    /// Its name in the table.
     pub name: String,
     /// Values of its own.
     #[serde(default)]
@@ -47,7 +46,6 @@ pub struct Sweep {
     /// Its unit; empty where it has none.
     #[serde(default)]
     pub unit: String,
-    /// Values, rising.
     pub values: Vec<f64>,
     /// Value that is usual, from which the safe range is sought in both directions; one of the values.
     #[serde(default)]
@@ -59,7 +57,6 @@ pub struct Sweep {
     pub bound_percent: f64,
     /// What is asked, with the parameter as the value `it`; its largest error counts.
     ask: Table,
-    /// Methods, each with a line of its own.
     pub methods: Vec<Method>,
     /// Values that all sweeps share.
     #[serde(skip)]
@@ -81,7 +78,6 @@ pub fn read_sweeps() -> Result<Vec<Sweep>> {
     Ok(sweep)
 }
 
-/// All sweeps.
 pub static SWEEPS: LazyLock<Vec<Sweep>> = LazyLock::new(|| read_sweeps().unwrap_or_default());
 
 /// How a run is judged.
@@ -138,9 +134,7 @@ impl Sweep {
 /// A method across a parameter.
 #[derive(Clone)]
 pub struct Record {
-    /// Which sweep.
     pub sweep: &'static Sweep,
-    /// Which method.
     pub method: &'static str,
     /// Values, rising, those of the bisection among them, with what came of them.
     pub points: Vec<(f64, Outcome<f64>)>,
@@ -159,7 +153,6 @@ pub struct Effort {
     pub stride: usize,
     /// Relative width to which an end of the safe range is narrowed.
     pub resolution: f64,
-    /// Of every run.
     pub budget: Budget,
     /// Whether methods that take most of the time are among them.
     pub with_slow: bool,

@@ -35,9 +35,7 @@ pub type Gain = [f64; EQUATIONS];
 /// What a bond of multiplier 1 adds to the equations of its ends.
 #[derive(Debug, Clone, Copy)]
 pub struct BondGain {
-    /// At the point that owns it.
     pub at_owner: Gain,
-    /// At the other end.
     pub at_other: Gain,
 }
 
@@ -149,9 +147,7 @@ fn is_small(gradient: &[f64], tolerance: f64) -> bool {
 /// Equations of some points, with all links that these have; multipliers of other points stay.
 struct Part<'a> {
     problem: &'a Problem<'a>,
-    /// Ascending.
     points: Vec<u32>,
-    /// Ascending.
     links: Vec<u32>,
     /// Ends of every link among the points: of the owner, of the other.
     ends: Vec<[Option<u32>; 2]>,

@@ -32,7 +32,6 @@ type CoarseRow<const N: usize> = [[[f64; N]; N]; BLOCKS];
 pub struct CoarseOperator<const N: usize> {
     layout: Layout,
     rows: usize,
-    /// Chunks of a row.
     chunks: usize,
     /// For every chunk of a row where its stencils stand, [`COMMON`] if they are the common one.
     slots: Vec<u32>,

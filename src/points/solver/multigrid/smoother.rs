@@ -53,9 +53,7 @@ pub struct Smoother<const N: usize> {
 
 /// Vectors of a level.
 pub struct Work {
-    /// Residual.
     pub r: Vec<f32>,
-    /// Solution.
     pub x: Vec<f32>,
     /// Last correction.
     pub d: Vec<f32>,

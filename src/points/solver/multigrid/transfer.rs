@@ -32,7 +32,6 @@ pub enum Link {
 /// Interpolation from a coarse level to the fine one below.
 #[derive(Debug, Clone)]
 pub struct Transfer<const N: usize> {
-    /// Coarsening factor.
     pub factor: usize,
     /// Fine spacing of this level in lattice spacings: arm of the rotation θ = φ Δ per place.
     unit: f64,

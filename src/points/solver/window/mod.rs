@@ -49,7 +49,6 @@ pub(in crate::solver) struct WindowSolver<const N: usize> {
     /// Solves the whole plate.
     whole: MultigridSolver<N>,
     window: Option<Window>,
-    /// Whether there was one at any time.
     had_window: bool,
     broken: Vec<Bond>,
     /// Whether the displacement is right everywhere, not in the window only.

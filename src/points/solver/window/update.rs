@@ -26,7 +26,6 @@ pub struct Update {
     terms: Vec<Term>,
     /// Rows of L below the unit diagonal, one after the other.
     rows: Vec<Vec<f64>>,
-    /// D.
     pivots: Vec<f64>,
     /// Wᵀ u₀.
     deformation: Vec<f64>,
