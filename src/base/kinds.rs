@@ -16,6 +16,14 @@ pub struct KindLine {
     pub meaning: &'static str,
 }
 
+/// What [`kinds!`](crate::kinds!) declares.
+pub trait Named: Sized {
+    /// Lines of `perilife list`.
+    fn lines() -> Vec<KindLine>;
+    /// The kind of a name.
+    fn find(text: &str) -> Option<Self>;
+}
+
 /// Declares an enum of named choices for one input key, or, of things that have a `name` and a `meaning` and stand in a list, which of them
 /// it is.
 ///
@@ -85,11 +93,9 @@ macro_rules! kinds {
             }
         }
 
-        impl $crate::keys::Field for $Kind {
-            const SHAPE: $crate::keys::Shape = $crate::keys::Shape::Choice(Self::lines);
-            fn take(_: &$crate::keys::Key, path: &str, value: &$crate::keys::Value) -> $crate::Result<Self> {
-                $crate::keys::choice(path, value, Self::lines, |text| Self::all().find(|k| k.name() == text))
-            }
+        impl $crate::kinds::Named for $Kind {
+            fn lines() -> Vec<$crate::kinds::KindLine> { Self::lines() }
+            fn find(text: &str) -> Option<Self> { Self::all().find(|k| k.name() == text) }
         }
 
         impl serde::Serialize for $Kind {

@@ -27,6 +27,8 @@ use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 /// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
 const LENGTH_SLACK: f64 = 1e-9;
 
+/// What the specimen's crack may be longer than the first reading besides, m: nobody measures a crack nearer.
+const START_SLACK: f64 = 5e-5;
 /// Share by which the specimen's crack may be longer than the first reading: 12 mm are 0.4724 in of four decimals, or 11.999 mm.
 const ROUNDING: f64 = 1e-4;
 
@@ -284,7 +286,7 @@ fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> perilife_ba
     let start = specimen.shortest_crack();
     for curve in curves {
         let first = curve.crack_length[0]; // a window keeps at least five readings
-        if start > first * (1.0 + ROUNDING) {
+        if start > first * (1.0 + ROUNDING) + START_SLACK {
             let mm = |length: f64| round_off(length / MM).to_string();
             return Err(input(
                 "specimen.crack_length_mm",

@@ -57,7 +57,7 @@ pub fn run(args: &Args) -> Result<()> {
 
 /// Keys of all sections, or of one.
 fn keys(args: &Args) -> Result<()> {
-    let told = catalogue::told();
+    let told = [catalogue::told(), catalogue::beside()].concat();
     let is_asked =
         |section: &str| args.section.as_deref().is_none_or(|asked| section == asked || section.split('.').next() == Some(asked));
     let asked: Vec<_> = told.iter().filter(|told| is_asked(&told.section)).collect();

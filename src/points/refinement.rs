@@ -1,16 +1,13 @@
 //! `[refinement]` of a scene: where finer points lie, and how points of several levels reach each other.
 
-use serde::Deserialize;
 use toml::Value;
 
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{LENGTH, point, slice};
-use perilife_base::units::MM;
+use perilife_base::keys::{coordinate, key, length, number, section};
+use perilife_base::units::{MM, round_mm};
 use perilife_plate::specimen::geometry::{bounding_box, distance};
 use perilife_plate::specimen::{Point, Specimen};
 
-/// Times that a point may be split in four.
-const LEVELS_MAX: usize = 4;
 /// More than this is a slip.
 const REGIONS_MAX: usize = 50;
 
@@ -67,74 +64,68 @@ impl Refinement {
     }
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    regions: Vec<Value>,
+perilife_base::keys! {
+    /// Keys of `[refinement]`.
+    pub struct RefinementKeys {
+        regions: Vec<RegionKeys> = key("regions", "Regions of finer points");
+    }
 }
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RegionInput {
-    box_mm: Option<[[f64; 2]; 2]>,
-    band_mm: Option<[[f64; 2]; 2]>,
-    width_mm: Option<f64>,
-    around_flaws_mm: Option<f64>,
-    levels: usize,
+perilife_base::keys! {
+    /// A region of finer points.
+    pub struct RegionKeys {
+        corners: Option<[Point; 2]> = coordinate("box_mm", "Box: two opposite corners [[x, y], [x, y]]");
+        band: Option<[Point; 2]> = coordinate("band_mm", "Band: ends of its line [[x, y], [x, y]]");
+        width: Option<f64> = length("width_mm", "Width of the band: the whole of it");
+        around_flaws: Option<f64> = length("around_flaws_mm", "Around every crack and notch: so far");
+        levels: usize = number("levels", "Levels: times that points are split in four", "a number of levels", 1.0, 4.0);
+    }
 }
 
 /// Reads `[refinement]`.
 pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Refinement> {
-    let input: Input = slice(value, "refinement")?;
+    let input: RefinementKeys = section(value, "refinement")?;
     const KEY: &str = "refinement.regions";
     if input.regions.is_empty() || input.regions.len() > REGIONS_MAX {
         let remedy = format!("give 1 to {REGIONS_MAX} regions {{ box_mm = [[x, y], [x, y]], levels = 1 }}");
         return Err(perilife_base::error::input(KEY, format!("{} regions", input.regions.len()), "is no refinement", remedy));
     }
-    let of = |(i, value): (usize, &Value)| one(value, &format!("{KEY}[{i}]"), specimen);
+    let of = |(i, given): (usize, &RegionKeys)| one(given, &format!("{KEY}[{i}]"), specimen);
     Ok(Refinement { regions: input.regions.iter().enumerate().map(of).collect::<Result<_>>()? })
 }
 
-fn one(value: &Value, path: &str, specimen: &Specimen) -> Result<(RefinedRegion, usize)> {
-    let given: RegionInput = slice(value, path)?;
-    let levels = given.levels;
-    if levels == 0 || levels > LEVELS_MAX {
-        let problem = "is no number of times that points are split in four";
-        return Err(input(&format!("{path}.levels"), levels, problem, format!("give 1 to {LEVELS_MAX}")));
+fn one(given: &RegionKeys, path: &str, specimen: &Specimen) -> Result<(RefinedRegion, usize)> {
+    if let Some(width) = given.width.filter(|_| given.band.is_none()) {
+        let problem = "is the width of a band, and there is none";
+        return Err(input(&format!("{path}.width_mm"), round_mm(width), problem, "leave it out"));
     }
-    if let Some(width) = given.width_mm.filter(|_| given.band_mm.is_none()) {
-        return Err(input(&format!("{path}.width_mm"), width, "is the width of a band, and there is none", "leave it out"));
-    }
-    let region = match (given.box_mm, given.band_mm, given.around_flaws_mm) {
+    let region = match (given.corners, given.band, given.around_flaws) {
         (Some(ends), None, None) => {
             let (low, high) = corners(&format!("{path}.box_mm"), ends, specimen)?;
             RefinedRegion::Box { low, high }
         }
-        (None, Some(ends), None) => band(ends, given.width_mm, path, specimen)?,
+        (None, Some(ends), None) => band(ends, given.width, path, specimen)?,
         (None, None, Some(distance)) => {
             let key = format!("{path}.around_flaws_mm");
             if specimen.cracks.is_empty() && specimen.slots.is_empty() {
-                return Err(input(&key, distance, "has nothing to lie around", "give cracks or notches, or a box"));
+                return Err(input(&key, round_mm(distance), "has nothing to lie around", "give cracks or notches, or a box"));
             }
-            RefinedRegion::AroundFlaws { distance: LENGTH.read(&key, distance)? }
+            RefinedRegion::AroundFlaws { distance }
         }
         _ => {
             let problem = "is not one of box_mm, band_mm with width_mm, and around_flaws_mm";
             return Err(input_missing(path, problem, "give one of them, with levels"));
         }
     };
-    Ok((region, levels))
+    Ok((region, given.levels))
 }
 
-fn band(ends: [[f64; 2]; 2], width: Option<f64>, path: &str, specimen: &Specimen) -> Result<RefinedRegion> {
+fn band([from, to]: [Point; 2], width: Option<f64>, path: &str, specimen: &Specimen) -> Result<RefinedRegion> {
     let key = format!("{path}.band_mm");
-    let (from, to) = (point(&key, ends[0])?, point(&key, ends[1])?);
     if distance(from, to) < 1e-6 {
         return Err(input_missing(&key, "has no length: its ends coincide", "give two different points"));
     }
     let width_key = format!("{path}.width_mm");
     let width = width.ok_or_else(|| input_missing(&width_key, "is missing", "give the whole width of the band"))?;
-    let width = LENGTH.read(&width_key, width)?;
     let half = width / 2.0;
     let low = [from[0].min(to[0]) - half, from[1].min(to[1]) - half];
     let high = [from[0].max(to[0]) + half, from[1].max(to[1]) + half];
@@ -146,9 +137,8 @@ fn band(ends: [[f64; 2]; 2], width: Option<f64>, path: &str, specimen: &Specimen
     Ok(RefinedRegion::Band { from, to, width })
 }
 
-/// Lower left and upper right corner of a box given by two opposite corners in mm, which meets the plate.
-pub fn corners(path: &str, [from, to]: [[f64; 2]; 2], specimen: &Specimen) -> Result<(Point, Point)> {
-    let (from, to) = (point(path, from)?, point(path, to)?);
+/// Lower left and upper right corner of a box given by two opposite corners, m, which meets the plate.
+pub fn corners(path: &str, [from, to]: [Point; 2], specimen: &Specimen) -> Result<(Point, Point)> {
     let low = [from[0].min(to[0]), from[1].min(to[1])];
     let high = [from[0].max(to[0]), from[1].max(to[1])];
     if low[0] == high[0] || low[1] == high[1] {

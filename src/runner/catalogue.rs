@@ -4,113 +4,60 @@ use serde_json::{Value, json};
 
 use perilife_base::input::{Folder, Quantity};
 use perilife_base::keys::told::{self, Told};
-use perilife_base::keys::{Field, Key, Need, Section, key};
+use perilife_base::keys::{Key, Need, Section};
 use perilife_base::kinds::KindLine;
-use perilife_base::table::{
-    Decimal,
-    units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit},
-};
 use perilife_base::units::shown;
 use perilife_base::units::us::System;
 use perilife_calibration::case::MeasuredKeys;
-use perilife_calibration::criterion::Criterion;
-use perilife_calibration::exponent::{FitKeys, Parameter};
-use perilife_calibration::laws::FitLaw;
+use perilife_calibration::exponent::FitKeys;
 use perilife_calibration::laws::case::{LawKeys, RatesKeys};
 use perilife_calibration::rates::RateMethod;
-use perilife_calibration::sweep::{DesignKind, DistributionKind, Scale, Scatter};
+use perilife_calibration::sweep::{DesignKeys, VaryKeys};
 use perilife_growth::case::record::FittedLaw;
-use perilife_growth::case::{self, Failure, LIBRARY, Lot, Method};
+use perilife_growth::case::{self, LIBRARY};
 use perilife_growth::predict::StopReason;
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
 use perilife_laws::growth_law::GrowthLawKind;
 use perilife_laws::growth_law::description::Constant;
 use perilife_laws::growth_law::table::TableEnds;
 use perilife_laws::retardation::{Constant as Retarding, RetardationKind};
-use perilife_laws::{Ageing, Driver};
-use perilife_measured::RangeKind;
-use perilife_nodes::basis::{BasisKind, Enrichment};
-use perilife_plate::loading::spectrum::SpectrumFormat;
-use perilife_plate::loading::{Grip, LoadingKind, SupportEntry, Transverse};
+use perilife_plate::loading::SupportEntry;
 use perilife_plate::material::growth_data::{self, GrowthRecord};
 use perilife_plate::material::{Plane, library};
 use perilife_plate::specimen::beta;
-use perilife_plate::specimen::drawing::{DrawingUnit, SymmetryPlane};
 use perilife_plate::specimen::keys::BETA_FILE;
-use perilife_plate::specimen::{Component, Edge, Ends, Head, SpecimenKind};
-use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
+use perilife_plate::specimen::{Edge, SpecimenKind};
+use perilife_points::bond_law::BondLawKind;
 use perilife_points::crack_tip::TipState;
-use perilife_points::solver::{SolverKind, SolverUsed, Symmetry};
+use perilife_points::solver::SolverUsed;
 use perilife_scenes::SceneEnd;
-use perilife_scenes::read::{Kinematics, LoadKind};
-use perilife_scenes::scene::{Calibration, DamageEntry, DamageLaw, Discretisation, PointLaw, SceneSolver, ZeroEnergyControl};
+use perilife_scenes::scene::PointLaw;
 
 /// Every line, in the order of an input file: key, name, meaning.
 pub fn lines() -> Vec<(String, String, String)> {
-    let of_the_test = [
-        SpecimenKind::lines(),
-        DrawingUnit::lines(),
-        SymmetryPlane::lines(),
-        Ends::lines(),
-        Head::lines(),
-        Plane::lines(),
-        LoadingKind::lines(),
-        SpectrumFormat::lines(),
-        RetardationKind::lines(),
-        LoadKind::lines(),
-        Grip::lines(),
-        Edge::lines(),
-        Transverse::lines(),
-        Component::lines(),
-    ];
-    let of_the_model = [
-        Method::lines(),
-        BasisKind::lines(),
-        Enrichment::lines(),
-        BondLawKind::lines(),
+    let of_keys = told().into_iter().chain(beside()).flat_map(|told| told.choices());
+    let of_others = [
         PointLaw::lines(),
-        ZeroEnergyControl::lines(),
-        Kernel::lines(),
-        Rotation::lines(),
-        SurfaceCorrection::lines(),
-        Kinematics::lines(),
-        Discretisation::lines(),
-        Symmetry::lines(),
-        SolverKind::lines(),
-        beside(&SolverKind::lines(), SceneSolver::lines()),
-        DamageLaw::lines(),
-        Calibration::lines(),
-        DamageEntry::lines(),
-        Driver::lines(),
-        GrowthLawKind::lines(),
+        BondLawKind::lines(),
         TableEnds::lines(),
-        Ageing::lines(),
-        Failure::lines(),
-        Lot::lines(),
-    ];
-    let of_calibration = [
-        Parameter::lines(),
-        Criterion::lines(),
-        FitLaw::lines(),
         System::lines(),
-        LengthUnit::lines(),
-        CycleUnit::lines(),
-        LoadUnit::lines(),
-        IntensityUnit::lines(),
-        RateUnit::lines(),
-        RangeKind::lines(),
-        Decimal::lines(),
         FittedLaw::lines(),
         RateMethod::lines(),
         SolverUsed::lines(),
         StopReason::lines(),
         TipState::lines(),
-        beside(&StopReason::lines(), SceneEnd::lines()),
+        SceneEnd::lines(),
+        StressIntensityMethod::lines(),
     ];
-    let of_sweeps = [DesignKind::lines(), Scatter::lines(), Scale::lines(), DistributionKind::lines()];
-    let of_the_tips = StressIntensityMethod::lines();
     let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
-    let mut all: Vec<_> = of_the_test.into_iter().flatten().map(words).collect();
+    let of_all = SpecimenKind::lines().into_iter().chain(of_keys).chain(of_others.into_iter().flatten());
+    let mut all: Vec<(String, String, String)> = Vec::new();
+    for line in of_all.map(words) {
+        // Of a name that cases and scenes know the first meaning is told.
+        if !all.iter().any(|known| (&known.0, &known.1) == (&line.0, &line.1)) {
+            all.push(line);
+        }
+    }
     all.extend(library::names().into_iter().map(|name| {
         let meaning = library::find(&name, &Folder::none()).map_or_else(
             |error| error.to_string(),
@@ -125,7 +72,6 @@ pub fn lines() -> Vec<(String, String, String)> {
         ("material.name".to_owned(), record.name, meaning)
     };
     all.extend(growth_data::records().into_iter().map(record));
-    all.extend(of_the_model.into_iter().flatten().map(words));
     all.push((
         GrowthLawKind::KEY.to_owned(),
         LIBRARY.to_owned(),
@@ -141,11 +87,6 @@ pub fn lines() -> Vec<(String, String, String)> {
         "beta.csv".to_owned(),
         "K = β σ √(πa) by a table crack_length_mm,beta, for hand calculation; `perilife sif --sweep` writes one".to_owned(),
     ));
-    all.push(("output.animation".to_owned(), "true".to_owned(), "also growth.svg: the cracks as they grow".to_owned()));
-    all.push(("output.paraview".to_owned(), "true".to_owned(), "also the fields of some moments, for ParaView".to_owned()));
-    all.extend(of_calibration.into_iter().flatten().map(words));
-    all.extend(of_sweeps.into_iter().flatten().map(words));
-    all.extend(of_the_tips.into_iter().map(words));
     all
 }
 
@@ -159,7 +100,7 @@ pub fn told() -> Vec<Told> {
         keys,
     };
     let of_kind = |kind: &SpecimenKind| {
-        let beta = kind.takes_beta().then_some(Key { need: Need::Optional, ..BETA_FILE });
+        let beta = kind.takes_beta().then_some(BETA_FILE);
         let keys = kind.keys().iter().copied().chain(beta).collect();
         Told { tag: Some(("kind", kind.name())), is_needed: true, ..told(&format!("specimen.{kind}"), kind.meaning(), keys) }
     };
@@ -172,11 +113,7 @@ pub fn told() -> Vec<Told> {
         "fleet" => "Many plates that differ",
         _ => "What is written beside results",
     };
-    let sides = Edge::ALL.iter().map(|edge| Key {
-        shape: SupportEntry::SHAPE,
-        need: Need::Optional,
-        ..key(edge.name(), "Side that is held")
-    });
+    let sides = Edge::ALL.iter().map(|edge| Key::of_choice::<SupportEntry>(edge.name(), "Side that is held"));
     let measured = [MeasuredKeys::KEYS, RatesKeys::KEYS].concat().into_iter().map(|key| Key { need: Need::Optional, ..key });
     let fit = FitKeys::KEYS.iter().copied().chain(LawKeys::KEYS[1..].iter().copied());
     let mut all: Vec<Told> = SpecimenKind::ALL.iter().map(of_kind).collect();
@@ -187,6 +124,22 @@ pub fn told() -> Vec<Told> {
     all
 }
 
+/// Sections of sweeps, and those of scenes that have keys of their own.
+pub fn beside() -> Vec<Told> {
+    let told = |file: &str, section: &str, keys: &[Key]| Told {
+        section: format!("{file}.{section}"),
+        meaning: format!("Section of a {file}"),
+        tag: None,
+        is_needed: false,
+        keys: keys.to_vec(),
+    };
+    let sweep = [("design", DesignKeys::KEYS), ("vary[]", VaryKeys::KEYS)].map(|(section, keys)| told("sweep", section, keys));
+    sweep
+        .into_iter()
+        .chain(perilife_scenes::read::keys().into_iter().map(|(section, keys)| told("scene", section, keys)))
+        .collect()
+}
+
 /// The JSON Schema of case and calibration files.
 pub fn schema() -> Value {
     told::schema("perilife case or calibration", &told())
@@ -194,7 +147,7 @@ pub fn schema() -> Value {
 
 /// Every key in tables of the guide.
 pub fn manual() -> String {
-    told().iter().map(Told::manual).collect()
+    told().iter().chain(&beside()).map(Told::manual).collect()
 }
 
 /// Every section as a class of the Python stub.
@@ -224,9 +177,4 @@ pub fn json(lines: Vec<(String, String, String)>) -> Value {
         "form": schema(),
         "retardations": RetardationKind::all().map(retardation).collect::<Vec<_>>(),
     })
-}
-
-/// The lines of a second choice for a key that do not stand in the first one already.
-fn beside(first: &[KindLine], second: Vec<KindLine>) -> Vec<KindLine> {
-    second.into_iter().filter(|line| first.iter().all(|known| (known.key, known.name) != (line.key, line.name))).collect()
 }

@@ -41,7 +41,7 @@ fn every_broken_scene_is_refused_with_words() {
         std::fs::write(&file, &text).unwrap();
         let result = Scene::from_file(&file, &[]);
         let message = result.as_ref().err().map(Error::to_string).unwrap_or_default();
-        let refused = matches!(&result, Err(Error::Input(_))) && message.starts_with(&file.display().to_string());
+        let refused = matches!(&result, Err(Error::Input(_))) && message.contains(&file.display().to_string());
         let told = message.contains("; ") && words.iter().all(|word| message.contains(word));
         if words.is_empty() != result.is_ok() || !(words.is_empty() || refused && told) {
             wrong.push(format!("{new}: wants {words:?}, says {message}"));
@@ -58,8 +58,8 @@ fn every_broken_scene_is_refused_with_words() {
                 continue;
             }
             assert_eq!(output.status.code(), Some(2), "{new}");
-            assert_eq!(texts(&output).1.trim_end().lines().count(), 1, "{new}: one message");
-            assert!(texts(&output).1.starts_with("error: scene.toml"), "{new}");
+            assert_eq!(texts(&output).1.matches("error: ").count(), 1, "{new}: one message");
+            assert!(texts(&output).1.contains("scene.toml:"), "{new}");
         }
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "{new}: nothing but the scene stands there {words:?}");
     }

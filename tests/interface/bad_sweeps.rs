@@ -20,7 +20,7 @@ fn bad_designs_are_refused_before_anything_runs() {
         (
             "case = \"panel.toml\"\n[design]\nkind = \"grit\"\n".to_owned(),
             2,
-            vec!["sweep.toml:3", "\"grit\"", "grid, latin_hypercube"],
+            vec!["sweep.toml:3", "\"grit\"", "did you mean \"grid\"?"],
         ),
         ("case = \"panel.toml\"\n[design]\nkind = \"grid\"\n".to_owned(), 2, vec!["vary: is missing: nothing varies"]),
         (

@@ -70,8 +70,6 @@ const BAD: &[Bad] = &[
     // Keys, sections, types
     panel("width_mm = 152.4", "widht_mm = 152.4", &[":3:", "specimen.widht_mm", "not a known key", "did you mean width_mm?"]),
     panel("width_mm = 152.4\n", "", &[":1:", "specimen.width_mm", "missing"]),
-    panel("width_mm = 152.4", "width_mm = \"wide\"", &[":3:", "specimen.width_mm", "wide", "a number"]),
-    panel("width_mm = 152.4", "width_mm = [1, 2]", &[":3:", "specimen.width_mm", "a number"]),
     panel("[material]\nname = \"al2024-t3\"\n", "", &["material", "missing", "[material]"]),
     panel("[loading]\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n", "", &["loading", "missing"]),
     panel("[specimen]", "[speciman]", &[":1:", "speciman", "not a known section", "specimen"]),
@@ -83,20 +81,6 @@ const BAD: &[Bad] = &[
     panel("width_mm = 152.4", "width_mm = 152.4\nwidth_mm = 3", &[":4:", "not TOML", "each key once"]),
     panel("[material]", "[material", &[":7:", "not TOML"]),
     // Numbers beyond reason
-    panel("thickness_mm = 2.54", "thickness_mm = -2.54", &[":5:", "specimen.thickness_mm", "-2.54", "above zero", "between"]),
-    panel("thickness_mm = 2.54", "thickness_mm = 0", &[":5:", "specimen.thickness_mm", "above zero"]),
-    panel("thickness_mm = 2.54", "thickness_mm = nan", &[":5:", "specimen.thickness_mm", "NaN", "finite"]),
-    panel("thickness_mm = 2.54", "thickness_mm = inf", &[":5:", "specimen.thickness_mm", "inf", "finite"]),
-    panel("width_mm = 152.4", "width_mm = 1e308", &[":3:", "specimen.width_mm", "beyond reason", "between"]),
-    panel("stress_range_mpa = 48.28", "stress_range_mpa = 1e308", &["loading.stress_range_mpa", "beyond reason"]),
-    panel("a = 6450.0", "a = 1e308", &["fatigue.a", "beyond reason"]),
-    panel("p = 2.86", "p = -3", &["fatigue.p", "above zero"]),
-    panel(
-        "name = \"al2024-t3\"",
-        "youngs_modulus_gpa = 1e308\npoisson_ratio = 0.3",
-        &["material.youngs_modulus_gpa", "beyond reason"],
-    ),
-    panel("crack_length_mm = 49.8", "cycles_max = -1", &["stop.cycles_max", "above zero"]),
     // Specimens
     panel(
         "kind = \"middle_tension\"",
@@ -205,7 +189,11 @@ const BAD: &[Bad] = &[
         &["specimen.outline_mm", "crosses", "in order"],
     ),
     plate("width_mm = 100\nlength_mm = 200", "outline_mm = [[0, 0], [10, 10]]", &["specimen.outline_mm", "no outline"]),
-    plate("width_mm = 100\nlength_mm = 200", "outline_mm = [[0, 0], [10, 10], \"x\"]", &["specimen.outline_mm[2]", "[x, y]"]),
+    plate(
+        "width_mm = 100\nlength_mm = 200",
+        "outline_mm = [[0, 0], [10, 10], \"x\"]",
+        &["specimen.outline_mm[2]", "is not a pair of numbers"],
+    ),
     plate("width_mm = 100\n", "", &["specimen.width_mm", "missing", "outline_mm"]),
     // Material
     panel("name = \"al2024-t3\"", "name = \"unobtainium\"", &[":8:", "material.name", "unobtainium", "al2024-t3"]),

@@ -122,7 +122,7 @@ fn broken_calibration_files_say_what_would_be_right() {
         (
             "unknown key",
             swap("from_crack", "from_crak"),
-            "measured.from_crak_length_mm = 9.0: is not a known key; known here: files",
+            "measured.from_crak_length_mm = 9.0: is not a known key; did you mean from_crack_length_mm?",
         ),
         ("no files", swap("[\"curves.csv\"]", "[]"), "measured.files = []: names no file"),
         ("files of a wrong kind", swap("[\"curves.csv\"]", "\"curves.csv\""), "measured.files"),

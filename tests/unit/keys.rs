@@ -31,6 +31,11 @@ fn filled(keys: &[Key]) -> Table {
     needed.map(|key| (key.name.to_owned(), some(&key, key.shape))).collect()
 }
 
+/// Sections of every sort of file.
+fn sections() -> Vec<Told> {
+    [catalogue::told(), catalogue::beside()].concat()
+}
+
 /// What a section says of a table.
 fn told_of(told: &Told, table: &Table) -> Vec<String> {
     let kinds: Vec<_> = SpecimenKind::ALL.iter().map(|kind| (kind.name(), kind.keys())).collect();
@@ -49,7 +54,7 @@ fn with(told: &Told, key: &Key, value: Value) -> Vec<String> {
 #[test]
 fn every_key_refuses_values_of_another_sort_and_beyond_reason() {
     let mut rows = 0;
-    for told in catalogue::told() {
+    for told in sections() {
         for key in all(&told.keys) {
             let path = format!("{}.{}", told.section, key.name);
             if !matches!(key.shape, Shape::Other("a value that its reader takes")) {
@@ -76,7 +81,7 @@ fn every_key_refuses_values_of_another_sort_and_beyond_reason() {
 
 #[test]
 fn every_needed_key_is_missed_and_a_good_section_is_taken() {
-    for told in catalogue::told() {
+    for told in sections() {
         let good = filled(&told.keys);
         assert!(told_of(&told, &good).is_empty(), "{}: {:?}", told.section, told_of(&told, &good));
         for name in good.keys() {
@@ -91,7 +96,7 @@ fn every_needed_key_is_missed_and_a_good_section_is_taken() {
 
 #[test]
 fn of_keys_that_say_the_same_one_is_given() {
-    for told in catalogue::told() {
+    for told in sections() {
         let keys = all(&told.keys);
         for (i, key) in keys.iter().enumerate().filter(|(_, key)| key.group.is_some()) {
             let Some(other) = keys[..i].iter().find(|other| other.group == key.group) else { continue };
@@ -107,7 +112,7 @@ fn of_keys_that_say_the_same_one_is_given() {
 
 #[test]
 fn a_slip_of_the_pen_gets_the_name_that_was_meant() {
-    for told in catalogue::told() {
+    for told in sections() {
         for key in all(&told.keys).into_iter().filter(|key| key.name.len() > 7) {
             let mut name = key.name.to_owned();
             name.remove(3);

@@ -202,14 +202,14 @@ fn directions_pressures_and_displacements_that_are_refused() {
         (
             PLATE,
             "stress_ratio = 0\nstress_max_mpa = 50\ngrip = \"mean\"".into(),
-            "loading.grip: says how a moved edge is gripped",
+            "loading.grip = \"mean\": says how a moved edge is gripped",
         ),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ngrip = \"soft\""), "straight, mean"),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ngrip = \"mean\"\ntransverse = \"held\""), "does not go with grip"),
         (
             PLATE,
             format!("{kept}displacement_max_mm = 0.1\ntransverse = \"held\"\npins = [{{ hole = 0, direction = [0, 1] }}]"),
-            "loading.transverse: is of moved edges",
+            "loading.transverse = \"held\": is of moved edges",
         ),
         (
             PLATE,

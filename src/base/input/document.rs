@@ -10,6 +10,7 @@ use super::folder::{Folder, OpenedFile, STREAM, text_of};
 use super::slice::{path_steps, shorten, value_at};
 use super::us_keys::{Written, as_written, metric, to_metric, twin};
 use crate::error::{Error, InputError, Result, input, input_missing};
+use crate::keys::nearest;
 
 /// What is said of a value that an option overrides.
 const BY_SET: &str = " (value given by --set)";
@@ -256,7 +257,9 @@ impl<'t> Sections<'t> {
                     return Err(input(name, shorten(value), *problem, *remedy));
                 }
                 let what = if value.is_table() { "is not a known section" } else { "stands in no section" };
-                return Err(input(name, shorten(value), what, format!("known sections: {}", known.join(", "))));
+                let near =
+                    nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("did you mean [{near}]? "));
+                return Err(input(name, shorten(value), what, format!("{near}known sections: {}", known.join(", "))));
             }
             if !value.is_table() {
                 return Err(input(name, shorten(value), "is not a section", format!("write [{name}] and its keys below")));

@@ -1,8 +1,7 @@
 //! Reading input files: TOML text to checked slices, every error with file, line, key, value and remedy.
 //!
-//! Each room declares its slice of the file as a serde struct and reads it with [`slice()`]; numbers pass through a
-//! [`Quantity`], which refuses what is not finite or beyond reason and converts to SI. [`Document`] holds the text, so
-//! that an error about a key finds its line.
+//! Sections are declared by their keys ([`keys`](crate::keys)); numbers pass through a [`Quantity`], which refuses what is not finite or
+//! beyond reason and converts to SI. [`Document`] holds the text, so that an error about a key finds its line.
 
 mod document;
 mod folder;
@@ -16,4 +15,4 @@ pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256}
 pub use output::Output;
 pub use quantity::*;
 pub use slice::shorten;
-pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, refuse_given, slice, slice_beside, table_of, value_at};
+pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, slice, table_of, value_at};

@@ -74,8 +74,3 @@ impl Quantity {
         text.trim_end().to_owned()
     }
 }
-
-/// A point `[x, y]` in mm, to metres.
-pub fn point(key: &str, value: [f64; 2]) -> Result<[f64; 2]> {
-    Ok([COORDINATE.read(key, value[0])?, COORDINATE.read(key, value[1])?])
-}

@@ -3,9 +3,9 @@
 use toml::Value;
 
 use super::{Given, Key, Need, Shape, nearest};
-use crate::error::{Error, InputError, Result, input};
+use crate::error::{Error, Result, input};
 use crate::input::{OF_SCENES, PLANNED, shorten};
-use crate::kinds::KindLine;
+use crate::kinds::Named;
 
 /// A type of a field of a section: which values it takes, and how it is read.
 pub trait Field: Sized {
@@ -173,12 +173,15 @@ impl<T: Field> Field for Vec<T> {
 }
 
 /// A named choice.
-/// Errors: a name that is not known, with the one that was meant.
-pub fn choice<T>(path: &str, value: &Value, lines: fn() -> Vec<KindLine>, find: impl Fn(&str) -> Option<T>) -> Result<T> {
-    let known: Vec<&str> = lines().iter().map(|line| line.name).collect();
-    let list = format!("use one of {}", known.join(", "));
-    let Some(text) = value.as_str() else { return Err(input(path, shorten(value), "is not text in quotes", list)) };
-    let Some(found) = find(text) else {
+impl<T: Named> Field for T {
+    const SHAPE: Shape = Shape::Choice(T::lines);
+    fn take(_: &Key, path: &str, value: &Value) -> Result<Self> {
+        let known: Vec<&str> = T::lines().iter().map(|line| line.name).collect();
+        let list = format!("use one of {}", known.join(", "));
+        let Some(text) = value.as_str() else { return Err(input(path, shorten(value), "is not text in quotes", list)) };
+        if let Some(found) = T::find(text) {
+            return Ok(found);
+        }
         let listed = |list: &[(&str, &[&str])]| list.iter().any(|(key, names)| *key == path && names.contains(&text));
         let (problem, remedy) = if listed(OF_SCENES) {
             ("belongs to fracture scenes, not to a fatigue case", format!("run `perilife fracture`, or {list}"))
@@ -188,10 +191,8 @@ pub fn choice<T>(path: &str, value: &Value, lines: fn() -> Vec<KindLine>, find: 
             let near = nearest(text, known.iter().copied());
             ("is not a known kind", near.map_or(list, |near| format!("did you mean \"{near}\"?")))
         };
-        let (key, value) = (Some(path.to_owned()), Some(shorten(value)));
-        return Err(Error::Input(Box::new(InputError { key, value, problem: problem.into(), remedy, ..InputError::default() })));
-    };
-    Ok(found)
+        Err(input(path, shorten(value), problem, remedy))
+    }
 }
 
 /// A number in the unit of its key, within its range, for whoever compares it with others in that unit.

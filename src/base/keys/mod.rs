@@ -8,7 +8,7 @@ mod field;
 mod names;
 pub mod told;
 
-pub use field::{Field, Plain, choice, quantity, refuse};
+pub use field::{Field, Plain, quantity, refuse};
 pub use names::{Kinds, nearest, none_near};
 
 use toml::Table;

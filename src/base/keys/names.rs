@@ -5,7 +5,7 @@ use toml::Value;
 use super::{Given, Key, all};
 use crate::error::InputError;
 use crate::input::shorten;
-use crate::units::us::{System, renamed};
+use crate::units::us::{System, UNITS, renamed};
 
 /// The kinds of a section that comes in kinds.
 pub struct Kinds<'a> {
@@ -30,14 +30,13 @@ pub(super) fn stranger(
         let (key, value) = (Some(given.path_of(name)), Some(shorten(value)));
         InputError { key, value, problem, remedy, ..InputError::default() }
     };
+    let names = || known.iter().map(|key| key.name).chain(beside.iter().copied());
     // The same quantity without a unit, or in another one.
-    let stem = |name: &str| name.rsplit_once('_').map(|(stem, _)| stem.to_owned());
-    let with_unit = |key: &&Key| {
-        renamed(key.name, System::Us).is_some() && (stem(key.name).as_deref() == Some(name) || stem(key.name) == stem(name))
-    };
-    if let Some(key) = known.iter().find(with_unit) {
-        let twin = renamed(key.name, System::Us).map_or_else(String::new, |twin| format!(" or {}", twin.name));
-        return (told("is not a known key".into(), format!("did you mean {}{twin}?", key.name)), Some(key.name.to_owned()));
+    let is_meant =
+        |known: &&str| stem(known).is_some_and(|own| own == name || name.rsplit_once('_').is_some_and(|(given, _)| given == own));
+    if let Some(meant) = names().find(is_meant) {
+        let twin = renamed(meant, System::Us).map_or_else(String::new, |twin| format!(" or {}", twin.name));
+        return (told("is not a known key".into(), format!("did you mean {meant}{twin}?")), Some(meant.to_owned()));
     }
     let Kinds { tag, own, all: kinds } = kinds.unwrap_or(&Kinds { tag: "", own: "", all: &[] });
     let has_it = |(_, keys): &&(&str, &'static [Key])| all(keys).iter().any(|key| key.name == name);
@@ -48,11 +47,15 @@ pub(super) fn stranger(
         let problem = format!("is not a key of {tag} = \"{own}\": it belongs to {shown}{more}");
         return (told(problem, format!("leave it out, or use {tag} = \"{first}\"")), None);
     }
-    let names = || known.iter().map(|key| key.name).chain(beside.iter().copied());
     if let Some(near) = nearest(name, names()) {
         return (told("is not a known key".into(), format!("did you mean {near}?")), Some(near));
     }
     (told("is not a known key".into(), none_near(names())), None)
+}
+
+/// A name without its unit, if it has one.
+fn stem(name: &str) -> Option<&str> {
+    UNITS.iter().find_map(|unit| name.strip_suffix(unit.suffix(System::Si))?.strip_suffix('_'))
 }
 
 /// What is known, where none of it is near.

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value as Json, json};
 
 use super::{Key, Need, Shape, all};
+use crate::kinds::KindLine;
 use crate::units::us::{System, renamed};
 
 /// Keys of one section, or of one of its kinds.
@@ -92,6 +93,15 @@ impl Told {
     pub fn lines(&self) -> Vec<[String; 4]> {
         let line = |(path, key): (String, Key)| [format!("{}.{path}", self.section), key.range(), key.left_out(), key.meaning()];
         self.rows().into_iter().map(line).collect()
+    }
+
+    /// Choices of its keys.
+    pub fn choices(&self) -> Vec<KindLine> {
+        let of = |(_, key): (String, Key)| match key.shape {
+            Shape::Choice(lines) | Shape::List(&Shape::Choice(lines)) => lines(),
+            _ => Vec::new(),
+        };
+        self.rows().into_iter().flat_map(of).collect()
     }
 
     /// A table of the guide.

@@ -12,6 +12,6 @@ pub mod fleet;
 pub mod scatter;
 mod vary;
 
-pub use design::{Design, Scatter, Sweep};
+pub use design::{Design, DesignKeys, Scatter, Sweep};
 pub use draw::DrawnCase;
-pub use vary::{DesignKind, DistributionKind, Scale, Spread, Vary};
+pub use vary::{DesignKind, DistributionKind, Scale, Spread, Vary, VaryKeys};

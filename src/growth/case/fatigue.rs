@@ -124,7 +124,7 @@ fn read_step_error(slice: &FatigueKeys, has_tips: bool) -> Result<f64> {
 }
 
 /// What loads to bear are.
-const REQUIRED: &str = "the load to bear";
+const REQUIRED: &str = "the load";
 
 perilife_base::keys! {
     /// Keys of `[stop]`.

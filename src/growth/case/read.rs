@@ -235,7 +235,11 @@ pub fn keys() -> Vec<(&'static str, Vec<Key>)> {
         "fatigue" => perilife_laws::growth_law::description::keys_to_tell(),
         _ => Vec::new(),
     };
-    KEYS.iter().map(|(section, own)| (*section, [own.to_vec(), more(section)].concat())).collect()
+    let all = |(section, own): &(&'static str, &[Key])| {
+        let is_new = |key: &Key| own.iter().all(|known| known.name != key.name);
+        (*section, own.iter().copied().chain(more(section).into_iter().filter(is_new)).collect())
+    };
+    KEYS.iter().map(all).collect()
 }
 
 /// What is wrong with the keys of the sections by themselves, all of it at once.

@@ -19,8 +19,8 @@ use std::f64::consts::PI;
 use serde_json::{Map, Value, json};
 
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{refuse_given, value_at};
-use perilife_base::keys::{Field, Key, quantity};
+use perilife_base::input::value_at;
+use perilife_base::keys::{Field, Given, Key, quantity};
 use perilife_plate::loading::Loading;
 use perilife_plate::material::{Material, Plane};
 
@@ -78,9 +78,9 @@ impl Retardation {
     pub fn read(section: &toml::Value, loading: &Loading, material: &Material, threshold: Option<f64>) -> Result<Option<Self>> {
         let given = |key: &str| value_at(section, key);
         if loading.spectrum.is_none() {
-            let keys: Vec<(&str, bool)> = retardation_keys().into_iter().map(|key| (key, given(key).is_some())).collect();
             let problem = "says how cycles of a spectrum act on later ones, and the kind of loading is another";
-            return refuse_given("loading", &keys, problem, "give kind = \"spectrum\", or leave it out").map(|()| None);
+            let given = Given::of(section, "loading")?;
+            return given.refuse_any(&retardation_keys(), problem, "give kind = \"spectrum\", or leave it out").map(|()| None);
         }
         let asked = given(KEY).map(|value| RetardationKind::take(&Key::new(KEY, ""), RetardationKind::KEY, value)).transpose()?;
         let kind = asked.unwrap_or(RetardationKind(&description::NONE));

@@ -56,7 +56,7 @@ perilife_base::kinds! {
     }
 }
 
-const LOAD: &str = "the load";
+const LOAD: &str = "one load";
 const OF_SPECTRUM: (&str, &[&str]) = ("kind", &["spectrum"]);
 const OF_DISPLACEMENT: (&str, &[&str]) = ("kind", &["displacement"]);
 const RESIDUAL: &str = "the residual stress";

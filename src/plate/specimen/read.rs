@@ -6,7 +6,7 @@ use super::keys::{BETA_FILE, KIND};
 use super::{LengthConvention, Specimen, SpecimenKind, named, part_through, plate, standard};
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
 use perilife_base::input::{Folder, shorten, table_of};
-use perilife_base::keys::{Field, Given};
+use perilife_base::keys::{self, Field, Given, Key, Kinds, Section};
 
 /// Other names of flaws that do not go through the thickness, never treated as through cracks.
 pub const PART_THROUGH: &[&str] = &[
@@ -20,14 +20,59 @@ pub const PART_THROUGH: &[&str] = &[
 ];
 
 /// Keys that only such a flaw has.
-const PART_THROUGH_KEYS: &[&str] =
-    &["depth_mm", "surface_length_mm", "crack_shape", "aspect_ratio", "a_over_c", "corner_radius_mm"];
+const PART_THROUGH_KEYS: &[&str] = &[
+    "crack_depth_mm",
+    "crack_half_length_mm",
+    "depth_mm",
+    "surface_length_mm",
+    "crack_shape",
+    "aspect_ratio",
+    "a_over_c",
+    "corner_radius_mm",
+];
 
 /// What to give for a flaw that does not go through.
 fn give_a_kind() -> String {
     let known: Vec<&str> =
         SpecimenKind::ALL.iter().filter(|kind| kind.part_through().is_some()).map(|kind| kind.name()).collect();
     format!("use one of {} with crack_depth_mm and crack_half_length_mm", known.join(", "))
+}
+
+impl SpecimenKind {
+    /// Its keys in `[specimen]`.
+    pub fn keys(self) -> &'static [Key] {
+        match (self, self.part_through()) {
+            (_, Some(description)) => part_through::keys(description),
+            (SpecimenKind::SingleEdgeTension, _) => standard::SingleEdge::KEYS,
+            (SpecimenKind::CompactTension, _) => standard::Compact::KEYS,
+            (SpecimenKind::Plate, _) => plate::Keys::KEYS,
+            (kind, _) => kind.named().map_or(standard::Strip::KEYS, named::Description::keys),
+        }
+    }
+
+    /// Whether a table of β takes the place of its K: holes that cracks run into on their way, and fronts, have no one K over one length.
+    pub fn takes_beta(self) -> bool {
+        self.part_through().is_none() && !matches!(self, SpecimenKind::RowOfHoles | SpecimenKind::StopHole)
+    }
+
+    /// Its section, every key of which has been looked at.
+    /// Errors: all keys that are not known, missing or wrong by themselves.
+    pub(super) fn given(self, value: &Value) -> Result<Given<'_>> {
+        let given = Given::of(value, "specimen")?;
+        Error::of_all(self.mistakes(given))?;
+        Ok(given)
+    }
+
+    /// What is wrong with the keys of its section by themselves.
+    pub(super) fn mistakes(self, given: Given<'_>) -> Vec<InputError> {
+        let all: Vec<_> = SpecimenKind::ALL.iter().map(|kind| (kind.name(), kind.keys())).collect();
+        keys::mistakes(
+            given,
+            &[self.keys(), &[BETA_FILE]].concat(),
+            &["kind"],
+            Some(&Kinds { tag: "kind", own: self.name(), all: &all }),
+        )
+    }
 }
 
 impl Specimen {

@@ -377,25 +377,25 @@ class LoadingRollers(TypedDict, total=False):
 
 class Loading(TypedDict, total=False):
     kind: Literal["constant_amplitude", "spectrum", "displacement"]  # Kind of cycles; constant_amplitude
-    stress_max_mpa: object  # Maximum stress σmax: gross section; one of those that say the load
+    stress_max_mpa: object  # Maximum stress σmax: gross section; one of those that say one load
     stress_max_ksi: object
-    stress_range_mpa: object  # Stress range Δσ: gross section, maximum − minimum; one of those that say the load
+    stress_range_mpa: object  # Stress range Δσ: gross section, maximum − minimum; one of those that say one load
     stress_range_ksi: object
-    force_max_n: object  # Maximum force Pmax; one of those that say the load
+    force_max_n: object  # Maximum force Pmax; one of those that say one load
     force_max_lbf: object
-    force_range_n: object  # Force range ΔP: maximum − minimum; one of those that say the load
+    force_range_n: object  # Force range ΔP: maximum − minimum; one of those that say one load
     force_range_lbf: object
-    force_max_kn: object  # Maximum force Pmax; one of those that say the load
+    force_max_kn: object  # Maximum force Pmax; one of those that say one load
     force_max_kip: object
-    force_range_kn: object  # Force range ΔP: maximum − minimum; one of those that say the load
+    force_range_kn: object  # Force range ΔP: maximum − minimum; one of those that say one load
     force_range_kip: object
-    displacement_max_mm: object  # Maximum displacement δmax: of the loaded places against each other; one of those that say the load; with kind = displacement
+    displacement_max_mm: object  # Maximum displacement δmax: of the loaded places against each other; one of those that say one load; with kind = displacement
     displacement_max_in: object
-    displacement_range_mm: object  # Displacement range Δδ: of the loaded places against each other; one of those that say the load; with kind = displacement
+    displacement_range_mm: object  # Displacement range Δδ: of the loaded places against each other; one of those that say one load; with kind = displacement
     displacement_range_in: object
-    spectrum_scale_mpa: object  # Scale of the spectrum: gross stress that a value of 1 in the file stands for; one of those that say the load; with kind = spectrum
+    spectrum_scale_mpa: object  # Scale of the spectrum: gross stress that a value of 1 in the file stands for; one of those that say one load; with kind = spectrum
     spectrum_scale_ksi: object
-    spectrum_scale_n: object  # Scale of the spectrum: force that a value of 1 in the file stands for; one of those that say the load; with kind = spectrum
+    spectrum_scale_n: object  # Scale of the spectrum: force that a value of 1 in the file stands for; one of those that say one load; with kind = spectrum
     spectrum_scale_lbf: object
     stress_ratio: float  # Stress ratio R: minimum / maximum, below 1; -
     grip: Literal["straight", "mean"]  # Grip: of moved edges; straight where it is left out; with kind = displacement
@@ -438,7 +438,7 @@ class Model(TypedDict, total=False):
     surface_correction: Literal["none", "volume_and_surface", "balanced"]  # Surface correction: at the boundary; with method = peridynamics, handbook
     horizon_ratio: float  # Horizon ratio: horizon over spacing; 3.015 where it is left out; with method = peridynamics, handbook
     lattice_angle_deg: float  # Lattice angle, °: of rows of points against x; with method = peridynamics, handbook
-    solver: Literal["window", "multigrid"]  # Solver; with method = peridynamics, handbook
+    solver: Literal["window", "multigrid", "direct"]  # Solver; with method = peridynamics, handbook
     nodes: float  # Number of nodes: far from cracks; with method = element_free_galerkin
     tolerance_percent: float  # Target accuracy, % of life; 2; with method = element_free_galerkin, handbook
     basis: Literal["linear", "quadratic"]  # Basis: polynomials of the nodes; with method = element_free_galerkin
@@ -474,7 +474,6 @@ class Fatigue(TypedDict, total=False):
     horizon_in: float
     paris_c_mm_per_cycle: float  # rate in mm/cycle at ΔK = 1 MPa√m; -
     paris_m: float  # exponent; -
-    walker_gamma: float  # Walker exponent; -
     forman_c_mm_per_cycle: float  # rate in mm/cycle; -
     forman_m: float  # exponent; -
     k_c_mpa_sqrt_m: float  # stress intensity; -
@@ -499,9 +498,9 @@ class Stop(TypedDict, total=False):
     crack_depth_in: float
     at_break_through: bool  # Stop at breakthrough: of a part-through crack; -
     cycles_max: float  # Most cycles: run-out; 1e9
-    required_strength_mpa: float  # Required strength: gross stress that the plate has to carry; one of those that say the load to bear
+    required_strength_mpa: float  # Required strength: gross stress that the plate has to carry; one of those that say the load
     required_strength_ksi: float
-    limit_load_factor: float  # Required load: over the maximum load of the cycles; one of those that say the load to bear
+    limit_load_factor: float  # Required load: over the maximum load of the cycles; one of those that say the load
     toughness: bool  # Fracture ends the life; true
     net_section: bool  # Net-section yield ends the life; true
 

@@ -1,12 +1,12 @@
 //! One load of a scene: what it does, and where.
 
-use serde::Deserialize;
 use toml::Value;
 
-use super::region;
+use super::region::{self, BoxKeys, DEPTH};
 use crate::scene::{Action, LoadRamp, Region, SceneLoad};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{Quantity, number, refuse_given, slice};
+use perilife_base::input::Quantity;
+use perilife_base::keys::{Given, coordinate, key, section};
 use perilife_base::units::{MM, MPA};
 use perilife_plate::loading::Transverse;
 use perilife_plate::specimen::geometry::unit;
@@ -22,38 +22,31 @@ perilife_base::kinds! {
     }
 }
 
-/// Keys of one load.
-pub const KEYS: &[&str] = &[
-    "kind",
-    "edges",
-    "regions",
-    "grip_mm",
-    "range_mm",
-    "stress_mpa",
-    "displacement_mm",
-    "velocity_mm_s",
-    "direction",
-    "transverse",
-    "from_s",
-];
 /// More than this is a slip.
 const REGIONS_MAX: usize = 50;
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LoadInput {
-    kind: LoadKind,
-    edges: Option<Vec<Edge>>,
-    regions: Option<Vec<Value>>,
-    grip_mm: Option<f64>,
-    range_mm: Option<[f64; 2]>,
-    stress_mpa: Option<f64>,
-    displacement_mm: Option<f64>,
-    velocity_mm_s: Option<f64>,
-    direction: Option<[f64; 2]>,
-    transverse: Option<Transverse>,
-    ramp_s: Option<f64>,
-    from_s: Option<f64>,
+const TRACTION: Quantity = Quantity { what: "a stress", unit: "MPa", low: -1e5, high: 1e5, si: MPA };
+const SHIFT: Quantity = Quantity { what: "a displacement", unit: "mm", low: -1e4, high: 1e4, si: MM };
+const SPEED: Quantity = Quantity { what: "a velocity", unit: "mm/s", low: -1e8, high: 1e8, si: MM };
+/// A time from 0 on.
+pub const TIME: Quantity = Quantity { what: "a time", unit: "s", low: 0.0, high: 1e6, si: 1.0 };
+
+perilife_base::keys! {
+    /// Keys of one load of a scene.
+    pub struct LoadKeys {
+        kind: LoadKind = key("kind", "Kind of load");
+        edges: Option<Vec<Edge>> = key("edges", "Loaded sides");
+        regions: Option<Vec<BoxKeys>> = key("regions", "Loaded boxes: in the place of sides");
+        grip: f64 = key("grip_mm", "Depth of the grip: from the side into the plate").of(DEPTH), or "one row" 0.0;
+        range: Option<Point> = coordinate("range_mm", "Part of the side: [from, to]");
+        stress: Option<f64> = key("stress_mpa", "Stress: along the outward normal, or direction").of(TRACTION).only("kind", &["traction"]);
+        displacement: Option<f64> = key("displacement_mm", "Displacement").of(SHIFT).only("kind", &["displacement", "platens"]);
+        velocity: Option<f64> = key("velocity_mm_s", "Velocity").of(SPEED).only("kind", &["velocity"]);
+        direction: Option<[f64; 2]> = key("direction", "Direction: [x, y]");
+        transverse: Option<Transverse> = key("transverse", "Motion across the displacement or velocity");
+        ramp: Option<f64> = key("ramp_s", "Ramp: the load rises linearly over so long").of(TIME);
+        from: Option<f64> = key("from_s", "Start: from when the load acts").of(TIME);
+    }
 }
 
 /// Time of a scene of motion, s.
@@ -67,12 +60,12 @@ pub struct Clock {
 
 /// One load: a drive for each of its edges or regions.
 pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Specimen) -> Result<Vec<SceneLoad>> {
-    let load: LoadInput = slice(value, path)?;
-    let size = size(&load, path)?;
+    let (given, load) = (Given::of(value, path)?, section::<LoadKeys>(value, path)?);
+    let size = size(&given, &load)?;
     let direction = direction(&load, path)?;
-    check_keys(&load, path)?;
+    check_keys(&given, &load)?;
     let rise = rise(&load, path, clock)?;
-    let (regions, kind) = (regions(&load, path, specimen)?, load.kind);
+    let (regions, kind) = (regions(&given, &load, path, specimen)?, load.kind);
     let mut drives = Vec::new();
     for (region, key) in regions {
         let outward = match region {
@@ -103,11 +96,10 @@ pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Sp
 }
 
 /// How a load rises: in a scene of motion by its own `ramp_s`, or that of all loads, from `from_s` on.
-fn rise(load: &LoadInput, path: &str, clock: Option<Clock>) -> Result<LoadRamp> {
-    const TIME: Quantity = number("a time in s", 0.0, 1e6);
+fn rise(load: &LoadKeys, path: &str, clock: Option<Clock>) -> Result<LoadRamp> {
     let (ramp_key, from_key) = (format!("{path}.ramp_s"), format!("{path}.from_s"));
     let Some(clock) = clock else {
-        let given = [(&ramp_key, load.ramp_s), (&from_key, load.from_s)];
+        let given = [(&ramp_key, load.ramp), (&from_key, load.from)];
         return match given.into_iter().find_map(|(key, value)| Some((key, value?))) {
             None => Ok(LoadRamp::AT_ONCE),
             Some((key, value)) => {
@@ -115,8 +107,7 @@ fn rise(load: &LoadInput, path: &str, clock: Option<Clock>) -> Result<LoadRamp> 
             }
         };
     };
-    let ramp = TIME.read_optional(&ramp_key, load.ramp_s)?.unwrap_or(clock.ramp);
-    let from = TIME.read_optional(&from_key, load.from_s)?.unwrap_or(0.0);
+    let (ramp, from) = (load.ramp.unwrap_or(clock.ramp), load.from.unwrap_or(0.0));
     if from >= clock.duration {
         let problem = format!("is not before the end of the scene, {} s: the load would never act", clock.duration);
         return Err(input(&from_key, from, problem, "give a smaller one, or a longer loading.duration_s"));
@@ -129,39 +120,32 @@ fn rise(load: &LoadInput, path: &str, clock: Option<Clock>) -> Result<LoadRamp> 
 }
 
 /// The one size of a load, SI.
-fn size(load: &LoadInput, path: &str) -> Result<f64> {
-    const STRESS: Quantity = Quantity { what: "a stress", unit: "MPa", low: -1e5, high: 1e5, si: MPA };
-    const SHIFT: Quantity = Quantity { what: "a displacement", unit: "mm", low: -1e4, high: 1e4, si: MM };
-    const SPEED: Quantity = Quantity { what: "a velocity", unit: "mm/s", low: -1e8, high: 1e8, si: MM };
+fn size(all: &Given<'_>, load: &LoadKeys) -> Result<f64> {
     let choices = [
-        ("stress_mpa", load.stress_mpa, STRESS, &[LoadKind::Traction][..]),
-        ("displacement_mm", load.displacement_mm, SHIFT, &[LoadKind::Displacement, LoadKind::Platens]),
-        ("velocity_mm_s", load.velocity_mm_s, SPEED, &[LoadKind::Velocity]),
+        ("stress_mpa", load.stress, TRACTION, &[LoadKind::Traction][..]),
+        ("displacement_mm", load.displacement, SHIFT, &[LoadKind::Displacement, LoadKind::Platens]),
+        ("velocity_mm_s", load.velocity, SPEED, &[LoadKind::Velocity]),
     ];
-    for (key, given, ..) in choices.iter().filter(|choice| !choice.3.contains(&load.kind)) {
-        if let Some(given) = given {
-            let problem = format!("does not go with kind = \"{}\"", load.kind);
-            return Err(input(&format!("{path}.{key}"), given, problem, "leave it out, or give another kind"));
-        }
+    for (key, ..) in choices.iter().filter(|choice| !choice.3.contains(&load.kind)) {
+        let problem = format!("does not go with kind = \"{}\"", load.kind);
+        all.refuse_any(&[key], &problem, "leave it out, or give another kind")?;
     }
     // Every kind has its key above.
     let own = choices.iter().find(|choice| choice.3.contains(&load.kind));
-    let Some((key, given, quantity, _)) = own else { return Ok(0.0) };
-    let key = format!("{path}.{key}");
-    let given = given.ok_or_else(|| input_missing(&key, "is missing: there is no load", format!("give {}", quantity.what)))?;
-    let size = quantity.read(&key, given)?;
+    let Some((key, size, quantity, _)) = own else { return Ok(0.0) };
+    let size = size.ok_or_else(|| all.refuse(key, "is missing: there is no load", format!("give {}", quantity.what)))?;
     if size == 0.0 || (load.kind == LoadKind::Platens && size < 0.0) {
         let (problem, remedy) = match load.kind {
             LoadKind::Platens => ("does not press: platens move against the plate", "give the way of the platen, above zero"),
             _ => ("loads nothing", "give another value, or hold points in [supports]"),
         };
-        return Err(input(&key, given, problem, remedy));
+        return Err(all.refuse(key, problem, remedy));
     }
     Ok(size)
 }
 
 /// Unit vector of `direction`.
-fn direction(load: &LoadInput, path: &str) -> Result<Option<Point>> {
+fn direction(load: &LoadKeys, path: &str) -> Result<Option<Point>> {
     let Some([x, y]) = load.direction else { return Ok(None) };
     let (key, given) = (format!("{path}.direction"), format!("[{x}, {y}]"));
     let Some(direction) = unit([x, y]) else {
@@ -175,25 +159,18 @@ fn direction(load: &LoadInput, path: &str) -> Result<Option<Point>> {
 }
 
 /// Keys that the kind of load has no use for.
-fn check_keys(load: &LoadInput, path: &str) -> Result<()> {
-    let moved = matches!(load.kind, LoadKind::Displacement | LoadKind::Velocity);
-    if let Some(transverse) = load.transverse.filter(|_| !moved) {
-        let problem = format!("does not go with kind = \"{}\"", load.kind);
-        return Err(input(&format!("{path}.transverse"), transverse, problem, "leave it out"));
+fn check_keys(all: &Given<'_>, load: &LoadKeys) -> Result<()> {
+    if matches!(load.kind, LoadKind::Displacement | LoadKind::Velocity) {
+        return Ok(());
     }
-    if let Some(depth) = load.grip_mm.filter(|_| !moved) {
-        let problem = format!("does not go with kind = \"{}\", which acts on the side itself", load.kind);
-        return Err(input(&format!("{path}.grip_mm"), depth, problem, "leave it out"));
-    }
-    if load.regions.is_some() && !moved {
-        let problem = format!("does not go with kind = \"{}\", which acts on sides", load.kind);
-        return Err(input_missing(&format!("{path}.regions"), problem, "give edges"));
-    }
-    Ok(())
+    let problem = format!("does not go with kind = \"{}\"", load.kind);
+    all.refuse_any(&["transverse"], &problem, "leave it out")?;
+    all.refuse_any(&["grip_mm"], &format!("{problem}, which acts on the side itself"), "leave it out")?;
+    all.refuse_any(&["regions"], &format!("{problem}, which acts on sides"), "give edges")
 }
 
 /// Edges or regions of a load, each with the key that says which points it takes hold of.
-fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Region, String)>> {
+fn regions(all: &Given<'_>, load: &LoadKeys, path: &str, specimen: &Specimen) -> Result<Vec<(Region, String)>> {
     let (edges_key, regions_key) = (format!("{path}.edges"), format!("{path}.regions"));
     match (&load.edges, &load.regions) {
         (None, None) => {
@@ -209,23 +186,22 @@ fn regions(load: &LoadInput, path: &str, specimen: &Specimen) -> Result<Vec<(Reg
                 return Err(input(&format!("{edges_key}[{i}]"), edge, "stands twice", "name each side once"));
             }
             let (depth, range) = (format!("{path}.grip_mm"), format!("{path}.range_mm"));
-            let place = if load.range_mm.is_some() { &range } else { &edges_key };
+            let place = if load.range.is_some() { &range } else { &edges_key };
             let of_edge = |edge: &Edge| {
-                let depth = (depth.as_str(), load.grip_mm.unwrap_or(0.0));
-                Ok((region::edge(*edge, &edges_key, depth, (&range, load.range_mm), specimen)?, place.clone()))
+                let depth = (depth.as_str(), load.grip);
+                Ok((region::edge(*edge, &edges_key, depth, (&range, load.range), specimen)?, place.clone()))
             };
             edges.iter().map(of_edge).collect()
         }
         (None, Some(regions)) => {
-            let given = perilife_base::given!(load: grip_mm, range_mm);
-            refuse_given(path, &given, "goes with edges, not with regions", "leave it out")?;
+            all.refuse_any(&["grip_mm", "range_mm"], "goes with edges, not with regions", "leave it out")?;
             if regions.is_empty() || regions.len() > REGIONS_MAX {
                 let remedy = format!("give 1 to {REGIONS_MAX} boxes {{ from_mm = [x, y], to_mm = [x, y] }}");
                 return Err(input(&regions_key, format!("{} regions", regions.len()), "is no place of a load", remedy));
             }
-            let of_box = |(i, value): (usize, &Value)| {
+            let of_box = |(i, given): (usize, &BoxKeys)| {
                 let key = format!("{regions_key}[{i}]");
-                let (low, high) = region::box_from_value(value, &key, specimen)?;
+                let (low, high) = region::box_in(given, &key, specimen)?;
                 Ok((Region::Box { low, high }, key))
             };
             regions.iter().enumerate().map(of_box).collect()

@@ -1,34 +1,34 @@
 //! `[loading]` of a scene: what is pulled, pushed or thrown, where, and in what time.
 
-use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::load::{self, Clock};
+use super::load::{self, Clock, LoadKeys};
 use crate::scene::{Procedure, SceneLoad};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{TIME, number, shorten, slice, table_of};
+use perilife_base::input::{TIME, shorten, table_of};
+use perilife_base::keys::{Section, key, number, section_beside};
 use perilife_plate::specimen::Specimen;
 
-/// Keys of `[loading]` that concern all loads; one of several loads may have a `ramp_s` of its own.
-const COMMON: &[&str] = &["parts", "steps", "iterations_per_step", "duration_s", "time_step_s", "ramp_s"];
 /// More than this is a slip.
 const PARTS_MAX: usize = 50;
 /// Key of the iterations in a load step.
 const ITERATIONS: &str = "loading.iterations_per_step";
-/// More than these come to rest.
-const ITERATIONS_MAX: u64 = 10_000;
 /// More load steps than this are a slip.
 const STEPS_MAX: u64 = 1_000_000;
 
-#[derive(Deserialize)]
-struct CommonInput {
-    parts: Option<Vec<Value>>,
-    steps: Option<u64>,
-    iterations_per_step: Option<u64>,
-    duration_s: Option<f64>,
-    time_step_s: Option<f64>,
-    ramp_s: Option<f64>,
+perilife_base::keys! {
+    /// Keys of `[loading]` that concern all loads; one of several loads may have a `ramp_s` of its own.
+    pub struct CommonKeys {
+        parts: Option<Vec<Value>> = key("parts", "Loads: each with keys of its own");
+        steps: Option<u64> = key("steps", "Load steps");
+        iterations: Option<usize> = number("iterations_per_step", "Iterations in a load step: to rest where it is left out", "a whole number", 1.0, 10_000.0);
+        duration: Option<f64> = key("duration_s", "Duration: of motion").of(TIME);
+        time_step: Option<f64> = key("time_step_s", "Time step: of motion").of(TIME);
+        ramp: Option<f64> = key("ramp_s", "Ramp: loads rise linearly over so long").of(TIME);
+    }
 }
+/// Key of a load and of all of them.
+const RAMP: &str = "ramp_s";
 
 /// What `[loading]` asks for.
 pub struct Loading {
@@ -41,16 +41,16 @@ pub struct Loading {
 /// Reads `[loading]` and puts the tractions on `specimen`, in Pa.
 pub fn from_value(value: &Value, specimen: &mut Specimen) -> Result<Loading> {
     let table = table_of(value, "loading")?;
-    for (key, value) in table {
-        let key = key.as_str();
-        if !COMMON.contains(&key) && !load::KEYS.contains(&key) {
-            return Err(unknown(key, value));
-        }
+    if let Some((key, value)) = table.iter().find(|(key, _)| OF_CYCLES.contains(&key.as_str())) {
+        let remedy = "give kind and stress_mpa, displacement_mm or velocity_mm_s; cycles are what `perilife predict` runs";
+        let problem = "belongs to the cycles of a fatigue case, not to a fracture scene";
+        return Err(input(&format!("loading.{key}"), shorten(value), problem, remedy));
     }
-    let (common, own): (Table, Table) =
-        table.iter().map(|(key, value)| (key.clone(), value.clone())).partition(|(key, _)| COMMON.contains(&key.as_str()));
-    let common: CommonInput = slice(&Value::Table(common), "loading")?;
-    let ramp = TIME.read_optional("loading.ramp_s", common.ramp_s)?.unwrap_or(0.0);
+    let is_common = |key: &str| CommonKeys::KEYS.iter().any(|own| own.name == key);
+    let of_loads: Vec<&str> = LoadKeys::KEYS.iter().map(|key| key.name).filter(|key| *key != RAMP).collect();
+    let common: CommonKeys = section_beside(value, "loading", &of_loads, None)?;
+    let own: Table = table.iter().filter(|(key, _)| !is_common(key)).map(|(key, value)| (key.clone(), value.clone())).collect();
+    let ramp = common.ramp.unwrap_or(0.0);
     let procedure = procedure(&common)?;
     let clock = match procedure {
         Procedure::Dynamic { duration, .. } => Some(Clock { duration, ramp }),
@@ -80,20 +80,11 @@ pub fn from_value(value: &Value, specimen: &mut Specimen) -> Result<Loading> {
     Ok(Loading { drives, procedure })
 }
 
-fn unknown(key: &str, value: &Value) -> perilife_base::error::Error {
-    let path = format!("loading.{key}");
-    if ["stress_max_mpa", "stress_range_mpa", "stress_ratio", "force_max_n", "force_range_n", "pins"].contains(&key) {
-        let remedy = "give kind and stress_mpa, displacement_mm or velocity_mm_s; cycles are what `perilife predict` runs";
-        return input(&path, shorten(value), "belongs to the cycles of a fatigue case, not to a fracture scene", remedy);
-    }
-    let known = load::KEYS.iter().chain(COMMON).copied().collect::<Vec<_>>().join(", ");
-    input(&path, shorten(value), "is not a known key", format!("known here: {known}"))
-}
+/// Keys of cases.
+const OF_CYCLES: [&str; 6] = ["stress_max_mpa", "stress_range_mpa", "stress_ratio", "force_max_n", "force_range_n", "pins"];
 
-fn procedure(common: &CommonInput) -> Result<Procedure> {
-    let duration = TIME.read_optional("loading.duration_s", common.duration_s)?;
-    let time_step = TIME.read_optional("loading.time_step_s", common.time_step_s)?;
-    let each = common.iterations_per_step.map(|each| whole(ITERATIONS, each, ITERATIONS_MAX)).transpose()?;
+fn procedure(common: &CommonKeys) -> Result<Procedure> {
+    let CommonKeys { duration, time_step, iterations: each, .. } = *common;
     if let (Some(each), None) = (each, common.steps) {
         return Err(input(ITERATIONS, each, "has no meaning without load steps", "give steps, or leave it out"));
     }
@@ -106,7 +97,7 @@ fn procedure(common: &CommonInput) -> Result<Procedure> {
             Err(input("loading.steps", steps, "is no number of load steps", format!("give 1 to {STEPS_MAX}")))
         }
         (steps, None) => {
-            let timed = [("loading.time_step_s", common.time_step_s), ("loading.ramp_s", common.ramp_s)];
+            let timed = [("loading.time_step_s", time_step), ("loading.ramp_s", common.ramp)];
             if let Some((key, value)) = timed.into_iter().find_map(|(key, value)| Some((key, value?))) {
                 return Err(input(key, value, "has no meaning without duration_s", "give duration_s, or leave it out"));
             }
@@ -120,9 +111,4 @@ fn procedure(common: &CommonInput) -> Result<Procedure> {
             Ok(Procedure::Dynamic { duration, time_step })
         }
     }
-}
-
-/// A number of steps or a count in an input file, for messages of other sections.
-pub fn whole(key: &str, value: u64, high: u64) -> Result<usize> {
-    number("a whole number", 1.0, high as f64).read(key, value as f64).map(|value| value as usize)
 }

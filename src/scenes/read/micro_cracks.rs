@@ -1,38 +1,39 @@
 //! `[micro_cracks]` of a scene: many short cracks at random places, the same for the same seed.
 
-use serde::Deserialize;
 use toml::Value;
 
 use super::checks::box_of;
-use super::loading::whole;
-use super::region::{self, overlap};
+use super::region::{self, BoxKeys, overlap};
 use crate::scene::Scene;
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{number, slice};
+use perilife_base::input::Quantity;
+use perilife_base::keys::{Given, key, number, section};
 use perilife_base::units::MM;
 use perilife_plate::specimen::geometry::{
     bounding_box, distance, distance_to_polygon, distance_to_segment, edges, segments_touch,
 };
 use perilife_plate::specimen::{Crack, Point};
 
-/// More cracks than this are a slip.
-const COUNT_MAX: u64 = 20_000;
 /// Draws for one crack before the region counts as full.
 const DRAWS: usize = 10_000;
 /// Length of the longest where a scene says nothing, mm (Huang, Li, Jin, He and Wang, after Zhu and Ni 2017).
 const LENGTH_MAX_MM: f64 = 2.0;
 
-/// Keys of `[micro_cracks]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    seed: u64,
-    count: u64,
-    length_min_mm: Option<f64>,
-    length_max_mm: Option<f64>,
-    angle_min_deg: Option<f64>,
-    angle_max_deg: Option<f64>,
-    regions: Option<Vec<Value>>,
+/// A length of such cracks.
+const SHORT: Quantity = Quantity { what: "a length", unit: "mm", low: 0.0, high: 1e4, si: MM };
+const ANGLE: &str = "an angle in degrees";
+
+perilife_base::keys! {
+    /// Keys of `[micro_cracks]`.
+    pub struct MicroCrackKeys {
+        seed: u64 = key("seed", "Seed of all draws");
+        count: usize = number("count", "Number of cracks", "a whole number", 1.0, 20_000.0);
+        length_min: f64 = key("length_min_mm", "Shortest crack").of(SHORT), or "0" 0.0;
+        length_max: f64 = key("length_max_mm", "Longest crack").of(SHORT), or "2" LENGTH_MAX_MM * MM;
+        angle_min: f64 = number("angle_min_deg", "Least angle, °: against x", ANGLE, -180.0, 180.0), or "-90" -90.0;
+        angle_max: f64 = number("angle_max_deg", "Largest angle, °: against x", ANGLE, -180.0, 180.0), or "90" 90.0;
+        regions: Option<Vec<BoxKeys>> = key("regions", "Boxes that they lie in: the whole plate where it is left out");
+    }
 }
 
 /// What the cracks are drawn from: uniform in length, angle against x, and place of the middle.
@@ -44,9 +45,9 @@ struct Field {
 
 /// Reads `[micro_cracks]` and adds the cracks, which have no tips, to the plate.
 pub fn put_in(value: &Value, scene: &mut Scene) -> Result<()> {
-    let input: Input = slice(value, "micro_cracks")?;
-    let count = whole("micro_cracks.count", input.count, COUNT_MAX)?;
-    let field = field(&input, scene)?;
+    let input: MicroCrackKeys = section(value, "micro_cracks")?;
+    let count = input.count;
+    let field = field(&Given::of(value, "micro_cracks")?, &input, scene)?;
     let kept_clear = kept_clear(scene);
     let mut random = SplitMix64(input.seed);
     let mut placed = Vec::with_capacity(count);
@@ -63,33 +64,13 @@ pub fn put_in(value: &Value, scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-fn field(given: &Input, scene: &Scene) -> Result<Field> {
-    let pair = |keys: [&str; 2], given: [Option<f64>; 2], default: [f64; 2], what: &'static str, range: [f64; 2]| {
-        let read = |i: usize| {
-            let key = format!("micro_cracks.{}", keys[i]);
-            number(what, range[0], range[1]).read(&key, given[i].unwrap_or(default[i]))
-        };
-        let values = [read(0)?, read(1)?];
-        if values[0] > values[1] {
-            let problem = format!("is above {}, {}", keys[1], values[1]);
-            return Err(input(&format!("micro_cracks.{}", keys[0]), values[0], problem, "give a smaller one"));
-        }
-        Ok(values)
-    };
-    let lengths = pair(
-        ["length_min_mm", "length_max_mm"],
-        [given.length_min_mm, given.length_max_mm],
-        [0.0, LENGTH_MAX_MM],
-        "a length in mm",
-        [0.0, 1e4],
-    )?;
-    let angles = pair(
-        ["angle_min_deg", "angle_max_deg"],
-        [given.angle_min_deg, given.angle_max_deg],
-        [-90.0, 90.0],
-        "an angle in degrees",
-        [-180.0, 180.0],
-    )?;
+fn field(all: &Given<'_>, given: &MicroCrackKeys, scene: &Scene) -> Result<Field> {
+    let (lengths, angles) = ([given.length_min, given.length_max], [given.angle_min, given.angle_max]);
+    let pairs =
+        [("length_min_mm", "length_max_mm", lengths.map(|length| length / MM)), ("angle_min_deg", "angle_max_deg", angles)];
+    if let Some((key, other, values)) = pairs.into_iter().find(|(.., values)| values[0] > values[1]) {
+        return Err(all.refuse(key, format!("is above {other}, {}", values[1]), "give a smaller one"));
+    }
     if lengths[1] == 0.0 {
         return Err(input("micro_cracks.length_max_mm", 0.0, "leaves cracks without length", "give more than zero"));
     }
@@ -102,13 +83,12 @@ fn field(given: &Input, scene: &Scene) -> Result<Field> {
             return Err(input_missing("micro_cracks.regions", "is empty", "give boxes, or leave it out for the whole plate"));
         }
         Some(regions) => {
-            let one = |(i, value): (usize, &Value)| {
-                region::box_from_value(value, &format!("micro_cracks.regions[{i}]"), &scene.specimen)
-            };
+            let one =
+                |(i, given): (usize, &BoxKeys)| region::box_in(given, &format!("micro_cracks.regions[{i}]"), &scene.specimen);
             regions.iter().enumerate().map(one).collect::<Result<_>>()?
         }
     };
-    Ok(Field { lengths: lengths.map(|mm| mm * MM), angles: angles.map(f64::to_radians), boxes })
+    Ok(Field { lengths, angles: angles.map(f64::to_radians), boxes })
 }
 
 impl Field {

@@ -57,6 +57,7 @@ use toml::{Table, Value};
 use super::scene::{Scene, SceneLaw};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Document, Folder, ForeignSections, Output, Provenance, Sections, value_at};
+use perilife_base::keys::{Key, Section};
 use perilife_plate::specimen::beta::KEY as BETA_FILE;
 use perilife_plate::{material, specimen};
 use perilife_points::refinement;
@@ -81,6 +82,18 @@ const STRANGERS: &[ForeignSections] = &[
         "run `perilife calibrate` on it, or remove the section",
     ),
 ];
+
+/// Sections that only a scene has, or that have other keys in it.
+pub fn keys() -> Vec<(&'static str, &'static [Key])> {
+    vec![
+        ("model", model::ModelKeys::KEYS),
+        ("loading", loading::CommonKeys::KEYS),
+        ("loading.parts[]", load::LoadKeys::KEYS),
+        ("damage", damage::DamageKeys::KEYS),
+        ("refinement", refinement::RefinementKeys::KEYS),
+        ("micro_cracks", micro_cracks::MicroCrackKeys::KEYS),
+    ]
+}
 
 impl Scene {
     /// Reads a scene file; `overrides` are `section.key=value`.

@@ -1,12 +1,12 @@
 //! `[model]` of a scene: points, law and solver.
 
-use serde::Deserialize;
 use toml::Value;
 
 use crate::correspondence::elasticity::SILLING_FACTOR;
 use crate::scene::{Discretisation, PointLaw, Procedure, SceneLaw, SceneModel, SceneSolver, ZeroEnergyControl};
 use perilife_base::error::{Error, Result, input, input_missing};
-use perilife_base::input::{LENGTH, number, refuse_given, slice};
+use perilife_base::input::number as plain;
+use perilife_base::keys::{Given, key, length, number, section};
 use perilife_plate::material::Material;
 use perilife_plate::specimen::Specimen;
 use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection, stencil};
@@ -21,54 +21,53 @@ perilife_base::kinds! {
     }
 }
 
-/// Keys of `[model]`.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    bond_law: Option<String>,
-    kernel: Option<Kernel>,
-    rotation: Option<Rotation>,
-    surface_correction: Option<SurfaceCorrection>,
-    spacing_mm: Option<f64>,
-    horizon_ratio: Option<f64>,
-    lattice_angle_deg: Option<f64>,
-    discretisation: Option<Discretisation>,
-    solver: Option<SceneSolver>,
-    zero_energy_control: Option<ZeroEnergyControl>,
-    zero_energy_factor: Option<f64>,
-    kinematics: Option<Kinematics>,
+const OF_POINTS: (&str, &[&str]) = ("bond_law", &["correspondence"]);
+
+perilife_base::keys! {
+    /// Keys of `[model]` of a scene.
+    pub struct ModelKeys {
+        bond_law: Option<String> = key("bond_law", "Bond law: two_parameter where it is left out");
+        kernel: Option<Kernel> = key("kernel", "Kernel: weight of bonds over their length");
+        rotation: Option<Rotation> = key("rotation", "Rotation: whether a rigid rotation costs energy");
+        surface_correction: Option<SurfaceCorrection> = key("surface_correction", "Surface correction: at the boundary");
+        spacing: Option<f64> = length("spacing_mm", "Spacing: of points");
+        horizon_ratio: f64 = number("horizon_ratio", "Horizon ratio: horizon over spacing", "a horizon ratio", 1.5, 12.0), or "3.015" HORIZON_RATIO;
+        lattice_angle_deg: f64 = number("lattice_angle_deg", "Lattice angle, °: of rows of points against x", "an angle in degrees", -90.0, 90.0), or "0" 0.0;
+        discretisation: Discretisation = key("discretisation", "Discretisation"), or "lattice" Discretisation::Lattice;
+        solver: Option<SceneSolver> = key("solver", "Solver");
+        zero_energy_control: Option<ZeroEnergyControl> = key("zero_energy_control", "Zero-energy control").only(OF_POINTS.0, OF_POINTS.1);
+        zero_energy_factor: Option<f64> = key("zero_energy_factor", "Factor of the zero-energy control").only(OF_POINTS.0, OF_POINTS.1);
+        kinematics: Option<Kinematics> = key("kinematics", "Kinematics: small where it is left out");
+    }
 }
 
 /// Reads `[model]`; what is left out gets the program's choice.
 pub fn from_value(value: &Value, specimen: &Specimen, material: &Material, procedure: &Procedure) -> Result<SceneModel> {
-    let input: Input = slice(value, "model")?;
-    let spacing = LENGTH.read_optional("model.spacing_mm", input.spacing_mm)?.unwrap_or_else(|| default_spacing(specimen).0);
+    let (given, input) = (Given::of(value, "model")?, section::<ModelKeys>(value, "model")?);
+    let spacing = input.spacing.unwrap_or_else(|| default_spacing(specimen).0);
     check_spacing(spacing, specimen)?;
-    let ratio = number("a horizon ratio", 1.5, 12.0).read_optional("model.horizon_ratio", input.horizon_ratio)?;
-    let angle = number("an angle in degrees", -90.0, 90.0).read_optional("model.lattice_angle_deg", input.lattice_angle_deg)?;
-    let law = law(&input, material)?;
-    let arrangement = input.discretisation.unwrap_or(Discretisation::Lattice);
+    let law = law(&given, &input, material)?;
     let solver = solver(input.solver, law, *procedure)?;
     Ok(SceneModel {
         finite: finite(&input, law, solver)?,
         law,
         spacing,
-        horizon_ratio: ratio.unwrap_or(HORIZON_RATIO),
-        lattice_angle: angle.unwrap_or(0.0).to_radians(),
-        arrangement,
+        horizon_ratio: input.horizon_ratio,
+        lattice_angle: input.lattice_angle_deg.to_radians(),
+        arrangement: input.discretisation,
         solver,
     })
 }
 
-fn law(input: &Input, material: &Material) -> Result<SceneLaw> {
+fn law(given: &Given<'_>, input: &ModelKeys, material: &Material) -> Result<SceneLaw> {
     match input.bond_law.as_deref() {
-        Some(name) if name.parse::<PointLaw>().is_ok() => correspondence(input),
-        name => bonds(name, input, material),
+        Some(name) if name.parse::<PointLaw>().is_ok() => correspondence(given, input),
+        name => bonds(name, (given, input), material),
     }
 }
 
 /// Springs in the bonds; a kernel that is left out is that of the law's literature.
-fn bonds(name: Option<&str>, given: &Input, material: &Material) -> Result<SceneLaw> {
+fn bonds(name: Option<&str>, (all, given): (&Given<'_>, &ModelKeys), material: &Material) -> Result<SceneLaw> {
     const KEY: &str = "model.bond_law";
     let names = || {
         let springs = BondLawKind::ALL.iter().filter(|kind| **kind != BondLawKind::StateBased).map(|kind| kind.name());
@@ -88,9 +87,8 @@ fn bonds(name: Option<&str>, given: &Input, material: &Material) -> Result<Scene
             }
         }
     };
-    let controls = perilife_base::given!(given: zero_energy_control, zero_energy_factor);
     let problem = format!("goes with bond_law = \"correspondence\"; {kind} has no zero-energy modes");
-    refuse_given("model", &controls, &problem, "leave it out")?;
+    all.refuse_any(&["zero_energy_control", "zero_energy_factor"], &problem, "leave it out")?;
     let kernel = match kind {
         BondLawKind::BondBased | BondLawKind::OneBondTwoParameter => Kernel::Constant,
         BondLawKind::TwoParameter | BondLawKind::StateBased => Kernel::Conical,
@@ -117,10 +115,9 @@ fn beyond_springs(error: Error, law: &BondLaw, material: &Material) -> Error {
     }
 }
 
-fn correspondence(given: &Input) -> Result<SceneLaw> {
-    let of_bonds = perilife_base::given!(given: kernel, rotation, surface_correction, kinematics);
+fn correspondence(all: &Given<'_>, given: &ModelKeys) -> Result<SceneLaw> {
     let problem = "goes with laws of bonds, not with bond_law = \"correspondence\"";
-    refuse_given("model", &of_bonds, problem, "leave it out")?;
+    all.refuse_any(&["kernel", "rotation", "surface_correction", "kinematics"], problem, "leave it out")?;
     const FACTOR: &str = "model.zero_energy_factor";
     let control = given.zero_energy_control.unwrap_or(ZeroEnergyControl::Silling);
     let factor = match (control, given.zero_energy_factor) {
@@ -130,10 +127,10 @@ fn correspondence(given: &Input) -> Result<SceneLaw> {
         }
         (ZeroEnergyControl::None, None) => 0.0,
         (ZeroEnergyControl::Silling, factor) => {
-            number("a factor", 0.0, 1e3).read(FACTOR, check_sign(factor.unwrap_or(SILLING_FACTOR))?)?
+            plain("a factor", 0.0, 1e3).read(FACTOR, check_sign(factor.unwrap_or(SILLING_FACTOR))?)?
         }
         (ZeroEnergyControl::Spring, Some(factor)) => {
-            number("a spring constant c_I in N/m⁷", 0.0, 1e40).read(FACTOR, check_sign(factor)?)?
+            plain("a spring constant c_I in N/m⁷", 0.0, 1e40).read(FACTOR, check_sign(factor)?)?
         }
         (ZeroEnergyControl::Spring, None) => {
             let remedy = "give the spring constant c_I in N/m⁷; it raises Young's modulus by π c_I h δ⁴/8";
@@ -185,7 +182,7 @@ fn solver(asked: Option<SceneSolver>, law: SceneLaw, procedure: Procedure) -> Re
 }
 
 /// Whether bonds are measured by their true stretch.
-fn finite(given: &Input, law: SceneLaw, solver: SceneSolver) -> Result<bool> {
+fn finite(given: &ModelKeys, law: SceneLaw, solver: SceneSolver) -> Result<bool> {
     if given.kinematics != Some(Kinematics::Finite) {
         return Ok(false);
     }

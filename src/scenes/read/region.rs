@@ -1,29 +1,28 @@
 //! Where a load or a support takes hold: a side of the plate, or an upright box. `[supports]`: sides or boxes whose points stay where they
 //! are.
 
-use serde::Deserialize;
 use toml::Value;
 
 use crate::scene::{Region, SceneSupport};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{number, point, shorten, slice, table_of};
-use perilife_base::units::MM;
+use perilife_base::input::{Quantity, shorten, table_of};
+use perilife_base::keys::{coordinate, key, part, section};
+use perilife_base::units::{MM, round_mm};
 use perilife_plate::specimen::geometry::bounding_box;
 use perilife_plate::specimen::{Component, Edge, Point, Specimen};
 pub use perilife_points::refinement::{corners, overlap};
 
-/// Keys of an upright box.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BoxInput {
-    from_mm: [f64; 2],
-    to_mm: [f64; 2],
+perilife_base::keys! {
+    /// An upright box.
+    pub struct BoxKeys {
+        from: Point = coordinate("from_mm", "One corner: [x, y]");
+        to: Point = coordinate("to_mm", "Opposite corner: [x, y]");
+    }
 }
 
-/// Reads `{ from_mm = [x, y], to_mm = [x, y] }`, two opposite corners of a box that meets the plate.
-pub fn box_from_value(value: &Value, path: &str, specimen: &Specimen) -> Result<(Point, Point)> {
-    let input: BoxInput = slice(value, path)?;
-    corners(path, [input.from_mm, input.to_mm], specimen)
+/// Lower left and upper right corner of a box that meets the plate.
+pub fn box_in(given: &BoxKeys, path: &str, specimen: &Specimen) -> Result<(Point, Point)> {
+    corners(path, [given.from, given.to], specimen)
 }
 
 /// A side with the depth of the hold and, where it is not the whole side, the part of it.
@@ -34,15 +33,15 @@ pub fn edge(edge: Edge, key: &str, depth: (&str, f64), range: (&str, Option<[f64
     }
     let [low, high] = bounding_box(&specimen.outline);
     let across = usize::from(edge.normal()[0] == 0.0);
-    let metres = number("a depth in mm", 0.0, 1e5).read(depth.0, depth.1)? * MM;
+    let metres = depth.1;
     if metres >= (high[across] - low[across]) / 2.0 {
-        return Err(input(depth.0, depth.1, "takes hold of half the plate or more", "give a smaller depth"));
+        return Err(input(depth.0, round_mm(depth.1), "takes hold of half the plate or more", "give a smaller depth"));
     }
     let part = match range.1 {
         None => [f64::NEG_INFINITY, f64::INFINITY],
         Some(given) => {
-            let [from, to] = point(range.0, given)?;
-            let shown = format!("[{}, {}]", given[0], given[1]);
+            let [from, to] = given;
+            let shown = format!("[{}, {}]", round_mm(from), round_mm(to));
             if from >= to {
                 return Err(input(range.0, shown, "does not rise", "give [from, to] along the side"));
             }
@@ -76,24 +75,23 @@ pub fn around(region: &Region, row: f64, specimen: &Specimen) -> (Point, Point) 
     }
 }
 
-/// A held side.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SideInput {
-    #[serde(default)]
-    rows_mm: f64,
-    range_mm: Option<[f64; 2]>,
-    fix: Vec<Component>,
+perilife_base::keys! {
+    /// A held side.
+    pub struct SideKeys {
+        depth: f64 = key("rows_mm", "Depth of the hold: from the side into the plate").of(DEPTH), or "one row" 0.0;
+        range: Option<Point> = coordinate("range_mm", "Part of the side: [from, to]");
+        fix: Vec<Component> = key("fix", "Held components");
+    }
 }
-
-/// A held box.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct HeldBoxInput {
-    from_mm: [f64; 2],
-    to_mm: [f64; 2],
-    fix: Vec<Component>,
+perilife_base::keys! {
+    /// A held box.
+    pub struct HeldBoxKeys {
+        place: BoxKeys = part();
+        fix: Vec<Component> = key("fix", "Held components");
+    }
 }
+/// A depth of a hold.
+pub const DEPTH: Quantity = Quantity { what: "a depth", unit: "mm", low: 0.0, high: 1e5, si: MM };
 
 /// Reads `[supports]`: `bottom = { rows_mm, range_mm, fix }`, or under any other name `{ from_mm, to_mm, fix }`.
 pub fn supports(value: &Value, specimen: &Specimen) -> Result<Vec<SceneSupport>> {
@@ -102,9 +100,9 @@ pub fn supports(value: &Value, specimen: &Specimen) -> Result<Vec<SceneSupport>>
         let path = format!("supports.{name}");
         let (region, fix, key) = match name.parse::<Edge>() {
             Ok(side) => {
-                let entry: SideInput = slice(value, &path)?;
+                let entry: SideKeys = section(value, &path)?;
                 let (depth, range) = (format!("{path}.rows_mm"), format!("{path}.range_mm"));
-                let region = edge(side, &path, (&depth, entry.rows_mm), (&range, entry.range_mm), specimen)?;
+                let region = edge(side, &path, (&depth, entry.depth), (&range, entry.range), specimen)?;
                 (region, entry.fix, range)
             }
             Err(_) if value.as_table().is_some_and(|table| table.contains_key("rows_mm") || !table.contains_key("from_mm")) => {
@@ -112,8 +110,8 @@ pub fn supports(value: &Value, specimen: &Specimen) -> Result<Vec<SceneSupport>>
                 return Err(input(&path, shorten(value), "is neither a side of the plate nor a box", remedy));
             }
             Err(_) => {
-                let entry: HeldBoxInput = slice(value, &path)?;
-                let (low, high) = corners(&path, [entry.from_mm, entry.to_mm], specimen)?;
+                let entry: HeldBoxKeys = section(value, &path)?;
+                let (low, high) = box_in(&entry.place, &path, specimen)?;
                 (Region::Box { low, high }, entry.fix, path.clone())
             }
         };

@@ -93,12 +93,6 @@ pub const DAMAGE: &[Bad] = &[
     (
         THROWN,
         "law = \"critical_energy\"",
-        "law = \"critical_stretch\"\ncritical_stretch = -0.1",
-        &["damage.critical_stretch", "above zero"],
-    ),
-    (
-        THROWN,
-        "law = \"critical_energy\"",
         "law = \"critical_energy\"\ncalibration = \"griffith\"",
         &["damage.calibration", "griffith", "growth, bond_energy"],
     ),
@@ -149,11 +143,5 @@ pub const DAMAGE: &[Bad] = &[
         "law = \"nonlinear_two_parameter\"",
         "law = \"nonlinear_two_parameter\"\nfinal_stretch = 0.02\nfinal_ratio = 3",
         &["damage.final_ratio", "given twice"],
-    ),
-    (
-        PULLED,
-        "law = \"nonlinear_two_parameter\"",
-        "law = \"nonlinear_two_parameter\"\nprinted_law = 1",
-        &["damage.printed_law", "true or false"],
     ),
 ];

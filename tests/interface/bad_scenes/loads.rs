@@ -62,7 +62,6 @@ pub const PLACES: &[Bad] = &[
     (PRESSED, "steps = 10", "steps = 10\ndirection = [0, 1]", &["loading.direction", "platens"]),
     (PRESSED, "steps = 10", "steps = 10\ntransverse = \"held\"", &["loading.transverse", "platens"]),
     (PRESSED, "diameter_mm = 25.4", "diameter_mm = 25.4\nwidth_mm = 3", &["specimen.diameter_mm", "stands beside"]),
-    (PRESSED, "diameter_mm = 25.4", "diameter_mm = -1", &["specimen.diameter_mm", "above zero"]),
     (REFINED, "edges = [\"top\", \"bottom\"]", "edges = [\"top\"]\ngrip_mm = 1", &["loading.grip_mm", "traction"]),
 ];
 
@@ -71,9 +70,7 @@ pub const TIMES: &[Bad] = &[
     (THROWN, "duration_s = 1e-5\n", "", &["loading.kind", "velocity", "without time", "duration_s"]),
     (THROWN, "duration_s = 1e-5", "steps = 5", &["loading.kind", "velocity", "without time"]),
     (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nsteps = 5", &["loading.steps", "beside duration_s"]),
-    (THROWN, "duration_s = 1e-5", "duration_s = 0", &["loading.duration_s", "above zero"]),
     (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\ntime_step_s = 2e-5", &["loading.time_step_s", "longer than duration_s"]),
-    (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\ntime_step_s = -1", &["loading.time_step_s", "above zero"]),
     (THROWN, "density_kg_m3 = 2235\n", "", &["material.density_kg_m3", "missing", "mass"]),
     (
         THROWN,
@@ -93,7 +90,6 @@ pub const TIMES: &[Bad] = &[
         &["loading.parts[0].ramp_s", "without duration_s"],
     ),
     (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nfrom_s = 1e-5", &["loading.from_s", "0.00001", "never act", "duration_s"]),
-    (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nfrom_s = -1e-6", &["loading.from_s", "beyond reason"]),
     (
         THROWN,
         "kind = \"velocity\"\nvelocity_mm_s = 100\nedges = [\"top\", \"bottom\"]",

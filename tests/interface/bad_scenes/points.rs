@@ -33,8 +33,6 @@ pub const POINTS: &[Bad] = &[
     ),
     (PULLED, "seed = 1\n", "", &["micro_cracks.seed", "missing"]),
     (PULLED, "seed = 1", "seed = -1", &["micro_cracks.seed", "whole number"]),
-    (PULLED, "count = 5", "count = 0", &["micro_cracks.count", "above zero"]),
-    (PULLED, "count = 5", "count = 5000000", &["micro_cracks.count", "beyond reason"]),
     (PULLED, "count = 5", "count = 5\nlength_min_mm = 3", &["micro_cracks.length_min_mm", "length_max_mm"]),
     (PULLED, "count = 5", "count = 5\nlength_min_mm = 100\nlength_max_mm = 101", &["micro_cracks.count", "does not fit"]),
     (PULLED, "count = 5", "count = 5\nregions = []", &["micro_cracks.regions", "empty"]),

@@ -17,7 +17,7 @@ fn wrong_input_is_refused_in_the_words_of_the_command() {
     let service = Server::start(&[&place[0], &place[1]], &["--jobs", "0"]);
     let wrong = [
         QUICK.replace("crack_length_mm = 9", "crack_length_mm = 90"),
-        QUICK.replace("width_mm", "breadth_mm"),
+        QUICK.replace("width_mm", "widths_mm"),
         QUICK.replace("\"al2024-t3\"", "\"adamantium\""),
         QUICK.replace("[loading]", "[loading"),
         QUICK.replace("stress_ratio = 0.1", "stress_ratio = 2"),
