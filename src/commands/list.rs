@@ -62,7 +62,8 @@ fn keys(args: &Args) -> Result<()> {
         |section: &str| args.section.as_deref().is_none_or(|asked| section == asked || section.split('.').next() == Some(asked));
     let asked: Vec<_> = told.iter().filter(|told| is_asked(&told.section)).collect();
     if let (true, Some(given)) = (asked.is_empty(), &args.section) {
-        let near = nearest(given, told.iter().map(|told| told.section.as_str()));
+        let names = told.iter().flat_map(|told| [Some(told.section.as_str()), told.section.split('.').next()]).flatten();
+        let near = nearest(given, names);
         let list = || told.iter().map(|told| told.section.as_str()).collect::<Vec<_>>().join(", ");
         let remedy = near.map_or_else(|| format!("use one of {}", list()), |near| format!("did you mean {near}?"));
         return Err(input("SECTION", given, "is no section", remedy));

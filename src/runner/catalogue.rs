@@ -21,7 +21,7 @@ use perilife_laws::growth_law::GrowthLawKind;
 use perilife_laws::growth_law::description::Constant;
 use perilife_laws::growth_law::table::TableEnds;
 use perilife_laws::retardation::{Constant as Retarding, RetardationKind};
-use perilife_plate::loading::SupportEntry;
+use perilife_plate::loading::{LoadingKind, SupportEntry};
 use perilife_plate::material::growth_data::{self, GrowthRecord};
 use perilife_plate::material::{Plane, library};
 use perilife_plate::specimen::beta;
@@ -53,8 +53,9 @@ pub fn lines() -> Vec<(String, String, String)> {
     let of_all = SpecimenKind::lines().into_iter().chain(of_keys).chain(of_others.into_iter().flatten());
     let mut all: Vec<(String, String, String)> = Vec::new();
     for line in of_all.map(words) {
-        // Of a name that cases and scenes know the first meaning is told.
-        if !all.iter().any(|known| (&known.0, &known.1) == (&line.0, &line.1)) {
+        // Of a name that cases and scenes know the first meaning is told; a load has both.
+        let is_told = |known: &(String, String, String)| known.2 == line.2 || line.0 != LoadingKind::KEY;
+        if !all.iter().any(|known| (&known.0, &known.1) == (&line.0, &line.1) && is_told(known)) {
             all.push(line);
         }
     }
