@@ -95,7 +95,6 @@ impl Table {
         self
     }
 
-    /// Rows.
     pub fn rows(&self) -> usize {
         self.columns.first().map_or(0, |column| column.cells.len())
     }

@@ -76,7 +76,6 @@ pub struct InputError {
     pub line: Option<usize>,
     /// Key (`specimen.crack_length_mm`) or column (`cycles`).
     pub key: Option<String>,
-    /// The value as given.
     pub value: Option<String>,
     /// What is wrong, said so that it reads on after "key = value:".
     pub problem: String,

@@ -12,7 +12,6 @@ pub struct KindLine {
     pub key: &'static str,
     /// Value to write there.
     pub name: &'static str,
-    /// What it means, in one line.
     pub meaning: &'static str,
 }
 
@@ -59,7 +58,6 @@ macro_rules! kinds {
         impl $Kind {
             /// Key of the input file that takes these names.
             pub const KEY: &'static str = $key;
-            /// Every kind.
             pub fn all() -> impl Iterator<Item = Self> { $all.iter().map(|own| $Kind(own)) }
             /// Name in input and result files.
             pub fn name(self) -> &'static str { self.0.name }

@@ -9,7 +9,6 @@ use crate::error::{Result, input};
 
 /// The committed table as text.
 pub const TABLE: &str = include_str!("../../data/boundaries.csv");
-/// Its columns.
 pub const COLUMNS: &str = "sweep,method,parameter,is_safe,low,high,bound_percent,version,date";
 
 /// The safe range of a method over one parameter.
@@ -17,9 +16,7 @@ pub const COLUMNS: &str = "sweep,method,parameter,is_safe,low,high,bound_percent
 pub struct Limit {
     /// Sweep of `perilife stability`.
     pub sweep: String,
-    /// Method in it.
     pub method: String,
-    /// What the parameter is.
     pub parameter: String,
     /// Whether there is a safe range around the usual value; `None` where that was not judged.
     pub is_safe: Option<bool>,

@@ -5,7 +5,6 @@
 pub struct Line {
     /// y at x = 0.
     pub intercept: f64,
-    /// Slope.
     pub slope: f64,
     /// Standard deviation of y about the line, n - 2 degrees of freedom.
     pub scatter: f64,

@@ -34,7 +34,6 @@ const GAUSS: [f64; 4] = [0.129_484_966_168_869_7, 0.279_705_391_489_276_64, 0.38
 /// Value of an integral and a bound of its error as the rules see it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Integral {
-    /// Value.
     pub value: f64,
     /// Sum over panels of the difference between the two rules.
     pub error: f64,

@@ -26,7 +26,6 @@ pub struct PointGrid {
     pub spacing: f64,
     /// Columns and rows of the lattice that holds the body.
     pub columns: usize,
-    /// Rows of the lattice.
     pub rows: usize,
     /// Position of lattice place (0, 0), m.
     pub origin: [f64; 2],

@@ -21,7 +21,6 @@ pub struct Seal {
 }
 
 impl Seal {
-    /// A checkpoint as bytes.
     pub fn to_bytes(self, checkpoint: &impl Serialize) -> Vec<u8> {
         // Numbers, text, lists and options of known length can always be written to memory.
         let content = postcard::to_stdvec(checkpoint).unwrap_or_default();

@@ -32,7 +32,6 @@ impl Stage {
     /// All, in their order.
     pub const ALL: [Stage; 6] = [Stage::Points, Stage::Bonds, Stage::Rim, Stage::Loads, Stage::Solver, Stage::Equilibrium];
 
-    /// In words.
     pub fn words(self) -> &'static str {
         match self {
             Stage::Points => "laying points",

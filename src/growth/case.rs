@@ -115,7 +115,6 @@ pub enum Model {
 /// Points and bonds of a plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointSettings {
-    /// Bonds.
     pub bond_law: BondLaw,
     /// Spacing asked for, m; the body takes the nearest one that fits.
     pub spacing: f64,
@@ -123,7 +122,6 @@ pub struct PointSettings {
     pub horizon_ratio: f64,
     /// Angle of the lattice rows against x, radians.
     pub lattice_angle: f64,
-    /// Equilibrium solver.
     pub solver: SolverKind,
     /// Use of mirror symmetry.
     pub symmetry: Symmetry,
@@ -233,23 +231,19 @@ pub enum LawSource {
 pub struct Case {
     /// File stem.
     pub name: String,
-    /// Plate.
     pub specimen: Specimen,
     /// Elastic constants and strengths.
     pub material: Material,
-    /// Cycles.
     pub loading: Loading,
     /// What computes its mechanics.
     pub model: Model,
     /// Why the program chose it; `None` where the case names it.
     pub chosen: Option<String>,
-    /// Fatigue settings.
     pub fatigue: FatigueSettings,
     /// How the cycles of a spectrum act on those after them; `None` where they do not.
     pub retardation: Option<Retardation>,
     /// Constants of the fatigue law.
     pub law: LawSource,
-    /// Stop conditions.
     pub stop: Stop,
     /// Plates beside the one that is run.
     pub fleet: Option<Fleet>,

@@ -155,7 +155,6 @@ impl CurveLaw {
 /// Departure of a curve from the power law beside it, both over the ΔK of the tests at their stress ratio.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// The curve.
     pub curve: CurveLaw,
     /// C and m of the same ΔK.
     pub paris: ParisLaw,
@@ -177,7 +176,6 @@ impl Shape {
 pub struct Shaped {
     /// The power law.
     pub walker: Walker,
-    /// Its shape.
     pub shape: Shape,
 }
 

@@ -121,7 +121,6 @@ pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
 /// A law with its constants, or rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FactorLaw {
-    /// Which one it is.
     pub kind: GrowthLawKind,
     /// Its constants, SI, in the order of their description.
     pub constants: Vec<f64>,

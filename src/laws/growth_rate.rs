@@ -10,7 +10,6 @@ use nalgebra::{Matrix3, Vector3};
 /// What a run records of every block, before rates are taken.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// Cycles.
     pub cycles: f64,
     /// Crack length in the specimen's convention, m.
     pub crack_length: f64,

@@ -65,7 +65,6 @@ pub fn unsteady(key: &str, p: f64) -> Error {
 pub struct FatigueLaw {
     /// A, 1/cycle (ε is dimensionless).
     pub a: f64,
-    /// Exponent p.
     pub p: f64,
     /// Horizon δ that A belongs to, m.
     pub horizon: f64,
@@ -84,7 +83,6 @@ impl FatigueLaw {
 pub struct FatigueSettings {
     /// What drives a crack.
     pub driver: Driver,
-    /// Which bonds age.
     pub ageing: Ageing,
     /// Radius of the `crack_tip` zone in horizons.
     pub zone_radius_horizons: f64,

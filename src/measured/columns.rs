@@ -30,7 +30,6 @@ pub struct Series {
     pub name: String,
     /// Column of the specimen's name.
     pub specimen: Option<Column>,
-    /// Cycles.
     pub cycles: Column,
     /// Crack length; of several the mean counts.
     pub lengths: Vec<Column>,
@@ -53,7 +52,6 @@ pub struct Layout {
     pub shape: Shape,
     /// Columns of the specimens: one series where all rows have the same columns.
     pub series: Vec<Series>,
-    /// The decimal sign.
     pub decimal: Decimal,
     /// What separates columns; empty where cells are stored, not written.
     pub separator: &'static str,
@@ -174,7 +172,6 @@ impl Series {
         }
     }
 
-    /// The load of a role.
     pub fn load(&self, role: Role) -> Option<Column> {
         self.loads.iter().copied().find(|column| column.role == role)
     }
@@ -206,7 +203,6 @@ impl Layout {
     }
 }
 
-/// Columns of numbers.
 fn numbers(shape: Shape, series: &[Series]) -> Vec<Column> {
     let of = |series: &Series| -> Vec<Column> {
         let read = std::iter::once(&series.cycles).chain(&series.lengths).chain(&series.sides).chain(&series.optical);

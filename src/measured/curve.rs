@@ -25,9 +25,7 @@ const LENGTH_SLACK: f64 = 1e-9;
 /// Readings of one specimen, in the order of the test.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MeasuredCurve {
-    /// Name of the specimen.
     pub specimen: String,
-    /// Cycles, rising.
     pub cycles: Vec<f64>,
     /// Crack length in the convention of the specimen, m.
     pub crack_length: Vec<f64>,
@@ -50,11 +48,9 @@ pub struct MeasuredCurve {
 /// A column of a quantity that the case says too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stated {
-    /// What it holds.
     pub role: Role,
     /// Whether it holds stresses.
     pub is_stress: bool,
-    /// Its name.
     pub column: String,
     /// What a number of the file is multiplied by for SI units.
     pub factor: f64,
@@ -72,11 +68,9 @@ impl Stated {
 /// Where the readings of a curve stand; empty for computed curves.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Source {
-    /// File.
     pub file: PathBuf,
     /// Line of each reading.
     pub lines: Vec<usize>,
-    /// Column of crack length.
     pub length_column: String,
     /// Metres per unit of that column.
     pub length_unit: f64,

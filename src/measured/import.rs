@@ -13,17 +13,11 @@ use perilife_base::table::{Decimal, Sheet, text_or_number};
 /// What the user says about files of readings; a header that names its own unit must agree.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Import {
-    /// Unit of crack length.
     pub length: Option<LengthUnit>,
-    /// Unit of cycles.
     pub cycles: Option<CycleUnit>,
-    /// Unit of loads.
     pub load: Option<LoadUnit>,
-    /// Which column is which.
     pub columns: ColumnNames,
-    /// The decimal sign.
     pub decimal: Option<Decimal>,
-    /// Sheet of a workbook.
     pub sheet: Option<Sheet>,
     /// Unit of stress intensity, in tables of rates.
     pub intensity: Option<IntensityUnit>,

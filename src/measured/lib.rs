@@ -66,7 +66,6 @@ pub struct Survey {
     pub header: Vec<String>,
     /// Cells of the first rows below them.
     pub first_rows: Vec<Vec<String>>,
-    /// What its columns are.
     pub layout: Option<Layout>,
     /// Curves of the good rows.
     pub measured: Measured,

@@ -44,7 +44,6 @@ pub struct RateRow {
     pub series: String,
     /// Where it stands, for messages.
     pub place: String,
-    /// Line in its file.
     pub line: usize,
     /// Tensile ΔK, Pa√m.
     pub delta_k: f64,
@@ -69,7 +68,6 @@ impl RateRow {
 /// Rates of a table, and how many of its rows something speaks against, which are left out.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RateTable {
-    /// Good rows.
     pub rows: Vec<RateRow>,
     /// Rows that carry a flag of `perilife rates`.
     pub flagged: usize,
@@ -130,9 +128,7 @@ perilife_base::keys! {
 
 /// Columns by name.
 pub const COLUMNS: Key = key("columns", "Columns: by their names or numbers");
-/// The decimal sign.
 pub const DECIMAL: Key = key("decimal", "Decimal sign");
-/// Sheet of a workbook.
 pub const SHEET: Key = key("sheet", "Sheet of a workbook: its name or number");
 
 impl RateFile {

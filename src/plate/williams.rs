@@ -20,7 +20,6 @@ pub enum Symmetry {
 pub struct Elasticity {
     /// Kolosov's constant κ: (3-ν)/(1+ν) in plane stress, 3-4ν in plane strain.
     pub kappa: f64,
-    /// Shear modulus G.
     pub shear_modulus: f64,
     /// E' of `G = K²/E'`.
     pub plane_modulus: f64,
@@ -84,7 +83,6 @@ fn mutual_energy(stress: &[f64; 3], auxiliary: &[[f64; 2]; 2]) -> f64 {
 pub struct Eigenfunction {
     /// Order n; displacement goes with r^(n/2).
     pub order: i32,
-    /// Symmetry.
     pub symmetry: Symmetry,
 }
 

@@ -99,9 +99,7 @@ impl<'s> Assembly<'s> {
 /// What the discretisation makes of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preview {
-    /// Points.
     pub points: usize,
-    /// Bonds.
     pub bonds: usize,
     /// Bonds that the initial cracks cut.
     pub cut: usize,

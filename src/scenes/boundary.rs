@@ -11,11 +11,9 @@ use perilife_points::net::Net;
 /// Prescribed motion of one component of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Held {
-    /// Point.
     pub point: u32,
     /// Component, 0 or 1.
     pub component: usize,
-    /// What it does.
     pub motion: Motion,
     /// How that rises in time.
     pub rise: LoadRamp,
@@ -43,7 +41,6 @@ pub enum Motion {
 /// Points of a load with its direction: what displacement and load of the history are taken from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
-    /// Points.
     pub points: Vec<u32>,
     /// Unit vector.
     pub direction: Point,

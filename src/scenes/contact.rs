@@ -93,7 +93,6 @@ struct Plane {
 pub struct Touching {
     /// Columns across cracks.
     pub columns: usize,
-    /// Those that are pressed.
     pub pressed: usize,
 }
 

@@ -75,7 +75,6 @@ struct Deformation {
     pull: Matrix2<f64>,
     /// Strain energy without that of the control, J.
     energy: f64,
-    /// Whether it has a K⁻¹.
     whole: bool,
 }
 

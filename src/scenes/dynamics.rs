@@ -106,7 +106,6 @@ pub struct Run<'a> {
     pub masses: &'a [f64],
     /// Time step, s.
     pub step: f64,
-    /// Steps.
     pub steps: usize,
 }
 

@@ -16,7 +16,6 @@ pub struct Measures {
     pub stretch: f64,
     /// True length over that at rest, squared, less 1: `|ξ + η|²/|ξ|² - 1`.
     pub elongation: f64,
-    /// Shear angle γ.
     pub shear: f64,
     /// Tangential over normal spring.
     pub ratio: f64,

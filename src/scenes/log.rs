@@ -90,7 +90,6 @@ impl<'a> Log<'a> {
         }
     }
 
-    /// The last row.
     pub fn last(&self) -> Option<&HistoryRow> {
         self.taken.history.last()
     }

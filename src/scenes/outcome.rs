@@ -45,13 +45,11 @@ pub struct HistoryRow {
 pub struct PathPoint {
     /// Front: initial tips first, in the order of `Specimen::tips`, then new fronts as they appear.
     pub tip: usize,
-    /// Step.
     pub step: usize,
     /// Time, s.
     pub time: f64,
     /// Place, m.
     pub position: Point,
-    /// Damage φ of the point there.
     pub damage: f64,
     /// Speed of the front on its way there, m/s: from where and when it was taken down last; 0 without time.
     pub speed: f64,
@@ -60,11 +58,9 @@ pub struct PathPoint {
 /// Figures of a scene's run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SceneFigures {
-    /// Points.
     pub points: usize,
     /// Bonds of the uncracked plate.
     pub bonds: usize,
-    /// Evaluations of all forces.
     pub evaluations: usize,
     /// Time step, s; 0 without time.
     pub time_step: f64,
@@ -89,13 +85,11 @@ pub struct Fracture {
     pub snapshots: Vec<Snapshot>,
     /// Lattice of the snapshots.
     pub grid: PointGrid,
-    /// Why it ended.
     pub end: SceneEnd,
     /// First step in which a bond broke.
     pub onset_step: Option<usize>,
     /// Step after which loads and supports were no longer joined by bonds.
     pub separated_step: Option<usize>,
-    /// Figures.
     pub figures: SceneFigures,
     /// What the user should know.
     pub warnings: Vec<String>,

@@ -18,7 +18,6 @@ const STIFFER: f64 = 5.0;
 /// A point that a platen can meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// Point.
     pub point: u32,
     /// Way of the platen until it meets the undeformed rim there, m.
     pub gap: f64,
@@ -40,7 +39,6 @@ pub struct Platen {
 }
 
 impl Platen {
-    /// Platens of a scene.
     pub fn all(scene: &Scene, net: &Net) -> Vec<Platen> {
         scene.drives.iter().filter_map(|drive| Platen::of(drive, scene, net)).collect()
     }

@@ -65,18 +65,12 @@ pub enum SceneLaw {
     /// Springs in every bond.
     Bonds(BondLaw),
     /// Correspondence, with its zero-energy control and that control's factor: H of `silling` (no unit), c_I of `spring` (N/m⁷).
-    Correspondence {
-        /// Control.
-        control: ZeroEnergyControl,
-        /// Its factor.
-        factor: f64,
-    },
+    Correspondence { control: ZeroEnergyControl, factor: f64 },
 }
 
 /// Points and law.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneModel {
-    /// Law.
     pub law: SceneLaw,
     /// True stretch and direction of the deformed bond instead of the linearised ones (bond-based law, explicit motion).
     pub finite: bool,
@@ -86,9 +80,7 @@ pub struct SceneModel {
     pub horizon_ratio: f64,
     /// Angle of the lattice rows against x, rad.
     pub lattice_angle: f64,
-    /// Discretisation of the points.
     pub arrangement: Discretisation,
-    /// Solver.
     pub solver: SceneSolver,
 }
 
@@ -97,7 +89,6 @@ pub struct SceneModel {
 pub enum Region {
     /// Points within `depth` of a side, at least one row, m.
     Edge {
-        /// Side.
         edge: Edge,
         /// Depth, m.
         depth: f64,
@@ -170,9 +161,7 @@ impl LoadRamp {
 /// A load of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneLoad {
-    /// Where.
     pub region: Region,
-    /// What.
     pub action: Action,
     /// How it rises in time.
     pub rise: LoadRamp,
@@ -183,7 +172,6 @@ pub struct SceneLoad {
 /// A support of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneSupport {
-    /// Where.
     pub region: Region,
     /// Components held at zero.
     pub components: [bool; 2],
@@ -198,7 +186,6 @@ pub enum Procedure {
     Static,
     /// The load grows in so many steps.
     QuasiStatic {
-        /// Load steps.
         steps: usize,
         /// Iterations of relaxation in a step, bonds damaged in each; `None` to come to rest.
         iterations: Option<usize>,
@@ -215,9 +202,7 @@ pub enum Procedure {
 /// Damage of the bonds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damage {
-    /// Law.
     pub law: DamageLaw,
-    /// Where it enters (correspondence).
     pub enters: DamageEntry,
     /// Critical stretch if it is given instead of the fracture energy.
     pub stretch: Option<f64>,
@@ -261,17 +246,12 @@ pub struct Scene {
     pub name: String,
     /// Plate with its cracks, micro cracks among them. Its loads are the tractions of `drives`, in Pa at full load.
     pub specimen: Specimen,
-    /// Material.
     pub material: Material,
     /// Points and law.
     pub model: SceneModel,
-    /// Loads.
     pub drives: Vec<SceneLoad>,
-    /// Supports.
     pub holds: Vec<SceneSupport>,
-    /// Damage.
     pub damage: Damage,
-    /// Procedure.
     pub procedure: Procedure,
     /// Refinement, for arrangements of several levels.
     pub refinement: Option<Refinement>,

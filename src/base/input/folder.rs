@@ -124,9 +124,7 @@ pub struct OpenedFile {
     pub name: String,
     /// Where it lay, if on disk.
     pub path: Option<PathBuf>,
-    /// What it is on disk.
     pub id: Option<FileId>,
-    /// Its bytes.
     pub content: Arc<[u8]>,
 }
 
@@ -174,12 +172,10 @@ impl Opened {
         }
     }
 
-    /// Adds an override.
     pub fn add_override(&self, text: &str) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).overrides.push(text.to_owned());
     }
 
-    /// All so far.
     pub fn so_far(&self) -> Provenance {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }

@@ -16,7 +16,6 @@ pub(super) struct Written {
     metric: String,
     /// Its place in the file, `specimen.width_in`.
     us: String,
-    /// What it was given.
     value: Value,
 }
 

@@ -32,7 +32,6 @@ pub struct Key {
     pub quantity: Option<Quantity>,
     /// Which values it takes; from the type of its field.
     pub shape: Shape,
-    /// Whether it has to be there.
     pub need: Need,
     /// Of keys of which at most one is given: what they say.
     pub group: Option<&'static str>,
@@ -47,7 +46,6 @@ pub struct Key {
 /// Whether a key has to be there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
-    /// It has.
     Required,
     /// It may be left out.
     Optional,
@@ -68,9 +66,7 @@ pub enum Shape {
     Numbers(usize),
     /// What its reader takes, in words: "a number or \"pure\"".
     Other(&'static str),
-    /// A list.
     List(&'static Shape),
-    /// A table of keys.
     Table(&'static [Key]),
 }
 
@@ -86,9 +82,7 @@ pub trait Section: Sized {
 /// A table of the file that is being read.
 #[derive(Debug, Clone, Copy)]
 pub struct Given<'a> {
-    /// Its keys.
     pub table: &'a Table,
-    /// Where it stands.
     pub path: &'a str,
 }
 
@@ -217,7 +211,6 @@ impl<'a> Given<'a> {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// A key that is missing.
     pub fn missing(&self, key: &Key) -> Error {
         input_missing(&self.path_of(key.name), "is missing", key.remedy())
     }

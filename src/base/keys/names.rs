@@ -13,7 +13,6 @@ pub struct Kinds<'a> {
     pub tag: &'a str,
     /// The kind of the file.
     pub own: &'a str,
-    /// Keys of every kind.
     pub all: &'a [(&'static str, &'static [Key])],
 }
 
@@ -58,7 +57,6 @@ fn stem(name: &str) -> Option<&str> {
     UNITS.iter().find_map(|unit| name.strip_suffix(unit.suffix(System::Si))?.strip_suffix('_'))
 }
 
-/// What is known, where none of it is near.
 pub fn none_near<'n>(known: impl Iterator<Item = &'n str>) -> String {
     let known: Vec<&str> = known.collect();
     format!("known here: {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })

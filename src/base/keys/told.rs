@@ -11,18 +11,15 @@ use crate::units::us::{System, renamed};
 pub struct Told {
     /// Its name: `stop`, `specimen.lug`.
     pub section: String,
-    /// What it is, in one line.
     pub meaning: String,
     /// The key that tells the kind, with the name of it.
     pub tag: Option<(&'static str, &'static str)>,
     /// Whether a file has to have the section.
     pub is_needed: bool,
-    /// Its keys.
     pub keys: Vec<Key>,
 }
 
 impl Key {
-    /// Label and hint.
     pub fn label_and_hint(&self) -> (&'static str, &'static str) {
         self.text.split_once(": ").unwrap_or((self.text, ""))
     }
@@ -122,7 +119,6 @@ impl Told {
         class(&class_name("", &self.section), &self.keys, self.tag)
     }
 
-    /// Its JSON Schema.
     pub fn schema(&self) -> Json {
         let mut own = object(&self.keys);
         own["title"] = json!(self.section);

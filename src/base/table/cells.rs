@@ -21,11 +21,8 @@ const ROWS_SHOWN: usize = 5;
 /// What stands between columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
-    /// A tab.
     Tab,
-    /// A semicolon.
     Semicolon,
-    /// A comma.
     Comma,
     /// A vertical bar.
     Bar,
@@ -67,13 +64,11 @@ impl Separator {
 /// Cells of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Where it came from.
     pub file: PathBuf,
     /// Column names as written; `column 1`, `column 2` in a table without header.
     pub header: Vec<String>,
     /// Column names with the units of a row of units below the header.
     pub names: Vec<String>,
-    /// Line of the header.
     pub header_line: usize,
     /// Rows below the header.
     pub rows: Vec<Row>,
@@ -109,9 +104,7 @@ impl Row {
 
 /// What is wrong with a place of a file.
 pub struct Fault<'a> {
-    /// The file.
     pub file: &'a Path,
-    /// Line in it.
     pub line: Option<usize>,
     /// Key, or name of the column.
     pub key: Option<&'a str>,

@@ -28,7 +28,6 @@ pub(super) struct Place {
     header: Option<usize>,
     /// First row of readings.
     body: usize,
-    /// Columns.
     columns: usize,
     /// Whether the header names what a test has.
     named: bool,
@@ -155,7 +154,6 @@ fn merit(rows: &[Row], place: Place) -> Merit {
     Merit(named, fits, numbers as f64 / cells.max(1) as f64)
 }
 
-/// The whole file by one separator.
 fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: &Path, words: &dyn Vocabulary) -> Result<Table> {
     let rows = separator.cut(lines, file)?;
     let mut table = assemble(rows, file, words)?;

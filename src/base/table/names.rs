@@ -180,9 +180,7 @@ pub enum Named {
 pub struct Column {
     /// Place in the header, from 0.
     pub index: usize,
-    /// What it holds.
     pub role: Role,
-    /// In which unit.
     pub unit: Named,
     /// What a number is multiplied by for SI units, or cycles: the unit, and 0.5 where the length is tip to tip.
     pub factor: f64,

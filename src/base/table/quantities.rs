@@ -11,13 +11,11 @@ use crate::error::Result;
 /// What is asked of such a table.
 #[derive(Clone, Copy)]
 pub struct Words {
-    /// Its forms.
     pub kind: Kind,
     /// Roles that its columns may have; all where it is empty.
     pub roles: &'static [Role],
     /// Whether columns of these roles are enough.
     pub is_enough: fn(&[Role]) -> bool,
-    /// Fewest columns.
     pub columns: usize,
     /// Which columns to give.
     pub remedy: &'static str,

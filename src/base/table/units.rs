@@ -63,7 +63,6 @@ crate::kinds! {
 pub enum Unit {
     /// Of crack length.
     Length(LengthUnit),
-    /// Of cycles.
     Cycles(CycleUnit),
     /// Of a force or a gross stress.
     Load(LoadUnit),
@@ -107,7 +106,6 @@ impl Unit {
         SPELLINGS.contains_key(words)
     }
 
-    /// Whether it is one of stress.
     pub fn is_stress(self) -> bool {
         matches!(self, Unit::Load(LoadUnit::Megapascal | LoadUnit::Ksi))
     }

@@ -12,7 +12,6 @@ crate::kinds! {
 }
 
 impl System {
-    /// The other one.
     pub fn other(self) -> System {
         match self {
             System::Si => System::Us,
@@ -74,7 +73,6 @@ impl Unit {
         if to == System::Us { 1.0 / self.size } else { self.size }
     }
 
-    /// The one that a word names.
     pub fn named(word: &str, of: System) -> Option<&'static Unit> {
         UNITS.iter().find(|unit| unit.word(of) == word)
     }
@@ -83,7 +81,6 @@ impl Unit {
 /// A key or column in the other system.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Renamed {
-    /// Its name there.
     pub name: String,
     /// What a number is multiplied by; of the level of a law, with ΔK^m, what it would be at the exponent 0.
     factor: f64,

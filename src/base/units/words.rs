@@ -17,7 +17,6 @@ const BARE: [&str; 3] = ["ΔK ", "% faster at ", "% slower at "];
 struct Number {
     from: usize,
     to: usize,
-    /// What it is multiplied by.
     factor: f64,
     /// Unit to be written behind it.
     unit: Option<&'static Unit>,

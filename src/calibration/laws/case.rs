@@ -22,9 +22,7 @@ pub struct LawCase {
     pub name: String,
     /// Rates inside the window.
     pub rows: Vec<RateRow>,
-    /// The law asked for.
     pub law: FitLaw,
-    /// Constants that are given.
     pub given: Given,
     /// Rates of the tables that are left out since they are flagged.
     pub flagged: usize,
@@ -63,7 +61,6 @@ perilife_base::keys! {
     }
 }
 
-/// Names of keys.
 fn names(keys: &'static [Key]) -> Vec<&'static str> {
     keys.iter().map(|key| key.name).collect()
 }
@@ -179,7 +176,6 @@ impl LawCase {
         Ok(())
     }
 
-    /// Fits all laws.
     pub fn fit(&self) -> Result<LawFits> {
         fit_laws(&self.rows, self.law, &self.given)
     }

@@ -25,13 +25,10 @@ const SEED: u64 = 1;
 pub struct Design {
     /// How cases are chosen.
     pub kind: DesignKind,
-    /// Number of cases.
     pub cases: usize,
     /// Seed of random designs.
     pub seed: u64,
-    /// Which scatter of the law, where it scatters.
     pub scatter: Scatter,
-    /// Keys that vary.
     pub vary: Vec<Vary>,
 }
 
@@ -42,9 +39,7 @@ pub struct Sweep {
     pub name: String,
     /// The sweep file.
     pub document: Document,
-    /// The base case.
     pub base: Document,
-    /// The design.
     pub design: Design,
 }
 

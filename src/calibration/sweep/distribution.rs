@@ -24,15 +24,9 @@ pub enum Distribution {
         to: f64,
     },
     /// Gauss.
-    Normal {
-        /// Mean.
-        mean: f64,
-        /// Standard deviation.
-        deviation: f64,
-    },
+    Normal { mean: f64, deviation: f64 },
     /// The logarithm is normal.
     LogNormal {
-        /// Median.
         median: f64,
         /// Standard deviation of the natural logarithm.
         deviation_ln: f64,

@@ -34,7 +34,6 @@ pub struct FleetPlate {
     pub load: f64,
     /// Its growth rate over that of the median law, mean over the cycles of the plate of the run.
     pub rate_factor: f64,
-    /// Its life.
     pub life: RecordedLife,
     /// Crack length at which it breaks or its record ends, m; `None` of an unlimited life, and of one cut off by `stop.cycles_max`.
     pub critical_length: Option<f64>,

@@ -36,7 +36,6 @@ pub const FIT_FILE: &str = "fit.json";
 pub struct SpecimenFits {
     /// Exponent of the record.
     pub p: f64,
-    /// Each specimen with its own fit.
     pub specimens: Vec<SpecimenRecord>,
 }
 
@@ -46,7 +45,6 @@ pub struct LawScatter {
     record: FittedRecord,
     /// Of ln(rate in mm/cycle) and of p.
     pub mean: [f64; 2],
-    /// Of the same.
     pub covariance: [[f64; 2]; 2],
 }
 

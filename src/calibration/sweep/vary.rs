@@ -38,9 +38,7 @@ perilife_base::kinds! {
 /// A key that varies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vary {
-    /// Key of the case.
     pub key: String,
-    /// Its values.
     pub spread: Spread,
 }
 

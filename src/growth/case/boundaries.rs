@@ -98,7 +98,6 @@ struct Gaps {
     ligament: f64,
     /// To the rim of a hole that the crack does not start from.
     hole: f64,
-    /// To another crack.
     crack: f64,
 }
 

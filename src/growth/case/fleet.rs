@@ -38,7 +38,6 @@ pub enum InitialLength {
     LogNormal {
         /// Median, m.
         median: f64,
-        /// Standard deviation of ln.
         deviation_ln: f64,
     },
     /// Normal, as far as it is above zero.
@@ -55,7 +54,6 @@ pub enum InitialLength {
 pub struct Fleet {
     /// How many.
     pub plates: usize,
-    /// Seed of all draws.
     pub seed: u64,
     /// Initial crack length; `None`: that of the case. Of a standard specimen in its convention, of a plate that of the crack whose tip
     /// ends the life.

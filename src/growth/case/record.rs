@@ -25,9 +25,7 @@ perilife_base::kinds! {
 pub struct FittedRecord {
     /// A at `horizon_mm`, 1/cycle.
     pub a: f64,
-    /// Exponent p.
     pub p: f64,
-    /// Horizon that A belongs to.
     pub horizon_mm: f64,
     /// Lattice spacing of the calibration.
     pub spacing_mm: f64,
@@ -49,9 +47,7 @@ pub struct FittedRecord {
     pub pivot_delta_k_mpa_sqrt_m: f64,
     /// da/dN there.
     pub rate_at_pivot_mm_per_cycle: f64,
-    /// Relative standard error of the rate at the pivot.
     pub rate_at_pivot_relative_error: f64,
-    /// Standard error of p.
     pub p_error: f64,
     /// Smallest ΔK of the fit window.
     pub delta_k_min_mpa_sqrt_m: f64,
@@ -60,7 +56,6 @@ pub struct FittedRecord {
     /// Measured rate over that of the law at an end of its range, less one, in percent, whichever end misses more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lack_of_fit_percent: Option<f64>,
-    /// Stress ratio of the tests.
     pub stress_ratio: f64,
     /// `model.method` of the fit. A record of `handbook` holds C and m; its a, horizon_mm and spacing_mm are nan.
     pub method: String,
@@ -84,9 +79,7 @@ pub struct FittedRecord {
     pub plane: String,
     /// Thickness of the tested specimens.
     pub thickness_mm: f64,
-    /// Material name.
     pub material: String,
-    /// Program version.
     pub version: String,
     /// The law of its lives: C and m are the best power law all the same.
     #[serde(default = "paris")]
@@ -117,7 +110,6 @@ pub struct CurveRecord {
     pub gain: f64,
     /// ΔK.
     pub delta_k_mpa_sqrt_m: [f64; ROWS],
-    /// da/dN there.
     pub da_dn_mm_per_cycle: [f64; ROWS],
     /// Relative standard errors of the rates.
     pub da_dn_relative_error: [f64; ROWS],
@@ -141,7 +133,6 @@ impl CurveRecord {
         }
     }
 
-    /// The law.
     pub fn law(&self) -> CurveLaw {
         let [low, high] = [0, ROWS - 1].map(|end| self.delta_k_mpa_sqrt_m[end] * MPA_SQRT_M);
         CurveLaw::through([low, high], self.da_dn_mm_per_cycle.map(|rate| rate * MM_PER_CYCLE))
@@ -179,7 +170,6 @@ pub struct LawRecord {
     /// Criterion of the next best law less that of this one; absent where there is no other.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub aicc_margin: Option<f64>,
-    /// Program version.
     pub version: String,
     /// `growth_law` and its constants, as a case has them.
     pub fatigue: Table,

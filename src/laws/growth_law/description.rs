@@ -13,7 +13,6 @@ use perilife_plate::material::Material;
 pub struct Description {
     /// Name in input and result files.
     pub name: &'static str,
-    /// Meaning in one line.
     pub meaning: &'static str,
     /// Its constants: the level C, by which all rates are in proportion, first; then the exponent of ΔK.
     pub constants: &'static [Constant],
@@ -78,7 +77,6 @@ pub struct Constant {
     pub name: &'static str,
     /// Unit and bounds of reason.
     pub quantity: Quantity,
-    /// What it is to the rates.
     pub role: Role,
     /// Whether it is the exponent of ΔK.
     pub is_exponent: bool,
@@ -206,7 +204,6 @@ pub struct Rates {
 /// A row of rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatedRow {
-    /// Line in the file.
     pub line: usize,
     /// Stress ratio R.
     pub ratio: f64,
@@ -216,9 +213,7 @@ pub struct RatedRow {
 
 /// `[fatigue]` and what its law needs to know about the rest of the case.
 pub struct Given<'a> {
-    /// The section.
     pub section: &'a Value,
-    /// Material of the plate.
     pub material: &'a Material,
     /// Smallest and largest stress ratio of the cycles of the case.
     pub ratios: [f64; 2],

@@ -173,7 +173,6 @@ impl Table {
         is_beyond.then(|| format!("ΔK = {at:.4} MPa√m lies beyond the table of rates, {low_mpa:.4} to {high_mpa:.4} MPa√m"))
     }
 
-    /// In words.
     pub fn in_words(&self) -> String {
         let rows: usize = self.curves.iter().map(|curve| curve.rows.len()).sum();
         format!("{rows} rows at {} stress ratios", self.curves.len())

@@ -28,7 +28,6 @@ pub static LAW: Description = Description {
 pub struct Walker {
     /// C and m at R = 0.
     pub paris: ParisLaw,
-    /// γ.
     pub gamma: f64,
     /// ΔK below which nothing grows, Pa√m.
     pub threshold: f64,

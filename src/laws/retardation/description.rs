@@ -12,9 +12,7 @@ pub type Rate = fn(&[f64], &dyn GrowthLaw, &Now, &Zone) -> f64;
 pub struct Description {
     /// Name in input and result files.
     pub name: &'static str,
-    /// Meaning in one line.
     pub meaning: &'static str,
-    /// Its constants.
     pub constants: &'static [Constant],
     /// da/dN, m/cycle, of a cycle whose plastic zone stays within that of an overload, by the constants in SI units; `None` where nothing is
     /// retarded.
@@ -50,7 +48,6 @@ pub struct Now {
     pub a: f64,
     /// K at maximum load, Pa√m.
     pub k_max: f64,
-    /// Stress ratio.
     pub ratio: f64,
     /// Least stress ratio that the law knows.
     pub least: f64,

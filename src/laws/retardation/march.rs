@@ -99,7 +99,6 @@ pub struct March<'a> {
     pub response: Response,
     /// Crack length where its way is 0, m.
     pub start: f64,
-    /// Where it stands.
     pub at: Underway,
 }
 

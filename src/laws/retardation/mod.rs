@@ -56,7 +56,6 @@ pub fn keys_to_tell() -> Vec<Key> {
 /// A model with its constants.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Retardation {
-    /// Which one it is.
     pub kind: RetardationKind,
     /// Its constants, SI, in the order of their description.
     pub constants: Vec<f64>,

@@ -41,7 +41,6 @@ perilife_base::keys! {
         share: f64 = key("share", "Share of the force: 1 where it is left out").of(SHARE), or "1" 1.0;
     }
 }
-/// A share of the force.
 const SHARE: Quantity = plain("a share of the force", 1e-6, 1e6);
 
 /// Pins, which press on the rim of a hole; those `beside_edges` that are loaded say their force by their bearing stress.

@@ -20,7 +20,6 @@ pub(super) fn refuse(given: &Given<'_>, input: &Input) -> Result<()> {
     given.refuse_any(by_mean, "does not go with grip = \"mean\", which holds no edge", "leave it out")
 }
 
-/// Keys of grips.
 const KEYS: [&str; 2] = ["grip", "transverse"];
 
 /// Holds the moved edges straight, unless the mean is asked for.

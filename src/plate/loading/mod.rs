@@ -114,7 +114,6 @@ const PLACES: [&str; 4] = ["edges", "direction", "pins", "rollers"];
 /// What every cycle repeats.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LoadControl {
-    /// The load.
     Load,
     /// A load by the crack length at which it acts.
     Follows(Arc<LoadCourse>),

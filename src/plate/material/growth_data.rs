@@ -9,13 +9,10 @@ use serde::Deserialize;
 pub struct GrowthRecord {
     /// Name, as `material.name` takes it.
     pub name: String,
-    /// Alloy and temper.
     pub alloy: String,
-    /// Product.
     pub form: String,
     /// Loading and crack direction.
     pub orientation: String,
-    /// Environment of the tests.
     pub environment: String,
     pub(crate) youngs_modulus_gpa: f64,
     pub(crate) poisson_ratio: f64,
@@ -50,13 +47,11 @@ pub const SOURCE: &str = "NASGRO 4, constants of the NASGRO equation (Forman and
 /// What another batch of the same material may grow at, over the rate of a record, or under it.
 pub const BATCH_FACTOR: f64 = 2.0;
 
-/// All records.
 pub fn records() -> Vec<GrowthRecord> {
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(FILE.as_bytes());
     reader.deserialize().filter_map(Result::ok).collect()
 }
 
-/// The record of a name.
 pub fn record(name: &str) -> Option<GrowthRecord> {
     records().into_iter().find(|record| record.name == name)
 }

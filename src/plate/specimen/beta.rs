@@ -21,7 +21,6 @@ use perilife_base::table::quantities::{Words, in_si, numbers};
 use perilife_base::table::{self, Fault, whole_file};
 use perilife_base::units::MM;
 
-/// Key of the file.
 pub const KEY: &str = "specimen.beta_file";
 /// First line of the file.
 pub const HEADER: &str = "crack_length_mm,beta";

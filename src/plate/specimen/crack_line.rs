@@ -19,7 +19,6 @@ pub struct CrackLine {
 /// Which end of which line a tip is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct LineEnd {
-    /// Index of the line.
     pub line: usize,
     /// Whether the tip is the last of its points, else the first.
     pub at_last: bool,

@@ -26,9 +26,7 @@ const ERROR_OF_LIVES: f64 = 0.01;
 /// A formula for K of one specimen.
 #[derive(Debug, Clone)]
 pub struct HandbookFormula {
-    /// Name of the formula.
     pub name: &'static str,
-    /// Where it stands.
     pub source: &'static str,
     /// Where it holds and how well, in words.
     pub range: &'static str,

@@ -246,13 +246,10 @@ pub enum LoadMeasure {
 /// A plate as it is tested: geometry, loads, supports, where cracks start. All lengths in metres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
-    /// Which shape it is.
     pub kind: SpecimenKind,
     /// Outline, counter-clockwise, not closed (last point differs from first).
     pub outline: Vec<Point>,
-    /// Round holes.
     pub holes: Vec<Hole>,
-    /// Slots.
     pub slots: Vec<Slot>,
     /// Through cracks at the start.
     pub cracks: Vec<Crack>,

@@ -83,7 +83,6 @@ pub(super) struct Drawing {
     pub outline: Vec<Point>,
     pub holes: Vec<Hole>,
     pub slots: Vec<Slot>,
-    /// All corners of every crack.
     pub cracks: Vec<Vec<Point>>,
     pub thickness: f64,
 }

@@ -10,9 +10,7 @@ use perilife_points::net::Net;
 /// A bond seen from one of its ends.
 #[derive(Debug, Clone, Copy)]
 pub struct Neighbour {
-    /// Other end.
     pub other: u32,
-    /// Bond of the net.
     pub bond: u32,
     /// ξ from this end to the other, m.
     pub xi: Vector2<f64>,

@@ -48,11 +48,8 @@ use regions::Area;
 /// What points of several levels are asked for.
 #[derive(Debug, Clone, Copy)]
 pub struct MultiLevelSpec<'a> {
-    /// Plate.
     pub specimen: &'a Specimen,
-    /// Material.
     pub material: &'a Material,
-    /// Law of the bonds.
     pub law: &'a BondLaw,
     /// Spacing of the coarsest level asked for, m.
     pub spacing: f64,

@@ -22,7 +22,6 @@ const IMBALANCE: f64 = 1e-6;
 /// What holds and pushes the points at full load, unknown by unknown ([`Net::unknowns`] a point).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FullLoad {
-    /// Whether an unknown is held.
     pub held: Vec<bool>,
     /// Where held unknowns go, m; 0 elsewhere.
     pub motion: Vec<f64>,
@@ -93,11 +92,8 @@ pub struct Equilibrium {
 /// What solving has cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Spent {
-    /// Solves.
     pub solves: usize,
-    /// Iterations.
     pub iterations: usize,
-    /// Factorisations.
     pub factorisations: usize,
 }
 
@@ -113,7 +109,6 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// At rest.
     pub fn at_rest(size: usize) -> Self {
         Shape { u: vec![0.0; size], force: vec![0.0; size], strain: 0.0 }
     }

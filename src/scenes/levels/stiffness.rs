@@ -20,9 +20,7 @@ const SHIFTS: [f64; 2] = [1e-13, 1e-10];
 /// A spring along one direction between two points that need not have a bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Strut {
-    /// One end.
     pub from: u32,
-    /// The other.
     pub to: u32,
     /// Unit vector along which it acts.
     pub normal: Point,
@@ -37,7 +35,6 @@ pub struct Stiffness {
     matrix: SparseColMat<usize, f64>,
     /// Places of the entries of every bond in the values of the matrix, in the order of [`Stiffness::entries`].
     slots: Vec<u32>,
-    /// Places of the diagonal.
     diagonal: Vec<u32>,
     symbolic: SymbolicLlt<usize>,
     factor: Option<Llt<usize, f64>>,

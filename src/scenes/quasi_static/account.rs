@@ -88,7 +88,6 @@ impl State {
 /// Sums of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Account {
-    /// Where the run is.
     pub state: State,
     /// Work so far, J.
     pub work: f64,
@@ -144,13 +143,10 @@ impl Account {
 
 /// Where a procedure without time ended.
 pub struct Walked {
-    /// Why.
     pub end: SceneEnd,
     /// Last displacement, m.
     pub u: Vec<f64>,
-    /// Energies.
     pub account: Account,
-    /// Evaluations of the forces.
     pub evaluations: usize,
     /// How flanks stand at the end, where they are kept apart.
     pub touching: Option<Touching>,

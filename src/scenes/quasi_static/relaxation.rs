@@ -38,7 +38,6 @@ const PASSES: usize = 20_000;
 /// When bonds may be damaged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Breaking {
-    /// Never.
     Never,
     /// At rest, over and over until nothing more is damaged.
     #[default]
@@ -78,7 +77,6 @@ impl Default for Relaxation {
 /// How a relaxation ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RestEnd {
-    /// At rest.
     AtRest,
     /// So many bonds have broken that the caller wanted to hear of it; the displacement is that before the last of them.
     Breaking,
@@ -91,9 +89,7 @@ pub enum RestEnd {
 /// What a relaxation found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rested {
-    /// How it ended.
     pub end: RestEnd,
-    /// Evaluations of the forces.
     pub evaluations: usize,
     /// Residual over load.
     pub residual: f64,
@@ -202,7 +198,6 @@ pub(super) struct Swing {
 /// Sums over all unknowns.
 #[derive(Default)]
 pub(super) struct Sums {
-    /// F·F, N².
     square: f64,
     /// F·Λ⁻¹F, N m.
     acceleration: f64,

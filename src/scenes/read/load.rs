@@ -28,7 +28,6 @@ const REGIONS_MAX: usize = 50;
 const TRACTION: Quantity = Quantity { what: "a stress", unit: "MPa", low: -1e5, high: 1e5, si: MPA };
 const SHIFT: Quantity = Quantity { what: "a displacement", unit: "mm", low: -1e4, high: 1e4, si: MM };
 const SPEED: Quantity = Quantity { what: "a velocity", unit: "mm/s", low: -1e8, high: 1e8, si: MM };
-/// A time from 0 on.
 pub const TIME: Quantity = Quantity { what: "a time", unit: "s", low: 0.0, high: 1e6, si: 1.0 };
 
 perilife_base::keys! {
@@ -52,7 +51,6 @@ perilife_base::keys! {
 /// Time of a scene of motion, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
-    /// Duration.
     pub duration: f64,
     /// `ramp_s` of all loads that have none of their own.
     pub ramp: f64,

@@ -32,7 +32,6 @@ const RAMP: &str = "ramp_s";
 
 /// What `[loading]` asks for.
 pub struct Loading {
-    /// Loads.
     pub drives: Vec<SceneLoad>,
     /// How they are worked through.
     pub procedure: Procedure,

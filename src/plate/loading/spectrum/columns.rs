@@ -115,7 +115,6 @@ struct Read {
     factor: f64,
 }
 
-/// Format and columns of a table.
 fn columns_of(table: &Table, asked: Option<SpectrumFormat>, scale: (Unit, f64)) -> Result<(SpectrumFormat, Vec<Read>)> {
     let count = table.header.len();
     let bare = |roles: &[Role]| roles.iter().enumerate().map(|(index, &role)| Read { index, role, factor: 1.0 }).collect();

@@ -51,7 +51,6 @@ impl Cycle {
 /// The cycles of a pass, in their order, with what is asked of them.
 #[derive(Clone, PartialEq)]
 pub struct Spectrum {
-    /// Name of the file.
     pub file: String,
     /// How the file was read.
     pub format: SpectrumFormat,
@@ -75,7 +74,6 @@ pub struct Spectrum {
     pub kinds: usize,
     /// What the user should know of its file.
     pub notes: Vec<String>,
-    /// SHA-256 of the file.
     sha256: String,
 }
 

@@ -28,7 +28,6 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// A straight one.
     pub fn straight(to: Point) -> Self {
         Piece { to, arc: None }
     }
@@ -50,7 +49,6 @@ impl Curve {
         Curve { from, pieces: vec![Piece { to: from, arc: Some(Arc { centre, sweep: TAU }) }] }
     }
 
-    /// Its end.
     pub fn end(&self) -> Point {
         self.pieces.last().map_or(self.from, |piece| piece.to)
     }

@@ -20,7 +20,6 @@ use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::units::{INCH, MM, place_mm};
 
-/// Key of the file.
 pub const KEY: &str = "specimen.outline_file";
 /// Layers that a drawing may have.
 const LAYERS: [&str; 3] = ["outline", "holes", "cracks"];
@@ -56,9 +55,7 @@ perilife_base::kinds! {
 pub struct Shape {
     /// Corners in order around the plate.
     pub outline: Vec<Point>,
-    /// Round holes.
     pub holes: Vec<Hole>,
-    /// Corners of every crack.
     pub cracks: Vec<Vec<Point>>,
 }
 
@@ -72,7 +69,6 @@ pub(super) struct Drawing {
 /// A line of a file.
 pub(super) struct Drawn {
     layer: String,
-    /// What it is and where, in words.
     what: String,
     curve: Curve,
 }

@@ -57,7 +57,6 @@ impl Cut {
         (0..pieces.len()).any(|i| later(i).any(|[a, b]| segments_touch(pieces[i][0], pieces[i][1], *a, *b)))
     }
 
-    /// Along a crack.
     fn along_crack(points: Vec<Point>) -> Cut {
         let cracked = points.windows(2).map(|piece| [piece[0], piece[1]]).collect();
         Cut { points, ligaments: Vec::new(), cracked }

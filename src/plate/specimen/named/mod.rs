@@ -28,7 +28,6 @@ use perilife_base::error::{Error, Result};
 use perilife_base::input::shorten;
 use perilife_base::keys::{Given, Key};
 
-/// Every kind.
 const KINDS: &[&Description] = &[
     &crack_at_hole::KIND,
     &row_of_holes::KIND,
@@ -45,14 +44,12 @@ const KINDS: &[&Description] = &[
 pub struct Description {
     /// Its name in `specimen.kind`.
     pub kind: SpecimenKind,
-    /// Its keys.
     keys: &'static [Key],
     /// From its keys to what it is drawn from.
     layout: fn(&Given<'_>) -> Result<Layout>,
 }
 
 impl Description {
-    /// Its keys.
     pub(super) fn keys(&self) -> &'static [Key] {
         self.keys
     }

@@ -22,7 +22,6 @@ pub(super) fn arc(centre: Point, radius: f64, [from, to]: [f64; 2]) -> impl Iter
     })
 }
 
-/// A pin.
 pub(super) fn pin(hole: usize, direction: Point, contact: Bearing) -> Load {
     Load::Pin { hole, direction, force: 1.0, contact }
 }

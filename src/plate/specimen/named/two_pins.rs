@@ -33,7 +33,6 @@ struct Kind {
     front: f64,
     /// The upper pin of a width.
     pin: fn(f64) -> Point,
-    /// Completes its formula.
     formula: fn(HandbookFormula) -> HandbookFormula,
 }
 

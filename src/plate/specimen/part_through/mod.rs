@@ -23,7 +23,6 @@ use std::f64::consts::PI;
 
 use super::{Specimen, SpecimenKind};
 
-/// Every kind.
 const KINDS: &[&Description] = &[&surface_crack::KIND, &corner_crack::KIND, &embedded_crack::KIND, &corner_crack_at_hole::KIND];
 
 /// Relative error of K that its source states.
@@ -43,7 +42,6 @@ pub struct Description {
     /// Its name in `specimen.kind`.
     pub kind: SpecimenKind,
     letters: PlateLetters,
-    /// Share of the ellipse that is cracked.
     share_of_ellipse: f64,
     has_hole: bool,
     /// F over φ.
@@ -78,9 +76,7 @@ struct PlateLetters {
 /// A range for which formulas are made.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
-    /// What it is of.
     pub name: &'static str,
-    /// That of a front.
     pub of: fn(&Front) -> f64,
     /// Least.
     pub low: f64,
@@ -89,7 +85,6 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// In words.
     pub fn in_words(&self) -> String {
         let Limit { name, low, high, .. } = self;
         if *low > 0.0 { format!("{name} {low} to {high}") } else { format!("{name} up to {high}") }
@@ -113,9 +108,7 @@ pub struct PartThrough {
     pub depth: f64,
     /// Semi-axis c at the start, along the width.
     pub half_length: f64,
-    /// Thickness of the plate.
     pub thickness: f64,
-    /// Width of the plate.
     pub width: f64,
     /// Radius of the hole; 0 without one.
     pub radius: f64,
@@ -137,7 +130,6 @@ impl SpecimenKind {
 }
 
 impl PartThrough {
-    /// Which kind it is.
     pub fn kind(&self) -> SpecimenKind {
         self.description.kind
     }

@@ -15,9 +15,7 @@ const ROUND_OFF: f64 = 1e-9;
 pub struct Leaf {
     /// Level, 0 the coarsest.
     pub level: usize,
-    /// Column.
     pub column: usize,
-    /// Row.
     pub row: usize,
 }
 
@@ -100,7 +98,6 @@ impl Levels {
         }
     }
 
-    /// The finest lattice.
     pub fn finest(&self) -> &Lattice {
         &self.lattices[self.lattices.len() - 1]
     }

@@ -15,7 +15,6 @@ const DUAL_SHARE: f64 = 0.5;
 
 /// What bonds follow from.
 pub struct Linking<'a> {
-    /// Points.
     pub levels: &'a Levels,
     /// Bonds and springs of the lattice of every level.
     pub stencils: &'a [Stencil],
