@@ -23,7 +23,6 @@ impl Blended {
         Blended { x, y }
     }
 
-    /// The x of its points.
     pub fn x(&self) -> &[f64] {
         &self.x
     }

@@ -70,7 +70,6 @@ impl Error {
 /// Wrong input: where it stands, which value, what is wrong with it and what would be right.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct InputError {
-    /// File the value stands in.
     pub file: Option<PathBuf>,
     /// Line of the file, counted from 1.
     pub line: Option<usize>,
@@ -79,7 +78,6 @@ pub struct InputError {
     pub value: Option<String>,
     /// What is wrong, said so that it reads on after "key = value:".
     pub problem: String,
-    /// What would be right.
     pub remedy: String,
     /// Other mistakes of the same file, which do not depend on this one.
     pub more: Vec<InputError>,

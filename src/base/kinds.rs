@@ -42,9 +42,7 @@ macro_rules! kinds {
             pub const KEY: &'static str = $key;
             /// Name in input and result files.
             pub fn name(self) -> &'static str { match self { $($Kind::$Variant => $name),+ } }
-            /// Meaning in one line.
             pub fn meaning(self) -> &'static str { match self { $($Kind::$Variant => $meaning),+ } }
-            /// Every kind.
             pub fn all() -> impl Iterator<Item = Self> { Self::ALL.iter().copied() }
         }
 
@@ -61,7 +59,6 @@ macro_rules! kinds {
             pub fn all() -> impl Iterator<Item = Self> { $all.iter().map(|own| $Kind(own)) }
             /// Name in input and result files.
             pub fn name(self) -> &'static str { self.0.name }
-            /// Meaning in one line.
             pub fn meaning(self) -> &'static str { self.0.meaning }
         }
 

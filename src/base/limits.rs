@@ -24,9 +24,7 @@ pub struct Limit {
     pub ends: [Option<f64>; 2],
     /// Error that counts as right, percent.
     pub bound_percent: f64,
-    /// Version of the program that was measured.
     pub version: String,
-    /// Day of the measurement.
     pub date: String,
 }
 

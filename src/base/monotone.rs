@@ -12,7 +12,6 @@ const HALVINGS: usize = 60;
 pub struct Monotone(Vec<[f64; 2]>);
 
 impl Monotone {
-    /// Of its points, in order.
     pub fn new(points: impl Iterator<Item = [f64; 2]>) -> Self {
         Monotone(points.collect())
     }

@@ -22,9 +22,7 @@ pub enum Stage {
     Rim,
     /// Loads and supports are put on.
     Loads,
-    /// The solver is built.
     Solver,
-    /// An equilibrium is sought.
     Equilibrium,
 }
 
@@ -68,7 +66,6 @@ impl Watch {
         self.is_cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Whether that was asked.
     pub fn is_cancelled(&self) -> bool {
         self.is_cancelled.load(Ordering::Relaxed)
     }

@@ -59,7 +59,6 @@ impl Calibration {
         CalibrationCase::from_document(document.clone()).map(|case| Calibration::Lives(Box::new(case)))
     }
 
-    /// Name of the file.
     pub fn name(&self) -> &str {
         match self {
             Calibration::Lives(calibration) => &calibration.case.name,

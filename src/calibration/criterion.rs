@@ -38,7 +38,6 @@ impl Criterion {
         }
     }
 
-    /// The lives of a curve.
     pub fn lives(self, cycles: &[f64]) -> Vec<f64> {
         self.spans(cycles.len()).into_iter().map(|(from, to)| cycles[to] - cycles[from]).collect()
     }

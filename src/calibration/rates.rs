@@ -74,7 +74,6 @@ impl RatePoint {
 pub struct Flags {
     /// A step of crack length at this point is under 0.25 mm, or near the threshold under ten times the precision of a reading.
     pub short_step: bool,
-    /// The rate is not above 0.
     pub not_growing: bool,
     /// The ligament is too small for its plastic zone.
     pub yielding: bool,

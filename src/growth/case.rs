@@ -106,9 +106,7 @@ pub struct Choices {
 pub enum Model {
     /// K(a) of a handbook; with the points by which `perilife sif` compares it.
     Handbook(PointSettings),
-    /// Nodes without elements.
     Nodes(ElementFreeSettings),
-    /// Points and bonds.
     Points(PointSettings),
 }
 
@@ -123,7 +121,6 @@ pub struct PointSettings {
     /// Angle of the lattice rows against x, radians.
     pub lattice_angle: f64,
     pub solver: SolverKind,
-    /// Use of mirror symmetry.
     pub symmetry: Symmetry,
     /// Residual over load at which an equilibrium ends whose K drives a crack ([`RESIDUAL`]); no key of a case.
     pub residual: f64,
@@ -229,20 +226,17 @@ pub enum LawSource {
 /// A checked case, SI inside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// File stem.
     pub name: String,
     pub specimen: Specimen,
     /// Elastic constants and strengths.
     pub material: Material,
     pub loading: Loading,
-    /// What computes its mechanics.
     pub model: Model,
     /// Why the program chose it; `None` where the case names it.
     pub chosen: Option<String>,
     pub fatigue: FatigueSettings,
     /// How the cycles of a spectrum act on those after them; `None` where they do not.
     pub retardation: Option<Retardation>,
-    /// Constants of the fatigue law.
     pub law: LawSource,
     pub stop: Stop,
     /// Plates beside the one that is run.

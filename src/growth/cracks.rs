@@ -128,7 +128,6 @@ pub trait CrackedPlate: Sized {
     /// Displacement and damage of these points.
     fn fields(&mut self, case: &Case, cracks: &CracksState) -> Result<Option<Fields>>;
 
-    /// What it took.
     fn statistics(&self) -> SolverStatistics;
 
     /// What the user should know of it.

@@ -20,12 +20,12 @@ pub mod cross_check;
 pub mod end_of_life;
 pub mod hand_calculation;
 pub mod hand_over;
-pub mod later;
 pub mod nodes;
 pub mod part_through;
 pub mod plate;
 pub mod points;
 pub mod record;
+pub mod relay;
 pub mod stress_concentration;
 pub mod predict;
 
@@ -178,12 +178,11 @@ pub struct SolverStatistics {
 /// State of a run at a place where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum State {
-    /// Of fatigue bonds.
     Bonds(bond_strain::BondStrainState),
     /// Of tips driven by their K.
     Tips(cracks::CracksRun<points::PointState>),
     /// Of tips that another engine has handed over.
-    HandedOver(later::HandedOver),
+    HandedOver(relay::HandedOver),
     /// Of tips on a plate of nodes.
     Nodes(cracks::CracksRun<nodes::NodeState>),
     /// Of a hand calculation, also of a crack that is not through yet: its rows.

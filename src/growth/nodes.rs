@@ -35,7 +35,6 @@ const NODES_MOST: f64 = 2e4;
 /// would ask for ever finer nodes.
 const UNSEEN: f64 = 1e-3;
 
-/// A plate of nodes.
 pub struct NodePlate {
     settings: ElementFreeSettings,
     elasticity: Elasticity,

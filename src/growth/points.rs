@@ -43,7 +43,6 @@ const PROBE_HORIZONS: f64 = 0.5;
 const CORNER: f64 = 0.35;
 /// Distance between cracks that meet, m: round-off of their points.
 const JOINED: f64 = 1e-9;
-/// A plate of points and bonds.
 pub struct PointPlate {
     body: Arc<Body>,
     surroundings: RingGeometry,
@@ -396,7 +395,6 @@ fn across(body: &Body, segment: &Segment, at_last: bool) -> Vec<Bond> {
     if at_last { bonds_across(body, from, end) } else { bonds_across(body, end, from) }
 }
 
-/// Solver of a run.
 fn solver(case: &Case, body: &Body, bonds: &Bonds) -> Equilibrium {
     let points = case.points();
     // A residual stress need not be its own mirror image.

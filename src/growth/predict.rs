@@ -37,10 +37,9 @@ use crate::bond_strain::BondStrain;
 use crate::case::{Case, Engine, needs};
 use crate::cracks::{CrackedPlate, Cracks};
 use crate::hand_calculation::HandCalculation;
-use crate::hand_over::HandOver;
 use crate::nodes::ElementFree;
-use crate::part_through::PartThroughGrowth;
 use crate::points::TipField;
+use crate::{hand_over, part_through as front};
 use checkpoint::Checkpoint;
 use perilife_base::error::Result;
 use perilife_base::parallel::in_pool;
@@ -80,14 +79,14 @@ fn follow(record: Record<'_>) -> Result<Prediction> {
         }
         Engine::PartThrough => {
             let (later, both) = (OnceCell::new(), [laws::growth_law(case)?, laws::growth_law(case)?]);
-            record.follow(&mut PartThroughGrowth::start(case, &later, both, laws::order(case)?)?, |run| run.advance(increment))
+            record.follow(&mut front::start(case, &later, both, laws::order(case)?)?, |run| run.advance(increment))
         }
         Engine::Points => record.follow(&mut TipField::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),
         Engine::Nodes => record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),
         Engine::BondsThenPoints => {
             let later = OnceCell::new();
             let law = |horizon| laws::bond_law(case, horizon);
-            record.follow(&mut HandOver::start(case, &later, law, laws::growth_law(case)?)?, |run| run.advance(increment))
+            record.follow(&mut hand_over::start(case, &later, law, laws::growth_law(case)?)?, |run| run.advance(increment))
         }
         Engine::Bonds => {
             let law = |horizon| laws::bond_law(case, horizon);

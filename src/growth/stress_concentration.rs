@@ -25,7 +25,6 @@ const IN_RADIUS_FIRST: f64 = 4.0;
 const RIM_REACH: f64 = 6.0;
 /// Spacings in the radius below which peaks may agree by chance.
 const IN_RADIUS_LEAST: f64 = 16.0;
-/// Refinements at the most.
 const REFINEMENTS: usize = 4;
 /// Nodes beyond which no further refinement is begun: the next would have four times as many.
 const NODES_MOST: usize = 12_000;

@@ -124,7 +124,6 @@ pub struct FactorLaw {
     pub kind: GrowthLawKind,
     /// Its constants, SI, in the order of their description.
     pub constants: Vec<f64>,
-    /// Its rows, where it is no formula.
     pub table: Option<Table>,
     /// ΔK below which nothing grows whatever the law says, Pa√m.
     pub threshold: f64,
@@ -148,7 +147,6 @@ impl FactorLaw {
         threshold.filter(|delta_k| *delta_k > 1e-3 * MPA_SQRT_M)
     }
 
-    /// In words, with its constants.
     pub fn in_words(&self) -> String {
         let k_c = self.toughness().map(|k_c| format!(", K_c = {:.4} MPa√m", k_c / MPA_SQRT_M)).unwrap_or_default();
         let of_formula = || format!("{} = {}{k_c}", self.kind.0.constants[1].name, self.constants[1]);

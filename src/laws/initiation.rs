@@ -7,7 +7,6 @@
 
 use perilife_base::keys::{number, stress};
 
-/// Key of a case.
 pub const KEY: &str = "fatigue.initiation";
 
 perilife_base::keys! {

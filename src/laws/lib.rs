@@ -81,7 +81,6 @@ impl FatigueLaw {
 /// What a case says about fatigue, except the constants of the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FatigueSettings {
-    /// What drives a crack.
     pub driver: Driver,
     pub ageing: Ageing,
     /// Radius of the `crack_tip` zone in horizons.

@@ -44,7 +44,6 @@ impl SpectrumLaw {
         SpectrumLaw { law, classes, least, table: (0..nodes).map(|_| OnceLock::new()).collect() }
     }
 
-    /// The mean itself.
     fn mean(&self, k_max: f64, response: &Response) -> f64 {
         self.classes.iter().map(|class| self.growth(k_max, class, response)).sum()
     }

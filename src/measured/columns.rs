@@ -26,7 +26,6 @@ pub enum Shape {
 /// Columns of the readings of one specimen, or of those that a column names.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Name of the specimen, where no column has it.
     pub name: String,
     /// Column of the specimen's name.
     pub specimen: Option<Column>,
@@ -266,7 +265,6 @@ fn unit_remedy(key: &str, like: Unit) -> String {
     format!("name one of {} in the header, or set {key}", like.alternatives().join(", "))
 }
 
-/// The column of a crack length.
 fn length_column(table: &Table, column: Column, import: &Import) -> Result<Column> {
     let like = Unit::Length(LengthUnit::Millimetre);
     column_in_unit(table, column, "measured.length_unit (--length-unit)", like, import.length.map(Unit::Length))

@@ -69,7 +69,6 @@ impl Stated {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Source {
     pub file: PathBuf,
-    /// Line of each reading.
     pub lines: Vec<usize>,
     pub length_column: String,
     /// Metres per unit of that column.
@@ -222,7 +221,6 @@ impl MeasuredCurve {
         Some(self.source.file.parent()?.file_name()?.to_string_lossy().into_owned())
     }
 
-    /// What is wrong with a reading.
     pub(super) fn fault(&self, reading: usize) -> Fault<'_> {
         Fault { file: &self.source.file, line: self.source.lines.get(reading).copied(), key: None, value: None }
     }

@@ -21,7 +21,6 @@ pub struct Import {
     pub sheet: Option<Sheet>,
     /// Unit of stress intensity, in tables of rates.
     pub intensity: Option<IntensityUnit>,
-    /// Unit of da/dN.
     pub rate: Option<RateUnit>,
     /// Whether the file is a table of rates over ΔK.
     pub of_rates: bool,
@@ -112,7 +111,6 @@ impl ColumnNames {
         Self::KEYS.into_iter().find(|(known, _)| *known == name)
     }
 
-    /// Names of the keys.
     pub fn names(between: &str) -> String {
         Self::KEYS.map(|(key, _)| key).join(between)
     }

@@ -86,7 +86,6 @@ pub struct RateTable {
 /// A table of rates in an input file: its name, or with what it does not say itself.
 #[derive(Debug, Clone)]
 pub enum RateFile {
-    /// Name of the file.
     Name(String),
     /// With more.
     Keys(Box<RateFileKeys>),
@@ -126,7 +125,6 @@ perilife_base::keys! {
     }
 }
 
-/// Columns by name.
 pub const COLUMNS: Key = key("columns", "Columns: by their names or numbers");
 pub const DECIMAL: Key = key("decimal", "Decimal sign");
 pub const SHEET: Key = key("sheet", "Sheet of a workbook: its name or number");

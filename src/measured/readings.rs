@@ -22,7 +22,6 @@ const LENGTH_MAX: f64 = 100.0;
 /// What is done about a bad row: an error ends the reading.
 type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
 
-/// Curves of a table of cells.
 pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fate<'_>) -> Result<Measured> {
     let mut measured = Measured { curves: Vec::new(), warnings: layout.warnings.clone() };
     for series in &layout.series {

@@ -62,7 +62,6 @@ pub struct OwnRecord {
 /// Lives of a lot on a plate that was run, and what was asked about them.
 #[derive(Debug, Clone)]
 pub struct Lives {
-    /// The plate with its band, or why there is none.
     pub band: std::result::Result<(Plate, PlateBand), NoBand>,
     /// Whether the case says which lot its plate is of.
     is_lot_given: bool,
@@ -132,7 +131,6 @@ impl Lives {
         self.inspection.as_ref()
     }
 
-    /// Band of the life.
     pub fn life(&self) -> Option<Quantiles> {
         self.band.as_ref().ok().and_then(|(_, band)| band.reached.last().copied())
     }

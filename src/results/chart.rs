@@ -59,7 +59,6 @@ pub struct Series {
     pub name: String,
     /// (x, y); points that are not finite (or not positive on a logarithmic axis) are left out.
     pub points: Vec<(f64, f64)>,
-    /// How it is drawn.
     pub mark: Mark,
 }
 

@@ -60,7 +60,6 @@ pub enum Side {
 /// One condition.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
-    /// Name, the same in every run.
     pub name: Cow<'static, str>,
     pub verdict: Verdict,
     /// What it may do to the life, or the share of the life that it concerns, percent; `None` where nobody knows.
@@ -68,7 +67,6 @@ pub struct Check {
     /// On which side of the true life the life is by that.
     pub side: Option<Side>,
     pub words: String,
-    /// What to do about it.
     pub remedy: Option<String>,
 }
 

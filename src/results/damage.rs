@@ -30,7 +30,6 @@ const PATH: &str = "#0096ff";
 #[derive(Debug, Clone, Copy)]
 pub struct DamagePicture<'a> {
     pub grid: &'a PointGrid,
-    /// State of the plate.
     pub snapshot: &'a Snapshot,
     pub cracks: &'a [Crack],
     /// Path of every tip, m.
@@ -39,7 +38,6 @@ pub struct DamagePicture<'a> {
     pub caption: &'a [String],
 }
 
-/// The caption of a snapshot of cycles.
 pub fn cycles_and_length(snapshot: &Snapshot) -> [String; 2] {
     [format!("N = {} cycles", PLAIN.whole(snapshot.cycles)), format!("crack length {:.2} mm", snapshot.crack_length / MM)]
 }

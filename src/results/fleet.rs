@@ -21,9 +21,7 @@ use perilife_growth::case::{Case, Fleet};
 use perilife_growth::predict::{CurvePoint, Prediction};
 use perilife_plate::specimen::Point;
 
-/// The table.
 pub const FLEET_FILE: &str = "fleet.csv";
-/// The picture.
 pub const FLEET_CHART_FILE: &str = "fleet.svg";
 
 /// `fleet` of a result: quantiles as those of a sweep, unlimited and cut-off lives ranked behind the others.

@@ -26,7 +26,6 @@ pub struct Format {
 pub const PLAIN: Format = Format { thousands: " ", minus: "-" };
 /// In a document: narrow spaces at which no line breaks, a true minus.
 pub const PRINT: Format = Format { thousands: "\u{202f}", minus: "−" };
-/// Along an axis.
 pub const AXIS: Format = Format { thousands: "\u{2009}", minus: "-" };
 
 impl Format {
@@ -44,7 +43,6 @@ impl Format {
         out + rest
     }
 
-    /// A whole number.
     pub fn whole(self, value: f64) -> String {
         self.digits(&format!("{value:.0}"))
     }

@@ -261,7 +261,6 @@ impl Judged {
         chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &shown)
     }
 
-    /// The result in words.
     pub fn words(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
         let (is_refused, record) = (self.record.refused.is_some(), &self.record);
         let by_error = |life: f64| format!("{} cycles", PLAIN.by_error(life, record.error_estimate_percent));
@@ -402,7 +401,6 @@ fn computed(case: &Case, prediction: &Prediction) -> String {
     }
 }
 
-/// Table of the residual strength.
 pub const RESIDUAL_STRENGTH_FILE: &str = "residual_strength.csv";
 
 /// Unit of the load in columns and in the picture, its name there, and its size.

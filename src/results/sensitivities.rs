@@ -16,7 +16,6 @@ use perilife_growth::predict::laws::growth_law;
 use perilife_growth::predict::recorded::{Change, Recorded, RecordedLife};
 use perilife_growth::predict::{Prediction, StopReason};
 
-/// The table.
 pub const SENSITIVITIES_FILE: &str = "sensitivities.csv";
 /// Share by which the load is changed.
 const LOAD: f64 = 0.05;

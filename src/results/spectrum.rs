@@ -44,7 +44,6 @@ pub struct SpectrumRecord {
     pub curves: SpectrumCurves,
     pub truncated_at: Option<f64>,
     pub life_cycles_without_retardation: Option<f64>,
-    /// Model and constants.
     pub retardation: Map<String, Value>,
 }
 

@@ -83,7 +83,6 @@ pub fn words(case: &Case, stressed: &Stressed) -> String {
     format!("{}: {nodes} nodes after {solves} solves{settled}{gross}; largest displacement {moved:.6} mm", case.name)
 }
 
-/// What is to be said of the stresses.
 pub fn warnings(stressed: &Stressed) -> Vec<String> {
     let sharp: Vec<String> = stressed.rims.iter().filter(|rim| rim.is_sharp).map(|rim| name(rim.rim)).collect();
     let mut warnings = Vec::new();

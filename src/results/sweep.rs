@@ -21,7 +21,6 @@ pub const PLAN_FILE: &str = "plan.json";
 pub const OUTCOME_FILE: &str = "outcome.toml";
 pub const TABLE_FILE: &str = "sweep.csv";
 pub const FIGURES_FILE: &str = "sweep.json";
-/// The picture.
 pub const CHART_FILE: &str = "life.svg";
 /// Failures that the figures list at most; the table has all.
 const FAILURES_MAX: usize = 100;
@@ -49,7 +48,6 @@ pub struct PlannedCase {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outcome {
-    /// Hash of the input it came of.
     pub input: String,
     /// Cycles to the end of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -63,7 +61,6 @@ pub struct Outcome {
     /// Crack length at the end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crack_length_final_mm: Option<f64>,
-    /// Time it took.
     pub wall_s: f64,
     /// Why there is no result.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -121,7 +118,6 @@ impl Outcome {
 }
 
 impl Plan {
-    /// The plan of a sweep.
     pub fn new(sweep: &Sweep, cases: &[DrawnCase]) -> Self {
         let planned =
             |case: &DrawnCase| PlannedCase { input: case.hash.clone(), values: case.values.iter().map(written).collect() };
@@ -218,11 +214,9 @@ pub struct QuantileWords {
     pub p95: Option<String>,
 }
 
-/// Lives of the cases that have one.
 pub(super) struct Lives {
     /// Upwards, each with whether it is a lower bound; unlimited ones at the end, infinite.
     pub sorted: Vec<(f64, bool)>,
-    /// How many are unlimited.
     pub unlimited: usize,
     /// How many are lower bounds.
     pub bounds: usize,

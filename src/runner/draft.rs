@@ -50,7 +50,6 @@ impl Draft {
         Draft::of(name, Table::new())
     }
 
-    /// Of a table of sections.
     pub fn of(name: impl Into<String>, table: Table) -> Self {
         Draft { name: name.into(), table, files: Vec::new() }
     }

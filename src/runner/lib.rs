@@ -66,7 +66,6 @@ pub struct Summary {
     /// The part of it that a listing of runs shows, all that the user should know under `warnings`.
     pub figures: Value,
     pub printed: String,
-    /// The result in words.
     pub lines: Vec<String>,
     /// Why the run does not count, though its files are written.
     pub refusal: Option<Error>,
@@ -228,7 +227,6 @@ pub fn of_prediction(case: &Case, prediction: Prediction, wanted: &Wanted, watch
     Ok(Summary { result, figures, lines, refusal, done, ..Summary::default() })
 }
 
-/// What came of a scene.
 pub fn of_scene(scene: &Scene, fracture: Fracture, watcher: &dyn Watcher) -> Summary {
     fracture.warnings.iter().for_each(|warning| watcher.warn(warning));
     // Figures and text have a form in JSON.

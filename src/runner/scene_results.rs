@@ -153,7 +153,6 @@ fn paths(fracture: &Fracture) -> Vec<Vec<Point>> {
     paths
 }
 
-/// What came of a scene, in words.
 pub fn words(scene: &Scene, fracture: &Fracture) -> Vec<String> {
     let last = fracture.history.last().copied().unwrap_or_default();
     let figures = &fracture.figures;
@@ -216,7 +215,6 @@ pub struct SceneRecord {
     pub damage: DamageRecord,
     pub warnings: Vec<String>,
     pub version: String,
-    /// The scene as it was given.
     pub case: Value,
     #[serde(flatten)]
     pub made_by: MadeBy,

@@ -13,11 +13,9 @@ use perilife_results::sweep::{
     CHART_FILE, FIGURES_FILE, OUTCOME_FILE, Outcome, PLAN_FILE, Plan, TABLE_FILE, read_outcome, read_plan,
 };
 
-/// Folder of the cases.
 const CASES: &str = "cases";
 /// Of an array job of Slurm: its tasks and their cases, its script, the folder of what tasks print.
 pub const TASKS_FILE: &str = "tasks";
-/// Script of the array job.
 pub const SCRIPT_FILE: &str = "job.sh";
 /// Folder of what its tasks print.
 pub const LOGS: &str = "logs";

@@ -23,9 +23,7 @@ use perilife_points::net::rigid::{RESISTED, turning_cost, turning_warning};
 /// The parts of a scene.
 pub struct Assembly<'s> {
     scene: &'s Scene,
-    /// Points and bonds.
     pub net: Net,
-    /// Loads and supports.
     pub boundary: Boundary,
     /// Law of damage of the springs.
     pub failure: Failure,

@@ -34,7 +34,6 @@ impl BondState {
         BondState { peak: vec![0.0; share.len()], share, may_fail }
     }
 
-    /// What has changed in the bonds.
     pub fn kept(&self) -> KeptBonds {
         KeptBonds { share: sparse(&self.share, 1.0), peak: sparse(&self.peak, 0.0) }
     }

@@ -42,7 +42,6 @@ pub enum Motion {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
     pub points: Vec<u32>,
-    /// Unit vector.
     pub direction: Point,
     /// Force of a traction at full load along the direction, N; `None` where the motion is prescribed.
     pub force: Option<f64>,
@@ -62,7 +61,6 @@ pub struct Push {
 /// Loads and supports.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Boundary {
-    /// Prescribed components.
     pub held: Vec<Held>,
     /// All forces at full load, N.
     pub forces: Vec<(u32, Point)>,

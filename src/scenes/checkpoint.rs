@@ -106,9 +106,7 @@ impl Clock {
     }
 }
 
-/// Course of a run.
 pub struct Course<'a> {
-    /// What is taken down.
     pub log: Log<'a>,
     observer: &'a dyn SceneObserver,
     clock: Clock,

@@ -185,7 +185,6 @@ impl Softening {
     }
 }
 
-/// Critical stretch of every point of a net.
 fn critical_stretches(scene: &Scene, law: &BondLaw, net: &Net, energy: f64) -> Result<Vec<f64>> {
     let (material, thickness) = (spring_material(law, &scene.material), scene.specimen.thickness);
     // Few levels, many points.

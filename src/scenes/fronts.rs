@@ -70,7 +70,6 @@ impl Front {
     }
 }
 
-/// All fronts of a net.
 pub struct Fronts<'n> {
     net: &'n Net,
     /// Damage from which a point is cracked.
@@ -100,7 +99,6 @@ impl<'n> Fronts<'n> {
         Fronts { net, threshold, standing: Standing { cracked: vec![false; net.len()], fronts, begun: false, path } }
     }
 
-    /// Where they are.
     pub fn standing(&self) -> &Standing {
         &self.standing
     }

@@ -16,7 +16,6 @@ use perilife_points::body::lattice::{LANES, Lattice};
 use perilife_points::bond_law::stencil::StencilBond;
 use perilife_points::net::Net;
 
-/// Rows of a band.
 const BAND: usize = 16;
 
 /// A value for each of [`LANES`] neighbouring places.
@@ -53,7 +52,6 @@ struct Fixed {
     may_fail: Vec<bool>,
 }
 
-/// Springs of a lattice body.
 pub struct LatticeSprings<'n> {
     net: &'n Net,
     fixed: Fixed,

@@ -67,7 +67,6 @@ impl<'a> Log<'a> {
         }
     }
 
-    /// What it holds.
     pub fn records(&self) -> Records {
         Records { fronts: self.fronts.standing().clone(), cracking: self.cracking.standing().clone(), taken: self.taken.clone() }
     }

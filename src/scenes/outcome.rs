@@ -59,7 +59,6 @@ pub struct PathPoint {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SceneFigures {
     pub points: usize,
-    /// Bonds of the uncracked plate.
     pub bonds: usize,
     pub evaluations: usize,
     /// Time step, s; 0 without time.
@@ -83,7 +82,6 @@ pub struct Fracture {
     pub cracking: Vec<PathPoint>,
     /// States for pictures: first, some between, last. `cycles` holds the time in s, or the step.
     pub snapshots: Vec<Snapshot>,
-    /// Lattice of the snapshots.
     pub grid: PointGrid,
     pub end: SceneEnd,
     /// First step in which a bond broke.

@@ -62,10 +62,12 @@ perilife_base::kinds! {
 /// Law between displacement and force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SceneLaw {
-    /// Springs in every bond.
     Bonds(BondLaw),
     /// Correspondence, with its zero-energy control and that control's factor: H of `silling` (no unit), c_I of `spring` (N/m⁷).
-    Correspondence { control: ZeroEnergyControl, factor: f64 },
+    Correspondence {
+        control: ZeroEnergyControl,
+        factor: f64,
+    },
 }
 
 /// Points and law.
@@ -208,7 +210,6 @@ pub struct Damage {
     pub stretch: Option<f64>,
     /// How it follows from the fracture energy.
     pub calibration: Calibration,
-    /// Constants of the nonlinear law.
     pub nonlinear: Option<Softening>,
     /// Tensile strength f_t, Pa.
     pub tensile_strength: Option<f64>,
@@ -242,12 +243,10 @@ pub struct Softening {
 /// A checked fracture scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// File stem.
     pub name: String,
     /// Plate with its cracks, micro cracks among them. Its loads are the tractions of `drives`, in Pa at full load.
     pub specimen: Specimen,
     pub material: Material,
-    /// Points and law.
     pub model: SceneModel,
     pub drives: Vec<SceneLoad>,
     pub holds: Vec<SceneSupport>,

@@ -14,7 +14,6 @@ use perilife_points::net::{Net, NetBond};
 /// Bonds or points that one task works through.
 const TASK: usize = 4096;
 
-/// Springs of a net.
 pub struct Springs<'n> {
     net: &'n Net,
     failure: Failure,

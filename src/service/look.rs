@@ -20,7 +20,7 @@ use perilife_base::{
     },
     units::round_off,
 };
-use perilife_measured::{Column, ColumnNames, Import, Layout, Loads, MeasuredCurve, Named, SAME_LOAD, Shape, Survey, survey};
+use perilife_measured::{Column, Import, Layout, Loads, MeasuredCurve, Named, SAME_LOAD, Shape, Survey, survey};
 use perilife_plate::specimen::LoadMeasure;
 use perilife_runner::{Task, check};
 
@@ -140,20 +140,24 @@ fn import(fields: &BTreeMap<String, String>) -> Answer<Import> {
         length: field("length_unit").map(|name| named(LengthUnit::ALL, LengthUnit::name, "length_unit", name)).transpose()?,
         cycles: field("cycle_unit").map(|name| named(CycleUnit::ALL, CycleUnit::name, "cycle_unit", name)).transpose()?,
         load: field("load_unit").map(|name| named(LoadUnit::ALL, LoadUnit::name, "load_unit", name)).transpose()?,
-        columns: json_of("columns", field("columns"), &format!("object with keys of {}", ColumnNames::names(", ")))?,
-        left_out: json_of("leave_out", field("leave_out"), "list of { file, line, value, reason }")?,
+        columns: json_of(
+            "columns",
+            field("columns"),
+            "give a JSON object such as { \"cycles\": \"N\", \"length\": [\"a left\", \"a right\"] }",
+        )?,
+        left_out: json_of("leave_out", field("leave_out"), "give a JSON list of { file, line, value, reason }")?,
         decimal: field("decimal").map(|name| named(Decimal::ALL, Decimal::name, "decimal", name)).transpose()?,
         sheet: field("sheet").map(|name| Sheet(name.clone())),
         ..Import::default()
     })
 }
 
-/// What a field holds as JSON of a form; the default where it is missing.
-fn json_of<T: Field + Default>(key: &str, text: Option<&String>, form: &str) -> Answer<T> {
+/// What a field holds as JSON; the default where it is missing.
+fn json_of<T: Field + Default>(key: &str, text: Option<&String>, remedy: &'static str) -> Answer<T> {
     let Some(text) = text else { return Ok(T::default()) };
-    let wrong = |error| input(key, text, format!("names no {key}: {error}"), format!("give a JSON {form}"));
+    let wrong = |error| input(key, text, format!("names no {key}: {error}"), remedy);
     let value = serde_json::from_str::<Value>(text).map_err(wrong)?;
-    Ok(T::take(&Key::new("", ""), key, &value)?)
+    Ok(T::take(&Key { shape: T::SHAPE, remedy, ..Key::new("", "") }, key, &value)?)
 }
 
 /// The kind of this name.

@@ -20,7 +20,6 @@ pub fn overrides(keys: &str) -> Vec<String> {
     keys.split_whitespace().map(str::to_owned).collect()
 }
 
-/// A case from its text, with keys overridden.
 pub fn case(text: &str, keys: &str) -> Result<Case> {
     case_of(text, &overrides(keys))
 }

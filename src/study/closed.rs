@@ -28,7 +28,6 @@ pub fn closed(name: &str, values: &[f64]) -> Option<f64> {
     }
 }
 
-/// Error in percent of the truth.
 pub fn percent(computed: f64, truth: f64) -> f64 {
     100.0 * (computed / truth - 1.0)
 }

@@ -12,7 +12,6 @@ use perilife_base::error::{Error, Result};
 /// A computation from a text and keys.
 type Computation = fn(&str, &Keys<'_>, &dyn Watcher) -> Result<Figures>;
 
-/// All of them.
 const ALL: [(&str, Computation); 17] = [
     ("plate_in_tension", |_, keys, _| tension_plate::plate(keys)),
     ("worst_in_tension", |_, _, _| tension_plate::worst()),

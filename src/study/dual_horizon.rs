@@ -22,7 +22,6 @@ pub const PUBLISHED: BondLaw = BondLaw {
     rotation: Rotation::Resisted,
     surface_correction: SurfaceCorrection::None,
 };
-/// Strain of the patches.
 const STRAIN: f64 = 1e-3;
 /// Spacing of their coarse points, m.
 const SPACING: f64 = 2.0 * MM;

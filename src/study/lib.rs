@@ -62,7 +62,6 @@ pub struct Topic {
     /// Name, as `perilife verify NAME` takes it: that of its file.
     #[serde(skip)]
     pub name: &'static str,
-    /// What its rows show.
     pub about: String,
     /// How many of its rows are known to miss their bounds.
     #[serde(default)]
@@ -133,7 +132,6 @@ impl Topic {
     }
 }
 
-/// The row of a question.
 fn answer(table: &mut Table, asker: &Asker<'_>, question: &Question, values: &Toml) -> Result<()> {
     let asking = asker.ask(question, values);
     if question.when.as_ref().map_or(Ok(1.0), |when| asking.figure(when))? <= 0.0 {

@@ -42,9 +42,7 @@ pub struct Question {
     pub read: String,
     /// What it should be; left out, the reading is itself an error in percent.
     pub truth: Option<Value>,
-    /// Bound of the error, percent.
     pub bound: Option<Value>,
-    /// Where the truth comes from.
     pub source: String,
     /// Why the bound is missed, and the error that is known (0: none).
     pub miss: Option<Miss>,
@@ -134,7 +132,6 @@ impl<'o> Asker<'o> {
         Asker { observer, kept: RefCell::default() }
     }
 
-    /// What a question with its values asks about.
     pub fn ask<'a>(&'a self, question: &'a Question, values: &'a Table) -> Asking<'a, 'o> {
         Asking { asker: self, question, values, own: OnceCell::new(), beside: OnceCell::new() }
     }
@@ -171,7 +168,6 @@ impl<'o> Asking<'_, 'o> {
         Values { table: self.values, reading: &|name, values| Some(self.reading(name, values)) }.figure(value)
     }
 
-    /// The value of a formula.
     pub fn number(&self, formula: &str) -> Result<f64> {
         Values { table: self.values, reading: &|name, values| Some(self.reading(name, values)) }.number(formula)
     }

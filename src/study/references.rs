@@ -22,7 +22,6 @@ pub struct Reference {
     pub name: &'static str,
     /// The case, and cycles and places of every tip.
     files: [&'static str; 2],
-    /// Whether its cracks end in holes.
     pub ends_in_hole: bool,
 }
 
@@ -39,7 +38,6 @@ macro_rules! reference {
     };
 }
 
-/// All of them.
 pub const REFERENCES: [Reference; 9] = [
     reference!("slant_severance", false),
     reference!("hole_attracts", true),

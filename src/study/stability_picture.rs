@@ -44,7 +44,6 @@ fn reasons(records: &[&Record]) -> Vec<String> {
     found.into_iter().map(|(_, text)| text).take(6).collect()
 }
 
-/// What a parameter is, with its unit.
 fn parameter(sweep: &Sweep) -> String {
     let mut letters = sweep.parameter.chars();
     let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().to_string());
@@ -52,7 +51,6 @@ fn parameter(sweep: &Sweep) -> String {
     format!("{first}{}{unit}", letters.as_str())
 }
 
-/// A method in words.
 fn method(name: &str) -> String {
     let plain = [
         ("element_free_galerkin", "nodes"),

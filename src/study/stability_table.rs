@@ -8,7 +8,6 @@ use perilife_base::columns::number_text as number;
 use perilife_base::limits;
 use perilife_results::time;
 
-/// One record as a line on the console.
 pub fn line(record: &Record) -> String {
     let sweep = record.sweep;
     format!("{}: {}: {} ({:.0} s)", sweep.name, record.method, range(record), record.wall_s)

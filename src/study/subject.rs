@@ -184,7 +184,6 @@ impl<'o> Subject<'o> {
         row.map_or_else(|| fault("no crack was handed over"), Ok)
     }
 
-    /// A figure by its name.
     pub fn read(&self, name: &str, values: &[f64]) -> Result<f64> {
         let number = |at: usize| values.get(at).copied().unwrap_or(0.0);
         match name {

@@ -20,7 +20,6 @@ pub struct Row {
     pub bound_percent: f64,
     /// Why the bound is not met and how far the error may go all the same, where that is known.
     pub known_miss: Option<KnownMiss>,
-    /// Where the reference comes from.
     pub source: String,
     /// Seconds spent since the row before.
     pub wall_s: f64,

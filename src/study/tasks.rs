@@ -13,7 +13,6 @@ use perilife_base::error::{Error, Result, input};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome<T> {
-    /// Its result.
     Done(T),
     /// The program refuses the case, and why.
     Refused(String),
@@ -34,7 +33,6 @@ impl<T> Outcome<T> {
         }
     }
 
-    /// The result, where there is one.
     pub fn done(&self) -> Option<&T> {
         if let Outcome::Done(result) = self { Some(result) } else { None }
     }

@@ -18,7 +18,6 @@ const DEPTH_MOST: usize = 8;
 /// Values, and what other names read.
 #[derive(Clone, Copy)]
 pub struct Values<'a> {
-    /// Values by name.
     pub table: &'a Table,
     pub reading: Reading<'a>,
 }
@@ -29,12 +28,10 @@ pub fn wrong(what: &str, problem: impl std::fmt::Display) -> Error {
 }
 
 impl<'a> Values<'a> {
-    /// Values alone.
     pub fn alone(table: &'a Table) -> Self {
         Values { table, reading: &|_, _| None }
     }
 
-    /// The value of a formula.
     pub fn number(&self, formula: &str) -> Result<f64> {
         let read = Formula::parse_named(formula).map_err(|problem| wrong(formula, problem))?;
         read.of_names(|name, values| self.named(name, values))

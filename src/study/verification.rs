@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 use crate::{Row, Topic};
 use perilife_base::cells::defused;
 
-/// One row as a line on the console.
 pub fn line(row: &Row) -> String {
     let mark = verdict(row);
     let figures = format!("{:>12} against {:>12}", number(row.computed), number(row.reference));

@@ -61,7 +61,7 @@ fn columns_decimal_sign_and_units_are_options() {
         assert!(object.get(key).is_some(), "{key} in {object}");
     }
     let wrong = [
-        ("columns = { cycels = \"B\" }", "measured.columns.cycels = \"B\": is not a known key; known here: cycles"),
+        ("columns = { cycels = \"B\" }", "measured.columns.cycels = \"B\": is not a known key; did you mean cycles?"),
         ("columns = { cycles = 1.5 }", "measured.columns.cycles = 1.5: is not the name of a column or its number"),
         (
             "columns = { length = [] , cycles = \"Q\" }",

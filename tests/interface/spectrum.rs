@@ -93,7 +93,7 @@ fn keys_that_do_not_make_a_spectrum_are_refused() {
         ("yield_strength_mpa = 340.0\n", "", &["loading.retardation", "yield_strength_mpa"]),
         ("wheeler_exponent = 1.3\n", "", &["loading.wheeler_exponent", "missing"]),
         ("wheeler_exponent = 1.3\n", "wheeler_exponent = 1.3\nshutoff_ratio = 2\n", &["loading.shutoff_ratio", "wheeler"]),
-        ("\"wheeler\"", "\"weeler\"", &["loading.retardation", "none, wheeler, willenborg, closure, newman"]),
+        ("\"wheeler\"", "\"weeler\"", &["loading.retardation", "did you mean \"wheeler\"?"]),
         ("\"wheeler\"\nwheeler_exponent = 1.3\n", "\"willenborg\"\nshutoff_ratio = 2\n", &["willenborg_k_th", "threshold"]),
         ("method = \"handbook\"", "spacing_mm = 2\n[output]\n", &[]),
         (

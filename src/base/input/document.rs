@@ -268,7 +268,6 @@ impl<'t> Sections<'t> {
         Ok(Sections { table, empty: Value::Table(Table::new()) })
     }
 
-    /// A section that must be there.
     pub fn required(&self, section: &str) -> Result<&Value> {
         self.given(section).ok_or_else(|| input_missing(section, "is missing", format!("write a section [{section}]")))
     }

@@ -25,15 +25,10 @@ pub struct Quantity {
 pub const LENGTH: Quantity = Quantity { what: "a length", unit: "mm", low: 1e-3, high: 1e5, si: MM };
 /// A coordinate, either sign.
 pub const COORDINATE: Quantity = Quantity { what: "a coordinate", unit: "mm", low: -1e5, high: 1e5, si: MM };
-/// A stress or strength.
 pub const STRESS: Quantity = Quantity { what: "a stress", unit: "MPa", low: 1e-6, high: 1e5, si: MPA };
-/// An elastic modulus.
 pub const MODULUS: Quantity = Quantity { what: "a modulus", unit: "GPa", low: 1e-6, high: 1e4, si: GPA };
-/// A force in newtons.
 pub const FORCE: Quantity = Quantity { what: "a force", unit: "N", low: 1e-6, high: 1e10, si: 1.0 };
-/// A force in kilonewtons.
 pub const FORCE_KN: Quantity = Quantity { what: "a force", unit: "kN", low: 1e-9, high: 1e7, si: crate::units::KN };
-/// A stress intensity factor.
 pub const INTENSITY: Quantity = Quantity { what: "a stress intensity", unit: "MPa√m", low: 1e-9, high: 1e6, si: MPA_SQRT_M };
 pub const FRACTURE_ENERGY: Quantity = Quantity { what: "an energy", unit: "J/m²", low: 1e-6, high: 1e12, si: 1.0 };
 

@@ -70,6 +70,9 @@ fn explain(error: &toml::de::Error, value: &Value, path: &str) -> Error {
     if let Some(name) = quoted_after(message, "missing field `") {
         return input_missing(&format!("{place}.{name}"), "is missing", "this key is required here");
     }
+    if let Some((_, remedy)) = message.split_once("is not a known kind; ") {
+        return input(&place, given(&place), "is not a known kind", remedy.trim_end());
+    }
     let wanted = match message.rsplit_once("expected ").map_or("another kind of value", |(_, wanted)| wanted).trim() {
         "f64" => "a number",
         "usize" | "u64" => "a whole number, zero or more",

@@ -11,7 +11,6 @@ use crate::kinds::Named;
 pub trait Field: Sized {
     /// Values that it takes.
     const SHAPE: Shape;
-    /// Whether its key has to be there.
     const NEED: Need = Need::Required;
 
     /// From the value of a key, found at `path`, in SI units.

@@ -28,7 +28,6 @@ pub struct Key {
     pub name: &'static str,
     /// For users: `Label: hint`.
     pub text: &'static str,
-    /// Unit and range.
     pub quantity: Option<Quantity>,
     /// Which values it takes; from the type of its field.
     pub shape: Shape,
@@ -120,7 +119,6 @@ impl Key {
         Key { group: Some(what), ..self }
     }
 
-    /// What to give where it is missing.
     pub const fn missing(self, remedy: &'static str) -> Key {
         Key { remedy, ..self }
     }
@@ -130,7 +128,6 @@ impl Key {
         Key { text, ..self }
     }
 
-    /// What to give for it.
     pub fn remedy(&self) -> String {
         match (self.quantity, self.shape) {
             _ if !self.remedy.is_empty() => self.remedy.to_owned(),
@@ -143,7 +140,6 @@ impl Key {
     }
 }
 
-/// A key of this name.
 pub const fn key(name: &'static str, text: &'static str) -> Key {
     Key::new(name, text)
 }

@@ -14,7 +14,6 @@ pub struct Told {
     pub meaning: String,
     /// The key that tells the kind, with the name of it.
     pub tag: Option<(&'static str, &'static str)>,
-    /// Whether a file has to have the section.
     pub is_needed: bool,
     pub keys: Vec<Key>,
 }
@@ -92,7 +91,6 @@ impl Told {
         self.rows().into_iter().map(line).collect()
     }
 
-    /// Choices of its keys.
     pub fn choices(&self) -> Vec<KindLine> {
         let of = |(_, key): (String, Key)| match key.shape {
             Shape::Choice(lines) | Shape::List(&Shape::Choice(lines)) => lines(),

@@ -37,7 +37,6 @@ impl Separator {
     pub(super) const ALL: [Separator; 6] =
         [Separator::Tab, Separator::Semicolon, Separator::Comma, Separator::Bar, Separator::Gap, Separator::Blanks];
 
-    /// Its name in messages.
     pub fn name(self) -> &'static str {
         match self {
             Separator::Tab => "tabs",
@@ -106,7 +105,6 @@ impl Row {
 pub struct Fault<'a> {
     pub file: &'a Path,
     pub line: Option<usize>,
-    /// Key, or name of the column.
     pub key: Option<&'a str>,
     /// The cell, or what else is complained about.
     pub value: Option<&'a str>,
@@ -174,7 +172,6 @@ impl Table {
         Fault { file: &self.file, line: Some(row.line), key: Some(&self.header[column]), value: Some(value) }
     }
 
-    /// Cells of the first rows.
     pub fn first_cells(&self) -> Vec<Vec<String>> {
         self.rows.iter().take(ROWS_SHOWN).map(|row| row.cells.iter().map(shown).collect()).collect()
     }

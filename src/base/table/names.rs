@@ -43,11 +43,9 @@ impl Kind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
-    /// Name of the specimen.
     Specimen,
     /// Cycles, or how often a cycle occurs.
     Cycles,
-    /// Crack length.
     Length,
     /// Crack length by an instrument.
     Method,
@@ -75,11 +73,8 @@ pub enum Role {
     KMin,
     /// da/dN.
     Rate,
-    /// Width of the specimen.
     Width,
-    /// Thickness of the specimen.
     Thickness,
-    /// Whether the reading counts.
     Counts,
     /// Whether the reading does not count.
     CountsNot,
@@ -199,7 +194,6 @@ impl Column {
         Numbers { index: self.index, counts }
     }
 
-    /// A column of one quantity in its unit.
     pub fn new(index: usize, role: Role, unit: Named) -> Column {
         let factor = if let Named::Is(unit) = unit { unit.si() } else { 1.0 };
         Column { index, role, unit, factor, is_log: false }

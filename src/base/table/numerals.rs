@@ -9,7 +9,6 @@ crate::kinds! {
 }
 
 impl Decimal {
-    /// The character.
     pub fn sign(self) -> char {
         match self {
             Decimal::Point => '.',

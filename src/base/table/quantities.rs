@@ -17,7 +17,6 @@ pub struct Words {
     /// Whether columns of these roles are enough.
     pub is_enough: fn(&[Role]) -> bool,
     pub columns: usize,
-    /// Which columns to give.
     pub remedy: &'static str,
 }
 

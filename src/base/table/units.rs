@@ -61,12 +61,10 @@ crate::kinds! {
 /// A unit of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// Of crack length.
     Length(LengthUnit),
     Cycles(CycleUnit),
     /// Of a force or a gross stress.
     Load(LoadUnit),
-    /// Of a stress intensity.
     Intensity(IntensityUnit),
     /// Of da/dN.
     Rate(RateUnit),

@@ -17,7 +17,6 @@ use crate::units::unmistakable;
 /// Most sheets of a workbook: a file may name one sheet any number of times.
 const SHEETS_MAX: usize = 256;
 
-/// Whether the bytes are those of a workbook.
 pub fn is_workbook(bytes: &[u8], file: &Path) -> bool {
     let ending = |known: &[&str]| file.extension().is_some_and(|own| known.iter().any(|known| own.eq_ignore_ascii_case(known)));
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"\xd0\xcf\x11\xe0") || ending(&["xlsx", "xlsm", "xls", "xlsb", "ods"])

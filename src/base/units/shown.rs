@@ -13,12 +13,10 @@ pub fn show(system: System) {
     let _ = SHOWN.set(system);
 }
 
-/// The units that were asked for.
 pub fn asked() -> Option<System> {
     SHOWN.get().copied()
 }
 
-/// The units that are shown.
 pub fn shown() -> System {
     asked().unwrap_or(System::Si)
 }

@@ -63,7 +63,6 @@ impl Unit {
         self.suffix[of as usize]
     }
 
-    /// Its name in a system.
     pub fn word(&self, of: System) -> &'static str {
         self.word[of as usize]
     }

@@ -13,12 +13,10 @@ const SPACES: [char; 4] = [' ', '\u{a0}', '\u{202f}', '\u{2009}'];
 /// What stands before a number with the unit of K, where none is written: its symbol, and words before a second range of it.
 const BARE: [&str; 3] = ["ΔK ", "% faster at ", "% slower at "];
 
-/// A number of a text.
 struct Number {
     from: usize,
     to: usize,
     factor: f64,
-    /// Unit to be written behind it.
     unit: Option<&'static Unit>,
 }
 

@@ -18,7 +18,6 @@ use perilife_measured::{MeasuredCurve, RangeKind, RateFile, RateFileKeys, RateRo
 /// A checked fit of laws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawCase {
-    /// File stem.
     pub name: String,
     /// Rates inside the window.
     pub rows: Vec<RateRow>,
@@ -26,7 +25,6 @@ pub struct LawCase {
     pub given: Given,
     /// Rates of the tables that are left out since they are flagged.
     pub flagged: usize,
-    /// Name of the material, if the file has one.
     pub material: String,
     /// Files with their hashes.
     pub sources: Vec<SourceFile>,

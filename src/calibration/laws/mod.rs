@@ -88,7 +88,6 @@ pub struct LawFits {
 }
 
 impl LawFits {
-    /// The chosen law.
     pub fn law(&self) -> &LawFit {
         &self.candidates[self.chosen]
     }

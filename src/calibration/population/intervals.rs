@@ -74,7 +74,6 @@ impl Interval {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Specimen {
     pub name: String,
-    /// In the order of the test.
     pub intervals: Vec<Interval>,
 }
 

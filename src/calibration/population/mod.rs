@@ -104,7 +104,6 @@ pub struct Population {
     /// Law of the lot: the mean of ln rate.
     pub law: CurveLaw,
     pub between: Between,
-    /// Noise along a crack.
     pub noise: Noise,
     pub specimens: Vec<Member>,
 }

@@ -422,7 +422,6 @@ fn out_of_range(lot: &Population, delta_k: f64) -> NoBand {
     )
 }
 
-/// An error as the reason for which there is no band.
 fn words(error: Error) -> NoBand {
     match error {
         Error::Input(error) => format!("{} {}", error.value.unwrap_or_default(), error.problem),

@@ -22,7 +22,6 @@ pub fn noncentral_t_cdf(t: f64, nu: f64, shift: f64) -> f64 {
     integrate(below, from, to, 1e-13).value / integrate(density, from, to, 1e-13).value
 }
 
-/// Quantile of the noncentral t distribution.
 pub fn noncentral_t_quantile(probability: f64, nu: f64, shift: f64) -> f64 {
     let (mut low, mut high) = (shift - 1.0, shift + 1.0);
     while noncentral_t_cdf(low, nu, shift) > probability {

@@ -26,7 +26,6 @@ pub struct Design {
     /// How cases are chosen.
     pub kind: DesignKind,
     pub cases: usize,
-    /// Seed of random designs.
     pub seed: u64,
     pub scatter: Scatter,
     pub vary: Vec<Vary>,
@@ -35,9 +34,7 @@ pub struct Design {
 /// A sweep file with its base case.
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    /// Name: the file stem.
     pub name: String,
-    /// The sweep file.
     pub document: Document,
     pub base: Document,
     pub design: Design,

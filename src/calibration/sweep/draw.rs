@@ -28,7 +28,6 @@ pub struct DrawnCase {
     pub values: Vec<Value>,
     /// TOML with everything in place.
     pub text: String,
-    /// Files that the text names.
     pub files: Vec<(String, Vec<u8>)>,
     /// Hash of version, text and files: the same hash, the same result.
     pub hash: String,

@@ -160,7 +160,6 @@ struct Drawing<'f> {
     laws: Laws,
 }
 
-/// Laws of the plates.
 enum Laws {
     /// That of the case, at its stress ratio.
     One(Box<dyn GrowthLaw>, f64),

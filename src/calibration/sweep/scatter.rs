@@ -34,7 +34,6 @@ pub const FIT_FILE: &str = "fit.json";
 /// Keys of `fit.json` that are needed here.
 #[derive(Debug, Clone, Deserialize)]
 pub struct SpecimenFits {
-    /// Exponent of the record.
     pub p: f64,
     pub specimens: Vec<SpecimenRecord>,
 }

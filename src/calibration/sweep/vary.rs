@@ -45,9 +45,7 @@ pub struct Vary {
 /// Values of a key.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Spread {
-    /// Of a grid.
     Values(Vec<Value>),
-    /// Of a random design.
     Random(Distribution),
 }
 

@@ -99,7 +99,6 @@ impl GrowthHistory {
         &self.past
     }
 
-    /// The latest row.
     pub(super) fn last(&self) -> &Row {
         // The first row is recorded before the first block.
         &self.past.rows[self.past.rows.len() - 1]
@@ -280,7 +279,6 @@ fn end_at(rows: &mut Vec<Row>, end: &End, specimen: &Specimen) {
 /// Where a run stands.
 pub(super) struct RunState {
     pub bonds: Bonds,
-    /// What life is left to them.
     pub life: BondLife,
     pub tips: Vec<CrackTip>,
     /// Bonds that come near the critical stretch, also away from the tips.

@@ -168,7 +168,6 @@ fn step_line(case: &Case) -> Option<String> {
     ))
 }
 
-/// Exponent of the law.
 fn exponent_line(case: &Case, sweep: &str, method: &str) -> Option<String> {
     let exponent = match &case.law {
         LawSource::Inline(law) => law.p,

@@ -126,7 +126,6 @@ fn check_stress_ratio(case: &Case, record: &FittedRecord) -> Result<()> {
     Err(input(key, other, problem, remedy))
 }
 
-/// A and p as recorded.
 fn bonds_of(record: &FittedRecord) -> FatigueLaw {
     FatigueLaw { a: record.a, p: record.p, horizon: record.horizon_mm * MM }
 }

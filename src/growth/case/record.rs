@@ -77,7 +77,6 @@ pub struct FittedRecord {
     pub poisson_ratio: f64,
     /// `material.plane`.
     pub plane: String,
-    /// Thickness of the tested specimens.
     pub thickness_mm: f64,
     pub material: String,
     pub version: String,
@@ -163,7 +162,6 @@ pub struct LawRecord {
     pub stress_ratio_min: f64,
     /// Largest stress ratio of the rates.
     pub stress_ratio_max: f64,
-    /// How many rates.
     pub rates: usize,
     /// Root mean square of ln da/dN about the law.
     pub rms_log_rate: f64,

@@ -23,7 +23,6 @@ const LIGAMENT_SPACINGS: f64 = 4.0;
 /// Relative difference of a crack length from a corner of the load at which it is there.
 const ON_CORNER: f64 = 1e-6;
 
-/// An increment in the making.
 pub struct Increment {
     /// The tip whose cycles count: the fastest.
     lead: usize,

@@ -19,7 +19,6 @@ pub struct Scales {
     pub by_root: bool,
     pub step: StepScales,
     pub steering: SteeringScales,
-    /// Obstacles and joints.
     pub meeting: MeetingScales,
     /// Growth after a kink over which the field does not show it, so that K is that of a short kink.
     pub kink_unresolved: f64,
@@ -42,7 +41,6 @@ pub struct StepScales {
     pub first_share: f64,
     /// First step of a kink at the most, in spacings at the tip.
     pub first_of_kink: f64,
-    /// Bounds of growth in an increment.
     pub bounds: [f64; 2],
     /// A step over the last one: at the least and at the most.
     pub change: [f64; 2],
@@ -75,7 +73,6 @@ pub struct SteeringScales {
     pub memory_steps: f64,
     /// Bounds of that growth.
     pub memory: [f64; 2],
-    /// Number of aims at the most.
     pub aims: usize,
     /// Spread of growth below which the slope of the aims says nothing.
     pub slope: f64,

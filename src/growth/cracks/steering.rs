@@ -130,7 +130,6 @@ impl Steering {
         self.last_corner
     }
 
-    /// Forgets all aims.
     pub fn forget(&mut self) {
         *self = Steering { last_corner: self.last_corner, ..Steering::default() };
     }

@@ -117,7 +117,6 @@ pub struct Tip {
     pub kink: Option<Kink>,
     /// Whether its flanks are in contact and do not slide: it does not grow.
     pub is_closed: bool,
-    /// Whether that was so at any time.
     pub was_closed: bool,
     /// Rate before the last increment, and the growth of the fastest tip in that, where ln of the rate is smooth over it.
     before: Option<[f64; 2]>,
@@ -153,7 +152,6 @@ impl Tip {
         }
     }
 
-    /// Whether it has not ended.
     pub fn is_active(&self) -> bool {
         self.state == TipState::Active
     }

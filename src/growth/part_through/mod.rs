@@ -15,12 +15,11 @@ pub use overloads::Order;
 
 use std::cell::OnceCell;
 
-use super::cross_check::CrossCheck;
 use super::end_of_life::strength_reason;
-use super::later::{HandedOver, Later};
 use super::nodes::ElementFree;
 use super::record::{CurvePoint, DepthRecord, StopReason, TipRecord};
-use super::{CrackGrowth, GrowthStatus, SolverStatistics, State};
+use super::relay::{HandOver, Relay, Turn};
+use super::{CrackGrowth, GrowthStatus, State};
 use crate::case::Case;
 use fronts::{Fronts, Grown, STEP_MOST};
 use overloads::Overloads;
@@ -32,70 +31,86 @@ use perilife_laws::retardation::Underway;
 use perilife_plate::specimen::geometry::along;
 use perilife_points::crack_tip::TipState;
 
-/// [`CrackGrowth`] of a crack that does not go through, and of what it becomes.
+/// [`CrackGrowth`] of a crack that does not go through.
 pub struct PartThroughGrowth<'a> {
     fronts: Fronts<'a>,
-    /// The case once the crack is through.
-    later: &'a OnceCell<Case>,
-    /// The law that drives its tips then.
-    law_of_tips: Option<Box<dyn GrowthLaw>>,
     /// Step to try next.
     step: f64,
     /// What is known of the order of its loads, where that counts.
     overloads: Option<Overloads<'a>>,
     curve: Vec<CurvePoint>,
-    through: Option<Later<ElementFree<'a>>>,
 }
 
-/// What ends growth by hand calculation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Ending {
-    Through,
-    Stop(StopReason),
+/// A front that hands over to the tips of the through crack that it becomes.
+pub struct BreakThrough<'a> {
+    /// The case once the crack is through.
+    later: &'a OnceCell<Case>,
+    /// The law that drives its tips then.
+    law: Option<Box<dyn GrowthLaw>>,
 }
 
-impl<'a> PartThroughGrowth<'a> {
-    /// Growth of the crack of a case; `later` gets the case once it is through. The law is given twice, for both parts of the run, and what the
-    /// order of its loads needs.
-    /// Errors: a specimen whose crack goes through.
-    pub fn start(
-        case: &'a Case,
-        later: &'a OnceCell<Case>,
-        [law, law_of_tips]: [Box<dyn GrowthLaw>; 2],
-        order: Option<Order>,
-    ) -> Result<Self> {
-        let flaw = case.specimen.part_through.ok_or_else(|| {
-            input_missing("specimen.kind", "is one of a through crack", "give one whose crack does not go through")
-        })?;
-        let neighbours = Neighbours::of(case, &flaw)?;
-        let (fronts, law_of_tips) = (Fronts { case, flaw, neighbours, law }, Some(law_of_tips));
-        let spectrum = case.loading.spectrum.as_deref();
-        let overloads = spectrum.zip(order).map(|(spectrum, order)| Overloads::start(&fronts, spectrum, order));
-        Ok(PartThroughGrowth { fronts, later, law_of_tips, step: STEP_MOST, overloads, curve: Vec::new(), through: None })
+/// Growth of the crack of a case; `later` gets the case once it is through. The law is given twice, for both parts of the run, and what the
+/// order of its loads needs.
+/// Errors: a specimen whose crack goes through.
+pub fn start<'a>(
+    case: &'a Case,
+    later: &'a OnceCell<Case>,
+    [law, law_of_tips]: [Box<dyn GrowthLaw>; 2],
+    order: Option<Order>,
+) -> Result<Relay<BreakThrough<'a>>> {
+    let flaw = case
+        .specimen
+        .part_through
+        .ok_or_else(|| input_missing("specimen.kind", "is one of a through crack", "give one whose crack does not go through"))?;
+    let fronts = Fronts { case, flaw, neighbours: Neighbours::of(case, &flaw)?, law };
+    let spectrum = case.loading.spectrum.as_deref();
+    let overloads = spectrum.zip(order).map(|(spectrum, order)| Overloads::start(&fronts, spectrum, order));
+    let front = PartThroughGrowth { fronts, step: STEP_MOST, overloads, curve: Vec::new() };
+    Ok(Relay::new(front, BreakThrough { later, law: Some(law_of_tips) }))
+}
+
+impl<'a> HandOver for BreakThrough<'a> {
+    type First = PartThroughGrowth<'a>;
+    type Second = ElementFree<'a>;
+
+    fn step(&self, front: &mut PartThroughGrowth<'a>) -> Result<Option<Turn>> {
+        front.next_step()
     }
 
+    fn second(&mut self, front: &PartThroughGrowth<'a>, last: &CurvePoint) -> Result<Option<ElementFree<'a>>> {
+        let Some(law) = self.law.take() else { return Ok(None) };
+        let Fronts { case, flaw, .. } = &front.fronts;
+        let plate = flaw.through(&case.specimen, last.crack_length)?;
+        ElementFree::start(self.later.get_or_init(|| case.with_through_crack(plate, last.cycles)), law).map(Some)
+    }
+
+    fn take(&self, front: &mut PartThroughGrowth<'a>, rows: &[CurvePoint]) -> Result<bool> {
+        front.replay(rows.iter().take_while(|row| row.is_of_front()).cloned().collect())
+    }
+
+    fn completed(&self, front: &PartThroughGrowth<'a>, row: CurvePoint) -> CurvePoint {
+        let depth = DepthRecord { depth: front.fronts.flaw.through_depth(), k_i: None, growth_rate: None };
+        CurvePoint { depth: row.depth.or(Some(depth)), ..row }
+    }
+
+    fn note(&self, front: &PartThroughGrowth<'a>, start: Option<&CurvePoint>) -> Option<String> {
+        let Some(CurvePoint { cycles, crack_length, .. }) = start else { return front.why_no_through_crack() };
+        let length = crack_length / MM;
+        Some(format!(
+            "the crack was through after {cycles:.0} cycles (a/t = 1), with a length of {length:.3} mm on the face; from there on it grew as a straight \
+             through crack of that length, by the K of its tips on nodes"
+        ))
+    }
+}
+
+impl PartThroughGrowth<'_> {
     fn last(&self) -> &CurvePoint {
         // `open` or `restore` makes the first row, before the first step.
         &self.curve[self.curve.len() - 1]
     }
 
-    /// The next step of the front, or the next `increment` of the tips; the reason why there is no next one.
-    /// Errors: a growth rate that is no number, or no K of the through crack.
-    pub fn advance(&mut self, increment: impl FnOnce(&mut ElementFree<'a>) -> Option<StopReason>) -> Result<Option<StopReason>> {
-        if let Some(through) = &mut self.through {
-            let reason = increment(&mut through.growth);
-            through.look();
-            return Ok(reason);
-        }
-        match self.next_step()? {
-            Some(Ending::Through) => self.break_through().map(|()| None),
-            Some(Ending::Stop(reason)) => Ok(Some(reason)),
-            None => Ok(None),
-        }
-    }
-
     /// Adds the next row; what ends the growth of the front there.
-    fn next_step(&mut self) -> Result<Option<Ending>> {
+    fn next_step(&mut self) -> Result<Option<Turn>> {
         let from = self.place(self.last());
         if let Some(ending) = self.ending(from) {
             return Ok(Some(ending));
@@ -120,7 +135,6 @@ impl<'a> PartThroughGrowth<'a> {
         Ok(ending)
     }
 
-    /// The place after a step.
     fn after(&self, from: Grown, step: f64) -> Grown {
         match &self.overloads {
             Some(overloads) => overloads.after(&self.fronts, from, step),
@@ -139,7 +153,7 @@ impl<'a> PartThroughGrowth<'a> {
     }
 
     /// Why there is no next place.
-    fn standstill(&self, from: Grown) -> Result<Ending> {
+    fn standstill(&self, from: Grown) -> Result<Turn> {
         let rates = self.fronts.rates(from.axes);
         if rates.iter().any(|rate| rate.is_nan()) {
             let ([a, c], name) = (from.axes.map(|length| length / MM), &self.fronts.case.name);
@@ -147,11 +161,11 @@ impl<'a> PartThroughGrowth<'a> {
         }
         // What grows and cannot go on is at the end of the width, where K is infinite.
         let grows = rates.iter().any(|rate| *rate > 0.0) && self.fronts.is_at_end(from.axes);
-        Ok(Ending::Stop(if grows { StopReason::Severed } else { StopReason::NothingAges }))
+        Ok(Turn::Stop(if grows { StopReason::Severed } else { StopReason::NothingAges }))
     }
 
     /// Where within a step its ending is reached: halved until no double is left between.
-    fn first_ending(&self, from: Grown, step: f64) -> (Grown, Option<Ending>, f64) {
+    fn first_ending(&self, from: Grown, step: f64) -> (Grown, Option<Turn>, f64) {
         let (mut below, mut above) = (0.0, step);
         loop {
             let middle = 0.5 * (below + above);
@@ -165,40 +179,40 @@ impl<'a> PartThroughGrowth<'a> {
     }
 
     /// The place of an ending without its last rounding.
-    fn settled(&self, Grown { axes: [a, c], cycles }: Grown, ending: Option<Ending>) -> Grown {
+    fn settled(&self, Grown { axes: [a, c], cycles }: Grown, ending: Option<Turn>) -> Grown {
         let (stop, flaw) = (&self.fronts.case.stop, &self.fronts.flaw);
         match ending {
-            Some(Ending::Through | Ending::Stop(StopReason::BrokenThrough)) => Grown { axes: [flaw.through_depth(), c], cycles },
-            Some(Ending::Stop(StopReason::CrackDepthReached)) => Grown { axes: [stop.crack_depth, c], cycles },
-            Some(Ending::Stop(StopReason::CrackLengthReached)) => Grown { axes: [a, stop.crack_length], cycles },
-            Some(Ending::Stop(StopReason::RunOut)) => Grown { axes: [a, c], cycles: stop.cycles_max },
+            Some(Turn::HandOver | Turn::Stop(StopReason::BrokenThrough)) => Grown { axes: [flaw.through_depth(), c], cycles },
+            Some(Turn::Stop(StopReason::CrackDepthReached)) => Grown { axes: [stop.crack_depth, c], cycles },
+            Some(Turn::Stop(StopReason::CrackLengthReached)) => Grown { axes: [a, stop.crack_length], cycles },
+            Some(Turn::Stop(StopReason::RunOut)) => Grown { axes: [a, c], cycles: stop.cycles_max },
             _ => Grown { axes: [a, c], cycles },
         }
     }
 
     /// What ends growth at a place: what was asked for, what breaks under the load, the plate, break-through.
-    fn ending(&self, Grown { axes, cycles }: Grown) -> Option<Ending> {
+    fn ending(&self, Grown { axes, cycles }: Grown) -> Option<Turn> {
         let Fronts { case, flaw, .. } = &self.fronts;
         let required = case.stop.required.unwrap_or(1.0);
         let load = required * case.loading.maximum;
         let factor = required * self.fronts.factors(axes).into_iter().fold(0.0, f64::max);
-        let breaks = |reason| Some(Ending::Stop(strength_reason(case, reason)));
+        let breaks = |reason| Some(Turn::Stop(strength_reason(case, reason)));
         match axes {
-            [a, _] if a >= case.stop.crack_depth => Some(Ending::Stop(StopReason::CrackDepthReached)),
-            [_, c] if c >= case.stop.crack_length => Some(Ending::Stop(StopReason::CrackLengthReached)),
+            [a, _] if a >= case.stop.crack_depth => Some(Turn::Stop(StopReason::CrackDepthReached)),
+            [_, c] if c >= case.stop.crack_length => Some(Turn::Stop(StopReason::CrackLengthReached)),
             _ if case.toughness_at_end().is_some_and(|toughness| factor >= toughness) => breaks(StopReason::Toughness),
             _ if case.yield_strength_at_end().is_some_and(|strength| flaw.limit_stress(axes, strength) <= load) => {
                 breaks(StopReason::NetSectionYield)
             }
             // Under bending no plate in its plane can go on.
             [a, _] if a >= flaw.through_depth() && (case.stop.at_break_through || flaw.bending_ratio != 0.0) => {
-                Some(Ending::Stop(StopReason::BrokenThrough))
+                Some(Turn::Stop(StopReason::BrokenThrough))
             }
-            [a, _] if a >= flaw.through_depth() => Some(Ending::Through),
-            [_, c] if c >= flaw.to_hole => Some(Ending::Stop(StopReason::EnteredHole)),
+            [a, _] if a >= flaw.through_depth() => Some(Turn::HandOver),
+            [_, c] if c >= flaw.to_hole => Some(Turn::Stop(StopReason::EnteredHole)),
             // K of most formulas is infinite where the crack takes the whole width.
-            [_, c] if c >= flaw.room() || factor.is_infinite() => Some(Ending::Stop(StopReason::Severed)),
-            _ if cycles >= case.stop.cycles_max => Some(Ending::Stop(StopReason::RunOut)),
+            [_, c] if c >= flaw.room() || factor.is_infinite() => Some(Turn::Stop(StopReason::Severed)),
+            _ if cycles >= case.stop.cycles_max => Some(Turn::Stop(StopReason::RunOut)),
             _ => None,
         }
     }
@@ -237,25 +251,6 @@ impl<'a> PartThroughGrowth<'a> {
         }
     }
 
-    /// Lets the through crack go on from the last row.
-    fn break_through(&mut self) -> Result<()> {
-        if let Some(mut through) = self.through_after(self.curve.clone(), SolverStatistics::default())? {
-            through.open()?;
-            self.curve.clear();
-            self.through = Some(through);
-        }
-        Ok(())
-    }
-
-    /// The run from the last of some rows on, before its first equilibrium; `None` where it was begun before, or there are no rows.
-    fn through_after(&mut self, before: Vec<CurvePoint>, took: SolverStatistics) -> Result<Option<Later<ElementFree<'a>>>> {
-        let (Some(last), Some(law)) = (before.last(), self.law_of_tips.take()) else { return Ok(None) };
-        let Fronts { case, flaw, .. } = &self.fronts;
-        let plate = flaw.through(&case.specimen, last.crack_length)?;
-        let later = self.later.get_or_init(|| case.with_through_crack(plate, last.cycles));
-        Ok(Later::new(ElementFree::start(later, law)?, before, took))
-    }
-
     /// Takes the rows of the front of an earlier run; where the order of loads counts, step by step, since every zone depends on all steps before.
     fn replay(&mut self, rows: Vec<CurvePoint>) -> Result<bool> {
         let Some(last) = rows.last().map(|row| (row.cycles, row.crack_length)) else { return Ok(false) };
@@ -270,6 +265,16 @@ impl<'a> PartThroughGrowth<'a> {
         self.curve = rows;
         Ok(true)
     }
+
+    /// Why a run that was not asked to ends at break-through.
+    fn why_no_through_crack(&self) -> Option<String> {
+        let Fronts { case, flaw, .. } = &self.fronts;
+        let is_through = self.curve.last().is_some_and(|row| self.place(row).axes[0] >= flaw.through_depth());
+        (is_through && flaw.bending_ratio != 0.0 && !case.stop.at_break_through).then(|| {
+            "the run ends at break-through: K of a through crack under bending out of the plane of the plate is not computed"
+                .to_owned()
+        })
+    }
 }
 
 impl CrackGrowth for PartThroughGrowth<'_> {
@@ -280,88 +285,28 @@ impl CrackGrowth for PartThroughGrowth<'_> {
     }
 
     fn now(&self) -> GrowthStatus<'_> {
-        self.through.as_ref().map_or_else(|| self.last().status(), Later::now)
+        self.last().status()
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
         Some(&*self.fronts.law)
     }
 
+    /// Its rows, which stay where no through crack can go on.
     fn curve(&mut self) -> Vec<CurvePoint> {
-        let Some(through) = &mut self.through else { return std::mem::take(&mut self.curve) };
-        let depth = DepthRecord { depth: self.fronts.flaw.through_depth(), k_i: None, growth_rate: None };
-        through.curve().into_iter().map(|row| CurvePoint { depth: row.depth.or(Some(depth)), ..row }).collect()
+        self.curve.clone()
     }
 
     fn state(&self) -> State {
-        self.through.as_ref().map_or_else(|| State::Rows(self.curve.clone()), Later::state)
+        State::Rows(self.curve.clone())
     }
 
     fn restore(&mut self, state: State) -> Result<bool> {
-        let HandedOver { before, took, tips } = match state {
-            State::HandedOver(handed_over) => handed_over,
-            State::Rows(curve) => {
-                return self.replay(curve);
-            }
-            _ => return Ok(false),
-        };
-        let of_front = before.iter().take_while(|row| row.is_of_front()).cloned().collect();
-        if !self.replay(of_front)? {
-            return Ok(false);
-        }
-        self.curve.clear();
-        let Some(mut through) = self.through_after(before, took)? else { return Ok(false) };
-        let fits = through.restore(*tips)?;
-        if fits {
-            self.through = Some(through);
-        }
-        Ok(fits)
-    }
-
-    fn should_rebuild_solver(&self) -> bool {
-        self.through.as_ref().is_some_and(|through| through.growth.should_rebuild_solver())
-    }
-
-    fn rebuild_solver(&mut self) -> Result<()> {
-        self.through.as_mut().map_or(Ok(()), |through| through.growth.rebuild_solver())
-    }
-
-    fn close(&mut self, stop: StopReason) -> Result<StopReason> {
-        self.through.as_mut().map_or(Ok(stop), |through| through.growth.close(stop))
-    }
-
-    fn statistics(&self) -> SolverStatistics {
-        self.through.as_ref().map(Later::statistics).unwrap_or_default()
+        let State::Rows(curve) = state else { return Ok(false) };
+        self.replay(curve)
     }
 
     fn overload(&self) -> Option<Underway> {
         self.overloads.as_ref().map(|overloads| overloads.at[1])
-    }
-
-    fn cross_check(&self, cycles: f64) -> Option<CrossCheck> {
-        let through = self.through.as_ref()?;
-        through.growth.cross_check(cycles - through.start().cycles)
-    }
-
-    fn warnings(&self) -> Vec<String> {
-        let Some(through) = &self.through else { return self.why_no_through_crack().into_iter().collect() };
-        let (cycles, length) = (through.start().cycles, through.start().crack_length / MM);
-        let note = format!(
-            "the crack was through after {cycles:.0} cycles (a/t = 1), with a length of {length:.3} mm on the face; from there on it grew as a straight \
-             through crack of that length, by the K of its tips on nodes"
-        );
-        through.growth.warnings().into_iter().chain([note]).collect()
-    }
-}
-
-impl PartThroughGrowth<'_> {
-    /// Why a run that was not asked to ends at break-through.
-    fn why_no_through_crack(&self) -> Option<String> {
-        let Fronts { case, flaw, .. } = &self.fronts;
-        let is_through = self.curve.last().is_some_and(|row| self.place(row).axes[0] >= flaw.through_depth());
-        (is_through && flaw.bending_ratio != 0.0 && !case.stop.at_break_through).then(|| {
-            "the run ends at break-through: K of a through crack under bending out of the plane of the plate is not computed"
-                .to_owned()
-        })
     }
 }

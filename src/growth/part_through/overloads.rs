@@ -84,7 +84,6 @@ impl<'a> Overloads<'a> {
         self.stepped(fronts, from, step).map_or(from, |stepped| stepped.to)
     }
 
-    /// Takes a step.
     pub fn take(&mut self, fronts: &Fronts<'_>, from: Grown, step: f64) {
         if let Some(Stepped { at, share, .. }) = self.stepped(fronts, from, step) {
             (self.at, self.share) = (at, share);

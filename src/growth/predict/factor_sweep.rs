@@ -355,7 +355,6 @@ fn way(line: &CrackLine, mut way: f64) -> Point {
     line.end(true)
 }
 
-/// ε_BF.
 fn back_face_strain(case: &Case, plate: &NodePlate) -> Option<f64> {
     let specimen = &case.specimen;
     let back = match specimen.kind {

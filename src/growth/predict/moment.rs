@@ -18,7 +18,6 @@ const SHOWN_AT: f64 = 0.9;
 pub struct StressField {
     /// Cycles; 0 of a plate before its first.
     pub cycles: f64,
-    /// Cracks as they stand.
     pub cracks: Vec<CrackLine>,
     /// Convex pieces of the plate that rims and cracks bound.
     pub pieces: Vec<Vec<Corner>>,

@@ -18,10 +18,8 @@ const ALIKE: f64 = 1e-3;
 /// Figures of a run that users ask for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunFigures {
-    /// Points of the whole body.
     pub points: usize,
     pub points_solved: usize,
-    /// Bonds of the uncracked body.
     pub bonds: usize,
     pub blocks: usize,
     pub solves: usize,
@@ -72,7 +70,6 @@ pub struct Prediction {
     pub stop: StopReason,
     /// Snapshots: first, some between, last.
     pub snapshots: Vec<Snapshot>,
-    /// Lattice of the snapshots.
     pub grid: PointGrid,
     pub figures: RunFigures,
     /// Phase I, before the cracks of the case had formed: the rows of the curve begin after it.

@@ -61,7 +61,6 @@ pub struct Record<'a> {
     started: Instant,
     /// The case with the spacing that its body has: whatever a run measures in spacings and horizons, it measures in these.
     case: Case,
-    /// Hash of the case as it was given.
     hash: [u8; 32],
     checkpoint: Option<Checkpoint>,
     phase_one: Option<PhaseOne>,

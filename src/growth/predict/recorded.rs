@@ -98,7 +98,6 @@ pub struct Change {
 pub struct RecordedLife {
     /// Cycles; infinite where the crack stands still.
     pub cycles: f64,
-    /// Why it ends.
     pub stop: StopReason,
     /// Whether the plate lives on there: the record or `stop.cycles_max` ends, or the crack was shorter than K is known for.
     pub is_bound: bool,
@@ -180,7 +179,6 @@ impl Recorded {
         self.misfit
     }
 
-    /// Life of a plate by a law.
     pub fn life(&self, law: &dyn GrowthLaw, change: Change) -> RecordedLife {
         let rate = law_at(law, self.ratio);
         self.life_by(change, rate, |_, _| ())

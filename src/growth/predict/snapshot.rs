@@ -11,7 +11,6 @@ const BETWEEN: f64 = 20.0;
 /// Collects snapshots at even steps of growth.
 #[derive(Debug, Default)]
 pub struct Snapshots {
-    /// What was taken so far.
     pub taken: Vec<Snapshot>,
     /// Growth between two, m.
     pub(super) step: f64,
@@ -76,7 +75,6 @@ impl Snapshots {
         }
     }
 
-    /// Keeps to the ends of the curve.
     pub fn keep_within(&mut self, curve: &[CurvePoint]) {
         let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return };
         for snapshot in &mut self.taken {

@@ -110,7 +110,6 @@ pub struct MethodResult {
 }
 
 impl MethodResult {
-    /// A method that failed.
     fn nothing(method: StressIntensityMethod, error: &Error) -> Self {
         let note = Some(error.to_string());
         MethodResult { method, intensity: Intensity::default(), t_stress: None, is_closed: false, note, wall_s: 0.0 }

@@ -189,7 +189,6 @@ impl Description {
 /// Rows of a file of rates, as whoever reads such files gives them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rates {
-    /// Name of the file in the case.
     pub file: String,
     /// Names of its columns of ΔK and da/dN.
     pub columns: [String; 2],
@@ -197,7 +196,6 @@ pub struct Rates {
     pub says_ratio: bool,
     /// What the user should know of it.
     pub notes: Vec<String>,
-    /// Its rows in their order.
     pub rows: Vec<RatedRow>,
 }
 

@@ -194,7 +194,6 @@ impl Table {
     }
 }
 
-/// The table of a case.
 fn read(given: &Given<'_>) -> Result<Table> {
     let Some(rates) = (given.rates)(given, KEY)? else {
         let remedy =

@@ -77,7 +77,6 @@ impl Zone {
     }
 }
 
-/// No retardation.
 pub static NONE: Description = Description {
     name: "none",
     meaning: "every cycle grows as if it were alone: no effect of the order of cycles",

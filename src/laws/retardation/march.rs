@@ -57,7 +57,6 @@ pub struct Underway {
     period: (f64, Option<Zone>, bool),
     /// Way of the tip, m.
     pub a: f64,
-    /// Cycles so far.
     pub cycles: f64,
     /// The zone of its last overload.
     pub zone: Option<Zone>,

@@ -32,7 +32,6 @@ perilife_base::kinds! {
     pub struct RetardationKind of Description in MODELS for "loading.retardation"
 }
 
-/// Key of the model.
 const KEY: &str = "retardation";
 
 /// All keys of `[loading]` that belong to models of retardation.

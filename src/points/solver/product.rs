@@ -56,7 +56,6 @@ pub struct Product<const N: usize> {
     /// What a state-based law stores beside its springs.
     dilatation: Option<Dilatation>,
     ghosts: Ghosts,
-    /// Springs between flanks in contact.
     contact: Vec<GapSpring>,
     /// Held sums of displacements.
     pub(super) ties: Ties,
@@ -86,7 +85,6 @@ impl<const N: usize> Product<N> {
         }
     }
 
-    /// Layout of its vectors.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }

@@ -19,7 +19,6 @@ pub struct RigidMotion {
     layout: Layout,
     /// 1 where a place holds a point that carries, else 0.
     carries: Vec<f32>,
-    /// Their number.
     count: f64,
     /// Mean column and row.
     centre: [f64; 2],

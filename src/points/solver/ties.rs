@@ -80,7 +80,6 @@ impl Ties {
         self.rows.iter().map(|row| row.slave)
     }
 
-    /// The sums, for a penalty.
     pub(super) fn sums(&self) -> &[GapSpring] {
         &self.sums
     }

@@ -83,7 +83,6 @@ pub struct RingGeometry {
 /// Plate in equilibrium around its tips.
 #[derive(Clone, Copy)]
 pub struct Balanced<'a> {
-    /// Points and bonds.
     pub body: &'a Body,
     /// Which of them carry.
     pub bonds: &'a Bonds,

@@ -18,7 +18,6 @@ const HEAD: u64 = 1024;
 /// What a command writes, and how it knows its own.
 #[derive(Debug, Clone, Copy)]
 pub struct Sort {
-    /// The option that names the file.
     pub option: &'static str,
     /// What stands near its beginning, and in no other file.
     pub sign: &'static [u8],

@@ -60,7 +60,6 @@ impl RunKind {
 pub struct InputOf {
     /// Absolute path; the name of a stream.
     pub file: String,
-    /// Hash of its content.
     pub sha256: String,
 }
 
@@ -116,7 +115,6 @@ impl Marker {
         (!own.is_alike(new)).then_some(&*own.file)
     }
 
-    /// As it is written.
     pub fn text(&self) -> String {
         let version = env!("CARGO_PKG_VERSION");
         let head =

@@ -16,7 +16,6 @@ use perilife_growth::case::record::{FittedLaw, SourceFile};
 
 /// Files whose hashes are printed, at the most.
 const HASHES_MOST: usize = 12;
-/// Size of the specimen, px.
 const SPECIMEN: Size = Size { width: 330.0, height: 280.0, text: 10.5 };
 /// What a test report asks for and no file of a fit holds.
 const UNRECORDED: [&str; 9] = [

@@ -36,7 +36,6 @@ const CHART: Size = Size { width: 330.0, height: 215.0, text: 10.5 };
 #[derive(Debug, Clone, Default)]
 pub struct Signed {
     pub laboratory: Option<String>,
-    /// Who tested or computed.
     pub operator: Option<String>,
     pub reviewer: Option<String>,
     pub date: Option<String>,
@@ -126,7 +125,6 @@ fn terms(rows: &[(&str, String)]) -> String {
     format!("<dl class=\"terms\">{}</dl>\n", rows.iter().map(row).collect::<String>())
 }
 
-/// A drawing with its caption.
 fn figure(svg: &str, caption: &str, class: &str) -> String {
     // Within HTML a drawing needs no name of its language.
     let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);

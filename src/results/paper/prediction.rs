@@ -22,7 +22,6 @@ const CHECKS_MOST: usize = 5;
 const HASHES_MOST: usize = 5;
 /// Constants of a law that are printed, at the most.
 const CONSTANTS_MOST: usize = 8;
-/// Size of the plate, px.
 const PLATE: Size = Size { width: 365.0, height: 262.0, text: 10.5 };
 /// Size of the charts beside it, px.
 const CHART: Size = Size { width: 315.0, height: 130.0, text: 10.0 };
@@ -169,7 +168,6 @@ fn figures(run: &RunRecord, tables: &RunTables, plate: Option<&Plate>) -> String
     format!("<div class=\"figs run\">\n{figures}</div>\n")
 }
 
-/// The case as it was understood.
 fn understood(run: &RunRecord, plate: Option<&Plate>) -> Vec<(&'static str, String)> {
     let two_decimals = |length: f64| PRINT.short((100.0 * length).round() / 100.0);
     let lengths = match run.leading_crack() {

@@ -15,7 +15,6 @@ use perilife_growth::case::record::CurveRecord;
 use perilife_laws::curve::ROWS;
 use perilife_plate::specimen::Point;
 
-/// The figures of a fit.
 pub const FIT_FILE: &str = "fit.json";
 /// Measured and fitted cycles of every specimen.
 pub const CURVES_FILE: &str = "fit_curves.csv";

@@ -7,7 +7,6 @@ use crate::spectrum::BARS;
 use perilife_plate::loading::spectrum::Spectrum;
 use perilife_plate::specimen::Point;
 
-/// Opacity of a bar.
 const BAR: f64 = 0.7;
 /// Points of the curve at the most.
 const POINTS: usize = 400;

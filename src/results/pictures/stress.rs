@@ -64,7 +64,6 @@ fn in_shown(stress: f64) -> f64 {
     per("MPa") * stress / MPA
 }
 
-/// SVG text.
 pub fn stress_svg(field: &StressField, material: &Material, holes: &[Hole]) -> String {
     let seen = seen(field, holes);
     let factor = factor(field, &seen);

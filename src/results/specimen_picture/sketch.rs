@@ -6,17 +6,13 @@ use perilife_base::units::MM;
 use perilife_base::units::shown::told;
 use perilife_plate::specimen::Point;
 
-/// Colour of the plate.
 pub const PLATE: &str = "#e4e7eb";
 /// Colour of its edges.
 pub const EDGE: &str = "#2f3b48";
-/// Colour of cracks.
 pub const CRACK: &str = "#d0021b";
-/// Colour of loads.
 pub const LOAD: &str = "#1257a8";
 /// Colour of supports.
 pub const HELD: &str = "#5f6b2d";
-/// Colour of words.
 pub const WORDS: &str = "#4a5560";
 
 /// A drawing to scale: metres of the plate (y up) to pixels (y down).

@@ -48,14 +48,12 @@ pub struct Checked {
     pub plate: Option<Plate>,
     /// Exceedances and ranges of a pass of a spectrum, for others to draw; none of other loads.
     pub spectrum: Option<SpectrumCurves>,
-    /// The input as it was given.
     pub echo: Value,
     /// Files that were read for it.
     pub provenance: Provenance,
 }
 
 impl Checked {
-    /// As one object.
     pub fn json(&self) -> Value {
         let mut understood: Map<String, Value> = Map::new();
         for line in &self.lines {

@@ -46,7 +46,6 @@ const SECONDS_OF_POINT: f64 = 1.5e-6;
 /// Increments of a life, and how many more of them every tip takes.
 const INCREMENTS: [f64; 2] = [12.0, 7.0];
 
-/// Places the nodes.
 fn of_nodes(case: &Case, ElementFreeSettings { resolution, .. }: &ElementFreeSettings) -> Result<Preview> {
     let plate = initial_plate(case).map_err(as_input)?;
     let finest = plate.nodes.spacing.iter().copied().fold(f64::INFINITY, f64::min);

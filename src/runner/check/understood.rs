@@ -36,7 +36,6 @@ pub(super) fn curves_line(curves: &[MeasuredCurve]) -> Line {
     line("measured", value)
 }
 
-/// The rates that laws are fitted to.
 pub(super) fn rates_line(case: &LawCase) -> Line {
     let [low, high] = case.delta_k_range();
     let ratios = case.ratios().iter().map(f64::to_string).collect::<Vec<_>>().join(", ");

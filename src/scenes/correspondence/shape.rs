@@ -27,7 +27,6 @@ pub struct Neighbours {
 }
 
 impl Neighbours {
-    /// Lists of a net.
     pub fn of(net: &Net) -> Self {
         let seen = |i: usize| {
             net.bonds_of(i).map(|(b, other, owned)| {
@@ -52,7 +51,6 @@ pub struct Shape {
     enters: DamageEntry,
     /// Bonds that count in K and F.
     counts: Vec<bool>,
-    /// Bonds that bear force.
     bears: Vec<bool>,
     /// K⁻¹, m⁻⁵; `None` where there is none.
     inverse: Vec<Option<Matrix2<f64>>>,

@@ -115,7 +115,6 @@ impl Shape {
 }
 
 impl Equilibrium {
-    /// A solver for a net with its loads.
     pub fn new(net: &Net, full: &FullLoad) -> Result<Self> {
         let size = full.held.len();
         Ok(Equilibrium {

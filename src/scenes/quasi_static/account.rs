@@ -93,7 +93,6 @@ pub struct Account {
     pub work: f64,
     /// Energy taken by damage, J.
     pub fracture: f64,
-    /// Rows so far.
     pub rows: usize,
     /// Largest work so far, J.
     pub largest: f64,

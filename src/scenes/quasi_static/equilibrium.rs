@@ -31,7 +31,6 @@ pub struct Equilibrium<'n> {
 /// What a solver keeps where it is renewed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
-    /// Pressed columns of the contact.
     pressed: Option<Vec<u32>>,
     spent: Spent,
 }

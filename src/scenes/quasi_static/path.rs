@@ -110,7 +110,6 @@ struct Walk<'a, 'n> {
 struct Standing {
     shape: Shape,
     account: Account,
-    /// States so far.
     states: usize,
     /// Whether the way to the next state is elastic.
     elastic: bool,

@@ -10,7 +10,6 @@ use perilife_plate::loading::imbalance;
 use perilife_plate::specimen::{Point, Support};
 use perilife_points::bond_law::BondLawKind;
 
-/// Checks a scene as a whole.
 pub fn check(scene: &Scene) -> Result<()> {
     check_time(scene)?;
     check_march(scene)?;

@@ -69,7 +69,6 @@ pub fn refuse_entry(value: &Value) -> Result<()> {
     Err(perilife_base::error::input("damage.enters", format!("\"{enters}\""), problem, "leave it out"))
 }
 
-/// Keys that the law has no use for.
 fn check_keys(given: &Given<'_>, law: DamageLaw) -> Result<()> {
     const SOFTENING: &[&str] = &["elastic_stretch", "peak_stretch", "final_stretch", "final_ratio", "printed_law"];
     const CRITICAL: &[&str] = &["critical_stretch", "calibration"];

@@ -90,7 +90,6 @@ perilife_base::keys! {
         fix: Vec<Component> = key("fix", "Held components");
     }
 }
-/// A depth of a hold.
 pub const DEPTH: Quantity = Quantity { what: "a depth", unit: "mm", low: 0.0, high: 1e5, si: MM };
 
 /// Reads `[supports]`: `bottom = { rows_mm, range_mm, fix }`, or under any other name `{ from_mm, to_mm, fix }`.

@@ -119,7 +119,6 @@ struct Shared {
 }
 
 impl App {
-    /// A service on a store.
     pub fn new(store: Store, limits: Limits, security: Security, workers: worker::Settings, wake: Arc<Notify>) -> Self {
         let limiter = |per_second: NonZeroU32| RateLimiter::keyed(Quota::per_second(per_second));
         let shared = Shared {

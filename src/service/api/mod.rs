@@ -64,7 +64,6 @@ async fn in_text(request: Request, next: Next) -> Response {
     next.run(request).await
 }
 
-/// All routes.
 pub fn router(app: App) -> Router {
     let (v1, description) = OpenApiRouter::with_openapi(Description::openapi())
         .routes(routes!(knowledge::service))

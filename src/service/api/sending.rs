@@ -16,7 +16,6 @@ pub struct Stored {
     pub job: String,
     /// Whether it came with the job or of it.
     pub origin: Origin,
-    /// Its name and size.
     pub entry: FileEntry,
     pub first: Vec<u8>,
 }

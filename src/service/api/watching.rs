@@ -48,7 +48,6 @@ pub fn sum_up() {
     }
 }
 
-/// Starts counting.
 pub fn start() {
     sum_up();
     metrics::describe_counter!("perilife_http_requests_total", "Requests by route, method and status.");

@@ -16,7 +16,6 @@ pub struct NewJob<'a> {
     pub calibration: Option<&'a str>,
     /// Key by which a repeated request is known.
     pub idempotency_key: Option<&'a str>,
-    /// Hash of the request.
     pub fingerprint: &'a str,
     pub submission: &'a Submission,
     /// Bytes that its run may write.
@@ -26,7 +25,6 @@ pub struct NewJob<'a> {
 /// What became of a submission.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Submitted {
-    /// A new job.
     New(String),
     /// The job of an earlier request with this key.
     Again(String),
@@ -41,7 +39,6 @@ pub enum Submitted {
 /// How much of one owner there may be.
 #[derive(Debug, Clone, Copy)]
 pub struct Room {
-    /// Jobs that wait.
     pub queued: i64,
     /// Bytes of all that his jobs have, and of what those that have not ended may write.
     pub bytes: i64,

@@ -78,7 +78,6 @@ fn end_with_worker(mut socket: UnixStream, folder: Option<PathBuf>) {
     });
 }
 
-/// Runs an order to its figures.
 fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync)) -> Result<Value> {
     let task = Task::read(order.kind, &order.submission.document()?, &order.submission.methods())?;
     *room = if matches!(task, Task::Prediction { .. } | Task::Scene(_)) { task.room() } else { Room::default() };

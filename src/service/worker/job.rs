@@ -181,7 +181,6 @@ fn room_needed(bytes: u64) -> String {
     format!("the temporary disk of a worker does not take the results: needs {needed} MB or more, has {free} MB free")
 }
 
-/// Keeps a checkpoint; whether it is kept.
 fn keep(shared: &Shared, claim: &Claim, checkpoint: Vec<u8>) -> bool {
     shared.handle.block_on(shared.store.keep(claim, checkpoint)).unwrap_or_else(|error| {
         tracing::warn!(job = claim.id, "a checkpoint cannot be kept: {error}");

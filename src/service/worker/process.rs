@@ -201,7 +201,6 @@ fn tail(mut from: impl io::Read) -> Vec<u8> {
 /// What a process is to do.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Order {
-    /// To run a job.
     Run(Box<Run>),
     /// To look at input.
     Look(Look),
@@ -245,7 +244,6 @@ pub enum News {
 /// Longest frame.
 const MOST: u32 = 1 << 31;
 
-/// Writes a frame.
 pub fn write_frame(mut to: impl Write, value: &impl Serialize) -> io::Result<()> {
     let bytes = postcard::to_stdvec(value).map_err(io::Error::other)?;
     let length = u32::try_from(bytes.len()).ok().filter(|length| *length <= MOST);

@@ -12,11 +12,9 @@ use perilife_base::units::MM;
 /// A choice of keys.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
-    /// Which family of methods it belongs to.
     pub family: Family,
     /// What tells it from the default of its family, in words; empty for that default.
     pub words: String,
-    /// Keys that make it.
     pub set: Vec<String>,
     pub is_quick: bool,
 }

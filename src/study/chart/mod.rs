@@ -109,7 +109,6 @@ pub fn read_scenes() -> Result<(Vec<Panel>, Vec<choice::Offer>)> {
 
 static READ: LazyLock<(Vec<Panel>, Vec<choice::Offer>)> = LazyLock::new(|| read_scenes().unwrap_or_default());
 
-/// All scenes, in the order of the panels.
 pub static SCENES: LazyLock<&'static [Panel]> = LazyLock::new(|| &READ.0);
 
 /// The scenes of these names, all where no name is given.
@@ -137,7 +136,6 @@ pub struct Point {
     pub choice: Choice,
     /// What came of its last run.
     pub outcome: Outcome<Run>,
-    /// Seconds of every run.
     pub walls: Vec<f64>,
     /// The same over those of the reference run beside it.
     pub ratios: Vec<f64>,
@@ -196,7 +194,6 @@ impl Point {
 /// A finished chart.
 #[derive(Debug, Clone)]
 pub struct Chart {
-    /// Points, scene by scene.
     pub points: Vec<Point>,
     /// Median of all reference runs, s.
     pub reference_s: f64,
@@ -226,7 +223,6 @@ impl Chart {
         SCENES.iter().filter(|panel| self.of(panel).next().is_some()).collect()
     }
 
-    /// Points of a scene.
     pub fn of<'c>(&'c self, panel: &'c Panel) -> impl Iterator<Item = &'c Point> {
         self.points.iter().filter(|point| point.panel.name == panel.name)
     }

@@ -16,7 +16,6 @@ use perilife_results::time;
 pub use picture::svg;
 pub use summary::{beaten, fastest_within, markdown, never_on_front};
 
-/// Names of the files of a chart.
 pub const FILES: [&str; 3] = ["chart.csv", "chart.svg", "summary.md"];
 
 /// Where a chart comes from.
@@ -27,7 +26,6 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// Of a command that ends now.
     pub fn now(command: String) -> Origin {
         Origin { command, date: time::now() }
     }

@@ -28,7 +28,6 @@ const DEFAULT: &str = "#f2c14e";
 /// A place in the picture, px.
 type Pixel = [f64; 2];
 
-/// The picture.
 pub fn svg(chart: &Chart, origin: &Origin) -> String {
     let scenes = chart.scenes();
     let columns = scenes.len().clamp(1, COLUMNS);

@@ -91,7 +91,6 @@ fn when(family: Family) -> Option<&'static str> {
     }
 }
 
-/// The summary.
 pub fn markdown(chart: &Chart, origin: &Origin) -> String {
     // Writing to a String cannot fail.
     let mut text = "# What to use when\n\n".to_owned();

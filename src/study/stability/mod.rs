@@ -142,7 +142,6 @@ pub struct Record {
     pub ends: [Option<f64>; 2],
     /// Whether the usual value is stable; without it there is no safe range. `None` where the budget was spent on it.
     pub is_safe: Option<bool>,
-    /// Seconds it took.
     pub wall_s: f64,
 }
 

@@ -181,7 +181,6 @@ fn score(quantiles: &[f64], measured: f64) -> f64 {
     2.0 * quantiles.iter().enumerate().map(loss).sum::<f64>() / (quantiles.len() as f64 * measured)
 }
 
-/// Geometric mean.
 fn mean(values: &[f64]) -> f64 {
     (values.iter().map(|value| value.ln()).sum::<f64>() / values.len() as f64).exp()
 }

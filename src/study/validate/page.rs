@@ -69,7 +69,6 @@ pub fn lines(set: &Set, rows: &[Row]) -> String {
     set.about.title.clone() + &rows.iter().map(line).collect::<String>()
 }
 
-/// All rows and groups as one object.
 pub fn object(rows: &[Row]) -> Value {
     json!({ "rows": rows, "groups": groups(rows) })
 }

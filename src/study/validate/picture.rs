@@ -4,7 +4,6 @@ use super::{Kind, Row};
 use perilife_results::axis::Axis;
 use perilife_results::chart::{COLOURS, Frame, INK, LARGE, Mark, NOTE, Size};
 
-/// The picture.
 pub fn svg(rows: &[Row]) -> String {
     let of = |kind: Kind| rows.iter().filter(move |row| row.kind == kind.name() && row.ratio.is_some());
     let kinds: Vec<(Kind, &str)> =

@@ -309,7 +309,7 @@ fn inputs_are_looked_at_as_by_the_command() {
     let open = send(form(&said[..3])).expect(200).json();
     assert!(open["files"][0]["problems"][0]["problem"].as_str().unwrap().contains("is the decimal sign and"), "{open}");
     for (field, value, words) in [
-        ("columns", "[1]", "names no columns"),
+        ("columns", "[1]", "is not a table of columns, such as { cycles = \\\"N\\\""),
         ("decimal", ";", "is not a known unit"),
         ("leave_out", "{}", "give a JSON list of { file, line, value, reason }"),
         ("colums", "x", "known are file, length_unit"),

@@ -250,7 +250,6 @@ impl<const N: usize> Transfer<N> {
         (coarse * self.factor).checked_sub(self.offset[axis]).filter(|&seat| seat < count)
     }
 
-    /// Layout of the coarse level.
     pub fn coarse(&self) -> &Layout {
         &self.coarse
     }

@@ -148,7 +148,6 @@ pub(crate) struct Drawing<'a> {
     ways: &'a [Way],
     life: f64,
     text: f64,
-    /// Width of the picture, px.
     width: f64,
 }
 
@@ -350,7 +349,6 @@ fn contains(outline: &[Point], [x, y]: Point) -> bool {
     (0..outline.len()).filter(|place| crosses(*place)).count() % 2 == 1
 }
 
-/// Colour of a share of the life.
 pub fn colour(share: f64) -> String {
     let at = share.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
     let first = (at as usize).min(RAMP.len() - 2);

@@ -5,7 +5,6 @@ use perilife_plate::specimen::geometry::{bounding_box, distance_to_polygon, dist
 use perilife_plate::specimen::{Point, Specimen};
 use perilife_points::refinement::{RefinedRegion, Refinement};
 
-/// Levels at the most.
 const LEVELS_MAX: usize = 8;
 /// Horizon ratio from which on the points beside a change of level lie in each other's horizons: the farthest of the four
 /// parts next to a coarse point is √(0.75² + 0.25²) coarse spacings away, and its horizon half of the coarse one.
