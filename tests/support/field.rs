@@ -27,7 +27,7 @@ pub fn command(folder: &Path, arguments: &str) -> (i32, String) {
 
 /// What a prediction that is well prints, and its result.
 pub fn predicted(folder: &Path, arguments: &str) -> (String, Value) {
-    let (code, said) = command(folder, &format!("predict {arguments} --out out"));
+    let (code, said) = command(folder, &format!("predict {arguments} --out out --force"));
     assert_eq!(code, 0, "{arguments}: {said}");
     (said, serde_json::from_slice(&fs::read(folder.join("out/result.json")).unwrap()).unwrap())
 }

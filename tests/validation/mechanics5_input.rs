@@ -66,7 +66,7 @@ fn a_formula_of_residual_stress_has_the_units_of_its_key() {
     assert!(
         code == 2
             && said.contains("loading.residual_stress_ksi = \"1\"")
-            && said.contains("conflicts with loading.residual_stress"),
+            && said.contains("stands beside residual_stress_mpa: the residual stress is given twice"),
         "{said}"
     );
 }
