@@ -79,6 +79,22 @@ fn lines_of_members() -> Lines {
     lines
 }
 
+/// A table of results is read where another process may have written it, and judged where the run is told.
+#[test]
+fn no_table_is_read_by_the_process_that_made_it() {
+    let with = |words: &str| -> Vec<String> {
+        let files = rust_files(&source()).into_iter().filter(|file| fs::read_to_string(file).unwrap().contains(words));
+        let names = files.map(|file| file.strip_prefix(source()).unwrap().display().to_string());
+        // Tables of laboratories are another matter.
+        let mut names: Vec<String> = names.filter(|name| !name.starts_with("measured/") && !name.starts_with("base/")).collect();
+        names.sort();
+        names
+    };
+    let doors = ["results/curve.rs", "results/kept.rs", "results/paper/folder.rs", "service/api/results.rs"];
+    assert_eq!(with("Table::read("), doors);
+    assert_eq!(with("judgement::judge("), ["results/checks.rs"]);
+}
+
 /// The member that a path below `src` lies in.
 pub fn member_of(path: &Path) -> String {
     let first = path.iter().next().unwrap().to_str().unwrap();
