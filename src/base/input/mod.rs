@@ -1,6 +1,6 @@
 //! Reading input files: TOML text to checked slices, every error with file, line, key, value and remedy.
 //!
-//! Sections are declared by their keys ([`keys`](crate::keys)); numbers pass through a [`Quantity`], which refuses what is not finite or
+//! Sections are declared by their keys ([`keys`](mod@crate::keys)); numbers pass through a [`Quantity`], which refuses what is not finite or
 //! beyond reason and converts to SI. [`Document`] holds the text, so that an error about a key finds its line.
 
 mod document;

@@ -22,7 +22,7 @@ pub const LEVELS_OF_SCENES: &str = "leave it out: levels are for scenes without 
      \"element_free_galerkin\", whose nodes refine themselves";
 
 /// Reads what the program wrote, a record or a source of tests, as a `T` that denies unknown fields; what users write is read by their
-/// [`keys`](crate::keys).
+/// [`keys`](mod@crate::keys).
 pub fn slice<T: DeserializeOwned>(value: &Value, path: &str) -> Result<T> {
     table_of(value, path)?.clone().try_into().map_err(|error| explain(&error, value, path))
 }

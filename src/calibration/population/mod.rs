@@ -1,7 +1,7 @@
 //! All specimens of a lot in one model: mixed effects on reading intervals.
 //!
 //! Every reading interval of every specimen, under its own loads, says `y = -ln(ΔN / ∫ da / rate)`: by how much the crack grew faster than
-//! the law. `y = (b + m x + Σ c_k φ_k(x) of all) + b_i + m_i x of the specimen + e`: the shared [`law`], departures (b_i, m_i) ~ N(0, T)
+//! the law. `y = (b + m x + Σ c_k φ_k(x) of all) + b_i + m_i x of the specimen + e`: the shared law, departures (b_i, m_i) ~ N(0, T)
 //! ([`Between`]), [`noise`] e along the crack. Variances by restricted maximum likelihood (`reml`), the law by generalised least squares;
 //! since an interval is long beside the bend of the law, its integral is taken anew with the fitted law until that stands still.
 //! [`intervals`] joins readings, [`forecast`] gives lives with their bands on any plate, [`student`] the quantiles.

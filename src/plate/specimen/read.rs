@@ -77,7 +77,7 @@ impl SpecimenKind {
 
 impl Specimen {
     /// Whether something can grow in it.
-    /// Errors: [`Error::Input`](perilife_base::error::Error::Input) on `specimen.cracks` of a plate without crack and slot.
+    /// Errors: [`Error::Input`] on `specimen.cracks` of a plate without crack and slot.
     pub fn check_growth(&self) -> Result<()> {
         if self.cracks.is_empty() && self.slots.is_empty() {
             let problem = "is missing, and there is no notch either: nothing can grow";
