@@ -151,9 +151,10 @@ pub fn manual() -> String {
     told().iter().chain(&beside()).map(Told::manual).collect()
 }
 
-/// Every section as a class of the Python stub.
+/// Every section as a class of the Python package.
 pub fn stub() -> String {
-    let head = "\"\"\"Sections of input files as dicts (written by a test from the keys of the program).\"\"\"\n\nfrom typing import Literal, Required, TypedDict\n\n";
+    let head = "\"\"\"Sections of input files as dicts (written by a test from the keys of the program).\"\"\"\n\nfrom __future__ import annotations\n\n\
+                from typing import TYPE_CHECKING, Literal, TypedDict\n\nif TYPE_CHECKING:\n    from typing_extensions import Required\n\n\n";
     format!("{head}{}", told().iter().map(Told::stub).collect::<String>().trim_end().to_owned() + "\n")
 }
 

@@ -1,4 +1,4 @@
-//! All that tells a user of keys: lines of `perilife list keys`, JSON Schema and form of the page, table of the guide, stub of Python.
+//! All that tells a user of keys: lines of `perilife list keys`, JSON Schema and form of the page, table of the guide, sections of Python.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -112,7 +112,7 @@ impl Told {
         )
     }
 
-    /// A class of the Python stub.
+    /// a class of the Python package.
     pub fn stub(&self) -> String {
         class(&class_name("", &self.section), &self.keys, self.tag)
     }
@@ -247,7 +247,7 @@ fn class(name: &str, keys: &[Key], tag: Option<(&str, &str)>) -> String {
     if !own.ends_with('\n') || own.lines().count() == 1 {
         own.push_str("    pass\n");
     }
-    format!("{before}{own}\n")
+    format!("{before}{own}\n\n")
 }
 
 fn python(class: &str, key: &Key, shape: Shape) -> String {

@@ -180,12 +180,12 @@ class Calibration(_Reported):
         """Measured and fitted cycles over crack length; of a fit to rates measured and fitted rates."""
         return self.tables["fit_curves" if "fit_curves" in self.tables else "rates_fitted"]
 
-    def save(self, path: StrPath) -> Path:
+    def save(self, folder: StrPath, *, force: bool = False) -> Path:
         """Writes the law into a ``.toml`` file, or all that the command line writes into a folder."""
-        if Path(path).suffix.lower() != ".toml":
-            return super().save(path)
-        write_text(path, self.fitted)
-        return Path(path)
+        if Path(folder).suffix.lower() != ".toml":
+            return super().save(folder, force=force)
+        write_text(folder, self.fitted)
+        return Path(folder)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draws da/dN of the readings over ΔK, with the law."""

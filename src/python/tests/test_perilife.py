@@ -208,7 +208,7 @@ def test_what_is_refused_says_where_and_what_would_be_right(tmp_path: Path) -> N
     with pytest.raises(perilife.InputError) as caught:
         perilife.predict(file)
     error = caught.value
-    assert str(error).startswith(f"{file}:{error.line}: specimen.thikness_mm = 2.54: is not a known key; known here: ")
+    assert str(error).startswith(f"{file}:{error.line}: specimen.thikness_mm = 2.54: is not a known key; did you mean thickness_mm?")
     assert file.read_text().splitlines()[(error.line or 0) - 1].startswith("thikness_mm")
 
     strange = {**CASE, "loading": {**LOADING, "stress_ratio": object()}}

@@ -1,6 +1,12 @@
 """Sections of input files as dicts (written by a test from the keys of the program)."""
 
-from typing import Literal, Required, TypedDict
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, TypedDict
+
+if TYPE_CHECKING:
+    from typing_extensions import Required
+
 
 class SpecimenMiddleTension(TypedDict, total=False):
     kind: Literal["middle_tension"]
@@ -13,6 +19,7 @@ class SpecimenMiddleTension(TypedDict, total=False):
     crack_length_mm: float  # Initial crack length a: half of a central crack, that of each edge crack; needed
     crack_length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
+
 
 class SpecimenSingleEdgeTension(TypedDict, total=False):
     kind: Literal["single_edge_tension"]
@@ -27,6 +34,7 @@ class SpecimenSingleEdgeTension(TypedDict, total=False):
     ends: Required[Literal["pinned", "clamped", "uniform_stress"]]  # Ends: how they are held, by which K differs; needed
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
+
 class SpecimenDoubleEdgeTension(TypedDict, total=False):
     kind: Literal["double_edge_tension"]
     width_mm: float  # Width W; needed
@@ -38,6 +46,7 @@ class SpecimenDoubleEdgeTension(TypedDict, total=False):
     crack_length_mm: float  # Initial crack length a: half of a central crack, that of each edge crack; needed
     crack_length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
+
 
 class SpecimenCompactTension(TypedDict, total=False):
     kind: Literal["compact_tension"]
@@ -56,6 +65,7 @@ class SpecimenCompactTension(TypedDict, total=False):
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
+
 class SpecimenPlateHoles(TypedDict, total=False):
     x_mm: float  # Middle of the hole, x; needed
     x_in: float
@@ -63,6 +73,7 @@ class SpecimenPlateHoles(TypedDict, total=False):
     y_in: float
     diameter_mm: float  # Diameter: of a hole; needed
     diameter_in: float
+
 
 class SpecimenPlateCracks(TypedDict, total=False):
     from_mm: tuple[float, float]  # One end: [x, y]; -
@@ -72,6 +83,7 @@ class SpecimenPlateCracks(TypedDict, total=False):
     path_mm: list[tuple[float, float]]  # Corners of a crack with bends: both ends included; -
     path_in: list[tuple[float, float]]
 
+
 class SpecimenPlateNotches(TypedDict, total=False):
     from_mm: tuple[float, float]  # One end: [x, y]; needed
     from_in: tuple[float, float]
@@ -79,6 +91,7 @@ class SpecimenPlateNotches(TypedDict, total=False):
     to_in: tuple[float, float]
     width_mm: float  # Width across; needed
     width_in: float
+
 
 class SpecimenPlate(TypedDict, total=False):
     kind: Literal["plate"]
@@ -100,6 +113,7 @@ class SpecimenPlate(TypedDict, total=False):
     notches: list[SpecimenPlateNotches]  # Notches: straight slots with square ends; none
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
+
 class SpecimenSurfaceCrackHoles(TypedDict, total=False):
     x_mm: float  # Middle of the hole, x; needed
     x_in: float
@@ -107,6 +121,7 @@ class SpecimenSurfaceCrackHoles(TypedDict, total=False):
     y_in: float
     diameter_mm: float  # Diameter: of a hole; needed
     diameter_in: float
+
 
 class SpecimenSurfaceCrack(TypedDict, total=False):
     kind: Literal["surface_crack"]
@@ -122,6 +137,7 @@ class SpecimenSurfaceCrack(TypedDict, total=False):
     crack_half_length_in: float
     holes: list[SpecimenSurfaceCrackHoles]  # Further holes of the plate; none
 
+
 class SpecimenCornerCrackHoles(TypedDict, total=False):
     x_mm: float  # Middle of the hole, x; needed
     x_in: float
@@ -129,6 +145,7 @@ class SpecimenCornerCrackHoles(TypedDict, total=False):
     y_in: float
     diameter_mm: float  # Diameter: of a hole; needed
     diameter_in: float
+
 
 class SpecimenCornerCrack(TypedDict, total=False):
     kind: Literal["corner_crack"]
@@ -144,6 +161,7 @@ class SpecimenCornerCrack(TypedDict, total=False):
     crack_half_length_in: float
     holes: list[SpecimenCornerCrackHoles]  # Further holes of the plate; none
 
+
 class SpecimenEmbeddedCrackHoles(TypedDict, total=False):
     x_mm: float  # Middle of the hole, x; needed
     x_in: float
@@ -151,6 +169,7 @@ class SpecimenEmbeddedCrackHoles(TypedDict, total=False):
     y_in: float
     diameter_mm: float  # Diameter: of a hole; needed
     diameter_in: float
+
 
 class SpecimenEmbeddedCrack(TypedDict, total=False):
     kind: Literal["embedded_crack"]
@@ -166,6 +185,7 @@ class SpecimenEmbeddedCrack(TypedDict, total=False):
     crack_half_length_in: float
     holes: list[SpecimenEmbeddedCrackHoles]  # Further holes of the plate; none
 
+
 class SpecimenCornerCrackAtHoleHoles(TypedDict, total=False):
     x_mm: float  # Middle of the hole, x; needed
     x_in: float
@@ -173,6 +193,7 @@ class SpecimenCornerCrackAtHoleHoles(TypedDict, total=False):
     y_in: float
     diameter_mm: float  # Diameter: of a hole; needed
     diameter_in: float
+
 
 class SpecimenCornerCrackAtHole(TypedDict, total=False):
     kind: Literal["corner_crack_at_hole"]
@@ -190,6 +211,7 @@ class SpecimenCornerCrackAtHole(TypedDict, total=False):
     hole_diameter_mm: float  # Hole diameter; needed
     hole_diameter_in: float
     cracks: Required[int]  # Cracks at the hole: 1, on one side of it, or 2, on both; needed
+
 
 class SpecimenCrackAtHole(TypedDict, total=False):
     kind: Literal["crack_at_hole"]
@@ -210,6 +232,7 @@ class SpecimenCrackAtHole(TypedDict, total=False):
     crack_lengths_in: tuple[float, float]
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
+
 class SpecimenRowOfHoles(TypedDict, total=False):
     kind: Literal["row_of_holes"]
     width_mm: float  # Width W; needed
@@ -227,6 +250,7 @@ class SpecimenRowOfHoles(TypedDict, total=False):
     crack_length_in: float
     crack_lengths_mm: list[tuple[float, float]]  # Cracks of unlike lengths: of every hole [left, right], 0 without one; one of those that say the length of the cracks
     crack_lengths_in: list[tuple[float, float]]
+
 
 class SpecimenLug(TypedDict, total=False):
     kind: Literal["lug"]
@@ -255,6 +279,7 @@ class SpecimenLug(TypedDict, total=False):
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
+
 class SpecimenEdgeNotch(TypedDict, total=False):
     kind: Literal["edge_notch"]
     width_mm: float  # Width W; needed
@@ -271,6 +296,7 @@ class SpecimenEdgeNotch(TypedDict, total=False):
     crack_length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
+
 class SpecimenStopHole(TypedDict, total=False):
     kind: Literal["stop_hole"]
     width_mm: float  # Width W; needed
@@ -285,6 +311,7 @@ class SpecimenStopHole(TypedDict, total=False):
     hole_diameter_in: float
     formed_length_mm: float  # Formed cracks: their length from the rims of the holes at the end of phase I; needed
     formed_length_in: float
+
 
 class SpecimenSingleEdgeBend(TypedDict, total=False):
     kind: Literal["single_edge_bend"]
@@ -302,6 +329,7 @@ class SpecimenSingleEdgeBend(TypedDict, total=False):
     length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
+
 class SpecimenEccentricSingleEdgeTension(TypedDict, total=False):
     kind: Literal["eccentric_single_edge_tension"]
     width_mm: float  # Width W: from the edge (ESE(T)) or the load line (WOL); needed
@@ -312,6 +340,7 @@ class SpecimenEccentricSingleEdgeTension(TypedDict, total=False):
     crack_length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
+
 class SpecimenWedgeOpening(TypedDict, total=False):
     kind: Literal["wedge_opening"]
     width_mm: float  # Width W: from the edge (ESE(T)) or the load line (WOL); needed
@@ -321,6 +350,7 @@ class SpecimenWedgeOpening(TypedDict, total=False):
     crack_length_mm: float  # Initial crack length a: from where W begins; needed
     crack_length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
+
 
 class SpecimenCruciform(TypedDict, total=False):
     kind: Literal["cruciform"]
@@ -336,6 +366,7 @@ class SpecimenCruciform(TypedDict, total=False):
     crack_length_in: float
     crack_angle_deg: float  # Angle of the crack, °: against x; 0
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
+
 
 class Material(TypedDict, total=False):
     name: str  # Material: a name of `perilife list materials`, or the path of an own .toml file; -
@@ -354,6 +385,7 @@ class Material(TypedDict, total=False):
     tensile_strength_ksi: float
     plane: Literal["stress", "strain"]  # Plane state; stress
 
+
 class LoadingPins(TypedDict, total=False):
     hole: Required[int]  # Hole: counted from 0 in specimen.holes; needed
     direction: Required[tuple[float, float]]  # Direction: [x, y] of the force on the plate; needed
@@ -367,6 +399,7 @@ class LoadingPins(TypedDict, total=False):
     pin_youngs_modulus_msi: float
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
 
+
 class LoadingRollers(TypedDict, total=False):
     at_mm: tuple[float, float]  # Middle of the contact: [x, y] on the outline; needed
     at_in: tuple[float, float]
@@ -374,6 +407,7 @@ class LoadingRollers(TypedDict, total=False):
     contact_width_in: float
     direction: tuple[float, float]  # Direction: [x, y] of the force; straight into the plate where it is left out; -
     share: float  # Share of the force: 1 where it is left out; 1
+
 
 class Loading(TypedDict, total=False):
     kind: Literal["constant_amplitude", "spectrum", "displacement"]  # Kind of cycles; constant_amplitude
@@ -427,6 +461,7 @@ class Loading(TypedDict, total=False):
     newman_alpha: float  # constraint factor, 1 to 3; -
     newman_smax_over_flow: float  # share of the flow stress; -
 
+
 class Model(TypedDict, total=False):
     method: Literal["auto", "peridynamics", "element_free_galerkin", "handbook"]  # Method; auto
     spacing_mm: float  # Spacing: of points, or of nodes far from cracks; -
@@ -445,6 +480,7 @@ class Model(TypedDict, total=False):
     enrichment: Literal["tip", "intrinsic", "none"]  # Enrichment: functions of the tips; with method = element_free_galerkin
     influence_radius: float  # Radius of influence: of a node, in spacings; with method = element_free_galerkin
 
+
 class FatigueInitiation(TypedDict, total=False):
     range_mpa: float  # Range ΔσD: of the local stress at one point of the S-N line; needed
     range_ksi: float
@@ -452,6 +488,7 @@ class FatigueInitiation(TypedDict, total=False):
     slope: Required[float]  # Slope k: of log N over −log Δσ; needed
     limit_mpa: float  # Fatigue limit: range up to which no crack forms; none
     limit_ksi: float
+
 
 class Fatigue(TypedDict, total=False):
     driver: Literal["tip_field", "bond_strain"]  # Driver: what moves cracks; -
@@ -491,6 +528,7 @@ class Fatigue(TypedDict, total=False):
     growth_table: object  # Table of the law; -
     growth_table_ends: object  # Table of the law; -
 
+
 class Stop(TypedDict, total=False):
     crack_length_mm: float  # Final crack length; -
     crack_length_in: float
@@ -504,11 +542,13 @@ class Stop(TypedDict, total=False):
     toughness: bool  # Fracture ends the life; true
     net_section: bool  # Net-section yield ends the life; true
 
+
 class FleetInitialLengthMm(TypedDict, total=False):
     median: float  # Median, mm: of a normal logarithm; -
     standard_deviation_ln: float  # Standard deviation of ln; -
     mean: float  # Mean, mm: of a normal distribution above zero; -
     standard_deviation: float  # Standard deviation, mm; -
+
 
 class Fleet(TypedDict, total=False):
     plates: int  # Plates: how many; 1000
@@ -517,35 +557,42 @@ class Fleet(TypedDict, total=False):
     initial_length_in: FleetInitialLengthMm
     load_scatter: float  # Scatter of the load: standard deviation over the load; 0
 
+
 class Output(TypedDict, total=False):
     paraview: bool  # ParaView: also the fields of some moments; false
     animation: bool  # Animation: also growth.svg, the cracks as they grow; false
+
 
 class SupportsTop(TypedDict, total=False):
     rows_mm: float  # Depth of the hold: from the side into the plate; one row
     rows_in: float
     fix: Required[list[Literal["x", "y"]]]  # Held components; needed
 
+
 class SupportsBottom(TypedDict, total=False):
     rows_mm: float  # Depth of the hold: from the side into the plate; one row
     rows_in: float
     fix: Required[list[Literal["x", "y"]]]  # Held components; needed
+
 
 class SupportsLeft(TypedDict, total=False):
     rows_mm: float  # Depth of the hold: from the side into the plate; one row
     rows_in: float
     fix: Required[list[Literal["x", "y"]]]  # Held components; needed
 
+
 class SupportsRight(TypedDict, total=False):
     rows_mm: float  # Depth of the hold: from the side into the plate; one row
     rows_in: float
     fix: Required[list[Literal["x", "y"]]]  # Held components; needed
+
 
 class Supports(TypedDict, total=False):
     top: SupportsTop  # Side that is held; -
     bottom: SupportsBottom  # Side that is held; -
     left: SupportsLeft  # Side that is held; -
     right: SupportsRight  # Side that is held; -
+
 
 class MeasuredLeaveOut(TypedDict, total=False):
     specimen: str  # Specimen: may be left out where there is one; -
@@ -555,6 +602,7 @@ class MeasuredLeaveOut(TypedDict, total=False):
     line: int  # Line of the row; -
     value: str  # A cell of the row: shows that the line is the one that is meant; -
     reason: Required[str]  # Reason; needed
+
 
 class Measured(TypedDict, total=False):
     files: list[str]  # Files of readings: CSV or workbooks, one or more specimens each; -
@@ -579,6 +627,7 @@ class Measured(TypedDict, total=False):
     from_delta_k_ksi_sqrt_in: float
     to_delta_k_mpa_sqrt_m: float  # Fit window: to this ΔK; -
     to_delta_k_ksi_sqrt_in: float
+
 
 class Fit(TypedDict, total=False):
     parameters: list[Literal["a", "p"]]  # Fitted constants; a, p
