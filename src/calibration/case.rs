@@ -9,6 +9,7 @@ use crate::exponent::{Exponent, FitKeys, delta_k_ratio, exponent};
 use perilife_base::error::{input, input_missing};
 use perilife_base::input::{Document, Folder, sha256};
 use perilife_base::keys::{Plain, key, length, section};
+use perilife_base::kinds::Named as _;
 use perilife_base::units::MM;
 use perilife_base::{
     table::{
@@ -21,8 +22,8 @@ use perilife_growth::case::record::SourceFile;
 use perilife_growth::case::{Case, LawSource};
 use perilife_measured::rates::{COLUMNS, DECIMAL, SHEET};
 use perilife_measured::{ColumnNames, Import, LeaveOut, Measured, MeasuredCurve, check_left_out, parse};
-use perilife_plate::specimen::Specimen;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
+use perilife_plate::specimen::{Specimen, SpecimenKind};
 
 /// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
 const LENGTH_SLACK: f64 = 1e-9;
@@ -114,7 +115,11 @@ impl CalibrationCase {
             let measured = measured
                 .as_ref()
                 .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
-            let case = Case::from_table(document.table.clone(), &document.name, &document.folder)?;
+            let mut table = document.table.clone();
+            let notes = complete(&mut table, measured, &document.folder)?;
+            let input = input.into_iter().chain(table.clone()).collect();
+            let mut case = Case::from_table(table, &document.name, &document.folder)?;
+            case.warnings.extend(notes);
             Self::build(case, section(measured, "measured")?, section(&fit, "fit")?, &document.folder, input)
         };
         build().map_err(|error| document.locate(error))
@@ -184,6 +189,36 @@ impl CalibrationCase {
         let loading = &self.case.loading;
         self.formula.as_ref().map(|formula| formula.delta_k(crack_length, loading.maximum, loading.range_share()))
     }
+}
+
+/// Takes what a calibration does not say from its readings: the load, where it is one of all of them, and the crack at the first. What was
+/// taken, in words.
+/// Errors: readings that cannot be read.
+fn complete(table: &mut Table, measured: &Value, folder: &Folder) -> perilife_base::error::Result<Vec<String>> {
+    const LENGTH: [&str; 2] = ["crack_length_mm", "crack_length_in"];
+    let specimen = table.get("specimen").and_then(Value::as_table);
+    let has_one = |kind: SpecimenKind| kind.keys().iter().any(|key| key.name == LENGTH[0]);
+    let kind = specimen.and_then(|given| SpecimenKind::find(given.get("kind")?.as_str()?));
+    let is_open = kind.is_some_and(has_one) && specimen.is_some_and(|given| !LENGTH.iter().any(|key| given.contains_key(*key)));
+    if !is_open && table.contains_key("loading") {
+        return Ok(Vec::new());
+    }
+    let (measured, _) = readings(&section(measured, "measured")?, folder)?;
+    let mut notes = Vec::new();
+    let load = measured.load();
+    if !table.contains_key("loading") && load.len() > 1 {
+        let words = load.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ");
+        notes.push(format!("loading is that of all readings: {words}"));
+        let keys = load.into_iter().map(|(key, value)| (key.to_owned(), Value::Float(value))).collect();
+        table.insert("loading".to_owned(), Value::Table(keys));
+    }
+    if let Some(given) = table.get_mut("specimen").and_then(Value::as_table_mut).filter(|_| is_open) {
+        let first = measured.curves.iter().map(|curve| curve.crack_length[0]).fold(f64::INFINITY, f64::min);
+        let whole = if kind == Some(SpecimenKind::MiddleTension) { ", taken as half of the crack from tip to tip" } else { "" };
+        notes.push(format!("specimen.crack_length_mm is the first reading, {}{whole}", round_off(first / MM)));
+        given.insert(LENGTH[0].to_owned(), Value::Float(round_off(first / MM)));
+    }
+    Ok(notes)
 }
 
 /// Readings under a spectrum have no one ΔK.

@@ -3,13 +3,15 @@
 //! The load at a reading is the one under which the crack grew there. Where it changes once between readings of equal loads (a step), the
 //! growth up to the reading had the new load; where it changes from reading to reading (shedding), it went from one to the other.
 
+use std::collections::BTreeMap;
+
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, first_of};
 use perilife_base::error::{Result, input_missing};
 use perilife_base::line::line;
 use perilife_base::table::Fault;
 use perilife_base::table::names::Role;
 use perilife_base::units::round_off;
-use perilife_base::units::{MM, MPA_SQRT_M};
+use perilife_base::units::{KN, MM, MPA, MPA_SQRT_M};
 use perilife_plate::loading::{Loading, SAME_RATIO};
 use perilife_plate::material::Material;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
@@ -29,6 +31,28 @@ const TOUGHNESS_FACTOR: f64 = 1.5;
 const LEAP_OF_K: f64 = 2.0;
 
 impl Measured {
+    /// The load of all readings in keys of `[loading]`; nothing where there is none, or several.
+    pub fn load(&self) -> BTreeMap<&'static str, f64> {
+        let loads: Vec<&Loads> = self.curves.iter().filter_map(|curve| curve.loads.as_ref()).collect();
+        let Some(first) = loads.first().filter(|_| loads.len() == self.curves.len()) else { return BTreeMap::new() };
+        let (key, unit) = match (first.measure, first.is_range) {
+            (LoadMeasure::Force, false) => ("force_max_kn", KN),
+            (LoadMeasure::Force, true) => ("force_range_kn", KN),
+            (LoadMeasure::Stress, false) => ("stress_max_mpa", MPA),
+            (LoadMeasure::Stress, true) => ("stress_range_mpa", MPA),
+        };
+        let is_alike = |loads: &&Loads| (loads.measure, loads.is_range) == (first.measure, first.is_range);
+        let of = |values: fn(&Loads) -> &Vec<f64>, slack: f64| {
+            let mut all = loads.iter().flat_map(|loads| values(loads)).copied();
+            let value = all.next()?;
+            // NaN, which stands where the file says nothing, is like nothing.
+            all.all(|other| (other - value).abs() <= slack * value.abs()).then_some(value).filter(|value| value.is_finite())
+        };
+        let load = of(|loads| &loads.maximum, SAME_LOAD).filter(|_| loads.iter().all(is_alike));
+        let ratio = of(|loads| &loads.ratio, SAME_LOAD).map(|ratio| ("stress_ratio", round_off(ratio)));
+        load.map(|load| (key, round_off(load / unit))).into_iter().chain(ratio).collect()
+    }
+
     /// Sets the readings against the specimen and the load of a case.
     /// Errors: readings beyond the specimen; loads that it cannot have.
     pub fn set_against(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {

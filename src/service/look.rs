@@ -12,16 +12,10 @@ use crate::job::{JobKind, Submission};
 use crate::problem::{Answer, Place};
 use perilife_base::error::input;
 use perilife_base::keys::{Field, Key, Value};
-use perilife_base::units::{KN, MM, MPA};
-use perilife_base::{
-    table::{
-        Decimal, Sheet,
-        units::{CycleUnit, LengthUnit, LoadUnit},
-    },
-    units::round_off,
-};
-use perilife_measured::{Column, Import, Layout, Loads, MeasuredCurve, Named, SAME_LOAD, Shape, Survey, survey};
-use perilife_plate::specimen::LoadMeasure;
+use perilife_base::table::units::{CycleUnit, LengthUnit, LoadUnit};
+use perilife_base::table::{Decimal, Sheet};
+use perilife_base::units::MM;
+use perilife_measured::{Column, Import, Layout, MeasuredCurve, Named, Shape, Survey, survey};
 use perilife_runner::{Task, check};
 
 /// Cases of a sweep that are looked at before it is accepted.
@@ -169,28 +163,6 @@ fn named<T: Copy>(all: &[T], name_of: fn(T) -> &'static str, key: &str, name: &s
     })
 }
 
-/// The load of all readings in keys of `[loading]`; nothing where there is none, or several.
-fn load_of(curves: &[MeasuredCurve]) -> BTreeMap<&'static str, f64> {
-    let loads: Vec<&Loads> = curves.iter().filter_map(|curve| curve.loads.as_ref()).collect();
-    let Some(first) = loads.first().filter(|_| loads.len() == curves.len()) else { return BTreeMap::new() };
-    let (key, unit) = match (first.measure, first.is_range) {
-        (LoadMeasure::Force, false) => ("force_max_kn", KN),
-        (LoadMeasure::Force, true) => ("force_range_kn", KN),
-        (LoadMeasure::Stress, false) => ("stress_max_mpa", MPA),
-        (LoadMeasure::Stress, true) => ("stress_range_mpa", MPA),
-    };
-    let is_alike = |loads: &&Loads| (loads.measure, loads.is_range) == (first.measure, first.is_range);
-    let of = |values: fn(&Loads) -> &Vec<f64>, slack: f64| {
-        let mut all = loads.iter().flat_map(|loads| values(loads)).copied();
-        let value = all.next()?;
-        // NaN, which stands where the file says nothing, is like nothing.
-        all.all(|other| (other - value).abs() <= slack * value.abs()).then_some(value).filter(|value| value.is_finite())
-    };
-    let load = of(|loads| &loads.maximum, SAME_LOAD).filter(|_| loads.iter().all(is_alike));
-    let ratio = of(|loads| &loads.ratio, SAME_LOAD).map(|ratio| ("stress_ratio", round_off(ratio)));
-    load.map(|load| (key, round_off(load / unit))).into_iter().chain(ratio).collect()
-}
-
 fn found(file: &str, content: &[u8], import: &Import) -> FoundFile {
     let Survey { header, first_rows, layout, measured, problems } = survey(content, Path::new(file), import);
     let unit = |column: &Column| if let Named::Is(unit) = column.unit { unit.name() } else { "" };
@@ -229,7 +201,7 @@ fn found(file: &str, content: &[u8], import: &Import) -> FoundFile {
         first_rows,
         taken,
         columns,
-        loading: load_of(&measured.curves),
+        loading: measured.load(),
         curves: measured.curves.into_iter().map(curve).collect(),
         warnings: measured.warnings,
         problems: problems.into_iter().map(Place::from).collect(),
