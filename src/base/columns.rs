@@ -14,6 +14,9 @@ use crate::units::words::in_units;
 /// Significant digits of a number at the least.
 const DIGITS: usize = 10;
 
+/// Remedy for files of results that are not as they were written.
+pub const AGAIN: &str = "copy the folder again, or run the command again that wrote it";
+
 /// How numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Digits {
@@ -46,33 +49,30 @@ struct Column {
 pub struct Table {
     /// Name of the file, or the path that it was read from.
     pub file: PathBuf,
+    /// Units of the text that it was read from.
+    pub units: System,
     columns: Vec<Column>,
 }
 
 impl Table {
     /// One without columns.
     pub fn new(file: impl Into<PathBuf>) -> Self {
-        Table { file: file.into(), columns: Vec::new() }
+        Table { file: file.into(), units: System::Si, columns: Vec::new() }
     }
 
-    /// Adds quantities in the unit of their name.
-    pub fn numbers(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
-        self.with(name, Cells::Numbers(values.into_iter().collect(), Digits::Some))
+    /// Adds quantities in the unit of their name, which may not be known.
+    pub fn numbers(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = impl Into<Option<f64>>>) -> Self {
+        self.with(name, Cells::numbers(values, Digits::Some))
     }
 
-    /// Adds measured quantities, and what is made of them, that may not be known.
-    pub fn measured(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = Option<f64>>) -> Self {
-        self.with(name, Cells::Numbers(values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(), Digits::Few))
-    }
-
-    /// Adds quantities that may not be known.
-    pub fn known(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = Option<f64>>) -> Self {
-        self.numbers(name, values.into_iter().map(|value| value.unwrap_or(f64::NAN)))
+    /// Adds measured quantities, and what is made of them.
+    pub fn measured(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = impl Into<Option<f64>>>) -> Self {
+        self.with(name, Cells::numbers(values, Digits::Few))
     }
 
     /// Adds numbers that read back bit for bit.
-    pub fn exact(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
-        self.with(name, Cells::Numbers(values.into_iter().collect(), Digits::All))
+    pub fn exact(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = impl Into<Option<f64>>>) -> Self {
+        self.with(name, Cells::numbers(values, Digits::All))
     }
 
     /// Adds whole numbers.
@@ -93,6 +93,12 @@ impl Table {
     fn with(mut self, name: impl Into<Cow<'static, str>>, cells: Cells) -> Self {
         self.columns.push(Column { name: name.into(), cells });
         self
+    }
+
+    /// The table with its text in the units that are shown.
+    pub fn with_text(self) -> (Self, String) {
+        let text = self.csv();
+        (self, text)
     }
 
     pub fn rows(&self) -> usize {
@@ -133,13 +139,6 @@ impl Table {
         self.has(name).then(|| self.get(name)).transpose()
     }
 
-    /// Cells of a column as text.
-    /// Errors: a column that is missing.
-    pub fn text(&self, name: &str) -> Result<Vec<String>> {
-        let cells = self.cells(name)?;
-        Ok((0..self.rows()).map(|row| cells.text(row).into_owned()).collect())
-    }
-
     /// Rows by the names of their columns.
     /// Errors: a row that is not as it was written.
     pub fn records<R: DeserializeOwned>(&self) -> Result<Vec<R>> {
@@ -166,7 +165,7 @@ impl Table {
             key: column.map(str::to_owned),
             value: value.map(|text| format!("\"{text}\"")),
             problem: problem.to_owned(),
-            remedy: "copy the folder again, or run the command again that wrote it".to_owned(),
+            remedy: AGAIN.to_owned(),
             ..InputError::default()
         }))
     }
@@ -189,12 +188,12 @@ impl Table {
         let names = self.columns.iter().zip(&changes).map(|(column, new)| new.as_ref().map_or(&*column.name, |new| &new.name));
         let mut text = names.map(quoted).collect::<Vec<_>>().join(",") + "\n";
         for row in 0..self.rows() {
-            let cell = |(column, new): (&Column, &Option<Renamed>)| match (new, &column.cells) {
-                (Some(new), Cells::Numbers(values, _)) => new
+            let cell = |(column, new): (&Column, &Option<Renamed>)| match (new, column.cells.number(row), &column.cells) {
+                (Some(new), Some(value), _) => new
                     .factor(|name| self.sibling(name, row))
-                    .map_or_else(|_| String::new(), |factor| number_text(values[row] * factor)),
-                (_, Cells::Words(words)) if units == System::Us => quoted(&in_units(&words[row], units)).into_owned(),
-                (_, cells) => quoted(&cells.text(row)).into_owned(),
+                    .map_or_else(|_| String::new(), |factor| number_text(value * factor)),
+                (_, _, Cells::Words(words)) if units == System::Us => quoted(&in_units(&words[row], units)).into_owned(),
+                (_, _, cells) => quoted(&cells.text(row)).into_owned(),
             };
             let cells: Vec<String> = self.columns.iter().zip(&changes).map(cell).collect();
             text.push_str(&cells.join(","));
@@ -205,7 +204,7 @@ impl Table {
 
     /// The number that stands in a row under a name.
     fn sibling(&self, name: &str, row: usize) -> Option<f64> {
-        self.get(name).ok()?.get(row).copied()
+        self.columns.iter().find(|column| column.name == name)?.cells.number(row)
     }
 
     /// Of a text with a header, whichever units it is in; `path` stands in messages.
@@ -218,7 +217,7 @@ impl Table {
         for record in reader.records() {
             let at = |position: Option<&csv::Position>| position.map_or(1, |position| position.line() as usize);
             let record = record
-                .map_err(|error| table.bad(at(error.position()), None, None, &format!("is no line of a table: {error}")))?;
+                .map_err(|error| table.bad(at(error.position()), None, None, &format!("is not a line of the table: {error}")))?;
             if columns.is_empty() {
                 columns = record.iter().map(|name| (name.to_owned(), Vec::new())).collect();
                 continue;
@@ -229,7 +228,8 @@ impl Table {
             }
             columns.iter_mut().zip(&record).for_each(|((_, cells), cell)| cells.push(cell.to_owned()));
         }
-        table.columns = columns.into_iter().map(|(name, cells)| Column { name: name.into(), cells: Cells::of(cells) }).collect();
+        table.columns =
+            columns.into_iter().map(|(name, cells)| Column { name: name.into(), cells: Cells::Words(cells) }).collect();
         table.go_metric();
         Ok(table)
     }
@@ -240,13 +240,14 @@ impl Table {
             .filter_map(|place| {
                 let column = &self.columns[place];
                 let new = renamed(&column.name, System::Si)?;
-                let Cells::Numbers(values, _) = &column.cells else { return None };
+                let values = self.get(&column.name).ok()?;
                 let metric = |(row, value): (usize, &f64)| Some(value * new.factor(|name| self.sibling(name, row)).ok()?);
                 let values = values.iter().enumerate().map(metric).collect::<Option<_>>()?;
                 Some((place, new, values))
             })
             .collect();
         if !changes.is_empty() {
+            self.units = System::Us;
             for column in &mut self.columns {
                 if let Cells::Words(words) = &mut column.cells {
                     words.iter_mut().for_each(|text| *text = in_units(text, System::Si));
@@ -260,11 +261,15 @@ impl Table {
 }
 
 impl Cells {
-    /// Numbers where all are, text else.
-    fn of(cells: Vec<String>) -> Self {
-        match cells.iter().map(|cell| number(cell)).collect() {
-            Some(numbers) => Cells::Numbers(numbers, Digits::Some),
-            None => Cells::Words(cells),
+    fn numbers(values: impl IntoIterator<Item = impl Into<Option<f64>>>, digits: Digits) -> Self {
+        Cells::Numbers(values.into_iter().map(|value| value.into().unwrap_or(f64::NAN)).collect(), digits)
+    }
+
+    /// The number of a row, NaN of an empty cell; `None` of text.
+    fn number(&self, row: usize) -> Option<f64> {
+        match self {
+            Cells::Numbers(values, _) => values.get(row).copied(),
+            Cells::Words(words) => words.get(row).and_then(|cell| number(cell)),
         }
     }
 

@@ -15,6 +15,11 @@ pub struct KindLine {
     pub meaning: &'static str,
 }
 
+/// Remedy for a name that is none of these.
+pub fn use_one_of(lines: &[KindLine]) -> String {
+    format!("use one of {}", lines.iter().map(|line| line.name).collect::<Vec<_>>().join(", "))
+}
+
 /// What [`kinds!`](crate::kinds!) declares.
 pub trait Named: Sized {
     /// Lines of `perilife list`.
@@ -81,9 +86,8 @@ macro_rules! kinds {
         impl std::str::FromStr for $Kind {
             type Err = $crate::error::Error;
             fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
-                Self::all().find(|k| k.name() == text).ok_or_else(|| {
-                    let known: Vec<&str> = Self::all().map(|k| k.name()).collect();
-                    $crate::error::input(Self::KEY, format!("\"{text}\""), "is not a known kind", format!("use one of {}", known.join(", ")))
+                <Self as $crate::kinds::Named>::find(text).ok_or_else(|| {
+                    $crate::error::input(Self::KEY, format!("\"{text}\""), "is not a known kind", $crate::kinds::use_one_of(&Self::lines()))
                 })
             }
         }

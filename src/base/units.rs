@@ -35,6 +35,12 @@ pub fn place_mm(place: [f64; 2]) -> String {
     format!("({x:.4}, {y:.4}) mm")
 }
 
+/// A place, m, as a file gives it: its coordinates in mm, rounded to six digits.
+pub fn given_mm(place: [f64; 2]) -> String {
+    let [x, y] = place.map(round_mm);
+    format!("({x}, {y}) mm")
+}
+
 /// A number in writing that nobody takes its decimal point for a separator of thousands in: 12.345 becomes 12.3450.
 #[inline]
 pub fn unmistakable(number: &str) -> String {

@@ -8,7 +8,7 @@ use crate::criterion::Criterion;
 use crate::exponent::{Exponent, FitKeys, delta_k_ratio, exponent};
 use perilife_base::error::{input, input_missing};
 use perilife_base::input::{Document, Folder, sha256};
-use perilife_base::keys::{Plain, key, length, section};
+use perilife_base::keys::{Need, Plain, all, key, length, section};
 use perilife_base::kinds::Named as _;
 use perilife_base::units::MM;
 use perilife_base::{
@@ -28,7 +28,7 @@ use perilife_plate::specimen::{Specimen, SpecimenKind};
 /// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
 const LENGTH_SLACK: f64 = 1e-9;
 
-/// What the specimen's crack may be longer than the first reading besides, m: nobody measures a crack nearer.
+/// What the specimen's crack may be longer than the first reading besides, m: its rounding in a report.
 const START_SLACK: f64 = 5e-5;
 /// Share by which the specimen's crack may be longer than the first reading: 12 mm are 0.4724 in of four decimals, or 11.999 mm.
 const ROUNDING: f64 = 1e-4;
@@ -115,12 +115,24 @@ impl CalibrationCase {
             let measured = measured
                 .as_ref()
                 .ok_or_else(|| input_missing("measured", "is missing", "write a section [measured] with files = [\"...csv\"]"))?;
-            let mut table = document.table.clone();
-            let notes = complete(&mut table, measured, &document.folder)?;
-            let input = input.into_iter().chain(table.clone()).collect();
-            let mut case = Case::from_table(table, &document.name, &document.folder)?;
-            case.warnings.extend(notes);
-            Self::build(case, section(measured, "measured")?, section(&fit, "fit")?, &document.folder, input)
+            let of_table = |table: &Table| Case::from_table(table.clone(), &document.name, &document.folder);
+            let (mut table, keys) = (document.table.clone(), || section::<MeasuredKeys>(measured, "measured"));
+            let case = match of_table(&table) {
+                Ok(case) => case,
+                Err(error) => {
+                    let read = keys().and_then(|keys| Ok((readings(&keys, &document.folder)?.0, keys)));
+                    let Ok((read, keys)) = read else { return Err(error) };
+                    let notes = complete(&mut table, &read, &keys)?;
+                    if notes.is_empty() {
+                        return Err(error);
+                    }
+                    let mut case = of_table(&table)?;
+                    case.warnings.extend(notes);
+                    case
+                }
+            };
+            let input = input.into_iter().chain(table).collect();
+            Self::build(case, keys()?, section(&fit, "fit")?, &document.folder, input)
         };
         build().map_err(|error| document.locate(error))
     }
@@ -191,32 +203,34 @@ impl CalibrationCase {
     }
 }
 
-/// Takes what a calibration does not say from its readings: the load, where it is one of all of them, and the crack at the first. What was
-/// taken, in words.
-/// Errors: readings that cannot be read.
-fn complete(table: &mut Table, measured: &Value, folder: &Folder) -> perilife_base::error::Result<Vec<String>> {
-    const LENGTH: [&str; 2] = ["crack_length_mm", "crack_length_in"];
-    let specimen = table.get("specimen").and_then(Value::as_table);
-    let has_one = |kind: SpecimenKind| kind.keys().iter().any(|key| key.name == LENGTH[0]);
-    let kind = specimen.and_then(|given| SpecimenKind::find(given.get("kind")?.as_str()?));
-    let is_open = kind.is_some_and(has_one) && specimen.is_some_and(|given| !LENGTH.iter().any(|key| given.contains_key(*key)));
-    if !is_open && table.contains_key("loading") {
-        return Ok(Vec::new());
-    }
-    let (measured, _) = readings(&section(measured, "measured")?, folder)?;
+/// Takes what a calibration does not say from its readings: the load, where all have the same, and the crack at the first one that counts.
+/// That of a central crack is asked for where no header says that lengths are tip to tip. What was taken, in words.
+/// Errors: a window without readings.
+fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> perilife_base::error::Result<Vec<String>> {
+    const LENGTH: &str = "crack_length_mm";
     let mut notes = Vec::new();
     let load = measured.load();
     if !table.contains_key("loading") && load.len() > 1 {
         let words = load.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ");
-        notes.push(format!("loading is that of all readings: {words}"));
-        let keys = load.into_iter().map(|(key, value)| (key.to_owned(), Value::Float(value))).collect();
-        table.insert("loading".to_owned(), Value::Table(keys));
+        notes.push(format!("loading: {words}, from the readings"));
+        let load = load.into_iter().map(|(key, value)| (key.to_owned(), Value::Float(value))).collect();
+        table.insert("loading".to_owned(), Value::Table(load));
     }
-    if let Some(given) = table.get_mut("specimen").and_then(Value::as_table_mut).filter(|_| is_open) {
-        let first = measured.curves.iter().map(|curve| curve.crack_length[0]).fold(f64::INFINITY, f64::min);
-        let whole = if kind == Some(SpecimenKind::MiddleTension) { ", taken as half of the crack from tip to tip" } else { "" };
-        notes.push(format!("specimen.crack_length_mm is the first reading, {}{whole}", round_off(first / MM)));
-        given.insert(LENGTH[0].to_owned(), Value::Float(round_off(first / MM)));
+    let Some(given) = table.get_mut("specimen").and_then(Value::as_table_mut).filter(|given| !given.contains_key(LENGTH)) else {
+        return Ok(notes);
+    };
+    let Some(kind) = given.get("kind").and_then(|kind| SpecimenKind::find(kind.as_str()?)) else { return Ok(notes) };
+    let is_one_length =
+        all(kind.keys()).iter().any(|key| key.name == LENGTH && key.group.is_none() && key.need == Need::Required);
+    let is_half = kind == SpecimenKind::MiddleTension;
+    if is_one_length && (!is_half || measured.curves.iter().all(|curve| curve.source.is_tip_to_tip)) {
+        let mut counted = measured.clone();
+        counted.leave_standing_out()?;
+        counted.leave_out(&keys.leave_out)?;
+        let first = window(&counted, keys)?.curves.iter().map(|curve| curve.crack_length[0]).fold(f64::INFINITY, f64::min);
+        let words = if is_half { " (half of the tip-to-tip length)" } else { "" };
+        notes.push(format!("initial crack length: {} mm, from the first reading{words}", round_off(first / MM)));
+        given.insert(LENGTH.to_owned(), Value::Float(round_off(first / MM)));
     }
     Ok(notes)
 }
@@ -321,7 +335,9 @@ fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> perilife_ba
     let start = specimen.shortest_crack();
     for curve in curves {
         let first = curve.crack_length[0]; // a window keeps at least five readings
-        if start > first * (1.0 + ROUNDING) + START_SLACK {
+        // One reading may be put at the start, not several.
+        let second = curve.crack_length[1];
+        if start > first * (1.0 + ROUNDING) + START_SLACK || start > second * (1.0 + ROUNDING) {
             let mm = |length: f64| round_off(length / MM).to_string();
             return Err(input(
                 "specimen.crack_length_mm",

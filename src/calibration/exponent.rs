@@ -25,8 +25,8 @@ perilife_base::keys! {
         parameters: Vec<Parameter> = key("parameters", "Fitted constants"), or "a, p" vec![Parameter::A, Parameter::P];
         p: Option<f64> = key("p", "Exponent p: given, not fitted");
         record: Option<String> = key("record", "Record of the exponent: fitted.toml of another calibration");
-        criterion: Criterion = key("criterion", "Criterion: which lives count"), or "both_ends" Criterion::BothEnds;
-        law: Option<FitLaw> = key("law", "Growth law to fit: paris where it is left out");
+        criterion: Criterion = key("criterion", "Criterion: lives to be fitted"), or "both_ends" Criterion::BothEnds;
+        law: Option<FitLaw> = key("law", "Growth law to fit: default paris");
     }
 }
 
@@ -39,7 +39,7 @@ pub(super) fn exponent(fit: &FitKeys, folder: &Folder, method: Method, delta_k_r
         return Err(input("fit.parameters", format!("[{}]", names.join(", ")), "leaves a out, which is always fitted", remedy));
     }
     match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
-        (_, Some(p), Some(_)) => Err(input("fit.p", p, "stands beside record: p is given twice", "give p or record")),
+        (_, Some(p), Some(_)) => Err(input("fit.p", p, "conflicts with record", "give p or record")),
         (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
         (true, None, None) => Ok(Exponent::default()),
         (true, None, Some(file)) => match delta_k_ratio {

@@ -14,7 +14,7 @@ use perilife_calibration::results::record;
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, remove_law};
 use perilife_growth::predict::Prediction;
-use perilife_results::output::{Finished, OutputFolder, Room, RunKind};
+use perilife_results::output::{Finished, OutputFolder, RunKind};
 use perilife_results::{fit, run};
 use perilife_runner::{Task, Wanted, of_prediction};
 
@@ -61,8 +61,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let mut read = document.folder.opened().so_far();
     read.files.extend(cases.iter().flat_map(|document| document.folder.opened().so_far().files));
-    let mut folder =
-        OutputFolder::claim(&args.out, RunKind::Calibrate, &read, Room { tables: 64_000, all: 1_000_000 }, args.force)?;
+    let mut folder = OutputFolder::claim(&args.out, RunKind::Calibrate, &read, fit::ROOM, args.force)?;
     for warning in calibration.warnings().iter().map(String::as_str).chain(folder.warning()) {
         console.warn(warning);
     }
@@ -72,10 +71,10 @@ pub fn run(args: &Args) -> Result<()> {
     for warning in fitted.warnings() {
         console.warn(warning);
     }
-    folder.fill(|path| fit::write(path, &fitted, &fit::Kept::of(&fitted, wall_s)?))?;
+    let record = fitted.record(wall_s);
+    folder.fill(|path| fit::write(path, &fitted, &fit::Kept::of(&fitted, record.clone())?))?;
     // Nobody else writes there until the predictions stand in it.
     let place = folder.finish()?;
-    let record = fitted.record(wall_s);
     for line in record.words() {
         console.say(&line);
     }

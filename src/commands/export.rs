@@ -17,9 +17,6 @@ use perilife_results::resample::{ROWS_MAX, Sampling};
 /// First line of an export, which a run's own table has not.
 const HEADER: &str = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n";
 
-/// Column of the table of a run in US units.
-const US_COLUMN: &str = ",crack_length_in,";
-
 /// Arguments of `perilife export`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -61,8 +58,7 @@ pub fn run(args: &Args) -> Result<()> {
 fn curve_of(folder: &Path, opened: &Opened) -> Result<(Vec<Row>, System)> {
     std::fs::read_dir(folder).map_err(|e| Error::file(folder, "cannot read the folder of a run", e))?;
     if folder.join(A_N_FILE).is_file() {
-        let (rows, text) = kept::curve(folder, A_N_FILE, opened)?;
-        let of_run = if text.lines().next().is_some_and(|head| head.contains(US_COLUMN)) { System::Us } else { System::Si };
+        let (rows, of_run) = kept::curve(folder, A_N_FILE, opened)?;
         return Ok((rows, asked().unwrap_or(of_run)));
     }
     let remedy = if folder.join("fitted.toml").is_file() {

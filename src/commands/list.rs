@@ -25,8 +25,9 @@ pub struct Args {
 /// Prints the list in aligned columns, or as JSON.
 pub fn run(args: &Args) -> Result<()> {
     if args.schema {
-        args.console.result(&format!("{:#}\n", catalogue::schema()))?;
-        return args.console.object(&catalogue::schema());
+        let schema = catalogue::schema();
+        args.console.result(&format!("{schema:#}\n"))?;
+        return args.console.object(&schema);
     }
     let what = args.what.as_deref().map(|what| what.to_lowercase().trim_end_matches('s').to_owned());
     if what.as_deref() == Some("key") {

@@ -188,9 +188,8 @@ impl<H: HandOver> CrackGrowth for Relay<H> {
         self.now_growing().body()
     }
 
-    /// Of a run that has a body from its start on.
     fn fields(&mut self) -> Result<Option<Fields>> {
-        if self.first.body().is_some() { self.growing().fields() } else { Ok(None) }
+        self.growing().fields()
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {

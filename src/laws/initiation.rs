@@ -14,13 +14,13 @@ perilife_base::keys! {
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct SnLaw {
         /// Range Δσ_D of a point of the line, Pa.
-        range: f64 = stress("range_mpa", "Range ΔσD: of the local stress at one point of the S-N line");
+        range: f64 = stress("range_mpa", "Range Δσ_D: local stress range at one point of the S-N line");
         /// Cycles N_D of that point.
-        cycles: f64 = number("cycles", "Cycles ND: of that point", "a number of cycles", 1.0, 1e12);
+        cycles: f64 = number("cycles", "Cycles N_D: at the same point", "a number of cycles", 1.0, 1e12);
         /// Slope k of log N over -log Δσ.
         slope: f64 = number("slope", "Slope k: of log N over −log Δσ", "a slope", 0.5, 50.0);
         /// Range up to which no crack forms, Pa; 0 without one.
-        limit: f64 = stress("limit_mpa", "Fatigue limit: range up to which no crack forms"), or "none" 0.0;
+        limit: f64 = stress("limit_mpa", "Fatigue limit: local stress range without initiation"), or "none" 0.0;
     }
 }
 

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::shorten;
-use perilife_base::keys::{Field, Key, Shape, Value, key, nearest, refuse};
+use perilife_base::keys::{Field, Key, Shape, Value, key, meant, nearest, refuse};
 use perilife_base::table::names::Role;
 use perilife_base::table::units::{CycleUnit, IntensityUnit, LengthUnit, LoadUnit, RateUnit};
 use perilife_base::table::{Decimal, Sheet, text_or_number};
@@ -33,19 +33,20 @@ pub struct Import {
 perilife_base::keys! {
     /// Cycles of a specimen that do not count, or a row of a file.
     #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+    #[serde(deny_unknown_fields)]
     pub struct LeaveOut {
         /// Name of the specimen; may be left out where there is one.
-        specimen: Option<String> = key("specimen", "Specimen: may be left out where there is one");
+        specimen: Option<String> = key("specimen", "Specimen: optional with a single specimen");
         /// First cycles, as the file counts them.
         from_cycles: Option<f64> = key("from_cycles", "First cycles: as the file counts them");
         /// Last cycles.
         to_cycles: Option<f64> = key("to_cycles", "Last cycles");
         /// File of the row; may be missing where there is one.
-        file: Option<String> = key("file", "File of the row: may be left out where there is one");
+        file: Option<String> = key("file", "File of the row: optional with a single file");
         /// Line of the row in it.
         line: Option<usize> = key("line", "Line of the row");
         /// A cell of the row, which shows that the line is the one that is meant.
-        value: Option<String> = key("value", "A cell of the row: shows that the line is the one that is meant");
+        value: Option<String> = key("value", "A cell of the row: confirms the line");
         /// Why.
         reason: String = key("reason", "Reason");
     }
@@ -162,10 +163,8 @@ impl Field for ColumnNames {
         for (name, columns) in table {
             let at = format!("{path}.{name}");
             let known = Self::key(name).ok_or_else(|| {
-                let near = nearest(name, Self::KEYS.iter().map(|(key, _)| *key));
-                let remedy =
-                    near.map_or_else(|| format!("known here: {}", Self::names(", ")), |near| format!("did you mean {near}?"));
-                input(&at, shorten(columns), "is not a known key", remedy)
+                let known = || Self::KEYS.iter().map(|(key, _)| *key);
+                input(&at, shorten(columns), "is not a known key", meant(nearest(name, known()).as_deref(), known()))
             })?;
             let several = columns.as_array().filter(|_| known.1 == Role::Length).map(|list| list.iter().collect());
             let all: Option<Vec<String>> = several.unwrap_or_else(|| vec![columns]).into_iter().map(text_or_number).collect();

@@ -2,8 +2,8 @@
 //!
 //! The plate is bisected again and again (nested dissection: George 1973, SIAM J. Numer. Anal. 10:345). A node is eliminated in the
 //! smallest part that has all matrices that it occurs in; what the elimination leaves to the other nodes of the part goes to the part that
-//! holds both halves (multifrontal method: Duff and Reid 1983, ACM Trans. Math. Softw. 9:302). So nothing sparse is stored, ordered or
-//! searched. Halves are worked on at the same time, and the order of sums does not depend on the number of threads.
+//! holds it (multifrontal method: Duff and Reid 1983, ACM Trans. Math. Softw. 9:302). So nothing sparse is stored, ordered or
+//! searched. A part that eliminates few unknowns is dissolved in the one that holds it. Parts are worked on at the same time, and the order of sums does not depend on the number of threads.
 
 use std::ops::Range;
 
@@ -247,16 +247,12 @@ impl<M: Matrices> Dissection<'_, M> {
     fn part(&self, plan: &Plan) -> Result<(Part, Vec<u32>)> {
         let members = &self.order[plan.members.clone()];
         let parts = plan.parts.par_iter().with_max_len(1).map(|part| self.part(part)).collect::<Result<Vec<_>>>()?;
-        let mut nodes = Vec::new();
-        parts.iter().for_each(|(_, open)| nodes.extend(open));
-        if parts.is_empty() {
-            let mut is_new = vec![true; self.ranks.len()];
-            let of_members = members.iter().flat_map(|&member| &self.members[member as usize].nodes);
-            nodes.extend(of_members.filter(|node| std::mem::take(&mut is_new[**node as usize])));
-        }
-        nodes.sort_unstable_by_key(|&node| self.ranks[node as usize]);
-        nodes.dedup();
         let mut places = vec![u32::MAX; self.ranks.len()];
+        let of_members = members.iter().filter(|_| parts.is_empty()).flat_map(|&member| &self.members[member as usize].nodes);
+        let all = parts.iter().flat_map(|(_, open)| open).chain(of_members).copied();
+        // Those that were met are marked; the marks become places.
+        let mut nodes: Vec<u32> = all.filter(|&node| std::mem::replace(&mut places[node as usize], 0) == u32::MAX).collect();
+        nodes.sort_unstable_by_key(|&node| self.ranks[node as usize]);
         let mut unknowns = Vec::new();
         for &node in &nodes {
             places[node as usize] = unknowns.len() as u32;

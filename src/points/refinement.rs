@@ -4,7 +4,7 @@ use toml::Value;
 
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::keys::{coordinate, key, length, number, section};
-use perilife_base::units::{MM, round_mm};
+use perilife_base::units::{given_mm, round_mm};
 use perilife_plate::specimen::geometry::{bounding_box, distance};
 use perilife_plate::specimen::{Point, Specimen};
 
@@ -75,9 +75,9 @@ perilife_base::keys! {
     pub struct RegionKeys {
         corners: Option<[Point; 2]> = coordinate("box_mm", "Box: two opposite corners [[x, y], [x, y]]");
         band: Option<[Point; 2]> = coordinate("band_mm", "Band: ends of its line [[x, y], [x, y]]");
-        width: Option<f64> = length("width_mm", "Width of the band: the whole of it");
-        around_flaws: Option<f64> = length("around_flaws_mm", "Around every crack and notch: so far");
-        levels: usize = number("levels", "Levels: times that points are split in four", "a number of levels", 1.0, 4.0);
+        width: Option<f64> = length("width_mm", "Width of the band: full width");
+        around_flaws: Option<f64> = length("around_flaws_mm", "Around every crack and notch: distance");
+        levels: usize = number("levels", "Levels: successive splits of a point into four", "a number of levels", 1.0, 4.0);
     }
 }
 
@@ -131,7 +131,7 @@ fn band([from, to]: [Point; 2], width: Option<f64>, path: &str, specimen: &Speci
     let high = [from[0].max(to[0]) + half, from[1].max(to[1]) + half];
     let [plate_low, plate_high] = bounding_box(&specimen.outline);
     if !overlap(low, high, plate_low, plate_high) {
-        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
+        let problem = format!("lies outside the plate, which reaches from {} to {}", given_mm(plate_low), given_mm(plate_high));
         return Err(input_missing(&key, problem, "move it onto the plate"));
     }
     Ok(RefinedRegion::Band { from, to, width })
@@ -146,15 +146,10 @@ pub fn corners(path: &str, [from, to]: [Point; 2], specimen: &Specimen) -> Resul
     }
     let [plate_low, plate_high] = bounding_box(&specimen.outline);
     if !overlap(low, high, plate_low, plate_high) {
-        let problem = format!("lies outside the plate, which reaches from {} to {}", words(plate_low), words(plate_high));
+        let problem = format!("lies outside the plate, which reaches from {} to {}", given_mm(plate_low), given_mm(plate_high));
         return Err(input_missing(path, problem, "move it onto the plate"));
     }
     Ok((low, high))
-}
-
-pub fn words(p: Point) -> String {
-    let round = |metres: f64| (metres / MM * 1e6).round() / 1e6;
-    format!("({}, {}) mm", round(p[0]), round(p[1]))
 }
 
 /// Whether two boxes share an area.

@@ -10,6 +10,7 @@ pub use super::inspections::Asked;
 use super::inspections::InspectionsRecord;
 use super::record::RunRecord;
 use super::sensitivities::Sensitivities;
+use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_growth::case::{Case, Engine, Stop};
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
@@ -53,7 +54,12 @@ impl Answers {
         record.sensitivities = self.sensitivities.as_ref().map(Sensitivities::record);
     }
 
-    /// Writes tables and pictures into the folder of a run.
+    pub fn tables(&self) -> impl Iterator<Item = Table> {
+        let fleet = self.fleet.iter().map(FleetReport::table);
+        fleet.chain(self.sensitivities.iter().map(Sensitivities::table))
+    }
+
+    /// Writes pictures into the folder of a run.
     pub fn write(&self, folder: &Path, case: &Case) -> Result<()> {
         self.fleet.as_ref().map_or(Ok(()), |fleet| fleet.write(folder, case))?;
         self.sensitivities.as_ref().map_or(Ok(()), |sensitivities| sensitivities.write(folder, case))

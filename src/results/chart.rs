@@ -57,7 +57,7 @@ pub enum Mark {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     pub name: String,
-    /// (x, y); points that are not finite (or not positive on a logarithmic axis) are left out.
+    /// (x, y); points that are not finite (or not positive on a logarithmic axis) leave a gap.
     pub points: Vec<(f64, f64)>,
     pub mark: Mark,
 }

@@ -11,6 +11,7 @@ use perilife_growth::case::Case;
 use perilife_growth::predict::{CurvePoint, GoverningCrack, Prediction};
 use perilife_growth::record::TipRecord;
 use perilife_plate::loading::LoadControl;
+use perilife_plate::specimen::geometry::distance;
 use perilife_plate::specimen::{Crack, LoadMeasure, Point};
 
 /// Name of the table of a run's a-N curve.
@@ -112,9 +113,9 @@ pub fn a_n(case: &Case, prediction: &Prediction, band: Option<&PlateBand>) -> Ta
     if points.iter().any(|point| point.depth.is_some()) {
         let depths = || points.iter().map(|point| point.depth);
         all = all
-            .known("crack_depth_mm", depths().map(|depth| Some(depth?.depth / MM)))
-            .known("depth_k_i_mpa_sqrt_m", depths().map(|depth| Some(depth?.k_i? / MPA_SQRT_M)))
-            .known("depth_da_dn_mm_per_cycle", depths().map(|depth| Some(depth?.growth_rate? / MM_PER_CYCLE)));
+            .numbers("crack_depth_mm", depths().map(|depth| Some(depth?.depth / MM)))
+            .numbers("depth_k_i_mpa_sqrt_m", depths().map(|depth| Some(depth?.k_i? / MPA_SQRT_M)))
+            .numbers("depth_da_dn_mm_per_cycle", depths().map(|depth| Some(depth?.growth_rate? / MM_PER_CYCLE)));
     }
     if points.iter().any(|point| !point.response.is_proportional()) {
         let without_load = |point: &CurvePoint| point.delta_k / point.response.range_share(ratio) * point.response.at(0.0);
@@ -134,19 +135,19 @@ pub fn a_n(case: &Case, prediction: &Prediction, band: Option<&PlateBand>) -> Ta
         let of =
             |value: &dyn Fn(&TipRecord) -> Option<f64>| points.iter().map(|point| value(&point.tips[tip])).collect::<Vec<_>>();
         all = all
-            .known(name("x_mm"), of(&|tip| Some(tip.position[0] / MM)))
-            .known(name("y_mm"), of(&|tip| Some(tip.position[1] / MM)))
-            .known(name("growth_mm"), of(&|tip| Some(tip.growth / MM)));
+            .numbers(name("x_mm"), of(&|tip| Some(tip.position[0] / MM)))
+            .numbers(name("y_mm"), of(&|tip| Some(tip.position[1] / MM)))
+            .numbers(name("growth_mm"), of(&|tip| Some(tip.growth / MM)));
         if has_factors {
             all = all
-                .known(name("k_i_mpa_sqrt_m"), of(&|tip| Some(tip.factors?[0] / MPA_SQRT_M)))
-                .known(name("k_ii_mpa_sqrt_m"), of(&|tip| Some(tip.factors?[1] / MPA_SQRT_M)));
+                .numbers(name("k_i_mpa_sqrt_m"), of(&|tip| Some(tip.factors?[0] / MPA_SQRT_M)))
+                .numbers(name("k_ii_mpa_sqrt_m"), of(&|tip| Some(tip.factors?[1] / MPA_SQRT_M)));
         }
         if has_t {
-            all = all.known(name("t_stress_mpa"), of(&|tip| Some(tip.t_stress? / MPA)));
+            all = all.numbers(name("t_stress_mpa"), of(&|tip| Some(tip.t_stress? / MPA)));
         }
         if has_rate {
-            all = all.known(name("da_dn_mm_per_cycle"), of(&|tip| Some(tip.growth_rate? / MM_PER_CYCLE)));
+            all = all.numbers(name("da_dn_mm_per_cycle"), of(&|tip| Some(tip.growth_rate? / MM_PER_CYCLE)));
         }
     }
     let Some(band) = band else { return all };
@@ -183,7 +184,6 @@ pub fn paths(prediction: &Prediction, cracks: &[Crack]) -> Vec<Vec<(f64, Point)>
 /// Far end of the initial crack whose nearer end is this tip. The first recorded position may lie a fraction of a spacing
 /// away from the drawn one, so the nearest end within a tenth of the crack's length counts.
 fn far_end(tip: Point, cracks: &[Crack]) -> Option<Point> {
-    let distance = |p: Point, q: Point| (p[0] - q[0]).hypot(p[1] - q[1]);
     let ends = cracks.iter().flat_map(|crack| {
         let reach = 0.1 * distance(crack.from, crack.to);
         [(crack.from, crack.to, reach), (crack.to, crack.from, reach)]

@@ -11,18 +11,18 @@ pub const SIGN: &str = "crack_length_mm,tip,x_mm,y_mm,k_i_mpa_sqrt_m,k_ii_mpa_sq
 pub fn table(sweep: &FactorSweep) -> Table {
     let of = |value: &dyn Fn(&SweepRow) -> Option<f64>| sweep.rows.iter().map(value).collect::<Vec<_>>();
     Table::new("sweep.csv")
-        .known("crack_length_mm", of(&|row| Some(row.crack_length / MM)))
+        .numbers("crack_length_mm", of(&|row| Some(row.crack_length / MM)))
         .counts("tip", sweep.rows.iter().map(|row| row.tip))
-        .known("x_mm", of(&|row| Some(row.position[0] / MM)))
-        .known("y_mm", of(&|row| Some(row.position[1] / MM)))
-        .known("k_i_mpa_sqrt_m", of(&|row| Some(row.factors[0] / MPA_SQRT_M)))
-        .known("k_ii_mpa_sqrt_m", of(&|row| Some(row.factors[1] / MPA_SQRT_M)))
-        .known("t_stress_mpa", of(&|row| Some(row.t_stress? / MPA)))
-        .known("beta", of(&|row| Some(row.beta)))
-        .known("cmod_mm", of(&|row| Some(row.mouth_opening? / MM)))
-        .known("beta_length_mm", of(&|row| Some(row.beta_length / MM)))
-        .known("load_line_displacement_mm", of(&|row| Some(row.load_line? / MM)))
-        .known("back_face_strain", of(&|row| row.back_face_strain))
+        .numbers("x_mm", of(&|row| Some(row.position[0] / MM)))
+        .numbers("y_mm", of(&|row| Some(row.position[1] / MM)))
+        .numbers("k_i_mpa_sqrt_m", of(&|row| Some(row.factors[0] / MPA_SQRT_M)))
+        .numbers("k_ii_mpa_sqrt_m", of(&|row| Some(row.factors[1] / MPA_SQRT_M)))
+        .numbers("t_stress_mpa", of(&|row| Some(row.t_stress? / MPA)))
+        .numbers("beta", of(&|row| Some(row.beta)))
+        .numbers("cmod_mm", of(&|row| Some(row.mouth_opening? / MM)))
+        .numbers("beta_length_mm", of(&|row| Some(row.beta_length / MM)))
+        .numbers("load_line_displacement_mm", of(&|row| Some(row.load_line? / MM)))
+        .numbers("back_face_strain", of(&|row| row.back_face_strain))
 }
 
 /// β of the tip that grows farthest over its own a, as [`perilife_plate::specimen::beta`] reads it.

@@ -5,8 +5,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::chart::LARGE;
-use super::output::{write_file, write_json};
-use super::pictures::fit::{FIT_FILE, FitTables, law_svg};
+use super::output::{Room, write_file, write_json};
+use super::pictures::fit::{BAND_FILE, FIT_FILE, FitTables, law_svg};
 use super::pictures::plate::Plate;
 use super::{provenance, test_record};
 use perilife_base::columns::Table;
@@ -22,6 +22,8 @@ use perilife_growth::case::RECORD;
 
 /// The law, for `fatigue.fitted`.
 pub const LAW_FILE: &str = RECORD;
+/// Bytes that a fit will write, roughly.
+pub const ROOM: Room = Room { tables: 64_000, all: 1_000_000 };
 /// Growth rate over ΔK with the law.
 const DA_DN_FILE: &str = "da_dn.svg";
 
@@ -36,17 +38,12 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// Of a fit that took `wall_s` seconds.
+    /// Of a fit and its record.
     /// Errors: a law that has no form in TOML.
-    pub fn of(fitted: &Fitted<'_>, wall_s: f64) -> Result<Self> {
+    pub fn of(fitted: &Fitted<'_>, mut record: FitRecord) -> Result<Self> {
         let unwritable =
             |error: toml::ser::Error| Error::file(Path::new(LAW_FILE), "cannot write", std::io::Error::other(error.to_string()));
         let law = fitted.record_text().map_err(unwritable)?;
-        let with_text = |table: Table| {
-            let text = table.csv();
-            (table, text)
-        };
-        let mut record = fitted.record(wall_s);
         let tables = match fitted {
             Fitted::Lives(calibration, fit) => {
                 let (delta_k, left_out) = (|length: f64| fit.delta_k(calibration, length), left_out(calibration, fit));
@@ -56,22 +53,22 @@ impl Kept {
                     fitted_rates(calibration, fit),
                     readings(calibration, &left_out, &delta_k),
                 ]
-                .map(with_text)
+                .map(Table::with_text)
                 .to_vec();
                 let mut beside = json!({
                     "test": test_record::test(calibration),
                     "criteria": test_record::criteria(calibration, &left_out, &delta_k),
                     "plate": Plate::of(&calibration.case),
                 });
-                let names: Vec<String> = tables.iter().map(|(table, _)| table.file.display().to_string()).collect();
-                let texts = names.iter().map(|name| &**name).zip(tables.iter().map(|(_, text)| &**text));
-                provenance::add(&mut beside, &calibration.case.provenance, std::iter::once((LAW_FILE, &*law)).chain(texts));
+                let texts = tables.iter().map(|(table, text)| (&*table.file, &**text));
+                let texts = std::iter::once((Path::new(LAW_FILE), &*law)).chain(texts);
+                provenance::add(&mut beside, &calibration.case.provenance, texts);
                 if let FitRecord::Lives(lives) = &mut record {
                     lives.beside = beside;
                 }
                 tables
             }
-            Fitted::Rates(case, fits) => [rates_beside_law(case, fits), rates_taken(case)].map(with_text).to_vec(),
+            Fitted::Rates(case, fits) => [rates_beside_law(case, fits), rates_taken(case)].map(Table::with_text).to_vec(),
         };
         Ok(Kept { record, law, tables })
     }
@@ -127,7 +124,7 @@ fn band(calibration: &CalibrationCase, fit: &Fit) -> Table {
         (BAND * fit.paris.rate_at_pivot_error.hypot(m_error * w)).exp()
     };
     let factors: Vec<f64> = (0..lengths.len()).map(&mut factor).collect();
-    Table::new("fit_band.csv")
+    Table::new(BAND_FILE)
         .numbers("crack_length_mm", lengths.iter().map(|length| length / MM))
         .numbers("cycles_fitted", cycles.iter().copied())
         .numbers("cycles_low", cycles.iter().zip(&factors).map(|(n, factor)| n / factor))

@@ -10,7 +10,7 @@ use super::band::{Lives as Band, every_words};
 use super::chart::{COMPUTED, Frame, LARGE, Mark, SECOND};
 use super::format::{PLAIN, chance, clean};
 use super::inspections::Asked;
-use super::output::{write_file, write_table};
+use super::output::write_file;
 use super::sweep::{LifeQuantiles, Lives};
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
@@ -160,9 +160,8 @@ impl FleetReport {
             .exact("missed", numbers(&|plate| plate.missed.unwrap_or(f64::NAN)))
     }
 
-    /// Writes table and picture into the folder of a run.
+    /// Writes its picture into the folder of a run.
     pub fn write(&self, folder: &Path, case: &Case) -> Result<()> {
-        write_table(folder, &self.table())?;
         write_file(&folder.join(FLEET_CHART_FILE), self.picture(&case.name).as_bytes())
     }
 

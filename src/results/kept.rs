@@ -6,13 +6,19 @@ use serde_json::Value;
 
 use super::curve::Row;
 use super::record::RESULT_FILE;
-use perilife_base::columns::Table;
+use perilife_base::columns::{AGAIN, Table};
 use perilife_base::error::{Error, InputError, Result};
 use perilife_base::input::{Opened, sha256};
+use perilife_base::units::us::System;
 
-fn refuse(path: &Path, problem: String) -> Error {
-    let remedy = "copy the folder again, or run the case again".to_owned();
-    Error::Input(Box::new(InputError { file: Some(path.to_path_buf()), problem, remedy, ..InputError::default() }))
+/// A file of results that is not as it was written.
+pub(crate) fn refuse(path: &Path, problem: String) -> Error {
+    Error::Input(Box::new(InputError {
+        file: Some(path.to_path_buf()),
+        problem,
+        remedy: AGAIN.to_owned(),
+        ..InputError::default()
+    }))
 }
 
 /// What a result says of one of its tables; `None` of an earlier version.
@@ -31,27 +37,30 @@ pub fn check_listed(path: &Path, table: &[u8], entry: &Value, by: &str) -> Resul
     }
 }
 
-/// The rows of the curve of a folder, as its run wrote it by the `result.json` beside it; without that file there is nothing to compare with.
+/// The rows of the curve of a folder, as its run wrote it by the `result.json` beside it (without that file there is nothing to compare
+/// with), and the units of its text.
 /// Errors: a table that is not as it was written.
-pub fn curve(folder: &Path, name: &str, opened: &Opened) -> Result<(Vec<Row>, String)> {
+pub fn curve(folder: &Path, name: &str, opened: &Opened) -> Result<(Vec<Row>, System)> {
     let (path, beside) = (folder.join(name), folder.join(RESULT_FILE));
     let bytes = opened.read(&path, name)?;
-    let text = String::from_utf8_lossy(&bytes).into_owned();
-    let rows = || Row::of_table(&Table::read(&text, &path)?);
+    let rows = || {
+        let table = Table::read(&String::from_utf8_lossy(&bytes), &path)?;
+        Ok((Row::of_table(&table)?, table.units))
+    };
     if !beside.is_file() {
-        return Ok((rows()?, text));
+        return rows();
     }
     let Ok(result) = serde_json::from_slice::<Value>(&opened.read(&beside, RESULT_FILE)?) else {
-        return Err(refuse(&path, format!("stands beside a {RESULT_FILE} that is cut off or damaged")));
+        return Err(refuse(&path, format!("cannot be checked: {RESULT_FILE} is truncated or damaged")));
     };
     if let Some(entry) = listed(&result, name) {
         check_listed(&path, &bytes, entry, RESULT_FILE)?;
-        return Ok((rows()?, text));
+        return rows();
     }
     // A run of an earlier version says its life alone.
-    let rows = rows()?;
+    let (rows, units) = rows()?;
     match (result["life_cycles"].as_f64(), rows.last().map(|row| row.cycles)) {
         (Some(life), Some(last)) if last < life => Err(refuse(&path, format!("ends at {last} cycles, and the run at {life}"))),
-        _ => Ok((rows, text)),
+        _ => Ok((rows, units)),
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-pub use super::format::{chance, clean, mm, short};
+pub use super::format::{clean, mm, short};
 use perilife_base::units::{KN, MM, MPA};
 use perilife_growth::case::{Case, LawSource, Method, Model, PointSettings};
 use perilife_growth::predict::RunFigures;

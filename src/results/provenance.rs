@@ -55,15 +55,18 @@ pub struct MadeBy {
 
 impl MadeBy {
     /// Of what was read, and the texts of its tables by their names.
-    pub fn of<'t>(provenance: &Provenance, tables: impl IntoIterator<Item = (&'t str, &'t str)>) -> Self {
+    pub fn of<'t>(provenance: &Provenance, tables: impl IntoIterator<Item = (&'t Path, &'t str)>) -> Self {
         let input = |(file, kept_as): (&OpenedFile, String)| InputEntry {
             file: file.name.clone(),
             sha256: file.sha256(),
             bytes: file.content.len(),
             kept_as,
         };
-        let table =
-            |(file, text): (&str, &str)| TableEntry { file: file.to_owned(), sha256: sha256(text.as_bytes()), bytes: text.len() };
+        let table = |(file, text): (&Path, &str)| TableEntry {
+            file: file.display().to_string(),
+            sha256: sha256(text.as_bytes()),
+            bytes: text.len(),
+        };
         MadeBy {
             tables: tables.into_iter().map(table).collect(),
             inputs: provenance.files.iter().zip(kept_names(&provenance.files)).map(input).collect(),
@@ -75,7 +78,7 @@ impl MadeBy {
 }
 
 /// Adds to the object of a result what made it.
-pub fn add<'t>(object: &mut Value, provenance: &Provenance, tables: impl IntoIterator<Item = (&'t str, &'t str)>) {
+pub fn add<'t>(object: &mut Value, provenance: &Provenance, tables: impl IntoIterator<Item = (&'t Path, &'t str)>) {
     if let (Some(fields), Ok(Value::Object(made_by))) =
         (object.as_object_mut(), serde_json::to_value(MadeBy::of(provenance, tables)))
     {

@@ -106,6 +106,13 @@ pub struct Judged {
     strengths: Option<Vec<Strength>>,
 }
 
+/// The part of a result that a listing of runs shows, all that the user should know under `warnings`.
+pub fn figures(result: &Value) -> Value {
+    let warnings = result.get("refused").into_iter().chain(result["warnings"].as_array().into_iter().flatten()).cloned();
+    let shown = FIGURES.iter().filter_map(|key| Some(((*key).to_owned(), result.get(key)?.clone())));
+    shown.chain([("warnings".to_owned(), warnings.collect())]).collect::<Map<_, _>>().into()
+}
+
 impl Judged {
     /// Of a run.
     /// Errors: as [`Judgement::of`]; a damaged record.
@@ -130,32 +137,15 @@ impl Judged {
         let (answers, unanswered) = answers.map_or_else(|error| (Answers::default(), Some(error)), |answers| (answers, None));
         answers.add_to(&mut record);
         judgement.refusal = judgement.refusal.or(missed).or(unanswered);
-        let with_text = |table: Table| {
-            let text = table.csv();
-            (table, text)
-        };
         let kept = [curve::a_n(case, prediction, lives.columns()), curve::crack_path(prediction, &case.specimen.cracks)];
-        let kept = kept.map(with_text);
-        record.made_by = MadeBy::of(
-            &case.provenance,
-            [curve::A_N_FILE, curve::CRACK_PATH_FILE].into_iter().zip(kept.iter().map(|(_, text)| &**text)),
-        );
+        let kept = kept.map(Table::with_text);
+        record.made_by = MadeBy::of(&case.provenance, kept.iter().map(|(table, text)| (&*table.file, &**text)));
         Ok(Judged { record, told, kept, judgement, lives, quality, answers, strengths })
     }
 
     /// Why the run does not count, though its files are written; taken once.
     pub fn take_refusal(&mut self) -> Option<Error> {
         self.judgement.refusal.take()
-    }
-
-    /// The part of the record that a listing of runs shows, all that the user should know under `warnings`.
-    pub fn figures(&self) -> Value {
-        let Ok(Value::Object(mut all)) = serde_json::to_value(&self.record) else { return Value::Null };
-        let warnings = self.record.refused.iter().chain(&self.record.warnings).cloned().collect::<Vec<_>>();
-        let shown = FIGURES.iter().filter_map(|key| Some(((*key).to_owned(), all.remove(*key)?)));
-        let mut figures: Map<String, Value> = shown.collect();
-        figures.insert("warnings".to_owned(), warnings.into());
-        figures.into()
     }
 
     /// Its tables.
@@ -166,6 +156,7 @@ impl Judged {
             tables.push(factors::factors(case, prediction)?);
         }
         tables.extend(self.strengths.iter().map(|strengths| strength_table(case, strengths)));
+        tables.extend(self.answers.tables());
         Ok(tables)
     }
 
@@ -174,11 +165,9 @@ impl Judged {
     pub fn write(&self, folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
         // Tables and figures first: what a full disk cuts off are pictures.
         self.kept.iter().try_for_each(|(table, text)| write_file(&folder.join(&table.file), text.as_bytes()))?;
-        if factors::are_known(prediction) {
-            write_table(folder, &factors::factors(case, prediction)?)?;
-            if let Some(beta) = factors::beta(case, prediction) {
-                write_file(&folder.join(factors::BETA_FILE), beta.as_bytes())?;
-            }
+        self.tables(case, prediction)?[self.kept.len()..].iter().try_for_each(|table| write_table(folder, table))?;
+        if let Some(beta) = factors::beta(case, prediction).filter(|_| factors::are_known(prediction)) {
+            write_file(&folder.join(factors::BETA_FILE), beta.as_bytes())?;
         }
         write_json(folder, RESULT_FILE, &self.record)?;
         let mut input = provenance::table_of(&case.echo);
@@ -418,14 +407,13 @@ pub fn strength_table(case: &Case, strengths: &[Strength]) -> Table {
     Table::new(RESIDUAL_STRENGTH_FILE)
         .numbers("crack_length_mm", strengths.iter().map(|strength| strength.crack_length / MM))
         .numbers(format!("residual_strength_{unit}"), strengths.iter().map(|strength| strength.load() / size))
-        .known(format!("by_toughness_{unit}"), strengths.iter().map(|strength| Some(strength.by_toughness? / size)))
-        .known(format!("by_net_section_{unit}"), strengths.iter().map(|strength| Some(strength.by_net_section? / size)))
+        .numbers(format!("by_toughness_{unit}"), strengths.iter().map(|strength| Some(strength.by_toughness? / size)))
+        .numbers(format!("by_net_section_{unit}"), strengths.iter().map(|strength| Some(strength.by_net_section? / size)))
         .words("governed_by", strengths.iter().map(Strength::governed_by))
 }
 
-/// Writes `residual_strength.csv` and its picture into the folder of a run.
+/// Draws the residual strength of a run.
 fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> {
-    write_table(folder, &strength_table(case, curve))?;
     let (_, axis, size) = unit(case);
     let series = |name: &str, mark, pick: &dyn Fn(&Strength) -> Option<f64>| Series {
         name: name.to_owned(),

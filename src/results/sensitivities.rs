@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::axis::Axis;
 use super::chart::{COMPUTED, INK, SECOND};
-use super::output::{write_file, write_table};
+use super::output::write_file;
 use super::specimen_picture::sketch::Sketch;
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
@@ -106,15 +106,14 @@ impl Sensitivities {
         Table::new(SENSITIVITIES_FILE)
             .words("input", rows.iter().map(|row| &row.input))
             .words("change", rows.iter().map(|row| &row.change))
-            .exact("life_cycles", rows.iter().map(|row| row.life_cycles.unwrap_or(f64::NAN)))
-            .exact("change_of_life_percent", rows.iter().map(|row| row.change_of_life_percent.unwrap_or(f64::NAN)))
+            .exact("life_cycles", rows.iter().map(|row| row.life_cycles))
+            .exact("change_of_life_percent", rows.iter().map(|row| row.change_of_life_percent))
             .words("ended_by", rows.iter().map(|row| row.ended_by))
             .words("life_is_lower_bound", rows.iter().map(|row| row.life_is_lower_bound))
     }
 
-    /// Writes table and picture into the folder of a run.
+    /// Writes its picture into the folder of a run.
     pub fn write(&self, folder: &Path, case: &Case) -> Result<()> {
-        write_table(folder, &self.table())?;
         write_file(&folder.join("sensitivities.svg"), self.picture(&case.name).as_bytes())
     }
 

@@ -47,11 +47,16 @@ pub struct SpectrumRecord {
     pub retardation: Map<String, Value>,
 }
 
-pub fn curves(spectrum: &Spectrum) -> SpectrumCurves {
+/// Exceedances of a pass, at about so many levels, the last among them.
+pub fn thinned(spectrum: &Spectrum, most: usize) -> Vec<(f64, f64)> {
     let levels = spectrum.exceedances();
-    let each = levels.len().div_ceil(MAXIMA_MOST);
-    let kept = levels.iter().enumerate().filter(|(place, _)| place % each == 0 || place + 1 == levels.len());
-    let maxima: Vec<[f64; 2]> = kept.map(|(_, (level, count))| [clean(*level), clean(*count)]).collect();
+    let each = levels.len().div_ceil(most);
+    let kept = |place: &usize| place % each == 0 || place + 1 == levels.len();
+    (0..levels.len()).filter(kept).map(|place| levels[place]).collect()
+}
+
+pub fn curves(spectrum: &Spectrum) -> SpectrumCurves {
+    let maxima = thinned(spectrum, MAXIMA_MOST).into_iter().map(|(level, count)| [clean(level), clean(count)]).collect();
     let (cycles, largest) = spectrum.ranges(BARS);
     SpectrumCurves { maxima, largest_range: clean(largest), cycles_by_range: cycles }
 }

@@ -19,7 +19,6 @@ use perilife_growth::predict::StopReason;
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
 use perilife_laws::growth_law::GrowthLawKind;
 use perilife_laws::growth_law::description::Constant;
-use perilife_laws::growth_law::table::TableEnds;
 use perilife_laws::retardation::{Constant as Retarding, RetardationKind};
 use perilife_plate::loading::{LoadingKind, SupportEntry};
 use perilife_plate::material::growth_data::{self, GrowthRecord};
@@ -39,7 +38,6 @@ pub fn lines() -> Vec<(String, String, String)> {
     let of_others = [
         PointLaw::lines(),
         BondLawKind::lines(),
-        TableEnds::lines(),
         System::lines(),
         FittedLaw::lines(),
         RateMethod::lines(),
@@ -91,7 +89,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all
 }
 
-/// Every section of case, calibration and sweep files with its keys.
+/// Every section of case and calibration files with its keys.
 pub fn told() -> Vec<Told> {
     let told = |section: &str, meaning: &str, keys: Vec<Key>| Told {
         section: section.to_owned(),
@@ -106,22 +104,22 @@ pub fn told() -> Vec<Told> {
         Told { tag: Some(("kind", kind.name())), is_needed: true, ..told(&format!("specimen.{kind}"), kind.meaning(), keys) }
     };
     let meaning = |section: &str| match section {
-        "material" => "What the plate is made of: a name, constants, or both (constants go before the name's)",
-        "loading" => "Cycles of a load or displacement, or a spectrum, and where they act",
+        "material" => "Material: a name, constants, or both (constants override the name's)",
+        "loading" => "Cyclic load, displacement or spectrum, and where it acts",
         "model" => "Method and resolution",
         "fatigue" => "Growth law, driver, initiation",
-        "stop" => "When the analysis ends",
-        "fleet" => "Many plates that differ",
-        _ => "What is written beside results",
+        "stop" => "End of the analysis",
+        "fleet" => "A fleet: scatter of cracks, loads and laws",
+        _ => "Additional result files",
     };
-    let sides = Edge::ALL.iter().map(|edge| Key::of_choice::<SupportEntry>(edge.name(), "Side that is held"));
+    let sides = Edge::ALL.iter().map(|edge| Key::of_choice::<SupportEntry>(edge.name(), "Support of this side"));
     let measured = [MeasuredKeys::KEYS, RatesKeys::KEYS].concat().into_iter().map(|key| Key { need: Need::Optional, ..key });
     let fit = FitKeys::KEYS.iter().copied().chain(LawKeys::KEYS[1..].iter().copied());
     let mut all: Vec<Told> = SpecimenKind::ALL.iter().map(of_kind).collect();
     all.extend(case::keys().into_iter().map(|(section, keys)| told(section, meaning(section), keys)));
-    all.push(told("supports", "Sides of a plate that are held, each by its name", sides.collect()));
+    all.push(told("supports", "Supported sides of a plate, by name", sides.collect()));
     all.push(told("measured", "Test data of a calibration: a-N readings, or tables of rates", measured.collect()));
-    all.push(told("fit", "What a calibration fits", fit.collect()));
+    all.push(told("fit", "Fit: law, exponent, criterion", fit.collect()));
     all
 }
 

@@ -78,7 +78,7 @@ enum Done {
     #[default]
     Nothing,
     Cycles(Box<Prediction>, Box<Judged>),
-    Scene(Box<Fracture>),
+    Scene(Box<Fracture>, [(Table, String); 3]),
     Lives(Box<Fit>, fit::Kept),
     Rates(Box<LawFits>, fit::Kept),
     Stresses(Box<Stressed>),
@@ -99,7 +99,9 @@ impl Summary {
         };
         Ok(match (&self.done, task) {
             (Done::Cycles(prediction, judged), Task::Prediction { case, .. }) => texts(judged.tables(case, prediction)?),
-            (Done::Scene(fracture), _) => texts(scene_results::tables(fracture).into()),
+            (Done::Scene(_, tables), _) => {
+                tables.iter().map(|(table, text)| (table.file.display().to_string(), text.clone())).collect()
+            }
             (Done::Lives(_, kept) | Done::Rates(_, kept), _) => {
                 kept.texts().map(|(name, text)| (name.display().to_string(), text.to_owned())).collect()
             }
@@ -112,7 +114,9 @@ impl Summary {
     pub fn write(&self, task: &Task, folder: &Path) -> Result<()> {
         match (&self.done, task) {
             (Done::Cycles(prediction, judged), Task::Prediction { case, .. }) => judged.write(folder, case, prediction),
-            (Done::Scene(fracture), Task::Scene(scene)) => scene_results::write(folder, scene, fracture, &self.result),
+            (Done::Scene(fracture, tables), Task::Scene(scene)) => {
+                scene_results::write(folder, scene, (fracture, tables), &self.result)
+            }
             (Done::Lives(found, kept), Task::Fit(Calibration::Lives(case))) => {
                 fit::write(folder, &Fitted::Lives(case, found.clone()), kept)
             }
@@ -219,22 +223,23 @@ pub fn of_prediction(case: &Case, prediction: Prediction, wanted: &Wanted, watch
     let by_run = || prediction.warnings.iter().for_each(|line| watcher.warn(line));
     let mut judged = Judged::of(case, &prediction, wanted).inspect_err(|_| by_run())?;
     judged.told.iter().for_each(|line| watcher.warn(line));
-    let (figures, lines) = (judged.figures(), judged.words(case, &prediction));
-    let refusal = judged.take_refusal();
+    let (lines, refusal) = (judged.words(case, &prediction), judged.take_refusal());
     // Figures and text have a form in JSON.
     let result = serde_json::to_value(&judged.record).unwrap_or_default();
+    let figures = perilife_results::run::figures(&result);
     let done = Done::Cycles(Box::new(prediction), Box::new(judged));
     Ok(Summary { result, figures, lines, refusal, done, ..Summary::default() })
 }
 
 pub fn of_scene(scene: &Scene, fracture: Fracture, watcher: &dyn Watcher) -> Summary {
     fracture.warnings.iter().for_each(|warning| watcher.warn(warning));
+    let tables = scene_results::tables(&fracture);
     // Figures and text have a form in JSON.
-    let result = serde_json::to_value(scene_results::record(scene, &fracture)).unwrap_or_default();
+    let result = serde_json::to_value(scene_results::record(scene, &fracture, &tables)).unwrap_or_default();
     let is_bad = matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable);
     let bad = || Error::Mechanics(format!("{}: {}: {}", scene.name, fracture.end, fracture.end.meaning()));
     let (figures, lines, refusal) = (result.clone(), scene_results::words(scene, &fracture), is_bad.then(bad));
-    Summary { result, figures, lines, refusal, done: Done::Scene(Box::new(fracture)), ..Summary::default() }
+    Summary { result, figures, lines, refusal, done: Done::Scene(Box::new(fracture), tables), ..Summary::default() }
 }
 
 fn of_fit(calibration: &Calibration, watcher: &dyn Watcher) -> Result<Summary> {
@@ -242,10 +247,10 @@ fn of_fit(calibration: &Calibration, watcher: &dyn Watcher) -> Result<Summary> {
     let fitted = calibration.fit(watcher)?;
     let wall_s = started.elapsed().as_secs_f64();
     fitted.warnings().iter().for_each(|warning| watcher.warn(warning));
-    let kept = fit::Kept::of(&fitted, wall_s)?;
+    let record = fitted.record(wall_s);
+    let mut figures = json!(record);
+    let kept = fit::Kept::of(&fitted, record)?;
     let (result, lines) = (kept.json(), kept.record.words());
-    // Readings, criteria and plate of its files are none of a listing.
-    let mut figures = json!(fitted.record(wall_s));
     if let Fitted::Lives(CalibrationCase { case, .. }, _) = fitted {
         // What the law is of.
         figures["material"] = json!(case.material.name);

@@ -14,7 +14,7 @@ use perilife_plate::specimen::Point;
 use perilife_results::chart::{self, Mark, Series};
 use perilife_results::damage::DamagePicture;
 use perilife_results::model_words::{self, clean};
-use perilife_results::output::{Room, write_json, write_table};
+use perilife_results::output::{Room, write_file, write_json};
 use perilife_results::provenance::{self, MadeBy};
 use perilife_results::record::RESULT_FILE;
 use perilife_results::vtk;
@@ -59,8 +59,10 @@ fn crack_path(file: &'static str, path: &[PathPoint]) -> Table {
         .numbers("speed_m_s", column(|point| point.speed))
 }
 
-pub fn tables(fracture: &Fracture) -> [Table; 3] {
+/// Its tables with their texts.
+pub fn tables(fracture: &Fracture) -> [(Table, String); 3] {
     [history(fracture), crack_path("crack_path.csv", &fracture.path), crack_path("cracking.csv", &fracture.cracking)]
+        .map(Table::with_text)
 }
 
 /// Bytes that a scene will write, roughly.
@@ -69,9 +71,9 @@ pub fn room(scene: &Scene) -> Room {
 }
 
 /// Writes all files of a scene into `folder`.
-pub fn write(folder: &Path, scene: &Scene, fracture: &Fracture, result: &Value) -> Result<()> {
+pub fn write(folder: &Path, scene: &Scene, (fracture, tables): (&Fracture, &[(Table, String)]), result: &Value) -> Result<()> {
     // Tables and figures first: what a full disk cuts off are pictures.
-    tables(fracture).iter().try_for_each(|table| write_table(folder, table))?;
+    tables.iter().try_for_each(|(table, text)| write_file(&folder.join(&table.file), text.as_bytes()))?;
     write_json(folder, RESULT_FILE, result)?;
     provenance::write(folder, "fracture", provenance::table_of(&scene.echo), &scene.provenance)?;
     draw_charts(folder, scene, fracture)?;
@@ -258,11 +260,10 @@ pub struct DamageRecord {
     pub printed_law: Option<bool>,
 }
 
-pub fn record(scene: &Scene, fracture: &Fracture) -> SceneRecord {
+pub fn record(scene: &Scene, fracture: &Fracture, tables: &[(Table, String)]) -> SceneRecord {
     let figures = &fracture.figures;
     let peak = rows(fracture).max_by(|a, b| a.load.total_cmp(&b.load));
     let last = rows(fracture).last();
-    let texts = tables(fracture).map(|table| (table.file.display().to_string(), table.csv()));
     SceneRecord {
         name: scene.name.clone(),
         stop_reason: fracture.end,
@@ -292,7 +293,7 @@ pub fn record(scene: &Scene, fracture: &Fracture) -> SceneRecord {
         warnings: scene.warnings.iter().chain(&fracture.warnings).cloned().collect(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         case: scene.echo.clone(),
-        made_by: MadeBy::of(&scene.provenance, texts.iter().map(|(name, text)| (&**name, &**text))),
+        made_by: MadeBy::of(&scene.provenance, tables.iter().map(|(table, text)| (&*table.file, &**text))),
     }
 }
 

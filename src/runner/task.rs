@@ -19,7 +19,7 @@ use perilife_points::budget::Budget;
 use perilife_results::band::no_band_to_narrow;
 use perilife_results::output::{Room, RunKind};
 use perilife_results::run::{self, Wanted};
-use perilife_results::stresses;
+use perilife_results::{fit, stresses};
 use perilife_scenes::Scene;
 use perilife_scenes::read::is_scene;
 
@@ -227,7 +227,7 @@ impl Task {
             Task::Prediction { case, .. } => run::room(case),
             Task::Scene(scene) => scene_results::room(scene),
             Task::Factors { case, .. } => stresses::room(case),
-            Task::Fit(_) => Room { tables: 64_000, all: 1_000_000 },
+            Task::Fit(_) => fit::ROOM,
             Task::Sweep { .. } => Room::default(),
         }
     }

@@ -17,11 +17,6 @@ fn bad_designs_are_refused_before_anything_runs() {
             vec!["is not a key of a case"],
         ),
         (grid("key = \"specimen.crack_length_mm\"\nvalues = [1]\n").replace("panel", "gone"), 4, vec!["gone.toml: cannot read"]),
-        (
-            "case = \"panel.toml\"\n[design]\nkind = \"grit\"\n".to_owned(),
-            2,
-            vec!["sweep.toml:3", "\"grit\"", "did you mean \"grid\"?"],
-        ),
         ("case = \"panel.toml\"\n[design]\nkind = \"grid\"\n".to_owned(), 2, vec!["vary: is missing: nothing varies"]),
         (
             grid("key = \"crack_length_mm\"\nvalues = [1]\n"),

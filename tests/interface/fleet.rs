@@ -80,11 +80,9 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
 fn a_fleet_without_scatter_and_wrong_keys_are_refused() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("case.toml"), PANEL).unwrap();
-    let cases: [(&[&str], &[&str]); 10] = [
+    let cases: [(&[&str], &[&str]); 8] = [
         (&["--fleet", "100"], &["fleet", "nothing that scatters", "initial_length_mm"]),
         (&["--fleet", "0"], &["fleet.plates = 0", "100000"]),
-        (&["--set", "fleet.load_scatter=-0.1"], &["fleet.load_scatter", "beyond reason"]),
-        (&["--set", "fleet.load_scatter=nan"], &["fleet.load_scatter"]),
         (&["--set", "fleet.initial_length_mm={ median = 3.0 }"], &["fleet.initial_length_mm", "standard_deviation_ln"]),
         (&["--set", "fleet.plate=3"], &["fleet.plate", "did you mean plates?"]),
         (&["--pod", "2,5"], &["--inspect-from"]),

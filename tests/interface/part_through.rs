@@ -17,7 +17,7 @@ fn write(folder: &Path, change: [&str; 2]) {
 
 #[test]
 fn bad_input_is_refused_by_name() {
-    let rows: [([&str; 2], &[&str]); 19] = [
+    let rows: [([&str; 2], &[&str]); 13] = [
         (
             ["crack_depth_mm = 1.27", "crack_depth_mm = 5.5"],
             &["hole.toml:1", "specimen.crack_depth_mm = 5.5", "a/t = 1.100", "through crack"],
@@ -27,12 +27,7 @@ fn bad_input_is_refused_by_name() {
             &["specimen.crack_half_length_mm = 36", "36 mm", "wider than the plate"],
         ),
         (["hole_diameter_mm = 8.0", "hole_diameter_mm = 80"], &["specimen.hole_diameter_mm = 80", "not below the width 80"]),
-        (["hole_diameter_mm = 8.0\n", ""], &["specimen.hole_diameter_mm", "missing"]),
-        (["cracks = 1 ", "cracks = 3 "], &["specimen.cracks = 3", "not 1 or 2"]),
         (["cracks = 1 ", "# "], &["specimen.cracks", "missing", "give 1"]),
-        (["crack_depth_mm = 1.27 ", "# "], &["specimen.crack_depth_mm", "missing"]),
-        (["crack_depth_mm = 1.27", "crack_depth_mm = -1.27"], &["specimen.crack_depth_mm", "above zero"]),
-        (["crack_depth_mm = 1.27", "crack_depth_mm = nan"], &["specimen.crack_depth_mm", "finite"]),
         (
             ["\"corner_crack_at_hole\"", "\"surface_crack\""],
             &["specimen.hole_diameter_mm = 8", "surface_crack", "corner_crack_at_hole"],
@@ -51,7 +46,6 @@ fn bad_input_is_refused_by_name() {
             &["stop.crack_depth_mm = 1", "not beyond the initial crack depth 1.27 mm"],
         ),
         (["[fatigue]", "[stop]\ncrack_depth_mm = 6\n[fatigue]"], &["stop.crack_depth_mm = 6", "beyond 5 mm"]),
-        (["stress_ratio = 0.1", "stress_ratio = 0.1\nbending_ratio = -1"], &["loading.bending_ratio", "beyond reason"]),
         (
             ["stress_ratio = 0.1", "stress_ratio = 0.1\nstress_parallel_ratio = -1"],
             &["loading.stress_parallel_ratio = -1", "stress at the hole", "crack_at_hole"],

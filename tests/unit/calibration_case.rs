@@ -255,24 +255,42 @@ fn readings_at_hand_are_those_of_the_file() {
 fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
     let loading = "[loading]\nkind = \"constant_amplitude\"\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n";
     let open = GOOD.replace(loading, "").replace("crack_length_mm = 9.0\n[material]", "[material]");
-    let with_loads = |of_b: &str| {
+    let read = |text: &str, head: &str, of_b: &str| {
         let rows = CURVES.lines().enumerate().map(|(i, line)| match i {
-            0 => format!("{line},stress_max_mpa,stress_ratio\n"),
+            0 => format!("{},stress_max_mpa,stress_ratio\n", line.replace("crack_length_mm", head)),
             _ => format!("{line},{},0.2\n", if line.starts_with('B') { of_b } else { "60.35" }),
         });
         let folder = tempdir().unwrap();
         fs::write(folder.path().join("curves.csv"), rows.collect::<String>()).unwrap();
-        fs::write(folder.path().join("alloy.toml"), &open).unwrap();
+        fs::write(folder.path().join("alloy.toml"), text).unwrap();
         CalibrationCase::from_file(&folder.path().join("alloy.toml"), &[])
     };
-    let read = with_loads("60.35").unwrap();
-    assert_eq!((read.case.loading.maximum, read.case.loading.ratio, read.case.specimen.crack_length), (60.35e6, 0.2, 8.0 * MM));
-    for words in
-        ["stress_max_mpa = 60.35, stress_ratio = 0.2", "is the first reading, 8, taken as half of the crack from tip to tip"]
-    {
-        assert!(read.warnings.iter().any(|line| line.contains(words)), "{words}: {:?}", read.warnings);
+    let load = "loading: stress_max_mpa = 60.35, stress_ratio = 0.2, from the readings";
+    let edge = open.replace("\"middle_tension\"", "\"double_edge_tension\"");
+    for (text, head, first, words) in [
+        (&edge, "crack_length_mm", 9.0, "9 mm, from the first reading"),
+        (
+            &open.replace("from_crack_length_mm = 9.0\n", "").replace("to_crack_length_mm = 13.0\n", ""),
+            "2a (mm)",
+            4.0,
+            "4 mm, from the first reading (half of the tip-to-tip length)",
+        ),
+    ] {
+        let read = read(text, head, "60.35").unwrap();
+        let specimen = &read.case.specimen;
+        assert_eq!((read.case.loading.maximum, read.case.loading.ratio, specimen.crack_length), (60.35e6, 0.2, first * MM));
+        for words in [load, words] {
+            assert!(read.warnings.iter().any(|line| line.contains(words)), "{words}: {:?}", read.warnings);
+        }
+        assert!(
+            read.input.contains_key("loading") && read.input["specimen"].get("crack_length_mm").is_some(),
+            "{:?}",
+            read.input
+        );
     }
-    assert!(read.input.contains_key("loading") && read.input["specimen"].get("crack_length_mm").is_some(), "{:?}", read.input);
-    let error = with_loads("50").unwrap_err().to_string();
+    // Half of the length or all of it: nothing says.
+    let error = read(&open, "crack_length_mm", "60.35").unwrap_err().to_string();
+    assert!(error.contains("specimen.crack_length_mm: is missing"), "{error}");
+    let error = read(&edge, "crack_length_mm", "50").unwrap_err().to_string();
     assert!(error.contains("loading: is missing"), "{error}");
 }

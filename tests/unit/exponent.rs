@@ -98,7 +98,7 @@ fn a_narrow_window_takes_p_from_a_record_or_says_that_it_is_not_identified() {
     assert_eq!(report(WIDE, "parameters = [\"a\"]\nrecord = \"fitted.toml\"")["p_source"], "fitted.toml");
     assert_eq!(report(NARROW, "parameters = [\"a\"]\np = 3")["p_source"], "given");
     let twice = calibration(&folder, NARROW, "parameters = [\"a\"]\np = 3\nrecord = \"fitted.toml\"").unwrap_err().to_string();
-    assert!(twice.contains("fit.p = 3") && twice.contains("p is given twice"), "{twice}");
+    assert!(twice.contains("fit.p = 3") && twice.contains("conflicts with record"), "{twice}");
     let nowhere = calibration(&folder, NARROW, "record = \"nowhere.toml\"").unwrap_err();
     assert_eq!(nowhere.exit_code(), 4);
 }

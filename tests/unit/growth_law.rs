@@ -229,7 +229,7 @@ fn a_second_law_is_refused() {
     };
     for (i, (key, text, kinds)) in LAWS.into_iter().enumerate() {
         for (second, other, _) in &LAWS[i + 1..] {
-            let both = format!("fatigue.{key}: the law is given twice");
+            let both = format!("fatigue.{key}: a second growth law");
             refused(&format!("{text}{other}"), [&format!("fatigue.{second} = "), &both, "give one law"]);
         }
         for kind in GrowthLawKind::all().filter(|kind| !kinds.contains(&kind.name())) {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use perilife_base::error::Error;
+use perilife_base::input::{Document, Folder};
 use perilife_base::keys::told::Told;
 use perilife_base::keys::{Given, Key, Kinds, Need, Shape, all, mistakes};
 use perilife_base::units::us::{System, renamed};
@@ -31,9 +32,20 @@ fn filled(keys: &[Key]) -> Table {
     needed.map(|key| (key.name.to_owned(), some(&key, key.shape))).collect()
 }
 
-/// Sections of every sort of file.
+/// Sections of every sort of file, and tables below them.
 fn sections() -> Vec<Told> {
-    [catalogue::told(), catalogue::beside()].concat()
+    let mut found = [catalogue::told(), catalogue::beside()].concat();
+    let mut at = 0;
+    while let Some(told) = found.get(at).cloned() {
+        for key in all(&told.keys) {
+            if let Shape::Table(keys @ [_, ..]) | Shape::List(&Shape::Table(keys @ [_, ..])) = key.shape {
+                let section = format!("{}.{}", told.section, key.name);
+                found.push(Told { section, keys: keys.to_vec(), tag: None, ..told.clone() });
+            }
+        }
+        at += 1;
+    }
+    found
 }
 
 /// What a section says of a table.
@@ -62,6 +74,20 @@ fn every_key_refuses_values_of_another_sort_and_beyond_reason() {
                 assert_eq!(wrong.len(), 1, "{wrong:?}");
                 assert!(wrong[0].starts_with(&format!("{path} = 1979-05-27: is not ")) && wrong[0].contains("; "), "{wrong:?}");
                 rows += 1;
+            }
+            if let Shape::Choice(_) | Shape::List(&Shape::Choice(_)) = key.shape {
+                let name = Value::from("nowhere");
+                let value = if matches!(key.shape, Shape::List(_)) { Value::Array(vec![name]) } else { name };
+                let wrong = with(&told, &key, value);
+                assert!(wrong.len() == 1 && wrong[0].contains("= \"nowhere\": is not a known kind; "), "{wrong:?}");
+                rows += 1;
+            }
+            if let (Shape::Whole, Some(range)) = (key.shape, key.quantity) {
+                for value in [range.low - 1.0, range.high + 1.0] {
+                    let wrong = with(&told, &key, Value::Integer(value as i64));
+                    assert!(wrong.len() == 1 && wrong[0].starts_with(&path) && wrong[0].contains(": is not "), "{wrong:?}");
+                    rows += 1;
+                }
             }
             let Some(quantity) = key.quantity.filter(|_| matches!(key.shape, Shape::Number)) else { continue };
             for (value, words) in [
@@ -96,6 +122,7 @@ fn every_needed_key_is_missed_and_a_good_section_is_taken() {
 
 #[test]
 fn of_keys_that_say_the_same_one_is_given() {
+    let mut rows = 0;
     for told in sections() {
         let keys = all(&told.keys);
         for (i, key) in keys.iter().enumerate().filter(|(_, key)| key.group.is_some()) {
@@ -105,9 +132,47 @@ fn of_keys_that_say_the_same_one_is_given() {
                 table.insert(key.name.to_owned(), some(key, key.shape));
             }
             let wrong = told_of(&told, &table);
-            assert!(wrong.iter().any(|wrong| wrong.contains("is given twice; give exactly one of")), "{}: {wrong:?}", key.name);
+            assert!(
+                wrong.iter().any(|wrong| wrong.contains(&format!("conflicts with {}; give exactly one of ", other.name))),
+                "{}: {wrong:?}",
+                key.name
+            );
+            rows += 1;
         }
     }
+    assert!(rows > 5, "{rows}");
+}
+
+/// The name of a key in US units.
+fn twin_of(key: &Key) -> Option<String> {
+    renamed(key.name, System::Us).filter(|twin| twin.factor(|_| None).is_ok()).map(|twin| twin.name)
+}
+
+#[test]
+fn every_twin_is_refused_in_its_own_units_and_beside_its_key() {
+    let mut rows = 0;
+    for told in catalogue::told() {
+        let section = told.section.split('.').next().unwrap();
+        for key in all(&told.keys).into_iter().filter(|key| matches!(key.shape, Shape::Number)) {
+            let Some((twin, quantity)) = twin_of(&key).zip(key.quantity) else { continue };
+            let both = format!("[{section}]\n{} = {}\n{twin} = 1.0\n", key.name, some(&key, key.shape));
+            let error = Document::parse(&both, "both.toml", Folder::none(), &[]).unwrap_err().to_string();
+            let words = format!("both.toml:3: {section}.{twin} = 1.0: conflicts with {section}.{} = ", key.name);
+            assert!(error.starts_with(&words), "{error}");
+            let large = format!("[{section}]\n{twin} = {:e}\n", 10.0 * quantity.high);
+            let document = Document::parse(&large, "large.toml", Folder::none(), &[]).unwrap();
+            let mut table = filled(&told.keys);
+            table.extend(document.table[section].as_table().unwrap().clone());
+            let wrong = mistakes(Given { table: &table, path: section }, &told.keys, &[], None);
+            let error = document.locate(Error::Input(Box::new(wrong.into_iter().next().unwrap()))).to_string();
+            assert!(
+                error.starts_with(&format!("large.toml:2: {section}.{twin} = ")) && error.contains("beyond reason"),
+                "{error}"
+            );
+            rows += 1;
+        }
+    }
+    assert!(rows > 100, "{rows}");
 }
 
 #[test]
@@ -135,15 +200,13 @@ fn every_key_is_told_everywhere_with_its_twin() {
             let (label, _) = key.label_and_hint();
             assert!(!label.is_empty() && !label.contains('_'), "{}.{}: {label}", told.section, key.name);
             assert_eq!(own["properties"][key.name]["title"], label, "{}", key.name);
-            assert!(told.lines().iter().any(|line| line[0] == format!("{}.{}", told.section, key.name)));
             assert!(
                 manual.contains(&format!("| `{}`", key.name)) && stub.contains(&format!("    {}: ", key.name)),
                 "{}",
                 key.name
             );
             assert!(schema.contains(&format!("\"{}\"", key.name)));
-            let twin = renamed(key.name, System::Us).and_then(|twin| Some((twin.factor(|_| None).ok()?, twin.name)));
-            if let Some((_, twin)) = twin {
+            if let Some(twin) = twin_of(&key) {
                 assert!(own["properties"].get(&twin).is_some() && stub.contains(&format!("    {twin}: ")), "{twin}");
             }
         }

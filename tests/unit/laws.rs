@@ -380,7 +380,7 @@ fn predictions_read_the_fitted_law() {
             _ => assert!(beyond.unwrap().1.warnings.iter().any(|line| line.contains("is used at 0.9")), "{kind}"),
         }
         let twice = life("fitted = \"fitted.toml\"\nparis_m = 3\n", &[]).unwrap_err();
-        assert!(twice.to_string().contains("fatigue.paris_m: stands beside fatigue.fitted"), "{twice}");
+        assert!(twice.to_string().contains("fatigue.paris_m: conflicts with fatigue.fitted"), "{twice}");
         let other = life("fitted = \"fitted.toml\"\ngrowth_law = \"table\"\n", &[]).unwrap_err();
         assert!(other.to_string().contains("is not the law that fitted.toml holds"), "{other}");
     }

@@ -183,7 +183,7 @@ fn directions_pressures_and_displacements_that_are_refused() {
         (
             PLATE,
             "stress_ratio = 0\nforce_max_n = 5\npins = [{ hole = 0, direction = [0, 1] }]\ndirection = [0, 1]".into(),
-            "stands beside loading.pins",
+            "conflicts with loading.pins",
         ),
         (PANEL, "stress_ratio = 0\nstress_max_mpa = 50\ndirection = [0, 1]".into(), "does not go with middle_tension"),
         (PANEL, "stress_ratio = 0\ncrack_pressure_mpa = 50".into(), "does not go with middle_tension"),
@@ -197,7 +197,7 @@ fn directions_pressures_and_displacements_that_are_refused() {
         (PLATE, format!("{kept}crack_pressure_mpa = 50"), "loading.displacement_max_mm: is missing"),
         (PLATE, kept.into(), "is missing: there is no load"),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ncrack_pressure_mpa = 5"), "does not go with cycles of a displacement"),
-        (PLATE, format!("{kept}displacement_max_mm = 0.1\ndisplacement_range_mm = 0.1"), "one load is given twice"),
+        (PLATE, format!("{kept}displacement_max_mm = 0.1\ndisplacement_range_mm = 0.1"), "conflicts with displacement_max_mm"),
         (PLATE, "stress_ratio = 0\ndisplacement_max_mm = 0.1".into(), "does not go with kind"),
         (
             PLATE,

@@ -183,7 +183,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (
             hole("hole_diameter_mm = 10\ncrack_length_mm = 3\ncrack_lengths_mm = [1, 2]"),
             TENSION,
-            "stands beside crack_length_mm",
+            "conflicts with crack_length_mm",
         ),
         (hole("hole_diameter_mm = 10\ncrack_length_mm = 3\nholes = []"), TENSION, "specimen.holes"),
         (row("holes = 1\npitch_mm = 20\ncrack_length_mm = 1"), TENSION, "is not 2 to 100"),

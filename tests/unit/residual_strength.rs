@@ -79,7 +79,11 @@ fn a_required_load_that_says_nothing_is_refused() {
         (PANEL, &[toughness, "stop.required_strength_mpa=50"], "below the maximum load of the cycle"),
         (PANEL, &[toughness, "stop.limit_load_factor=0.9"], "below the maximum load of the cycle"),
         (PANEL, &["stop.limit_load_factor=2"], "has neither toughness nor yield strength"),
-        (PANEL, &[toughness, "stop.limit_load_factor=2", "stop.required_strength_mpa=150"], "the load is given twice"),
+        (
+            PANEL,
+            &[toughness, "stop.limit_load_factor=2", "stop.required_strength_mpa=150"],
+            "conflicts with required_strength_mpa; give exactly one of",
+        ),
         (ALL[3], &[toughness, "stop.required_strength_mpa=150"], "set stop.limit_load_factor"),
     ];
     for (specimen, set, words) in wrong {

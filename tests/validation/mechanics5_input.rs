@@ -64,9 +64,7 @@ fn a_formula_of_residual_stress_has_the_units_of_its_key() {
     let file = changed(folder, "us_residual.toml", [bare, "residual_stress_ksi = \"1\"\nresidual_stress_mpa = \"7\""]);
     let (code, said) = command(folder, &format!("check {file}"));
     assert!(
-        code == 2
-            && said.contains("loading.residual_stress_ksi = \"1\"")
-            && said.contains("stands beside residual_stress_mpa: the residual stress is given twice"),
+        code == 2 && said.contains("loading.residual_stress_ksi = \"1\"") && said.contains("conflicts with residual_stress_mpa"),
         "{said}"
     );
 }

@@ -278,7 +278,7 @@ fn what_does_not_know_residual_stress() {
     let handbook: &[&str] = &["model.method=handbook"];
     let cases: &[(&str, String, &str, &[&str], &str)] = &[
         (panel, WELD.to_owned(), steady, &[], "walker_gamma"),
-        (panel, format!("{WELD}\n{}", file("short.csv")), WALKER, &[], "is given twice"),
+        (panel, format!("{WELD}\n{}", file("short.csv")), WALKER, &[], "conflicts with residual_stress; give exactly one of"),
         (panel, "residual_stress = \"10 *\"".to_owned(), WALKER, &[], "character"),
         (panel, "residual_stress = \"10 * z\"".to_owned(), WALKER, &[], "unknown name"),
         (panel, "residual_stress = { z = \"10\" }".to_owned(), WALKER, &[], "loading.residual_stress.z"),

@@ -145,7 +145,7 @@ impl Document {
         let other = key.rsplit_once('.').and_then(|(above, last)| Some(format!("{above}.{}", twin(last)?)));
         let is_set = |other: &String| value_at(&Value::Table(self.as_given.clone()), other).is_some();
         if let Some(other) = other.filter(|other| self.overridden.contains(&metric(key)) && is_set(other)) {
-            return Err(refuse(&format!("stands beside {other}: one quantity is given twice")));
+            return Err(refuse(&format!("conflicts with {other}")));
         }
         // TOML where it is TOML, else text, so that names need no quotes in a shell.
         let parsed = toml::de::ValueDeserializer::parse(value).and_then(Value::deserialize);

@@ -14,5 +14,5 @@ pub use document::{Document, ForeignSections, Sections};
 pub use folder::{FileId, Folder, Opened, OpenedFile, Provenance, STREAM, sha256};
 pub use output::Output;
 pub use quantity::*;
-pub use slice::shorten;
 pub use slice::{LEVELS_OF_SCENES, OF_SCENES, PLANNED, slice, table_of, value_at};
+pub use slice::{number_of, shorten};

@@ -10,9 +10,9 @@ crate::keys! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub struct Output {
         /// Whether the fields of some moments are written for ParaView, which takes most of the room of a run.
-        paraview: bool = key("paraview", "ParaView: also the fields of some moments"), or "false" false;
+        paraview: bool = key("paraview", "ParaView files: fields at several stages"), or "false" false;
         /// Whether a run draws its cracks as they grow.
-        animation: bool = key("animation", "Animation: also growth.svg, the cracks as they grow"), or "false" false;
+        animation: bool = key("animation", "Animation: growth.svg of the growing cracks"), or "false" false;
     }
 }
 

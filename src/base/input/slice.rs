@@ -48,6 +48,11 @@ pub(super) fn path_steps(path: &str) -> Vec<String> {
     path.split(['.', '[']).map(|step| step.trim_end_matches(']').to_owned()).filter(|step| !step.is_empty()).collect()
 }
 
+/// A number, whole or not.
+pub fn number_of(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
 /// A value as it is shown in a message: one line, not too long.
 pub fn shorten(value: &Value) -> String {
     let text = value.to_string().replace('\n', " ");

@@ -7,7 +7,7 @@ use crate::units::us::{System, clean, renamed};
 use crate::units::words::in_units;
 use crate::units::{INCH, MM};
 
-use super::slice::{path_steps, shorten, value_at};
+use super::slice::{number_of, path_steps, shorten, value_at};
 
 /// A key that was given in US units.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,10 +56,10 @@ fn below(table: &mut Table, above: &str, written: &mut Vec<Written>) -> Result<(
             continue;
         };
         if let Some(other) = given.get(&si.name) {
-            let problem = format!("stands beside {} = {}: one quantity is given twice", path(&si.name), shorten(other));
-            return Err(input(&path(key), shorten(value), problem, "give one of the two"));
+            let problem = format!("conflicts with {} = {}", path(&si.name), shorten(other));
+            return Err(input(&path(key), shorten(value), problem, "remove one of them"));
         }
-        let sibling = |name: &str| given.get(name).and_then(number);
+        let sibling = |name: &str| given.get(name).and_then(number_of);
         let factor = si.factor(sibling).map_err(|exponent| {
             let problem = format!("is missing, and the unit of {} depends on it", path(key));
             input_missing(&path(exponent), problem, format!("give it, or {}", path(&si.name)))
@@ -83,10 +83,6 @@ fn inside(value: &mut Value, path: &str, written: &mut Vec<Written>) -> Result<(
     }
 }
 
-fn number(value: &Value) -> Option<f64> {
-    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
-}
-
 /// A load, times a factor: of rows over crack length that is in inches.
 fn of_rows(value: &Value, factor: f64) -> Value {
     let Some(rows) = value.as_array() else { return scaled(value, factor) };
@@ -99,7 +95,7 @@ fn of_rows(value: &Value, factor: f64) -> Value {
 
 /// A number, or all of a list, times a factor; what is no number stays, for its reader to refuse.
 fn scaled(value: &Value, factor: f64) -> Value {
-    match (value, number(value)) {
+    match (value, number_of(value)) {
         (_, Some(number)) => Value::Float(clean(number * factor)),
         (Value::Array(items), _) => Value::Array(items.iter().map(|item| scaled(item, factor)).collect()),
         (Value::Table(table), _) => {

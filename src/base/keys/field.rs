@@ -4,8 +4,8 @@ use toml::Value;
 
 use super::{Given, Key, Need, Shape, nearest};
 use crate::error::{Error, Result, input};
-use crate::input::{OF_SCENES, PLANNED, shorten};
-use crate::kinds::Named;
+use crate::input::{OF_SCENES, PLANNED, number_of, shorten};
+use crate::kinds::{Named, use_one_of};
 
 /// A type of a field of a section: which values it takes, and how it is read.
 pub trait Field: Sized {
@@ -53,11 +53,14 @@ pub fn refuse<T>(key: &Key, path: &str, value: &Value, shape: Shape) -> Result<T
 
 /// A number of a key in SI units, within its range.
 pub fn quantity(key: &Key, path: &str, value: &Value) -> Result<f64> {
-    let number = value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
-    let Some(number) = number else {
-        return refuse(key, path, value, if matches!(key.shape, Shape::Other(_)) { key.shape } else { Shape::Number });
-    };
+    let number = plain(key, path, value)?;
     key.quantity.map_or(Ok(number), |quantity| quantity.read(path, number))
+}
+
+/// The same in the unit of the key, whatever its size.
+fn plain(key: &Key, path: &str, value: &Value) -> Result<f64> {
+    let shape = if matches!(key.shape, Shape::Other(_)) { key.shape } else { Shape::Number };
+    number_of(value).map_or_else(|| refuse(key, path, value, shape), Ok)
 }
 
 impl Field for f64 {
@@ -175,8 +178,8 @@ impl<T: Field> Field for Vec<T> {
 impl<T: Named> Field for T {
     const SHAPE: Shape = Shape::Choice(T::lines);
     fn take(_: &Key, path: &str, value: &Value) -> Result<Self> {
-        let known: Vec<&str> = T::lines().iter().map(|line| line.name).collect();
-        let list = format!("use one of {}", known.join(", "));
+        let lines = T::lines();
+        let list = use_one_of(&lines);
         let Some(text) = value.as_str() else { return Err(input(path, shorten(value), "is not text in quotes", list)) };
         if let Some(found) = T::find(text) {
             return Ok(found);
@@ -187,10 +190,21 @@ impl<T: Named> Field for T {
         } else if listed(PLANNED) {
             ("is not built yet", list)
         } else {
-            let near = nearest(text, known.iter().copied());
+            let near = nearest(text, lines.iter().map(|line| line.name));
             ("is not a known kind", near.map_or(list, |near| format!("did you mean \"{near}\"?")))
         };
         Err(input(path, shorten(value), problem, remedy))
+    }
+}
+
+/// A quantity in SI units within the range of its key, or 0 for none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrNone(pub f64);
+
+impl Field for OrNone {
+    const SHAPE: Shape = Shape::Number;
+    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
+        if number_of(value) == Some(0.0) { Ok(OrNone(0.0)) } else { quantity(key, path, value).map(OrNone) }
     }
 }
 
@@ -202,6 +216,6 @@ impl Field for Plain {
     const SHAPE: Shape = Shape::Number;
     fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
         quantity(key, path, value)?;
-        Ok(Plain(value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)).unwrap_or(f64::NAN)))
+        plain(key, path, value).map(Plain)
     }
 }

@@ -8,8 +8,8 @@ mod field;
 mod names;
 pub mod told;
 
-pub use field::{Field, Plain, quantity, refuse};
-pub use names::{Kinds, nearest, none_near};
+pub use field::{Field, OrNone, Plain, quantity, refuse};
+pub use names::{Kinds, meant, nearest};
 
 use toml::Table;
 pub use toml::Value;
@@ -19,7 +19,7 @@ use crate::input::{
     COORDINATE, FORCE, FORCE_KN, FRACTURE_ENERGY, INTENSITY, LENGTH, MODULUS, Quantity, STRESS, number as plain, shorten,
     table_of,
 };
-use crate::kinds::KindLine;
+use crate::kinds::{KindLine, use_one_of};
 
 /// A key of a section. Everything that tells a user of it reads this.
 #[derive(Debug, Clone, Copy)]
@@ -132,9 +132,7 @@ impl Key {
         match (self.quantity, self.shape) {
             _ if !self.remedy.is_empty() => self.remedy.to_owned(),
             (Some(quantity), Shape::Number) => quantity.remedy(),
-            (_, Shape::Choice(lines)) => {
-                format!("use one of {}", lines().iter().map(|line| line.name).collect::<Vec<_>>().join(", "))
-            }
+            (_, Shape::Choice(lines)) => use_one_of(&lines()),
             (_, shape) => format!("give {}", shape.words()),
         }
     }
@@ -241,13 +239,13 @@ impl<'a> Given<'a> {
 /// assert_eq!(read("widht_mm = 50").unwrap_err().to_string(), "strip.widht_mm = 50: is not a known key; did you mean width_mm?");
 /// ```
 pub fn section<S: Section>(value: &Value, path: &str) -> Result<S> {
-    section_beside(value, path, &[], None)
+    section_beside(value, path, &[])
 }
 
-/// The same of a section that has keys `beside`, which others read, and may come in kinds.
-pub fn section_beside<S: Section>(value: &Value, path: &str, beside: &[&str], kinds: Option<&Kinds<'_>>) -> Result<S> {
+/// The same of a section that has keys `beside`, which others read.
+pub fn section_beside<S: Section>(value: &Value, path: &str, beside: &[&str]) -> Result<S> {
     let given = Given::of(value, path)?;
-    Error::of_all(mistakes(given, S::KEYS, beside, kinds))?;
+    Error::of_all(mistakes(given, S::KEYS, beside, None))?;
     S::read(&given)
 }
 
@@ -276,7 +274,7 @@ pub fn mistakes(given: Given<'_>, keys: &[Key], beside: &[&str], kinds: Option<&
         let Some(first) = known[..i].iter().find(|other| other.group == key.group && given.table.contains_key(other.name)) else {
             continue;
         };
-        let problem = format!("stands beside {}: {} is given twice", first.name, key.group.unwrap_or(""));
+        let problem = format!("conflicts with {}", first.name);
         let alike: Vec<&str> =
             known.iter().filter(|other| (other.group, other.only) == (key.group, key.only)).map(|other| other.name).collect();
         if let Error::Input(error) = given.refuse(key.name, problem, format!("give exactly one of {}", alike.join(", "))) {

@@ -46,10 +46,8 @@ pub(super) fn stranger(
         let problem = format!("is not a key of {tag} = \"{own}\": it belongs to {shown}{more}");
         return (told(problem, format!("leave it out, or use {tag} = \"{first}\"")), None);
     }
-    if let Some(near) = nearest(name, names()) {
-        return (told("is not a known key".into(), format!("did you mean {near}?")), Some(near));
-    }
-    (told("is not a known key".into(), none_near(names())), None)
+    let near = nearest(name, names());
+    (told("is not a known key".into(), meant(near.as_deref(), names())), near)
 }
 
 /// A name without its unit, if it has one.
@@ -57,9 +55,13 @@ fn stem(name: &str) -> Option<&str> {
     UNITS.iter().find_map(|unit| name.strip_suffix(unit.suffix(System::Si))?.strip_suffix('_'))
 }
 
-pub fn none_near<'n>(known: impl Iterator<Item = &'n str>) -> String {
-    let known: Vec<&str> = known.collect();
-    format!("known here: {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") })
+/// Remedy for a name that is not known: the nearest one, else all of them.
+pub fn meant<'n>(near: Option<&str>, known: impl Iterator<Item = &'n str>) -> String {
+    let all = || known.collect::<Vec<_>>().join(", ");
+    near.map_or_else(
+        || format!("known here: {}", Some(all()).filter(|all| !all.is_empty()).as_deref().unwrap_or("none")),
+        |near| format!("did you mean {near}?"),
+    )
 }
 
 /// The name that was meant, if one is near: a quarter of its letters may be wrong, three at most; names of one or two letters are too short.

@@ -58,12 +58,6 @@ impl Key {
             .collect::<Vec<_>>()
             .join("; ")
     }
-
-    /// Label and hint in one line.
-    fn meaning(&self) -> String {
-        let (label, hint) = self.label_and_hint();
-        if hint.is_empty() { label.to_owned() } else { format!("{label}: {hint}") }
-    }
 }
 
 impl Told {
@@ -87,7 +81,8 @@ impl Told {
 
     /// Lines of the list: key, range or names, what is taken where it is left out, meaning.
     pub fn lines(&self) -> Vec<[String; 4]> {
-        let line = |(path, key): (String, Key)| [format!("{}.{path}", self.section), key.range(), key.left_out(), key.meaning()];
+        let line =
+            |(path, key): (String, Key)| [format!("{}.{path}", self.section), key.range(), key.left_out(), key.text.to_owned()];
         self.rows().into_iter().map(line).collect()
     }
 
@@ -103,7 +98,7 @@ impl Told {
     pub fn manual(&self) -> String {
         let row = |(path, key): (String, Key)| {
             let twin = key.twin().map(|(twin, _)| format!(", `{twin}`")).unwrap_or_default();
-            format!("| `{path}`{twin} | {} | {} | {} |\n", key.meaning(), key.range().replace('|', "\\|"), key.left_out())
+            format!("| `{path}`{twin} | {} | {} | {} |\n", key.text, key.range().replace('|', "\\|"), key.left_out())
         };
         let rows: String = self.rows().into_iter().map(row).collect();
         format!(
@@ -239,12 +234,12 @@ fn class(name: &str, keys: &[Key], tag: Option<(&str, &str)>) -> String {
         // With a twin in other units neither of both is needed by itself.
         let is_needed = key.need == Need::Required && key.group.is_none() && key.twin().is_none();
         let whole = if is_needed { format!("Required[{plain}]") } else { plain.clone() };
-        own.push_str(&format!("    {}: {whole}  # {}; {}\n", key.name, key.meaning(), key.left_out()));
+        own.push_str(&format!("    {}: {whole}  # {}; {}\n", key.name, key.text, key.left_out()));
         if let Some((twin, _)) = key.twin() {
             own.push_str(&format!("    {twin}: {plain}\n"));
         }
     }
-    if !own.ends_with('\n') || own.lines().count() == 1 {
+    if own.lines().count() == 1 {
         own.push_str("    pass\n");
     }
     format!("{before}{own}\n\n")

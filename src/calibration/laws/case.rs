@@ -54,8 +54,8 @@ perilife_base::keys! {
 perilife_base::keys! {
     /// Keys of `[fit]` that only laws have.
     pub struct LawKeys {
-        law: Option<FitLaw> = key("law", "Growth law to fit: paris where it is left out");
-        given: Given = key("given", "Constants that are given, not fitted: by their keys in [fatigue]"), or "none" Given::new();
+        law: Option<FitLaw> = key("law", "Growth law to fit: default paris");
+        given: Given = key("given", "Given constants: by their keys of [fatigue]"), or "none" Given::new();
     }
 }
 

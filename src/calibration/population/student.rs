@@ -1,13 +1,14 @@
 //! Student's t distribution and the noncentral one, by quadrature over the scatter that is estimated.
 
 use perilife_base::quadrature::integrate;
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Halvings of an interval of quantiles.
 const HALVINGS: usize = 80;
 
 /// Standard normal distribution.
 pub fn normal_cdf(x: f64) -> f64 {
-    0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
+    Normal::standard().cdf(x)
 }
 
 /// Probability that `(z + shift) / √(χ²_ν / ν)` stays below t.

@@ -49,7 +49,7 @@ perilife_base::keys! {
     /// The sweep file as a whole.
     pub struct SweepKeys {
         case: String = key("case", "Base case: its file");
-        design: DesignKeys = key("design", "Design: how cases are chosen");
+        design: DesignKeys = key("design", "Design: grid or random");
         vary: Vec<Value> = key("vary", "Keys that vary"), or "none" Vec::new();
     }
 }
@@ -58,8 +58,8 @@ perilife_base::keys! {
     pub struct DesignKeys {
         kind: DesignKind = key("kind", "Design");
         samples: Option<usize> = key("samples", "Number of cases: of a random design");
-        seed: Option<u64> = key("seed", "Seed: of a random design; 1 where it is left out");
-        scatter: Option<Scatter> = key("scatter", "Scatter of the law: specimens where it is left out");
+        seed: Option<u64> = key("seed", "Seed: of a random design; default 1");
+        scatter: Option<Scatter> = key("scatter", "Scatter of the law: default specimens");
     }
 }
 

@@ -56,7 +56,7 @@ perilife_base::keys! {
         values: Option<Vec<Value>> = key("values", "Values: of a grid");
         from: Option<f64> = key("from", "Least value");
         to: Option<f64> = key("to", "Largest value");
-        count: Option<usize> = key("count", "Number of values: of a grid, both ends among them");
+        count: Option<usize> = key("count", "Number of values: of a grid, both ends included");
         scale: Option<Scale> = key("scale", "Scale: of a grid");
         distribution: Option<DistributionKind> = key("distribution", "Distribution: of a random design");
         mean: Option<f64> = key("mean", "Mean: of a normal distribution");
@@ -113,7 +113,7 @@ impl Reader<'_> {
         let problem = "belongs to a random design, and this is a grid";
         self.given.refuse_any(&OF_DISTRIBUTIONS, problem, "give values, or from, to and count")?;
         let Some(values) = &input.values else { return self.spaced(most) };
-        self.given.refuse_any(&OF_SPACING, "stands beside values", "give values, or from, to and count")?;
+        self.given.refuse_any(&OF_SPACING, "conflicts with values", "give values, or from, to and count")?;
         if values.is_empty() {
             return Err(perilife_base::error::input(&self.key("values"), "[]", "is empty", "give at least one value"));
         }
@@ -206,8 +206,8 @@ impl Reader<'_> {
                 self.above_zero("standard_deviation_ln", deviation)
             }
             (Some(factor), Some(_)) => {
-                let problem = "stands beside standard_deviation_ln: the width is given twice";
-                Err(input(&self.key("factor"), factor, problem, "give one of the two"))
+                let problem = "conflicts with standard_deviation_ln";
+                Err(input(&self.key("factor"), factor, problem, "remove one of them"))
             }
         }
     }

@@ -146,6 +146,7 @@ async fn fetch(
         let outcome = Outcome { try_again: is_lost(&job), ..Outcome::failed(case, &problem.detail, 0.0) };
         return Ok(folder.keep(case, |_| Ok(outcome)));
     }
+    let Some(summary) = job.summary else { return ended("has no summary") };
     let mut files = Vec::new();
     if with_files {
         for FileEntry { name, .. } in patiently(async || store.file_entries(&job.id, Origin::Result).await).await? {
@@ -155,7 +156,7 @@ async fn fetch(
     }
     Ok(folder.keep(case, |path| {
         files.iter().try_for_each(|file| unpacked(path, file))?;
-        Ok(Outcome::of(case, &job.summary.unwrap_or_default(), with_files))
+        Ok(Outcome::of(case, &summary, with_files))
     }))
 }
 

@@ -3,8 +3,9 @@
 use toml::Value;
 
 use super::Method;
-use super::model_keys::{KEYS_OF_BONDS, telling_key};
-use perilife_base::input::value_at;
+use super::fatigue_keys::keys_of_bonds;
+use super::model_keys::telling_key;
+use perilife_base::input::{number_of, value_at};
 use perilife_laws::growth_law::GrowthLawKind;
 use perilife_plate::loading::Loading;
 use perilife_plate::specimen::beta::KEY;
@@ -35,8 +36,7 @@ pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loadin
         Some((key, method)) => return (method, format!("model.{key} asks for nodes")),
         None => {}
     }
-    let is_given = |key: &&&str| value_at(asked.fatigue, key).is_some();
-    if let Some(key) = KEYS_OF_BONDS.iter().find(is_given) {
+    if let Some(key) = keys_of_bonds().into_iter().find(|key| value_at(asked.fatigue, key).is_some()) {
         return (Method::Peridynamics, format!("fatigue.{key} asks for fatigue bonds"));
     }
     if value_at(asked.fatigue, "driver").and_then(Value::as_str) == Some("bond_strain") {
@@ -95,7 +95,5 @@ fn beyond_formula(
 /// The exponent of ΔK that `[fatigue]` gives.
 fn exponent(fatigue: &Value) -> Option<f64> {
     let constants = GrowthLawKind::all().flat_map(|kind| kind.0.constants).filter(|constant| constant.is_exponent);
-    constants
-        .filter_map(|constant| value_at(fatigue, constant.key))
-        .find_map(|value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64)))
+    constants.filter_map(|constant| value_at(fatigue, constant.key)).find_map(number_of)
 }

@@ -2,8 +2,7 @@
 
 use toml::Value;
 
-use super::fatigue_keys::{FatigueKeys, Lot};
-use super::model_keys::KEYS_OF_BONDS;
+use super::fatigue_keys::{FatigueKeys, Lot, keys_of_bonds};
 use super::{Choices, LawSource, Method, Stop, law_source};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::{Folder, Quantity, STRESS};
@@ -36,11 +35,11 @@ pub(super) fn from_value(
     folder: &Folder,
     choices: &mut Choices,
 ) -> Result<Fatigue> {
-    let input: FatigueKeys = section_beside(value, "fatigue", &law_keys().collect::<Vec<_>>(), None)?;
+    let input: FatigueKeys = section_beside(value, "fatigue", &law_keys().collect::<Vec<_>>())?;
     choices.ageing = input.ageing;
     choices.zone_radius_horizons = input.zone_radius_horizons;
     choices.walker_gamma = input.walker_gamma;
-    let driver = read_driver(&input, method, specimen)?;
+    let driver = read_driver(&input, Given::of(value, "fatigue")?.first(&keys_of_bonds()), method, specimen)?;
     let mut settings = FatigueSettings {
         driver,
         ageing: choices.ageing.unwrap_or(Ageing::CrackTip),
@@ -62,9 +61,7 @@ pub(super) fn from_value(
 
 /// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of
 /// fatigue bonds do not go with tips that are driven by their K.
-fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Result<Driver> {
-    let given = [input.ageing.is_some(), input.zone_radius_horizons.is_some(), input.critical_stretch.is_some()];
-    let of_bonds = KEYS_OF_BONDS.iter().zip(given).find(|(_, given)| *given);
+fn read_driver(input: &FatigueKeys, of_bonds: Option<&str>, method: Method, specimen: &Specimen) -> Result<Driver> {
     if method == Method::ElementFreeGalerkin {
         let remedy = "leave it out, or use model.method = \"peridynamics\"";
         return match (input.driver, of_bonds) {
@@ -72,7 +69,7 @@ fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Resu
                 let problem = "needs bonds, and model.method = \"element_free_galerkin\" has none";
                 Err(perilife_base::error::input("fatigue.driver", "\"bond_strain\"", problem, remedy))
             }
-            (_, Some((key, _))) => {
+            (_, Some(key)) => {
                 let problem = "belongs to fatigue bonds, and model.method is \"element_free_galerkin\"";
                 Err(input_missing(&format!("fatigue.{key}"), problem, remedy))
             }
@@ -80,7 +77,7 @@ fn read_driver(input: &FatigueKeys, method: Method, specimen: &Specimen) -> Resu
         };
     }
     match (input.driver, of_bonds) {
-        (Some(Driver::TipField), Some((key, _))) if method == Method::Peridynamics => {
+        (Some(Driver::TipField), Some(key)) if method == Method::Peridynamics => {
             let problem = "belongs to fatigue bonds, and fatigue.driver is \"tip_field\"";
             Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or use driver = \"bond_strain\""))
         }
@@ -132,8 +129,8 @@ perilife_base::keys! {
         crack_length: Option<f64> = length("crack_length_mm", "Final crack length");
         crack_depth: Option<f64> = length("crack_depth_mm", "Final crack depth: of a part-through crack");
         at_break_through: Option<bool> = key("at_break_through", "Stop at breakthrough: of a part-through crack");
-        cycles_max: f64 = number("cycles_max", "Most cycles: run-out", "a number of cycles", 1.0, 1e15), or "1e9" CYCLES_MAX;
-        required_strength: Option<Plain> = key("required_strength_mpa", "Required strength: gross stress that the plate has to carry").of(ANY_STRESS).group(REQUIRED);
+        cycles_max: f64 = number("cycles_max", "Maximum cycles: run-out", "a number of cycles", 1.0, 1e15), or "1e9" CYCLES_MAX;
+        required_strength: Option<Plain> = key("required_strength_mpa", "Required strength: gross stress").of(ANY_STRESS).group(REQUIRED);
         limit_load_factor: Option<f64> = key("limit_load_factor", "Required load: over the maximum load of the cycles").group(REQUIRED);
         toughness: bool = key("toughness", "Fracture ends the life"), or "true" true;
         net_section: bool = key("net_section", "Net-section yield ends the life"), or "true" true;

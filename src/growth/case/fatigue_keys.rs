@@ -3,8 +3,7 @@
 use toml::{Table, Value};
 
 use super::Failure;
-use perilife_base::error::Result;
-use perilife_base::keys::{Field, Key, Shape, intensity, key, number, quantity};
+use perilife_base::keys::{OrNone, Section, intensity, key, number};
 use perilife_laws::growth_law::description::law_keys;
 use perilife_laws::initiation::SnLaw;
 use perilife_laws::{Ageing, Driver};
@@ -22,29 +21,23 @@ const OF_BONDS: (&str, &[&str]) = ("driver", &["bond_strain"]);
 perilife_base::keys! {
     /// Keys of `[fatigue]` beside those of laws.
     pub struct FatigueKeys {
-        driver: Option<Driver> = key("driver", "Driver: what moves cracks");
+        driver: Option<Driver> = key("driver", "Driver: of crack growth");
         ageing: Option<Ageing> = key("ageing", "Ageing: bonds that lose life").only(OF_BONDS.0, OF_BONDS.1);
         zone_radius_horizons: Option<f64> = number("zone_radius_horizons", "Zone of ageing bonds, horizons", "a radius in horizons", 0.05, 10.0).only(OF_BONDS.0, OF_BONDS.1);
         step_error_percent: Option<f64> = number("step_error_percent", "Error of an increment, %", "an error in percent", 0.001, 10.0);
         critical_stretch: Option<f64> = number("critical_stretch", "Critical stretch: beyond which a bond breaks at once", "a stretch", 1e-9, 10.0).only(OF_BONDS.0, OF_BONDS.1);
         walker_gamma: Option<f64> = number("walker_gamma", "Walker exponent γ: effect of the stress ratio", "a Walker exponent", 0.0, 2.0);
-        threshold: Option<Threshold> = intensity("delta_k_threshold_mpa_sqrt_m", "Threshold ΔKth: below which nothing grows; 0 for none");
-        allow_extrapolation: bool = key("allow_extrapolation", "Extrapolation: whether a fitted law may be used outside its range"), or "false" false;
+        threshold: Option<OrNone> = intensity("delta_k_threshold_mpa_sqrt_m", "Threshold ΔK_th: no growth below; 0 for none");
+        allow_extrapolation: bool = key("allow_extrapolation", "Extrapolation: of a fitted law outside its range"), or "false" false;
         lot: Lot = key("lot", "Lot of material: against that of the tests"), or "same" Lot::Same;
         initiation: Option<SnLaw> = key("initiation", "Initiation life: S-N law of the local stress, phase I");
-        failure: Option<Failure> = key("failure", "Failure: what breaks a bond");
+        failure: Option<Failure> = key("failure", "Failure: criterion of bonds");
     }
 }
 
-/// ΔK, Pa√m, or 0 for none.
-pub struct Threshold(pub f64);
-
-impl Field for Threshold {
-    const SHAPE: Shape = Shape::Number;
-    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
-        let is_none = value.as_float() == Some(0.0) || value.as_integer() == Some(0);
-        if is_none { Ok(Threshold(0.0)) } else { quantity(key, path, value).map(Threshold) }
-    }
+/// Keys of `[fatigue]` that belong to fatigue bonds.
+pub fn keys_of_bonds() -> Vec<&'static str> {
+    FatigueKeys::KEYS.iter().filter(|key| key.only == Some(OF_BONDS)).map(|key| key.name).collect()
 }
 
 /// Takes the law out of the sections of a case that is to get another one, or needs none.

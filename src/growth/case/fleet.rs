@@ -17,7 +17,7 @@ perilife_base::keys! {
     pub struct FleetKeys {
         plates: usize = number("plates", "Plates: how many", "a number", 1.0, 1e5), or "1000" PLATES;
         seed: u64 = key("seed", "Seed of all draws"), or "0" 0;
-        initial_length: Option<LengthKeys> = key("initial_length_mm", "Initial crack length: its distribution; that of the case where it is left out");
+        initial_length: Option<LengthKeys> = key("initial_length_mm", "Initial crack length: distribution; default that of the case");
         load_scatter: f64 = number("load_scatter", "Scatter of the load: standard deviation over the load", "a standard deviation over the load", 0.0, LOAD_SCATTER_MAX), or "0" 0.0;
     }
 }

@@ -79,7 +79,7 @@ fn only_law(asked: Option<GrowthLawKind>, fatigue: &Value) -> Result<Option<Vec<
     });
     let Some((kinds, key, value)) = laws.next() else { return Ok(None) };
     if let Some((_, second, value)) = laws.next() {
-        let problem = format!("stands beside {key}: the law is given twice");
+        let problem = format!("conflicts with {key}: a second growth law");
         return Err(input(&second, value, problem, "give one law: fitted, or the constants of one kind"));
     }
     if let Some(kind) = asked.filter(|kind| !kinds.contains(kind)) {
@@ -155,7 +155,7 @@ pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value
     table.remove("growth_law");
     let beside = law_keys().chain([GAMMA.key]).find(|key| table.contains_key(*key));
     if let Some(key) = beside {
-        let problem = "stands beside fatigue.fitted, which holds a law: it is given twice";
+        let problem = "conflicts with fatigue.fitted, which contains a growth law";
         return Err(input_missing(&format!("fatigue.{key}"), problem, "give the record, or all constants in the case"));
     }
     table.extend(record.fatigue.clone());
@@ -179,7 +179,7 @@ pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, fold
     let mut table = fatigue.as_table().cloned().unwrap_or_default();
     table.remove("growth_law");
     if let Some(key) = law_keys().chain([GAMMA.key]).find(|key| table.contains_key(*key)) {
-        let problem = "stands beside growth_law = \"library\": the law is given twice";
+        let problem = "conflicts with growth_law = \"library\"";
         return Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or give all constants in the case"));
     }
     table.extend(keys);

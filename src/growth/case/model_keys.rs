@@ -59,12 +59,12 @@ perilife_base::keys! {
     pub struct ModelKeys {
         method: Method = key("method", "Method"), or "auto" Method::Auto;
         spacing: Option<f64> = length(SPACING, "Spacing: of points, or of nodes far from cracks");
-        symmetry: Option<Symmetry> = of(POINTS, key("symmetry", "Symmetry: whether half or a quarter stands for the plate"));
-        bond_law: Option<BondLawKind> = of(POINTS, key("bond_law", "Bond law: told by Poisson's ratio where it is left out"));
+        symmetry: Option<Symmetry> = of(POINTS, key("symmetry", "Symmetry: model half or a quarter of the plate"));
+        bond_law: Option<BondLawKind> = of(POINTS, key("bond_law", "Bond law: default by Poisson's ratio"));
         kernel: Option<Kernel> = of(POINTS, key("kernel", "Kernel: weight of bonds over their length"));
-        rotation: Option<Rotation> = of(POINTS, key("rotation", "Rotation: whether a rigid rotation costs energy"));
+        rotation: Option<Rotation> = of(POINTS, key("rotation", "Rotation: free or resisted rigid rotation of bonds"));
         surface_correction: Option<SurfaceCorrection> = of(POINTS, key("surface_correction", "Surface correction: at the boundary"));
-        horizon_ratio: Option<f64> = of(POINTS, number("horizon_ratio", "Horizon ratio: horizon over spacing; 3.015 where it is left out", "a horizon ratio", 1.5, 12.0));
+        horizon_ratio: Option<f64> = of(POINTS, number("horizon_ratio", "Horizon ratio: horizon over spacing; default 3.015", "a horizon ratio", 1.5, 12.0));
         lattice_angle_deg: Option<f64> = of(POINTS, number("lattice_angle_deg", "Lattice angle, °: of rows of points against x", "an angle in degrees", -90.0, 90.0));
         solver: Option<SolverKind> = of(POINTS, key("solver", "Solver"));
         nodes: Option<f64> = of(NODES, number("nodes", "Number of nodes: far from cracks", "a number of nodes", 50.0, 1e5));
@@ -74,9 +74,6 @@ perilife_base::keys! {
         influence_radius: Option<f64> = of(NODES, number("influence_radius", "Radius of influence: of a node, in spacings", "a radius of influence in spacings", 1.5, 6.0));
     }
 }
-
-/// Keys of `[fatigue]` that belong to fatigue bonds.
-pub(super) const KEYS_OF_BONDS: &[&str] = &["ageing", "zone_radius_horizons", "critical_stretch"];
 
 /// A key of `[model]` that asks for its first owner where the method is left open; `spacing_mm` asks for points.
 pub(super) fn telling_key(model: &Value) -> Option<(&'static str, Method)> {
@@ -184,8 +181,8 @@ impl ModelKeys {
         let resolution = &mut settings.resolution;
         match (self.spacing, self.nodes) {
             (Some(_), Some(nodes)) => {
-                let problem = "stands beside model.spacing_mm, which says the same in other words";
-                return Err(input("model.nodes", nodes, problem, "leave one of them out"));
+                let problem = "conflicts with model.spacing_mm";
+                return Err(input("model.nodes", nodes, problem, "remove one of them"));
             }
             (Some(spacing), None) => {
                 let side = smaller_side(specimen);

@@ -248,18 +248,18 @@ fn mistakes(sections: &Sections<'_>) -> Vec<InputError> {
     let mut all = sections.given("specimen").map_or_else(Vec::new, specimen::mistakes);
     for (section, keys) in KEYS {
         let Some(value) = sections.given(section) else { continue };
-        let given = Given::of(value, section);
-        all.extend(match (section, given) {
-            ("loading", _) => loading::mistakes(value, &retardation_keys()),
-            ("fatigue", Ok(given)) => keys::mistakes(given, keys, &laws, None),
-            (_, Ok(given)) => keys::mistakes(given, keys, &[], None),
-            (_, Err(_)) => Vec::new(),
+        // What is no table was refused before.
+        let Ok(given) = Given::of(value, section) else { continue };
+        all.extend(match section {
+            "loading" => loading::mistakes(value, &retardation_keys()),
+            "fatigue" => keys::mistakes(given, keys, &laws, None),
+            _ => keys::mistakes(given, keys, &[], None),
         });
     }
     all
 }
 
-/// A scene is told by the kind of its load, whatever else is not right for a case in it.
+/// A scene is told by the levels of its points or the kind of its load, whatever else is not right for a case in it.
 fn refuse_scene(table: &Table) -> Result<()> {
     const KIND: &str = "loading.kind";
     if let Some(given) = table.get("model").and_then(|model| value_at(model, "discretisation")) {

@@ -1,8 +1,8 @@
 //! How wrong a life may be: rates of a run against those by K on finer nodes at the same cracks.
 //!
 //! A life is `N = ∫ da / r(K)`, so that an error of K at the crack of a row, `δ = ln[r(K of finer nodes) / r(K of the run)]`, makes it wrong
-//! by `δN = -∫ δ dN`. That is evaluated at some rows, their shares of the cycles as weights: at each by one equilibrium, on nodes as fine as
-//! those of the run ask for. What two rungs of nodes share, K of the finer ones and the lengths of steps, is added as a bound. The same for the way of a crack: the angles by which directions differ, over its growth.
+//! by `δN = -∫ δ dN`. That is evaluated at some rows, their shares of the cycles as weights: at each of a run on nodes by one equilibrium, on nodes as
+//! fine as those of the run ask for; beside a run on points nodes refine themselves. What two rungs of nodes share, K of the finer ones and the lengths of steps, is added as a bound. The same for the way of a crack: the angles by which directions differ, over its growth.
 
 use super::Prediction;
 use super::laws::growth_law;
@@ -183,12 +183,13 @@ fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, sha
         of_angle += difference.angle.abs() / found.len() as f64;
         largest_exponent = largest_exponent.max(difference.exponent.abs());
     }
-    let deviations = found.iter().map(|(_, difference)| (difference.rate - mean).powi(2));
-    let scatter = (deviations.sum::<f64>() / found.len() as f64).sqrt();
+    let looked_at = end / life;
+    let deviations = found.iter().map(|(_, difference)| (difference.rate - mean / looked_at).powi(2));
+    let scatter = looked_at * (deviations.sum::<f64>() / found.len() as f64).sqrt();
     let is_on_nodes = case.engine() == Engine::Nodes;
     let of_rates = if is_on_nodes { mean.abs() + SCATTER * scatter } else { BETWEEN * of_life };
     let [finer, steps, after_meeting] = [FINER, STEPS, AFTER_MEETING].map(|of| of[usize::from(is_on_nodes)]);
-    let after = after_meeting * largest_exponent / 3.0 * (1.0 - end / life);
+    let after = after_meeting * largest_exponent / 3.0 * (1.0 - looked_at);
     let steps = 0.01 * steps * case.fatigue.step_error_percent;
     let growth = prediction.curve.last().map_or(0.0, |row| row.tips.iter().map(|tip| tip.growth).fold(0.0, f64::max));
     let path = growth * (of_angle + WAY);

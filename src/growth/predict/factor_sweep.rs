@@ -23,7 +23,7 @@ use crate::cracks::{CrackedPlate, Cracks};
 use crate::nodes::NodePlate;
 use perilife_base::blended::Blended;
 use perilife_base::error::{Error, Result, input, input_missing};
-use perilife_base::units::MM;
+use perilife_base::units::{MM, round_mm};
 use perilife_laws::growth_law::Walker;
 use perilife_laws::paris::ParisLaw;
 use perilife_plate::loading::LoadControl;
@@ -125,7 +125,6 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
     let (specimen, [first, .., last]) = (&case.specimen, lengths) else {
         return Err(input_missing(KEY, "needs two lengths or more", "give first:last:step in mm, such as 10:40:1"));
     };
-    let mm = |length: f64| (length / MM * 1e6).round() / 1e6;
     if !specimen.is_through() || !specimen.has_sharp_tips() {
         let problem = "needs sharp cracks through the thickness, and tips of every one of them";
         return Err(input_missing(KEY, problem, format!("leave it out, or give {}", specimen.crack_key())));
@@ -140,12 +139,12 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
     }
     let start = specimen.shortest_crack();
     if *first < start * (1.0 - SAME) {
-        let problem = format!("begins below the initial crack length {} mm of the plate", mm(start));
-        return Err(input(KEY, mm(*first), problem, format!("begin there, or give a smaller {}", specimen.crack_key())));
+        let problem = format!("begins below the initial crack length {} mm of the plate", round_mm(start));
+        return Err(input(KEY, round_mm(*first), problem, format!("begin there, or give a smaller {}", specimen.crack_key())));
     }
     let (limit, name) = specimen.length_limit();
     if specimen.convention == LengthConvention::MeanOfTips && *last >= limit {
-        return Err(input(KEY, mm(*last), format!("is beyond the {name} {} mm", mm(limit)), "end before"));
+        return Err(input(KEY, round_mm(*last), format!("is beyond the {name} {} mm", round_mm(limit)), "end before"));
     }
     let mut case = case.clone();
     (case.stop.crack_length, case.stop.required) = (*last, None);

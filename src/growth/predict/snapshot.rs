@@ -37,7 +37,9 @@ impl Snapshots {
     /// Takes the last snapshot, where something has changed since the one before.
     pub fn finish(&mut self, growth: &mut dyn CrackGrowth) {
         let GrowthStatus { cycles, crack_length, .. } = growth.now();
-        if self.taken.last().is_none_or(|last| last.crack_length < crack_length || last.cycles < cycles) {
+        if growth.grid().is_some()
+            && self.taken.last().is_none_or(|last| last.crack_length < crack_length || last.cycles < cycles)
+        {
             self.take(growth);
         }
     }

@@ -2,6 +2,7 @@
 
 use toml::Value;
 
+use super::table::TableEnds;
 use super::{FactorLaw, GrowthLawKind};
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, INTENSITY, Quantity, number, value_at};
@@ -225,7 +226,7 @@ impl Given<'_> {
     /// The value of a key.
     /// Errors: another kind of value.
     pub fn get<T: Field>(&self, key: &str) -> Result<Option<T>> {
-        let take = |value| T::take(&Key::new("", ""), &format!("fatigue.{key}"), value);
+        let take = |value| T::take(&Key::of_choice::<T>("", ""), &format!("fatigue.{key}"), value);
         value_at(self.section, key).map(take).transpose()
     }
 
@@ -281,15 +282,14 @@ pub fn keys_of_laws() -> Vec<(Vec<&'static str>, Vec<GrowthLawKind>)> {
 /// Keys of `[fatigue]` that give a law, for whoever tells of them.
 pub fn keys_to_tell() -> Vec<Key> {
     let fitted = Key::of_choice::<String>("fitted", "Fitted law: file that `perilife calibrate` wrote");
-    let mut keys =
-        vec![fitted, Key::of_choice::<GrowthLawKind>("growth_law", "Growth law: told by its constants where it is left out")];
+    let mut keys = vec![fitted, Key::of_choice::<GrowthLawKind>("growth_law", "Growth law: default by the constants given")];
     for constant in GrowthLawKind::all().flat_map(|kind| kind.0.constants) {
         if keys.iter().all(|key| key.name != constant.key) {
             keys.push(Key::of_constant(constant.key, constant.quantity, ""));
         }
     }
-    let others = GrowthLawKind::all().flat_map(|kind| kind.0.others).copied().filter(|key| *key != "fitted");
-    keys.extend(others.map(|key| Key::of_choice::<Value>(key, "Table of the law")));
+    keys.push(Key::of_choice::<String>("growth_table", "Table of rates: its file"));
+    keys.push(Key::of_choice::<TableEnds>("growth_table_ends", "Ends of the table: beyond its rows; default refused"));
     keys
 }
 

@@ -36,14 +36,12 @@ const KEY: &str = "retardation";
 
 /// All keys of `[loading]` that belong to models of retardation.
 pub fn retardation_keys() -> Vec<&'static str> {
-    let of_models = RetardationKind::all().flat_map(|kind| kind.0.constants).map(|constant| constant.key);
-    std::iter::once(KEY).chain(of_models).collect()
+    keys_to_tell().iter().map(|key| key.name).collect()
 }
 
 /// The same for whoever tells of them.
 pub fn keys_to_tell() -> Vec<Key> {
-    let mut keys =
-        vec![Key::of_choice::<RetardationKind>(KEY, "Retardation: load interaction of a spectrum; none where it is left out")];
+    let mut keys = vec![Key::of_choice::<RetardationKind>(KEY, "Retardation: load interaction of a spectrum; default none")];
     for constant in RetardationKind::all().flat_map(|kind| kind.0.constants) {
         if keys.iter().all(|key| key.name != constant.key) {
             keys.push(constant.to_key());

@@ -11,7 +11,7 @@ use crate::specimen::geometry::{bounding_box, distance, unit};
 use crate::specimen::pin::SNUG_PIN;
 use crate::specimen::{Bearing, Component, Edge, Load, LoadMeasure, Point, Specimen, Support};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{Quantity, number, shorten, table_of};
+use perilife_base::input::{Quantity, number, number_of, shorten, table_of};
 use perilife_base::keys::{Given, key, section};
 use perilife_base::units::{MM, place_mm, round_mm};
 
@@ -27,11 +27,12 @@ perilife_base::keys! {
     /// One side of `[supports]`.
     #[derive(Debug)]
     pub struct SupportEntry {
-        depth: f64 = key("rows_mm", "Depth of the hold: from the side into the plate").of(DEPTH), or "one row" 0.0;
+        depth: f64 = key("rows_mm", "Depth of the support: from the side into the plate").of(DEPTH), or "one row" 0.0;
         fix: Vec<Component> = key("fix", "Held components");
     }
 }
-const DEPTH: Quantity = Quantity { what: "a depth", unit: "mm", low: 0.0, high: 1e5, si: MM };
+/// Range of a depth from a side.
+pub const DEPTH: Quantity = Quantity { what: "a depth", unit: "mm", low: 0.0, high: 1e5, si: MM };
 
 /// Puts loads and supports on the specimen; returns the section that turns a force into the nominal stress, m².
 pub(super) fn apply(given: &Given<'_>, input: &Input, supports: Option<&Value>, specimen: &mut Specimen) -> Result<f64> {
@@ -69,8 +70,7 @@ fn apply_loads(given: &Given<'_>, input: &Input, supports: Option<&Value>, speci
         return Err(input_missing("loading.pins", problem, remedy));
     }
     let remedy = "leave it out, or describe the specimen as kind = \"plate\"";
-    given.refuse_any(&PLACES, &problem, remedy)?;
-    given.refuse_any(&[BENT], &problem, remedy)?;
+    given.refuse_any(&[&PLACES[..], &[BENT]].concat(), &problem, remedy)?;
     if supports.is_some() {
         return Err(input_missing("supports", problem, remedy));
     }
@@ -110,14 +110,14 @@ fn apply_to_plate(given: &Given<'_>, input_: &Input, supports: Option<&Value>, s
     let area = match by_forces {
         Some((key, _)) if input_.edges.is_some() => {
             let remedy = "give edges, alone or with pins, or rollers";
-            return Err(input_missing(key, "stands beside edges: one nominal load cannot be both", remedy));
+            return Err(input_missing(key, "conflicts with edges", remedy));
         }
         Some((key, _)) if input_.edge_bending_ratio.is_some() => {
             let problem = format!("is of loaded edges, and the load is that of {key}");
             return Err(input_missing("loading.edge_bending_ratio", problem, "leave it out"));
         }
         Some((key, _)) if input_.direction.is_some() => {
-            let problem = format!("stands beside {key}: it is that of the traction on edges");
+            let problem = format!("conflicts with {key}");
             return Err(input_missing("loading.direction", problem, "give edges, or the direction of each pin or roller"));
         }
         Some((key, _)) if parallel_ratio != 0.0 => {
@@ -307,9 +307,8 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
 fn directions(given: &Value, loaded: &[Edge]) -> Result<Vec<Point>> {
     const KEY: &str = "loading.direction";
     let wrong = |problem: String| input(KEY, shorten(given), problem, "give [x, y], or one [x, y] for each side of edges");
-    let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
     let pair = |value: &Value| match value.as_array().map(Vec::as_slice) {
-        Some([x, y]) => number(x).zip(number(y)).map(|(x, y)| [x, y]),
+        Some([x, y]) => number_of(x).zip(number_of(y)).map(|(x, y)| [x, y]),
         _ => None,
     };
     let vectors: Vec<Point> = match (pair(given), given.as_array()) {
@@ -341,7 +340,7 @@ fn read_edge_bending(all: &Given<'_>, input_: &Input, loaded: &[Edge]) -> Result
         all.refuse_any(&FORCES, "is none in pure bending", "give loading.stress_max_mpa, that at the end of the edge")?;
         return Ok(Some([-1.0, 1.0]));
     }
-    let ratio = given.as_float().or_else(|| given.as_integer().map(|whole| whole as f64)).ok_or_else(|| {
+    let ratio = number_of(given).ok_or_else(|| {
         let remedy = "give bending stress at the end of the edge over its mean stress, or \"pure\"";
         input(KEY, shorten(given), "is no ratio of stresses", remedy)
     })?;

@@ -5,9 +5,9 @@ use std::fmt;
 use toml::Value;
 
 use perilife_base::error::{Result, input};
-use perilife_base::input::Quantity;
+use perilife_base::input::{Quantity, number_of};
 use perilife_base::keys::{Field, Key, Shape, refuse};
-use perilife_base::units::MM;
+use perilife_base::units::{MM, round_mm};
 
 const CRACK_LENGTH: Quantity = Quantity { what: "a crack length", unit: "mm", low: 0.0, high: 1e5, si: MM };
 /// Relative difference between lengths that are equal but for round-off.
@@ -40,13 +40,12 @@ impl fmt::Display for Size {
 impl Field for Size {
     const SHAPE: Shape = Shape::Other("a number, or rows [crack length, load] such as [[20, 3000], [30, 4000]]");
     fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
-        let number = |value: &Value| value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64));
         let row = |row: &Value| match row.as_array().map(Vec::as_slice) {
-            Some([length, load]) => Some([number(length)?, number(load)?]),
+            Some([length, load]) => Some([number_of(length)?, number_of(load)?]),
             _ => None,
         };
         let rows = || value.as_array()?.iter().map(row).collect::<Option<Vec<_>>>().map(Size::Rows);
-        number(value).map(Size::One).or_else(rows).map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
+        number_of(value).map(Size::One).or_else(rows).map_or_else(|| refuse(key, path, value, Self::SHAPE), Ok)
     }
 }
 
@@ -66,7 +65,7 @@ impl Size {
             let problem = format!("is not above the crack length {} mm of the row before", rows[i - 1][0]);
             return Err(input(&format!("{key}[{i}][0]"), rows[i][0], problem, "sort the rows by crack length, each length once"));
         }
-        let start = (crack_length / MM * 1e6).round() / 1e6;
+        let start = round_mm(crack_length);
         let (first, last) = (all.first().map_or(f64::NAN, |row| row[0]), all.last().map_or(f64::NAN, |row| row[0]));
         if !(first <= crack_length * (1.0 + SAME) && last > crack_length * (1.0 + SAME)) {
             let problem = format!("does not include the initial crack length {start} mm");

@@ -22,11 +22,11 @@ perilife_base::keys! {
     pub struct PinEntry {
         hole: usize = key("hole", "Hole: counted from 0 in specimen.holes");
         direction: Point = key("direction", "Direction: [x, y] of the force on the plate");
-        share: Option<f64> = key("share", "Share of the force: 1 where it is left out").of(SHARE);
-        bearing_ratio: Option<f64> = number("bearing_ratio", "Bearing stress P/(d h) over the nominal stress: beside loaded edges", "a ratio of stresses", 1e-6, 1e4);
-        half_angle: Option<f64> = number("contact_half_angle_deg", "Half angle of contact of the pin, °: 90 for a pin that fills its hole", ARC, 1.0, 90.0);
-        diameter: Option<f64> = length("pin_diameter_mm", "Pin diameter: its clearance decides where it touches the hole");
-        friction: Option<f64> = number("friction", "Friction of the pin: 0, others are not computed", "a coefficient of friction", 0.0, 10.0);
+        share: Option<f64> = key("share", "Share of the force: default 1").of(SHARE);
+        bearing_ratio: Option<f64> = number("bearing_ratio", "Bearing stress P/(d h) over the remote stress: with loaded edges", "a ratio of stresses", 1e-6, 1e4);
+        half_angle: Option<f64> = number("contact_half_angle_deg", "Half angle of the contact arc, °: 90 for a close-fitting pin", ARC, 1.0, 90.0);
+        diameter: Option<f64> = length("pin_diameter_mm", "Pin diameter: its clearance sets the contact arc");
+        friction: Option<f64> = number("friction", "Friction of the pin: 0 only", "a coefficient of friction", 0.0, 10.0);
         youngs_modulus: f64 = modulus("pin_youngs_modulus_gpa", "Young's modulus of the pin"), or "210 (steel)" YOUNGS_MODULUS;
         poisson_ratio: f64 = number("pin_poisson_ratio", "Poisson's ratio of the pin", POISSON, 0.0, 0.499), or "0.3 (steel)" POISSON_RATIO;
     }
@@ -35,10 +35,10 @@ perilife_base::keys! {
     /// One entry of `rollers`.
     #[derive(Debug)]
     pub struct RollerEntry {
-        at: Point = coordinate("at_mm", "Middle of the contact: [x, y] on the outline");
+        at: Point = coordinate("at_mm", "Contact center: [x, y] on the outline");
         width: f64 = length("contact_width_mm", "Width of the contact");
-        direction: Option<Point> = key("direction", "Direction: [x, y] of the force; straight into the plate where it is left out");
-        share: f64 = key("share", "Share of the force: 1 where it is left out").of(SHARE), or "1" 1.0;
+        direction: Option<Point> = key("direction", "Direction: [x, y] of the force; default normal to the outline");
+        share: f64 = key("share", "Share of the force").of(SHARE), or "1" 1.0;
     }
 }
 const SHARE: Quantity = plain("a share of the force", 1e-6, 1e6);
@@ -85,7 +85,7 @@ fn force_of(path: &str, pin: &PinEntry, beside_edges: bool, specimen: &Specimen)
         }
         (true, None, None) => {
             let remedy = "give P / (d h) of the pin over the stress of the first edge of loading.edges";
-            Err(perilife_base::error::input_missing(&key, "is missing: the pin stands beside loaded edges", remedy))
+            Err(perilife_base::error::input_missing(&key, "is required for a pin with loaded edges", remedy))
         }
         (true, Some(ratio), None) => Ok(ratio * 2.0 * specimen.holes[pin.hole].radius * specimen.thickness),
     }

@@ -16,7 +16,7 @@ pub(super) fn refuse(given: &Given<'_>, input: &Input) -> Result<()> {
         let problem = "is of moved edges; a pin or roller follows the places it presses on";
         return given.refuse_any(&KEYS, problem, "leave it out");
     }
-    let by_mean = if input.grip == Some(Grip::Mean) { &KEYS[1..] } else { &[] };
+    let by_mean = if input.grip == Grip::Mean { &KEYS[1..] } else { &[] };
     given.refuse_any(by_mean, "does not go with grip = \"mean\", which holds no edge", "leave it out")
 }
 
@@ -24,7 +24,7 @@ const KEYS: [&str; 2] = ["grip", "transverse"];
 
 /// Holds the moved edges straight, unless the mean is asked for.
 pub(super) fn apply(given: &Given<'_>, input: &Input, specimen: &mut Specimen) -> Result<()> {
-    let mut across = input.transverse == Some(Transverse::Held);
+    let mut across = input.transverse == Transverse::Held;
     match (specimen.kind, input.grip) {
         (SpecimenKind::SingleEdgeTension, _) => {
             given.refuse_any(&KEYS, "is said by specimen.ends of a single_edge_tension", "leave it out")?;
@@ -35,7 +35,7 @@ pub(super) fn apply(given: &Given<'_>, input: &Input, specimen: &mut Specimen) -
             specimen.supports.clear();
             across = true;
         }
-        (_, Some(Grip::Mean)) => return Ok(()),
+        (_, Grip::Mean) => return Ok(()),
         _ => {}
     }
     let stretches: Vec<(Point, Point, Point)> = specimen.loads.iter().filter_map(stretch).collect();
@@ -69,13 +69,13 @@ pub(super) fn apply(given: &Given<'_>, input: &Input, specimen: &mut Specimen) -
 /// Whether the grips of sides that are moved straight against each other are in equilibrium, whatever those bear: they do not turn where
 /// something holds them in their normal.
 pub(super) fn are_balanced(given: &Input, specimen: &Specimen) -> bool {
-    let is_straight = given.kind == LoadingKind::Displacement && given.grip != Some(Grip::Mean);
+    let is_straight = given.kind == LoadingKind::Displacement && given.grip != Grip::Mean;
     let stretches: Vec<(Point, Point, Point)> = specimen.loads.iter().filter_map(stretch).collect();
     let Some(&(from, to, [x, y])) = stretches.first().filter(|_| is_straight) else { return false };
     let along = |d: Point, sign: f64| (sign * d[0] - x).hypot(sign * d[1] - y) < ALONG;
     let oppose = stretches.iter().any(|s| along(s.2, -1.0)) && stretches.iter().all(|s| along(s.2, 1.0) || along(s.2, -1.0));
     let [tx, ty] = geometry::direction(from, to);
-    oppose && (given.transverse == Some(Transverse::Held) || (x * ty - y * tx).abs() > ALONG)
+    oppose && (given.transverse == Transverse::Held || (x * ty - y * tx).abs() > ALONG)
 }
 
 /// Component of a direction above which a side is moved along it.

@@ -10,7 +10,7 @@ pub mod pieces;
 pub mod residual;
 pub mod spectrum;
 
-pub use boundary::SupportEntry;
+pub use boundary::{DEPTH, SupportEntry};
 pub use boundary::{Imbalance, imbalance};
 pub use course::LoadCourse;
 pub use read::{from_values, mistakes};
@@ -23,7 +23,7 @@ use crate::specimen::Edge;
 use course::Size;
 use forces::{PinEntry, RollerEntry};
 use perilife_base::input::{Quantity, number as plain};
-use perilife_base::keys::{Key, force, force_kn, key, number, stress};
+use perilife_base::keys::{Key, Plain, force, force_kn, key, number, stress};
 use perilife_base::units::MM;
 use residual::ResidualStress;
 use spectrum::{Class, Spectrum, SpectrumFormat};
@@ -73,24 +73,24 @@ perilife_base::keys! {
         force_range_n: Option<Size> = force("force_range_n", "Force range ΔP: maximum − minimum").group(LOAD);
         force_max_kn: Option<Size> = force_kn("force_max_kn", "Maximum force Pmax").group(LOAD);
         force_range_kn: Option<Size> = force_kn("force_range_kn", "Force range ΔP: maximum − minimum").group(LOAD);
-        displacement_max_mm: Option<Size> = of_kind(key("displacement_max_mm", "Maximum displacement δmax: of the loaded places against each other").of(DISPLACEMENT).group(LOAD), OF_DISPLACEMENT);
-        displacement_range_mm: Option<Size> = of_kind(key("displacement_range_mm", "Displacement range Δδ: of the loaded places against each other").of(DISPLACEMENT).group(LOAD), OF_DISPLACEMENT);
-        spectrum_scale_mpa: Option<Size> = of_kind(stress("spectrum_scale_mpa", "Scale of the spectrum: gross stress that a value of 1 in the file stands for").group(LOAD), OF_SPECTRUM);
-        spectrum_scale_n: Option<Size> = of_kind(force("spectrum_scale_n", "Scale of the spectrum: force that a value of 1 in the file stands for").group(LOAD), OF_SPECTRUM);
+        displacement_max_mm: Option<Plain> = of_kind(key("displacement_max_mm", "Maximum displacement δ_max: relative, of the loaded sides").of(DISPLACEMENT).group(LOAD), OF_DISPLACEMENT);
+        displacement_range_mm: Option<Plain> = of_kind(key("displacement_range_mm", "Displacement range Δδ: relative, of the loaded sides").of(DISPLACEMENT).group(LOAD), OF_DISPLACEMENT);
+        spectrum_scale_mpa: Option<Plain> = of_kind(stress("spectrum_scale_mpa", "Scale of the spectrum: gross stress of the value 1").group(LOAD), OF_SPECTRUM);
+        spectrum_scale_n: Option<Plain> = of_kind(force("spectrum_scale_n", "Scale of the spectrum: force of the value 1").group(LOAD), OF_SPECTRUM);
         stress_ratio: Option<f64> = key("stress_ratio", "Stress ratio R: minimum / maximum, below 1").of(RATIO);
-        grip: Option<Grip> = of_kind(key("grip", "Grip: of moved edges; straight where it is left out"), OF_DISPLACEMENT);
-        transverse: Option<Transverse> = of_kind(key("transverse", "Motion across the displacement"), OF_DISPLACEMENT);
-        crack_pressure: Option<f64> = stress("crack_pressure_mpa", "Pressure on the faces of the cracks: at maximum load");
+        grip: Grip = of_kind(key("grip", "Grip: of moved edges"), OF_DISPLACEMENT), or "straight" Grip::Straight;
+        transverse: Transverse = of_kind(key("transverse", "Motion across the displacement"), OF_DISPLACEMENT), or "free" Transverse::Free;
+        crack_pressure: Option<f64> = stress("crack_pressure_mpa", "Crack-face pressure: at maximum load");
         spectrum_file: Option<String> = of_kind(key("spectrum_file", "File of the spectrum: CSV, workbook, .spx, .sub or FASTRAN"), OF_SPECTRUM);
-        spectrum_format: Option<SpectrumFormat> = of_kind(key("spectrum_format", "Format of the spectrum: told by the file where it is left out"), OF_SPECTRUM);
+        spectrum_format: Option<SpectrumFormat> = of_kind(key("spectrum_format", "Format of the spectrum: default by name and content"), OF_SPECTRUM);
         omission_percent: f64 = of_kind(number("omission_percent", "Omission level, % of the largest range", "a percentage", 0.0, 99.0), OF_SPECTRUM), or "0" 0.0;
         truncation_percent: f64 = of_kind(number("truncation_percent", "High-load truncation, % of the largest peak", "a percentage", 1.0, 100.0), OF_SPECTRUM), or "100" 100.0;
-        repeats: Option<f64> = of_kind(number("repeats", "Passes: after which the loads end", "a number of passes", 1e-6, 1e12), OF_SPECTRUM);
+        repeats: Option<f64> = of_kind(number("repeats", "Number of passes", "a number of passes", 1e-6, 1e12), OF_SPECTRUM);
         residual_stress: Option<Value> = key("residual_stress", "Residual stress: formula of x and y, mm, in MPa").group(RESIDUAL).missing(FORMULA);
         residual_stress_mpa: Option<Value> = key("residual_stress_mpa", "Residual stress: formula of x and y, mm, in MPa").group(RESIDUAL).missing(FORMULA);
         residual_stress_ksi: Option<Value> = key("residual_stress_ksi", "Residual stress: formula of x and y, inch, in ksi").group(RESIDUAL).missing(FORMULA);
         residual_stress_file: Option<String> = key("residual_stress_file", "File of residual stress: columns x_mm, y_mm, stress_mpa").group(RESIDUAL);
-        parallel_ratio: f64 = number("stress_parallel_ratio", "Stress along the crack over that across it", "a ratio", -10.0, 10.0), or "0" 0.0;
+        parallel_ratio: f64 = number("stress_parallel_ratio", "Biaxiality: stress along the crack over stress across it", "a ratio", -10.0, 10.0), or "0" 0.0;
         bending_ratio: Option<f64> = number("bending_ratio", "Out-of-plane bending: bending stress over tension, of part-through cracks", "a ratio of stresses", 0.0, 1000.0);
         edge_bending_ratio: Option<Value> = key("edge_bending_ratio", "In-plane bending of loaded edges: bending stress over mean stress, or \"pure\"")
             .missing("give bending stress at the end of the edge over its mean stress, or \"pure\"");
@@ -101,8 +101,8 @@ perilife_base::keys! {
     }
 }
 
-/// Range of R; what lies above it is told more.
-const RATIO: Quantity = plain("a ratio", -100.0, 1e300);
+/// At R = 1 nothing changes in a cycle; above it all of it is compression, which is not computed.
+const RATIO: Quantity = plain("R = minimum / maximum, below 1,", -100.0, 0.999);
 
 const fn of_kind(key: Key, (of, with): (&'static str, &'static [&'static str])) -> Key {
     key.only(of, with)

@@ -11,8 +11,8 @@ use super::{DISPLACEMENT, Input, LoadControl, Loading, LoadingKind, OF_SPECTRUM,
 use super::{boundary, grips};
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
 use perilife_base::error::{self, Error, InputError, Result, input, input_missing};
-use perilife_base::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS, number as plain};
-use perilife_base::keys::{Given, Section};
+use perilife_base::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS};
+use perilife_base::keys::{Given, Plain, Section};
 use perilife_base::units::MPA;
 
 /// Keys that ask for a load history.
@@ -174,22 +174,21 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
 fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
     const KEY: &str = "loading.bending_ratio";
     const UNBENT: &str = "K under bending is known for surface_crack, corner_crack and corner_crack_at_hole";
-    let Some(given) = input.bending_ratio else { return Ok(()) };
-    let ratio = given;
+    let Some(ratio) = input.bending_ratio else { return Ok(()) };
     let (kind, all_holes) = (specimen.kind, specimen.holes.len());
     match specimen.part_through.as_mut() {
         Some(flaw) if ratio > 0.0 && all_holes > flaw.own_holes() => {
-            let problem = "stands beside specimen.holes, whose effect on a crack under bending is not known";
-            return Err(error::input(KEY, given, problem, "compute it by other means: either alone is another plate"));
+            let problem = "conflicts with specimen.holes: no K of a crack under bending includes holes";
+            return Err(error::input(KEY, ratio, problem, "compute it by other means: either alone is another plate"));
         }
         Some(flaw) if flaw.knows_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
         Some(_) => {
             let problem = format!("does not go with {kind}, whose K is known under tension alone");
-            return Err(error::input(KEY, given, problem, UNBENT));
+            return Err(error::input(KEY, ratio, problem, UNBENT));
         }
         None => {
             let problem = format!("is bending out of the plane of the plate, which {kind}, a through crack, does not know");
-            return Err(error::input(KEY, given, problem, UNBENT));
+            return Err(error::input(KEY, ratio, problem, UNBENT));
         }
     }
     Ok(())
@@ -221,24 +220,20 @@ fn ratio_of(spectrum: &Spectrum, given: Option<f64>) -> Result<f64> {
     let largest = spectrum.cycles.iter().filter(|cycle| cycle.max == 1.0);
     let of_largest = largest.map(|cycle| cycle.min).fold(f64::INFINITY, f64::min);
     given.map_or(Ok(of_largest), |given| {
-        let problem = "stands beside a spectrum, whose cycles have their own";
+        let problem = "conflicts with the spectrum, whose cycles have their own";
         Err(input("loading.stress_ratio", given, problem, "leave it out"))
     })
 }
 
 fn read_ratio(ratio: Option<f64>) -> Result<f64> {
-    const KEY: &str = "loading.stress_ratio";
-    let ratio = ratio.ok_or_else(|| input_missing(KEY, "is missing", "give R = minimum / maximum, 0 for pulsating load"))?;
-    if ratio >= 1.0 {
-        let problem = "must be below 1: at R = 1 nothing changes in a cycle, above it all is compression, which is not computed";
-        return Err(input(KEY, ratio, problem, "give R = minimum / maximum, below 0 where the minimum is compression"));
-    }
-    plain("a ratio", -100.0, 0.999).read(KEY, ratio)
+    let remedy = "give R = minimum / maximum, 0 for pulsating load";
+    ratio.ok_or_else(|| input_missing("loading.stress_ratio", "is missing", remedy))
 }
 
 impl Input {
     /// Keys of a load with what is given.
     fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<Size>, Quantity, Of)> {
+        let plain = |given: Option<Plain>| given.map(|given| Size::One(given.0));
         [
             ("stress_max_mpa", self.stress_max_mpa.clone(), STRESS, Of::Stress),
             ("stress_range_mpa", self.stress_range_mpa.clone(), STRESS, Of::Stress),
@@ -246,10 +241,10 @@ impl Input {
             ("force_range_n", self.force_range_n.clone(), FORCE, Of::Force),
             ("force_max_kn", self.force_max_kn.clone(), FORCE_KN, Of::Force),
             ("force_range_kn", self.force_range_kn.clone(), FORCE_KN, Of::Force),
-            ("spectrum_scale_mpa", self.spectrum_scale_mpa.clone(), STRESS, Of::Stress),
-            ("spectrum_scale_n", self.spectrum_scale_n.clone(), FORCE, Of::Force),
-            ("displacement_max_mm", self.displacement_max_mm.clone(), DISPLACEMENT, Of::Displacement),
-            ("displacement_range_mm", self.displacement_range_mm.clone(), DISPLACEMENT, Of::Displacement),
+            ("spectrum_scale_mpa", plain(self.spectrum_scale_mpa), STRESS, Of::Stress),
+            ("spectrum_scale_n", plain(self.spectrum_scale_n), FORCE, Of::Force),
+            ("displacement_max_mm", plain(self.displacement_max_mm), DISPLACEMENT, Of::Displacement),
+            ("displacement_range_mm", plain(self.displacement_range_mm), DISPLACEMENT, Of::Displacement),
         ]
         .into_iter()
     }
@@ -283,30 +278,22 @@ impl Magnitude {
             LoadingKind::Displacement => (DISPLACEMENTS, "loading.displacement_max_mm"),
             LoadingKind::Spectrum => (SCALES, "loading.spectrum_scale_mpa"),
         };
-        let given: Vec<_> =
-            slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of))).collect();
-        match &given[..] {
-            [(key, given, quantity, of)] => {
-                let path = format!("loading.{key}");
-                if !wanted.split(", ").any(|known| known == *key) {
-                    let remedy = format!("give exactly one of {wanted}");
-                    return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
-                }
-                if kind != LoadingKind::ConstantAmplitude && matches!(given, Size::Rows(_)) {
-                    return Err(input(&path, given, "is not a number", quantity.remedy()));
-                }
-                if matches!(given, Size::One(load) if *load < 0.0) {
-                    let problem =
-                        "must be above zero: cracks grow by the tensile part of a cycle, and compression alone is not computed";
-                    let remedy = "give the largest tension (a range: maximum - minimum; the scale of a file: above zero), and compression by \
-                                  stress_ratio = minimum / maximum below 0, or by the signs of the file";
-                    return Err(input(&path, given, problem, remedy));
-                }
-                let (value, course) = given.read(&path, *quantity, specimen.crack_length)?;
-                Ok(Magnitude { key: path, given: given.clone(), value, course, is_range: key.contains("range"), of: *of })
-            }
-            // Two have been refused.
-            _ => Err(input_missing(example, "is missing: there is no load", format!("give exactly one of {wanted}"))),
+        let remedy = format!("give exactly one of {wanted}");
+        // A second one has been refused.
+        let mut given = slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of)));
+        let Some((key, given, quantity, of)) = given.next() else {
+            return Err(input_missing(example, "is missing: there is no load", remedy));
+        };
+        let path = format!("loading.{key}");
+        if !wanted.split(", ").any(|known| known == key) {
+            return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
         }
+        if matches!(given, Size::One(load) if load < 0.0) {
+            let problem = "must be above zero: cracks grow by the tensile part of a cycle, and compression alone is not computed";
+            let remedy = "give the largest tension (a range: maximum - minimum), and compression by stress_ratio = minimum / maximum below 0";
+            return Err(input(&path, given, problem, remedy));
+        }
+        let (value, course) = given.read(&path, quantity, specimen.crack_length)?;
+        Ok(Magnitude { key: path, given, value, course, is_range: key.contains("range"), of })
     }
 }

@@ -6,7 +6,7 @@
 //! The stress is that in the axes of the plate: σ_y, and σ_x and τ_xy where they are given, else 0. From a file it is linear between its
 //! points: in the triangles of Delaunay, or along a line where all points lie on one, and alike across that.
 
-use std::fmt::{self, Display};
+use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -97,20 +97,15 @@ impl HasPosition for Sample {
 
 impl ResidualStress {
     /// What `[loading]` says of it, if anything.
-    /// Errors: two keys; a formula or file that cannot be read, by character or line.
+    /// Errors: a formula or file that cannot be read, by character or line.
     pub(super) fn read(given: &Input, folder: &Folder) -> Result<Option<Arc<ResidualStress>>> {
         let formulas = [&given.residual_stress_mpa, &given.residual_stress_ksi, &given.residual_stress];
         let mut formulas = FORMULAS.into_iter().zip(formulas).filter_map(|(key, given)| Some((key, given.as_ref()?)));
-        let twice = |key: &str, given: &dyn Display, (other, _): Key| {
-            let problem = format!("conflicts with {other}");
-            Err(input(key, given, problem, "remove one of them"))
-        };
-        match (formulas.next(), formulas.next(), &given.residual_stress_file) {
-            (None, _, None) => Ok(None),
-            (Some((first, _)), Some(((key, _), given)), _) => twice(key, &shorten(given), first),
-            (Some((first, _)), None, Some(file)) => twice(FILE, file, first),
-            (Some((key, given)), None, None) => of_formulas(key, given).map(|field| Some(Arc::new(field))),
-            (None, _, Some(file)) => {
+        // A second one has been refused.
+        match (formulas.next(), &given.residual_stress_file) {
+            (None, None) => Ok(None),
+            (Some((key, given)), _) => of_formulas(key, given).map(|field| Some(Arc::new(field))),
+            (None, Some(file)) => {
                 let bytes = folder.read(file)?;
                 let field = of_table(&bytes, &folder.path(file))?;
                 let sha256 = perilife_base::input::sha256(&bytes);

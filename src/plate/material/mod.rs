@@ -82,7 +82,7 @@ perilife_base::keys! {
         youngs_modulus: Option<Plain> = modulus(E, "Young's modulus E");
         poisson_ratio: Option<Plain> = number(NU, "Poisson's ratio ν", "a Poisson's ratio", 0.0, 0.499);
         yield_strength: Option<Plain> = stress("yield_strength_mpa", "Yield strength σY");
-        toughness: Option<Plain> = intensity("toughness_mpa_sqrt_m", "Fracture toughness Kc: at this thickness");
+        toughness: Option<Plain> = intensity("toughness_mpa_sqrt_m", "Fracture toughness K_c: at this thickness");
         fracture_energy: Option<Plain> = energy("fracture_energy_j_m2", "Fracture energy: of scenes");
         density: Option<Plain> = key("density_kg_m3", "Density: of scenes with inertia").of(DENSITY);
         tensile_strength: Option<Plain> = stress("tensile_strength_mpa", "Tensile strength: of scenes");

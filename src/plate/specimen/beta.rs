@@ -19,7 +19,7 @@ use perilife_base::input::Folder;
 use perilife_base::table::names::{Kind, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};
 use perilife_base::table::{self, Fault, whole_file};
-use perilife_base::units::MM;
+use perilife_base::units::round_mm;
 
 pub const KEY: &str = "specimen.beta_file";
 /// First line of the file.
@@ -73,7 +73,7 @@ impl Specimen {
         let [first, last] = [rows[0], rows[rows.len() - 1]];
         if a < first.length * (1.0 - SLACK) || a > last.length * (1.0 + SLACK) {
             let (row, end) = if a < first.length { (first, "begins") } else { (last, "ends") };
-            let problem = format!("is where the table {end}, and the crack has {} mm at the start", round(a));
+            let problem = format!("is where the table {end}, and the crack has {} mm at the start", round_mm(a));
             return Err(row.fault(&path, &column, problem, "give a table from the initial crack length to the end"));
         }
         self.beta = Some(BetaTable {
@@ -110,7 +110,7 @@ impl Specimen {
         let [least, most] = [f64::min, f64::max].map(|pick| lengths.iter().copied().reduce(pick).unwrap_or(f64::NAN));
         if most > least * (1.0 + ALIKE) {
             let problem =
-                format!("is one table, and the cracks have unlike lengths, a = {} and {} mm", round(least), round(most));
+                format!("is one table, and the cracks have unlike lengths, a = {} and {} mm", round_mm(least), round_mm(most));
             return Err(input_missing(KEY, problem, "leave it out: K of every crack is then found on nodes"));
         }
         Ok((most, lengths.len() as f64))
@@ -153,8 +153,8 @@ impl BetaTable {
         }
         let a = self.logarithms.x()[self.logarithms.x().len() - 1];
         let row = Row { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
-        let problem = format!("is where the table ends, and growth goes on to {} mm", round(self.length_at(crack_length)));
-        let most = round(self.bounds()[1]);
+        let problem = format!("is where the table ends, and growth goes on to {} mm", round_mm(self.length_at(crack_length)));
+        let most = round_mm(self.bounds()[1]);
         Err(row.fault(
             self.file.as_ref(),
             &self.column.0,
@@ -204,7 +204,7 @@ fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<Row>, String)> {
         }
         let row = Row { line, length: values[0] * unit, beta: values[1], unit };
         if let Some(before) = rows.last().filter(|before| before.length >= row.length) {
-            let problem = format!("does not rise above the {} mm of line {}", round(before.length), before.line);
+            let problem = format!("does not rise above the {} mm of line {}", round_mm(before.length), before.line);
             return Err(row.fault(file, &table.header[length], problem, "sort the rows by crack length, each length once"));
         }
         rows.push(row);
@@ -213,9 +213,4 @@ fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<Row>, String)> {
         [_, _, ..] => Ok((rows, table.header[length].clone())),
         _ => Err(whole_file(file).error("has one row, which is no curve", "give two rows or more below crack_length_mm,beta")),
     }
-}
-
-/// Metres as mm, rounded for messages.
-fn round(metres: f64) -> f64 {
-    (metres / MM * 1e6).round() / 1e6
 }

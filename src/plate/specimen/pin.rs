@@ -71,9 +71,9 @@ perilife_base::keys! {
     /// Keys of the pin of a specimen.
     #[derive(Debug)]
     pub struct PinKeys {
-        half_angle: Option<f64> = number("pin_half_angle_deg", "Half angle of contact of the pin, °: 90 for a pin that fills its hole", ARC, 1.0, 90.0);
-        diameter: Option<f64> = length("pin_diameter_mm", "Pin diameter: its clearance decides where it touches the hole");
-        friction: Option<f64> = number("pin_friction", "Friction of the pin: 0, others are not computed", "a coefficient of friction", 0.0, 10.0);
+        half_angle: Option<f64> = number("pin_half_angle_deg", "Half angle of the contact arc, °: 90 for a close-fitting pin", ARC, 1.0, 90.0);
+        diameter: Option<f64> = length("pin_diameter_mm", "Pin diameter: its clearance sets the contact arc");
+        friction: Option<f64> = number("pin_friction", "Friction of the pin: 0 only", "a coefficient of friction", 0.0, 10.0);
         youngs_modulus: f64 = modulus("pin_youngs_modulus_gpa", "Young's modulus of the pin"), or "210 (steel)" YOUNGS_MODULUS;
         poisson_ratio: f64 = number("pin_poisson_ratio", "Poisson's ratio of the pin", POISSON, 0.0, 0.499), or "0.3 (steel)" POISSON_RATIO;
     }
@@ -94,14 +94,13 @@ impl Bearing {
         }
         let of_elastic = given.first(&OF_ELASTIC);
         if let (Some(angle), other) = (keys.half_angle, of_elastic) {
-            let twice = |other: &str| {
-                given.refuse(half_angle, format!("stands beside {other}, from which it follows"), "give the arc or the pin")
-            };
+            let twice =
+                |other: &str| given.refuse(half_angle, format!("conflicts with {other}"), "give the contact arc or the pin");
             return other.map_or(Ok(Bearing::Cosine(angle.to_radians())), |other| Err(twice(other)));
         }
         let Some(diameter) = keys.diameter else {
             let missing = |other: &str| {
-                let problem = format!("is missing beside {other}: where a pin touches depends on its clearance");
+                let problem = format!("is required with {other}: the contact arc depends on the clearance");
                 Err(given.refuse(OF_ELASTIC[0], problem, "give the diameter of the pin"))
             };
             return of_elastic.map_or(Ok(Bearing::Unknown(LOOSE_PIN)), missing);

@@ -6,7 +6,7 @@ use super::geometry::{
 };
 use super::{Crack, CrackLine, Hole, Point, Slot, Specimen, TipSeed};
 use perilife_base::error::{Result, input_missing};
-use perilife_base::units::MM;
+use perilife_base::units::{given_mm, round_mm};
 
 /// What lies closer than this counts as touching, m: far below any spacing, far above round-off.
 const TOUCH: f64 = 1e-7;
@@ -20,21 +20,13 @@ const FOLDED: f64 = 150.0;
 /// Way ahead, over the distance from a rim, within which a crack goes on to it straight.
 const AHEAD: f64 = 3.0;
 
-/// A point in words, mm.
-fn words(p: Point) -> String {
-    format!("({}, {}) mm", round(p[0]), round(p[1]))
-}
-
-fn round(metres: f64) -> f64 {
-    (metres / MM * 1e6).round() / 1e6
-}
-
 /// Holes lie inside the outline and do not touch each other.
 pub(super) fn check_holes(specimen: &Specimen) -> Result<()> {
     for (i, hole) in specimen.holes.iter().enumerate() {
         let inside = point_in_polygon(hole.centre, &specimen.outline);
         if !inside || distance_to_polygon(hole.centre, &specimen.outline) < hole.radius + TOUCH {
-            let problem = format!("reaches beyond the outline (centre {}, radius {} mm)", words(hole.centre), round(hole.radius));
+            let problem =
+                format!("reaches beyond the outline (centre {}, radius {} mm)", given_mm(hole.centre), round_mm(hole.radius));
             return Err(input_missing(
                 &format!("specimen.holes[{i}]"),
                 problem,
@@ -205,7 +197,7 @@ fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
                 format!(
                     "specimen.cracks[{i}] passes holes[{j}] at {} mm: what is left between them is finer than nodes or points resolve, and \
                      K may err by a large share; end the crack in the hole, and begin another beyond it",
-                    round(gap.max(0.0))
+                    round_mm(gap.max(0.0))
                 )
             })
         };
@@ -286,7 +278,7 @@ fn is_overlap(a: Crack, b: Crack) -> bool {
 fn check_corners(corners: &[Point], key: &str, notes: &mut Vec<String>) -> Result<()> {
     for corner in corners.windows(3) {
         let turn = turn_at(corner[0], corner[1], corner[2]).abs().to_degrees();
-        let problem = format!("turns by {turn:.0}° at {}", words(corner[1]));
+        let problem = format!("turns by {turn:.0}° at {}", given_mm(corner[1]));
         if turn > FOLDED {
             let remedy = "end the crack at that corner, and give what lies behind it, if it is one, as a crack that does not share its end";
             return Err(input_missing(key, format!("{problem}, where it is as sharp as a tip and would not grow"), remedy));
@@ -325,10 +317,10 @@ fn cut_end(specimen: &Specimen, [end, other]: [Point; 2], key: &str, notes: &mut
         let shares = edges(&specimen.outline).filter_map(|(a, b)| share_of_meeting(end, other, a, b));
         let Some(share) = shares.min_by(f64::total_cmp) else {
             let remedy = "end it inside the plate or on its edge";
-            return Err(input_missing(key, format!("ends outside the plate at {}", words(end)), remedy));
+            return Err(input_missing(key, format!("ends outside the plate at {}", given_mm(end)), remedy));
         };
         let edge = along(end, other, share);
-        notes.push(format!("{key} ends outside the plate at {}: cut off at the edge, at {}", words(end), words(edge)));
+        notes.push(format!("{key} ends outside the plate at {}: cut off at the edge, at {}", given_mm(end), given_mm(edge)));
         return Ok((edge, true));
     }
     Ok((end, false))
@@ -341,9 +333,9 @@ fn at_mouth(specimen: &Specimen, [end, other]: [Point; 2], length: f64, key: &st
     };
     notes.push(format!(
         "{key} ends {} mm from a rim, less than a hundredth of its length ({} mm): it was taken to start there, at {}",
-        round(gap),
-        round(length),
-        words(mouth)
+        round_mm(gap),
+        round_mm(length),
+        given_mm(mouth)
     ));
     (mouth, true)
 }

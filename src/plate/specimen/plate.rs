@@ -38,25 +38,25 @@ const OUTLINE: &str = "the outline";
 perilife_base::keys! {
     /// Keys of `[specimen]`.
     pub(super) struct Keys {
-        outline: Option<Vec<Point>> = coordinate("outline_mm", "Outline: corners in order around the plate").group(OUTLINE);
+        outline: Option<Vec<Point>> = coordinate("outline_mm", "Outline: corners in order").group(OUTLINE);
         file: Option<String> = key("outline_file", "Drawing of the plate: DXF with layers outline, holes (full circles), cracks").group(OUTLINE);
-        unit: Option<DrawingUnit> = key("outline_unit", "Unit of the drawing: where it does not say its own");
-        symmetry: Option<SymmetryPlane> = key("outline_symmetry", "Symmetry of the drawing: a half of the plate is drawn");
+        unit: Option<DrawingUnit> = key("outline_unit", "Unit of the drawing: where the file has none");
+        symmetry: Option<SymmetryPlane> = key("outline_symmetry", "Symmetry of the drawing: half of the plate drawn");
         width: Option<f64> = WIDTH.said("Width W: of a rectangle about 0, with its length").group(OUTLINE);
         length: Option<f64> = LENGTH.said("Length L: of a rectangle about 0, along y");
         diameter: Option<f64> = length("diameter_mm", "Diameter: of a disc about 0").group(OUTLINE);
         thickness: f64 = THICKNESS;
-        holes: Vec<HoleKeys> = key("holes", "Holes: round ones"), or "none" Vec::new();
-        cracks: Vec<CrackKeys> = key("cracks", "Cracks: straight or with bends; those that meet are joined"), or "none" Vec::new();
+        holes: Vec<HoleKeys> = key("holes", "Circular holes"), or "none" Vec::new();
+        cracks: Vec<CrackKeys> = key("cracks", "Cracks: straight or kinked"), or "none" Vec::new();
         notches: Vec<NotchKeys> = key("notches", "Notches: straight slots with square ends"), or "none" Vec::new();
     }
 }
 perilife_base::keys! {
     /// A hole.
     pub(super) struct HoleKeys {
-        x: f64 = coordinate("x_mm", "Middle of the hole, x");
-        y: f64 = coordinate("y_mm", "Middle of the hole, y");
-        diameter: f64 = length("diameter_mm", "Diameter: of a hole");
+        x: f64 = coordinate("x_mm", "Hole center, x");
+        y: f64 = coordinate("y_mm", "Hole center, y");
+        diameter: f64 = length("diameter_mm", "Hole diameter");
     }
 }
 perilife_base::keys! {
@@ -64,7 +64,7 @@ perilife_base::keys! {
     struct CrackKeys {
         from: Option<Point> = coordinate("from_mm", "One end: [x, y]");
         to: Option<Point> = coordinate("to_mm", "Other end: [x, y]");
-        path: Option<Vec<Point>> = coordinate("path_mm", "Corners of a crack with bends: both ends included");
+        path: Option<Vec<Point>> = coordinate("path_mm", "Corners of a kinked crack: both ends included");
     }
 }
 perilife_base::keys! {
@@ -88,7 +88,7 @@ pub(super) struct Drawing {
 }
 
 pub(super) fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Result<Specimen> {
-    let given = SpecimenKind::Plate.given(value)?;
+    let given = Given::of(value, "specimen")?;
     let own = Keys::read(&given)?;
     let drawn = drawn(&given, &own, folder)?;
     let outline = match &drawn {
@@ -149,7 +149,7 @@ fn drawn(given: &Given<'_>, own: &Keys, folder: &Folder) -> Result<Option<Shape>
         given.refuse_any(&["outline_unit", "outline_symmetry"], problem, "give outline_file, or leave it out")?;
         return Ok(None);
     };
-    given.refuse_any(&["length_mm"], "stands beside outline_file", "leave one of both out")?;
+    given.refuse_any(&["length_mm"], "conflicts with outline_file", "remove one of them")?;
     drawing::read(file, folder, own.unit, own.symmetry).map(Some)
 }
 
@@ -160,9 +160,11 @@ fn outline(given: &Given<'_>, own: &Keys) -> Result<Vec<Point>> {
         (Some(width), Some(length), ..) => Ok(rectangle(width, length)),
         (None, None, Some(diameter), _) => Ok(disc(diameter / 2.0)),
         (None, None, None, Some(corners)) => polygon(corners),
-        (_, Some(_), Some(_), _) | (_, Some(_), _, Some(_)) => {
-            Err(given.refuse("length_mm", "stands beside another outline", "give one of outline, rectangle and diameter"))
-        }
+        (_, Some(_), Some(_), _) | (_, Some(_), _, Some(_)) => Err(given.refuse(
+            "length_mm",
+            "conflicts with the outline given",
+            "give outline_mm, or width_mm and length_mm, or diameter_mm",
+        )),
         (None, ..) => Err(given.refuse("width_mm", "is missing", REMEDY)),
         (Some(_), None, ..) => Err(given.refuse("length_mm", "is missing", REMEDY)),
     }
@@ -253,7 +255,7 @@ fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
             let key = format!("{path}.{}", if from.is_none() { "from_mm" } else { "to_mm" });
             return Err(input_missing(&key, "is missing", REMEDY));
         }
-        (_, _, Some(_)) => return Err(input_missing(&format!("{path}.path_mm"), "stands beside from_mm or to_mm", REMEDY)),
+        (_, _, Some(_)) => return Err(input_missing(&format!("{path}.path_mm"), "conflicts with from_mm or to_mm", REMEDY)),
     };
     let key = format!("{path}.path_mm");
     if line.len() < 2 || line.len() > ITEMS_MAX {

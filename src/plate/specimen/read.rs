@@ -55,16 +55,8 @@ impl SpecimenKind {
         self.part_through().is_none() && !matches!(self, SpecimenKind::RowOfHoles | SpecimenKind::StopHole)
     }
 
-    /// Its section, every key of which has been looked at.
-    /// Errors: all keys that are not known, missing or wrong by themselves.
-    pub(super) fn given(self, value: &Value) -> Result<Given<'_>> {
-        let given = Given::of(value, "specimen")?;
-        Error::of_all(self.mistakes(given))?;
-        Ok(given)
-    }
-
     /// What is wrong with the keys of its section by themselves.
-    pub(super) fn mistakes(self, given: Given<'_>) -> Vec<InputError> {
+    fn mistakes(self, given: Given<'_>) -> Vec<InputError> {
         let all: Vec<_> = SpecimenKind::ALL.iter().map(|kind| (kind.name(), kind.keys())).collect();
         keys::mistakes(
             given,
@@ -122,6 +114,7 @@ pub fn mistakes(value: &Value) -> Vec<InputError> {
 pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Result<Specimen> {
     let table = table_of(value, "specimen")?;
     let kind = kind_of(table)?;
+    Error::of_all(mistakes(value))?;
     if let Some(given) = table.get(BETA_FILE.name).filter(|_| !kind.takes_beta()) {
         let known: Vec<&str> = SpecimenKind::ALL.iter().filter(|kind| kind.takes_beta()).map(|kind| kind.name()).collect();
         let problem = format!("does not go with {kind}, whose K is its own");

@@ -32,7 +32,7 @@ use super::net_section::check_crack;
 use super::pin::PinKeys;
 use super::{Bearing, Crack, Ends, Hole, Load, LoadMeasure, Specimen, SpecimenKind, Support, TipSeed};
 use perilife_base::error::Result;
-use perilife_base::keys::{Section, key, part};
+use perilife_base::keys::{Given, Section, key, part};
 
 perilife_base::keys! {
     /// Keys of `[specimen]` of M(T) and DE(T).
@@ -47,13 +47,13 @@ perilife_base::keys! {
     /// Keys of `[specimen]` for a single edge crack.
     pub(super) struct SingleEdge {
         strip: Strip = part();
-        ends: Ends = key("ends", "Ends: how they are held, by which K differs");
+        ends: Ends = key("ends", "Ends: clamped, pinned or under uniform stress");
     }
 }
 
 /// A central crack, or two edge cracks.
 pub(super) fn from_value(kind: SpecimenKind, value: &Value) -> Result<Specimen> {
-    let Strip { width, length, thickness, a } = Strip::read(&kind.given(value)?)?;
+    let Strip { width, length, thickness, a } = Strip::read(&Given::of(value, "specimen")?)?;
     let strip = Specimen::strip(kind, width, length, thickness);
     check_crack(a, width / 2.0, "the half width")?;
     if kind == SpecimenKind::DoubleEdgeTension {
@@ -67,8 +67,7 @@ pub(super) fn from_value(kind: SpecimenKind, value: &Value) -> Result<Specimen> 
 
 /// One edge crack.
 pub(super) fn single_edge_from_value(value: &Value) -> Result<Specimen> {
-    let SingleEdge { strip: Strip { width, length, thickness, a }, ends } =
-        SingleEdge::read(&SpecimenKind::SingleEdgeTension.given(value)?)?;
+    let SingleEdge { strip: Strip { width, length, thickness, a }, ends } = SingleEdge::read(&Given::of(value, "specimen")?)?;
     let strip = Specimen::strip(SpecimenKind::SingleEdgeTension, width, length, thickness);
     check_crack(a, width, "the width")?;
     let supports = match ends {
@@ -98,7 +97,7 @@ perilife_base::keys! {
 
 /// C(T).
 pub(super) fn compact_from_value(value: &Value) -> Result<Specimen> {
-    let given = SpecimenKind::CompactTension.given(value)?;
+    let given = Given::of(value, "specimen")?;
     let Compact { w, thickness, a, pin: pin_keys } = Compact::read(&given)?;
     check_crack(a, w, "the width W from the load line")?;
     let hole = |sign: f64| Hole { centre: [0.0, sign * 0.275 * w], radius: 0.125 * w };

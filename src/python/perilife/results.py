@@ -52,7 +52,7 @@ class _Result:
 
 
 class _Written:
-    """A run in another process: its tables, and the files that it writes."""
+    """A run in another process: its tables, and the files that it writes, into a new folder only."""
 
     def __init__(self, run: _perilife.Run | _Written) -> None:
         self._tables = run.tables()
@@ -178,7 +178,7 @@ class Calibration(_Reported):
     @property
     def curves(self) -> Table:
         """Measured and fitted cycles over crack length; of a fit to rates measured and fitted rates."""
-        return self.tables["fit_curves" if "fit_curves" in self.tables else "rates_fitted"]
+        return self.tables["fit_curves" if "fit_curves" in self.tables else "fit_rates"]
 
     def save(self, folder: StrPath, *, force: bool = False) -> Path:
         """Writes the law into a ``.toml`` file, or all that the command line writes into a folder."""

@@ -1,6 +1,6 @@
 //! What was asked beside the life: inspections, a fleet, sensitivities.
 
-use super::{PRINT, Sheets, quoted, terms};
+use super::{PRINT, Sheets, known, quoted, terms};
 use crate::band::{every_words, interval_words};
 use crate::fleet::FleetRecord;
 use crate::format::chance;
@@ -118,10 +118,9 @@ fn sensitivities(all: &[SensitivityRecord], sheets: &mut Sheets<'_>) -> String {
     let row = |row: &SensitivityRecord| {
         let life = row.life_cycles.map_or_else(|| "unlimited".to_owned(), |life| PRINT.whole(life));
         let bound = if row.life_is_lower_bound { "≥ " } else { "" };
-        let change = row.change_of_life_percent.map_or_else(
-            || "–".to_owned(),
-            |change| format!("{}{} %", if change > 0.0 { "+" } else { "" }, PRINT.fixed(change, 1)),
-        );
+        let change = known(row.change_of_life_percent, |change| {
+            format!("{}{} %", if change > 0.0 { "+" } else { "" }, PRINT.fixed(change, 1))
+        });
         let [input, by] = [&row.input, &row.change].map(|text| quoted(text));
         vec![input, by, format!("{bound}{life}"), change, row.ended_by.name().replace('_', " ")]
     };

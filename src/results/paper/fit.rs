@@ -2,7 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::{CHART, PRINT, Signed, figure, hashes, letter, mark, prose, quoted, recorded, signatures, terms};
+use super::{
+    CHART, PRINT, Signed, commit_words, figure, hashes, known, letter, mark, prose, quoted, recorded, signatures, terms,
+};
 use crate::chart::Size;
 use crate::curve::RunTables;
 use crate::pictures::fit::{FitTables, RateFitted, law_svg};
@@ -31,7 +33,7 @@ const UNRECORDED: [&str; 9] = [
 ];
 
 /// Title, page and version of the program that fitted readings.
-pub fn of_lives(fit: &LivesRecord, tables: &FitTables, signed: &Signed) -> (String, String, String) {
+pub fn of_lives(fit: &LivesRecord, plate: Option<&Plate>, tables: &FitTables, signed: &Signed) -> (String, String, String) {
     let test = &fit.beside["test"];
     let material = test["material"].as_str().unwrap_or("");
     let fitted_to = match test["specimens"].as_u64() {
@@ -58,7 +60,7 @@ pub fn of_lives(fit: &LivesRecord, tables: &FitTables, signed: &Signed) -> (Stri
     page += "</div>\n";
     page += &criteria(&fit.beside["criteria"]);
     page += &signatures(signed, "Tested by");
-    page += &details(fit);
+    page += &details(fit, plate);
     page += &curve(fit);
     page += &specimens(fit);
     page += &readings(&tables.readings);
@@ -73,7 +75,7 @@ fn answer(fit: &LivesRecord) -> String {
          <div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p><p>MPa√m, R = {ratio}</p></div></div>\n",
         PRINT.fixed(fit.pivot_delta_k_mpa_sqrt_m, 2),
         PRINT.rate(fit.rate_at_pivot_mm_per_cycle, 4),
-        PRINT.fixed(100.0 * fit.rate_at_pivot_relative_error.unwrap_or(f64::NAN), 1),
+        known(fit.rate_at_pivot_relative_error, |error| PRINT.fixed(100.0 * error, 1)),
         PRINT.fixed(fit.paris_m, 3),
         PRINT.fixed(fit.paris_m_error, 3),
         PRINT.level(fit.paris_c_mm_per_cycle, Some(fit.paris_m), 4),
@@ -108,7 +110,7 @@ fn criteria(criteria: &Value) -> String {
 }
 
 /// Specimen, test, how the law came about, deviations, hashes.
-fn details(fit: &LivesRecord) -> String {
+fn details(fit: &LivesRecord, plate: Option<&Plate>) -> String {
     let beside = &fit.beside;
     let test = &beside["test"];
     let text = |key: &str| recorded(test[key].as_str());
@@ -134,10 +136,9 @@ fn details(fit: &LivesRecord) -> String {
         terms(&specimen),
         terms(&of_test)
     );
-    let plate: Option<Plate> = beside.get("plate").and_then(|plate| serde_json::from_value(plate.clone()).ok());
     let drawing = plate.map_or_else(String::new, |plate| {
         figure(
-            &plate_svg(&plate, &RunTables::default(), SPECIMEN),
+            &plate_svg(plate, &RunTables::default(), SPECIMEN),
             "Figure 3. The specimen to scale with its first crack, as it was computed.",
             "",
         )
@@ -151,9 +152,7 @@ fn details(fit: &LivesRecord) -> String {
     let inputs = beside["inputs"].as_array().into_iter().flatten();
     let inputs: Vec<(&str, &str)> = inputs.filter_map(|file| Some((file["file"].as_str()?, file["sha256"].as_str()?))).collect();
     page += &hashes(if inputs.is_empty() { sources(&fit.sources) } else { inputs }.into_iter(), HASHES_MOST);
-    let commit = beside["commit"]
-        .as_str()
-        .map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())));
+    let commit = commit_words(beside["commit"].as_str());
     let version = recorded(Some(&fit.version));
     page += &format!("<p class=\"small quiet\">perilife {version}{commit}. Units: mm, MPa√m, mm/cycle.</p>\n");
     page
@@ -234,14 +233,13 @@ fn specimens(fit: &LivesRecord) -> String {
         return String::new();
     }
     let row = |one: &SpecimenRecord| {
-        let [measured, fitted, rms] =
-            [one.life_measured, one.life_fitted, one.rms_life_error].map(|figure| figure.unwrap_or(f64::NAN));
+        let [measured, fitted] = [one.life_measured, one.life_fitted].map(|life| known(life, |life| PRINT.whole(life)));
         format!(
             "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
             quoted(&one.name),
-            PRINT.whole(measured),
-            PRINT.whole(fitted),
-            PRINT.fixed(100.0 * rms, 2)
+            measured,
+            fitted,
+            known(one.rms_life_error, |error| PRINT.fixed(100.0 * error, 2))
         )
     };
     format!(
@@ -252,11 +250,10 @@ fn specimens(fit: &LivesRecord) -> String {
 }
 
 fn readings(readings: &[Reading]) -> String {
-    let known = |value: Option<f64>, words: fn(f64) -> String| value.map_or_else(|| "–".to_owned(), words);
     let row = |(place, reading): (usize, &Reading)| {
         let out = if reading.left_out.is_empty() { "" } else { " class=\"out\"" };
-        let delta_k = reading.delta_k_mpa_sqrt_m.map_or("–".to_owned(), |delta_k| PRINT.fixed(delta_k * per("MPa√m"), 2));
-        let growth = reading.da_dn_mm_per_cycle.map_or("–".to_owned(), |growth| PRINT.rate(growth, 3));
+        let delta_k = known(reading.delta_k_mpa_sqrt_m, |delta_k| PRINT.fixed(delta_k * per("MPa√m"), 2));
+        let growth = known(reading.da_dn_mm_per_cycle, |growth| PRINT.rate(growth, 3));
         let by = if reading.method == "secant" { " secant" } else { "" };
         let marks = quoted(&reading.marks.replace('_', " "));
         let left_out =
@@ -294,7 +291,7 @@ pub fn of_laws(fit: &RatesRecord, rates: &[RateFitted], signed: &Signed) -> (Str
          <p>MPa√m, R = {}</p></div></div>\n",
         quoted(law),
         PRINT.whole(fit.rates as f64),
-        PRINT.fixed(fit.rms_log_rate.unwrap_or(f64::NAN), 3),
+        known(fit.rms_log_rate, |rms| PRINT.fixed(rms, 3)),
         PRINT.fixed(fit.delta_k_min_mpa_sqrt_m * per("MPa√m"), 2),
         PRINT.fixed(fit.delta_k_max_mpa_sqrt_m * per("MPa√m"), 2),
         ratios.join(", ")
@@ -338,13 +335,12 @@ fn constants(fit: &RatesRecord) -> String {
 }
 
 fn candidates(fit: &RatesRecord) -> String {
-    let number = |value: Option<f64>, decimals: usize| value.map_or("–".to_owned(), |value| PRINT.fixed(value, decimals));
     let row = |one: &CandidateRecord| {
         let (name, left_out) = (one.law.name(), quoted(one.left_out.as_deref().unwrap_or("")));
         format!(
             "<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{left_out}</td></tr>\n",
-            number(one.rms_log_rate, 3),
-            number(one.delta_aicc, 1)
+            known(one.rms_log_rate, |rms| PRINT.fixed(rms, 3)),
+            known(one.delta_aicc, |delta| PRINT.fixed(delta, 1))
         )
     };
     format!(

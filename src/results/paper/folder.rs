@@ -7,11 +7,12 @@ use serde_json::Value;
 
 use super::Drawings;
 use crate::curve::{A_N_FILE, CRACK_PATH_FILE, RunTables};
-use crate::kept::{check_listed, listed};
+use crate::kept::{check_listed, listed, refuse};
 use crate::pictures::fit::{BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, RateFitted};
+use crate::pictures::plate::Plate;
 use crate::record::{RESULT_FILE, RunRecord};
 use crate::units::metric_result;
-use perilife_base::columns::Table;
+use perilife_base::columns::{AGAIN, Table};
 use perilife_base::error::{Error, InputError, Result, input};
 use perilife_base::input::Opened;
 use perilife_calibration::record::{LivesRecord, RatesRecord};
@@ -30,6 +31,8 @@ pub enum Source {
     Lives {
         /// `fit.json`.
         fit: Box<LivesRecord>,
+        /// Its specimen.
+        plate: Option<Plate>,
         tables: FitTables,
     },
     /// Of `perilife calibrate`, to rates.
@@ -101,7 +104,8 @@ impl Files<'_> {
             return Err(self.bad(FIT_FILE, key, &value.into(), "is not a number above 0"));
         }
         let tables = FitTables::of(&record, [&table(CURVES_FILE)?, &table(BAND_FILE)?, &table(READINGS_FILE)?])?;
-        Ok(Source::Lives { fit: record, tables })
+        let plate = fit.get("plate").map(|plate| self.typed(plate, FIT_FILE)).transpose()?;
+        Ok(Source::Lives { fit: record, plate, tables })
     }
 
     /// A record as its command wrote it.
@@ -152,9 +156,6 @@ impl Files<'_> {
     }
 
     fn damaged(&self, name: &str, problem: String) -> Error {
-        let (file, remedy) = (Some(self.folder.join(name)), AGAIN.to_owned());
-        Error::Input(Box::new(InputError { file, problem, remedy, ..InputError::default() }))
+        refuse(&self.folder.join(name), problem)
     }
 }
-
-const AGAIN: &str = "copy the folder again, or run the command again that wrote it";

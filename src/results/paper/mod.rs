@@ -45,7 +45,7 @@ pub struct Signed {
 pub fn html(source: &Source, signed: &Signed) -> String {
     let (title, body, version) = match source {
         Source::Run { run, tables, drawings } => prediction::body(run, tables, drawings, signed),
-        Source::Lives { fit, tables } => fit::of_lives(fit, tables, signed),
+        Source::Lives { fit, plate, tables } => fit::of_lives(fit, plate.as_ref(), tables, signed),
         Source::Laws { fit, rates } => fit::of_laws(fit, rates, signed),
     };
     // The foot of a page stands in the style sheet: nothing there may end its text.
@@ -70,6 +70,16 @@ pub fn write(folder: &Path, out: &Path, signed: &Signed) -> Result<(usize, bool)
     let page = html(&source, signed);
     file.write(page.as_bytes())?;
     Ok((page.len(), is_file))
+}
+
+/// The commit of the program, where it is known.
+fn commit_words(commit: Option<&str>) -> String {
+    commit.map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())))
+}
+
+/// What is known, in words, else a dash.
+fn known(value: Option<f64>, words: impl FnOnce(f64) -> String) -> String {
+    value.map_or_else(|| "–".to_owned(), words)
 }
 
 /// Text, or that nobody has recorded it.

@@ -1,7 +1,7 @@
 //! What a report says of a crack that did not go through at the start: its section, both lengths over cycles, break-through, and what the error of its
 //! K does to the life.
 
-use super::{CHART, PRINT, Sheets, quoted, terms};
+use super::{CHART, PRINT, Sheets, known, quoted, terms};
 use crate::axis::Axis;
 use crate::chart::{COMPUTED, Frame, SECOND, Size};
 use crate::curve::RunTables;
@@ -24,7 +24,7 @@ pub fn section(run: &RunRecord, tables: &RunTables, sheets: &mut Sheets<'_>) -> 
 }
 
 fn rows(run: &RunRecord, found: &PartThroughEnds) -> Vec<(&'static str, String)> {
-    let mm = |length: Option<f64>| length.map_or_else(|| "–".to_owned(), |length| format!("{} mm", PRINT.fixed(length, 3)));
+    let mm = |length: Option<f64>| known(length, |length| format!("{} mm", PRINT.fixed(length, 3)));
     let cycles = |value: f64| format!("{} cycles", PRINT.whole(value));
     let start = format!("a {}, c {}", mm(Some(found.crack_depth_initial_mm)), mm(run.crack_length_initial_mm));
     let (last, share) = (mm(Some(found.crack_depth_final_mm)), PRINT.fixed(found.depth_over_thickness, 3));
@@ -53,7 +53,7 @@ fn rows(run: &RunRecord, found: &PartThroughEnds) -> Vec<(&'static str, String)>
 }
 
 fn outside(limit: &OutsideRange) -> Option<String> {
-    let [low, high] = limit.range.map(|end| end.map_or_else(|| "–".to_owned(), |end| PRINT.short(end)));
+    let [low, high] = limit.range.map(|end| known(end, |end| PRINT.short(end)));
     let share = PRINT.fixed(100.0 * limit.life_share?, 1);
     Some(format!("{share} % of it ({} not within {low} to {high})", quoted(&limit.of)))
 }

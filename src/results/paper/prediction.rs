@@ -4,8 +4,8 @@ use serde_json::Value;
 
 use super::answers::quantile_words;
 use super::{
-    Drawings, PRINT, Sheets, Signed, answers, figure, hashes, letter, mark, part_through, prose, quoted, recorded, signatures,
-    spectrum, terms,
+    Drawings, PRINT, Sheets, Signed, answers, commit_words, figure, hashes, known, letter, mark, part_through, prose, quoted,
+    recorded, signatures, spectrum, terms,
 };
 use crate::band::interval_words;
 use crate::chart::Size;
@@ -44,11 +44,10 @@ pub fn body(run: &RunRecord, tables: &RunTables, drawings: &Drawings, signed: &S
     page += &checks(run);
     page += &messages(&run.warnings);
     page += &signatures(signed, "Computed by");
-    let commit = |commit: &String| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>()));
     page += &format!(
         "<p class=\"small quiet\">perilife {}{}. Units: mm, MPa, MPa√m, mm/cycle. Input and law as they were read:</p>\n",
         quoted(&run.version),
-        run.made_by.commit.as_ref().map_or_else(String::new, commit)
+        commit_words(run.made_by.commit.as_deref())
     );
     page += &hashes(run.made_by.inputs.iter().map(|file| (&*file.file, &*file.sha256)), HASHES_MOST);
     let mut sheets = Sheets::begin(drawings, FIGURES);
@@ -173,8 +172,8 @@ fn understood(run: &RunRecord, plate: Option<&Plate>) -> Vec<(&'static str, Stri
     let lengths = match run.leading_crack() {
         Some((tip, [first, last])) => format!("of tip {tip}: {} mm to {} mm", two_decimals(first), two_decimals(last)),
         None => {
-            let [first, last] = [run.crack_length_initial_mm, run.crack_length_final_mm]
-                .map(|length| length.map_or_else(|| "–".to_owned(), two_decimals));
+            let [first, last] =
+                [run.crack_length_initial_mm, run.crack_length_final_mm].map(|length| known(length, two_decimals));
             format!("{first} mm to {last} mm")
         }
     };
@@ -212,7 +211,7 @@ fn model(run: &RunRecord) -> String {
         Some("element_free_galerkin") => format!("{points} nodes at the end (element-free Galerkin)"),
         Some(method) => {
             let spacing = run.model.get("spacing_mm").and_then(Value::as_f64);
-            let spacing = spacing.map_or_else(|| "–".to_owned(), |spacing| PRINT.short(spacing));
+            let spacing = known(spacing, |spacing| PRINT.short(spacing));
             format!("{points} points, {spacing} mm apart ({})", quoted(method))
         }
         None => recorded(None),

@@ -79,7 +79,7 @@ pub fn smooth(cycles: &[f64], lengths: &[f64]) -> Vec<Point> {
     inner.chain(rows.last().map(|[length, cycles]| [*cycles, *length])).collect()
 }
 
-fn parts(pixels: f64, each: f64) -> f64 {
+pub(super) fn parts(pixels: f64, each: f64) -> f64 {
     (pixels / each).clamp(2.0, 6.0)
 }
 

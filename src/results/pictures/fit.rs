@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::curves::smooth;
+use super::curves::{parts, smooth};
 use crate::axis::Axis;
 use crate::chart::{COMPUTED, Frame, INK, OF_RATES, Size};
 use crate::format::short;
@@ -52,8 +52,8 @@ pub fn lives_svg(curves: &[Lives], fitted_to: &str, band: &[[f64; 3]], size: Siz
     let all = || curves.iter().flat_map(|curve| curve.measured.iter().chain(&curve.fitted));
     let cycles = all().map(|point| point[0]).chain(band.iter().map(|row| row[2]));
     let axes = [
-        Axis::linear_in(cycles, (size.width / 95.0).clamp(2.0, 6.0)),
-        Axis::linear_in(all().map(|point| point[1]), (size.height / 45.0).clamp(2.0, 6.0)),
+        Axis::linear_in(cycles, parts(size.width, 95.0)),
+        Axis::linear_in(all().map(|point| point[1]), parts(size.height, 45.0)),
     ];
     let mut frame = Frame::with_names(size, axes, ["Cycles N", "Crack length a, mm"], 0);
     let of_end = |end: usize| band.iter().map(|row| [row[end], row[0]]).collect::<Vec<Point>>();

@@ -3,7 +3,7 @@
 use crate::axis::Axis;
 use crate::chart::{COMPUTED, Frame, Size};
 use crate::specimen_picture::sketch::Sketch;
-use crate::spectrum::BARS;
+use crate::spectrum::{BARS, thinned};
 use perilife_plate::loading::spectrum::Spectrum;
 use perilife_plate::specimen::Point;
 
@@ -23,15 +23,12 @@ pub fn spectrum_svg(spectrum: &Spectrum, size: Size) -> String {
 
 /// Maxima over how many of a pass are as large or larger, a stair.
 fn exceedances(spectrum: &Spectrum, size: Size) -> Frame {
-    let levels = spectrum.exceedances();
-    let each = levels.len().div_ceil(POINTS);
-    let kept = levels.iter().enumerate().filter(|(place, _)| place % each == 0 || place + 1 == levels.len());
     let mut stair: Vec<Point> = Vec::new();
-    for (_, (level, count)) in kept {
+    for (level, count) in thinned(spectrum, POINTS) {
         if let Some([before, _]) = stair.last().copied() {
-            stair.push([before, *level]);
+            stair.push([before, level]);
         }
-        stair.push([*count, *level]);
+        stair.push([count, level]);
     }
     let counts = stair.iter().map(|point| point[0]);
     let axes = [Axis::logarithmic(counts), Axis::linear(stair.iter().map(|point| point[1]).chain([0.0]))];

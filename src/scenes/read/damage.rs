@@ -12,6 +12,8 @@ use perilife_plate::material::Material;
 /// 572 MPa, yield strength 345 MPa).
 const FINAL_RATIO: f64 = 5.0;
 
+const FINAL: &str = "the final stretch";
+
 const fn stretch(name: &'static str, text: &'static str) -> Key {
     number(name, text, "a stretch", 1e-9, 1.0)
 }
@@ -20,14 +22,14 @@ perilife_base::keys! {
     /// Keys of `[damage]`.
     pub struct DamageKeys {
         law: DamageLaw = key("law", "Damage law"), or "none" DamageLaw::None;
-        enters: Option<DamageEntry> = key("enters", "Where damage enters: of points; influence where it is left out");
-        calibration: Option<Calibration> = key("calibration", "Calibration: of the critical stretch; growth where it is left out");
+        enters: Option<DamageEntry> = key("enters", "Place of damage in point laws: default influence");
+        calibration: Option<Calibration> = key("calibration", "Calibration: of the critical stretch; default growth");
         critical_stretch: Option<f64> = stretch("critical_stretch", "Critical stretch");
         elastic_stretch: Option<f64> = stretch("elastic_stretch", "Elastic stretch: of the nonlinear law");
         peak_stretch: Option<f64> = stretch("peak_stretch", "Stretch at the largest force: of the nonlinear law");
-        final_stretch: Option<f64> = stretch("final_stretch", "Final stretch: of the nonlinear law");
-        final_ratio: Option<f64> = number("final_ratio", "Final stretch over that at the largest force: 5 where it is left out", "a ratio", 1e-6, 1e6);
-        printed_law: Option<bool> = key("printed_law", "The law as it is printed");
+        final_stretch: Option<f64> = stretch("final_stretch", "Final stretch: of the nonlinear law").group(FINAL);
+        final_ratio: f64 = number("final_ratio", "Final stretch over that at the largest force", "a ratio", 1e-6, 1e6).group(FINAL), or "5" FINAL_RATIO;
+        printed_law: bool = key("printed_law", "The law as it is printed"), or "false" false;
     }
 }
 
@@ -63,10 +65,8 @@ pub fn from_value(value: &Value, material: &Material) -> Result<Damage> {
 
 /// `enters` says nothing where damage is only in the bonds.
 pub fn refuse_entry(value: &Value) -> Result<()> {
-    let input: DamageKeys = section(value, "damage")?;
-    let Some(enters) = input.enters else { return Ok(()) };
     let problem = "goes with bond_law = \"correspondence\": a spring that breaks is gone from force and stiffness alike";
-    Err(perilife_base::error::input("damage.enters", format!("\"{enters}\""), problem, "leave it out"))
+    Given::of(value, "damage")?.refuse_any(&["enters"], problem, "leave it out")
 }
 
 fn check_keys(given: &Given<'_>, law: DamageLaw) -> Result<()> {
@@ -99,11 +99,7 @@ fn softening(given: &DamageKeys, material: &Material) -> Result<Softening> {
         let problem = format!("is beyond the stretch at the largest force, {peak:.6}");
         return Err(input("damage.elastic_stretch", elastic, problem, "give a smaller one, or a larger peak_stretch"));
     }
-    if let (Some(_), Some(ratio)) = (given.final_stretch, given.final_ratio) {
-        let problem = "stands beside final_stretch: one limit is given twice";
-        return Err(input("damage.final_ratio", ratio, problem, "give one of them"));
-    }
-    let ratio = given.final_ratio.unwrap_or(FINAL_RATIO);
+    let ratio = given.final_ratio;
     if ratio <= 1.0 {
         let problem = "leaves no softening: bonds would break at their largest force";
         return Err(input("damage.final_ratio", ratio, problem, "give more than 1"));
@@ -113,5 +109,5 @@ fn softening(given: &DamageKeys, material: &Material) -> Result<Softening> {
         let problem = format!("is not beyond the stretch at the largest force, {peak:.6}");
         return Err(input("damage.final_stretch", last, problem, "give a larger one"));
     }
-    Ok(Softening { elastic, peak, last, printed: given.printed_law.unwrap_or(false) })
+    Ok(Softening { elastic, peak, last, printed: given.printed_law })
 }

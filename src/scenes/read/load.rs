@@ -2,13 +2,14 @@
 
 use toml::Value;
 
-use super::region::{self, BoxKeys, DEPTH};
+use super::region::{self, BoxKeys};
 use crate::scene::{Action, LoadRamp, Region, SceneLoad};
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::Quantity;
 use perilife_base::keys::{Given, coordinate, key, section};
 use perilife_base::units::{MM, MPA};
-use perilife_plate::loading::Transverse;
+
+use perilife_plate::loading::{DEPTH, Transverse};
 use perilife_plate::specimen::geometry::unit;
 use perilife_plate::specimen::{Edge, Point, Specimen};
 
@@ -35,16 +36,16 @@ perilife_base::keys! {
     pub struct LoadKeys {
         kind: LoadKind = key("kind", "Kind of load");
         edges: Option<Vec<Edge>> = key("edges", "Loaded sides");
-        regions: Option<Vec<BoxKeys>> = key("regions", "Loaded boxes: in the place of sides");
+        regions: Option<Vec<BoxKeys>> = key("regions", "Loaded boxes: instead of sides");
         grip: f64 = key("grip_mm", "Depth of the grip: from the side into the plate").of(DEPTH), or "one row" 0.0;
         range: Option<Point> = coordinate("range_mm", "Part of the side: [from, to]");
         stress: Option<f64> = key("stress_mpa", "Stress: along the outward normal, or direction").of(TRACTION).only("kind", &["traction"]);
         displacement: Option<f64> = key("displacement_mm", "Displacement").of(SHIFT).only("kind", &["displacement", "platens"]);
         velocity: Option<f64> = key("velocity_mm_s", "Velocity").of(SPEED).only("kind", &["velocity"]);
         direction: Option<[f64; 2]> = key("direction", "Direction: [x, y]");
-        transverse: Option<Transverse> = key("transverse", "Motion across the displacement or velocity");
-        ramp: Option<f64> = key("ramp_s", "Ramp: the load rises linearly over so long").of(TIME);
-        from: Option<f64> = key("from_s", "Start: from when the load acts").of(TIME);
+        transverse: Transverse = key("transverse", "Motion across the displacement or velocity"), or "free" Transverse::Free;
+        ramp: Option<f64> = key("ramp_s", "Ramp: duration of the linear rise").of(TIME);
+        from: Option<f64> = key("from_s", "Start time of the load").of(TIME);
     }
 }
 
@@ -75,7 +76,7 @@ pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Sp
             input_missing(&format!("{path}.direction"), problem, "give direction = [x, y]")
         })?;
         let vector = unit.map(|component: f64| size * component);
-        let held = load.transverse == Some(Transverse::Held);
+        let held = load.transverse == Transverse::Held;
         let components = [0, 1].map(|i| (unit[i] != 0.0 || held).then_some(vector[i]));
         let action = match kind {
             LoadKind::Traction => Action::Traction(vector),
@@ -175,7 +176,7 @@ fn regions(all: &Given<'_>, load: &LoadKeys, path: &str, specimen: &Specimen) ->
             let remedy = "give edges = [\"top\", \"bottom\", \"left\", \"right\"] or some of them, or regions";
             Err(input_missing(&edges_key, "is missing: nothing is loaded", remedy))
         }
-        (Some(_), Some(_)) => Err(input_missing(&regions_key, "stands beside edges", "give them as parts of their own")),
+        (Some(_), Some(_)) => Err(input_missing(&regions_key, "conflicts with edges", "write each as a part of its own")),
         (Some(edges), None) => {
             if edges.is_empty() {
                 return Err(input(&edges_key, "[]", "is empty: nothing is loaded", "name the loaded sides"));

@@ -13,18 +13,16 @@ use perilife_plate::specimen::Specimen;
 const PARTS_MAX: usize = 50;
 /// Key of the iterations in a load step.
 const ITERATIONS: &str = "loading.iterations_per_step";
-/// More load steps than this are a slip.
-const STEPS_MAX: u64 = 1_000_000;
 
 perilife_base::keys! {
     /// Keys of `[loading]` that concern all loads; one of several loads may have a `ramp_s` of its own.
     pub struct CommonKeys {
         parts: Option<Vec<Value>> = key("parts", "Loads: each with keys of its own");
-        steps: Option<u64> = key("steps", "Load steps");
-        iterations: Option<usize> = number("iterations_per_step", "Iterations in a load step: to rest where it is left out", "a whole number", 1.0, 10_000.0);
+        steps: Option<usize> = number("steps", "Load steps", "a number of load steps", 1.0, 1e6);
+        iterations: Option<usize> = number("iterations_per_step", "Iterations in a load step: default to rest", "a whole number", 1.0, 10_000.0);
         duration: Option<f64> = key("duration_s", "Duration: of motion").of(TIME);
         time_step: Option<f64> = key("time_step_s", "Time step: of motion").of(TIME);
-        ramp: Option<f64> = key("ramp_s", "Ramp: loads rise linearly over so long").of(TIME);
+        ramp: Option<f64> = key("ramp_s", "Ramp: duration of the linear rise of all loads").of(TIME);
     }
 }
 /// Key of a load and of all of them.
@@ -47,7 +45,7 @@ pub fn from_value(value: &Value, specimen: &mut Specimen) -> Result<Loading> {
     }
     let is_common = |key: &str| CommonKeys::KEYS.iter().any(|own| own.name == key);
     let of_loads: Vec<&str> = LoadKeys::KEYS.iter().map(|key| key.name).filter(|key| *key != RAMP).collect();
-    let common: CommonKeys = section_beside(value, "loading", &of_loads, None)?;
+    let common: CommonKeys = section_beside(value, "loading", &of_loads)?;
     let own: Table = table.iter().filter(|(key, _)| !is_common(key)).map(|(key, value)| (key.clone(), value.clone())).collect();
     let ramp = common.ramp.unwrap_or(0.0);
     let procedure = procedure(&common)?;
@@ -64,7 +62,7 @@ pub fn from_value(value: &Value, specimen: &mut Specimen) -> Result<Loading> {
         None => drives.extend(load::drives(&Value::Table(own), "loading", clock, specimen)?),
         Some(parts) => {
             if let Some((key, value)) = own.iter().next() {
-                let problem = "stands beside parts, each of which has keys of its own";
+                let problem = "conflicts with parts";
                 return Err(input(&format!("loading.{key}"), shorten(value), problem, "move it into a part"));
             }
             if parts.is_empty() || parts.len() > PARTS_MAX {
@@ -89,18 +87,15 @@ fn procedure(common: &CommonKeys) -> Result<Procedure> {
     }
     match (common.steps, duration) {
         (Some(steps), Some(_)) => {
-            let problem = "stands beside duration_s: load steps have no time, and time has steps of its own";
+            let problem = "conflicts with duration_s: load steps have no time";
             Err(input("loading.steps", steps, problem, "give steps (no inertia) or duration_s with time_step_s (motion)"))
-        }
-        (Some(steps), None) if steps == 0 || steps > STEPS_MAX => {
-            Err(input("loading.steps", steps, "is no number of load steps", format!("give 1 to {STEPS_MAX}")))
         }
         (steps, None) => {
             let timed = [("loading.time_step_s", time_step), ("loading.ramp_s", common.ramp)];
             if let Some((key, value)) = timed.into_iter().find_map(|(key, value)| Some((key, value?))) {
                 return Err(input(key, value, "has no meaning without duration_s", "give duration_s, or leave it out"));
             }
-            Ok(steps.map_or(Procedure::Static, |steps| Procedure::QuasiStatic { steps: steps as usize, iterations: each }))
+            Ok(steps.map_or(Procedure::Static, |steps| Procedure::QuasiStatic { steps, iterations: each }))
         }
         (None, Some(duration)) => {
             if let Some(step) = time_step.filter(|step| *step > duration) {

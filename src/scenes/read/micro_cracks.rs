@@ -32,7 +32,7 @@ perilife_base::keys! {
         length_max: f64 = key("length_max_mm", "Longest crack").of(SHORT), or "2" LENGTH_MAX_MM * MM;
         angle_min: f64 = number("angle_min_deg", "Least angle, °: against x", ANGLE, -180.0, 180.0), or "-90" -90.0;
         angle_max: f64 = number("angle_max_deg", "Largest angle, °: against x", ANGLE, -180.0, 180.0), or "90" 90.0;
-        regions: Option<Vec<BoxKeys>> = key("regions", "Boxes that they lie in: the whole plate where it is left out");
+        regions: Option<Vec<BoxKeys>> = key("regions", "Boxes of the cracks: default the whole plate");
     }
 }
 

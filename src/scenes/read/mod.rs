@@ -92,6 +92,8 @@ pub fn keys() -> Vec<(&'static str, &'static [Key])> {
         ("damage", damage::DamageKeys::KEYS),
         ("refinement", refinement::RefinementKeys::KEYS),
         ("micro_cracks", micro_cracks::MicroCrackKeys::KEYS),
+        ("supports.SIDE", region::SideKeys::KEYS),
+        ("supports.BOX", region::HeldBoxKeys::KEYS),
     ]
 }
 

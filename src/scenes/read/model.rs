@@ -26,9 +26,9 @@ const OF_POINTS: (&str, &[&str]) = ("bond_law", &["correspondence"]);
 perilife_base::keys! {
     /// Keys of `[model]` of a scene.
     pub struct ModelKeys {
-        bond_law: Option<String> = key("bond_law", "Bond law: two_parameter where it is left out");
+        bond_law: Option<String> = key("bond_law", "Bond law: default two_parameter");
         kernel: Option<Kernel> = key("kernel", "Kernel: weight of bonds over their length");
-        rotation: Option<Rotation> = key("rotation", "Rotation: whether a rigid rotation costs energy");
+        rotation: Option<Rotation> = key("rotation", "Rotation: free or resisted rigid rotation of bonds");
         surface_correction: Option<SurfaceCorrection> = key("surface_correction", "Surface correction: at the boundary");
         spacing: Option<f64> = length("spacing_mm", "Spacing: of points");
         horizon_ratio: f64 = number("horizon_ratio", "Horizon ratio: horizon over spacing", "a horizon ratio", 1.5, 12.0), or "3.015" HORIZON_RATIO;
@@ -37,7 +37,7 @@ perilife_base::keys! {
         solver: Option<SceneSolver> = key("solver", "Solver");
         zero_energy_control: Option<ZeroEnergyControl> = key("zero_energy_control", "Zero-energy control").only(OF_POINTS.0, OF_POINTS.1);
         zero_energy_factor: Option<f64> = key("zero_energy_factor", "Factor of the zero-energy control").only(OF_POINTS.0, OF_POINTS.1);
-        kinematics: Option<Kinematics> = key("kinematics", "Kinematics: small where it is left out");
+        kinematics: Kinematics = key("kinematics", "Kinematics"), or "small" Kinematics::Small;
     }
 }
 
@@ -183,7 +183,7 @@ fn solver(asked: Option<SceneSolver>, law: SceneLaw, procedure: Procedure) -> Re
 
 /// Whether bonds are measured by their true stretch.
 fn finite(given: &ModelKeys, law: SceneLaw, solver: SceneSolver) -> Result<bool> {
-    if given.kinematics != Some(Kinematics::Finite) {
+    if given.kinematics != Kinematics::Finite {
         return Ok(false);
     }
     let refuse = |problem: &str, remedy: &str| Err(input("model.kinematics", "\"finite\"", problem, remedy));

@@ -5,9 +5,10 @@ use toml::Value;
 
 use crate::scene::{Region, SceneSupport};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::input::{Quantity, shorten, table_of};
+use perilife_base::input::{shorten, table_of};
 use perilife_base::keys::{coordinate, key, part, section};
 use perilife_base::units::{MM, round_mm};
+use perilife_plate::loading::SupportEntry;
 use perilife_plate::specimen::geometry::bounding_box;
 use perilife_plate::specimen::{Component, Edge, Point, Specimen};
 pub use perilife_points::refinement::{corners, overlap};
@@ -33,14 +34,12 @@ pub fn edge(edge: Edge, key: &str, depth: (&str, f64), range: (&str, Option<[f64
     }
     let [low, high] = bounding_box(&specimen.outline);
     let across = usize::from(edge.normal()[0] == 0.0);
-    let metres = depth.1;
-    if metres >= (high[across] - low[across]) / 2.0 {
+    if depth.1 >= (high[across] - low[across]) / 2.0 {
         return Err(input(depth.0, round_mm(depth.1), "takes hold of half the plate or more", "give a smaller depth"));
     }
     let part = match range.1 {
         None => [f64::NEG_INFINITY, f64::INFINITY],
-        Some(given) => {
-            let [from, to] = given;
+        Some([from, to]) => {
             let shown = format!("[{}, {}]", round_mm(from), round_mm(to));
             if from >= to {
                 return Err(input(range.0, shown, "does not rise", "give [from, to] along the side"));
@@ -53,7 +52,7 @@ pub fn edge(edge: Edge, key: &str, depth: (&str, f64), range: (&str, Option<[f64
             [from, to]
         }
     };
-    Ok(Region::Edge { edge, depth: metres, range: part })
+    Ok(Region::Edge { edge, depth: depth.1, range: part })
 }
 
 /// The box around a region, m: for a side, so deep as it holds and one `row` at the least.
@@ -78,9 +77,8 @@ pub fn around(region: &Region, row: f64, specimen: &Specimen) -> (Point, Point) 
 perilife_base::keys! {
     /// A held side.
     pub struct SideKeys {
-        depth: f64 = key("rows_mm", "Depth of the hold: from the side into the plate").of(DEPTH), or "one row" 0.0;
+        hold: SupportEntry = part();
         range: Option<Point> = coordinate("range_mm", "Part of the side: [from, to]");
-        fix: Vec<Component> = key("fix", "Held components");
     }
 }
 perilife_base::keys! {
@@ -90,7 +88,6 @@ perilife_base::keys! {
         fix: Vec<Component> = key("fix", "Held components");
     }
 }
-pub const DEPTH: Quantity = Quantity { what: "a depth", unit: "mm", low: 0.0, high: 1e5, si: MM };
 
 /// Reads `[supports]`: `bottom = { rows_mm, range_mm, fix }`, or under any other name `{ from_mm, to_mm, fix }`.
 pub fn supports(value: &Value, specimen: &Specimen) -> Result<Vec<SceneSupport>> {
@@ -101,8 +98,8 @@ pub fn supports(value: &Value, specimen: &Specimen) -> Result<Vec<SceneSupport>>
             Ok(side) => {
                 let entry: SideKeys = section(value, &path)?;
                 let (depth, range) = (format!("{path}.rows_mm"), format!("{path}.range_mm"));
-                let region = edge(side, &path, (&depth, entry.depth), (&range, entry.range), specimen)?;
-                (region, entry.fix, range)
+                let region = edge(side, &path, (&depth, entry.hold.depth), (&range, entry.range), specimen)?;
+                (region, entry.hold.fix, range)
             }
             Err(_) if value.as_table().is_some_and(|table| table.contains_key("rows_mm") || !table.contains_key("from_mm")) => {
                 let remedy = "known sides: top, bottom, left, right; a box has from_mm, to_mm and fix";

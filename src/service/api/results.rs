@@ -211,8 +211,13 @@ pub async fn remaining(
     if let Some(refused) = summary.as_ref().and_then(|summary| summary["refused"].as_str()) {
         return Err(Problem::conflict(format!("the run has no life: {refused}")));
     }
-    let tips = summary.as_ref().and_then(|summary| Vec::<TipEnds>::deserialize(&summary["tips"]).ok());
-    let tips = TipEnds::lengths(&tips.unwrap_or_default(), &table)?;
+    let tips: Vec<TipEnds> = match summary.as_ref().map(|summary| &summary["tips"]).filter(|tips| !tips.is_null()) {
+        Some(tips) => {
+            Deserialize::deserialize(tips).map_err(|_| Problem::conflict("the job is of an earlier version: submit it again"))?
+        }
+        None => Vec::new(),
+    };
+    let tips = TipEnds::lengths(&tips, &table)?;
     let is_lower_bound = summary.is_some_and(|summary| summary["life_is_lower_bound"] == true);
     Ok(Json(Inspection::of(&curve::curve(&rows), tips.as_ref(), left.as_deref(), from, is_lower_bound)?))
 }

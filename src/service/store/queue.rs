@@ -112,6 +112,7 @@ impl Store {
         // Within a transaction, since only its end tells that the claim has got to the disk.
         let mut transaction = self.begin().await?;
         schema::expect(&mut transaction).await?;
+        // Asked again by the statement itself: tables may have been led on between the two.
         let row = bound!(sqlx::query(self.sql(
             "UPDATE jobs SET state = 'running', worker = $1, fence = fence + 1, attempts = attempts + 1,
                 lease_until_ms = {now} + $2, lease_ms = $2, started_ms = COALESCE(started_ms, {now}), not_before_ms = NULL,
@@ -124,8 +125,9 @@ impl Store {
                 (SELECT id FROM jobs WHERE {waits}
                     AND (kind = 'prediction' OR (SELECT COUNT(*) FROM tokens WHERE role <> 'read') < 2)
                  ORDER BY turn, id LIMIT 1 {skip_locked}))
+                AND (SELECT MAX(version) FROM perilife_schema) = $5
              RETURNING id, kind, fence, attempts, cancel_asked, owner, turn, failures, spent_ms, started_ms - created_ms AS waited_ms",
-        )); worker, lease_ms, LONGEST_WAIT.as_millis() as i64, workers.saturating_sub(1).max(1) as i64)
+        )); worker, lease_ms, LONGEST_WAIT.as_millis() as i64, workers.saturating_sub(1).max(1) as i64, schema::VERSION)
         .fetch_optional(&mut *transaction)
         .await?;
         let Some(row) = row else { return Ok(None) };

@@ -3,7 +3,7 @@
 use super::{Dialect, Result, Store};
 
 /// Version of the tables; one higher with every change of them.
-const VERSION: i64 = 5;
+pub(super) const VERSION: i64 = 5;
 
 /// Version of [`TABLES`], to which [`UPGRADES`] lead on.
 const FIRST: i64 = 2;

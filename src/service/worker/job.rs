@@ -308,6 +308,9 @@ fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome, reason: &'static s
             tracing::warn!(job = claim.id, "the result waits for room on the disk of the database");
             match wait() {
                 Ok(Heartbeat::Cancel) => return hand_in(shared, claim, &ended(State::Cancelled, None), "cancelled"),
+                Ok(Heartbeat::Lost) => {
+                    return tracing::warn!(job = claim.id, "the result is dropped: another worker has the job");
+                }
                 _ => continue,
             }
         }

@@ -24,7 +24,6 @@ pub const SOLVERS: &[Bad] = &[
         "spacing_mm = 1\nsolver = \"secant\"",
         &["model.solver", "correspondence", "adaptive_dynamic_relaxation"],
     ),
-    (REFINED, "\"dual_horizon\"", "\"variable_horizon\"", &[":10:", "model.discretisation", "lattice, dual_horizon"]),
     (THROWN, "spacing_mm = 1", "spacing_mm = 1\nkinematics = \"finite\"", &["model.kinematics", "bond_based"]),
     (
         PULLED,
@@ -46,7 +45,6 @@ pub const SOLVERS: &[Bad] = &[
         "spacing_mm = 1\nbond_law = \"springs\"",
         &[":14:", "model.bond_law", "springs", "bond_based, two_parameter, one_bond_two_parameter, correspondence"],
     ),
-    (PULLED, "spacing_mm = 1", "spacing_mm = 1\nbond_law = 3", &["model.bond_law", "text"]),
     (
         PULLED,
         "spacing_mm = 1",
@@ -93,12 +91,6 @@ pub const DAMAGE: &[Bad] = &[
     (
         THROWN,
         "law = \"critical_energy\"",
-        "law = \"critical_energy\"\ncalibration = \"griffith\"",
-        &["damage.calibration", "griffith", "growth, bond_energy"],
-    ),
-    (
-        THROWN,
-        "law = \"critical_energy\"",
         "law = \"critical_stretch\"\ncritical_stretch = 0.1\ncalibration = \"growth\"",
         &["damage.calibration", "growth", "damage.critical_stretch", "leave one of them out"],
     ),
@@ -115,12 +107,6 @@ pub const DAMAGE: &[Bad] = &[
         "law = \"principal_stress\"",
         "law = \"critical_energy\"\ncritical_stretch = 0.1",
         &["damage.law", "springs", "principal_stress"],
-    ),
-    (
-        PRESSED,
-        "law = \"principal_stress\"",
-        "law = \"principal_stress\"\nenters = \"both\"",
-        &["damage.enters", "both", "force, influence"],
     ),
     (PULLED, "law = \"nonlinear_two_parameter\"", "law = \"principal_stress\"", &["damage.law", "correspondence"]),
     (PULLED, "yield_strength_mpa = 345\n", "", &["damage.elastic_stretch", "yield_strength_mpa"]),

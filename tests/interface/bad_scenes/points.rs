@@ -7,8 +7,6 @@ pub const POINTS: &[Bad] = &[
     (REFINED, "discretisation = \"dual_horizon\"\n", "", &["model.discretisation", "[refinement]", "dual_horizon"]),
     (REFINED, "[[-5, -5], [5, 5]]", "[[25, -5], [30, 5]]", &["refinement.regions[0].box_mm", "outside the plate", "(-20, -10)"]),
     (REFINED, "[[-5, -5], [5, 5]]", "[[5, -5], [5, 5]]", &["refinement.regions[0].box_mm", "no area"]),
-    (REFINED, "levels = 1", "levels = 0", &["refinement.regions[0].levels", "1 to 4"]),
-    (REFINED, "levels = 1", "levels = 9", &["refinement.regions[0].levels", "1 to 4"]),
     (REFINED, "levels = 1", "levels = 1, width_mm = 3", &["refinement.regions[0].width_mm", "band"]),
     (REFINED, "box_mm = [[-5, -5], [5, 5]]", "band_mm = [[-5, -5], [5, 5]]", &["refinement.regions[0].width_mm", "missing"]),
     (
@@ -31,8 +29,6 @@ pub const POINTS: &[Bad] = &[
         "edges = [\"top\", \"bottom\"]\ndirection = [1, 0]",
         &["supports", "floats", "along x"],
     ),
-    (PULLED, "seed = 1\n", "", &["micro_cracks.seed", "missing"]),
-    (PULLED, "seed = 1", "seed = -1", &["micro_cracks.seed", "whole number"]),
     (PULLED, "count = 5", "count = 5\nlength_min_mm = 3", &["micro_cracks.length_min_mm", "length_max_mm"]),
     (PULLED, "count = 5", "count = 5\nlength_min_mm = 100\nlength_max_mm = 101", &["micro_cracks.count", "does not fit"]),
     (PULLED, "count = 5", "count = 5\nregions = []", &["micro_cracks.regions", "empty"]),

@@ -75,7 +75,6 @@ fn another_kind_is_not_replaced() {
     assert!(!here.join("calibrate/panel").exists());
 }
 
-/// A marker that came along with a copy covers nothing else, and a list that cannot be read covers nothing at all.
 #[test]
 fn a_run_of_another_input_is_replaced_by_force_alone() {
     let dir = inputs();
@@ -95,6 +94,7 @@ fn a_run_of_another_input_is_replaced_by_force_alone() {
     assert!(predict("changed.toml", &["--force"]).status.success());
 }
 
+/// A marker that came along with a copy covers nothing else, and a list that cannot be read covers nothing at all.
 #[test]
 fn a_marker_in_a_strange_folder_covers_its_files_alone() {
     let dir = inputs();

@@ -41,6 +41,9 @@ fn wrong_input_is_refused_in_the_words_of_the_command() {
             assert_eq!(line, said.0);
         }
     }
+    let two = QUICK.replace("width_mm", "breadth_mm");
+    let detail = service.post("/v1/check", &of("case", &two)).expect(422).json()["detail"].clone();
+    assert!(detail.as_str().unwrap().starts_with("2 mistakes\n1. "), "{detail}");
     assert_eq!(service.get("/v1/predictions").json()["items"], json!([]), "nothing of it is kept");
 }
 

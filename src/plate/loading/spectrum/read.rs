@@ -9,9 +9,9 @@ use super::rainflow::rainflow;
 use super::rows::{fault, rows};
 use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, is_whole, spx, sub};
 use crate::loading::Input;
-use crate::loading::course::Size;
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::Folder;
+use perilife_base::keys::Plain;
 use perilife_base::table::units::{LoadUnit, Unit};
 use perilife_base::table::{decoded, is_workbook};
 
@@ -25,10 +25,9 @@ impl Spectrum {
         })?;
         let (omission, truncation) = (input.omission_percent / 100.0, input.truncation_percent / 100.0);
         let repeats = input.repeats;
-        let scale = match (&input.spectrum_scale_mpa, &input.spectrum_scale_n) {
-            (Some(Size::One(scale)), _) => (Unit::Load(LoadUnit::Megapascal), *scale),
-            (_, Some(Size::One(scale))) => (Unit::Load(LoadUnit::Newton), *scale),
-            _ => (Unit::Load(LoadUnit::Newton), 1.0),
+        let scale = match (input.spectrum_scale_mpa, input.spectrum_scale_n) {
+            (Some(Plain(scale)), _) => (Unit::Load(LoadUnit::Megapascal), scale),
+            (None, scale) => (Unit::Load(LoadUnit::Newton), scale.map_or(1.0, |given| given.0)),
         };
         let (bytes, path) = (folder.read(file)?, folder.path(file));
         let read = || {

@@ -20,7 +20,7 @@ perilife_base::keys! {
         length: f64 = LENGTH;
         thickness: f64 = THICKNESS;
         diameter: f64 = HOLE_DIAMETER;
-        x: f64 = coordinate("hole_offset_mm", "Hole from the middle: across the load"), or "0" 0.0;
+        x: f64 = coordinate("hole_offset_mm", "Hole center: distance from the midline, across the load"), or "0" 0.0;
         cracks: AtHoleKeys = part();
     }
 }

@@ -16,11 +16,11 @@ pub(super) const KIND: Description = Description { kind: SpecimenKind::Cruciform
 perilife_base::keys! {
     /// Keys of `[specimen]`.
     struct Keys {
-        length: f64 = LENGTH.said("Length L: from end to end of two arms");
+        length: f64 = LENGTH.said("Length L: end to end of two arms");
         arm_width: f64 = length("arm_width_mm", "Width of an arm");
         radius: f64 = length("fillet_radius_mm", "Radius of the inner corners");
         thickness: f64 = THICKNESS;
-        a: f64 = CRACK_LENGTH.said("Initial crack length a: half of it");
+        a: f64 = CRACK_LENGTH.said("Initial crack length a: half length");
         angle: f64 = number("crack_angle_deg", "Angle of the crack, °: against x", "an angle in degrees", -180.0, 180.0), or "0" 0.0;
     }
 }

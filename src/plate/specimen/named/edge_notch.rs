@@ -20,7 +20,7 @@ perilife_base::keys! {
         thickness: f64 = THICKNESS;
         depth: f64 = length("notch_depth_mm", "Depth of the notch: from the edge to the root");
         radius: f64 = length("notch_radius_mm", "Radius of the root: half circle that ends the notch");
-        crack_length: Option<f64> = CRACK_LENGTH.said("Initial crack length a: from the root of the notch; none where it is left out");
+        crack_length: Option<f64> = CRACK_LENGTH.said("Initial crack length a: from the notch root; default no crack");
     }
 }
 

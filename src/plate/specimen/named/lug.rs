@@ -21,11 +21,11 @@ perilife_base::keys! {
     /// Keys of `[specimen]`.
     struct Keys {
         width: f64 = WIDTH;
-        length: f64 = LENGTH.said("Length L: from the middle of the hole to the held end");
+        length: f64 = LENGTH.said("Length L: from the hole center to the clamped end");
         thickness: f64 = THICKNESS;
         diameter: f64 = HOLE_DIAMETER;
         head: Head = key("head", "Head: end beyond the hole");
-        distance: Option<f64> = length("edge_distance_mm", "Edge distance: of a straight head, from the middle of the hole; W/2 where it is left out");
+        distance: Option<f64> = length("edge_distance_mm", "Edge distance: of a straight head, from the hole center; default W/2");
         cracks: AtHoleKeys = part();
         pin: PinKeys = part();
     }
@@ -48,7 +48,7 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
         }
         (Head::Round, None) => outline.extend(arc([0.0, 0.0], half_width, [0.0, PI])),
         (Head::Round, Some(_)) => {
-            let problem = "stands beside head = \"round\", whose edge is half the width away";
+            let problem = "conflicts with head = \"round\", whose edge distance is W/2";
             return Err(given.refuse("edge_distance_mm", problem, "leave it out, or use head = \"straight\""));
         }
     }

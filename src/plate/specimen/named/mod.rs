@@ -94,7 +94,7 @@ impl SpecimenKind {
 /// Reads `[specimen]` of a named plate.
 /// Errors: as of a `plate`, named by the keys of the kind as far as they go.
 pub(super) fn from_value(description: &Description, value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
-    let Layout { drawing, loads, supports, crack_length, formula } = (description.layout)(&description.kind.given(value)?)?;
+    let Layout { drawing, loads, supports, crack_length, formula } = (description.layout)(&Given::of(value, "specimen")?)?;
     let convention = if crack_length.is_some() { LengthConvention::MeanOfTips } else { LengthConvention::SumOfTips };
     let crack_key = description.kind.crack_key(convention);
     let first = notes.len();

@@ -1,12 +1,13 @@
 //! A plate under tension with a row of equal holes across it, cracked at their sides, such as a riveted joint: cracks of neighbours link up.
 
-use super::shapes::{FROM_RIM, LENGTHS, LengthOrNone, SLACK, below, in_mm};
+use super::shapes::{FROM_RIM, LENGTHS, SLACK, below};
 use super::{Description, Layout};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
 use crate::specimen::{Hole, Point, SpecimenKind};
 use perilife_base::error::{Result, input};
-use perilife_base::keys::{Given, Section, length, number};
+use perilife_base::keys::{Given, OrNone, Section, length, number};
+use perilife_base::units::round_mm;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::RowOfHoles, keys: Keys::KEYS, layout };
 
@@ -18,10 +19,10 @@ perilife_base::keys! {
         thickness: f64 = THICKNESS;
         count: usize = number("holes", "Holes: in one row across the load", "a number of holes", 2.0, 100.0)
             .missing("give 2 to 100, or use kind = \"crack_at_hole\"");
-        pitch: f64 = length("pitch_mm", "Pitch: between the middles of neighbours");
+        pitch: f64 = length("pitch_mm", "Pitch: between hole centers");
         diameter: f64 = HOLE_DIAMETER;
         shared: Option<f64> = FROM_RIM;
-        lengths: Option<Vec<[LengthOrNone; 2]>> = length("crack_lengths_mm", "Cracks of unlike lengths: of every hole [left, right], 0 without one").group(LENGTHS);
+        lengths: Option<Vec<[OrNone; 2]>> = length("crack_lengths_mm", "Crack lengths: [left, right] of every hole, 0 for no crack").group(LENGTHS);
     }
 }
 
@@ -71,9 +72,9 @@ fn check_ligaments(lengths: &[[f64; 2]], ligament: f64) -> Result<()> {
     let inner = lengths.iter().enumerate().flat_map(|(hole, pair)| [(hole, 0, pair[0]), (hole, 1, pair[1])]);
     let mut inner = inner.filter(|&(hole, side, _)| (hole, side) != (0, 0) && (hole, side) != (last, 1));
     let Some((hole, side, length)) = inner.find(|(_, _, length)| *length > ligament * (1.0 + SLACK)) else { return Ok(()) };
-    let problem = format!("is longer than the ligament to the next hole, {} mm", in_mm(ligament));
+    let problem = format!("is longer than the ligament to the next hole, {} mm", round_mm(ligament));
     let remedy = "give at most the ligament: two lengths that together fill it are cracks that have linked";
-    Err(input(&format!("specimen.crack_lengths_mm[{hole}][{side}]"), in_mm(length), problem, remedy))
+    Err(input(&format!("specimen.crack_lengths_mm[{hole}][{side}]"), round_mm(length), problem, remedy))
 }
 
 /// Cracks from left to right; those that fill the ligament between two holes have cut it, as after link-up.

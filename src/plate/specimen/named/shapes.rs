@@ -2,13 +2,11 @@
 
 use std::f64::consts::PI;
 
-use toml::Value;
-
 use crate::specimen::geometry::distance;
 use crate::specimen::{Bearing, Load, Point};
 use perilife_base::error::{Result, input};
-use perilife_base::keys::{Field, Given, Key, Shape, length, number, quantity};
-use perilife_base::units::MM;
+use perilife_base::keys::{Given, Key, OrNone, length, number};
+use perilife_base::units::round_mm;
 
 /// Angle of one side of a polygon that stands for an arc, rad: 2°, whose middle lies 1.5e-4 of the radius off the arc.
 const ARC_SIDE: f64 = PI / 90.0;
@@ -35,15 +33,15 @@ pub(super) fn roller([from, to]: [Point; 2], direction: Point, share: f64, thick
 /// What the lengths of cracks at holes say.
 pub(super) const LENGTHS: &str = "the length of the cracks";
 /// Length of all cracks at holes.
-pub(super) const FROM_RIM: Key = length("crack_length_mm", "Initial crack length a: from the rim of the hole").group(LENGTHS);
+pub(super) const FROM_RIM: Key = length("crack_length_mm", "Initial crack length a: from the hole edge").group(LENGTHS);
 
 perilife_base::keys! {
     /// Keys of the cracks at the sides of a hole.
     pub(super) struct AtHoleKeys {
         length: Option<f64> = FROM_RIM;
-        count: Option<usize> = number("cracks", "Cracks at the hole: 1, at its right, or 2; 1 where it is left out", "a number of cracks", 1.0, 2.0)
+        count: Option<usize> = number("cracks", "Cracks at the hole: 1 (right) or 2; default 1", "a number of cracks", 1.0, 2.0)
             .missing("give crack_length_mm with cracks = 1 or 2, or crack_lengths_mm = [left, right]");
-        lengths: Option<[LengthOrNone; 2]> = length("crack_lengths_mm", "Cracks of unlike lengths: left and right from the rim, 0 without one").group(LENGTHS);
+        lengths: Option<[OrNone; 2]> = length("crack_lengths_mm", "Crack lengths: left and right from the hole edge, 0 for no crack").group(LENGTHS);
     }
 }
 
@@ -64,9 +62,7 @@ impl AtHole {
             (Some(length), _) => {
                 Ok(AtHole { lengths: [if keys.count == Some(2) { length } else { 0.0 }, length], shared: Some(length) })
             }
-            (None, Some(_)) if keys.count.is_some() => {
-                Err(given.refuse("cracks", "stands beside crack_lengths_mm, which says how many there are", REMEDY))
-            }
+            (None, Some(_)) if keys.count.is_some() => Err(given.refuse("cracks", "conflicts with crack_lengths_mm", REMEDY)),
             (None, Some([left, right])) => Ok(AtHole { lengths: [left.0, right.0], shared: None }),
             (None, None) => Err(given.refuse("crack_length_mm", "is missing", REMEDY)),
         }
@@ -88,31 +84,14 @@ impl AtHole {
     }
 }
 
-/// A length, or 0 for no crack; m.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::specimen) struct LengthOrNone(pub f64);
-
-impl Field for LengthOrNone {
-    const SHAPE: Shape = Shape::Number;
-    fn take(key: &Key, path: &str, value: &Value) -> Result<Self> {
-        let is_none = value.as_float() == Some(0.0) || value.as_integer() == Some(0);
-        if is_none { Ok(LengthOrNone(0.0)) } else { quantity(key, path, value).map(LengthOrNone) }
-    }
-}
-
 /// Share of a size by which two that are equal in the file may differ.
 pub(super) const SLACK: f64 = 1e-9;
-
-/// Metres as mm, rounded for messages.
-pub(super) fn in_mm(metres: f64) -> f64 {
-    (metres / MM * 1e6).round() / 1e6
-}
 
 /// Refuses a size that does not lie below a limit, both in m.
 pub(super) fn below(key: &str, size: f64, limit: f64, what: &str) -> Result<()> {
     if size < limit * (1.0 - SLACK) {
         return Ok(());
     }
-    let problem = format!("is not below {what}, {} mm", in_mm(limit));
-    Err(input(&format!("specimen.{key}"), in_mm(size), problem, "give a smaller one, or a larger plate"))
+    let problem = format!("is not below {what}, {} mm", round_mm(limit));
+    Err(input(&format!("specimen.{key}"), round_mm(size), problem, "give a smaller one, or a larger plate"))
 }

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use super::shapes::{below, in_mm, roller};
+use super::shapes::{below, roller};
 use super::{Description, Layout};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS, WIDTH};
@@ -13,6 +13,7 @@ use crate::specimen::plate::Drawing;
 use crate::specimen::{Load, SpecimenKind};
 use perilife_base::error::{Result, input as error};
 use perilife_base::keys::{Given, Section, length};
+use perilife_base::units::round_mm;
 
 pub(super) const KIND: Description = Description { kind: SpecimenKind::SingleEdgeBend, keys: Keys::KEYS, layout };
 
@@ -30,7 +31,7 @@ perilife_base::keys! {
         thickness: f64 = THICKNESS;
         a: f64 = CRACK_LENGTH;
         span: f64 = length("span_mm", "Span: of the outer rollers"), or "4 W" SPAN * w;
-        inner: Option<f64> = length("inner_span_mm", "Inner span: between two rollers; one in the middle where it is left out");
+        inner: Option<f64> = length("inner_span_mm", "Inner span: between two rollers; default one roller at midspan");
         length: f64 = LENGTH.said("Length L: of the beam"), or "span + W/2" span + OVERHANG * w;
     }
 }
@@ -42,12 +43,12 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     if given.first(&["span_mm"]).is_some() {
         below("span_mm", span, length - contact, "the length less a contact")?;
     } else if length <= span + contact {
-        let problem = format!("has no room for the span of {} mm and a contact", in_mm(span));
-        return Err(error("specimen.length_mm", in_mm(length), problem, "give a longer beam, or span_mm"));
+        let problem = format!("has no room for the span of {} mm and a contact", round_mm(span));
+        return Err(error("specimen.length_mm", round_mm(length), problem, "give a longer beam, or span_mm"));
     }
     if span <= 2.0 * contact {
-        let problem = format!("is not above two contacts, {} mm", in_mm(2.0 * contact));
-        return Err(error("specimen.span_mm", in_mm(span), problem, "give a longer one"));
+        let problem = format!("is not above two contacts, {} mm", round_mm(2.0 * contact));
+        return Err(error("specimen.span_mm", round_mm(span), problem, "give a longer one"));
     }
     inner.map_or(Ok(()), |inner| below("inner_span_mm", inner, span - 2.0 * contact, "the span less two contacts"))?;
     let at = |x: f64, y: f64, share: f64| {

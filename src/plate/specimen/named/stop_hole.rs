@@ -19,9 +19,9 @@ perilife_base::keys! {
         width: f64 = WIDTH;
         length: f64 = LENGTH;
         thickness: f64 = THICKNESS;
-        centre: f64 = length("stopped_crack_length_mm", "Stopped crack: half of its length, to the centres of the holes");
+        centre: f64 = length("stopped_crack_length_mm", "Stopped crack: half length, to the hole centers");
         diameter: f64 = HOLE_DIAMETER;
-        formed: f64 = length("formed_length_mm", "Formed cracks: their length from the rims of the holes at the end of phase I");
+        formed: f64 = length("formed_length_mm", "Crack length after initiation: from the hole edges");
     }
 }
 

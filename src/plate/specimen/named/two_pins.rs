@@ -78,7 +78,7 @@ perilife_base::keys! {
     struct Keys {
         w: f64 = WIDTH.said("Width W: from the edge (ESE(T)) or the load line (WOL)");
         thickness: f64 = THICKNESS;
-        a: f64 = CRACK_LENGTH.said("Initial crack length a: from where W begins");
+        a: f64 = CRACK_LENGTH.said("Initial crack length a: from the same line as W");
     }
 }
 

@@ -8,7 +8,7 @@ use crate::specimen::placement::check_holes;
 use crate::specimen::plate::{HoleKeys, read_holes};
 use crate::specimen::{Hole, Specimen};
 use perilife_base::error::{Result, input, input_missing};
-use perilife_base::keys::{Key, Section, key, length, number, part};
+use perilife_base::keys::{Given, Key, Section, key, length, number, part};
 use perilife_base::units::round_mm;
 
 /// Length of the plate over its width where the case does not say: ends so far away that they do not matter.
@@ -18,10 +18,10 @@ perilife_base::keys! {
     /// Keys of `[specimen]`.
     pub(super) struct Keys {
         width: f64 = WIDTH;
-        length: Option<f64> = LENGTH.said("Length L: along the load; 3 W where it is left out");
+        length: Option<f64> = LENGTH.said("Length L: along the load; default 3 W");
         thickness: f64 = THICKNESS;
         depth: f64 = length("crack_depth_mm", "Crack depth a: into the thickness");
-        half_length: f64 = length("crack_half_length_mm", "Crack length c: along the face; half of it where it has two ends there");
+        half_length: f64 = length("crack_half_length_mm", "Surface length c: half length where both ends are on the surface");
         holes: Vec<HoleKeys> = key("holes", "Further holes of the plate"), or "none" Vec::new();
     }
 }
@@ -30,7 +30,7 @@ perilife_base::keys! {
     pub(super) struct KeysAtHole {
         own: Keys = part();
         diameter: f64 = HOLE_DIAMETER;
-        cracks: usize = number("cracks", "Cracks at the hole: 1, on one side of it, or 2, on both", "a number of cracks", 1.0, 2.0)
+        cracks: usize = number("cracks", "Cracks at the hole: 1 or 2 sides", "a number of cracks", 1.0, 2.0)
             .missing("give 1, a crack on one side of the hole, or 2, one on both");
     }
 }
@@ -46,7 +46,7 @@ pub(in crate::specimen) fn from_value(
     value: &Value,
     notes: &mut Vec<String>,
 ) -> Result<Specimen> {
-    let given = description.kind.given(value)?;
+    let given = Given::of(value, "specimen")?;
     let (own, radius, cracks) = if description.has_hole {
         let KeysAtHole { own, diameter, cracks } = KeysAtHole::read(&given)?;
         if diameter >= own.width {

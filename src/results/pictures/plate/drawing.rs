@@ -9,7 +9,7 @@ use crate::specimen_picture::sketch::Sketch;
 use perilife_base::monotone::Monotone;
 use perilife_base::units::shown::{name_of, per};
 use perilife_plate::specimen::Point;
-use perilife_plate::specimen::geometry::{along, distance};
+use perilife_plate::specimen::geometry::{along, bounding_box, distance, point_in_polygon};
 
 /// Size of the picture in a file of its own.
 pub const SIZE: Size = Size { width: 760.0, height: 520.0, text: 13.0 };
@@ -86,8 +86,10 @@ impl Way {
 /// SVG text: the whole plate, and beside it the cracks where they are small in it.
 pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     let ways: Vec<Way> = tables.paths.iter().filter(|path| !path.is_empty()).map(|path| Way::of(path)).collect();
-    let [low, high] = bounds(plate.outline_mm.iter());
-    let of_cracks = bounds(plate.cracks_mm.iter().flatten().chain(ways.iter().flat_map(|way| &way.places)));
+    let [low, high] = bounding_box(&plate.outline_mm);
+    let of_cracks: Vec<Point> =
+        plate.cracks_mm.iter().flatten().chain(ways.iter().flat_map(|way| &way.places)).copied().collect();
+    let of_cracks = bounding_box(&of_cracks);
     let largest = |[low, high]: [Point; 2]| (high[0] - low[0]).max(high[1] - low[1]);
     let is_small = largest(of_cracks) < SMALL * largest([low, high]);
     let width = if is_small { 0.45 * size.width } else { size.width };
@@ -116,7 +118,7 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
 /// The plate at the left with cracks that grow as cycles go by, and at the right the curve with a dot that follows; SVG that moves by itself.
 pub fn growth_svg(plate: &Plate, run: &RunRecord, tables: &RunTables, size: Size) -> String {
     let ways: Vec<Way> = tables.paths.iter().filter(|path| !path.is_empty()).map(|path| Way::of(path)).collect();
-    let [low, high] = bounds(plate.outline_mm.iter());
+    let [low, high] = bounding_box(&plate.outline_mm);
     let (width, life) = (0.5 * size.width, tables.life());
     let room = [width - 2.0 * AROUND, size.height - 2.0 * AROUND - BELOW];
     let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
@@ -135,11 +137,6 @@ pub fn growth_svg(plate: &Plate, run: &RunRecord, tables: &RunTables, size: Size
     scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
     sketch.within([width, 0.0], [width, size.height], a_n_moving(run, tables, Size { width, ..size }));
     sketch.picture([size.width, size.height], &format!("Cracks as they grow over {life:.0} cycles, {}", plate.load))
-}
-
-fn bounds<'p>(points: impl Iterator<Item = &'p Point>) -> [Point; 2] {
-    let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-    points.fold(start, |[low, high], p| [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]])
 }
 
 /// A plate in the making; coordinates in mm.
@@ -168,7 +165,7 @@ impl<'a> Drawing<'a> {
             for side in 0..slot.len() {
                 let (from, to) = (slot[side], slot[(side + 1) % slot.len()]);
                 // Walls are drawn inside the plate only: the mouth is open.
-                let inside = |share: f64| contains(&self.plate.outline_mm, along(from, to, share));
+                let inside = |share: f64| point_in_polygon(along(from, to, share), &self.plate.outline_mm);
                 let parts: Vec<f64> = (0..64).map(|part| (f64::from(part) + 0.5) / 64.0).filter(|share| inside(*share)).collect();
                 if let [first, .., last] = parts.as_slice() {
                     sketch.path(&[sketch.place(along(from, to, *first)), sketch.place(along(from, to, *last))], EDGE, 1.4, "");
@@ -298,7 +295,7 @@ impl<'a> Drawing<'a> {
 
     /// Hatching outside a stretch of the outline that is held.
     fn hold(&self, sketch: &mut Sketch, from: Point, to: Point) {
-        let [low, high] = bounds(self.plate.outline_mm.iter());
+        let [low, high] = bounding_box(&self.plate.outline_mm);
         let middle = sketch.place(along(low, high, 0.5));
         let (from, to) = (sketch.place(from), sketch.place(to));
         let reach = distance(from, to).max(1e-9);
@@ -338,15 +335,6 @@ impl<'a> Drawing<'a> {
         let box_of = [of_plate(-1.0, -1.0), of_plate(1.0, -1.0), of_plate(1.0, 1.0), of_plate(-1.0, 1.0), of_plate(-1.0, -1.0)];
         sketch.path(&box_of, "#7b8794", 1.0, "3 3");
     }
-}
-
-/// Whether a point lies within an outline.
-fn contains(outline: &[Point], [x, y]: Point) -> bool {
-    let crosses = |place: usize| {
-        let (a, b) = (outline[place], outline[(place + 1) % outline.len()]);
-        (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
-    };
-    (0..outline.len()).filter(|place| crosses(*place)).count() % 2 == 1
 }
 
 pub fn colour(share: f64) -> String {
