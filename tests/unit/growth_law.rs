@@ -262,8 +262,8 @@ fn wrong_laws_are_refused() {
     let two = format!("{FORMAN}nasgro_n = 3\n");
     let ratios = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n10,1e-4,0.3\n20,9e-4,0.3\n10,2e-4,0.5\n20,2e-3,0.5\n";
     let rows: [(&str, &str, &[&str], &[&str]); 19] = [
-        (RATES, &twice, &[], &["fatigue.paris_c_mm_per_cycle", "given twice"]),
-        (RATES, &two, &[], &["fatigue.nasgro_n", "given twice"]),
+        (RATES, &twice, &[], &["fatigue.forman_c_mm_per_cycle", "conflicts with fatigue.paris_c_mm_per_cycle"]),
+        (RATES, &two, &[], &["fatigue.nasgro_n", "conflicts with"]),
         (RATES, FORMAN, &["fatigue.driver=bond_strain"], &["fatigue.growth_law", "no law of bonds", "tip_field"]),
         (RATES, FORMAN, &["fatigue.walker_gamma=0.5"], &["fatigue.walker_gamma", "forman"]),
         (RATES, FORMAN, &["fatigue.forman_m=0.1"], &["fatigue.forman_m", "0.1"]),

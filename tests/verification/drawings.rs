@@ -228,7 +228,7 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         (DXF, "part.dxf", "PK\u{3}\u{4}\nfoo\n", &["is no DXF", "line 1"]),
         ("outline_file = \"part.svg\"", "part.svg", "<svg><g>", &["is no DXF drawing", "save it as DXF"]),
         ("outline_file = \"part.step\"", "part.step", "x", &["is no DXF drawing"]),
-        ("outline_file = \"part.dxf\"\nwidth_mm = 9", "part.dxf", &good, &["specimen.width_mm", "beside outline_file"]),
+        ("outline_file = \"part.dxf\"\nwidth_mm = 9", "part.dxf", &good, &["specimen.width_mm", "conflicts with outline_file"]),
         (
             "outline_file = \"part.dxf\"\noutline_unit = \"inch\"",
             "part.dxf",
