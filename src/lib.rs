@@ -8,7 +8,8 @@
 //! Fatigue of a bond is `dλ/dN = -A ε^p`: its remaining life λ decreases from 1, and at 0 it breaks. Integrated through the zone of a
 //! steady tip this is `da/dN = β A δ^(1-p/2) (K/E')^p`, a Paris law with m = p ([`perilife_growth::rate_constant`]). So A and p drive a tip by its K
 //! ([`perilife_growth::cracks`], the default), or every bond by its own strain ([`perilife_growth::bond_strain`]). Limits: linear elasticity, small-scale
-//! yielding, through cracks in plane stress or plane strain. `src/README.md` has the theory room by room, with symbols, limits and sources.
+//! yielding, through cracks in plane stress or plane strain. [`guide`] has the user's guide and, from [`guide::theory`] on, theory
+//! with symbols, limits and sources.
 //!
 //! As a library, from readings of a test to the life of another plate; lengths are metres inside, and names of what is not SI say so:
 //!
@@ -40,8 +41,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The names below are those that examples use. What computes stands in members, one folder of `src` each with what it knows at its head;
-//! `src/README.md` says which imports which.
+//! The names below are those that examples use. Computation is in members, one folder of `src` each with its scope at its head;
+//! [`guide::theory`] says which imports which.
 #![warn(missing_docs)]
 
 pub use perilife_base::error::{Error, InputError, Result};
@@ -49,6 +50,8 @@ pub use perilife_calibration::calibrate::{Calibration, Fitted};
 pub use perilife_growth::case::Case;
 pub use perilife_growth::predict::{CurvePoint, Observer, Prediction, Progress, Silent, StopReason, predict, resume};
 pub use perilife_runner::Draft;
+#[doc(inline)]
+pub use perilife_runner::guide;
 
 #[doc(hidden)]
 pub mod commands;
