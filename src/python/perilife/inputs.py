@@ -1,4 +1,4 @@
-"""Readings and overrides as the program takes them."""
+"""Conversion of readings and overrides to the input of the program."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Readings = OneTable | list[OneTable]
 
 
 def csv_of(readings: Any) -> tuple[list[str], dict[str, bytes]]:
-    """Names of tables, and the content of those that are no file on disk."""
+    """Return names of tables, and the content of those that are not files on disk."""
     tables = readings if isinstance(readings, list) else [readings]
     names: list[str] = []
     files: dict[str, bytes] = {}
@@ -63,7 +63,7 @@ def _text(table: Any) -> str:
 
 
 def overrides(given: Mapping[str, Any] | None) -> list[str]:
-    """``section.key=value`` for every key, values as TOML writes them."""
+    """Return ``section.key=value`` for each key, values in TOML."""
     return [f"{key}={_toml(value)}" for key, value in (given or {}).items()]
 
 
