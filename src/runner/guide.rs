@@ -1,7 +1,7 @@
-//! The guide: Markdown of `src/guide` and of documents that other places need too. `perilife guide` prints a page, a service shows it at
-//! `/guide`. The order is that of the index.
+//! The guide: Markdown of `src/guide` and of two documents that other places need too, in the order of the index.
+#![allow(rustdoc::broken_intra_doc_links, reason = "brackets of TOML in tables are no links")]
 
-/// Declares the pages: a module with the text as its documentation, and a row of the list.
+/// Declares the pages: a module documented by the text, and a row of the list.
 macro_rules! pages {
     ($($name:ident = $file:literal),+ $(,)?) => {
         /// Name and Markdown of every page, the index first.
