@@ -53,11 +53,11 @@ def _text(table: Any) -> str:
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(table)
-    # What numpy holds is written as its number.
+    # numpy scalars are written as plain numbers.
     columns = [column.tolist() if hasattr(column, "tolist") else column for column in table.values()]
     lengths = {name: len(column) for name, column in zip(table, columns)}
     if len({*lengths.values()}) > 1:
-        raise ValueError(f"readings: columns of unlike lengths: {', '.join(f'{name} {count}' for name, count in lengths.items())}")
+        raise ValueError(f"readings: columns of different lengths: {', '.join(f'{name} {count}' for name, count in lengths.items())}")
     rows.writerows(zip(*columns, strict=True))
     return text.getvalue()
 
