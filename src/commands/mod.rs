@@ -9,6 +9,7 @@ pub mod collect;
 pub mod completions;
 pub mod export;
 pub mod fracture;
+pub mod guide;
 #[cfg(feature = "service")]
 pub mod job;
 pub mod list;
@@ -112,6 +113,8 @@ commands! {
     Check: check,
     /// List every kind of every key of the input files
     List: list,
+    /// Print a page of the guide
+    Guide: guide,
     /// Print what a shell needs to complete commands, or the manual page
     Completions: completions,
     /// Serve calibrations and predictions over HTTP, with a web page

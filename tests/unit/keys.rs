@@ -226,7 +226,7 @@ fn the_guide_and_the_stub_say_what_the_keys_say() {
     };
     hold("src/python/perilife/sections.py", catalogue::stub());
     let head = "# Keys of input files\n\nWritten from the keys of the program (`perilife list keys`). A key in mm, MPa, GPa, N, kN or MPa√m has a twin in US units.\n\n";
-    hold("data/keys.md", format!("{head}{}\n", catalogue::manual().trim_end()));
+    hold("src/guide/keys.md", format!("{head}{}\n", catalogue::manual().trim_end()));
     assert!(old.is_empty(), "written anew: {old:?}");
 }
 
