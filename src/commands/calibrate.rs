@@ -11,6 +11,7 @@ use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::Document;
 use perilife_calibration::calibrate::{Calibration, Fitted};
 use perilife_calibration::results::record;
+use perilife_calibration::template::refuse_table;
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, remove_law};
 use perilife_growth::predict::Prediction;
@@ -49,6 +50,7 @@ pub struct Args {
 /// Errors: wrong input, mechanics without a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
+    refuse_table(&args.calibration)?;
     let document = Document::read(&args.calibration, &args.set)?;
     let calibration = Calibration::from_document(&document)?;
     if let Calibration::Lives(of_lives) = &calibration {

@@ -22,6 +22,7 @@ use perilife_calibration::calibrate::Calibration;
 use perilife_calibration::laws::case::LawCase;
 use perilife_calibration::sweep::design::{self, CASES_MAX};
 use perilife_calibration::sweep::{DrawnCase, Sweep};
+use perilife_calibration::template::refuse_table;
 use perilife_growth::case::Case;
 use perilife_growth::case::needs;
 use perilife_growth::predict::judgement::refuse_beforehand;
@@ -103,6 +104,7 @@ pub fn check(document: &Document, task: &Task) -> Result<Checked> {
 
 /// [`check`] of a file. Overrides are those of the command that runs it.
 pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
+    refuse_table(path)?;
     // Read once: a pipe is empty the second time.
     let mut document = Document::read(path, &[])?;
     let kind = Kind::of(&document.table);
