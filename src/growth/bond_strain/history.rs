@@ -147,14 +147,14 @@ impl GrowthHistory {
         let flaw = case.specimen.smallest_flaw();
         if case.engine() == Engine::Bonds && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
             warnings.push(format!(
-                "the initial crack is only {:.1} horizons long: its bonds are strained more than those of a long crack at equal K, and it \
-                 grows too fast at first (not a short-crack effect; fatigue.driver = \"tip_field\" is free of it)",
+                "the initial crack is only {:.1} horizons long: it grows too fast at first (a model artifact, not a short-crack effect; \
+                 fatigue.driver = \"tip_field\" avoids it)",
                 flaw / body.horizon()
             ));
         }
         if self.past.longest > self.limit + body.horizon() {
-            let words = "bonds broke all around the tips, so that their way says nothing about the crack near its end: read the \
-                         life, not the length (fatigue.ageing = \"crack_tip\" keeps breaks at the tips)";
+            let words = "bonds broke all around the tips: the path near the end is not reliable; use the life, not the length \
+                         (fatigue.ageing = \"crack_tip\" keeps breaks at the tips)";
             warnings.push(words.to_owned());
         }
         let stopped_in_grip = self.past.rows.last().is_some_and(|row| {
@@ -166,7 +166,7 @@ impl GrowthHistory {
             })
         });
         if stopped_in_grip {
-            warnings.push("a crack tip stands in the zone around a load or support, where bonds do not fail".to_owned());
+            warnings.push("a crack tip is in the zone around a load or support, where bonds do not fail".to_owned());
         }
         warnings
     }

@@ -123,7 +123,7 @@ fn tiny_flaw(specimen: &Specimen) -> Option<String> {
     let (flaw, width) = (specimen.smallest_flaw(), specimen.gross_width);
     (flaw < TINY * width).then(|| {
         format!(
-            "a flaw of {} mm in a plate of {} mm: model.method = \"element_free_galerkin\" has nodes that fine where it lies only, and takes less time",
+            "a flaw of {} mm in a plate of {} mm: model.method = \"element_free_galerkin\" refines only around it and is faster",
             round_mm(flaw),
             round_mm(width)
         )
@@ -133,9 +133,9 @@ fn tiny_flaw(specimen: &Specimen) -> Option<String> {
 /// A crack that does not go through is known to hand calculation alone.
 fn check_part_through(specimen: &Specimen, method: Method) -> Result<()> {
     let Some(flaw) = specimen.part_through.as_ref().filter(|_| method != Method::Handbook) else { return Ok(()) };
-    let problem = format!("knows plates in their plane, and the crack of a {} does not go through", flaw.kind());
+    let problem = format!("does not support the part-through crack of a {}", flaw.kind());
     let remedy =
-        format!("use model.method = \"{}\", or leave it out: once the crack is through it grows on nodes", Method::Handbook);
+        format!("use model.method = \"{}\", or remove it: after breakthrough the crack grows on nodes", Method::Handbook);
     Err(input("model.method", format!("\"{method}\""), problem, remedy))
 }
 

@@ -124,19 +124,18 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let rise = self.compliance_rise(self.last().work, self.last().crack_length);
         if rise > MECHANISM {
             self.warnings.push(format!(
-                "the run ends here: the plate is {rise:.0} times as compliant as at the start, and what is left of it moves almost freely \
-                 ({error})"
+                "stopped: compliance rose {rise:.0} times; the remaining ligament has almost no stiffness ({error})"
             ));
             return Err(StopReason::Severed);
         }
-        self.warnings.push(format!("the run ends here: {error}"));
+        self.warnings.push(format!("stopped: {error}"));
         Err(StopReason::NoConvergence)
     }
 
     /// Reads K_I, K_II and T of every active tip at the place where its field stands.
     pub(crate) fn read_factors(&mut self, step: &mut Increment) -> Result<(), StopReason> {
         step.readings = self.read().map_err(|error| {
-            self.warnings.push(format!("the run ends here: {error}"));
+            self.warnings.push(format!("stopped: {error}"));
             StopReason::NoConvergence
         })?;
         let is_unread = |reading: &Reading| !reading.factors.iter().all(|factor| factor.is_finite());
@@ -244,8 +243,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             && let Some((tip, ligament)) = self.unresolved_ligament()
         {
             self.warnings.push(format!(
-                "tip {tip} passes a rim at {:.3} mm, less than the spacing of {:.3} mm: the run ends there; model.spacing_mm = {:.4} would \
-                 resolve what is between them",
+                "stopped: tip {tip} is {:.3} mm from an edge, less than the spacing {:.3} mm; use model.spacing_mm = {:.4}",
                 ligament / MM,
                 self.scales.meeting.passing / MM,
                 ligament / LIGAMENT_SPACINGS / MM

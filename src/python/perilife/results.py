@@ -122,9 +122,11 @@ class Prediction(_Reported):
     stop_meaning: str
     """The same in words."""
     verdict: str
-    """What the life stands on, in words."""
+    """All checks together, in words."""
+    verdict_kind: str
+    """The same by name: ``valid``, ``reservations`` or ``not_valid``."""
     checks: tuple[dict[str, Any], ...]
-    """Each check with name, verdict, effect on the life, words and remedy."""
+    """Each check with name, verdict (passed, caution, not_checked, failed), effect on the life, words and remedy."""
     band: dict[str, Any] | None
     """Cycles that 5, 50 and 95 % of specimens take, where the law is a fit whose scatter is known."""
     error_estimate_percent: float | None
