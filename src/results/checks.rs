@@ -456,7 +456,14 @@ fn thickness(case: &Case) -> Option<Check> {
     let (of_law, of_plate) = (fitted(case)?.thickness_mm, case.specimen.thickness / MM);
     let ratio = of_plate / of_law;
     let is_alike = (1.0 / THICKNESS_ALIKE..=THICKNESS_ALIKE).contains(&ratio);
-    let words = format!("Thickness: {of_plate:.2} mm; law tested on {of_law:.2} mm");
+    let direction = if is_alike {
+        ""
+    } else if ratio > 1.0 {
+        " (non-conservative)"
+    } else {
+        " (conservative)"
+    };
+    let words = format!("Thickness: {of_plate:.2} mm; law tested on {of_law:.2} mm{direction}");
     let verdict = if is_alike { Verdict::Passed } else { Verdict::Caution };
     let side = if ratio > 1.0 { Side::NonConservative } else { Side::Conservative };
     let remedy = (!is_alike).then(|| "test specimens of the plate's thickness".to_owned());
@@ -486,9 +493,11 @@ fn size(case: &Case) -> Option<Check> {
 /// Misfit of the law at the ends of the tested ΔK.
 fn lack_of_fit(case: &Case) -> Option<Check> {
     let percent = fitted(case)?.lack_of_fit_percent?;
-    let sense = if percent > 0.0 { "faster" } else { "slower" };
-    let words =
-        format!("Fit at the ends: measured growth is {:.0} % {sense} than the law at one end of the tested ΔK", percent.abs());
+    let [sense, direction] = if percent > 0.0 { ["faster", "non-conservative"] } else { ["slower", "conservative"] };
+    let words = format!(
+        "Fit at the ends: measured growth is {:.0} % {sense} than the law at one end of the tested ΔK ({direction})",
+        percent.abs()
+    );
     let side = if percent > 0.0 { Side::NonConservative } else { Side::Conservative };
     let remedy = "fit another fatigue.growth_law, or use a table";
     Some(Check::sized("lack_of_fit", percent, percent.abs() > OUTSIDE_CAUTION * 100.0, side, words, remedy))

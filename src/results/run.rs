@@ -271,7 +271,7 @@ impl Judged {
             None => vec![format!("{name}: {run}")],
         };
         lines.extend([
-            format!("  Crack length   {}", length_words(case, prediction, 1)),
+            format!("  Crack length   {}", length_words(case, prediction)),
             format!("  Ends by        {}", prediction.stop.meaning()),
         ]);
         lines.extend(through_words(case, prediction).map(|words| format!("  Breakthrough   {words}")));
@@ -290,7 +290,7 @@ impl Judged {
         let figures = &prediction.figures;
         let model = format!("{} points, {} rows of the curve, {} solves", figures.points, figures.blocks + 1, figures.solves);
         let lines = [
-            Some(format!("  Crack length   {}", length_words(case, prediction, 3))),
+            (case.specimen.crack_lines().len() > 1).then(|| format!("  All cracks     {} (sum)", all_cracks(case, prediction))),
             fit_use::law_line(case).map(|law| format!("  Growth law     {law}")),
             zone_words(case, prediction).map(|zone| format!("  Plastic zone   {zone}")),
             self.quality.basis().map(|basis| format!("  Estimated by   {basis}")),
@@ -323,22 +323,24 @@ fn phase_words(prediction: &Prediction) -> Option<String> {
     })
 }
 
-/// Growth of the crack by the length of its standard, or of the governing crack; to three decimals with the sum of all.
-fn length_words(case: &Case, prediction: &Prediction, decimals: usize) -> String {
-    let from_to = |from: f64, to: f64| format!("{from:.decimals$} → {to:.decimals$} mm");
-    let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
+/// A length, m, at the start and the end.
+fn from_to(from: f64, to: f64) -> String {
+    format!("{:.1} → {:.1} mm", from / MM, to / MM)
+}
+
+/// Growth by the length of the specimen: in a plate the sum of all cracks.
+fn all_cracks(case: &Case, prediction: &Prediction) -> String {
+    from_to(case.specimen.crack_length, prediction.crack_length_final())
+}
+
+/// Growth of the crack by the length of its standard, or of the governing crack.
+fn length_words(case: &Case, prediction: &Prediction) -> String {
     let depths = case.specimen.part_through.zip(prediction.curve.last().and_then(|row| row.depth));
-    let depths = depths.map(|(flaw, last)| format!(", depth {}", from_to(flaw.depth / MM, last.depth / MM)));
-    let of_standard = || from_to(from, to) + depths.as_deref().unwrap_or_default();
-    match prediction.leading_tip(&case.specimen) {
-        // Of one crack the length is that from where its specimen counts it.
-        Some(_) if case.specimen.convention == LengthConvention::MeanOfTips && case.specimen.tips.len() == 1 => of_standard(),
-        Some((tip, [first, last])) => {
-            let has_sum = decimals > 1 && case.specimen.crack_lines().len() > 1;
-            let all = if has_sum { format!("; sum of all cracks {}", from_to(from, to)) } else { String::new() };
-            format!("{} (tip {tip} governs){all}", from_to(first / MM, last / MM))
-        }
-        None => of_standard(),
+    let depths = depths.map(|(flaw, last)| format!(", depth {}", from_to(flaw.depth, last.depth)));
+    let is_standard = case.specimen.convention == LengthConvention::MeanOfTips && case.specimen.tips.len() == 1;
+    match prediction.leading_tip(&case.specimen).filter(|_| !is_standard) {
+        Some((tip, [first, last])) => format!("{} (tip {tip} governs)", from_to(first, last)),
+        None => all_cracks(case, prediction) + depths.as_deref().unwrap_or_default(),
     }
 }
 
@@ -346,9 +348,13 @@ fn length_words(case: &Case, prediction: &Prediction, decimals: usize) -> String
 fn through_words(case: &Case, prediction: &Prediction) -> Option<String> {
     let found = PartThroughLife::of(case, &prediction.curve)?;
     let [shorter, longer] = found.life_factors.map(|factor| factor * prediction.life_cycles());
-    let longer = if longer.is_finite() { format!("{longer:.0}") } else { "unlimited".to_owned() };
+    let longer = if longer.is_finite() { PLAIN.whole(longer) } else { "unlimited".to_owned() };
     let when = if found.is_through { format!("after {} cycles", PLAIN.whole(found.cycles)) } else { "not reached".to_owned() };
-    Some(format!("{when}; life {shorter:.0} to {longer} cycles for K ±{:.0} % of the part-through crack", 100.0 * STATED_ERROR))
+    Some(format!(
+        "{when}; life {} to {longer} cycles for K ±{:.0} % of the part-through crack",
+        PLAIN.whole(shorter),
+        100.0 * STATED_ERROR
+    ))
 }
 
 /// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.

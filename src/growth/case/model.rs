@@ -15,8 +15,7 @@ use perilife_points::solver::{SolverKind, Symmetry};
 use perilife_points::spacing::HORIZON_RATIO;
 use perilife_points::spacing::{check_spacing, default_spacing};
 
-/// Reads `[model]`; what is left out gets the program's choice. Explicit choices go into `choices`, what is to be said of the program's
-/// into `warnings`.
+/// Reads `[model]` with defaults; explicit choices go into `choices`, messages about defaults into `warnings`.
 pub(super) fn from_value(
     sections: &choose::Sections<'_>,
     (specimen, material, loading): (&Specimen, &Material, &Loading),

@@ -190,8 +190,7 @@ impl Case {
         Ok(case)
     }
 
-    /// The same case with the law of `record` instead of its own; the record's rules about bond law, zone, stress ratio
-    /// and elastic constants apply.
+    /// The same case with the law of `record` and its rules about bond law, zone, stress ratio and elastic constants.
     pub fn with_law(mut self, record: FittedRecord) -> Result<Self> {
         let before = law_lines(&self)?;
         self.warnings.retain(|line| !before.contains(line));

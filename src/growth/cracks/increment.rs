@@ -13,8 +13,7 @@ use perilife_base::units::MM;
 use perilife_laws::response::Response;
 use perilife_points::crack_tip::TipState;
 
-/// Compliance over that at the start from which a plate without equilibrium is as good as severed: what one side of it has let go turns
-/// about what is left of the other.
+/// Rise of the compliance above which a plate without equilibrium counts as severed.
 const MECHANISM: f64 = 20.0;
 /// The same where an equilibrium was found: what K such a ligament has is round-off.
 const SEVERED: f64 = 1e6;
@@ -268,8 +267,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         reason
     }
 
-    /// Rows between the last one and the `next`, so that straight lines between rows are the curve by which cycles were counted; the lead
-    /// goes `way`.
+    /// Rows up to `next`, so that straight lines follow the curve by which cycles were counted; the lead goes `way`.
     fn rows_between(&self, step: &Increment, next: &CurvePoint, way: &FactorCourse, of_all: f64) -> Vec<CurvePoint> {
         let (course, last) = (&way.course, self.last());
         let (rate, factor) = (step.rate * course.gain.exp(), way.at(1.0));
@@ -337,8 +335,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         (self.state.tips.iter().map(of_tip).collect(), self.work() / (load * load))
     }
 
-    /// Compares the energy that the new segments released by their K with what the plate did.
-    /// `beside_chord` is what K² of the lead is on its way over its chord.
+    /// Compares the energy released by K of new segments with that of the plate; `beside_chord`: K² on the way over the chord.
     fn compare_energies(&mut self, step: &Increment, growths: &[f64], beside_chord: f64, cycles: f64) {
         let ((now, work_now), (before, work)) = (self.energies(), &step.before);
         let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();
