@@ -73,6 +73,8 @@ pub struct LivesRecord {
     pub wall_s: f64,
     pub warnings: Vec<String>,
     pub version: String,
+    pub material: String,
+    pub stress_ratio: f64,
     pub sources: Vec<SourceFile>,
     /// What its folder has beside it: test, criteria, plate and provenance.
     #[serde(flatten)]
@@ -145,8 +147,8 @@ impl TryFrom<Value> for FitRecord {
 }
 
 impl FitRecord {
-    /// The fit in words: rate at the pivot and exponent with their errors, never A alone; of laws the chosen one first.
-    pub fn words(&self) -> Vec<String> {
+    /// Lines of a summary, the answer first, and those of a long one.
+    pub fn words(&self) -> [Vec<String>; 2] {
         match self {
             FitRecord::Lives(fit) => fit.words(),
             FitRecord::Rates(fit) => fit.words(),
@@ -200,60 +202,63 @@ impl LivesRecord {
             wall_s,
             warnings: calibration.warnings.iter().chain(&fit.warnings).cloned().collect(),
             version: law.version,
+            material: law.material,
+            stress_ratio: law.stress_ratio,
             sources: law.sources,
             beside: json!({}),
         }
     }
 
-    fn words(&self) -> Vec<String> {
+    fn words(&self) -> [Vec<String>; 2] {
         let source = match &*self.p_source {
             "fitted" => String::new(),
-            "not_identified" => " (not identified)".to_owned(),
+            "not_identified" => " (cannot be determined: assumed)".to_owned(),
             "given" => " (given)".to_owned(),
             file => format!(" (from {file})"),
         };
-        let error = |error: f64| if error > 0.0 { format!(" ± {error:.4}") } else { String::new() };
-        let [measured, fitted, rms, pivot_error] =
+        let error = |error: f64, digits: usize| if error > 0.0 { format!(" ± {error:.digits$}") } else { String::new() };
+        let [measured, fitted, rms, rate_error] =
             [self.life_measured, self.life_fitted, self.rms_life_error, self.rate_at_pivot_relative_error]
                 .map(|figure| figure.unwrap_or(f64::NAN));
         let life = 100.0 * (fitted / measured - 1.0);
-        let window = [self.from_crack_length_mm, self.to_crack_length_mm];
-        let mut lines = vec![format!("fit to {}, {} to {} mm", self.fitted_to, window[0], window[1])];
-        // Hand calculation has no bonds: its p is m.
-        if let Some((a, horizon)) = self.a.zip(self.horizon_mm) {
-            lines.push(format!("  A              {a:.6e} at horizon {horizon} mm"));
-            lines.push(format!("  p              {:.4}{}{source}", self.p, error(self.p_error)));
-        }
+        let [from, to] = [self.from_crack_length_mm, self.to_crack_length_mm];
         let (rate, pivot) = (self.rate_at_pivot_mm_per_cycle, self.pivot_delta_k_mpa_sqrt_m);
         let (c, m) = (self.paris_c_mm_per_cycle, self.paris_m);
-        let range = [self.delta_k_min_mpa_sqrt_m, self.delta_k_max_mpa_sqrt_m];
-        lines.extend([
-            format!("  rate           {rate:.4e} mm/cycle ± {:.2} % at the pivot ΔK = {pivot:.3} MPa√m", 100.0 * pivot_error),
-            format!("  power law      da/dN = {c:.4e} ΔK^{m:.4} (mm/cycle, MPa√m), the best one by lives"),
-            format!("  m              {m:.4}{}{source}", error(self.paris_m_error)),
-            "  ±              one standard error".to_owned(),
-            format!("  calibrated ΔK  {:.3} to {:.3} MPa√m", range[0], range[1]),
+        let [low, high] = [self.delta_k_min_mpa_sqrt_m, self.delta_k_max_mpa_sqrt_m];
+        let (count, of_law) = (self.specimens.len(), if self.curve.is_some() { "power law of the curve, " } else { "" });
+        let mut lines = vec![
+            format!("{}, R = {}: {of_law}da/dN = {c:.3e} ΔK^{m:.3} (mm/cycle, MPa√m)", self.material, self.stress_ratio),
+            format!("  Exponent       m = {m:.3}{}{source}", error(self.paris_m_error, 3)),
+            format!("  Rate           {rate:.3e} mm/cycle ± {:.1} % at the reference ΔK = {pivot:.1} MPa√m", 100.0 * rate_error),
             format!(
-                "  life           measured {measured:.0}, fitted {fitted:.0} cycles ({life:+.2} %), rms life error {:.2} %",
-                100.0 * rms
+                "  Tested ΔK      {low:.2} to {high:.2} MPa√m (a = {from:.1} to {to:.1} mm, {count} specimen{})",
+                if count == 1 { "" } else { "s" }
             ),
-        ]);
+            format!("  Fit            life {life:+.2} %, rms {:.1} % (fitted to {})", 100.0 * rms, self.fitted_to),
+        ];
         match (&self.curve, self.population.as_ref().and_then(|population| population.gain)) {
             (Some(curve), _) => lines.extend(self.words_of(curve)),
-            (None, Some(gain)) => lines.push(format!("  law            Paris: no curve is better (gain {gain:.1})")),
-            (None, None) => lines.push("  law            Paris".to_owned()),
+            (None, Some(gain)) => lines.push(format!("  Selection      Paris: no curve fits better (gain {gain:.1})")),
+            (None, None) => {}
         }
-        lines.push(format!("  misfit at ends {}", self.misfit_at_ends.words()));
-        lines.extend(self.left_out.iter().map(|one| format!("  left out       {} ({})", one.place(), one.reason)));
-        lines.push(format!("  specimens      {}, in {:.1} s", self.specimens.len(), self.wall_s));
-        lines
+        lines.push(format!("  At the ends    {}", self.misfit_at_ends.words()));
+        lines.extend(self.left_out.iter().map(|one| format!("  Excluded       {} ({})", one.place(), one.reason)));
+        // Fits with handbook K have no bonds: their p is m.
+        let of_bonds = self.a.zip(self.horizon_mm).map(|(a, horizon)| {
+            format!("  Bonds          A = {a:.4e}, p = {:.3}{} at horizon {horizon:.4} mm", self.p, error(self.p_error, 3))
+        });
+        let of_lives = format!(
+            "  Life           measured {measured:.0}, fitted {fitted:.0} cycles; {:.1} s; ± is one standard error",
+            self.wall_s
+        );
+        [lines, of_bonds.into_iter().chain([of_lives]).collect()]
     }
 
     /// The curve in words, a row for every knot.
     fn words_of(&self, curve: &CurveRecord) -> Vec<String> {
-        let misses = |misfit: MisfitAtEnds| format!("; the power law misses it: {}", misfit.words());
+        let misses = |misfit: MisfitAtEnds| format!("; misfit of the power law: {}", misfit.words());
         let (misses, specimens) = (self.power_law_misfit_at_ends.map_or_else(String::new, misses), self.specimens.len());
-        let head = format!("  law            curve (gain {:.1} over a power law, {specimens} specimens{misses})", curve.gain);
+        let head = format!("  Selection      curve (gain {:.1} over a power law, {specimens} specimens{misses})", curve.gain);
         let row = |i: usize| {
             let (k, rate, error) =
                 (curve.delta_k_mpa_sqrt_m[i], curve.da_dn_mm_per_cycle[i], 100.0 * curve.da_dn_relative_error[i]);
@@ -283,8 +288,8 @@ impl RatesRecord {
             fits.candidates.iter().map(|law| CandidateRecord::of(law, fits.least_aicc())).collect();
         let CandidateRecord { law, constants, standard_errors, rms_log_rate, .. } = candidates[fits.chosen].clone();
         let [low, high] = case.delta_k_range();
-        let units = case.units.iter().map(|line| format!("  read           {line}"));
-        let range = case.range.map(|range| format!("  ΔK at R < 0    taken as {range} from the tables: {}", range.meaning()));
+        let units = case.units.iter().map(|line| format!("  Units          {line}"));
+        let range = case.range.map(|range| format!("  ΔK at R < 0    {range}: {}", range.meaning()));
         RatesRecord {
             law,
             law_asked_for: case.law,
@@ -308,38 +313,42 @@ impl RatesRecord {
         }
     }
 
-    fn words(&self) -> Vec<String> {
+    fn words(&self) -> [Vec<String>; 2] {
         let ratios = self.stress_ratios.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
         let (low, high) = (self.delta_k_min_mpa_sqrt_m, self.delta_k_max_mpa_sqrt_m);
-        let mut lines = vec![format!("fit of laws to {} rates at R = {ratios}, ΔK {low:.3} to {high:.3} MPa√m", self.rates)];
-        let next = self.next_best.zip(self.aicc_margin);
-        let asked = match (self.law_asked_for, next) {
-            (FitLaw(None), Some((_, margin))) if margin < 0.0 => "best by its residuals, less than half of the others",
-            (FitLaw(None), _) => "best by AICc",
-            _ => "as asked for",
-        };
-        let margin = match next {
-            Some((next, margin)) if margin >= 0.0 => format!(", {margin:.1} better than {next}{}", strength(margin)),
-            Some((next, margin)) => format!(", {:.1} worse than {next}", -margin),
-            None => ", no other law is left".to_owned(),
-        };
-        lines.push(format!("  law            {} ({asked}{margin})", self.law));
-        lines.extend(self.constants.iter().map(|(key, value)| {
+        let constant = |(key, value): (&String, &Value)| {
             let error = self.standard_errors.get(key);
             let error = error.map_or_else(|| "(given)".to_owned(), |error| format!("± {}", figure(error, 2)));
             format!("    {key:<28} {} {error}", figure(value, 5))
-        }));
-        lines.push("  ±              one standard error".to_owned());
+        };
+        let next = self.next_best.zip(self.aicc_margin);
+        let asked = match (self.law_asked_for, next) {
+            (FitLaw(None), Some((_, margin))) if margin < 0.0 => "by its residuals, less than half of the others",
+            (FitLaw(None), _) => "lowest AICc",
+            _ => "given",
+        };
+        let margin = match next {
+            Some((next, margin)) if margin >= 0.0 => format!("; {next} is {margin:.1} higher{}", strength(margin)),
+            Some((next, margin)) => format!("; {next} is {:.1} lower", -margin),
+            None => "; no other law could be fitted".to_owned(),
+        };
+        let rms = self.rms_log_rate.unwrap_or(f64::NAN);
+        let mut lines = vec![format!("{}: {} law at R = {ratios}", self.material, self.law)];
+        lines.extend(self.constants.iter().map(constant));
+        lines.extend([
+            format!("  Data           {} rates, ΔK {low:.2} to {high:.2} MPa√m", self.rates),
+            format!("  Selection      {asked}{margin}"),
+            format!("  Scatter        rms {rms:.3} in ln(da/dN)"),
+        ]);
         lines.extend(self.read.iter().cloned());
-        lines.extend(self.candidates.iter().map(|law| match &law.left_out {
-            Some(why) => format!("  {:<14} left out: {why}", law.law),
-            None => {
-                let [rms, delta] = [law.rms_log_rate, law.delta_aicc].map(|figure| figure.unwrap_or(f64::NAN));
-                let count = law.fitted_constants;
-                format!("  {:<14} rms {rms:.3} of ln da/dN, {count} constants, delta AICc {delta:.1}", law.law)
-            }
-        }));
-        lines
+        let rejected = |law: &CandidateRecord| Some(format!("  Rejected       {}: {}", law.law, law.left_out.as_ref()?));
+        lines.extend(self.candidates.iter().filter_map(rejected));
+        let fitted = self.candidates.iter().filter(|law| law.left_out.is_none());
+        let details = fitted.map(|law| {
+            let [rms, delta] = [law.rms_log_rate, law.delta_aicc].map(|figure| figure.unwrap_or(f64::NAN));
+            format!("  {:<14} {} constants, rms {rms:.3} in ln(da/dN), ΔAICc {delta:.1}", law.law, law.fitted_constants)
+        });
+        [lines, details.chain(["  ±              one standard error".to_owned()]).collect()]
     }
 }
 
@@ -362,9 +371,9 @@ impl CandidateRecord {
 /// What a difference of the criterion is worth (Burnham and Anderson 2002).
 fn strength(margin: f64) -> &'static str {
     match margin {
-        margin if margin < 2.0 => ": hardly a difference",
+        margin if margin < 2.0 => " (no clear difference)",
         margin if margin > 10.0 => "",
-        _ => ": some evidence",
+        _ => " (some evidence)",
     }
 }
 

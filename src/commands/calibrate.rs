@@ -13,11 +13,11 @@ use perilife_calibration::calibrate::{Calibration, Fitted};
 use perilife_calibration::results::record;
 use perilife_calibration::template::refuse_table;
 use perilife_growth::case::needs;
-use perilife_growth::case::{Case, remove_law};
+use perilife_growth::case::{Case, RECORD, remove_law};
 use perilife_growth::predict::Prediction;
 use perilife_results::output::{LockedFolder, OutputFolder, RunKind};
 use perilife_results::{fit, run};
-use perilife_runner::{Task, Wanted, of_prediction};
+use perilife_runner::{Message, Summary, Task, Wanted, of_prediction};
 
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
@@ -29,9 +29,9 @@ pub struct Args {
     /// Calibration file
     #[arg(value_name = "CALIBRATION.toml")]
     pub calibration: PathBuf,
-    /// Folder for the results; replaced if an earlier run made it
+    /// Folder for the results [default: name of the calibration]
     #[arg(long, value_name = "DIR", help_heading = "Output")]
-    pub out: PathBuf,
+    pub out: Option<PathBuf>,
     /// Replace the results of another input in DIR
     #[arg(long, help_heading = "Output")]
     pub force: bool,
@@ -63,34 +63,31 @@ pub fn run(args: &Args) -> Result<()> {
     }
     let mut read = document.folder.opened().so_far();
     read.files.extend(cases.iter().flat_map(|document| document.folder.opened().so_far().files));
-    let mut folder = OutputFolder::claim(&args.out, RunKind::Calibrate, &read, fit::ROOM, args.force)?;
-    for warning in calibration.warnings().iter().map(String::as_str).chain(folder.warning()) {
-        console.warn(warning);
-    }
+    let out = args.out.as_deref().unwrap_or(Path::new(&document.name));
+    let mut folder = OutputFolder::claim(out, RunKind::Calibrate, &read, fit::ROOM, args.force)?;
+    folder.warning().into_iter().for_each(|warning| console.warn(warning));
     let started = Instant::now();
     let fitted = calibration.fit(&console.progress(calibration.name()))?;
     let wall_s = started.elapsed().as_secs_f64();
-    for warning in fitted.warnings() {
-        console.warn(warning);
-    }
     let record = fitted.record(wall_s);
     folder.fill(|path| fit::write(path, &fitted, &fit::Kept::of(&fitted, record.clone())?))?;
     // Nobody else writes there until the predictions stand in it.
     let place = folder.finish()?;
-    for line in record.words() {
-        console.say(&line);
-    }
-    console.say(&format!("  results        {}", args.out.display()));
-    let cases = cases.into_iter().map(|document| with_law(document, &fitted, args)).collect::<Result<_>>()?;
-    predict_each(cases, json!(record), args, &place)
+    let [mut lines, details] = record.words();
+    lines.push(format!("  Results        {} (use it: fatigue.fitted = \"{}\")", out.display(), out.join(RECORD).display()));
+    let warnings = calibration.warnings().iter().chain(fitted.warnings());
+    let messages = warnings.map(|line| Message::warning(line)).collect();
+    console.print(Summary::of_words(lines, details, messages))?;
+    let cases = cases.into_iter().map(|document| with_law(document, &fitted, out)).collect::<Result<_>>()?;
+    predict_each(cases, json!(record), (args, out), &place)
 }
 
 /// A case with the law that has just been fitted.
-fn with_law(mut document: Document, fitted: &Fitted<'_>, args: &Args) -> Result<Case> {
+fn with_law(mut document: Document, fitted: &Fitted<'_>, out: &Path) -> Result<Case> {
     if let Fitted::Lives(calibration, fit) = fitted {
         return case_of(&document)?.with_law(record(calibration, fit)).map_err(|error| document.locate(error));
     }
-    let file = args.out.join("fitted.toml");
+    let file = out.join(RECORD);
     let file = std::path::absolute(&file).map_err(|error| Error::file(&file, "cannot find", error))?;
     let fatigue = document.table.entry("fatigue").or_insert_with(|| toml::Table::new().into());
     if let Some(fatigue) = fatigue.as_table_mut() {
@@ -111,25 +108,20 @@ fn check_no_gamma(document: &Document) -> Result<()> {
     }
 }
 
-/// Prints the report, with the predictions: each case with the fit, as the command `predict` does it, into its own folder. They run side by
-/// side; what they say comes in their order.
-fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &LockedFolder) -> Result<()> {
+/// Prints the report with the predictions: each case with the fit, in parallel, into its own folder, printed in their order.
+fn predict_each(cases: Vec<Case>, mut report: Value, (args, out): (&Args, &Path), place: &LockedFolder) -> Result<()> {
     let console = &args.console;
     // Claimed first: a folder that cannot be written should not cost a run.
-    let claim = |case: &Case| {
-        OutputFolder::claim(&args.out.join(&case.name), RunKind::Predict, &case.provenance, run::room(case), args.force)
-    };
+    let claim =
+        |case: &Case| OutputFolder::claim(&out.join(&case.name), RunKind::Predict, &case.provenance, run::room(case), args.force);
     let folders: Vec<OutputFolder> = cases.iter().map(claim).collect::<Result<_>>()?;
     let bars = console.progress_of_each(cases.iter().map(|case| &*case.name));
     let runs: Vec<Result<Prediction>> =
         cases.par_iter().zip(bars).map(|(case, bar)| perilife_growth::predict::predict(case, &bar)).collect();
     let mut predictions = serde_json::Map::new();
     for ((case, folder), run) in cases.iter().zip(folders).zip(runs) {
-        for warning in &case.warnings {
-            console.warn(warning);
-        }
         place.adopt(&case.name)?;
-        let prediction = run?;
+        let prediction = run.inspect_err(|_| case.warnings.iter().for_each(|warning| console.warn(warning)))?;
         let task = Task::Prediction { case: Box::new(case.clone()), wanted: Box::default() };
         let files = |path: &Path| {
             let summary = of_prediction(case, prediction, &Wanted::default(), console)?;

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use super::console::Console;
 use perilife_base::error::Result;
+use perilife_results::checks::{messages, verdict};
 use perilife_results::output::{OutputFile, Sort};
 use perilife_results::specimen_picture::SIGN;
+use perilife_runner::Summary;
 use perilife_runner::check::check_file;
 
 /// Arguments of `perilife check`.
@@ -25,6 +27,9 @@ pub struct Args {
     pub console: Console,
 }
 
+/// Lines of a long summary alone.
+const DETAILS: [&str; 7] = ["bonds", "points", "driver", "ageing", "handbook K", "first case", "law"];
+
 /// Checks the file, prints what was understood and draws the picture.
 pub fn run(args: &Args) -> Result<()> {
     let checked = check_file(&args.file, &args.set)?;
@@ -36,13 +41,20 @@ pub fn run(args: &Args) -> Result<()> {
         }
         None => {}
     }
-    for warning in &checked.warnings {
-        args.console.warn(warning);
-    }
-    for line in &checked.lines {
-        args.console.say(&format!("{:<12} {}", line.what, line.value));
-    }
-    args.console.say(&format!("{:<12} no errors", "check"));
+    let (long, short): (Vec<_>, Vec<_>) = checked.lines.iter().partition(|line| DETAILS.contains(&line.what));
+    let [mut lines, details] =
+        [short, long].map(|lines| lines.iter().map(|line| labeled(line.what, &line.value)).collect::<Vec<_>>());
+    lines.insert(0, format!("{}: valid input", args.file.display()));
+    lines.extend((!checked.checks.is_empty()).then(|| labeled("validity", &verdict(&checked.checks))));
+    lines.extend(messages(&checked.checks, &[]).iter().map(|open| labeled(open.kind, &open.text)));
+    args.console.print(Summary::of_words(lines, details, Vec::new()))?;
+    checked.warnings.iter().for_each(|warning| args.console.warn(warning));
     // Text and figures have a form in JSON.
     args.console.object(&serde_json::to_value(&checked).unwrap_or_default())
+}
+
+/// A line of a summary.
+fn labeled(label: &str, value: &str) -> String {
+    let (first, rest) = label.split_at(1);
+    format!("  {:<14} {value}", first.to_uppercase() + rest)
 }

@@ -46,7 +46,7 @@ fn seconds(text: &str) -> std::result::Result<f64, String> {
 
 impl Args {
     /// Runs the task of a document into the folder `out`, from its checkpoint if there is one; also gives the file of the checkpoint, to
-    /// be removed when the run has counted.
+    /// be removed when the run is valid.
     pub fn run(&self, task: &Task, document: &Document, out: &Path, console: &Console) -> Result<(Summary, Option<OutputFile>)> {
         // Before anything is laid out or written.
         super::within_machine(task, document)?;
@@ -55,8 +55,10 @@ impl Args {
         let read = document.folder.opened().so_far();
         let folder = OutputFolder::claim(out, task.run_kind(), &read, task.room(), self.force)?;
         let mut checkpoint = None;
+        let unrun = |_: &Error| task.case().iter().flat_map(|case| &case.warnings).for_each(|warning| console.warn(warning));
         let summary = console.keep(folder, task.warnings(), |folder| {
-            let (summary, kept) = self.run_kept(task, &read, folder, console).map_err(|error| document.locate(error))?;
+            let run = self.run_kept(task, &read, folder, console).inspect_err(unrun);
+            let (summary, kept) = run.map_err(|error| document.locate(error))?;
             checkpoint = kept;
             Ok(summary)
         })?;

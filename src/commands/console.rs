@@ -7,19 +7,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use indicatif::{MultiProgress, ProgressBar, ProgressFinish, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressFinish, ProgressState, ProgressStyle};
 use miette::{GraphicalReportHandler, LabeledSpan, MietteDiagnostic, NamedSource, Report};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use perilife_base::error::{Error, InputError, Result};
 use perilife_base::units::MM;
 use perilife_base::units::shown::{told, told_of_file};
 use perilife_base::watch::Watch;
 use perilife_growth::predict::{Observer, Progress};
+use perilife_results::format::PLAIN;
 use perilife_results::output::OutputFolder;
 use perilife_results::units::shown_result;
 use perilife_runner::scenes::{SceneObserver, SceneProgress};
-use perilife_runner::{Summary, Watcher};
+use perilife_runner::{Message, Summary, Watcher};
 
 /// Options of every command that prints results.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
@@ -28,9 +29,12 @@ pub struct Console {
     /// Print one JSON object on stdout and nothing else there
     #[arg(long, global = true)]
     pub json: bool,
-    /// Print no summary and no progress bar; warnings stay
+    /// Print the first line of the result alone
     #[arg(long, short, global = true)]
     pub quiet: bool,
+    /// Print all messages and details; twice for the log (the variable RUST_LOG overrides)
+    #[arg(long, short, action = clap::ArgAction::Count, global = true)]
+    pub verbose: u8,
 }
 
 impl Console {
@@ -61,18 +65,42 @@ impl Console {
 
     /// The JSON object on stdout, if it was asked for.
     pub fn object(&self, object: &Value) -> Result<()> {
-        if self.json { to_stdout(&format!("{:#}\n", shown_result(object))) } else { Ok(()) }
+        if !self.json {
+            return Ok(());
+        }
+        HAS_OBJECT.store(true, Ordering::Relaxed);
+        to_stdout(&format!("{:#}\n", shown_result(object)))
     }
 
-    /// Tables and words of a run.
+    /// Tables and words of a run, the answer first, then its messages.
     pub fn print(&self, summary: Summary) -> Result<Summary> {
         self.result(&summary.printed)?;
-        summary.lines.iter().for_each(|line| self.say(line));
+        match summary.lines.first().filter(|_| self.quiet) {
+            Some(first) => self.result(&format!("{}\n", told(first)))?,
+            None => {
+                let details = summary.details.iter().filter(|_| self.verbose > 0);
+                summary.lines.iter().chain(details).for_each(|line| self.say(line));
+            }
+        }
+        self.messages(&summary.messages);
         Ok(summary)
     }
 
-    /// Has a run fill the folder that was claimed for it, puts that in its place and prints what came of the run; `warnings` are
-    /// those of its input.
+    /// Messages on stderr: their number and the first, or all of them.
+    pub fn messages(&self, messages: &[Message]) {
+        let fix =
+            |message: &Message, before: &str| message.remedy.as_ref().map_or_else(String::new, |fix| format!("{before}{fix}"));
+        match messages {
+            [] => {}
+            _ if self.verbose > 0 => messages.iter().for_each(|message| {
+                self.note(&format!("{:<10} {}{}", message.kind, message.text, fix(message, "\n           fix: ")));
+            }),
+            [one] => self.note(&format!("1 message: {}{}", one.text, fix(one, "; "))),
+            [first, ..] => self.note(&format!("{} messages, largest: {}. -v lists all.", messages.len(), first.text)),
+        }
+    }
+
+    /// Fills the claimed folder by a run, puts it in place and prints the result; `warnings` are those of its input.
     pub fn keep(
         &self,
         mut folder: OutputFolder,
@@ -81,7 +109,7 @@ impl Console {
     ) -> Result<Summary> {
         warnings.iter().map(String::as_str).chain(folder.warning()).for_each(|warning| self.warn(warning));
         let mut summary = folder.fill(work)?;
-        summary.lines.push(format!("  results        {}", folder.name().display()));
+        summary.lines.push(format!("  Results        {}", folder.name().display()));
         drop(folder.finish()?);
         self.print(summary)
     }
@@ -93,12 +121,12 @@ impl Console {
 
     /// The same for a run that is asked to end after so long.
     pub fn progress_within(&self, name: &str, limit: Option<Duration>) -> RunProgress {
-        RunProgress::new(self.bar(name, STEPS, "{prefix} {bar:30} {percent:>3} %  {msg}  {eta} left"), limit)
+        RunProgress::new(self.bar(name, STEPS, "{prefix}  {bar:30} {percent:>3} %  {msg}{left}"), limit)
     }
 
     /// A bar on stderr that counts to `total`, drawn only on a terminal.
     pub fn count(&self, name: &str, total: usize) -> ProgressBar {
-        self.bar(name, total as u64, "{prefix} {bar:30} {pos} of {len}  {eta} left")
+        self.bar(name, total as u64, "{prefix}  {bar:30} {pos} of {len}{left}")
     }
 
     /// A bar that goes when it is dropped.
@@ -106,7 +134,12 @@ impl Console {
         let bar = if self.quiet || !io::stderr().is_terminal() { ProgressBar::hidden() } else { ProgressBar::new(steps) };
         let style = ProgressStyle::with_template(template);
         // The template is fixed, so it either always parses or a look at the screen shows the plain bar.
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let left = |state: &ProgressState, out: &mut dyn std::fmt::Write| {
+            // There is no estimate before there is progress.
+            let seconds = if state.pos() > 0 { state.eta().as_secs() } else { 0 };
+            let _ = if seconds > 0 { write!(out, "  {seconds} s left") } else { Ok(()) };
+        };
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).with_key("left", left));
         bar.set_prefix(name.to_owned());
         bar.with_finish(ProgressFinish::AndClear)
     }
@@ -150,6 +183,31 @@ fn to_stdout(text: &str) -> Result<()> {
 
 /// Steps of a full bar.
 const STEPS: u64 = 1000;
+
+/// Whether a command has printed its JSON object.
+static HAS_OBJECT: AtomicBool = AtomicBool::new(false);
+
+/// Prints an error as a JSON object on stdout, if no other object is there.
+pub fn print_error_object(error: &Error) {
+    let of_problem = |file, problem| vec![InputError { file, problem, ..InputError::default() }];
+    let each = match error {
+        Error::Input(input) => input.clone().each(),
+        Error::File { path, action, source } => of_problem(Some(path.clone()), format!("{action}: {source}")),
+        _ => of_problem(None, error.to_string()),
+    };
+    let object = |one: &InputError| {
+        json!({
+            "code": error.exit_code(), "file": one.file, "line": one.line, "key": one.key, "value": one.value,
+            "problem": told_of_file(&one.problem), "fix": told_of_file(&one.remedy),
+        })
+    };
+    let mut first = object(&each[0]);
+    first["more"] = each[1..].iter().map(object).collect();
+    if !HAS_OBJECT.load(Ordering::Relaxed) {
+        // The exit code is the same if stdout is closed.
+        let _ = to_stdout(&format!("{:#}\n", json!({ "error": first })));
+    }
+}
 
 /// The message for stderr.
 pub fn error_words(error: &Error) -> String {
@@ -259,7 +317,7 @@ impl Observer for RunProgress {
     fn block_done(&self, progress: &Progress) -> bool {
         self.advance(
             progress.share,
-            Some(told(&format!("N = {:.4e}, a = {:.2} mm", progress.cycles, progress.crack_length / MM))),
+            Some(told(&format!("N = {}  a = {:.1} mm", PLAIN.whole(progress.cycles), progress.crack_length / MM))),
         )
     }
 

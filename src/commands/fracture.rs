@@ -1,6 +1,6 @@
 //! `perilife fracture`: a scene without cycles to its histories, crack paths and pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::checkpoint;
 use super::console::Console;
@@ -22,9 +22,9 @@ pub struct Args {
     /// Scene file
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Folder for the results; replaced if an earlier run made it
+    /// Folder for the results [default: name of the scene]
     #[arg(long, value_name = "DIR", help_heading = "Output")]
-    pub out: PathBuf,
+    pub out: Option<PathBuf>,
     /// Override a key of the scene (repeatable), e.g. --set model.spacing_mm=0.5
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
@@ -45,8 +45,9 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.case, &super::with_output(&args.set, [("paraview", args.paraview)]))?;
     let task = Task::read(Kind::Scene, &document, &[])?;
-    let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
+    let out = args.out.as_deref().unwrap_or(Path::new(&document.name));
+    let (summary, checkpoint) = args.keeping.run(&task, &document, out, &args.console)?;
     args.console.object(&summary.result)?;
-    summary.counted().map_err(|error| Error::Mechanics(format!("{error}, in {}", args.out.display())))?;
+    summary.counted().map_err(|error| Error::Mechanics(format!("{error}, in {}", out.display())))?;
     checkpoint.map_or(Ok(()), OutputFile::remove)
 }

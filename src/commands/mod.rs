@@ -147,7 +147,7 @@ commands! {
                   `perilife <COMMAND> --help` explains a command."
 )]
 pub struct CommandLine {
-    /// Say on stderr what the program does; twice for details (the variable RUST_LOG overrides)
+    /// Print all messages and details; twice for the log (the variable RUST_LOG overrides)
     #[arg(long, short, action = clap::ArgAction::Count, global = true, help_heading = "What is printed")]
     pub verbose: u8,
     /// Units of what is written and printed: si (mm, MPa, MPa√m), the default, or us (inch, ksi, ksi√in). Input files take keys of both. Metric stay what is read
@@ -195,7 +195,7 @@ impl CommandLine {
 
     /// Sends the log to stderr, filtered by RUST_LOG or else by `--verbose`.
     pub fn start_log(&self) {
-        let level = ["warn", "perilife=info", "perilife=debug"][usize::from(self.verbose.min(2))];
+        let level = ["warn", "warn", "perilife=info", "perilife=debug"][usize::from(self.verbose.min(3))];
         let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
         // A second start (several calls in one test process) leaves the first log in place.
         let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().try_init();

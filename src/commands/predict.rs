@@ -1,6 +1,6 @@
 //! `perilife predict`: a case to its a-N curve, tables and pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::checkpoint;
 use super::console::Console;
@@ -22,9 +22,9 @@ pub struct Args {
     /// Case file
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Folder for the results; replaced if an earlier run made it
+    /// Folder for the results [default: name of the case]
     #[arg(long, value_name = "DIR", help_heading = "Output")]
-    pub out: PathBuf,
+    pub out: Option<PathBuf>,
     /// Override a key of the case (repeatable), e.g. --set model.spacing_mm=0.5
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
@@ -100,7 +100,8 @@ pub fn run(args: &Args) -> Result<()> {
             wanted.inspection = Some(InspectFrom { crack_length_mm, tip: args.tip, factor: args.factor, names });
         }
     }
-    let (summary, checkpoint) = args.keeping.run(&task, &document, &args.out, &args.console)?;
+    let out = args.out.as_deref().unwrap_or(Path::new(&document.name));
+    let (summary, checkpoint) = args.keeping.run(&task, &document, out, &args.console)?;
     let summary = summary.counted()?;
     checkpoint.map(OutputFile::remove).transpose()?;
     args.console.object(&summary.result)

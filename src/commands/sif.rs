@@ -14,7 +14,7 @@ use perilife_growth::predict::tip_factors::StressIntensityMethod;
 use perilife_plate::specimen::beta::HEADER;
 use perilife_results::factor_sweep as tables;
 use perilife_results::output::{OutputFile, OutputFolder, Sort};
-use perilife_runner::{Kind, Task};
+use perilife_runner::{Kind, Message, Task};
 
 /// Arguments of `perilife sif`.
 #[derive(Debug, clap::Args)]
@@ -63,10 +63,7 @@ pub fn run(args: &Args) -> Result<()> {
     super::within_machine(&task, &document)?;
     let work = |folder: Option<&Path>| perilife_runner::run(&task, None, folder, console).map_err(|error| document.locate(error));
     let summary = match &args.out {
-        None => {
-            task.warnings().iter().for_each(|warning| console.warn(warning));
-            console.print(work(None)?)?
-        }
+        None => console.print(work(None)?)?,
         Some(out) => {
             let nodes = StressIntensityMethod::ElementFreeGalerkin;
             if matches!(&task, Task::Factors { methods, .. } if !methods.contains(&nodes)) {
@@ -95,14 +92,14 @@ fn sweep(args: &Args, asked: &str) -> Result<()> {
     // Claimed first: a file that cannot be written should not cost a run.
     let file = claim("--out", out, tables::SIGN)?;
     let beta = args.beta.as_deref().map(|path| claim("--beta", path, HEADER)).transpose()?;
-    case.warnings.iter().for_each(|warning| console.warn(warning));
     let found = factor_sweep(&case, &lengths, true, console).map_err(|error| document.locate(error))?;
-    found.warnings.iter().for_each(|warning| console.warn(warning));
     file.write(tables::table(&found).csv().as_bytes())?;
     beta.map_or(Ok(()), |file| file.write(tables::beta_table(&found).csv().as_bytes()))?;
     let [from, to] = [lengths[0], lengths[lengths.len() - 1]].map(|length| length / MM);
     if out != Path::new(STREAM) {
         console.say(&format!("{}: {} rows from {from} to {to} mm", out.display(), found.rows.len()));
     }
+    let messages: Vec<Message> = case.warnings.iter().chain(&found.warnings).map(|line| Message::warning(line)).collect();
+    console.messages(&messages);
     console.object(&json!({ "file": out, "beta_file": args.beta, "rows": found.rows.len(), "lead_tip": found.lead }))
 }

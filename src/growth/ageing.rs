@@ -36,8 +36,7 @@ pub fn stretch(body: &Body, layout: &Layout, displacement: &[f64], bond: Bond) -
     opening / spring.length
 }
 
-/// Share of the maximum stretch that counts as cyclic strain: (1-R)^γ with Walker's γ; a negative R counts as 0 (a closed
-/// crack takes no part of the compression).
+/// Cyclic strain over the maximum stretch: (1-R)^γ with Walker's γ; compression is ignored (R ≥ 0).
 pub fn strain_share(loading: &Loading, settings: &FatigueSettings) -> f64 {
     loading.range_share().powf(settings.walker_gamma)
 }
@@ -157,8 +156,7 @@ impl BondLife {
         self.life.iter().enumerate().filter(|(_, life)| **life != 1.0).map(|(bond, life)| (bond as Bond, *life)).collect()
     }
 
-    /// The block until the next break: its cycles, and the bonds that break together at its end. Strains are constant until then, so
-    /// the block is exact.
+    /// Cycles to the next break, and the bonds that break at its end; exact, since strains are constant until then.
     pub fn until_next_break(&self, law: &FatigueLaw, ageing: &[FatigueBond]) -> (f64, Vec<Bond>) {
         let rates: Vec<f64> = ageing.iter().map(|b| law.a * b.strain.powf(law.p)).collect();
         let left = ageing.iter().zip(&rates).map(|(b, &rate)| self.of(b.bond).max(0.0) / rate);

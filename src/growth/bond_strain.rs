@@ -32,8 +32,7 @@ use perilife_points::pieces::{Connectivity, remove_fragments};
 use perilife_points::solver::{Equilibrium, Focus, SolverUsed};
 use stop::{break_through, retire_tips};
 
-/// Growth of the load's work by overload within one block, at constant load, from which the plate counts as severed: it has
-/// lost half of its stiffness without a cycle, and what is left only gets softer.
+/// Rise of the load's work by overload within an increment at which the plate counts as severed: half its stiffness is lost.
 const LOST_STIFFNESS: f64 = 2.0;
 /// Lead of the broken bonds of a steady front over the sharp cut of the same compliance, in spacings: bonds still bridging
 /// behind the tip hold the crack closed more than broken ones ahead open it. The length of a crack is the one its compliance
@@ -136,8 +135,7 @@ impl<'a> BondStrain<'a> {
         self.watched = self.near.iter().chain(&run.near_limit).copied().collect();
     }
 
-    /// Every tip with its growth, at the end of the sharp crack of the same compliance. From a clean cut the lead of the broken bonds
-    /// builds up over the first horizon.
+    /// Every tip with its growth, at the end of the sharp crack of the same compliance.
     fn records(&self) -> Vec<TipRecord> {
         let lead = FRONT_OFFSET_SPACINGS * self.body.lattice.spacing;
         let record = |tip: &CrackTip| {
@@ -156,8 +154,7 @@ impl<'a> BondStrain<'a> {
         self.run.tips.iter().map(record).collect()
     }
 
-    /// Breaks bonds, and finds the new equilibrium, until no bond is stretched beyond the critical stretch; all that broke, and
-    /// why there is no equilibrium any more.
+    /// Breaks bonds and solves until none exceeds the critical stretch; all that broke, and why there is no equilibrium.
     fn break_bonds(&mut self, first: Vec<Bond>) -> (Vec<Bond>, Option<StopReason>) {
         let body = &self.body.clone();
         let (case, run, equilibrium) = (self.case, &mut self.run, &mut self.equilibrium);

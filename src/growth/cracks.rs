@@ -65,8 +65,7 @@ pub trait CrackedPlate: Sized {
     /// Errors: [`perilife_base::error::Error::Mechanics`] where nothing is known around a tip.
     fn read(&mut self, case: &Case, cracks: &CracksState) -> Result<Vec<Option<Reading>>>;
 
-    /// K_I and K_II, Pa√m, at the end of the line of a tip from what was read of it, after it has turned; `gap` is that to a tip which it
-    /// faces, m.
+    /// K_I and K_II, Pa√m, of a tip from its reading, after it has turned; `gap` is that to a tip which it faces, m.
     fn factors_at_line(
         &mut self,
         _case: &Case,

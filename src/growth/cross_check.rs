@@ -7,11 +7,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
-use perilife_base::units::MM;
 
 /// Share of the life that a comparison has to be of.
 const SHARE_LEAST: f64 = 0.03;
-/// Difference of K beyond which the user is warned, as share.
+/// Relative difference of K above which the check is a caution.
 const WARNED: f64 = 0.03;
 
 /// How far two independent K lie apart.
@@ -25,16 +24,9 @@ pub struct CrossCheck {
 }
 
 impl CrossCheck {
-    /// What the user should know about it.
-    pub fn warning(&self) -> Option<String> {
-        (self.difference.abs() > WARNED).then(|| {
-            format!(
-                "K of this run differs by {:+.1} % from an independent one at a crack length of {:.3} mm: rates err by m times that; give \
-                 a smaller model.spacing_mm",
-                100.0 * self.difference,
-                self.crack_length / MM
-            )
-        })
+    /// Whether the difference is a caution.
+    pub fn is_large(&self) -> bool {
+        self.difference.abs() > WARNED
     }
 }
 

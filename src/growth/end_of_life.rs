@@ -57,14 +57,12 @@ pub fn first_end(case: &Case) -> Option<End> {
     [wanted, critical_length(case), yields_at_once].into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
 }
 
-/// The crack length at which a standard specimen no longer bears the load that it has to, by K = toughness or yield of the whole section,
-/// whichever is first; `None` where neither is known before a run.
+/// Crack length of a standard specimen at failure by toughness or collapse, whichever is first; `None` if unknown before a run.
 pub fn critical_length(case: &Case) -> Option<End> {
     critical_lengths(case).into_iter().flatten().min_by(|a, b| a.crack_length.total_cmp(&b.crack_length))
 }
 
-/// The crack lengths at which a standard specimen no longer bears the load that it has to, by K = toughness and by yield of the whole
-/// section; `None` where that is not known before a run, or does not end the life.
+/// Crack lengths of a standard specimen at K = toughness and at collapse; `None` if unknown before a run, or not a limit.
 pub fn critical_lengths(case: &Case) -> [Option<End>; 2] {
     // Of a load that follows the crack known row by row: it need not rise with the crack.
     if case.loading.control != LoadControl::Load {
@@ -89,8 +87,7 @@ pub fn critical_lengths(case: &Case) -> [Option<End>; 2] {
     [toughness, net_section]
 }
 
-/// Smallest `a` in `from..=to` at which `value`, which rises with `a`, has reached `wanted`. NaN counts as reached: formulas end
-/// with the plate.
+/// Smallest `a` in `from..=to` at which the rising `value` reaches `wanted`; NaN counts as reached (end of the plate).
 fn first_reach(value: impl Fn(f64) -> f64, wanted: f64, from: f64, to: f64) -> f64 {
     let reached = |a: f64| value(a).partial_cmp(&wanted) != Some(std::cmp::Ordering::Less);
     if reached(from) {
@@ -107,8 +104,7 @@ fn first_reach(value: impl Fn(f64) -> f64, wanted: f64, from: f64, to: f64) -> f
     }
 }
 
-/// By how much the load that the plate has to bear exceeds its strengths at a row, as far as each ends the life: `K_max/K_c - 1` and
-/// `1 - limit load/load`; negative while it bears it.
+/// Excess of the required load over each strength at a row: `K_max/K_c - 1` and `1 - limit load/load`, negative below it.
 fn excess(case: &Case, row: &CurvePoint) -> [(Option<f64>, StopReason); 2] {
     let required = case.stop.required.unwrap_or(1.0);
     let k_max = row.k_max_at(required, &case.loading);
@@ -123,8 +119,7 @@ fn excess(case: &Case, row: &CurvePoint) -> [(Option<f64>, StopReason); 2] {
     ]
 }
 
-/// Load that the plate has to bear at a row over what toughness and net section bear there, as far as each ends the life; 0 where that is
-/// not known. K and load are in proportion, and so are these to the load.
+/// Required load over the load at toughness or collapse at a row, proportional to the load; 0 if unknown.
 pub fn demands(case: &Case, row: &CurvePoint) -> [f64; 2] {
     let [(toughness, _), (net_section, _)] = excess(case, row);
     [toughness.map_or(0.0, |excess| 1.0 + excess), net_section.map_or(0.0, |excess| 1.0 / (1.0 - excess))]
@@ -163,8 +158,7 @@ pub(super) fn reason_to_stop(
     (!grows).then_some(StopReason::NothingAges)
 }
 
-/// The row after an increment, and the reason to stop: run-out and what breaks the plate end the run between two rows, whichever is first,
-/// `end` after this one.
+/// The row after an increment and the reason to stop: run-out or failure between two rows, or `end` after this one.
 pub(super) fn row_after(
     case: &Case,
     last: &CurvePoint,

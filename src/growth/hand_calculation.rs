@@ -19,8 +19,7 @@ use perilife_plate::specimen::green::centre_crack;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_points::crack_tip::TipState;
 
-/// Intervals of the a-N curve, their lengths in constant ratio: what is taken linear between two rows is then off by less than
-/// 1e-4 of life.
+/// Intervals of the a-N curve, lengths in constant ratio: linear interpolation is off by less than 1e-4 of life.
 const INTERVALS: usize = 256;
 /// Relative error of the cycles of each interval.
 const TOLERANCE: f64 = 1e-10;
@@ -39,8 +38,7 @@ pub struct HandCalculation<'a> {
     curve: Vec<CurvePoint>,
 }
 
-/// K_res of a centre crack at equally spaced lengths, by a cubic through four neighbours in between: the cycles are integrated far closer
-/// than a kink in K would bear.
+/// K_res of a center crack at equally spaced lengths, by a cubic through four neighbors in between.
 struct FactorOfResidual {
     from: f64,
     step: f64,
@@ -264,7 +262,7 @@ impl CrackGrowth for HandCalculation<'_> {
             .map(|pair| pair[1].cycles - pair[0].cycles)
             .sum();
         let HandbookFormula { name, range, .. } = &self.formula;
-        let words = || format!("{:.2} % of the life lies outside the range of {name} ({range})", 100.0 * outside / life);
+        let words = || format!("{:.2} % of the life is outside the range of {name} ({range})", 100.0 * outside / life);
         // A share that shows in no life is not worth a word.
         (outside > 1e-3 * life).then(words).into_iter().chain(self.overlap()).collect()
     }

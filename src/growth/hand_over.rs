@@ -82,14 +82,13 @@ impl<'a> HandOver for ToTips<'a> {
     fn note(&self, _bonds: &BondStrain<'a>, start: Option<&CurvePoint>) -> Option<String> {
         Some(match start {
             Some(row) => format!(
-                "the cracks began at slots by the lives of their bonds; from {:.0} cycles on, at a crack length of {:.3} mm, they grew by the K \
-                 of their tips",
+                "cracks initiated at slots by bond failure; from {:.0} cycles (a = {:.3} mm) growth is driven by K",
                 row.cycles,
                 row.crack_length / MM
             ),
             None => format!(
-                "not all cracks from slots became {HAND_OVER_HORIZONS} horizons long, from where K of the tips sets the rate: all of the life is \
-                 that of bonds by their own strains, which depend on lattice and horizon"
+                "some cracks from slots stayed shorter than {HAND_OVER_HORIZONS} horizons, so K never set their rate: the whole life is by bond \
+                 strains, which depend on lattice and horizon"
             ),
         })
     }

@@ -83,8 +83,7 @@ pub trait CrackGrowth {
         None
     }
 
-    /// Whether the solver is best built anew before the next increment, so that what follows depends on [`CrackGrowth::state`] alone.
-    /// It depends on the case and its increments, never on time.
+    /// Whether to rebuild the solver, so that what follows depends on [`CrackGrowth::state`] alone; independent of time.
     fn should_rebuild_solver(&self) -> bool {
         false
     }

@@ -31,8 +31,7 @@ const MANY: usize = 2000;
 /// Nodes beyond which they do not.
 const NODES_MOST: f64 = 2e4;
 
-/// Way along a crack from its tip, over the room of the tip, within which corners and kinks are not seen: of a tip that hardly grows they
-/// would ask for ever finer nodes.
+/// Distance from a tip, over its room, within which corners and kinks do not refine the nodes.
 const UNSEEN: f64 = 1e-3;
 
 pub struct NodePlate {
@@ -112,8 +111,7 @@ impl CrackedPlate for NodePlate {
         Scales::of_nodes(case, self.settings.resolution.far)
     }
 
-    /// Makes the nodes as fine as K of the initial tips asks for: until it changes by no more than the tolerance when they get finer by
-    /// half of themselves. What is then still open is said in a warning.
+    /// Refines nodes until K of the initial tips changes by less than the tolerance; warns of what remains.
     fn open(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
         if self.settings.is_final {
             return self.solve(case, cracks);
@@ -132,9 +130,9 @@ impl CrackedPlate for NodePlate {
                 break;
             }
             if is_last {
-                let other = if suits_points(case) { "; model.method = \"peridynamics\" is another look at it" } else { "" };
+                let other = if suits_points(case) { "; cross-check with model.method = \"peridynamics\"" } else { "" };
                 self.state.warnings.push(format!(
-                    "K of tip {tip} changes by {:.1} % when nodes get {FINER} times finer, to {nodes} nodes: it may err by as much{other}",
+                    "K of tip {tip} changes by {:.1} % on nodes {FINER} times finer ({nodes} nodes); its error may be as large{other}",
                     100.0 * change,
                 ));
                 break;

@@ -385,8 +385,7 @@ fn bonds_at_tips(body: &Body, cracks: &CracksState) -> Vec<Bond> {
     bonds
 }
 
-/// Bonds that a new segment crosses, in the sense of its line, so that points on it stay on one side; beyond a rim, all
-/// that is left of it.
+/// Bonds that a new segment crosses, in the sense of its line; beyond an edge, all that is left of it.
 fn across(body: &Body, segment: &Segment, at_last: bool) -> Vec<Bond> {
     let Segment { from, to, state, .. } = *segment;
     let beyond = if state == TipState::Active { 0.0 } else { body.lattice.spacing };

@@ -12,33 +12,32 @@ use perilife_points::crack_tip::TipState;
 perilife_base::kinds! {
     /// Why a run ended.
     pub enum StopReason for "stop_reason" {
-        CrackLengthReached = "crack_length_reached": "the crack reached stop.crack_length_mm",
-        CrackDepthReached = "crack_depth_reached": "the crack reached stop.crack_depth_mm",
-        BrokenThrough = "broken_through": "the crack has grown through the thickness: what the through crack does is not computed",
-        Toughness = "toughness": "the stress intensity at maximum load reached the toughness",
-        NetSectionYield = "net_section_yield": "the remaining section yields throughout: its limit load at the yield strength is reached",
-        Severed = "severed": "the plate is in two pieces, or what is left of it cannot carry the load",
-        LeftPlate = "left_plate": "every crack tip has left the plate",
-        EnteredHole = "entered_hole": "the last crack tip ran into a hole: what the crack does behind it is not computed",
-        CracksJoined = "cracks_joined": "the last crack tips have met, and no other grows: what the joined crack does is not computed",
-        LigamentUnresolved = "ligament_unresolved": "a crack tip passes a rim within a spacing: points do not resolve what is between them",
-        NothingAges = "nothing_ages": "nothing is left that grows under these loads: the life is unlimited",
-        NoGrowth = "no_growth": "bonds went on breaking, but no crack tip grew",
-        RequiredStrength = "required_strength": "the plate no longer bears the load that it has to (stop.required_strength_mpa or limit_load_factor)",
-        RunOut = "run_out": "stop.cycles_max was reached, and the plate lives on",
-        NoConvergence = "no_convergence": "the equilibrium solver did not converge",
+        CrackLengthReached = "crack_length_reached": "crack length limit reached (stop.crack_length_mm)",
+        CrackDepthReached = "crack_depth_reached": "crack depth limit reached (stop.crack_depth_mm)",
+        BrokenThrough = "broken_through": "breakthrough; growth of the through crack is not computed",
+        Toughness = "toughness": "fracture: K_max reached K_c",
+        NetSectionYield = "net_section_yield": "net-section yield: the load reached the plastic collapse load",
+        Severed = "severed": "complete separation, or the remaining ligament lost its stiffness",
+        LeftPlate = "left_plate": "every crack tip reached an edge",
+        EnteredHole = "entered_hole": "the crack ran into a hole; re-initiation is not computed",
+        CracksJoined = "cracks_joined": "the cracks linked up; growth of the joined crack is not computed",
+        LigamentUnresolved = "ligament_unresolved": "ligament smaller than the point spacing",
+        NothingAges = "nothing_ages": "no crack grows under these loads: unlimited life",
+        NoGrowth = "no_growth": "numerical stop: bonds broke without crack growth",
+        RequiredStrength = "required_strength": "residual strength fell below the required strength (stop.required_strength_mpa or limit_load_factor)",
+        RunOut = "run_out": "run-out: cycle limit reached (stop.cycles_max)",
+        NoConvergence = "no_convergence": "the solver did not converge",
     }
 }
 
 impl StopReason {
-    /// Whether a plate that has ended so lives on: what a crack does behind a hole, or one that has joined others or has just grown
-    /// through, is not computed, nor what comes after the cycles that were asked for.
+    /// Whether the analysis ended before the life: growth beyond a hole, a link-up, a breakthrough or the cycle limit is not computed.
     pub fn is_lower_bound(self) -> bool {
         use StopReason::{BrokenThrough, CracksJoined, EnteredHole, LigamentUnresolved, RunOut};
         matches!(self, BrokenThrough | EnteredHole | CracksJoined | LigamentUnresolved | RunOut)
     }
 
-    /// Whether the load breaks a plate that has ended so.
+    /// Whether the load reached a strength of the plate.
     pub fn is_strength(self) -> bool {
         matches!(self, StopReason::Toughness | StopReason::NetSectionYield | StopReason::RequiredStrength)
     }
@@ -89,8 +88,7 @@ pub struct CurvePoint {
     /// Work of the loads over the displacement at maximum load, f·u, J: twice the strain energy, the load squared times the
     /// compliance; NaN where the plate is severed and in hand calculation.
     pub work: f64,
-    /// Nominal load at which the weakest section is fully plastic, Pa or N; `None` without yield strength, or where the loads determine what
-    /// no section bears.
+    /// Plastic collapse load of the weakest section, Pa or N; `None` without yield strength or a section that carries it.
     pub limit_load: Option<f64>,
     /// Bonds broken since the start, initial cracks not counted.
     pub broken_bonds: usize,

@@ -114,8 +114,7 @@ pub fn stressed(case: &Case) -> Result<Stressed> {
     }
 }
 
-/// Largest change of the peaks of holes and arcs, over the peak; of a rim that carries less than a tenth of the largest stress,
-/// over that tenth.
+/// Largest relative change of the peaks of holes and arcs; over at least a tenth of the largest stress.
 fn largest_change(before: &[RimStress], now: &[RimStress]) -> Option<f64> {
     let size = |rim: &RimStress| rim.peak().stress.abs();
     let tenth = 0.1 * now.iter().map(size).fold(0.0, f64::max);

@@ -33,7 +33,8 @@ impl Run {
     /// Errors: as [`perilife_runner::of`]; a run that does not count.
     pub fn of(task: Task, read: Provenance, told: &Told) -> Result<Self> {
         let summary = perilife_runner::of(&task, None, None, told)?.counted()?;
-        let warnings = task.warnings().iter().cloned().chain(told.warnings()).collect();
+        let messages = summary.messages.iter().map(|message| message.text.clone());
+        let warnings = messages.chain(task.warnings().iter().cloned()).chain(told.warnings()).collect();
         let lines = summary.printed.lines().map(str::to_owned).chain(summary.lines.iter().cloned()).collect();
         Ok(Run { read, result: summary.result.to_string(), lines, warnings, summary, task })
     }

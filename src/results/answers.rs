@@ -15,8 +15,7 @@ use perilife_base::error::Result;
 use perilife_growth::case::{Case, Engine, Stop};
 use perilife_growth::predict::{Prediction, Silent, StopReason, predict};
 
-/// A run as K(a) of other plates is recorded from: one that `stop.cycles_max` ended continues, since faster plates grow longer cracks in these
-/// cycles. Where it cannot, its own rows are all there is.
+/// A run as the source of K(a) for other plates, continued beyond `stop.cycles_max` where that is quick.
 fn whole<'p>(case: &Case, prediction: &'p Prediction, is_asked: bool) -> Cow<'p, Prediction> {
     let stop = Stop { cycles_max: f64::INFINITY, ..case.stop };
     let on = || predict(&Case { stop, ..case.clone() }, &Silent).ok();

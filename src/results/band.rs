@@ -13,11 +13,6 @@ use perilife_growth::case::{Case, Lot};
 use perilife_growth::predict::Prediction;
 use perilife_measured::MeasuredCurve;
 
-/// Whose the band is, in words: of any specimen of the lot, of the plate that was read.
-const OF_SPECIMENS: &str = "90 % of specimens";
-/// See [`OF_SPECIMENS`].
-const OF_PLATE: &str = "90 % band";
-
 /// `band` of a result: cycles that 5, 50 and 95 % of specimens do not reach, and what they rest on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BandRecord {
@@ -176,54 +171,53 @@ impl Lives {
         let mut lines = Vec::new();
         match &self.band {
             Ok((plate, band)) => {
-                let assumed = if plate.lot.assumed_scatter { ", assumed scatter" } else { "" };
-                let lot = if plate.of == Lot::Same { "their lot" } else { "another lot" };
-                let other = if self.is_lot_given { "" } else { "; plate of another lot: fatigue.lot = \"other\"" };
+                let assumed = if plate.lot.assumed_scatter { "; scatter assumed" } else { "" };
+                let lot = if plate.of == Lot::Same { "same lot" } else { "other lot" };
+                let other = if self.is_lot_given { "" } else { " (for another lot: fatigue.lot = \"other\")" };
                 let count = plate.lot.specimens.len();
                 let specimens = if count == 1 { "1 specimen".to_owned() } else { format!("{count} specimens") };
                 let outside = match band.share_outside {
-                    share if share > 0.0 => format!(", {:.1} % of it outside their ΔK", 100.0 * share),
+                    share if share > 0.0 => format!("; {:.1} % of the life outside the tested ΔK", 100.0 * share),
                     _ => String::new(),
                 };
-                lines.push(format!("  band           of {specimens}, {lot}{assumed}{outside}{other}"));
+                lines.push(format!("  Scatter band   from {specimens}, {lot}{other}{assumed}{outside}"));
             }
-            Err(why) => lines.push(format!("  band           none: {why}")),
+            Err(why) => lines.push(format!("  Scatter band   not available: {why}")),
         }
         if let Some(own) = &self.own {
             lines.push(format!(
-                "  this plate     read to {:.3} mm at {:.0} cycles, left {}; by the lot alone {}",
+                "  This plate     last reading {:.1} mm at {} cycles; remaining {} (without readings {})",
                 own.left.crack_length / MM,
-                own.cycles,
-                words_of(&own.left.quantiles, OF_PLATE),
-                words_of(&own.of_lot.quantiles, OF_SPECIMENS)
+                PLAIN.whole(own.cycles),
+                band_words(&own.left.quantiles),
+                band_words(&own.of_lot.quantiles)
             ));
         }
-        let whose = if self.own.is_some() { OF_PLATE } else { OF_SPECIMENS };
-        lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, whose, self.per_pass)));
+        lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, self.per_pass)));
         lines
     }
 }
 
 /// What an inspection says, in lines of a summary.
-fn inspection_words(inspection: &Inspection, whose: &str, per_pass: Option<f64>) -> Vec<String> {
+fn inspection_words(inspection: &Inspection, per_pass: Option<f64>) -> Vec<String> {
     let (length, factor, quantiles) = (short(inspection.crack_length_mm), inspection.factor, inspection.quantiles());
     let every = interval_words(inspection, per_pass);
     let [left, every] = match quantiles {
-        Some(quantiles) => [words_of(&quantiles, whose), format!("{every}: the 5 % remaining life over {factor}")],
+        Some(quantiles) => [band_words(&quantiles), format!("{every} (5 % remaining life / {factor})")],
         None => [
             format!("{} cycles", PLAIN.whole(inspection.remaining_cycles)),
-            format!("{every}: the remaining life over {factor}, no band"),
+            format!("{every} (remaining life / {factor}; no scatter band)"),
         ],
     };
-    let least = if inspection.life_is_lower_bound { "at least " } else { "" };
-    let of_tip = inspection.tip.map_or_else(String::new, |tip| format!(" of the crack of tip {tip}"));
-    vec![format!("  remaining      {least}{left} from {length} mm{of_tip}"), format!("  inspection     every {every}")]
+    let least = if inspection.life_is_lower_bound { "≥ " } else { "" };
+    let of_tip = inspection.tip.map_or_else(String::new, |tip| format!(" (crack of tip {tip})"));
+    vec![format!("  Remaining      {least}{left} from a = {length} mm{of_tip}"), format!("  Inspect every  {every}")]
 }
 
 /// Why readings narrow nothing.
 pub fn no_band_to_narrow(curve: &MeasuredCurve, why: &str) -> perilife_base::error::Error {
-    let remedy = "give a fitted record of several specimens of this material and stress ratio as fatigue.fitted";
-    input("--measured", curve.source.file.display(), format!("cannot narrow the band of the life, which has none: {why}"), remedy)
+    let remedy = "set fatigue.fitted to a law fitted to several specimens of this material at this R";
+    input("--measured", curve.source.file.display(), format!("cannot update the life: no scatter band ({why})"), remedy)
 }
 
 /// An interval rounded down, since it is a promise, to the digits that a band deserves, and its passes under a spectrum.
@@ -238,13 +232,9 @@ pub fn interval_words(inspection: &Inspection, per_pass: Option<f64>) -> String 
     every_words(inspection.inspection_interval_cycles, inspection.quantiles().as_ref(), per_pass)
 }
 
-/// `254 000 cycles (median; 90 % of specimens 228 000 to 283 000)`, with the digits that the band deserves.
+/// `254 000 cycles (median; 90 % band 228 000 to 283 000)`, in the digits that the band supports.
 pub fn band_words(quantiles: &Quantiles) -> String {
-    words_of(quantiles, OF_SPECIMENS)
-}
-
-fn words_of(quantiles: &Quantiles, whose: &str) -> String {
     let digits = digits(quantiles);
     let [low, middle, high] = quantiles.map(|cycles| PLAIN.significant(cycles, digits, f64::round));
-    format!("{middle} cycles (median; {whose} {low} to {high})")
+    format!("{middle} cycles (median; 90 % band {low} to {high})")
 }

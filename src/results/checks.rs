@@ -1,4 +1,4 @@
-//! What stands behind a life: every condition that it rests on, whether that holds, what it may do to the life, and what to do about it.
+//! Checks of the validity of a life: what was found, its effect on the life, and a remedy; the verdict over all of them.
 
 mod part_through;
 
@@ -18,53 +18,57 @@ use perilife_growth::predict::{CurvePoint, Prediction, StopReason};
 use perilife_plate::material::growth_data::BATCH_FACTOR;
 use perilife_plate::specimen::SpecimenKind;
 
-/// Lines that are printed below a verdict at the most.
-const LINES_MOST: usize = 5;
-/// Letters of a line at the most, so that it is one of 80 with what stands before it.
-const LETTERS_MOST: usize = 71;
-/// Effect on life, percent, from which a condition is doubtful; none has an effect that is known better.
-const DOUBTFUL_PERCENT: f64 = 1.0;
-/// Share of life outside the fitted ΔK range from which the law is doubtful.
-const OUTSIDE_DOUBTFUL: f64 = 0.05;
+/// Effect on life, percent, above which a check is a caution; no effect is known more precisely.
+const CAUTION_PERCENT: f64 = 1.0;
+/// Share of life outside the tested ΔK above which the law is a caution.
+const OUTSIDE_CAUTION: f64 = 0.05;
 /// Thickness of the plate over that of the specimens, or the other way, up to which both have the same constraint at the tip.
 const THICKNESS_ALIKE: f64 = 1.25;
-/// Factor of the life by retardation from which it is doubtful.
-const RETARDED_DOUBTFUL: f64 = 1.5;
+/// Factor of the life by retardation above which it is a caution.
+const RETARDED_CAUTION: f64 = 1.5;
 /// Exponent where the law has none: what an error of K does to the rate.
 const EXPONENT_USUAL: f64 = 3.0;
 
-/// Whether a condition holds.
+/// Result of one check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// It does not, and the life is none.
-    Fails,
-    /// It does not hold all along; the effect says what that may do.
-    Doubtful,
-    /// It cannot be told.
+    /// The life is not valid.
+    Failed,
+    /// Valid for part of the life, or within the stated effect.
+    Caution,
+    /// The input does not suffice.
     NotChecked,
-    Holds,
+    Passed,
 }
 
-/// On which side of the true life a life is where a condition does not hold.
+/// All checks together: may the life be used?
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Side {
-    /// Too short.
-    Safe,
-    /// Too long.
-    Unsafe,
-    Either,
+pub enum Validity {
+    Valid,
+    Reservations,
+    NotValid,
 }
 
-/// One condition.
+/// Direction of an effect on the computed life; of equal sizes the first matters most.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Too long.
+    NonConservative,
+    Either,
+    /// Too short.
+    Conservative,
+}
+
+/// One check.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     pub name: Cow<'static, str>,
     pub verdict: Verdict,
-    /// What it may do to the life, or the share of the life that it concerns, percent; `None` where nobody knows.
+    /// Effect on the life, or the share of the life concerned, percent; `None` if unknown.
     pub effect_percent: Option<f64>,
-    /// On which side of the true life the life is by that.
     pub side: Option<Side>,
     pub words: String,
     pub remedy: Option<String>,
@@ -77,27 +81,27 @@ impl Check {
 
     fn not_checked(name: &'static str, words: &str, remedy: &str) -> Self {
         Check {
-            side: Some(Side::Unsafe),
+            side: Some(Side::NonConservative),
             remedy: Some(remedy.to_owned()),
             ..Check::new(name, Verdict::NotChecked, words.to_owned())
         }
     }
 
-    /// A condition that holds but for an effect, percent, on one side.
-    fn sized(name: &'static str, percent: f64, doubtful: bool, side: Side, words: String, remedy: &str) -> Self {
-        let verdict = if doubtful { Verdict::Doubtful } else { Verdict::Holds };
-        let remedy = doubtful.then(|| remedy.to_owned());
+    /// A check with an effect, percent.
+    fn sized(name: &'static str, percent: f64, is_caution: bool, side: Side, words: String, remedy: &str) -> Self {
+        let verdict = if is_caution { Verdict::Caution } else { Verdict::Passed };
+        let remedy = is_caution.then(|| remedy.to_owned());
         Check { effect_percent: Some(percent), side: Some(side), remedy, ..Check::new(name, verdict, words) }
     }
 }
 
-/// What can be told of a case before it is run.
+/// Checks of a case before it is run.
 pub fn of_case(case: &Case) -> Vec<Check> {
     let strengths = ["toughness", "ligament"].map(|name| strength(case, name));
     sorted(strengths.into_iter().chain(first_extrapolation(case)).collect(), case, None)
 }
 
-/// All conditions of a life, those that matter most first: what fails, what is doubtful by its effect, what was not checked, what holds.
+/// All checks of a life, by status and effect, the most severe first.
 pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     let mut checks = vec![toughness(case, prediction), ligament(case, prediction)];
     checks.extend(small_scale_yielding(case, prediction));
@@ -108,44 +112,46 @@ pub fn of_run(case: &Case, prediction: &Prediction) -> Vec<Check> {
     sorted(checks, case, Some(prediction))
 }
 
-/// Growth data of the library are those of one batch.
+/// Growth data of the library are those of one lot.
 fn growth_data(case: &Case) -> Option<Check> {
     case.growth_data.as_ref()?;
     let percent = 100.0 * (1.0 - 1.0 / BATCH_FACTOR);
-    let words = format!("growth data of the library: a batch may differ by a factor of {BATCH_FACTOR} in rate");
-    Some(Check::sized("growth_data", percent, true, Side::Either, words, "calibrate the law to tests of this batch"))
+    let words =
+        format!("Growth data: library values; another lot may grow at {BATCH_FACTOR} times or 1/{BATCH_FACTOR} of the rate");
+    Some(Check::sized("growth_data", percent, true, Side::Either, words, "fit the law to tests of this lot"))
 }
 
-/// With what the law says of the plate, those that matter most first.
+/// With the checks of the law, the most severe first.
 fn sorted(mut checks: Vec<Check>, case: &Case, prediction: Option<&Prediction>) -> Vec<Check> {
     let of_law = [stress_ratio(case, prediction), thickness(case), size(case), lack_of_fit(case), growth_data(case)];
     checks.extend(of_law.into_iter().flatten());
     let effect = |check: &Check| check.effect_percent.unwrap_or(0.0).abs();
-    checks.sort_by(|a, b| (a.verdict as usize).cmp(&(b.verdict as usize)).then(effect(b).total_cmp(&effect(a))));
+    checks.sort_by(|a, b| {
+        let by_size = (a.verdict as usize).cmp(&(b.verdict as usize)).then(effect(b).total_cmp(&effect(a)));
+        by_size.then(a.side.cmp(&b.side))
+    });
     checks
 }
 
-/// Whether life may be said to be reached at the least: what would end it sooner was checked and holds.
+/// Whether the life is a lower bound: the checks of all that would end it sooner passed.
 pub fn is_bound_below(case: &Case, prediction: &Prediction) -> bool {
-    let holds = |check: &Check| check.verdict == Verdict::Holds;
+    let passed = |check: &Check| check.verdict == Verdict::Passed;
     let is_checked = || {
         let yielding = small_scale_yielding(case, prediction);
-        holds(&toughness(case, prediction)) && holds(&ligament(case, prediction)) && yielding.iter().all(holds)
+        passed(&toughness(case, prediction)) && passed(&ligament(case, prediction)) && yielding.iter().all(passed)
     };
-    // A run that was cut off has lived so long already.
     prediction.stop == StopReason::RunOut || prediction.stop.is_lower_bound() && is_checked()
 }
 
-/// What a run was judged to be, once: how its life stands, what the user should know, whether it counts.
+/// Checks, warnings and refusal of a run.
 #[derive(Debug, Default)]
 pub struct Judgement {
-    /// Those that matter most first.
+    /// The most severe first.
     pub checks: Vec<Check>,
-    /// Whether the life is reached at the least.
     pub is_lower_bound: bool,
-    /// What is to be said of it beyond what the run itself says.
+    /// Beside those of the run itself.
     pub warnings: Vec<String>,
-    /// Why it does not count.
+    /// Why the life is not valid.
     pub refusal: Option<Error>,
 }
 
@@ -157,49 +163,80 @@ impl Judgement {
         let (checks, is_lower_bound) = (of_run(case, prediction), is_bound_below(case, prediction));
         Ok(Judgement { checks, is_lower_bound, warnings, refusal: judgement::refusal(case, prediction) })
     }
+}
 
-    /// One line that says how the life stands.
-    pub fn verdict(&self) -> String {
-        verdict(&self.checks)
+/// A message for the user: a check that did not pass, or a warning.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Message {
+    /// Name of the check; none of a warning.
+    pub subject: Option<Cow<'static, str>>,
+    /// `failed`, `caution`, `unchecked` or `warning`.
+    pub kind: &'static str,
+    pub text: String,
+    pub remedy: Option<String>,
+}
+
+impl Message {
+    fn of(check: &Check) -> Option<Self> {
+        let kind = match check.verdict {
+            Verdict::Failed => "failed",
+            Verdict::Caution => "caution",
+            Verdict::NotChecked => "unchecked",
+            Verdict::Passed => return None,
+        };
+        Some(Message { subject: Some(check.name.clone()), kind, text: check.words.clone(), remedy: check.remedy.clone() })
+    }
+
+    pub fn warning(text: &str) -> Self {
+        Message { subject: None, kind: "warning", text: text.to_owned(), remedy: None }
     }
 }
 
-/// One line that says how a life stands.
+/// Checks that did not pass, the most severe first, then warnings.
+pub fn messages(checks: &[Check], warnings: &[String]) -> Vec<Message> {
+    checks.iter().filter_map(Message::of).chain(warnings.iter().map(|line| Message::warning(line))).collect()
+}
+
+/// The verdict over all checks.
+pub fn validity(checks: &[Check]) -> Validity {
+    match checks.iter().map(|check| check.verdict as usize).min() {
+        Some(worst) if worst == Verdict::Failed as usize => Validity::NotValid,
+        Some(worst) if worst < Verdict::Passed as usize => Validity::Reservations,
+        _ => Validity::Valid,
+    }
+}
+
+/// The verdict in words.
 pub fn verdict(checks: &[Check]) -> String {
     let count = |verdict: Verdict| checks.iter().filter(|check| check.verdict == verdict).count();
-    let some =
-        [(count(Verdict::Fails), "failed"), (count(Verdict::Doubtful), "doubtful"), (count(Verdict::NotChecked), "not checked")];
+    let cautions = count(Verdict::Caution);
+    let some = [
+        (count(Verdict::Failed), "failed"),
+        (cautions, if cautions == 1 { "caution" } else { "cautions" }),
+        (count(Verdict::NotChecked), "not checked"),
+    ];
     let open: Vec<String> = some.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
-    match (some[0].0, open.len()) {
-        (0, 0) => format!("stands: all {} checks hold", checks.len()),
-        (0, _) => format!("stands on conditions: of {} checks {}", checks.len(), open.join(", ")),
-        _ => format!("not to be used: of {} checks {}", checks.len(), open.join(", ")),
+    match validity(checks) {
+        Validity::Valid => format!("valid: all {} checks passed", checks.len()),
+        Validity::Reservations => format!("valid with reservations: of {} checks {}", checks.len(), open.join(", ")),
+        Validity::NotValid => format!("not valid: of {} checks {}", checks.len(), open.join(", ")),
     }
-}
-
-/// The lines below it: conditions that do not hold, at most five.
-pub fn lines(checks: &[Check]) -> Vec<String> {
-    let open = checks.iter().filter(|check| check.verdict != Verdict::Holds);
-    // Cut between words.
-    let cut = |words: &str, end: usize| format!("{}…", &words[..words[..end].rfind(' ').unwrap_or(end)]);
-    let line = |words: &str| words.char_indices().nth(LETTERS_MOST).map_or_else(|| words.to_owned(), |(end, _)| cut(words, end));
-    open.take(LINES_MOST).map(|check| line(&check.words)).collect()
 }
 
 fn strength(case: &Case, name: &'static str) -> Check {
     let of_k = name == "toughness";
     let (is_given, is_asked, [what, missing, key, off]) = if of_k {
-        let words = ["fracture", "toughness", "material.toughness_mpa_sqrt_m", "toughness"];
+        let words = ["Fracture", "toughness", "material.toughness_mpa_sqrt_m", "toughness"];
         (case.material.toughness.is_some(), case.stop.by_toughness, words)
     } else {
-        let words = ["yielding", "yield strength", "material.yield_strength_mpa", "net_section"];
+        let words = ["Net-section yield", "yield strength", "material.yield_strength_mpa", "net_section"];
         (case.material.yield_strength.is_some(), case.stop.by_net_section, words)
     };
-    let not_checked = |why: String, remedy: &str| Check::not_checked(name, &format!("{what}: not checked, {why}"), remedy);
+    let not_checked = |why: String, remedy: &str| Check::not_checked(name, &format!("{what}: not checked ({why})"), remedy);
     match (is_given, is_asked) {
-        (false, _) => not_checked(format!("no {missing} given"), &format!("give {key}")),
-        (true, false) => not_checked(format!("turned off by stop.{off}"), "leave the key out"),
-        (true, true) => Check::new(name, Verdict::Holds, format!("{name}: the life ends where it is reached")),
+        (false, _) => not_checked(format!("no {missing} given"), &format!("set {key}")),
+        (true, false) => not_checked(format!("stop.{off} = false"), "remove that key"),
+        (true, true) => Check::new(name, Verdict::Passed, format!("{what}: ends the life when reached")),
     }
 }
 
@@ -207,15 +244,17 @@ fn toughness(case: &Case, prediction: &Prediction) -> Check {
     let given = strength(case, "toughness");
     let most = prediction.curve.iter().map(|row| row.k_max(&case.loading)).filter(|k| k.is_finite()).fold(f64::NAN, f64::max);
     match case.toughness_at_end() {
-        Some(_) if most.is_nan() => Check::not_checked("toughness", "fracture: not checked, K of the tips is not known", ""),
+        Some(_) if most.is_nan() => {
+            Check::not_checked("toughness", "Fracture: not checked (K not computed)", "use a method that computes K")
+        }
         Some(toughness) => {
-            let words = format!("fracture: K_max is {:.1} % of the toughness at the most", 100.0 * most / toughness);
+            let words = format!("Fracture: K_max up to {:.0} % of K_c (100 % ends the life)", 100.0 * most / toughness);
             let required = case.stop.required.unwrap_or(1.0);
             Check { words, verdict: of_first_load(prediction, required * most / toughness), ..given }
         }
         None => Check {
             words: given.words.clone()
-                + &if most.is_nan() { String::new() } else { format!("; K_max to {:.0} MPa√m", most / MPA_SQRT_M) },
+                + &if most.is_nan() { String::new() } else { format!("; K_max reaches {:.0} MPa√m", most / MPA_SQRT_M) },
             ..given
         },
     }
@@ -230,17 +269,17 @@ fn ligament(case: &Case, prediction: &Prediction) -> Check {
     let load = |row: &CurvePoint| Some(case.loading.doing(row.work, row.crack_length) / row.limit_load?);
     let most = prediction.curve.iter().filter_map(load).filter(|used| used.is_finite()).fold(f64::NAN, f64::max);
     if most.is_nan() {
-        let words = "yielding: not checked, supports on both sides of every section";
-        return Check::not_checked(NAME, words, "give the loads of both ends instead of a support");
+        let words = "Net-section yield: not checked (supports on both sides of every section)";
+        return Check::not_checked(NAME, words, "give the loads at both ends instead of a support");
     }
     let required = case.stop.required.unwrap_or(1.0);
-    let words = format!("section: the load is {:.1} % of its limit load at the most", 100.0 * most);
+    let words = format!("Net-section yield: load up to {:.0} % of the plastic collapse load (100 % ends the life)", 100.0 * most);
     Check { words, verdict: of_first_load(prediction, required * most), ..given }
 }
 
-/// A strength holds while a plate lives; one that the first load exceeds leaves no life.
+/// A strength that the first load exceeds leaves no life.
 fn of_first_load(prediction: &Prediction, used: f64) -> Verdict {
-    if prediction.stop.is_strength() && prediction.curve.len() == 1 && used >= 1.0 { Verdict::Fails } else { Verdict::Holds }
+    if prediction.stop.is_strength() && prediction.curve.len() == 1 && used >= 1.0 { Verdict::Failed } else { Verdict::Passed }
 }
 
 fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
@@ -249,54 +288,61 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
     let percent = 100.0 * zone.life_share_too_large;
     let never = zone.too_large_to.is_none() && zone.too_large_from == Some(zone.first.crack_length);
     let words = match zone.too_large_from {
-        None => "small-scale yielding: holds to the end".to_owned(),
-        Some(from) if never => format!("small-scale yielding: not from N = 0, {}, on", two_digits(from)),
+        None => "LEFM (small-scale yielding): valid to the end".to_owned(),
+        Some(from) if never => format!("LEFM (small-scale yielding): not valid from the start (a = {})", two_digits(from)),
         Some(from) => {
-            let until = zone.too_large_to.map_or_else(|| "on".to_owned(), |to| format!("to {}", two_digits(to)));
-            format!("small-scale yielding: not from {} {until}, {percent:.1} % of life", two_digits(from))
+            let until = zone.too_large_to.map_or_else(String::new, |to| format!(" to {}", two_digits(to)));
+            format!("LEFM (small-scale yielding): not valid from a = {}{until} ({percent:.1} % of life)", two_digits(from))
         }
     };
     let remedy = match zone.too_small {
-        _ if never => "reduce the load: K does not describe this crack",
-        "ligament" => "end the life there by stop.crack_length_mm (of all cracks): beyond it cracks grow faster than K says",
-        _ => "begin with a longer crack: shorter ones grow faster than K says",
+        _ if never => "reduce the load: K is not valid for this crack",
+        "ligament" => "stop the analysis at this length (stop.crack_length_mm): growth beyond it is underestimated",
+        _ => "start with a longer crack: growth of shorter ones is underestimated",
     };
-    let check = Check::sized(NAME, percent, never || percent > DOUBTFUL_PERCENT, Side::Unsafe, words, remedy);
-    Some(if never { Check { verdict: Verdict::Fails, ..check } } else { check })
+    let check = Check::sized(NAME, percent, never || percent > CAUTION_PERCENT, Side::NonConservative, words, remedy);
+    Some(if never { Check { verdict: Verdict::Failed, ..check } } else { check })
 }
 
-/// A length as the criterion deserves: two digits, and the third of a length of more than ten.
+/// A length in two digits, three above 10 mm.
 fn two_digits(length: f64) -> String {
     PLAIN.length(length, usize::from(length < 10.0 * MM))
 }
 
-/// Life outside the fitted range, below and above.
+/// Life outside the tested ΔK, below and above.
 fn extrapolation(case: &Case, prediction: &Prediction) -> Vec<Check> {
     let (Some([low, high]), Some(shares)) = (fit_use::fitted_range(case), fit_use::life_shares_outside(case, prediction)) else {
         return fit_use::fitted_range(case).is_none().then(unknown_range).into_iter().collect();
     };
     let of_side = |name, share: f64, side, words: String| {
-        let is_refused = side == Side::Unsafe && share > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation;
+        let is_refused = side == Side::NonConservative && share > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation;
         let remedy = match side {
-            Side::Unsafe => "calibrate on longer cracks, or end the life sooner by stop.crack_length_mm",
-            _ => "calibrate on slower growth, or give fatigue.delta_k_threshold_mpa_sqrt_m",
+            Side::NonConservative => "test at higher ΔK, or stop earlier (stop.crack_length_mm)",
+            _ if case.fatigue.threshold > 0.0 => "test at lower ΔK",
+            _ => "test at lower ΔK, or set fatigue.delta_k_threshold_mpa_sqrt_m",
         };
-        let check = Check::sized(name, 100.0 * share, share > OUTSIDE_DOUBTFUL, side, words, remedy);
-        if is_refused { Check { verdict: Verdict::Fails, ..check } } else { check }
+        let check = Check::sized(name, 100.0 * share, share > OUTSIDE_CAUTION, side, words, remedy);
+        if is_refused { Check { verdict: Verdict::Failed, ..check } } else { check }
     };
     let [below, above] = shares;
     vec![
         of_side(
             "extrapolation_below",
             below,
-            Side::Safe,
-            format!("law: {:.1} % of life below ΔK {low:.2}, the lowest fitted (safe side)", 100.0 * below),
+            Side::Conservative,
+            format!(
+                "Extrapolation: {:.1} % of life at ΔK below {low:.2} MPa√m, the lowest tested (usually conservative)",
+                100.0 * below
+            ),
         ),
         of_side(
             "extrapolation_above",
             above,
-            Side::Unsafe,
-            format!("law: {:.1} % of life above ΔK {high:.2}, the highest fitted (unsafe side)", 100.0 * above),
+            Side::NonConservative,
+            format!(
+                "Extrapolation: {:.1} % of life at ΔK above {high:.2} MPa√m, the highest tested (non-conservative)",
+                100.0 * above
+            ),
         ),
     ]
 }
@@ -304,8 +350,8 @@ fn extrapolation(case: &Case, prediction: &Prediction) -> Vec<Check> {
 fn unknown_range() -> Check {
     Check::not_checked(
         "extrapolation_above",
-        "law: its range of ΔK is not known, constants given by hand",
-        "calibrate on measured curves, or compare with the range of the source of the constants",
+        "Extrapolation: not checked (law entered as constants; tested ΔK range unknown)",
+        "fit a law to test data, or compare ΔK with the range of the source",
     )
 }
 
@@ -315,19 +361,19 @@ fn first_extrapolation(case: &Case) -> Option<Check> {
     let first = first_delta_k(case)?;
     let [below, above] = fit_use::growth_shares_outside(case, first)?;
     let at = |share: f64| match case.loading.spectrum {
-        Some(_) => format!("{:.0} % of growth at the start", 100.0 * share),
-        None => format!("ΔK {:.2} at the start", first / MPA_SQRT_M),
+        Some(_) => format!("{:.0} % of the first growth", 100.0 * share),
+        None => format!("first ΔK {:.2} MPa√m", first / MPA_SQRT_M),
     };
-    if above > OUTSIDE_DOUBTFUL {
-        let words = format!("law: {} is above the highest fitted ΔK, {high:.2}", at(above));
-        let remedy = "lower the load, or calibrate on longer cracks";
-        let check = Check::sized("extrapolation_above", 100.0 * above, true, Side::Unsafe, words, remedy);
+    if above > OUTSIDE_CAUTION {
+        let words = format!("Extrapolation: {} is above the highest tested, {high:.2} MPa√m", at(above));
+        let remedy = "reduce the load, or test at higher ΔK";
+        let check = Check::sized("extrapolation_above", 100.0 * above, true, Side::NonConservative, words, remedy);
         let is_refused = above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation;
-        return Some(if is_refused { Check { verdict: Verdict::Fails, ..check } } else { check });
+        return Some(if is_refused { Check { verdict: Verdict::Failed, ..check } } else { check });
     }
-    (below > OUTSIDE_DOUBTFUL).then(|| {
-        let words = format!("law: {} is below the lowest fitted ΔK, {low:.2} MPa√m (safe)", at(below));
-        Check { side: Some(Side::Safe), ..Check::new("extrapolation_below", Verdict::Doubtful, words) }
+    (below > OUTSIDE_CAUTION).then(|| {
+        let words = format!("Extrapolation: {} is below the lowest tested, {low:.2} MPa√m (usually conservative)", at(below));
+        Check { side: Some(Side::Conservative), ..Check::new("extrapolation_below", Verdict::Caution, words) }
     })
 }
 
@@ -341,33 +387,34 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
     };
     let percent = 100.0 * exponent * check.difference;
     let words = format!(
-        "K: {:+.1} % from the energy of the plate at {}, {:+.0} % of da/dN there",
+        "K: {:+.1} % against the energy release rate at a = {} ({:+.0} % in da/dN)",
         100.0 * check.difference,
         two_digits(check.crack_length),
         percent
     );
     // A K that is too large makes lives too short.
-    let side = if check.difference > 0.0 { Side::Safe } else { Side::Unsafe };
-    let remedy = "give a smaller model.spacing_mm";
-    Some(Check::sized("cross_check", percent.abs(), check.warning().is_some(), side, words, remedy))
+    let side = if check.difference > 0.0 { Side::Conservative } else { Side::NonConservative };
+    let remedy = "reduce model.spacing_mm";
+    Some(Check::sized("cross_check", percent.abs(), check.is_large(), side, words, remedy))
 }
 
-/// Life over that without retardation, whose constants come from the case alone.
+/// Life over that without retardation.
 fn retardation(case: &Case, prediction: &Prediction) -> Option<Check> {
     const NAME: &str = "retardation";
-    const REMEDY: &str = "fit its constant to a test under a spectrum, or compare with loading.retardation = \"none\"";
+    const REMEDY: &str = "fit its constant to a spectrum test, or compare with loading.retardation = \"none\"";
     let (model, is_cut_off) = (case.retardation.as_ref()?.kind, prediction.stop == StopReason::RunOut);
     let factor = prediction.life().unwrap_or(f64::INFINITY) / prediction.unretarded_cycles.unwrap_or(f64::NAN);
-    // A run that is cut off may have come as far as the other, which then says nothing.
+    // Both runs may have ended at the same limit of cycles.
     if factor.is_nan() || is_cut_off && factor <= 1.0 {
-        let words = format!("retardation: effect of {model} not known; given, not calibrated");
+        let words = format!("Retardation: not checked (effect of {model} unknown; its constants are given, not fitted)");
         return Some(Check::not_checked(NAME, &words, REMEDY));
     }
     let least = if is_cut_off { "≥ " } else { "" };
-    let times = if factor.is_finite() { format!("{least}{factor:.2}× that") } else { "unlimited, not".to_owned() };
-    let words = format!("retardation: life {times} without ({model}: given, not calibrated)");
-    let side = if factor > 1.0 { Side::Unsafe } else { Side::Safe };
-    let is_large = !(1.0 / RETARDED_DOUBTFUL..=RETARDED_DOUBTFUL).contains(&factor);
+    let times =
+        if factor.is_finite() { format!("{least}{factor:.2} × the life without it") } else { "unlimited life".to_owned() };
+    let words = format!("Retardation: {times} ({model}; constants given, not fitted)");
+    let side = if factor > 1.0 { Side::NonConservative } else { Side::Conservative };
+    let is_large = !(1.0 / RETARDED_CAUTION..=RETARDED_CAUTION).contains(&factor);
     Some(Check::sized(NAME, 100.0 * (1.0 - 1.0 / factor), is_large, side, words, REMEDY))
 }
 
@@ -379,20 +426,20 @@ fn stress_ratio(case: &Case, prediction: Option<&Prediction>) -> Option<Check> {
     let from_to = |[low, high]: [f64; 2]| if low == high { short(low) } else { format!("{} to {}", short(low), short(high)) };
     let (ratio, of_law) = (from_to(case.loading.ratios()), from_to([low, high]));
     let by = match &case.law {
-        LawSource::Fitted(_) => format!("Walker's γ = {}", short(case.fatigue.walker_gamma)),
+        LawSource::Fitted(_) => format!("Walker, γ = {} (assumed)", short(case.fatigue.walker_gamma)),
         _ => "the law".to_owned(),
     };
-    let is_within = share <= OUTSIDE_DOUBTFUL;
+    let is_within = share <= OUTSIDE_CAUTION;
     let words = match is_within {
-        true if share == 0.0 => format!("stress ratio: {ratio} is that of the law"),
-        true => format!("stress ratio: {:.1} % of growth is outside R = {of_law} of the law", 100.0 * share),
+        true if share == 0.0 => format!("Stress ratio: R = {ratio}, as tested"),
+        true => format!("Stress ratio: {:.1} % of growth outside the tested R = {of_law}", 100.0 * share),
         false if case.loading.spectrum.is_some() => {
-            format!("stress ratio: {:.0} % of growth is outside R = {of_law}, by {by}", 100.0 * share)
+            format!("Stress ratio: {:.0} % of growth outside the tested R = {of_law}, transferred by {by}", 100.0 * share)
         }
-        false => format!("stress ratio: {ratio}, law of {of_law}, by {by}"),
+        false => format!("Stress ratio: R = {ratio}; law tested at R = {of_law}, transferred by {by}"),
     };
-    let verdict = if is_within { Verdict::Holds } else { Verdict::Doubtful };
-    let remedy = (!is_within).then(|| format!("calibrate at R = {ratio}"));
+    let verdict = if is_within { Verdict::Passed } else { Verdict::Caution };
+    let remedy = (!is_within).then(|| format!("test at R = {ratio}"));
     Some(Check { side: Some(Side::Either), remedy, ..Check::new(NAME, verdict, words) })
 }
 
@@ -403,16 +450,23 @@ fn fitted(case: &Case) -> Option<&FittedRecord> {
     }
 }
 
-/// Thickness of the specimens of the law against that of the plate: thicker ones grow faster, by more constraint and less closure.
+/// Thickness of the plate against that of the specimens of the law: thicker ones grow faster (more constraint, less closure).
 fn thickness(case: &Case) -> Option<Check> {
     const NAME: &str = "thickness";
     let (of_law, of_plate) = (fitted(case)?.thickness_mm, case.specimen.thickness / MM);
     let ratio = of_plate / of_law;
     let is_alike = (1.0 / THICKNESS_ALIKE..=THICKNESS_ALIKE).contains(&ratio);
-    let words = format!("thickness: {of_plate:.2} mm, law of specimens of {of_law:.2} mm");
-    let verdict = if is_alike { Verdict::Holds } else { Verdict::Doubtful };
-    let side = if ratio > 1.0 { Side::Unsafe } else { Side::Safe };
-    let remedy = (!is_alike).then(|| "calibrate on specimens of the thickness of the plate".to_owned());
+    let direction = if is_alike {
+        ""
+    } else if ratio > 1.0 {
+        " (non-conservative)"
+    } else {
+        " (conservative)"
+    };
+    let words = format!("Thickness: {of_plate:.2} mm; law tested on {of_law:.2} mm{direction}");
+    let verdict = if is_alike { Verdict::Passed } else { Verdict::Caution };
+    let side = if ratio > 1.0 { Side::NonConservative } else { Side::Conservative };
+    let remedy = (!is_alike).then(|| "test specimens of the plate's thickness".to_owned());
     Some(Check { side: Some(side), remedy, ..Check::new(NAME, verdict, words) })
 }
 
@@ -423,27 +477,28 @@ fn size(case: &Case) -> Option<Check> {
     let (thickness, width, crack) = (specimen.thickness, specimen.width, specimen.crack_length);
     let wrong = match specimen.kind {
         SpecimenKind::CompactTension if thickness < width / 20.0 || thickness > width / 4.0 => {
-            Some(format!("thickness {:.2} mm is not W/20 to W/4", thickness / MM))
+            Some(format!("B = {:.2} mm is outside W/20 to W/4", thickness / MM))
         }
-        SpecimenKind::CompactTension if crack < 0.2 * width => Some(format!("crack {:.2} mm is below 0.2 W", crack / MM)),
-        SpecimenKind::MiddleTension if thickness > width / 8.0 => {
-            Some(format!("thickness {:.2} mm is above W/8", thickness / MM))
-        }
+        SpecimenKind::CompactTension if crack < 0.2 * width => Some(format!("a = {:.2} mm is below 0.2 W", crack / MM)),
+        SpecimenKind::MiddleTension if thickness > width / 8.0 => Some(format!("B = {:.2} mm is above W/8", thickness / MM)),
         SpecimenKind::CompactTension | SpecimenKind::MiddleTension => None,
         _ => return None,
     };
-    let verdict = if wrong.is_some() { Verdict::Doubtful } else { Verdict::Holds };
+    let verdict = if wrong.is_some() { Verdict::Caution } else { Verdict::Passed };
     let words =
-        wrong.map_or_else(|| "E647: sizes of the specimen are within its limits".to_owned(), |wrong| format!("E647: {wrong}"));
+        format!("Specimen size: {}", wrong.map_or_else(|| "within ASTM E647".to_owned(), |wrong| format!("{wrong} (ASTM E647)")));
     Some(Check { side: Some(Side::Either), ..Check::new(NAME, verdict, words) })
 }
 
-/// What the law misses at the ends of its range.
+/// Misfit of the law at the ends of the tested ΔK.
 fn lack_of_fit(case: &Case) -> Option<Check> {
     let percent = fitted(case)?.lack_of_fit_percent?;
-    let sense = if percent > 0.0 { "faster" } else { "slower" };
-    let words = format!("law: cracks grow {:.0} % {sense} than it at an end of its range", percent.abs());
-    let side = if percent > 0.0 { Side::Unsafe } else { Side::Safe };
-    let remedy = "calibrate with another fatigue.growth_law, or a table";
-    Some(Check::sized("lack_of_fit", percent, percent.abs() > OUTSIDE_DOUBTFUL * 100.0, side, words, remedy))
+    let [sense, direction] = if percent > 0.0 { ["faster", "non-conservative"] } else { ["slower", "conservative"] };
+    let words = format!(
+        "Fit at the ends: measured growth is {:.0} % {sense} than the law at one end of the tested ΔK ({direction})",
+        percent.abs()
+    );
+    let side = if percent > 0.0 { Side::NonConservative } else { Side::Conservative };
+    let remedy = "fit another fatigue.growth_law, or use a table";
+    Some(Check::sized("lack_of_fit", percent, percent.abs() > OUTSIDE_CAUTION * 100.0, side, words, remedy))
 }

@@ -184,24 +184,24 @@ impl FleetReport {
         frame.finish(&format!("{title}: share of plates that have ended over cycles"))
     }
 
-    /// 5 % and median life, which stand for the fleet.
+    /// 5 % and median life.
     pub fn headline(&self) -> String {
         let [low, middle, _] = words_of(&self.ranked());
-        format!("5 % life {low} cycles, median {middle} cycles ({} plates)", self.lives.plates.len())
+        format!("life 5 % {low}, median {middle} cycles ({} plates)", self.lives.plates.len())
     }
 
     /// Lines of a summary.
     pub fn words(&self) -> Vec<String> {
-        let (ranked, count) = (self.ranked(), self.lives.plates.len());
-        let [low, middle, high] = words_of(&ranked);
-        let laws = if self.lives.one_law.is_some() { ", all of the law of the case" } else { "" };
+        let ranked = self.ranked();
+        let [_, _, high] = words_of(&ranked);
+        let laws = if self.lives.one_law.is_some() { "; one growth law for all" } else { "" };
         let mut lines = vec![format!(
-            "  fleet          of {count} plates{laws}: 5 % end by {low}, half by {middle}, 95 % by {high} cycles; {} unlimited, {} cut off",
+            "  Fleet          95 % {high} cycles; {} unlimited, {} lower bounds{laws}",
             ranked.unlimited, ranked.bounds
         )];
         if self.clipped() > 0 {
             lines.push(format!(
-                "  fleet          {} plates begin with a crack shorter than K is known for: their lives are lower bounds; give the case a \
+                "  Fleet          {} plates start below the shortest computed crack: their lives are lower bounds; start the case with a \
                  shorter crack",
                 self.clipped()
             ));
@@ -216,15 +216,15 @@ impl FleetReport {
         let length = PLAIN.length(looks.detectable, 3);
         let missed = match &self.lives.looked {
             Some(Looked { first, every, before_first, missed, .. }) => format!(
-                "; all plates inspected after {first:.0} cycles, then every {}: all inspections miss the crack of a plate: {} ({before_first} \
-                 plates break before the first)",
+                "; inspected after {first:.0} cycles, then every {}: all miss the crack of a plate: {} ({before_first} plates fail before the \
+                 first)",
                 every_words(*every, None, self.per_pass),
                 chance(*missed)
             ),
-            None if self.never_found() > 0 => format!("; {} plates break before", self.never_found()),
+            None if self.never_found() > 0 => format!("; {} plates fail before a detectable crack", self.never_found()),
             None => String::new(),
         };
-        format!("  fleet          from {length} to the end 5 % take {low}, half {middle}, 95 % {high} cycles{missed}")
+        format!("  Fleet          from a = {length} to the end: 5 % {low}, median {middle}, 95 % {high} cycles{missed}")
     }
 }
 

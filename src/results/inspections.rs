@@ -81,7 +81,7 @@ impl InspectionsRecord {
         let (count, missed) = (self.rows.len(), chance(self.missed));
         let [half, most] = [self.a50_mm, self.a90_mm].map(|length| mm(length * MM));
         format!(
-            "  detection      all {count} inspections miss the crack: {missed} (independent; found with 50 % at {half} mm, with 90 % at {most} mm)"
+            "  POD            {count} inspections; all miss the crack: {missed} (independence assumed; a50 {half} mm, a90 {most} mm)"
         )
     }
 }

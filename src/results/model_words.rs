@@ -57,8 +57,7 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
     };
     let pins = pins(case);
     if !pins.is_empty() {
-        let why =
-            "pins at maximum load; on nodes their contact is found anew in every equilibrium, on points at N = 0".to_owned();
+        let why = "pins at maximum load; contact is solved in every increment (nodes) or once at N = 0 (points)".to_owned();
         choices.push(Choice { key: "pins", value: pins.into(), why: Some(why) });
     }
     choices
@@ -82,13 +81,13 @@ fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) 
     } else {
         String::new()
     };
-    let by_solver = used.map(|used| format!("; asked for was \"{}\", used were {}", points.solver, used.meaning()));
+    let by_solver = used.map(|used| format!("; requested \"{}\", used {}", points.solver, used.meaning()));
     let springs_do = law.kind != BondLawKind::StateBased;
     let chosen = |key, value: Value, default: &str, more: &str| {
         let why = if given(&case.echo, key) {
             "given in the case"
         } else if is_fixed_by_record(case, key) {
-            "as in the fitted record: the law holds for this choice only"
+            "from the fitted law, which is valid for this choice only"
         } else {
             default
         };
@@ -99,9 +98,9 @@ fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) 
         Choice { key: "method", value: case.model.method().name().into(), why: Some(why_method(case)) },
         follows("driver", case.fatigue.driver.name().into()),
         chosen("bond_law", law.kind.name().into(), if springs_do { TWO_SPRINGS } else { BEYOND_SPRINGS }, ""),
-        chosen("kernel", law.kernel.name().into(), "default: of those tried, its crack growth depends least on the lattice", ""),
-        chosen("rotation", law.rotation.name().into(), "default: rigid rotation of crack flanks must cost no energy", ""),
-        chosen("surface_correction", law.surface_correction.name().into(), "default: the most accurate one built", ""),
+        chosen("kernel", law.kernel.name().into(), "default: least lattice dependence of those tested", ""),
+        chosen("rotation", law.rotation.name().into(), "default: rigid rotation of crack faces costs no energy", ""),
+        chosen("surface_correction", law.surface_correction.name().into(), "default: most accurate option", ""),
         follows("discretisation", Discretisation::Lattice.name().into()),
         chosen("spacing_mm", clean(spacing / MM).into(), SPACING, &moved),
         chosen("horizon_ratio", points.horizon_ratio.into(), RATIO, ""),
@@ -110,7 +109,7 @@ fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) 
         chosen(
             "solver",
             used.map_or(points.solver.name(), SolverUsed::name).into(),
-            "default: the fastest exact one built",
+            "default: fastest exact solver",
             by_solver.as_deref().unwrap_or(""),
         ),
         chosen("symmetry", points.symmetry.name().into(), "default: exact", figures.map_or("", solved_part)),
@@ -119,7 +118,7 @@ fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) 
 
 /// Why its mechanics are computed by that method.
 fn why_method(case: &Case) -> String {
-    case.chosen.as_ref().map_or_else(|| "given in the case".to_owned(), |why| format!("chosen: {why}"))
+    case.chosen.as_ref().map_or_else(|| "given in the case".to_owned(), |why| format!("automatic: {why}"))
 }
 
 /// The formula of method `handbook`. Other keys of `[model]` say nothing there.
@@ -131,7 +130,7 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
             choice(
                 "formula",
                 format!("Newman and Raju, {}", flaw.kind().name().replace('_', " ")),
-                Some("that of the kind of specimen".to_owned()),
+                Some("of the specimen kind".to_owned()),
             ),
             choice("source", SOURCE.to_owned(), None),
             choice("range", RANGE.to_owned(), None),
@@ -143,7 +142,7 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
         ];
     }
     let formula = handbook(&case.specimen);
-    let why = if case.specimen.beta.is_some() { "given in the case" } else { "that of the kind of specimen" };
+    let why = if case.specimen.beta.is_some() { "given in the case" } else { "of the specimen kind" };
     let choice = |key, value: Option<&str>, why: Option<&str>| Choice { key, value: value.into(), why: why.map(str::to_owned) };
     vec![
         Choice { why: Some(why_method(case)), ..choice("method", Some(case.model.method().name()), None) },
@@ -155,7 +154,7 @@ fn hand_calculation(case: &Case) -> Vec<Choice> {
 
 fn of_nodes(case: &Case, nodes: &ElementFreeSettings) -> Vec<Choice> {
     let ElementFreeSettings { resolution, step_share, .. } = *nodes;
-    let why = |key: &str| Some(if given(&case.echo, key) { "given in the case" } else { "chosen by the program" }.to_owned());
+    let why = |key: &str| Some(if given(&case.echo, key) { "given in the case" } else { "automatic" }.to_owned());
     let choice = |key, value: Value, why| Choice { key, value, why };
     vec![
         choice("method", case.model.method().name().into(), Some(why_method(case))),
@@ -166,14 +165,14 @@ fn of_nodes(case: &Case, nodes: &ElementFreeSettings) -> Vec<Choice> {
         choice(
             "spacings_in_room",
             resolution.hold.into(),
-            Some("spacing at a tip: that part of its distance from rims and cracks".to_owned()),
+            Some("spacing at a tip over its distance from edges and cracks".to_owned()),
         ),
         choice("step_share", step_share.into(), why("tolerance_percent")),
     ]
 }
 
 pub const TWO_SPRINGS: &str = "default: takes Poisson's ratio from the material instead of fixing it";
-const BEYOND_SPRINGS: &str = "chosen: springs alone cannot have this Poisson's ratio";
+const BEYOND_SPRINGS: &str = "automatic: bonds without dilatation cannot represent this Poisson's ratio";
 pub const SPACING: &str = "default: the smaller of crack length / 9 and width / 100";
 pub const RATIO: &str = "default: 3.015, three neighbours in every lattice direction";
 pub const ANGLE: &str = "default: lattice rows along x";
@@ -194,9 +193,9 @@ fn solved_part(figures: &RunFigures) -> &'static str {
     let (all, solved) = (figures.points, figures.points_solved);
     // A line of symmetry through a row of points leaves half a row more.
     match (solved == all, 3 * solved > all) {
-        (true, _) => "; the whole plate was solved",
-        (false, true) => "; one half was solved, the other is its mirror image",
-        (false, false) => "; a quarter was solved, the others are its mirror images",
+        (true, _) => "; whole plate solved",
+        (false, true) => "; one half solved (mirror symmetry)",
+        (false, false) => "; one quarter solved (mirror symmetry)",
     }
 }
 
@@ -213,7 +212,7 @@ pub fn loading(case: &Case) -> String {
     let cycles = match (loading.displacement(), specimen.crack_pressure) {
         (Some(most), _) => {
             let (moved, range) = (moved(specimen), range(MM, most));
-            format!("displacement of the {moved} {range} mm; the load falls as cracks grow")
+            format!("displacement range {range} mm ({moved}); the load drops as the crack grows")
         }
         (None, pressure) if pressure > 0.0 && specimen.loads.is_empty() => format!("pressure on the cracks {loads} {symbol}"),
         (None, pressure) if pressure > 0.0 => {
@@ -245,14 +244,14 @@ pub fn loading(case: &Case) -> String {
 fn moved(specimen: &Specimen) -> &'static str {
     let is_gripped = specimen.supports.iter().any(|support| matches!(support, Support::ClampedEnds | Support::RigidEnds));
     let of_edge = |support: &Support| match *support {
-        Support::Moved { held: true, .. } => Some("edge, held straight and at rest across its motion:"),
+        Support::Moved { held: true, .. } => Some("edge, straight and fixed transversely"),
         Support::Moved { from, to, direction: [x, y], .. } => {
             let is_normal = ((to[0] - from[0]) * x + (to[1] - from[1]) * y).abs() < 1e-9;
-            Some(if is_normal { "edge, held straight, free along it:" } else { "edge, held straight, free across its motion:" })
+            Some(if is_normal { "edge, straight, free along it" } else { "edge, straight, free transversely" })
         }
         _ => None,
     };
     let by_mean = !is_gripped && specimen.load_measure == LoadMeasure::Stress;
-    let otherwise = if by_mean { "edge under uniform stress, by its mean:" } else { "loaded places" };
+    let otherwise = if by_mean { "mean of the edge under uniform stress" } else { "loaded places" };
     specimen.supports.iter().find_map(of_edge).unwrap_or(otherwise)
 }

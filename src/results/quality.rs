@@ -1,17 +1,17 @@
-//! How far a life can be trusted as a solution of its case: bounds of its error, and the life by the other engine.
+//! Numerical error of a life, and the life by another method.
 
 use serde::{Deserialize, Serialize};
 
-use super::format::two_digits;
+use super::format::{PLAIN, two_digits};
 use perilife_base::units::MM;
 use perilife_growth::case::{Case, Method, Model, coarse_points, usual_nodes};
 use perilife_growth::predict::error_estimate::{ErrorEstimate, error_estimate};
 use perilife_growth::predict::{Prediction, Silent, predict};
 
-/// What is known of the error of a life.
+/// Estimated error of a life, and its cross-check.
 #[derive(Debug, Clone, Default)]
 pub struct Quality {
-    /// Bounds of the error, or why there are none; `None` where nobody asked.
+    /// `None` where not asked for; else the estimate, or why there is none.
     estimate: Option<std::result::Result<ErrorEstimate, String>>,
     pub(super) second: Option<SecondOpinion>,
 }
@@ -33,45 +33,47 @@ pub struct SecondOpinion {
 }
 
 impl Quality {
-    /// Of a run, whether bounds and a second opinion are asked for.
+    /// Of a run, with an estimate and a cross-check if asked for.
     pub fn of(case: &Case, prediction: &Prediction, [estimate, cross_check]: [bool; 2]) -> Quality {
         let estimate = (estimate && prediction.life().is_some()).then(|| error_estimate(case, prediction));
         let second = cross_check.then(|| second_opinion(case, prediction));
         Quality { estimate, second }
     }
 
-    /// Bounds of the error of life, percent, and path, mm; why there are none.
+    /// What the estimate is based on.
+    pub(super) fn basis(&self) -> Option<&str> {
+        self.estimate.as_ref()?.as_ref().ok().map(|estimate| &*estimate.basis)
+    }
+
+    /// Estimated error of life, percent, and path, mm; why there is none.
     pub(super) fn stated(&self) -> ([Option<f64>; 2], Option<&String>) {
         let stated = self.estimate.as_ref().and_then(|estimate| estimate.as_ref().ok());
         let bounds = stated.map(|estimate| [estimate.life_percent, estimate.path / MM].map(two_digits));
         ([0, 1].map(|place| bounds.map(|both| both[place])), self.estimate.as_ref().and_then(|estimate| estimate.as_ref().err()))
     }
 
-    /// In words: what the program chose, and how wrong it may be.
-    pub fn words(&self, case: &Case) -> Vec<String> {
-        let chosen = case.chosen.as_ref().map_or_else(String::new, |why| format!(", chosen: {why}"));
-        let mut lines = vec![format!("  model          {}{chosen}", case.model.method())];
-        lines.extend(self.estimate.as_ref().map(|estimate| match estimate {
-            Ok(ErrorEstimate { life_percent, path, basis }) => {
-                let path = if *path > 0.0 { format!(", {:.2} mm of the path", path / MM) } else { String::new() };
-                format!("  error          at most {life_percent:.1} % of life{path} as a solution of this case ({basis})")
+    /// Lines of a summary.
+    pub fn words(&self) -> Vec<String> {
+        let of_estimate = |estimate: &std::result::Result<ErrorEstimate, String>| match estimate {
+            Ok(ErrorEstimate { life_percent, path, .. }) => {
+                let path = if *path > 0.0 { format!(", ≤ {:.2} mm in the path", path / MM) } else { String::new() };
+                format!("  Accuracy       numerical error ≤ {life_percent:.1} % of life{path} (estimate)")
             }
-            Err(why) => format!("  error          not stated: {why}"),
-        }));
+            Err(why) => format!("  Accuracy       numerical error not estimated: {why}"),
+        };
+        let mut lines: Vec<String> = self.estimate.iter().map(of_estimate).collect();
         lines.extend(self.second.as_ref().map(|second| match (second.cycles, second.cycles_of_run, second.difference_percent) {
             (Some(other), Some(own), Some(percent)) => {
-                format!(
-                    "  second opinion {}, coarse: {other:.0} cycles where this run has {own:.0} ({percent:+.1} %)",
-                    second.method
-                )
+                let [other, own] = [other, own].map(|cycles| PLAIN.whole(cycles));
+                format!("  Cross-check    {} (coarse): {other} cycles, this run {own} ({percent:+.1} %)", second.method)
             }
-            _ => format!("  second opinion {}: none, {}", second.method, second.failed.as_deref().unwrap_or_default()),
+            _ => format!("  Cross-check    {}: none, {}", second.method, second.failed.as_deref().unwrap_or_default()),
         }));
         lines
     }
 }
 
-/// The life by the engine that shares nothing with that of the run: nodes beside points and handbook, points beside nodes.
+/// The life with K by another method: nodes for points and handbook, points for nodes.
 fn second_opinion(case: &Case, prediction: &Prediction) -> SecondOpinion {
     let of = |method: Method, found: std::result::Result<[f64; 2], String>| {
         let (cycles, failed) = (found.as_ref().ok().copied(), found.err());
@@ -80,7 +82,7 @@ fn second_opinion(case: &Case, prediction: &Prediction) -> SecondOpinion {
         SecondOpinion { method: method.name().to_owned(), cycles, cycles_of_run, difference_percent, failed }
     };
     if !case.specimen.is_through() {
-        return of(Method::ElementFreeGalerkin, Err("no other method knows a crack that does not go through".to_owned()));
+        return of(Method::ElementFreeGalerkin, Err("no other method supports part-through cracks".to_owned()));
     }
     let model = match case.model {
         Model::Nodes(_) => Model::Points(coarse_points(case)),

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::band::{BandRecord, Lives, OwnRecord};
-use super::checks::{Check, Judgement};
+use super::checks::{Check, Judgement, Validity, validity, verdict};
 use super::fleet::FleetRecord;
 use super::format::clean;
 use super::inspections::InspectionsRecord;
@@ -66,6 +66,7 @@ pub struct RunRecord {
     pub model: Map<String, Value>,
     pub law: LawUsed,
     pub verdict: String,
+    pub verdict_kind: Validity,
     pub checks: Vec<Check>,
     pub warnings: Vec<String>,
     pub version: String,
@@ -282,7 +283,8 @@ impl RunRecord {
             spectrum: SpectrumRecord::of(case, prediction),
             model: model_words::object(&model_words::of_case(case, Some(figures))),
             law: LawUsed::of(case, prediction),
-            verdict: judgement.verdict(),
+            verdict: verdict(&judgement.checks),
+            verdict_kind: if judgement.refusal.is_some() { Validity::NotValid } else { validity(&judgement.checks) },
             checks: judgement.checks.clone(),
             warnings: warnings.cloned().collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 use super::answers::{Answers, Asked};
 use super::band::Lives;
 use super::chart::{self, LARGE, Mark, Series};
-use super::checks::{self, Judgement};
+use super::checks::{Judgement, Message, messages};
 use super::curve::{self, RunTables};
 use super::damage::{DamagePicture, cycles_and_length};
 use super::format::PLAIN;
@@ -41,7 +41,7 @@ use perilife_plate::specimen::part_through::{SOURCE, STATED_ERROR};
 use perilife_plate::specimen::{LengthConvention, LoadMeasure, Point};
 
 /// Keys of the record that a listing of runs shows.
-pub const FIGURES: [&str; 29] = [
+pub const FIGURES: [&str; 30] = [
     "life_cycles",
     "passes",
     "error_estimate_percent",
@@ -62,6 +62,7 @@ pub const FIGURES: [&str; 29] = [
     "life_share_extrapolated",
     "refused",
     "verdict",
+    "verdict_kind",
     "checks",
     "critical",
     "tips",
@@ -94,8 +95,6 @@ pub struct Wanted {
 #[derive(Debug)]
 pub struct Judged {
     pub record: RunRecord,
-    /// What the user is told of it where it ran.
-    pub told: Vec<String>,
     /// Curve and paths, each with its text.
     kept: [(Table, String); 2],
     judgement: Judgement,
@@ -118,10 +117,6 @@ impl Judged {
     /// Errors: as [`Judgement::of`]; a damaged record.
     pub fn of(case: &Case, prediction: &Prediction, wanted: &Wanted) -> Result<Self> {
         let mut judgement = Judgement::of(case, prediction)?;
-        // What a check says in a line stands in the file at length.
-        let by_checks = told_by_checks(case, prediction);
-        let at_length = prediction.warnings.iter().chain(&judgement.warnings).filter(|line| !by_checks.contains(line)).cloned();
-        let told = at_length.chain(checks::lines(&judgement.checks)).collect();
         // If that fails, the run itself is written all the same.
         let strengths = wanted.strength.then(|| residual_strength(case, &prediction.curve)).transpose();
         let mut lives = Lives::of(case, prediction, judgement.is_lower_bound)?;
@@ -140,10 +135,15 @@ impl Judged {
         let kept = [curve::a_n(case, prediction, lives.columns()), curve::crack_path(prediction, &case.specimen.cracks)];
         let kept = kept.map(Table::with_text);
         record.made_by = MadeBy::of(&case.provenance, kept.iter().map(|(table, text)| (&*table.file, &**text)));
-        Ok(Judged { record, told, kept, judgement, lives, quality, answers, strengths })
+        Ok(Judged { record, kept, judgement, lives, quality, answers, strengths })
     }
 
-    /// Why the run does not count, though its files are written; taken once.
+    /// Checks that did not pass and warnings, the most severe first.
+    pub fn messages(&self) -> Vec<Message> {
+        messages(&self.record.checks, &self.record.warnings)
+    }
+
+    /// Why the run is not valid, though its files are written; taken once.
     pub fn take_refusal(&mut self) -> Option<Error> {
         self.judgement.refusal.take()
     }
@@ -177,8 +177,7 @@ impl Judged {
         self.strengths.as_ref().map_or(Ok(()), |strengths| write_strength(folder, case, strengths))
     }
 
-    /// The pictures of a run: plate, crack length, K and rates; damage where bonds drive the cracks by their own strain; nodes and stress of
-    /// a plate of nodes.
+    /// Pictures of a run: plate, a-N, K and rates; damage of fatigue bonds; nodes and stress of the node model.
     fn draw(&self, folder: &Path, case: &Case, prediction: &Prediction) -> Result<()> {
         let tables = RunTables::of(&self.kept[0].0, &self.kept[1].0)?;
         let put = |name: &str, text: &str| write_file(&folder.join(name), text.as_bytes());
@@ -244,42 +243,54 @@ impl Judged {
         chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &shown)
     }
 
+    /// Lines of a summary, the answer first.
     pub fn words(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
         let (is_refused, record) = (self.record.refused.is_some(), &self.record);
         let by_error = |life: f64| format!("{} cycles", PLAIN.by_error(life, record.error_estimate_percent));
         let life = record.life_cycles.map(|life| self.lives.life_words().unwrap_or_else(|| by_error(life)));
         let run = match life {
-            _ if breaks_at_once(case, prediction).is_some() => "no life, the first load breaks the plate".to_owned(),
-            Some(life) if is_refused => format!("no life that counts, {life} were computed"),
-            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{life} to the hole"),
-            Some(life) if record.life_is_lower_bound => format!("life at least {life}"),
-            Some(life) if prediction.stop.is_lower_bound() => format!("{life} to the end of the run"),
+            _ if breaks_at_once(case, prediction).is_some() => "no life: the plate fails in the first cycle".to_owned(),
+            Some(life) if is_refused => format!("no valid life ({life} computed; see the failed check)"),
+            Some(life) if prediction.stop == StopReason::EnteredHole => format!("{life} until the crack enters the hole"),
+            Some(life) if record.life_is_lower_bound => format!("life ≥ {life}"),
+            Some(life) if prediction.stop.is_lower_bound() => format!("{life} until the analysis stopped"),
             Some(life) => format!("life {life}"),
-            None => "life unlimited".to_owned(),
+            None => "unlimited life (no crack grows under this load)".to_owned(),
         };
-        let name = &case.name;
+        let passes = record.passes.map_or_else(String::new, |passes| format!(" ({passes:.0} passes)"));
+        let (name, run) = (&case.name, run + &passes);
         let mut lines = match self.answers.headline().filter(|_| self.judgement.refusal.is_none()) {
-            // The run is one plate, and may live longer than all of a fleet.
-            Some(fleet) => {
-                vec![format!("{name}: fleet, {fleet}"), format!("  this run       {run}: the plate of the case alone")]
-            }
+            // The run is one plate, and its life may exceed all of a fleet.
+            Some(fleet) => vec![format!("{name}: {fleet}"), format!("  Nominal run    {run}")],
             None => vec![format!("{name}: {run}")],
         };
         lines.extend([
-            format!("  crack length   {}", length_words(case, prediction)),
-            format!("  stopped        {}: {}", prediction.stop, prediction.stop.meaning()),
-            format!("  verdict        {}", record.verdict),
+            format!("  Crack length   {}", length_words(case, prediction)),
+            format!("  Ends by        {}", prediction.stop.meaning()),
         ]);
-        lines.extend(through_words(case, prediction).map(|words| format!("  break-through  {words}")));
-        lines.extend(phase_words(prediction).map(|words| format!("  phase I        {words}")));
-        lines.extend(spectrum::words(case, prediction).map(|passes| format!("  spectrum       {passes}")));
+        lines.extend(through_words(case, prediction).map(|words| format!("  Breakthrough   {words}")));
+        lines.extend(phase_words(prediction).map(|words| format!("  Initiation     {words}")));
+        lines.extend(spectrum::words(case, prediction).map(|words| format!("  Load history   {words}")));
         lines.extend(self.lives.words());
-        lines.extend(fit_use::law_line(case).map(|law| format!("  law            {law}")));
-        lines.extend(zone_words(case, prediction).map(|zone| format!("  plastic zone   {zone}")));
-        lines.extend(self.quality.words(case));
-        lines.push(format!("  computed       {}", computed(case, prediction)));
         lines.extend(self.answers.words());
+        lines.push(format!("  Validity       {}", record.verdict));
+        lines.extend(self.quality.words());
+        lines.push(format!("  Method         {}", method_words(case, prediction)));
         lines
+    }
+
+    /// Lines of a long summary beside those.
+    pub fn details(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
+        let figures = &prediction.figures;
+        let model = format!("{} points, {} rows of the curve, {} solves", figures.points, figures.blocks + 1, figures.solves);
+        let lines = [
+            (case.specimen.crack_lines().len() > 1).then(|| format!("  All cracks     {} (sum)", all_cracks(case, prediction))),
+            fit_use::law_line(case).map(|law| format!("  Growth law     {law}")),
+            zone_words(case, prediction).map(|zone| format!("  Plastic zone   {zone}")),
+            self.quality.basis().map(|basis| format!("  Estimated by   {basis}")),
+            (figures.solves > 0).then(|| format!("  Model          {model}, {:.0} MB", figures.memory_mb)),
+        ];
+        lines.into_iter().flatten().collect()
     }
 }
 
@@ -305,45 +316,36 @@ pub fn room(case: &Case) -> Room {
 fn phase_words(prediction: &Prediction) -> Option<String> {
     let phase = prediction.phase_one?;
     let [x, y] = phase.at.map(|x| x / MM);
-    let concentration = phase.concentration.map_or_else(String::new, |k| format!(", {k:.2} times the gross stress"));
+    let concentration = phase.concentration.map_or_else(String::new, |k| format!(", K_tg = {k:.2}"));
     let local = format!("local stress range {:.1} MPa at ({x:.2}, {y:.2}) mm{concentration}", phase.range / MPA);
     Some(match phase.cycles {
         Some(cycles) if cycles <= prediction.life_cycles() => {
-            format!(
-                "{cycles:.1} cycles until the cracks have formed ({local}); phase II {:.1}",
-                prediction.life_cycles() - cycles
-            )
+            let growth = PLAIN.whole(prediction.life_cycles() - cycles);
+            format!("{} cycles to initiation ({local}), {growth} cycles of growth", PLAIN.whole(cycles))
         }
-        Some(cycles) => format!("{cycles:.1} cycles, beyond the end of the run ({local})"),
-        None => format!("without end, no crack forms ({local})"),
+        Some(cycles) => format!("{} cycles, more than stop.cycles_max ({local})", PLAIN.whole(cycles)),
+        None => format!("no initiation: below the endurance limit ({local})"),
     })
 }
 
-/// Warnings of a run that its checks say in a line each.
-fn told_by_checks(case: &Case, prediction: &Prediction) -> Vec<String> {
-    let yielding = plastic_zone::warnings(case, &prediction.curve).into_iter().filter(|line| line.starts_with("small-scale"));
-    let cross_check = prediction.cross_check.and_then(|check| check.warning());
-    yielding.chain(cross_check).chain(fit_use::extrapolated(case, prediction)).collect()
+/// A length, m, at the start and the end.
+fn from_to(from: f64, to: f64) -> String {
+    format!("{:.1} → {:.1} mm", from / MM, to / MM)
 }
 
-/// How far the crack grew: by the length of the standard of the specimen, or that of the crack whose tip leads, and what all of them sum to.
+/// Growth by the length of the specimen: in a plate the sum of all cracks.
+fn all_cracks(case: &Case, prediction: &Prediction) -> String {
+    from_to(case.specimen.crack_length, prediction.crack_length_final())
+}
+
+/// Growth of the crack by the length of its standard, or of the governing crack.
 fn length_words(case: &Case, prediction: &Prediction) -> String {
-    let (from, to) = (case.specimen.crack_length / MM, prediction.crack_length_final() / MM);
     let depths = case.specimen.part_through.zip(prediction.curve.last().and_then(|row| row.depth));
-    let depths = depths.map(|(flaw, last)| format!(", depth {:.3} mm to {:.3} mm", flaw.depth / MM, last.depth / MM));
-    let of_standard = || format!("{from:.3} mm to {to:.3} mm{}", depths.as_deref().unwrap_or_default());
-    match prediction.leading_tip(&case.specimen) {
-        // Of one crack the length is that from where its specimen counts it.
-        Some(_) if case.specimen.convention == LengthConvention::MeanOfTips && case.specimen.tips.len() == 1 => of_standard(),
-        Some((tip, [first, last])) => {
-            let all = if case.specimen.crack_lines().len() > 1 {
-                format!("; all cracks {from:.3} mm to {to:.3} mm")
-            } else {
-                String::new()
-            };
-            format!("tip {tip}: its crack {:.3} mm to {:.3} mm{all}", first / MM, last / MM)
-        }
-        None => of_standard(),
+    let depths = depths.map(|(flaw, last)| format!(", depth {}", from_to(flaw.depth, last.depth)));
+    let is_standard = case.specimen.convention == LengthConvention::MeanOfTips && case.specimen.tips.len() == 1;
+    match prediction.leading_tip(&case.specimen).filter(|_| !is_standard) {
+        Some((tip, [first, last])) => format!("{} (tip {tip} governs)", from_to(first, last)),
+        None => all_cracks(case, prediction) + depths.as_deref().unwrap_or_default(),
     }
 }
 
@@ -351,9 +353,13 @@ fn length_words(case: &Case, prediction: &Prediction) -> String {
 fn through_words(case: &Case, prediction: &Prediction) -> Option<String> {
     let found = PartThroughLife::of(case, &prediction.curve)?;
     let [shorter, longer] = found.life_factors.map(|factor| factor * prediction.life_cycles());
-    let longer = if longer.is_finite() { format!("{longer:.0}") } else { "no end".to_owned() };
-    let when = if found.is_through { format!("after {:.1} cycles (a/t = 1)", found.cycles) } else { "not reached".to_owned() };
-    Some(format!("{when}; with K of the part-through crack ±{:.0} % life {shorter:.0} to {longer}", 100.0 * STATED_ERROR))
+    let longer = if longer.is_finite() { PLAIN.whole(longer) } else { "unlimited".to_owned() };
+    let when = if found.is_through { format!("after {} cycles", PLAIN.whole(found.cycles)) } else { "not reached".to_owned() };
+    Some(format!(
+        "{when}; life {} to {longer} cycles for K ±{:.0} % of the part-through crack",
+        PLAIN.whole(shorter),
+        100.0 * STATED_ERROR
+    ))
 }
 
 /// Plastic zone at start and end against ligament, thickness and horizon; `None` without yield strength.
@@ -363,7 +369,7 @@ fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
     let (room, name) = last.room();
     let of_horizon = if horizon > 0.0 { format!(", {:.2} of the horizon", last.size / horizon) } else { String::new() };
     Some(format!(
-        "{:.3} mm to {:.3} mm ({:.3} of the {name}, {:.2} of the thickness{of_horizon})",
+        "{:.2} → {:.2} mm (at the end {:.3} of the {name}, {:.2} of the thickness{of_horizon})",
         first.size / MM,
         last.size / MM,
         last.size / room,
@@ -371,28 +377,17 @@ fn zone_words(case: &Case, prediction: &Prediction) -> Option<String> {
     ))
 }
 
-fn computed(case: &Case, prediction: &Prediction) -> String {
-    let figures = &prediction.figures;
-    match case.model {
-        Model::Points(_) => format!(
-            "{} points, {} cycle blocks, {} solves, {:.1} s",
-            figures.points, figures.blocks, figures.solves, figures.wall_s
-        ),
-        Model::Nodes(_) => format!(
-            "up to {} nodes, {} cycle blocks, {} solves, {:.2} s",
-            figures.points, figures.blocks, figures.solves, figures.wall_s
-        ),
-        Model::Handbook(_) => {
-            let of_front = case.specimen.part_through.map(|_| SOURCE);
-            let formula = handbook(&case.specimen).map(|formula| formula.name).or(of_front).unwrap_or("");
-            if figures.solves > 0 {
-                let (points, rows) = (figures.points, figures.blocks + 1);
-                let nodes = format!("then {} solves on up to {points} nodes", figures.solves);
-                return format!("by hand calculation: {formula}, {nodes}, {rows} rows, {:.2} s", figures.wall_s);
-            }
-            format!("by hand calculation: {formula}, {} rows, {:.2} ms", figures.blocks + 1, 1e3 * figures.wall_s)
-        }
-    }
+/// Method, why it was chosen, formula, time.
+fn method_words(case: &Case, prediction: &Prediction) -> String {
+    let why = case.chosen.as_ref().map_or_else(String::new, |why| format!(" ({why})"));
+    let of_front = case.specimen.part_through.map(|_| SOURCE);
+    let method = match handbook(&case.specimen).map(|formula| formula.name).or(of_front) {
+        Some(formula) if matches!(case.model, Model::Handbook(_)) => format!("handbook K ({formula})"),
+        _ => format!("{}{why}", case.model.method()),
+    };
+    let wall_s = prediction.figures.wall_s;
+    let time = if wall_s < 0.1 { format!("{:.1} ms", 1e3 * wall_s) } else { format!("{wall_s:.1} s") };
+    format!("{method}, {time}")
 }
 
 pub const RESIDUAL_STRENGTH_FILE: &str = "residual_strength.csv";
@@ -405,8 +400,7 @@ fn unit(case: &Case) -> (&'static str, &'static str, f64) {
     }
 }
 
-/// `crack_length_mm,residual_strength_*,by_toughness_*,by_net_section_*,governed_by` with `mpa` of gross stress or `kn` of force;
-/// empty where a strength is not known.
+/// Columns in `mpa` of gross stress or `kn` of force; empty where a strength is unknown.
 pub fn strength_table(case: &Case, strengths: &[Strength]) -> Table {
     let (unit, _, size) = unit(case);
     Table::new(RESIDUAL_STRENGTH_FILE)

@@ -159,13 +159,13 @@ impl Sensitivities {
     pub fn words(&self) -> String {
         let told = |change: f64| match change.is_finite() {
             true => format!("{:+.1} %", 100.0 * change),
-            false => "not known: a life is unlimited".to_owned(),
+            false => "unknown (unlimited life)".to_owned(),
         };
         let of_pair = |pair: &&[Sensitivity]| {
             let changes: Vec<String> =
                 pair.iter().map(|entry| format!("{} {}", entry.change, told(entry.change_of_life))).collect();
             format!("{} {}", pair[0].input, changes.join(", "))
         };
-        format!("  sensitivities  {}", self.widest().iter().map(of_pair).collect::<Vec<_>>().join("; "))
+        format!("  Sensitivities  {}", self.widest().iter().map(of_pair).collect::<Vec<_>>().join("; "))
     }
 }

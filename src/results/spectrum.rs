@@ -68,13 +68,13 @@ fn exceedances(spectrum: &Spectrum) -> [f64; 4] {
 
 /// What was understood of a spectrum, in a line.
 pub fn more_words(case: &Case, spectrum: &Spectrum) -> String {
-    let left_out =
-        if spectrum.omitted > 0.0 { format!(" ({} more are left out)", short(spectrum.omitted)) } else { String::new() };
-    let passes = spectrum.repeats.map_or_else(|| "again and again".to_owned(), |passes| format!("{} passes", short(passes)));
+    let left_out = if spectrum.omitted > 0.0 { format!(" ({} more omitted)", short(spectrum.omitted)) } else { String::new() };
+    let passes =
+        spectrum.repeats.map_or_else(|| "repeated until failure".to_owned(), |passes| format!("{} passes", short(passes)));
     let levels = LEVELS.map(|level| short(100.0 * level)).join(", ");
     let above = exceedances(spectrum).map(short).join(", ");
     let retardation = case.retardation.as_ref().map_or_else(
-        || "no retardation: the mean rate of a pass".to_owned(),
+        || "no load interaction (mean rate per pass)".to_owned(),
         |model| format!("retardation {}, underloads: {}", model.kind, model.kind.0.underload),
     );
     format!(
@@ -86,12 +86,14 @@ pub fn more_words(case: &Case, spectrum: &Spectrum) -> String {
     )
 }
 
-/// How many passes a run took, and how they were counted.
+/// A pass, and the effect of load interaction on the life.
 pub fn words(case: &Case, prediction: &Prediction) -> Option<String> {
     let spectrum = case.loading.spectrum.as_ref()?;
-    let model = case.retardation.as_ref().map_or("none", |model| model.kind.name());
-    let passes = prediction.life_cycles() / spectrum.per_pass;
-    Some(format!("{passes:.2} passes of {} cycles, retardation {model}", short(spectrum.per_pass)))
+    let ratio = prediction.life().zip(prediction.unretarded_cycles).map(|(life, without)| life / without);
+    let ratio = ratio.map_or_else(String::new, |ratio| format!(": {ratio:.1} × the life without retardation"));
+    let model = |kind| format!("{kind}{ratio}");
+    let model = case.retardation.as_ref().map_or_else(|| "no load interaction".to_owned(), |found| model(found.kind));
+    Some(format!("{} cycles per pass; {model}", short(spectrum.per_pass)))
 }
 
 /// Passes in a life; `None` without a spectrum, and of a life without end.

@@ -88,13 +88,16 @@ impl Outcome {
             return Self::failed(case, refused, wall_s);
         }
         let text = |value: &Value| value.as_str().map(str::to_owned);
+        let all = |key: &str| figures[key].as_array().into_iter().flatten();
+        let warned = all("warnings").filter_map(text);
+        let cautions = all("checks").filter(|check| check["verdict"] == "caution").filter_map(|check| text(&check["words"]));
         Outcome {
             life_cycles: figures["life_cycles"].as_f64(),
             stop_reason: text(&figures["stop_reason"]),
             life_is_lower_bound: figures["life_is_lower_bound"].as_bool(),
             crack_length_final_mm: figures["crack_length_final_mm"].as_f64(),
             problem: None,
-            warnings: figures["warnings"].as_array().into_iter().flatten().filter_map(text).collect(),
+            warnings: warned.chain(cautions).collect(),
             has_files,
             ..Self::failed(case, "", wall_s)
         }
@@ -395,7 +398,9 @@ fn warnings(outcomes: &[Option<Outcome>]) -> Vec<SharedWarning> {
     found.sort_by_key(|all| (std::cmp::Reverse(all.len()), all[0].0));
     let told = |all: Vec<(usize, &str)>| {
         let (first, text) = all[0];
-        let shares = all.iter().filter_map(|(case, text)| Some((text.split_once(" % ")?.0.parse::<f64>().ok()?, *case)));
+        let shares = all
+            .iter()
+            .filter_map(|(case, text)| Some((text.split_once(" % ")?.0.rsplit(' ').next()?.parse::<f64>().ok()?, *case)));
         let largest = shares.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
         SharedWarning {
             cases: all.len(),

@@ -84,7 +84,7 @@ pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &
     case.material.yield_strength = calibration.yield_strength;
     let size = checks::of_case(&case).into_iter().find(|check| check.name == "e647_size");
     let size = size.map(|check| {
-        let holds = check.verdict == checks::Verdict::Holds;
+        let holds = check.verdict == checks::Verdict::Passed;
         let asked = match case.specimen.kind {
             SpecimenKind::CompactTension => "W/20 ≤ B ≤ W/4, a ≥ 0.2 W",
             _ => "B ≤ W/8",

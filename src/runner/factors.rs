@@ -6,9 +6,9 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::{Done, Summary, Watcher};
+use super::{Done, Message, Summary};
 use perilife_base::error::{Error, Result, input};
-use perilife_base::units::shown::{column, per, told};
+use perilife_base::units::shown::{per, told};
 use perilife_base::units::{MM, MPA, MPA_SQRT_M};
 use perilife_growth::case::Case;
 use perilife_growth::predict::pin_arcs;
@@ -87,37 +87,30 @@ impl TipRecord {
 }
 
 /// Factors of the tips, and stresses where a folder for them is given or there is no crack.
-pub(super) fn of(
-    case: &Case,
-    methods: &[StressIntensityMethod],
-    on_nodes: bool,
-    folder: Option<&Path>,
-    watcher: &dyn Watcher,
-) -> Result<Summary> {
+pub(super) fn of(case: &Case, methods: &[StressIntensityMethod], on_nodes: bool, folder: Option<&Path>) -> Result<Summary> {
     if let (Some(folder), false) = (folder, case.specimen.is_through()) {
-        let problem = "takes the stress of the plate on nodes, which do not know a crack that does not go through";
-        return Err(input("--out", folder.display(), problem, "leave it out"));
+        let problem = "takes the stress of the plate on nodes, which do not support part-through cracks";
+        return Err(input("--out", folder.display(), problem, "remove the option"));
     }
     let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);
     let (mut found, mut tables, mut lines, mut done) = (SifRecord::default(), String::new(), Vec::new(), Done::Nothing);
+    let mut messages = case.warnings.clone();
     if has_cracks || !on_nodes {
         let tips = stress_intensity(case, methods)?;
-        for warning in notes(case, &tips)?.into_iter().chain(pin_arcs::line(case)) {
-            watcher.warn(&warning);
-        }
+        messages.extend(notes(case, &tips)?.into_iter().chain(pin_arcs::line(case)));
         found.pins = model_words::pins(case);
-        tables.push_str(&table(&tips));
+        tables.push_str(&table(case, &tips));
         let is_beside = tips.iter().any(|tip| tip.handbook_k_i.is_some());
         if let Some(formula) = handbook_beside(&case.specimen).filter(|_| is_beside) {
             let words = format!("{}: {}", formula.name, formula.range);
-            tables.push_str(&format!("handbook K_I by {words}\n"));
+            tables.push_str(&format!("Handbook: {words}\n"));
             found.handbook = Some(words);
         }
         found.tips = Some(tips.iter().map(TipRecord::of).collect());
     }
     if folder.is_some() || !has_cracks {
         let stressed = stressed(case)?;
-        stresses::warnings(&stressed).iter().for_each(|warning| watcher.warn(warning));
+        messages.extend(stresses::warnings(&stressed));
         tables.push_str(&stresses::table(&stressed));
         lines.push(stresses::words(case, &stressed));
         found.stresses = Some(StressesRecord::of(&stressed));
@@ -127,7 +120,8 @@ pub(super) fn of(
     let result = serde_json::to_value(found).unwrap_or_default();
     let mut figures = result.clone();
     figures["name"] = case.name.clone().into();
-    Ok(Summary { result, figures, printed: tables, lines, refusal: None, done })
+    let messages = messages.iter().map(|line| Message::warning(line)).collect();
+    Ok(Summary { result, figures, printed: tables, lines, messages, done, ..Summary::default() })
 }
 
 /// What the methods say of their results, each once.
@@ -153,33 +147,43 @@ fn in_mpa(factor: Option<f64>) -> Option<f64> {
     factor.map(|k| k / MPA_SQRT_M)
 }
 
+/// By how much the methods differ in K_I, as a share of the largest, over all tips; `None` of a single method.
+fn spread(tips: &[TipResult]) -> Option<f64> {
+    let of_tip = |tip: &TipResult| {
+        let factors = || tip.methods.iter().filter_map(|result| result.intensity.k_i);
+        let [low, high] = [factors().reduce(f64::min)?, factors().reduce(f64::max)?];
+        (factors().count() > 1 && high > 0.0).then(|| (high - low) / high)
+    };
+    tips.iter().filter_map(of_tip).reduce(f64::max)
+}
+
 /// One line a tip and method, in the units that are shown.
-fn table(tips: &[TipResult]) -> String {
-    let [x, y] = ["x_mm", "y_mm"].map(column);
-    let [k_i, k_ii, t] = ["K_I MPa√m", "K_II MPa√m", "T MPa"].map(told);
-    let mut text =
-        format!("{x:>10} {y:>10}  {:<14} {k_i:>12} {k_ii:>12} {t:>9} {:>12} {:>8}\n", "method", "handbook K_I", "time s");
-    let words = |factor: Option<f64>| in_mpa(factor).map_or_else(|| "-".to_owned(), |k| format!("{:.4}", k * per("MPa√m")));
-    for tip in tips {
+fn table(case: &Case, tips: &[TipResult]) -> String {
+    let agree = spread(tips).map_or_else(String::new, |share| format!("; methods agree within {:.1} % in K_I", 100.0 * share));
+    let [x, y, k, t] = ["x, mm", "y, mm", "MPa√m", "MPa"].map(told);
+    let name = |method: StressIntensityMethod| match method {
+        StressIntensityMethod::ElementFreeGalerkin => "nodes",
+        other => other.name(),
+    };
+    let mut text = format!(
+        "{}: K at maximum load{agree}\ntip {x:>8} {y:>8}  {:<8} {:>10} {:>10} {:>9} {:>14}\n{:>42} {k:>10} {t:>9} {k:>14}\n",
+        case.name, "method", "K_I", "K_II", "T", "handbook K_I", k
+    );
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.4}"));
+    let words = |factor: Option<f64>| number(in_mpa(factor).map(|k| k * per("MPa√m")));
+    for (index, tip) in tips.iter().enumerate() {
         let [x, y] = tip.tip.position.map(|metres| metres / MM * per("mm"));
+        let handbook = words(tip.handbook_k_i);
+        let mut line = |method: &str, k_i: &str, k_ii: &str, t: &str| {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{index:>3} {x:>8.2} {y:>8.2}  {method:<8} {k_i:>10} {k_ii:>10} {t:>9} {handbook:>14}");
+        };
         if let Some(end) = tip.end {
-            // Writing to a String cannot fail.
-            let k_i = words(tip.handbook_k_i);
-            let _ =
-                writeln!(text, "{x:>10.4} {y:>10.4}  {:<14} {k_i:>12} {:>12} {:>9} {k_i:>12} {:>8.2}", end.name(), "-", "-", 0.0);
+            line(end.name(), &handbook, "–", "–");
         }
-        for result in &tip.methods {
-            // Writing to a String cannot fail.
-            let _ = writeln!(
-                text,
-                "{x:>10.4} {y:>10.4}  {:<14} {:>12} {:>12} {:>9} {:>12} {:>8.2}",
-                result.method,
-                words(result.intensity.k_i),
-                words(result.intensity.k_ii),
-                result.t_stress.map_or_else(|| "-".to_owned(), |t| format!("{:.2}", t / MPA * per("MPa"))),
-                words(tip.handbook_k_i),
-                result.wall_s
-            );
+        for result in tip.methods.iter().filter(|result| result.intensity.k_i.is_some()) {
+            let t_stress = result.t_stress.map_or_else(|| "–".to_owned(), |t| format!("{:.2}", t / MPA * per("MPa")));
+            line(name(result.method), &words(result.intensity.k_i), &words(result.intensity.k_ii), &t_stress);
         }
     }
     text

@@ -22,6 +22,7 @@ mod task;
 pub use perilife_scenes as scenes;
 
 pub use draft::{Draft, put_law};
+pub use perilife_results::checks::Message;
 pub use perilife_results::run::{Judged, Wanted};
 pub use task::{Kind, Task};
 
@@ -67,7 +68,12 @@ pub struct Summary {
     /// The part of it that a listing of runs shows, all that the user should know under `warnings`.
     pub figures: Value,
     pub printed: String,
+    /// The result in words, the answer first.
     pub lines: Vec<String>,
+    /// More lines of a long summary.
+    pub details: Vec<String>,
+    /// Checks that did not pass and warnings, the most severe first.
+    pub messages: Vec<Message>,
     /// Why the run does not count, though its files are written.
     pub refusal: Option<Error>,
     done: Done,
@@ -86,7 +92,12 @@ enum Done {
 }
 
 impl Summary {
-    /// The summary of a run that counts.
+    /// Words alone.
+    pub fn of_words(lines: Vec<String>, details: Vec<String>, messages: Vec<Message>) -> Self {
+        Summary { lines, details, messages, ..Summary::default() }
+    }
+
+    /// The summary of a valid run.
     /// Errors: its refusal.
     pub fn counted(mut self) -> Result<Summary> {
         self.refusal.take().map_or(Ok(self), Err)
@@ -199,7 +210,7 @@ pub fn of(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, watc
             Ok(of_scene(scene, fracture, watcher))
         }
         Task::Fit(calibration) => of_fit(calibration, watcher),
-        Task::Factors { case, methods, on_nodes } => factors::of(case, methods, *on_nodes, folder, watcher),
+        Task::Factors { case, methods, on_nodes } => factors::of(case, methods, *on_nodes, folder),
         Task::Sweep { .. } => Err(input_missing("design", "asks for many cases", "run `perilife sweep`")),
     }
 }
@@ -223,13 +234,13 @@ pub fn check_wanted(case: &Case, wanted: &Wanted) -> Result<()> {
 pub fn of_prediction(case: &Case, prediction: Prediction, wanted: &Wanted, watcher: &dyn Watcher) -> Result<Summary> {
     let by_run = || prediction.warnings.iter().for_each(|line| watcher.warn(line));
     let mut judged = Judged::of(case, &prediction, wanted).inspect_err(|_| by_run())?;
-    judged.told.iter().for_each(|line| watcher.warn(line));
-    let (lines, refusal) = (judged.words(case, &prediction), judged.take_refusal());
+    let (lines, details, messages) = (judged.words(case, &prediction), judged.details(case, &prediction), judged.messages());
+    let refusal = judged.take_refusal();
     // Figures and text have a form in JSON.
     let result = serde_json::to_value(&judged.record).unwrap_or_default();
     let figures = perilife_results::run::figures(&result);
     let done = Done::Cycles(Box::new(prediction), Box::new(judged));
-    Ok(Summary { result, figures, lines, refusal, done, ..Summary::default() })
+    Ok(Summary { result, figures, lines, details, messages, refusal, done, ..Summary::default() })
 }
 
 pub fn of_scene(scene: &Scene, fracture: Fracture, watcher: &dyn Watcher) -> Summary {
@@ -247,21 +258,19 @@ fn of_fit(calibration: &Calibration, watcher: &dyn Watcher) -> Result<Summary> {
     let started = Instant::now();
     let fitted = calibration.fit(watcher)?;
     let wall_s = started.elapsed().as_secs_f64();
-    fitted.warnings().iter().for_each(|warning| watcher.warn(warning));
+    let messages = fitted.warnings().iter().map(|line| Message::warning(line)).collect();
     let record = fitted.record(wall_s);
     let mut figures = json!(record);
     let kept = fit::Kept::of(&fitted, record)?;
-    let (result, lines) = (kept.json(), kept.record.words());
+    let (result, [lines, details]) = (kept.json(), kept.record.words());
     if let Fitted::Lives(CalibrationCase { case, .. }, _) = fitted {
         // What the law is of.
-        figures["material"] = json!(case.material.name);
         figures["plane"] = json!(case.material.plane.name());
-        figures["stress_ratio"] = json!(case.loading.ratio);
         figures["thickness_mm"] = json!(case.specimen.thickness / MM);
     }
     let done = match fitted {
         Fitted::Lives(_, found) => Done::Lives(found, kept),
         Fitted::Rates(_, found) => Done::Rates(Box::new(found), kept),
     };
-    Ok(Summary { result, figures, lines, done, ..Summary::default() })
+    Ok(Summary { result, figures, lines, details, messages, done, ..Summary::default() })
 }

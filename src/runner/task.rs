@@ -174,13 +174,12 @@ impl Task {
         }
     }
 
-    /// What the user should know of it before it is run.
+    /// Warnings before it is run; those of a case are among the messages of its result.
     pub fn warnings(&self) -> &[String] {
         match self {
-            Task::Prediction { case, .. } | Task::Factors { case, .. } => &case.warnings,
             Task::Scene(scene) => &scene.warnings,
             Task::Fit(calibration) => calibration.warnings(),
-            Task::Sweep { .. } => &[],
+            Task::Prediction { .. } | Task::Factors { .. } | Task::Sweep { .. } => &[],
         }
     }
 
@@ -196,7 +195,7 @@ impl Task {
     }
 
     /// The case that its run follows through cycles.
-    pub(super) fn case(&self) -> Result<&Case> {
+    pub fn case(&self) -> Result<&Case> {
         match self {
             Task::Prediction { case, .. } => Ok(case),
             _ => Err(input("--checkpoint", self.name(), "is no run that can be kept", "leave it out")),

@@ -9,11 +9,11 @@ use perilife_plate::specimen::Point;
 perilife_base::kinds! {
     /// Why a scene ended.
     pub enum SceneEnd for "stop_reason (fracture)" {
-        Done = "done": "all load steps or the whole duration were worked through",
+        Done = "done": "completed",
         Separated = "separated": "the plate is in two pieces, or what is left of it cannot carry a load, and nothing more was asked",
-        LoadFallen = "load_fallen": "the load of the platens fell a tenth below its peak: the body has failed between them",
-        NoConvergence = "no_convergence": "a load step found no equilibrium; the histories so far are kept",
-        Unstable = "unstable": "the motion blew up: energy appeared from nowhere; the histories so far are kept",
+        LoadFallen = "load_fallen": "platen load dropped 10 % below its peak: the body failed",
+        NoConvergence = "no_convergence": "no equilibrium in a load step; histories are kept",
+        Unstable = "unstable": "the time integration became unstable (energy grew); histories are kept",
     }
 }
 

@@ -51,16 +51,15 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     let stdout = done(dir.path(), &["predict", "case.toml", "--out", "run", "--inspect-from", "20"]);
     println!("{stdout}");
     for words in [
-        "cycles (median; 90 % of specimens ",
-        "of 1 specimen, their lot, assumed scatter",
-        "; plate of another lot: fatigue.lot = \"other\"\n",
-        "  remaining  ",
-        "5 % remaining life over 3",
+        "cycles (median; 90 % band ",
+        "from 1 specimen, same lot (for another lot: fatigue.lot = \"other\"); scatter assumed",
+        "  Remaining  ",
+        "(5 % remaining life / 3)",
     ] {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }
     let said = done(dir.path(), &["predict", "case.toml", "--out", "given", "--set", "fatigue.lot=same"]);
-    assert!(said.contains("their lot") && !said.contains("fatigue.lot"), "{said}");
+    assert!(said.contains("same lot") && !said.contains("fatigue.lot"), "{said}");
     let result = json(&dir.path().join("run/result.json"));
     let band = &result["band"];
     assert_eq!((&band["specimens"], &band["assumed_scatter"], &band["lot"]), (&1.into(), &true.into(), &"same".into()));
@@ -86,8 +85,8 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
     let stdout =
         done(dir.path(), &["predict", "case.toml", "--out", "bare", "--set", without, "--inspect-from", "20", "--factor", "2"]);
-    assert!(stdout.contains("band           none: the fitted record has no [population]"), "{stdout}");
-    assert!(stdout.contains("the remaining life over 2, no band"), "{stdout}");
+    assert!(stdout.contains("Scatter band   not available: the fitted record has no [population]"), "{stdout}");
+    assert!(stdout.contains("(remaining life / 2; no scatter band)"), "{stdout}");
     let result = json(&dir.path().join("bare/result.json"));
     assert!(result["band"].is_null() && result["inspection"]["has_band"] == false);
     assert!(!fs::read_to_string(dir.path().join("bare/a_n.csv")).unwrap().contains("cycles_p05"));
@@ -105,7 +104,7 @@ fn readings_of_the_plate_narrow_what_it_has_left() {
     write_readings(dir.path(), "own.csv", 25.0, 0.9);
     let stdout = done(dir.path(), &["predict", "case.toml", "--out", "run", "--measured", "own.csv", "--inspect-from", "30"]);
     println!("{stdout}");
-    assert!(stdout.contains("  this plate     read to 25.000 mm at "), "{stdout}");
+    assert!(stdout.contains("  This plate     last reading 25.0 mm at "), "{stdout}");
     let result = json(&dir.path().join("run/result.json"));
     let (own, lot) = (&result["measured"], &result["measured"]["of_lot"]);
     let keys = ["remaining_cycles_p05", "remaining_cycles_p50", "remaining_cycles_p95"];

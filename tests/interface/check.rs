@@ -12,11 +12,11 @@ use crate::interface::cli::{SMALL_CASE, assert_refused, perilife, texts};
 fn a_case_is_told_in_words_and_in_json() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
-    let output = perilife(dir.path(), &["check", "small.toml", "--set", "model.spacing_mm=1.9", "--picture", "p.svg"]);
+    let output = perilife(dir.path(), &["check", "small.toml", "-v", "--set", "model.spacing_mm=1.9", "--picture", "p.svg"]);
     assert_eq!(output.status.code(), Some(0));
     let (stdout, _) = texts(&output);
     // 60 mm / 1.9 mm = 31.6: 32 columns of 1.875 mm, 64 rows.
-    for words in ["2048 and", "spacing 1.875 mm (1.9 asked for)", "crack length 20 mm", "no errors"] {
+    for words in ["2048 and", "spacing 1.875 mm (1.9 asked for)", "crack length 20 mm", "small.toml: valid input\n"] {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }
     assert!(fs::read_to_string(dir.path().join("p.svg")).unwrap().starts_with("<svg"));
@@ -75,8 +75,8 @@ fn coarse_models_are_told_their_error() {
     fs::write(dir.path().join("small.toml"), SMALL_CASE).unwrap();
     let check = |set: &str| perilife(dir.path(), &["check", "small.toml", "--set", "fatigue.driver=bond_strain", "--set", set]);
     for (set, words) in [
-        ("model.horizon_ratio=1.5", "leaves a point few neighbours: with the same A the life is about 40 % too short"),
-        ("model.horizon_ratio=2", "wrong by up to 15 %"),
+        ("model.horizon_ratio=1.5", "is too small: with the same A the life is about 40 % too short"),
+        ("model.horizon_ratio=2", "up to 15 % off"),
     ] {
         let output = check(set);
         let (_, stderr) = texts(&output);

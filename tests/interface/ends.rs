@@ -55,7 +55,7 @@ fn how_lives_end() {
             exit: 3,
             stop: "toughness",
             is_lower_bound: false,
-            words: "it would bear 107.6",
+            words: "the limit at this crack length is 107.6",
         },
         Ending {
             specimen: PANEL,
@@ -64,7 +64,7 @@ fn how_lives_end() {
             exit: 3,
             stop: "toughness",
             is_lower_bound: false,
-            words: "it would bear 107.",
+            words: "the limit at this crack length is 107.",
         },
         Ending {
             specimen: SHEET,
@@ -73,7 +73,7 @@ fn how_lives_end() {
             exit: 3,
             stop: "toughness",
             is_lower_bound: false,
-            words: "beyond the limit load of what the cracks leave, 215.49 MPa",
+            words: "exceeds the plastic collapse load of the net section, 215.49 MPa",
         },
         Ending {
             specimen: HOLE,
@@ -82,7 +82,7 @@ fn how_lives_end() {
             exit: 0,
             stop: "entered_hole",
             is_lower_bound: true,
-            words: "cycles to the hole",
+            words: "cycles until the crack enters the hole",
         },
         Ending {
             specimen: COMPACT,
@@ -91,7 +91,7 @@ fn how_lives_end() {
             exit: 0,
             stop: "toughness",
             is_lower_bound: false,
-            words: "% of the life lies outside the range of ASTM E647",
+            words: "% of the life is outside the range of ASTM E647",
         },
     ];
     for ending in endings {
@@ -117,7 +117,7 @@ fn check_says_that_the_first_load_breaks_the_plate() {
     );
     fs::write(dir.path().join("case.toml"), text).unwrap();
     let (stdout, stderr) = texts(&perilife(dir.path(), &["check", "case.toml"]));
-    assert!((stdout + &stderr).contains("K_max 33.44 MPa√m is beyond the toughness 30.00 MPa√m"));
+    assert!((stdout + &stderr).contains("K_max 33.44 MPa√m exceeds the toughness 30.00 MPa√m"));
 }
 
 const MATERIAL: &str =
@@ -128,7 +128,7 @@ const LAW: &str = "[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
 fn predicted(text: &str, more: &[&str]) -> (Option<i32>, Value, String) {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("case.toml"), text).unwrap();
-    let output = perilife(dir.path(), &[&["predict", "case.toml", "--out", "run"], more].concat());
+    let output = perilife(dir.path(), &[&["predict", "case.toml", "--out", "run", "-v"], more].concat());
     let (stdout, stderr) = texts(&output);
     // A run that is refused before anything is written has none.
     let result =
@@ -160,8 +160,8 @@ fn the_section_of_a_drawn_plate_ends_its_life() {
             (Some(3), &"net_section_yield".into(), &0.0.into()),
             "{said}"
         );
-        assert!(said.contains(&format!("limit load of what the cracks leave, {limit}")), "{said}");
-        assert!(said.contains("no life, the first load breaks the plate") && said.contains("not to be used"), "{said}");
+        assert!(said.contains(&format!("plastic collapse load of the net section, {limit}")), "{said}");
+        assert!(said.contains("no life: the plate fails in the first cycle") && result["verdict_kind"] == "not_valid", "{said}");
         let (code, result, said) = predicted(&text(100.0), &[]);
         assert_eq!((code, &result["stop_reason"]), (Some(0), &"net_section_yield".into()), "{said}");
         assert_eq!(result["critical"]["criterion"], "net_section_yield", "{said}");
@@ -179,12 +179,10 @@ fn a_hole_is_a_bound_only_where_the_plate_was_shown_to_bear_its_load() {
         let (code, result, said) = predicted(&text, &[]);
         assert_eq!((code, &result["stop_reason"]), (Some(0), &"entered_hole".into()), "{said}");
         assert_eq!(
-            (result["life_is_lower_bound"] == true, said.contains("fracture: not checked")),
+            (result["life_is_lower_bound"] == true, said.contains("Fracture: not checked")),
             (is_bound, !is_bound),
             "{said}"
         );
-        let lines: Vec<&str> = said.lines().filter(|line| line.starts_with("warning: ")).collect();
-        assert!(lines.iter().all(|line| line.chars().count() <= 80), "{lines:?}");
     }
 }
 
@@ -197,7 +195,7 @@ fn one_crack_is_as_long_as_its_specimen_says() {
     );
     let (code, _, said) = predicted(&text, &[]);
     assert_eq!(code, Some(0), "{said}");
-    assert!(said.contains("crack length   20.000 mm to 21.000 mm"), "{said}");
+    assert!(said.contains("Crack length   20.0 → 21.0 mm"), "{said}");
 }
 
 /// In a plate with several cracks the length of the crack of a tip is asked for, not that of all.
@@ -212,10 +210,7 @@ fn inspections_are_of_the_crack_of_a_tip() {
     let leading = &result["inspection"];
     assert_eq!((&leading["tip"], &leading["crack_length_mm"]), (&0.into(), &9.0.into()), "{leading}");
     assert!((leading["crack_length_governing_mm"].as_f64().unwrap() - 9.0).abs() < 1e-9, "{leading}");
-    assert!(
-        said.contains("crack length   tip 0: its crack 8.000 mm to ") && said.contains("; all cracks 13.000 mm to "),
-        "{said}"
-    );
+    assert!(said.contains(" mm (tip 0 governs)\n") && said.contains("All cracks     13.0 → "), "{said}");
     // The shorter crack has not come so far when the longer one breaks the plate.
     let (code, result, said) = inspect(&["--tip", "1"]);
     assert!(

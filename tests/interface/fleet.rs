@@ -27,13 +27,13 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
     let (stdout, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     for words in [
-        "case: fleet, 5 % life ",
-        "  this run       life ",
-        "fleet          of 500 plates",
-        "fleet          from 10.000 mm to the end 5 % take",
-        "all plates inspected after ",
-        "all 3 inspections miss the crack: 3.07e-2 (independent; found with 50 % at 12 mm, with 90 % at 25 mm)",
-        "sensitivities  load -5 % +1",
+        "case: life 5 % ",
+        "  Nominal run    life ",
+        " cycles (500 plates)\n",
+        "Fleet          from a = 10.000 mm to the end: 5 % ",
+        "; inspected after ",
+        "POD            3 inspections; all miss the crack: 3.07e-2 (independence assumed; a50 12 mm, a90 25 mm)",
+        "Sensitivities  load -5 % +1",
     ] {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }

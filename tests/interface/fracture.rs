@@ -117,7 +117,7 @@ fn keys_are_overridden_and_the_folder_replaced() {
     let dir = folder();
     let call = |set: &str| perilife(dir.path(), &["fracture", "torn.toml", "--out", "run", "--set", set]);
     let (stdout, _) = texts(&call("loading.duration_s=1e-6"));
-    for words in ["peak load", "done", "separated      never", "400 points", "results        run"] {
+    for words in ["peak load", "done", "separated      never", "400 points", "Results        run"] {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }
     assert!(json(&dir.path().join("run/result.json"))["separated_step"].is_null());

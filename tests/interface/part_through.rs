@@ -147,12 +147,12 @@ fn the_example_runs_through_break_through_to_its_end() {
         assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
     }
     let (stdout, stderr) =
-        texts(&perilife(dir.path(), &["predict", "hole.toml", "--out", "run", "--cross-check", "--residual-strength"]));
+        texts(&perilife(dir.path(), &["predict", "hole.toml", "--out", "run", "--cross-check", "--residual-strength", "-v"]));
     println!("{stderr}{stdout}");
-    assert!(stdout.contains("break-through  after") && stdout.contains("depth 1.270 mm to 5.000 mm"), "{stdout}");
-    assert!(stdout.contains("second opinion") && stdout.contains("no other method"), "{stdout}");
-    assert!(stderr.contains("K in depth: ±5 % by its source"), "{stderr}");
-    let (stdout, _) = texts(&perilife(dir.path(), &["check", "hole.toml"]));
+    assert!(stdout.contains("Breakthrough   after") && stdout.contains("depth 1.3 → 5.0 mm"), "{stdout}");
+    assert!(stdout.contains("Cross-check") && stdout.contains("no other method"), "{stdout}");
+    assert!(stderr.contains("Newman-Raju K: ±5 % (source)"), "{stderr}");
+    let (stdout, _) = texts(&perilife(dir.path(), &["check", "hole.toml", "-v"]));
     assert!(stdout.contains("Newman and Raju 1984") && stdout.contains("depth 1.27 mm of 5 mm"), "{stdout}");
 }
 

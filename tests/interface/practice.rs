@@ -109,7 +109,7 @@ fn tables_of_practice_give_the_right_figure_or_the_cause() {
     for Row { folder, arguments, exit, words, figures } in ROWS {
         let own = tempdir().unwrap();
         copy(&readme.parent().unwrap().join(folder), own.path());
-        let writes: &[&str] = if arguments[0] == "rates" { &[] } else { &["--out", "out"] };
+        let writes: &[&str] = if arguments[0] == "rates" { &[] } else { &["--out", "out", "-v"] };
         let output = perilife(own.path(), &[*arguments, writes].concat());
         let (stdout, stderr) = texts(&output);
         let said = format!("{stdout}{stderr}");

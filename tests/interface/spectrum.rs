@@ -123,9 +123,9 @@ fn keys_that_do_not_make_a_spectrum_are_refused() {
 #[test]
 fn check_and_predict_say_what_the_spectrum_is() {
     let wheeler = CASE.replace("spectrum_scale_mpa = 100.0\n", WHEELER);
-    let (_, output) = run(&wheeler, "flights.csv", FLIGHTS, &["check", "case.toml"]);
+    let (_, output) = run(&wheeler, "flights.csv", FLIGHTS, &["check", "case.toml", "-v"]);
     let (stdout, stderr) = texts(&output);
-    for words in ["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "again and again", "wheeler"] {
+    for words in ["5 to 100 MPa", "flights.csv (cycles): 61 cycles a pass", "3 kinds", "repeated until failure", "wheeler"] {
         assert!(stdout.contains(words), "{words} in {stdout}{stderr}");
     }
     let mut lives = Vec::new();
@@ -139,7 +139,7 @@ fn check_and_predict_say_what_the_spectrum_is() {
         assert!((result["passes"].as_f64().unwrap() * 61.0 / life - 1.0).abs() < 1e-9);
         assert_eq!(result["spectrum"]["cycles_per_pass"], 61.0);
         assert_eq!(result["spectrum"]["kinds_of_cycles"], 3);
-        assert!(stdout.contains("passes of 61 cycles"), "{stdout}");
+        assert!(stdout.contains(" passes)\n") && stdout.contains("Load history   61 cycles per pass; "), "{stdout}");
         assert!(fs::read_to_string(folder.join("spectrum.svg")).unwrap().contains("</svg>"));
         lives.push((life, result["spectrum"]["retardation"]["model"].as_str().unwrap().to_owned()));
     }
@@ -182,7 +182,7 @@ fn a_life_without_load_interaction_is_warned_of_where_stress_ratios_span_much() 
         (&soft, FLIGHTS, Some(" and material.yield_strength_mpa")),
     ];
     for (case, flights, wanted) in rows {
-        let (_dir, output) = run(case, "flights.csv", flights, &["predict", "case.toml", "--out", "out"]);
+        let (_dir, output) = run(case, "flights.csv", flights, &["predict", "case.toml", "--out", "out", "-v"]);
         let (out, err) = texts(&output);
         let said = format!("{out}{err}");
         assert_eq!(said.contains("load interaction: none"), wanted.is_some(), "{said}");

@@ -171,7 +171,7 @@ fn a_failing_case_is_a_row() {
     );
     let table = fs::read_to_string(here.join("out/sweep.csv")).unwrap();
     let row = table.lines().nth(2).unwrap();
-    assert!(row.starts_with("0002,130.0000000,,,,") && row.contains("above the fitted range of ΔK"), "{row}");
+    assert!(row.starts_with("0002,130.0000000,,,,") && row.contains("above the tested ΔK"), "{row}");
     assert_eq!(json(&here.join("out/sweep.json"))["failures"][0]["case"], "0002");
     // It is not tried again, and where no case has a result the sweep has none.
     assert!(texts(&perilife(here, &["sweep", "sweep.toml", "--out", "out"])).1.contains("2 of 2 cases are there already"));
@@ -295,7 +295,7 @@ fn a_service_hands_over_all_files() {
         done(here, &["sweep", &file, "--out", &local, "--threads", "1"]);
         assert_eq!(rows(&here.join(served)), rows(&here.join(local)));
     }
-    assert!(fs::read_to_string(here.join("failing/served/sweep.csv")).unwrap().contains("above the fitted range of ΔK"));
+    assert!(fs::read_to_string(here.join("failing/served/sweep.csv")).unwrap().contains("above the tested ΔK"));
     let [served, local] = ["served", "local"].map(|engine| here.join("sweep").join(engine).join("cases/0001/paraview"));
     let names = |folder: &Path| {
         let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();

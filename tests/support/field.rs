@@ -20,7 +20,7 @@ pub fn kind(name: &str) -> Option<TempDir> {
 
 /// What a command prints, all of it, with its exit code.
 pub fn command(folder: &Path, arguments: &str) -> (i32, String) {
-    let output = perilife(folder, &arguments.split(' ').collect::<Vec<_>>());
+    let output = perilife(folder, &arguments.split(' ').chain(["-v"]).collect::<Vec<_>>());
     let (stdout, stderr) = texts(&output);
     (output.status.code().unwrap(), stdout + &stderr)
 }

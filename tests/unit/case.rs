@@ -242,8 +242,10 @@ fn what_belongs_to_scenes_is_sent_there() {
 #[test]
 fn overloads_and_other_kernels_are_said() {
     let words = |overrides: &[&str]| read(INLINE, overrides).unwrap().warnings.join("\n");
-    assert!(words(&["loading.stress_range_mpa=400", "material.yield_strength_mpa=345"]).contains("beyond the limit load"));
-    assert!(words(&["model.kernel=constant"]).contains("belongs to the default bond law"));
+    assert!(
+        words(&["loading.stress_range_mpa=400", "material.yield_strength_mpa=345"]).contains("exceeds the plastic collapse load")
+    );
+    assert!(words(&["model.kernel=constant"]).contains("apply to the default bond law"));
 }
 
 #[test]

@@ -16,7 +16,7 @@ use tempfile::tempdir;
 use crate::support::{made_up_case, made_up_run};
 use crate::unit::house;
 
-const QUIET: Console = Console { json: false, quiet: true };
+const QUIET: Console = Console { json: false, quiet: true, verbose: 0 };
 
 fn keep(case: &Case, run: Prediction, out: &Path) -> Result<(), perilife_base::error::Error> {
     let folder = OutputFolder::create(out, RunKind::Predict)?;
@@ -78,7 +78,7 @@ fn far_extrapolation_is_refused_unless_allowed_but_kept() {
         let text = fs::read_to_string(dir.path().join("run/result.json")).unwrap();
         serde_json::from_str::<serde_json::Value>(&text).unwrap()["refused"].as_str().map(str::to_owned)
     };
-    assert!(refused().unwrap().contains("above the fitted range of ΔK"));
+    assert!(refused().unwrap().contains("above the tested ΔK"));
     case.allow_extrapolation = true;
     keep(&case, made_up_run::prediction(0.0), &dir.path().join("run")).unwrap();
     assert_eq!(refused(), None);

@@ -4,37 +4,32 @@ use std::path::Path;
 
 use perilife_growth::case::Case;
 use perilife_growth::predict::fit_use;
-use perilife_growth::predict::plastic_zone::{plastic_zone, warnings};
+use perilife_growth::predict::plastic_zone::{plane_warning, plastic_zone};
 use perilife_growth::predict::{Silent, predict};
+use perilife_results::checks::{Verdict, of_run};
 
 use crate::support::hand_cases::{PANEL, hand_case, hand_run};
 use crate::support::{made_up_case, made_up_run};
 
 #[test]
-fn life_outside_the_fitted_range_is_told_side_by_side_with_a_remedy() {
+fn life_outside_the_tested_range_is_a_check_a_side_with_a_remedy() {
     let (mut case, mut run) = (made_up_case::case(), made_up_run::prediction(0.0));
-    assert!(fit_use::extrapolated(&case, &run).is_empty(), "an inline law has no fitted range");
     // ΔK rises linearly from 10 to 20 MPa√m over 100 cycles.
     run.curve.truncate(2);
     for (point, (cycles, delta_k)) in run.curve.iter_mut().zip([(0.0, 10e6), (100.0, 20e6)]) {
         (point.cycles, point.delta_k) = (cycles, delta_k);
     }
     case.law = made_up_case::fitted(12.0, 17.0);
-    let told = fit_use::extrapolated(&case, &run);
-    assert!(told.len() == 2, "{told:?}");
-    // The larger share first.
-    assert!(told[0].starts_with("30.0 % of the life is spent at ΔK above 17.00 MPa√m"), "{told:?}");
-    assert!(
-        told[1].starts_with("20.0 % of the life is spent at ΔK below 12.00 MPa√m") && told[1].contains("threshold_mpa"),
-        "{told:?}"
-    );
-    let all = &made_up_run::result(&case, &run)["warnings"];
-    assert!(told.iter().all(|line| all.as_array().unwrap().iter().any(|told| told == line)), "{all}");
+    let found = |case: &Case, name: &str| of_run(case, &run).into_iter().find(|check| check.name == name).unwrap();
+    let below = found(&case, "extrapolation_below");
+    assert_eq!(below.words, "Extrapolation: 20.0 % of life at ΔK below 12.00 MPa√m, the lowest tested (usually conservative)");
+    assert!(below.remedy.unwrap().contains("threshold_mpa"));
+    assert!(found(&case, "extrapolation_above").words.contains("30.0 % of life at ΔK above 17.00 MPa√m"));
     case.fatigue.threshold = 3e6;
-    assert!(!fit_use::extrapolated(&case, &run)[1].contains("threshold_mpa"));
-    // The calibrated specimen itself is not warned about.
+    assert!(!found(&case, "extrapolation_below").remedy.unwrap().contains("threshold_mpa"));
+    // The tested specimen itself is within the range.
     case.law = made_up_case::fitted(10.0, 20.0);
-    assert!(fit_use::extrapolated(&case, &run).is_empty());
+    assert_eq!(found(&case, "extrapolation_below").verdict, Verdict::Passed);
 }
 
 #[test]
@@ -61,7 +56,6 @@ fn the_plastic_zone_is_told_and_warned_about() {
     assert!((0.059538..0.0600).contains(&from), "{from}");
     // Lives to 59.54 and to 62.87 mm differ by half a percent.
     assert!((0.003..0.007).contains(&zone.life_share_too_large), "{}", zone.life_share_too_large);
-    assert!(run.warnings.iter().any(|line| line.contains("small-scale yielding does not hold")), "{:?}", run.warnings);
     let told = &made_up_run::result(&case, &run)["plastic_zone"];
     assert!((told["first"]["over_thickness"].as_f64().unwrap() - zone.first.size / 2.54e-3).abs() < 1e-9);
     assert_eq!(told["small_scale_yielding"], false);
@@ -70,8 +64,8 @@ fn the_plastic_zone_is_told_and_warned_about() {
     assert!(hand_run(PANEL, &[strong, stop]).warnings.is_empty());
     // Plane strain in 2.54 mm of this alloy: 2.5 (K/σ_Y)² = 2.2 mm at the start, but not at half the strength.
     let strain = ["material.plane=strain", "material.yield_strength_mpa=200", stop];
-    let lines = warnings(&hand_case(PANEL, &strain), &hand_run(PANEL, &strain).curve);
-    assert!(lines.iter().any(|line| line.contains("plane strain at the crack tip asks for a thickness of 6.5")), "{lines:?}");
+    let line = plane_warning(&hand_case(PANEL, &strain), &hand_run(PANEL, &strain).curve).unwrap();
+    assert!(line.contains("plane strain at the tip needs a thickness of 6.5"), "{line}");
     // Without a yield strength nothing is known.
     assert!(
         plastic_zone(&hand_case(PANEL, &[]), &run.curve).is_none()
@@ -102,9 +96,8 @@ fn a_short_crack_at_a_rim_is_not_called_a_ligament() {
     assert_eq!((zone.first.room().1, zone.too_small), ("crack length", "crack length"));
     assert!(zone.too_large_from.is_some_and(|from| (from - first).abs() < 1e-12), "{zone:?}");
     assert!(zone.too_large_to.is_some_and(|to| to > first && to < last) && zone.life_share_too_large < 1.0, "{zone:?}");
-    let lines = warnings(&case(10.0), &run.curve);
-    assert!(lines[0].contains("the crack length is smaller than ASTM E647 asks of a ligament"), "{lines:?}");
-    assert!(lines[0].contains("from a crack length of 1.5 mm to 1.5 mm (") && !lines[0].contains("100.00 %"), "{lines:?}");
+    let check = of_run(&case(10.0), &run).into_iter().find(|check| check.name == "small_scale_yielding").unwrap();
+    assert!(check.words.contains("not valid from a = 1.5 mm to 1.5 mm (") && !check.words.contains("100.0 %"), "{check:?}");
     let told = &made_up_run::result(&case(10.0), &run)["plastic_zone"];
     assert!((told["first"]["ligament_mm"].as_f64().unwrap() - 13.5).abs() < 5e-3, "{told}");
     assert!(told["first"]["over_crack"].as_f64().unwrap() > told["first"]["over_ligament"].as_f64().unwrap());

@@ -360,7 +360,7 @@ fn predictions_read_the_fitted_law() {
         assert_eq!(report["law"], kind.name());
         assert!(report["constants"].as_object().unwrap().len() >= 2 && report["material"] == "sheet", "{report}");
         assert_eq!(rates_beside_law(&calibration, &fits).rows(), calibration.rows.len());
-        assert!(found.words().iter().any(|line| line.contains("delta AICc")));
+        assert!(found.words()[1].iter().any(|line| line.contains("ΔAICc")));
         let record = toml::to_string(&law_record(&calibration, &fits)).unwrap();
         let folder = Folder::at_hand([("fitted.toml".to_owned(), record.into_bytes())]);
         let life = |fatigue: &str, set: &[&str]| {

@@ -74,7 +74,7 @@ fn at(limit: &Limit, value: f64) -> Option<((String, Vec<String>), String)> {
                 "kind = \"plate\"\nwidth_mm = 200\nlength_mm = 200\ncracks = [{{ from_mm = [-100, 0], to_mm = [{}, 0] }}]",
                 length - 100.0
             ),
-            "length of a crack from a rim",
+            "length of an edge crack",
         ),
         ("ligament", _) => plate(
             format!("kind = \"middle_tension\"\nwidth_mm = 200\nlength_mm = 300\ncrack_length_mm = {}", 100.0 - length),
@@ -128,7 +128,7 @@ fn at(limit: &Limit, value: f64) -> Option<((String, Vec<String>), String)> {
                 "element_free_galerkin" => "method = \"element_free_galerkin\"".to_owned(),
                 law => format!("spacing_mm = 1\nbond_law = \"{law}\""),
             };
-            Some((panel(&[("material.poisson_ratio", value)], &format!("material.plane={plane}"), &model), "nu ".to_owned()))
+            Some((panel(&[("material.poisson_ratio", value)], &format!("material.plane={plane}"), &model), "ν ".to_owned()))
         }
         _ => None,
     }

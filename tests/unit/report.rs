@@ -150,7 +150,7 @@ fn the_result_has_every_promised_key() {
     assert!(why["kernel"].as_str().unwrap().starts_with("default"));
     // The run says what solved it, the reason what was asked for.
     assert_eq!(result["model"]["solver"], "multigrid");
-    assert!(why["solver"].as_str().unwrap().contains("asked for was \"window\""), "{}", why["solver"]);
+    assert!(why["solver"].as_str().unwrap().contains("requested \"window\""), "{}", why["solver"]);
     assert!(why["spacing_mm"].as_str().unwrap().contains("moved from 1.010000 to 1.000000"));
 }
 
@@ -160,7 +160,7 @@ fn a_fitted_record_is_the_reason_for_its_choices() {
     case.law = made_up_case::fitted(8.0, 25.0);
     let result = made_up_run::result(&case, &made_up_run::prediction(0.0));
     assert_eq!(result["model"]["why"]["bond_law"], "given in the case");
-    assert!(result["model"]["why"]["kernel"].as_str().unwrap().starts_with("as in the fitted record"));
+    assert!(result["model"]["why"]["kernel"].as_str().unwrap().starts_with("from the fitted law"));
     assert!(result["life_share_extrapolated"].as_f64().unwrap() < 0.1);
 }
 

@@ -29,7 +29,7 @@ fn histories_of_a_bad_end_are_kept() {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("run");
         let folder = OutputFolder::create(&out, RunKind::Fracture).unwrap();
-        let quiet = Console { json: false, quiet: true };
+        let quiet = Console { quiet: true, ..Console::default() };
         let task = Task::Scene(Box::new(scene.clone()));
         let files = |path: &Path| {
             let summary = of_scene(&scene, fracture, &quiet);

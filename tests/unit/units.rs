@@ -145,7 +145,7 @@ fn quantities_in_words_change_and_nothing_else() {
     // By 25.4, 6.894757, 1.098843 and 4.448222.
     let told = [
         ("life measured 253726, fitted 253539 cycles (-0.07 %)", "life measured 253726, fitted 253539 cycles (-0.07 %)"),
-        ("tip 1: its crack 10.000 mm to 101.600 mm", "tip 1: its crack 0.39370 inch to 4.00000 inch"),
+        ("Crack length   10.0 → 101.6 mm (tip 1 governs)", "Crack length   0.3937 → 4.000 inch (tip 1 governs)"),
         ("rate 2.2405e-4 mm/cycle ± 1.87 % at ΔK = 15.243 MPa√m", "rate 8.8209e-6 in/cycle ± 1.87 % at ΔK = 13.872 ksi√in"),
         ("calibrated ΔK  8.189 to 26.540 MPa√m", "calibrated ΔK  7.452 to 24.153 ksi√in"),
         ("11.3 % of life below ΔK 8.19, the lowest fitted", "11.3 % of life below ΔK 7.453 ksi√in, the lowest fitted"),

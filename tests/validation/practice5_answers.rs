@@ -13,7 +13,7 @@ fn shorter_cracks_than_that_of_a_retarded_run_are_retarded() {
     assert!((shorter["change_of_life_percent"].as_f64().unwrap() - 11.01).abs() < 0.2, "{shorter}");
     let retardation = result["checks"].as_array().unwrap().iter().find(|check| check["name"] == "retardation").unwrap();
     assert!(
-        retardation["verdict"] == "doubtful" && retardation["words"].as_str().unwrap().contains("4.05× that without"),
+        retardation["verdict"] == "caution" && retardation["words"].as_str().unwrap().contains("4.05 × the life without it"),
         "{retardation}"
     );
     let (_, result) = run(dir.path(), "fleet.toml");
@@ -30,12 +30,7 @@ fn a_fleet_lives_on_where_its_run_is_cut_off() {
     is_near(&lives["p05"], 135_356.0, 0.01, "5 %");
     is_near(&lives["p50"], 210_979.0, 0.01, "50 %");
     assert_eq!((&lives["words"]["p95"], &result["life_cycles"]), (&"above 250000".into(), &250_000.0.into()));
-    assert!(
-        said.starts_with(
-            "fleet: fleet, 5 % life 135515 cycles, median 210985 cycles (2000 plates)\n  this run       life at least"
-        ),
-        "{said}"
-    );
+    assert!(said.starts_with("fleet: life 5 % 135515, median 210985 cycles (2000 plates)\n  Nominal run    life ≥ "), "{said}");
 }
 
 /// By quadrature over the load 2.495e-3 are missed, 0.170 % of plates by breaking before the first inspection; the draws of the table, 40 000 of
@@ -49,7 +44,7 @@ fn all_plates_of_a_fleet_are_inspected_after_the_same_cycles() {
     assert!((missed - 2.495e-3).abs() < 2e-4, "{missed}");
     assert_eq!((&looks["break_before_first_inspection"], &looks["first_inspection_cycles"]), (&7.into(), &115_191.0.into()));
     is_near(&looks["interval_cycles"], 22_451.0, 5e-3, "interval");
-    assert!(said.contains("all plates inspected after 115191 cycles, then every 22 "), "{said}");
+    assert!(said.contains("inspected after 115191 cycles, then every 22 "), "{said}");
     let (said, result) = run(dir.path(), asked);
     is_near(
         &result["fleet"]["inspections"]["first_inspection_cycles"],
@@ -57,7 +52,7 @@ fn all_plates_of_a_fleet_are_inspected_after_the_same_cycles() {
         5e-3,
         "first",
     );
-    assert!(said.contains("all inspections miss the crack of a plate: below 1e-3"), "{said}");
+    assert!(said.contains("all miss the crack of a plate: below 1e-3"), "{said}");
 }
 
 #[test]
@@ -67,7 +62,7 @@ fn lengths_of_inspections_have_the_unit_of_the_run_or_their_own() {
         let (said, result) = run(dir.path(), &format!("case.toml --units us --factor 3 {lengths}"));
         is_near(&result["inspections"]["interval_cycles"], 30_416.0, 1e-3, lengths);
         is_near(&result["inspections"]["missed"], 3.322e-3, 0.01, lengths);
-        assert!(said.contains("from 0.2500 inch") && said.contains("50 % at 0.2000 inch, with 90 % at 0.5000 inch"), "{said}");
+        assert!(said.contains("from a = 0.2500 inch") && said.contains("a50 0.2000 inch, a90 0.5000 inch"), "{said}");
     }
     let off = ["predict", "case.toml", "--out", "off", "--units", "us", "--inspect-from", "6.35"];
     let output = perilife(dir.path(), &off);
@@ -81,13 +76,13 @@ fn a_thick_plate_is_told_its_life_by_zones_of_plane_strain() {
     for (case, wanted) in [("wheeler.toml", 273_712.0), ("newman.toml", 195_772.0)] {
         let (said, result) = run(dir.path(), case);
         let words = "than plane strain at the tip needs, 7.31 mm at the start and 29.40 mm at the end";
-        assert!(said.contains(words) && said.contains("(unsafe side); give material.plane = \"strain\""), "{said}");
+        assert!(said.contains(words) && said.contains("(non-conservative); set material.plane = \"strain\""), "{said}");
         let life: f64 =
             said.split("zones of plane strain the life is ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
         is_near(&life.into(), wanted, 1e-3, case);
         assert!(result["warnings"].as_array().unwrap().iter().any(|line| line.as_str().unwrap().contains(words)));
         let (said, result) = run(dir.path(), &format!("{case} --set material.plane=strain"));
         is_near(&result["life_cycles"], wanted, 1e-3, case);
-        assert!(!said.contains("plastic zones are those of"), "{said}");
+        assert!(!said.contains("plastic zones of plane"), "{said}");
     }
 }

@@ -68,5 +68,5 @@ fn nothing_is_stated_of_a_crack_that_grazes_a_hole() {
     let run = predict(&case, &Silent).unwrap();
     let why = error_estimate(&case, &run).unwrap_err();
     println!("{why}");
-    assert!(why.contains("passes a rim"), "{why}");
+    assert!(why.contains("passes an edge"), "{why}");
 }

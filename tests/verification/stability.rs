@@ -64,7 +64,7 @@ fn ageing_everywhere_ends_though_points_detach() {
         assert!(damage > 0.6, "{p}: {damage}, so this scene tests nothing");
         // Tips cannot be followed through that; no crack is longer than half the plate.
         assert!(run.crack_length_final() <= 24.0 * MM * (1.0 + 1e-9), "{p}: {}", run.crack_length_final() / MM);
-        let told = run.warnings.iter().any(|line| line.contains("read the life, not the length"));
+        let told = run.warnings.iter().any(|line| line.contains("use the life, not the length"));
         assert!(told || p != "fatigue.p=2", "{:?}", run.warnings);
         let at_tips = grow_by_bonds(PANEL, &[spacing, p]);
         assert!(run.life_cycles() < at_tips.life_cycles(), "{p}: {} and {}", run.life_cycles(), at_tips.life_cycles());
@@ -241,7 +241,7 @@ fn horizon_ratios_agree_or_say_how_wrong_they_are() {
     let panel = "kind=\"middle_tension\"\nwidth_mm=56\nlength_mm=56\nthickness_mm=2\ncrack_length_mm=14\n";
     let run = |ratio: f64| {
         let set = ["model.spacing_mm=1", &format!("model.horizon_ratio={ratio}"), "stop.crack_length_mm=20"];
-        let told = case(panel, &[&[BOND_STRAIN], &set[..]].concat()).warnings.iter().any(|line| line.contains("few neighbours"));
+        let told = case(panel, &[&[BOND_STRAIN], &set[..]].concat()).warnings.iter().any(|line| line.contains("is too small"));
         let run = grow_by_bonds(panel, &set);
         sound(&format!("ratio {ratio}"), &run);
         assert_eq!(run.stop, StopReason::CrackLengthReached, "{ratio}");

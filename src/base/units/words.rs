@@ -5,7 +5,7 @@ use super::us::{Renamed, System, UNITS, Unit, clean, renamed};
 /// Significant digits that a converted number has at least, so that a round one (2 mm) stays what it was.
 const DIGITS_LEAST: usize = 4;
 /// What may stand between two numbers of one unit.
-const TIES: [&str; 7] = [" to ", " × ", " x ", "–", " ± ", " and ", " for "];
+const TIES: [&str; 8] = [" to ", " → ", " × ", " x ", "–", " ± ", " and ", " for "];
 /// Ties that also join a number of something else, as in "tips 1 and 5 mm": before them only a number with decimals counts.
 const LOOSE: [&str; 2] = [" and ", " for "];
 /// Spaces that a number and its unit are set apart by.

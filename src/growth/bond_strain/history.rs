@@ -17,8 +17,7 @@ use perilife_points::state::Bonds;
 
 /// Growth, in horizons, over which rates are taken.
 const RATE_SPAN_HORIZONS: f64 = 1.0;
-/// Growth of all tips together, in horizons, from which the energy release rate at the end of it is taken: K within 2 % where
-/// the crack is four horizons long, within 7 % where it is two.
+/// Growth of all tips, in horizons, for the energy release rate: K within 2 % of a crack of four horizons, 7 % of two.
 const RELEASE_SPAN_HORIZONS: f64 = 3.0;
 /// Growth before which that says nothing: the first bonds to break turn the cut end of a crack into a grown one.
 const RELEASE_KNOWN_HORIZONS: f64 = 2.0;
@@ -130,8 +129,7 @@ impl GrowthHistory {
         self.run_out = Some(cycles_max);
     }
 
-    /// Largest K of the cycle at the last row, Pa√m, from the energy release rate there; `None` where a handbook
-    /// knows it, or before the crack has grown by two horizons.
+    /// K_max at the last row, Pa√m, from the energy release rate; `None` with a handbook, or before growth of two horizons.
     pub(super) fn k_max_released(&self, case: &Case, horizon: f64) -> Option<f64> {
         if self.formula.is_some() || self.last().growth() < RELEASE_KNOWN_HORIZONS * horizon {
             return None;
@@ -147,14 +145,14 @@ impl GrowthHistory {
         let flaw = case.specimen.smallest_flaw();
         if case.engine() == Engine::Bonds && flaw < SHORT_CRACK_HORIZONS * body.horizon() {
             warnings.push(format!(
-                "the initial crack is only {:.1} horizons long: its bonds are strained more than those of a long crack at equal K, and it \
-                 grows too fast at first (not a short-crack effect; fatigue.driver = \"tip_field\" is free of it)",
+                "the initial crack is only {:.1} horizons long: it grows too fast at first (a model artifact, not a short-crack effect; \
+                 fatigue.driver = \"tip_field\" avoids it)",
                 flaw / body.horizon()
             ));
         }
         if self.past.longest > self.limit + body.horizon() {
-            let words = "bonds broke all around the tips, so that their way says nothing about the crack near its end: read the \
-                         life, not the length (fatigue.ageing = \"crack_tip\" keeps breaks at the tips)";
+            let words = "bonds broke all around the tips: the path near the end is not reliable; use the life, not the length \
+                         (fatigue.ageing = \"crack_tip\" keeps breaks at the tips)";
             warnings.push(words.to_owned());
         }
         let stopped_in_grip = self.past.rows.last().is_some_and(|row| {
@@ -166,7 +164,7 @@ impl GrowthHistory {
             })
         });
         if stopped_in_grip {
-            warnings.push("a crack tip stands in the zone around a load or support, where bonds do not fail".to_owned());
+            warnings.push("a crack tip is in the zone around a load or support, where bonds do not fail".to_owned());
         }
         warnings
     }

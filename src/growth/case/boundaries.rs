@@ -1,5 +1,4 @@
-//! What a case is told where it lies beyond the safe range of its method, by the figures of [`perilife_base::limits`], and where the first load
-//! breaks the plate.
+//! Warnings of a case outside the validated range of its method ([`perilife_base::limits`]), and of a plate that fails in the first cycle.
 
 use super::{Case, Engine, Method};
 use crate::case::LawSource;
@@ -15,7 +14,7 @@ use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::{FrontTip, PartThrough, Point, Specimen};
 use perilife_points::bond_law::BondLawKind;
 
-/// A line for every safe range that the case lies beyond.
+/// A warning for every validated range that the case is outside of.
 pub(super) fn lines(case: &Case) -> Vec<String> {
     let mut lines = Vec::new();
     match case.engine() {
@@ -35,7 +34,7 @@ pub(super) fn lines(case: &Case) -> Vec<String> {
             lines.extend(ratio_line(case, "tip_field"));
             lines.extend(exponent_line(case, "exponent", "tip_field"));
         }
-        // What bonds by their own strain do over the horizon ratio is told with its size elsewhere.
+        // `coarse_line` warns of their horizon ratio.
         Engine::Bonds => lines.extend(match case.fatigue.ageing {
             Ageing::Everywhere => exponent_line(case, "ageing", "bond_strain, ageing everywhere"),
             Ageing::CrackTip => exponent_line(case, "exponent", "bond_strain by its own strain"),
@@ -71,7 +70,7 @@ fn horizon_lines(case: &Case) -> Vec<String> {
     let Gaps { ligament, hole, crack } = Gaps::of(specimen);
     let resolved = [
         ("crack_length", "half crack length", sizes(false)),
-        ("edge_crack_length", "length of a crack from a rim", sizes(true)),
+        ("edge_crack_length", "length of an edge crack", sizes(true)),
         ("ligament", "ligament ahead of a tip", ligament),
         ("hole_distance", "distance to a hole", hole),
         ("hole_diameter", "diameter of a hole", diameter),
@@ -81,8 +80,7 @@ fn horizon_lines(case: &Case) -> Vec<String> {
         let limit = limits::of(sweep, "tip_field")?;
         let end = limit.passed(horizon / length)?;
         Some(format!(
-            "the horizon, {} mm, is {:.2} of the {what}, {} mm; beyond {end} K errs by more than {} %, and the life by m times that: give a \
-             smaller model.spacing_mm",
+            "horizon {} mm is {:.2} of the {what}, {} mm; beyond {end} the error of K exceeds {} % (m times that in da/dN); reduce model.spacing_mm",
             round_mm(horizon),
             horizon / length,
             round_mm(length),
@@ -134,7 +132,7 @@ fn ratio_line(case: &Case, method: &str) -> Option<String> {
     let ratio = case.points().horizon_ratio;
     let limit = limits::of("horizon_ratio", method)?;
     let end = limit.passed(ratio)?;
-    Some(format!("model.horizon_ratio {ratio}: beyond {end} the life errs by more than {} %; give 3.015", limit.bound_percent))
+    Some(format!("model.horizon_ratio {ratio}: beyond {end} the life error exceeds {} %; use 3.015", limit.bound_percent))
 }
 
 /// Poisson's ratio.
@@ -146,8 +144,8 @@ fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
     };
     let limit = limits::of(sweep, method?)?;
     let end = limit.passed(nu)?;
-    let what = if case.model.method() == Method::ElementFreeGalerkin { "K errs" } else { "the life at m = 3 errs" };
-    Some(format!("nu {nu} in plane {plane}: beyond {end} {what} by more than {} %", limit.bound_percent))
+    let what = if case.model.method() == Method::ElementFreeGalerkin { "the error of K" } else { "the life error at m = 3" };
+    Some(format!("ν {nu} in plane {plane}: beyond {end} {what} exceeds {} %", limit.bound_percent))
 }
 
 /// Whether the Poisson's ratio of a case is within the safe range of peridynamics, so that it can serve as a cross-check.
@@ -164,7 +162,7 @@ fn step_line(case: &Case) -> Option<String> {
     });
     let (end, bound) = passed?;
     Some(format!(
-        "fatigue.step_error_percent {error}: beyond {end} blocks are so long that the life errs by more than {bound} %; give less"
+        "fatigue.step_error_percent {error}: beyond {end} increments are too long (life error over {bound} %); use a smaller value"
     ))
 }
 
@@ -178,10 +176,10 @@ fn exponent_line(case: &Case, sweep: &str, method: &str) -> Option<String> {
     let limit = limits::of(sweep, method)?;
     let bound = limit.bound_percent;
     if limit.is_safe == Some(false) {
-        return Some(format!("{method}: the life errs by more than {bound} % at any exponent that was measured"));
+        return Some(format!("{method}: the life error exceeds {bound} % at every exponent tested"));
     }
     let end = limit.passed(exponent)?;
-    Some(format!("exponent {exponent} by {method}: beyond {end} the life errs by more than {bound} %"))
+    Some(format!("exponent {exponent} by {method}: beyond {end} the life error exceeds {bound} %"))
 }
 
 /// Radius of influence of nodes.
@@ -194,12 +192,12 @@ fn influence_line(case: &Case) -> Option<String> {
     let limit = limits::of("influence_radius", method)?;
     let end = limit.passed(resolution.support)?;
     Some(format!(
-        "model.influence_radius {}: beyond {end} spacings of nodes K errs by more than {} %; leave it out",
+        "model.influence_radius {}: beyond {end} node spacings the error of K exceeds {} %; remove the key",
         resolution.support, limit.bound_percent
     ))
 }
 
-/// What the user should know before a run, by the handbook and the net section; `None` where the plate bears the load, or nothing is known.
+/// Warning of failure in the first cycle, by handbook K and net section; `None` where the plate carries the load, or nothing is known.
 pub(super) fn first_load_warning(case: &Case) -> Option<String> {
     if case.loading.displacement().is_some() {
         return None;
@@ -212,7 +210,7 @@ pub(super) fn first_load_warning(case: &Case) -> Option<String> {
     first_load(case, load, factor.filter(|k| k.is_finite()))
 }
 
-/// The strengths that a largest nominal load (Pa or N) with this K_max, Pa√m, exceeds at N = 0, and the load that all of them bear.
+/// The strengths that a largest nominal load (Pa or N) with this K_max, Pa√m, exceeds at N = 0, and the load at the lowest of them.
 pub fn first_load(case: &Case, load: f64, k_max: Option<f64>) -> Option<String> {
     let limit = case.limit_load(case.specimen.crack_length, &case.specimen.crack_lines());
     let by_toughness = k_max.zip(case.toughness_at_end()).filter(|(k_max, toughness)| k_max >= toughness);
@@ -223,11 +221,11 @@ pub fn first_load(case: &Case, load: f64, k_max: Option<f64>) -> Option<String> 
     };
     let mut causes = Vec::new();
     if let Some((k_max, toughness)) = by_toughness {
-        causes.push(format!("K_max {:.2} MPa√m is beyond the toughness {:.2} MPa√m", k_max / MPA_SQRT_M, toughness / MPA_SQRT_M));
+        causes.push(format!("K_max {:.2} MPa√m exceeds the toughness {:.2} MPa√m", k_max / MPA_SQRT_M, toughness / MPA_SQRT_M));
     }
     if let Some((limit, strength)) = by_yield {
         causes.push(format!(
-            "{} is beyond the limit load of what the cracks leave, {} at the yield strength {:.1} MPa",
+            "load {} exceeds the plastic collapse load of the net section, {} (yield strength {:.1} MPa)",
             in_words(load),
             in_words(limit),
             strength / MPA
@@ -237,7 +235,7 @@ pub fn first_load(case: &Case, load: f64, k_max: Option<f64>) -> Option<String> 
     let borne = in_words([by_toughness, by_yield.map(|(limit, _)| limit)].into_iter().flatten().fold(f64::INFINITY, f64::min));
     (!causes.is_empty()).then(|| {
         format!(
-            "the first load breaks the plate: {}; it would bear {borne} at this crack length, and there is no life",
+            "fails in the first cycle: {}; the limit at this crack length is {borne}. No life computed.",
             causes.join(", and ")
         )
     })

@@ -26,39 +26,39 @@ pub(super) struct Sections<'a> {
 /// The method for a case that leaves it open, and why, for an error of life asked for in percent.
 pub(super) fn choose(asked: &Sections<'_>, specimen: &Specimen, loading: &Loading, percent: f64) -> (Method, String) {
     if let Some(flaw) = &specimen.part_through {
-        return (Method::Handbook, format!("the crack does not go through: K of {SOURCE} ({})", flaw.kind()));
+        return (Method::Handbook, format!("part-through crack: K of {SOURCE} ({})", flaw.kind()));
     }
     if specimen.beta.is_some() {
         return (Method::Handbook, format!("K(a) is given ({KEY})"));
     }
     match telling_key(asked.model) {
-        Some((key, Method::Peridynamics)) => return (Method::Peridynamics, format!("model.{key} asks for points and bonds")),
-        Some((key, method)) => return (method, format!("model.{key} asks for nodes")),
+        Some((key, Method::Peridynamics)) => return (Method::Peridynamics, format!("set by model.{key}")),
+        Some((key, method)) => return (method, format!("set by model.{key}")),
         None => {}
     }
     if let Some(key) = keys_of_bonds().into_iter().find(|key| value_at(asked.fatigue, key).is_some()) {
-        return (Method::Peridynamics, format!("fatigue.{key} asks for fatigue bonds"));
+        return (Method::Peridynamics, format!("set by fatigue.{key}"));
     }
     if value_at(asked.fatigue, "driver").and_then(Value::as_str) == Some("bond_strain") {
-        return (Method::Peridynamics, "fatigue.driver = \"bond_strain\" asks for fatigue bonds".to_owned());
+        return (Method::Peridynamics, "set by fatigue.driver".to_owned());
     }
     if !specimen.has_sharp_tips() {
-        return (Method::Peridynamics, "the end of a slot or notch has no crack yet".to_owned());
+        return (Method::Peridynamics, "a crack starts at a slot or notch".to_owned());
     }
     let has_own_pins =
         specimen.loads.iter().any(|load| matches!(load, Load::Pin { contact: Bearing::Cosine(_) | Bearing::Elastic(_), .. }));
     if has_own_pins && handbook(specimen).is_some() {
-        return (Method::ElementFreeGalerkin, "the formula of the specimen is for pins of its standard".to_owned());
+        return (Method::ElementFreeGalerkin, "the handbook solution assumes the pins of its standard".to_owned());
     }
     if specimen.crack_pressure != 0.0 {
-        return (Method::ElementFreeGalerkin, "no handbook formula knows pressure in cracks".to_owned());
+        return (Method::ElementFreeGalerkin, "no handbook formula includes crack-face pressure".to_owned());
     }
     let Some(formula) = handbook_beside(specimen) else {
-        return (Method::ElementFreeGalerkin, "no handbook formula covers the plate".to_owned());
+        return (Method::ElementFreeGalerkin, "no handbook solution for this plate".to_owned());
     };
     match beyond_formula(&formula, asked, specimen, loading, percent) {
-        None => (Method::Handbook, format!("standard specimen within the range of its formula ({})", formula.name)),
-        Some(why) => (Method::ElementFreeGalerkin, format!("the formula of the specimen ({}) {why}", formula.name)),
+        None => (Method::Handbook, format!("standard specimen within the range of {}", formula.name)),
+        Some(why) => (Method::ElementFreeGalerkin, format!("{}: {why}", formula.name)),
     }
 }
 
@@ -72,24 +72,22 @@ fn beyond_formula(
 ) -> Option<String> {
     let has_fields = value_at(asked.output, "paraview").and_then(Value::as_bool) == Some(true);
     let unknown = [
-        (loading.displacement().is_some(), "knows no cycles of a displacement"),
-        (loading.residual.is_some(), "does not say how well it holds with residual stress"),
-        (has_fields, "has no fields, for which output.paraview asks"),
+        (loading.displacement().is_some(), "not valid under displacement control"),
+        (loading.residual.is_some(), "no stated error with residual stress"),
+        (has_fields, "no fields for output.paraview"),
     ];
     if let Some((_, why)) = unknown.iter().find(|(is_so, _)| *is_so) {
         return Some((*why).to_owned());
     }
     if !formula.holds_at(specimen.crack_length) {
-        return Some(format!("does not hold at this crack length: {}", formula.range));
+        return Some(format!("not valid at this crack length ({})", formula.range));
     }
     let error = 100.0 * formula.error_at(specimen.crack_length);
     let exponent = exponent(asked.fatigue).unwrap_or(EXPONENT_USUAL);
     // 0.5 % of K at m = 4 are 2 %, whatever round-off makes of it.
     let of_life = exponent * error * (1.0 - 1e-9);
     let is_good = of_life <= percent && handbook(specimen).is_some();
-    (!is_good).then(|| {
-        format!("may be {error:.1} % off in K, which is {of_life:.1} % of life at m = {exponent}; asked for are {percent} %")
-    })
+    (!is_good).then(|| format!("K may be off by {error:.1} % ({of_life:.1} % of life at m = {exponent}); target {percent} %"))
 }
 
 /// The exponent of ΔK that `[fatigue]` gives.

@@ -26,8 +26,7 @@ pub(super) struct Fatigue {
     pub lot: Lot,
 }
 
-/// Reads `[fatigue]` with the law that `method` needs; a fitted record is looked for from `folder`. Explicit choices go into
-/// `choices`.
+/// Reads `[fatigue]` with the law of `method`, a fitted one from `folder`; explicit choices go into `choices`.
 pub(super) fn from_value(
     value: &Value,
     method: Method,
@@ -59,8 +58,7 @@ pub(super) fn from_value(
     Ok(Fatigue { settings, law, allow_extrapolation: input.allow_extrapolation, lot: input.lot })
 }
 
-/// The driver asked for; else that of tips, unless a key is given that only bonds have, or a tip that is no sharp crack. Keys of
-/// fatigue bonds do not go with tips that are driven by their K.
+/// The given driver; else tips, unless a key of bonds is given or a tip is not sharp. Keys of bonds conflict with tips.
 fn read_driver(input: &FatigueKeys, of_bonds: Option<&str>, method: Method, specimen: &Specimen) -> Result<Driver> {
     if method == Method::ElementFreeGalerkin {
         let remedy = "leave it out, or use model.method = \"peridynamics\"";

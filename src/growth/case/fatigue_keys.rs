@@ -12,7 +12,7 @@ perilife_base::kinds! {
     /// Lot of material that the plate of a case is of, beside that of the calibration.
     pub enum Lot for "fatigue.lot" {
         Same = "same": "that of the tested specimens: the band of lives is their scatter",
-        Other = "other": "another one of the same material: the band holds the scatter between lots too",
+        Other = "other": "another one of the same material: the band includes the scatter between lots",
     }
 }
 

@@ -55,8 +55,7 @@ pub struct Fleet {
     /// How many.
     pub plates: usize,
     pub seed: u64,
-    /// Initial crack length; `None`: that of the case. Of a standard specimen in its convention, of a plate that of the crack whose tip
-    /// ends the life.
+    /// Initial crack length in the convention of the specimen, of a plate the governing crack; `None`: that of the case.
     pub initial_length: Option<InitialLength>,
     /// Standard deviation of the load over the load of the case.
     pub load_scatter: f64,

@@ -24,7 +24,7 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
     if record.rate_constant.is_some() || Method::from_str(&record.method)? == Method::Peridynamics {
         number("a constant in 1/cycle", 1e-60, 1e100).read("a", record.a)?;
         LENGTH.read("horizon_mm", record.horizon_mm)?;
-        let beta = record.rate_constant.ok_or_else(|| input_missing("rate_constant", "is missing", "calibrate again"))?;
+        let beta = record.rate_constant.ok_or_else(|| input_missing("rate_constant", "is missing", "fit again"))?;
         number("a rate constant", 1e-60, 1e100).read("rate_constant", beta)?;
     }
     MODULUS.read("youngs_modulus_gpa", record.youngs_modulus_gpa)?;
@@ -34,7 +34,7 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
     number("a radius in horizons", 0.05, 10.0).read("zone_radius_horizons", record.zone_radius_horizons)?;
     Plane::from_str(&record.plane)?;
     if record.curve.is_some() != (record.law == FittedLaw::Curve) {
-        return Err(input("law", record.law, "does not go with the section [curve] of the record", "calibrate again"));
+        return Err(input("law", record.law, "does not go with the section [curve] of the record", "fit again"));
     }
     record.curve.as_ref().map_or(Ok(()), check_curve)
 }
@@ -50,7 +50,7 @@ fn check_curve(curve: &CurveRecord) -> Result<()> {
     let off = knots.iter().zip(&curve.delta_k_mpa_sqrt_m).find(|(even, given)| (*even / *given - 1.0).abs() > 1e-6);
     off.map_or(Ok(()), |(even, given)| {
         let problem = format!("is not {even:.6}: the values rise even in their logarithms from the first to the last");
-        Err(input("curve.delta_k_mpa_sqrt_m", given, problem, "calibrate again"))
+        Err(input("curve.delta_k_mpa_sqrt_m", given, problem, "fit again"))
     })
 }
 
@@ -65,8 +65,8 @@ pub(super) fn adopt(case: &mut Case, record: FittedRecord) -> Result<()> {
         return Ok(());
     }
     if by_hand {
-        let problem = "was fitted by hand calculation, or on nodes: it holds C and m, but no A of bonds";
-        let remedy = "calibrate with model.method = \"peridynamics\", or use fatigue.driver = \"tip_field\" here";
+        let problem = "contains C and m but no bond constant A (fitted with handbook K or nodes)";
+        let remedy = "fit with model.method = \"peridynamics\", or use fatigue.driver = \"tip_field\" here";
         return Err(input("fatigue.fitted", &record.material, problem, remedy));
     }
     let choices = case.choices;
@@ -112,16 +112,15 @@ fn agree<K: FromStr<Err = Error> + PartialEq + std::fmt::Display + Copy>(
 }
 
 fn disagree(key: &str, chosen: &str, recorded: &str) -> Error {
-    let problem = format!("is not what the fatigue law was calibrated with, {recorded}");
-    input(key, chosen, problem, format!("leave the key out or set it to {recorded}; or calibrate again with {chosen}"))
+    let problem = format!("differs from the value of the fitted law, {recorded}");
+    input(key, chosen, problem, format!("remove the key or set it to {recorded}; or fit again with {chosen}"))
 }
 
 fn check_stress_ratio(case: &Case, record: &FittedRecord) -> Result<()> {
     let other = case.loading.ratios().into_iter().find(|ratio| (ratio - record.stress_ratio).abs() >= 1e-9);
     let Some(other) = other.filter(|_| case.choices.walker_gamma.is_none()) else { return Ok(()) };
-    let problem = format!("is another stress ratio than the calibrated one, {}", record.stress_ratio);
-    let remedy =
-        "give fatigue.walker_gamma (strain range = s_max (1-R)^gamma; 1 = no mean-stress effect), or a record of this ratio";
+    let problem = format!("differs from the tested stress ratio, {}", record.stress_ratio);
+    let remedy = "set fatigue.walker_gamma (ΔK_eff = K_max (1-R)^γ; γ = 1: no mean-stress effect), or fit a law at this R";
     let key = if case.loading.spectrum.is_some() { "loading.spectrum_file" } else { "loading.stress_ratio" };
     Err(input(key, other, problem, remedy))
 }
@@ -139,19 +138,15 @@ fn recorded_modulus(record: &FittedRecord) -> Result<f64> {
     })
 }
 
-/// What the user should know about a record used in this case.
+/// Warnings of a fitted law used in this case.
 pub(super) fn record_lines(case: &Case, record: &FittedRecord) -> Result<Vec<String>> {
     let mut lines = Vec::new();
     let bonds = case.spends_bond_life();
     if bonds && (case.points().horizon_ratio - record.horizon_ratio).abs() > 1e-9 {
         let (given, recorded) = (case.points().horizon_ratio, record.horizon_ratio);
         lines.push(format!(
-            "horizon_ratio {given} is used with a law calibrated at {recorded}: the transfer between ratios is not calibrated"
+            "horizon_ratio {given} is used with a law fitted at {recorded}; the transfer between them is not validated"
         ));
-    }
-    if (case.loading.ratio - record.stress_ratio).abs() > 1e-9 {
-        let (given, recorded, gamma) = (case.loading.ratio, record.stress_ratio, case.fatigue.walker_gamma);
-        lines.push(format!("law calibrated at stress ratio {recorded} used at {given} with walker_gamma = {gamma}, an assumption: calibrate at that ratio, or give the walker_gamma that tests at two ratios fit"));
     }
     if case.model.method() == Method::Peridynamics {
         lines.extend(material_line(&case.material, record, bonds)?);
@@ -171,7 +166,7 @@ fn material_line(material: &Material, record: &FittedRecord, bonds: bool) -> Res
     let factor = (material.plane_modulus() / recorded_modulus(record)?).powf(record.p);
     let bonds = if bonds { format!(", A times (E'2/E'1)^p = {factor:.4}") } else { String::new() };
     Ok(Some(format!(
-        "law of {} (E {} GPa, nu {}, plane {}) used at E {e} GPa, nu {nu}, plane {}: growth rate per ΔK is kept{bonds}",
+        "growth law of {} (E {} GPa, ν {}, plane {}) used at E {e} GPa, ν {nu}, plane {}: da/dN at equal ΔK is kept{bonds}",
         record.material, record.youngs_modulus_gpa, record.poisson_ratio, record.plane, material.plane
     )))
 }
@@ -292,8 +287,8 @@ impl Case {
 /// Errors: a stress ratio that is not that of its tests.
 pub(super) fn of_record(record: &FittedRecord, ratio: f64) -> Result<(Box<dyn GrowthLaw>, [f64; 2])> {
     if (ratio - record.stress_ratio).abs() >= SAME_RATIO {
-        let problem = format!("is another stress ratio than that of the fit, {}", record.stress_ratio);
-        return Err(input("stress_ratio", ratio, problem, "give that of the fit"));
+        let problem = format!("differs from the tested stress ratio, {}", record.stress_ratio);
+        return Err(input("stress_ratio", ratio, problem, "use that of the fit"));
     }
     let walker = Walker { paris: fitted_paris(record)?, gamma: 1.0, threshold: 0.0 };
     let law: Box<dyn GrowthLaw> = match shape(record)? {

@@ -15,8 +15,7 @@ use perilife_points::solver::{SolverKind, Symmetry};
 use perilife_points::spacing::HORIZON_RATIO;
 use perilife_points::spacing::{check_spacing, default_spacing};
 
-/// Reads `[model]`; what is left out gets the program's choice. Explicit choices go into `choices`, what is to be said of the program's
-/// into `warnings`.
+/// Reads `[model]` with defaults; explicit choices go into `choices`, messages about defaults into `warnings`.
 pub(super) fn from_value(
     sections: &choose::Sections<'_>,
     (specimen, material, loading): (&Specimen, &Material, &Loading),
@@ -123,7 +122,7 @@ fn tiny_flaw(specimen: &Specimen) -> Option<String> {
     let (flaw, width) = (specimen.smallest_flaw(), specimen.gross_width);
     (flaw < TINY * width).then(|| {
         format!(
-            "a flaw of {} mm in a plate of {} mm: model.method = \"element_free_galerkin\" has nodes that fine where it lies only, and takes less time",
+            "a flaw of {} mm in a plate of {} mm: model.method = \"element_free_galerkin\" refines only around it and is faster",
             round_mm(flaw),
             round_mm(width)
         )
@@ -133,9 +132,9 @@ fn tiny_flaw(specimen: &Specimen) -> Option<String> {
 /// A crack that does not go through is known to hand calculation alone.
 fn check_part_through(specimen: &Specimen, method: Method) -> Result<()> {
     let Some(flaw) = specimen.part_through.as_ref().filter(|_| method != Method::Handbook) else { return Ok(()) };
-    let problem = format!("knows plates in their plane, and the crack of a {} does not go through", flaw.kind());
+    let problem = format!("does not support the part-through crack of a {}", flaw.kind());
     let remedy =
-        format!("use model.method = \"{}\", or leave it out: once the crack is through it grows on nodes", Method::Handbook);
+        format!("use model.method = \"{}\", or remove it: after breakthrough the crack grows on nodes", Method::Handbook);
     Err(input("model.method", format!("\"{method}\""), problem, remedy))
 }
 

@@ -190,8 +190,7 @@ impl Case {
         Ok(case)
     }
 
-    /// The same case with the law of `record` instead of its own; the record's rules about bond law, zone, stress ratio
-    /// and elastic constants apply.
+    /// The same case with the law of `record` and its rules about bond law, zone, stress ratio and elastic constants.
     pub fn with_law(mut self, record: FittedRecord) -> Result<Self> {
         let before = law_lines(&self)?;
         self.warnings.retain(|line| !before.contains(line));
@@ -310,7 +309,7 @@ fn check_load(case: &Case) -> Result<()> {
     Ok(())
 }
 
-/// What the user should know about law and horizon of this case.
+/// Warnings of law and horizon of this case.
 fn law_lines(case: &Case) -> Result<Vec<String>> {
     let mut lines: Vec<String> = Vec::new();
     // Of a spectrum the cycles count by their share of the growth (`predict::fit_use`).
@@ -349,15 +348,14 @@ fn steady(paris: ParisLaw) -> Walker {
     Walker { paris, gamma: 1.0, threshold: 0.0 }
 }
 
-/// Compression in a cycle counts as nothing, whatever Walker's exponent.
+/// Compression in a cycle is ignored, whatever Walker's exponent.
 fn compression_line(case: &Case) -> Option<String> {
     let counts = matches!(&case.law, LawSource::Factor(law) if GrowthLaw::least_ratio(law).is_finite());
     let law = GrowthLawKind::all().find(|kind| kind.0.compression.is_some())?;
     let [ratio, _] = case.loading.ratios();
     (ratio < 0.0 && !counts).then(|| {
         format!(
-            "stress ratio {}: the compression in a cycle counts as nothing, as if the ratio were 0; growth_law = \"{law}\" takes \
-             it into account",
+            "R = {}: the compressive part of the cycle is ignored (treated as R = 0, non-conservative); growth_law = \"{law}\" includes it",
             (1e4 * ratio).round() / 1e4
         )
     })
@@ -378,9 +376,7 @@ fn inline_line(case: &Case) -> Option<String> {
         choices.zone_radius_horizons.filter(|radius| *radius != 0.5).map(|radius| format!("zone_radius_horizons {radius}")),
     );
     let list = other.join(", ");
-    (!other.is_empty()).then(|| {
-        format!("the inline fatigue law a, p belongs to the default bond law, kernel and zone; here it is used with {list}")
-    })
+    (!other.is_empty()).then(|| format!("constants a, p apply to the default bond law, kernel and zone; used here with {list}"))
 }
 
 /// Below three spacings a point has too few neighbours for rates that do not depend on their number. Measured (middle tension,
@@ -390,8 +386,8 @@ fn coarse_line(case: &Case) -> Option<String> {
     let ratio = case.points().horizon_ratio;
     let error = match ratio {
         _ if ratio < 1.9 => "about 40 % too short",
-        _ if ratio < 2.9 => "wrong by up to 15 %",
+        _ if ratio < 2.9 => "up to 15 % off",
         _ => return None,
     };
-    Some(format!("horizon_ratio {ratio} leaves a point few neighbours: with the same A the life is {error}; give 3 or more"))
+    Some(format!("horizon_ratio {ratio} is too small: with the same A the life is {error}; use 3 or more"))
 }

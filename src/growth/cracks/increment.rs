@@ -13,8 +13,7 @@ use perilife_base::units::MM;
 use perilife_laws::response::Response;
 use perilife_points::crack_tip::TipState;
 
-/// Compliance over that at the start from which a plate without equilibrium is as good as severed: what one side of it has let go turns
-/// about what is left of the other.
+/// Rise of the compliance above which a plate without equilibrium counts as severed.
 const MECHANISM: f64 = 20.0;
 /// The same where an equilibrium was found: what K such a ligament has is round-off.
 const SEVERED: f64 = 1e6;
@@ -124,19 +123,18 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         let rise = self.compliance_rise(self.last().work, self.last().crack_length);
         if rise > MECHANISM {
             self.warnings.push(format!(
-                "the run ends here: the plate is {rise:.0} times as compliant as at the start, and what is left of it moves almost freely \
-                 ({error})"
+                "stopped: compliance rose {rise:.0} times; the remaining ligament has almost no stiffness ({error})"
             ));
             return Err(StopReason::Severed);
         }
-        self.warnings.push(format!("the run ends here: {error}"));
+        self.warnings.push(format!("stopped: {error}"));
         Err(StopReason::NoConvergence)
     }
 
     /// Reads K_I, K_II and T of every active tip at the place where its field stands.
     pub(crate) fn read_factors(&mut self, step: &mut Increment) -> Result<(), StopReason> {
         step.readings = self.read().map_err(|error| {
-            self.warnings.push(format!("the run ends here: {error}"));
+            self.warnings.push(format!("stopped: {error}"));
             StopReason::NoConvergence
         })?;
         let is_unread = |reading: &Reading| !reading.factors.iter().all(|factor| factor.is_finite());
@@ -244,8 +242,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
             && let Some((tip, ligament)) = self.unresolved_ligament()
         {
             self.warnings.push(format!(
-                "tip {tip} passes a rim at {:.3} mm, less than the spacing of {:.3} mm: the run ends there; model.spacing_mm = {:.4} would \
-                 resolve what is between them",
+                "stopped: tip {tip} is {:.3} mm from an edge, less than the spacing {:.3} mm; use model.spacing_mm = {:.4}",
                 ligament / MM,
                 self.scales.meeting.passing / MM,
                 ligament / LIGAMENT_SPACINGS / MM
@@ -270,8 +267,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         reason
     }
 
-    /// Rows between the last one and the `next`, so that straight lines between rows are the curve by which cycles were counted; the lead
-    /// goes `way`.
+    /// Rows up to `next`, so that straight lines follow the curve by which cycles were counted; the lead goes `way`.
     fn rows_between(&self, step: &Increment, next: &CurvePoint, way: &FactorCourse, of_all: f64) -> Vec<CurvePoint> {
         let (course, last) = (&way.course, self.last());
         let (rate, factor) = (step.rate * course.gain.exp(), way.at(1.0));
@@ -339,8 +335,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         (self.state.tips.iter().map(of_tip).collect(), self.work() / (load * load))
     }
 
-    /// Compares the energy that the new segments released by their K with what the plate did.
-    /// `beside_chord` is what K² of the lead is on its way over its chord.
+    /// Compares the energy released by K of new segments with that of the plate; `beside_chord`: K² on the way over the chord.
     fn compare_energies(&mut self, step: &Increment, growths: &[f64], beside_chord: f64, cycles: f64) {
         let ((now, work_now), (before, work)) = (self.energies(), &step.before);
         let grown: Vec<f64> = self.state.tips.iter().map(|tip| tip.growth).collect();

@@ -78,8 +78,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         self.state.room(&self.case.specimen, &self.state.tips[index])
     }
 
-    /// Way of a tip straight ahead to a rim or another crack, m, infinite where that is farther than it matters, or to a tip that it
-    /// faces; which one that is.
+    /// Distance of a tip straight ahead to an edge, a crack or a facing tip, m, and which; infinite if far.
     pub(super) fn gap(&self, index: usize) -> (f64, Option<usize>) {
         let (tip, reach) = (&self.state.tips[index], self.scales.step.last[0]);
         let (from, ahead) = (self.state.position(tip), self.direction(tip, 0.0));

@@ -57,7 +57,7 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         }
     }
 
-    /// What the user should know of tips that a lower load drives most.
+    /// Warning of tips whose K_eq is largest at a lower load.
     fn reversed_warning(&self) -> Option<String> {
         let is_reversed = |tip: &Tip| tip.response.at(1.0) < 1.0 - 1e-9 && tip.equivalent() > 0.0;
         let tips = self.state.tips.iter().enumerate().filter(|(_, tip)| is_reversed(tip));
@@ -65,16 +65,12 @@ impl<P: CrackedPlate> Cracks<'_, P> {
         (!tips.is_empty()).then(|| format!("tip {tips}: K_eq is largest at a lower load; K is that of this load"))
     }
 
-    /// What the user should know of tips that the load presses shut.
+    /// Warning of tips that the load closes.
     fn contact_warning(&self) -> Option<String> {
         let closed = self.state.tips.iter().enumerate().filter(|(_, tip)| tip.was_closed);
         let tips = closed.map(|(index, _)| index.to_string()).collect::<Vec<_>>().join(", ");
-        (!tips.is_empty()).then(|| {
-            format!(
-                "the load presses the crack shut at tip {tips}, which does not grow while it does: flanks carry pressure, and slide without \
-                 friction"
-            )
-        })
+        (!tips.is_empty())
+            .then(|| format!("tip {tips} is closed by the load and does not grow; crack faces are in frictionless contact"))
     }
 }
 
@@ -91,7 +87,7 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
         if let Some(tip) = self.state.tips.iter().find(|tip| !tip.equivalent().is_finite()) {
             let place = place_mm(self.state.position(tip));
             let problem = format!("{name}: no stress intensity can be read at the crack tip at {place}");
-            return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm")));
+            return Err(Error::Mechanics(format!("{problem}; reduce model.spacing_mm")));
         }
         self.state.step = self.first_step();
         self.plate.update(&self.state);

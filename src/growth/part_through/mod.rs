@@ -97,8 +97,7 @@ impl<'a> HandOver for BreakThrough<'a> {
         let Some(CurvePoint { cycles, crack_length, .. }) = start else { return front.why_no_through_crack() };
         let length = crack_length / MM;
         Some(format!(
-            "the crack was through after {cycles:.0} cycles (a/t = 1), with a length of {length:.3} mm on the face; from there on it grew as a straight \
-             through crack of that length, by the K of its tips on nodes"
+            "breakthrough after {cycles:.0} cycles at c = {length:.3} mm; then a straight through crack of that length (K from nodes)"
         ))
     }
 }

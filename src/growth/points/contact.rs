@@ -136,8 +136,7 @@ impl Contact {
         self.places().flat_map(of_place).flatten().collect()
     }
 
-    /// Opens the places whose flanks move apart and closes those that overlap by more than round-off and `least`, m; whether there are
-    /// any.
+    /// Opens places whose faces move apart, closes those that overlap by more than `least`, m; whether any changed.
     pub(super) fn update(&mut self, layout: &Layout, displacement: &[f64], least: f64) -> bool {
         let gap = |place: &Place| place.spring.gap(layout, displacement);
         let largest = self.places().map(|place| gap(place).abs()).fold(0.0, f64::max);

@@ -9,8 +9,7 @@ use perilife_base::error::Result;
 use perilife_plate::loading::residual::Components;
 use perilife_plate::specimen::{CrackLine, Point};
 
-/// Solves of an increment in which flanks come into contact or part; the last set of places is taken then. Where little is left of a
-/// plate a few places flicker.
+/// Solves of an increment with changing contact, after which the last set is taken: near the end places may flicker.
 const CONTACT_SOLVES_MOST: usize = 20;
 /// Overlap of flanks, in spacings times the mean strain of the plate, that is round-off.
 const CONTACT_LEAST: f64 = 1e-3;
@@ -28,8 +27,7 @@ pub(super) struct LowerLoad {
 }
 
 impl PointPlate {
-    /// Equilibrium after bonds were cut or corrected, with flanks that do not overlap; the displacement stays as it was where there is
-    /// none.
+    /// Equilibrium without overlap of the faces after bonds were cut; the displacement is unchanged where there is none.
     pub(super) fn settle(&mut self, case: &Case, cracks: &CracksState, lines: &[CrackLine]) -> Result<()> {
         let body = &self.body.clone();
         self.equilibrium.bonds_changed(body, &self.bonds, &std::mem::take(&mut self.changed));

@@ -54,7 +54,7 @@ const ALIKE: f64 = 0.8;
 /// Share of a life that must be looked at.
 const LOOKED_AT_LEAST: f64 = 0.3;
 
-/// Upper bounds of what a run is wrong by, as a solution of the problem that its case sets: plane linear elasticity and the law given.
+/// Estimated numerical error of a run: plane linear elasticity with the given law solved exactly would differ by at most that.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorEstimate {
     pub life_percent: f64,
@@ -63,7 +63,7 @@ pub struct ErrorEstimate {
     pub basis: String,
 }
 
-/// Bounds of the error of a run; in words why there are none.
+/// Estimated error of a run, or why there is none.
 pub fn error_estimate(case: &Case, prediction: &Prediction) -> Result<ErrorEstimate, String> {
     if prediction.life_cycles() <= 0.0 {
         return Err("no life".to_owned());
@@ -72,11 +72,11 @@ pub fn error_estimate(case: &Case, prediction: &Prediction) -> Result<ErrorEstim
         return Err("the solver did not converge".to_owned());
     }
     if let Some(check) = prediction.cross_check.filter(|check| check.difference.abs() > CROSS_CHECK_MOST) {
-        return Err(format!("K and the energy released differ by {:.1} %", 100.0 * check.difference));
+        return Err(format!("K differs by {:.1} % from the energy release rate", 100.0 * check.difference));
     }
     match case.engine() {
         Engine::Bonds | Engine::BondsThenPoints => {
-            Err("bonds that fail by their own strain have no limit that a finer lattice would tend to".to_owned())
+            Err("bond failure by own strain does not converge with the lattice".to_owned())
         }
         Engine::PartThrough => of_part_through(case, prediction),
         engine => {
@@ -112,7 +112,7 @@ impl Rates<'_> {
 fn of_formula(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw) -> Result<ErrorEstimate, String> {
     let Some(formula) = handbook(&case.specimen) else { return Err("no handbook formula".to_owned()) };
     if case.specimen.beta.is_some() {
-        return Err(format!("a {} states no error of K", formula.name));
+        return Err(format!("{} has no stated error of K", formula.name));
     }
     if !formula.holds_at(prediction.crack_length_final()) {
         return Err(format!("the crack grew beyond the range of the formula ({})", formula.range));
@@ -151,14 +151,14 @@ fn of_part_through(case: &Case, prediction: &Prediction) -> Result<ErrorEstimate
     let stated = life.life_factors.iter().map(|factor| 100.0 * (factor - 1.0).abs()).fold(0.0, f64::max);
     let basis = format!("K ±{:.0} %, {:.1} % of life without a stated error in full", 100.0 * STATED_ERROR, outside + after);
     let estimate = ErrorEstimate { life_percent: stated + outside + after, path: 0.0, basis };
-    stated.is_finite().then_some(estimate).ok_or_else(|| "within the error of K the crack does not grow".to_owned())
+    stated.is_finite().then_some(estimate).ok_or_else(|| "within the error of K there may be no growth".to_owned())
 }
 
 fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, shares: &[f64]) -> Result<ErrorEstimate, String> {
     let (life, rows) = (prediction.life_cycles(), rows_before_meeting(&prediction.curve));
     let end = rows.last().map_or(0.0, |row| row.cycles);
     if end < LOOKED_AT_LEAST * life {
-        return Err("most of the life is spent after tips have met rims, holes or cracks".to_owned());
+        return Err("most of the life follows a tip reaching an edge, hole or crack".to_owned());
     }
     let rates = Rates { law, ratio: case.loading.ratio };
     let nearest = |share: f64| {
@@ -195,16 +195,12 @@ fn by_finer_nodes(case: &Case, prediction: &Prediction, law: &dyn GrowthLaw, sha
     let path = growth * (of_angle + WAY);
     let share_of_gap = if is_on_nodes { GAP_SHARE } else { GAP_SHARE_OF_POINTS };
     if let Some(gap) = rim_passed(case, &prediction.curve).filter(|gap| path > share_of_gap * gap) {
-        return Err(format!(
-            "the crack passes a rim at {:.2} mm, and its path is known to {:.2} mm: small causes decide its K there",
-            gap / MM,
-            path / MM
-        ));
+        return Err(format!("the crack passes an edge at {:.2} mm, and its path is known to {:.2} mm only", gap / MM, path / MM));
     }
     Ok(ErrorEstimate {
         life_percent: 100.0 * (of_rates + BETWEEN * of_loads + finer * largest_exponent + after + steps),
         path,
-        basis: format!("K at {} moments on finer nodes", found.len()),
+        basis: format!("K at {} stages recomputed on finer nodes", found.len()),
     })
 }
 

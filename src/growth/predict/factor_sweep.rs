@@ -31,8 +31,7 @@ use perilife_plate::specimen::geometry::{along, direction, distance, distance_to
 use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::{CrackLine, LengthConvention, LoadMeasure, Point, Specimen, SpecimenKind};
 
-/// Distance from a flank at which it is read, over the length of its crack: at its end, and between its ends, where nodes see it straight that
-/// has bends of some 1e-4 of it.
+/// Distance from a crack face at which it is read, over the crack length: at its end, and between its ends.
 const BESIDE: [f64; 2] = [1e-4, 1e-3];
 /// Way of a mouth into the material at which it is read, over the length of the crack: both flanks are then in the plate, up to 60° of slant.
 const INSIDE: f64 = 2e-4;
@@ -268,7 +267,7 @@ fn lead(rows: &[SweepRow], tips: usize) -> usize {
     (1..tips).fold(0, |lead, tip| if gone(tip) > gone(lead) * (1.0 + 1e-6) { tip } else { lead })
 }
 
-/// What is to be said where tips have unlike K.
+/// Warning of tips with different K.
 fn unlike(rows: &[SweepRow], tips: usize, lead: usize) -> Option<String> {
     let differs = |rows: &[SweepRow]| {
         let of_lead = equivalent_factor(rows[lead].factors);
@@ -276,8 +275,7 @@ fn unlike(rows: &[SweepRow], tips: usize, lead: usize) -> Option<String> {
     };
     rows.chunks(tips).any(differs).then(|| {
         format!(
-            "tips have unlike K: they grew by K^{EXPONENT_USUAL}, β of the table is that of tip {lead}, and a life read back from it lets all \
-             tips grow alike"
+            "tips have different K: grown with m = {EXPONENT_USUAL}; the table holds β of tip {lead}, and a life from it grows all tips equally"
         )
     })
 }

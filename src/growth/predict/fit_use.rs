@@ -11,66 +11,35 @@ use perilife_laws::growth_law::{Acting, GrowthLaw};
 use perilife_laws::response::Response;
 use perilife_plate::loading::SAME_RATIO;
 
-/// Share of life outside the fitted ΔK range above which a run is warned about, and of a side of the range that is named then.
-const WARNED: f64 = 0.05;
-/// Share of life above the fitted range from which a run is refused unless the case allows it: there cracks grow faster than computed.
+/// Share of life above the tested ΔK from which a run is refused unless the case allows it: the life there is overestimated.
 pub const EXTRAPOLATION_REFUSED: f64 = 0.25;
+/// Share of the growth at other stress ratios that is warned about.
 const NAMED: f64 = 0.01;
 /// Change of K over which shares of growth are kept.
 const SHARES_KEPT: f64 = 0.02;
 
-/// Share of the life that was growth at a ΔK outside the range the law was fitted to, 0 to 1; ΔK is taken linear in N
-/// within each block. `None` without a fitted record, without life, or without any known ΔK.
+/// Share of the life at a ΔK outside the tested range, 0 to 1; `None` without a fitted law, life, or ΔK.
 pub fn life_share_extrapolated(case: &Case, prediction: &Prediction) -> Option<f64> {
     let [low, high] = fitted_range(case)?;
     life_share_outside(case, prediction, low, high)
 }
 
-/// Share of the life below the fitted range, where lives come out too short, and above it, where they come out too long; `None` as
-/// [`life_share_extrapolated`].
+/// Shares of the life below and above the tested range; `None` as [`life_share_extrapolated`].
 pub fn life_shares_outside(case: &Case, prediction: &Prediction) -> Option<[f64; 2]> {
     let [low, high] = fitted_range(case)?;
     Some([life_share_outside(case, prediction, low, f64::INFINITY)?, life_share_outside(case, prediction, 0.0, high)?])
 }
 
-/// What is to be said about life outside the fitted range of ΔK, the larger share first.
-pub fn extrapolated(case: &Case, prediction: &Prediction) -> Vec<String> {
-    let share = life_share_extrapolated(case, prediction).filter(|share| *share > WARNED);
-    let Some([low, high]) = fitted_range(case).filter(|_| share.is_some()) else { return Vec::new() };
-    let threshold = if case.fatigue.threshold > 0.0 { "" } else { ", or give fatigue.delta_k_threshold_mpa_sqrt_m" };
-    let below = (
-        life_share_outside(case, prediction, low, f64::INFINITY),
-        format!(
-            "below {low:.2} MPa√m, the lowest fitted value: near a threshold cracks grow slower than computed; calibrate on slower \
-             growth{threshold}"
-        ),
-    );
-    let above = (
-        life_share_outside(case, prediction, 0.0, high),
-        format!(
-            "above {high:.2} MPa√m, the highest fitted value: near toughness cracks grow faster than computed; calibrate on longer cracks, \
-             or end the life sooner by stop.crack_length_mm"
-        ),
-    );
-    let mut sides: Vec<(f64, String)> =
-        [below, above].into_iter().filter_map(|(share, words)| Some((share.filter(|share| *share > NAMED)?, words))).collect();
-    sides.sort_by(|a, b| b.0.total_cmp(&a.0));
-    sides.into_iter().map(|(share, words)| format!("{:.1} % of the life is spent at ΔK {words}", 100.0 * share)).collect()
-}
-
-/// What is to be said of cycles of a spectrum at other stress ratios than those of the law, fitted or a table.
+/// Warning of cycles of a spectrum at other stress ratios than those of a table; the checks have those of a fitted law.
 pub fn of_other_ratios(case: &Case, prediction: &Prediction) -> Option<String> {
-    case.loading.spectrum.as_ref()?;
+    case.loading.spectrum.as_ref().filter(|_| fitted_ratios(case).is_none())?;
     let law = law_of_cycle(case).ok()?;
     let of_table = |acting: &Acting, _| if law.beyond_ratio(acting.ratio).is_some() { 1.0 } else { 0.0 };
-    let fitted = share_of_other_ratios(case, Some(prediction));
-    let share = fitted.or_else(|| life_share(case, &prediction.curve, &of_table)).filter(|share| *share > NAMED)?;
-    let of_law = fitted_ratios(case).map_or_else(String::new, |[low, high]| format!(", {low} to {high}"));
-    Some(format!("{:.1} % of the growth is by cycles at stress ratios outside those of the law{of_law}", 100.0 * share))
+    let share = life_share(case, &prediction.curve, &of_table).filter(|share| *share > NAMED)?;
+    Some(format!("{:.1} % of the growth is by cycles at stress ratios outside those of the law", 100.0 * share))
 }
 
-/// The law of a record in words: rate at the pivot and m with their errors, never A alone. `None` for inline constants, whose
-/// errors nobody knows.
+/// The fitted law in words: rate at the reference ΔK and m with their errors; `None` for constants given without errors.
 pub fn law_line(case: &Case) -> Option<String> {
     let record = fitted(case)?;
     let m_error = record.paris_m_error;
@@ -154,8 +123,7 @@ pub fn fitted_ratios(case: &Case) -> Option<[f64; 2]> {
     of_record.or(fitted(case).map(|record| [record.stress_ratio; 2]))
 }
 
-/// Share of the growth by cycles at other stress ratios than those of the law: over a run, or where the largest cycle has the ΔK in the middle of
-/// the fitted range.
+/// Share of the growth at other R than tested: over a run, or at the middle of the tested ΔK.
 pub fn share_of_other_ratios(case: &Case, prediction: Option<&Prediction>) -> Option<f64> {
     let ([low, high], range) = (fitted_ratios(case)?, fitted_range(case)?);
     let of = |acting: &Acting, _| {
@@ -166,8 +134,7 @@ pub fn share_of_other_ratios(case: &Case, prediction: Option<&Prediction>) -> Op
     prediction.and_then(|prediction| life_share(case, &prediction.curve, &of)).or_else(at_once)
 }
 
-/// Share of the interval `from..to` that lies outside `low..high`. The ends of the range count as inside with a margin of
-/// 1e-6, for a curve that starts where the fit started.
+/// Share of the interval `from..to` outside `low..high`, whose ends have a margin of 1e-6.
 fn share_outside(from: f64, to: f64, low: f64, high: f64) -> f64 {
     let (low, high) = (low * (1.0 - 1e-6), high * (1.0 + 1e-6));
     if to - from <= 1e-12 * to {

@@ -95,20 +95,19 @@ impl PhaseOne {
     /// What the user should know.
     pub(super) fn warnings(&self, law: &SnLaw) -> Vec<String> {
         let mut words = vec![match self.cycles {
-            Some(_) => "phase I: its cycles are those of the S-N law given, whose scatter no band and no error of the life holds"
-                .to_owned(),
+            Some(_) => "initiation: life from the given S-N curve; its scatter is in neither the band nor the error".to_owned(),
             None => format!(
-                "phase I: no crack forms, the local stress range {:.1} MPa is not above fatigue.initiation.limit_mpa = {:.1}",
+                "no initiation: local stress range {:.1} MPa ≤ fatigue.initiation.limit_mpa = {:.1} MPa",
                 self.range / MPA,
                 law.limit / MPA
             ),
         }];
         if self.aside > ASIDE {
             let [x, y] = self.at.map(|x| x / MM);
-            words.push(format!("phase I: the largest stress is at ({x:.2}, {y:.2}) mm, and no crack of the case starts there"));
+            words.push(format!("initiation: the largest stress is at ({x:.2}, {y:.2}) mm, where no crack of the case starts"));
         }
         if !self.is_settled {
-            words.push("phase I: the stress at the rim still changed by 0.3 % or more when nodes were made finer".to_owned());
+            words.push("initiation: the stress at the hole edge still changed by 0.3 % or more on finer nodes".to_owned());
         }
         words
     }

@@ -1,4 +1,4 @@
-//! Whether a run counts as a result, and why a case is refused before it is run.
+//! Warnings of a finished run, and refusals of a run and of a case before it is run.
 
 use super::record::BLOCKS_WITHOUT_GROWTH;
 use super::{Prediction, StopReason, fit_use};
@@ -11,7 +11,7 @@ use perilife_plate::specimen::handbook::handbook;
 /// Span of the stress ratios of a spectrum from which its life without load interaction is warned about.
 const RATIOS_SPAN: f64 = 0.3;
 
-/// Whether a run counts as a result; what the user should know about it beyond what the run itself says.
+/// Warnings beside those of the run itself.
 /// Errors: [`Error::Mechanics`] if the run ended before the crack grew.
 pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
     let mut warnings = Vec::new();
@@ -19,56 +19,55 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
     // An empty curve compares as not grown.
     let grown = prediction.crack_length_final().max(0.0) > start;
     let no_curve = |why: &str, remedy: &str| {
-        Err(Error::Mechanics(format!("{}: {why} before the crack grew, so there is no curve; {remedy}", case.name)))
+        Err(Error::Mechanics(format!("{}: no a-N curve: {why} before the crack grew; {remedy}", case.name)))
     };
     match prediction.stop {
         StopReason::NoConvergence if grown => {
-            warnings.push("the equilibrium solver did not converge; the curve ends where it last did".to_owned());
+            warnings.push("the solver did not converge; the curve ends at the last converged increment".to_owned());
         }
         StopReason::NoConvergence => {
-            return no_curve("the equilibrium solver did not converge", "try another model.spacing_mm");
+            return no_curve("the solver did not converge", "use another model.spacing_mm");
         }
         StopReason::NoGrowth if grown => {
             warnings.push(format!(
-                "no crack tip grew over the last {BLOCKS_WITHOUT_GROWTH} blocks, though bonds went on breaking: the curve ends where the \
-                 last tip stood; use fatigue.driver = \"tip_field\", or give another model.spacing_mm"
+                "bonds kept breaking but no crack tip advanced in the last {BLOCKS_WITHOUT_GROWTH} increments: the curve ends at the last \
+                 advance; use fatigue.driver = \"tip_field\", or another model.spacing_mm"
             ));
         }
         StopReason::NoGrowth => {
             return no_curve(
-                "bonds went on breaking without growth of a crack tip",
-                "use fatigue.driver = \"tip_field\", or give another model.spacing_mm",
+                "bonds kept breaking but no crack tip advanced",
+                "use fatigue.driver = \"tip_field\", or another model.spacing_mm",
             );
         }
         // Under the threshold nothing ages either, which is an answer.
         StopReason::NothingAges if !grown && (case.fatigue.threshold > 0.0 || !case.spends_bond_life()) => {
-            let why = "nothing grows: every crack stays closed or below the threshold of its growth law";
+            let why = "no growth: every crack is closed or below the threshold ΔK_th";
             warnings.push(why.to_owned());
         }
         StopReason::NothingAges | StopReason::LeftPlate | StopReason::EnteredHole | StopReason::CracksJoined if !grown => {
-            let why = format!("no bond that can fail is strained at a crack tip (stopped: {})", prediction.stop);
+            let why = format!("no breakable bond at a crack tip is loaded (stopped by {})", prediction.stop);
             return no_curve(
                 &why,
-                "move crack and hole or support apart, or give a smaller model.spacing_mm; `perilife check` names the tips",
+                "move crack and hole or support apart, or reduce model.spacing_mm; `perilife check` lists the tips",
             );
         }
         _ => {}
     }
     warnings.extend(beyond_load(case, prediction));
-    warnings.extend(fit_use::extrapolated(case, prediction));
     warnings.extend(fit_use::of_other_ratios(case, prediction));
     warnings.extend(no_interaction(case));
     Ok(warnings)
 }
 
-/// What is to be said of the life that a crack spends beyond the table of its load, where that stays as it is in the last row.
+/// Warning of the life beyond the table of the load, under its last row.
 fn beyond_load(case: &Case, prediction: &Prediction) -> Option<String> {
     let (course, last) = (case.loading.course()?, prediction.curve.last()?);
     let rows = &prediction.curve[prediction.curve.partition_point(|row| row.crack_length <= course.end() * (1.0 + 1e-9))..];
     let share = 100.0 * (last.cycles - rows.first()?.cycles) / last.cycles;
     let [end, reached] = [course.end(), last.crack_length].map(|length| length / MM);
     Some(format!(
-        "{}: the table ends at {end:.3} mm, and the crack grew to {reached:.3} mm under its last load, {share:.2} % of life; add rows, or set \
+        "{}: the table ends at a = {end:.3} mm; growth to {reached:.3} mm under its last load ({share:.2} % of life); add rows, or set \
          stop.crack_length_mm = {end:.3}",
         course.key
     ))
@@ -82,37 +81,37 @@ fn no_interaction(case: &Case) -> Option<String> {
     let strength = if case.material.yield_strength.is_none() { " and material.yield_strength_mpa" } else { "" };
     (high - low > RATIOS_SPAN - SAME_RATIO).then(|| {
         format!(
-            "load interaction: none, at stress ratios from {low:.2} to {high:.2} (usually conservative; two published tests of AA7050 lasted 1.7 and \
-             1.8 times the life without it); compare with loading.retardation = \"newman\"{strength}"
+            "load interaction: none, at R = {low:.2} to {high:.2} (usually conservative: two published tests of AA7050 took 1.7 and 1.8 times the \
+             life without it); compare with loading.retardation = \"newman\"{strength}"
         )
     })
 }
 
-/// What breaks at the first load, and the load that it would bear.
+/// Why the plate fails in the first cycle, and the load at the limit.
 pub fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
     let [row] = prediction.curve.as_slice() else { return None };
     let required = case.stop.required.unwrap_or(1.0);
     let load = case.loading.doing(row.work, row.crack_length) * required;
     let k_max = row.k_max_at(required, &case.loading);
-    // A limit that is reached but for round-off has no words of its own.
+    // A limit may be reached but for round-off.
     let words = || first_load(case, load, Some(k_max).filter(|k| *k > 0.0));
-    prediction.stop.is_strength().then(|| words().unwrap_or_else(|| format!("{} at the first load", prediction.stop.meaning())))
+    prediction
+        .stop
+        .is_strength()
+        .then(|| words().unwrap_or_else(|| format!("fails in the first cycle: {}. No life computed.", prediction.stop.meaning())))
 }
 
-/// Why a run does not count though it came to an end: more than a quarter of its life lies above the fitted range of ΔK, and the
-/// case does not allow that. It is written all the same, marked as refused: what it cost is not thrown away.
+/// Why a finished run is not valid: failure in the first cycle, or over a quarter of life above the tested ΔK.
 pub fn refusal(case: &Case, prediction: &Prediction) -> Option<Error> {
     if let Some(problem) = breaks_at_once(case, prediction) {
         return Some(Error::Mechanics(format!("{}: {problem}", case.name)));
     }
     let [_, above] = fit_use::life_shares_outside(case, prediction)?;
-    (above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation).then(|| {
-        extrapolates(case, &format!("{:.1} % of the life lies above", 100.0 * above), "; the results are marked as refused")
-    })
+    (above > fit_use::EXTRAPOLATION_REFUSED && !case.allow_extrapolation)
+        .then(|| extrapolates(case, &format!("{:.1} % of the life is above", 100.0 * above), "; results are marked not valid"))
 }
 
-/// Why a case is refused before it is run: its first ΔK lies above the fitted range, or that of cycles by which a quarter of the growth is, and K
-/// only rises from there.
+/// Refuses a case before it is run: its first ΔK is above the tested range, or that of cycles with a quarter of the growth, and K only rises.
 /// Errors: [`Error::Input`] where it does.
 pub fn refuse_beforehand(case: &Case) -> Result<()> {
     if let (Some(record), Some(spectrum)) = (&case.law_record, &case.loading.spectrum)
@@ -125,8 +124,8 @@ pub fn refuse_beforehand(case: &Case) -> Result<()> {
         Some([_, above]) if above > fit_use::EXTRAPOLATION_REFUSED => {
             let (at, percent) = (first / MPA_SQRT_M, 100.0 * above);
             let what = match case.loading.spectrum {
-                Some(_) => format!("{percent:.0} % of the growth at the start is by cycles whose ΔK lies above"),
-                None => format!("ΔK {at:.2} MPa√m at the start, and the whole life, lies above"),
+                Some(_) => format!("{percent:.0} % of the first growth is by cycles with ΔK above"),
+                None => format!("the first ΔK, {at:.2} MPa√m, and with it the whole life, is above"),
             };
             Err(extrapolates(case, &what, ""))
         }
@@ -136,8 +135,8 @@ pub fn refuse_beforehand(case: &Case) -> Result<()> {
 
 fn extrapolates(case: &Case, what: &str, more: &str) -> Error {
     let [low, high] = fit_use::fitted_range(case).unwrap_or([f64::NAN; 2]);
-    let text = format!("{what} the fitted range of ΔK, {low:.2} to {high:.2} MPa√m, where cracks grow faster than computed");
-    let remedy = "calibrate on curves that cover it, or set fatigue.allow_extrapolation = true";
+    let text = format!("{what} the tested ΔK, {low:.2} to {high:.2} MPa√m: the life there is overestimated");
+    let remedy = "fit a law to tests at that ΔK, or set fatigue.allow_extrapolation = true";
     input("fatigue.allow_extrapolation", false, format!("{}: {text}{more}", case.name), remedy)
 }
 

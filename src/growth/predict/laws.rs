@@ -59,7 +59,7 @@ pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
     ))
 }
 
-/// What the user should know: how much of a life is growth where the law holds the rate of its end.
+/// Warning of the share of life beyond a table, by the rate at its end.
 pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) -> Option<String> {
     let life = curve.last()?.cycles;
     let share = |row: &CurvePoint| law.share_beyond(row.k_max(&case.loading), case.loading.ratio, &row.response);
@@ -70,7 +70,7 @@ pub fn beyond_warning(case: &Case, law: &dyn GrowthLaw, curve: &[CurvePoint]) ->
         curve.windows(2).zip(shares.windows(2)).map(|(pair, ends)| of(ends) * (pair[1].cycles - pair[0].cycles)).sum();
     (cycles > 0.0).then(|| {
         let share = 100.0 * cycles / life;
-        format!("{share:.2} % of the life is spent at ΔK beyond the table of rates, where the rate of its end is held")
+        format!("{share:.2} % of the life is at ΔK beyond the table of rates, by the rate at its end")
     })
 }
 

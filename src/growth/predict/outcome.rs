@@ -135,8 +135,7 @@ fn governing_tip(specimen: &Specimen, curve: &[CurvePoint]) -> Option<usize> {
     (0..last.tips.len()).filter(|tip| leads(*tip) >= most * (1.0 - ALIKE)).max_by(|a, b| length(*a).total_cmp(&length(*b)))
 }
 
-/// The crack that a curve is told by, whose length, ΔK and da/dN stand in one row: of a plate with several cracks the one whose tip ends the life,
-/// else that of the convention of the specimen.
+/// The crack whose length, ΔK and da/dN make a row: of several the one whose tip ends the life, else that of the convention.
 #[derive(Debug, Clone)]
 pub struct GoverningCrack<'a> {
     specimen: &'a Specimen,

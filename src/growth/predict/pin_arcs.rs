@@ -40,7 +40,7 @@ pub fn line(case: &Case) -> Option<String> {
         _ => "specimen.pin_diameter_mm or specimen.pin_half_angle_deg",
     };
     Some(format!(
-        "pins: nothing known of them, ±{:.0}° of their holes taken, {fits}; K at N = 0 would be {}: give {key}",
+        "pin contact assumed over ±{:.0}° ({fits}); effect on K at N = 0: {}; set {key}",
         usual.to_degrees(),
         told.collect::<Vec<_>>().join(", ")
     ))

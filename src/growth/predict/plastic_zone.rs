@@ -125,8 +125,7 @@ fn zone(case: &Case, point: &CurvePoint, k_max: f64, strength: f64) -> Zone {
     Zone { crack_length: point.crack_length, k_max, size, ligament, crack }
 }
 
-/// Share of the way to the mouth of its crack from which on the way of a tip to the edge there leads back along the crack: one that
-/// returns to the edge is nearer.
+/// Share of the distance to the mouth of its crack above which the way of a tip to the edge leads back along the crack.
 const BACK: f64 = 0.5;
 
 /// Distance of a tip from outline and holes, m, and the length of its crack where that starts at one of them.
@@ -161,35 +160,16 @@ fn asked(case: &Case, zone: &Zone, strength: f64) -> f64 {
     case.specimen.ligament_asked(case.loading.at(zone.crack_length), zone.k_max, strength)
 }
 
-/// What the user should know: yielding that K does not cover, and a plane state that the thickness contradicts.
-pub fn warnings(case: &Case, curve: &[CurvePoint]) -> Vec<String> {
-    let Some(zone) = plastic_zone(case, curve) else { return Vec::new() };
-    let mut lines = Vec::new();
-    if let Some(length) = zone.too_large_from {
-        let (room, name) = zone.last.room();
-        let until = zone.too_large_to.map_or_else(|| " on".to_owned(), |to| format!(" to {:.1} mm", to / MM));
-        lines.push(format!(
-            "small-scale yielding does not hold from a crack length of {:.1} mm{until} ({:.2} % of the life): the {} is smaller than ASTM \
-             E647 asks {}, and the crack grows faster than K says (plastic zone at the end {:.3} mm, {name} {:.3} mm)",
-            length / MM,
-            100.0 * zone.life_share_too_large,
-            zone.too_small,
-            if zone.too_small == "ligament" { "for" } else { "of a ligament" },
-            zone.last.size / MM,
-            room / MM
-        ));
-    }
-    // With retardation the life by the other zones is told beside it, once the crack is through.
+/// Warning of a thickness below that of plane strain.
+pub fn plane_warning(case: &Case, curve: &[CurvePoint]) -> Option<String> {
+    // With retardation [`super::retarded`] warns, once the crack is through.
     let is_told = case.retardation.is_some() && curve.iter().any(|row| !row.is_of_front());
-    if let Some((Plane::Stress, [needed, _])) = other_plane(case, curve).filter(|_| !is_told) {
-        lines.push(format!(
-            "material.plane = \"strain\", but plane strain at the crack tip asks for a thickness of {:.2} mm from the start \
-             (2.5 (K_max/yield)², ASTM E399), and the plate has {:.2} mm",
-            needed / MM,
-            case.specimen.thickness / MM
-        ));
-    }
-    lines
+    let (_, [needed, _]) = other_plane(case, curve).filter(|(asked, _)| *asked == Plane::Stress && !is_told)?;
+    let [needed, thickness] = [needed, case.specimen.thickness].map(|length| length / MM);
+    Some(format!(
+        "material.plane = \"strain\", but plane strain at the tip needs a thickness of {needed:.2} mm from the start \
+         (2.5 (K_max/yield)², ASTM E399); the plate has {thickness:.2} mm"
+    ))
 }
 
 /// Plane state by the thickness at the start where the case has the other, and the least thickness of plane strain, m, at start and end.

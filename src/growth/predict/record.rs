@@ -24,8 +24,7 @@ const DECISIVE: f64 = 3.0;
 const STRAIGHT: f64 = 0.05;
 /// Share of the life, at its end, in which a path does not matter any more.
 const END: f64 = 0.05;
-/// Blocks in a row without growth of any tip at which a run ends. A block breaks at least one bond; a tip grows by a spacing with some
-/// ten to a hundred of them.
+/// Increments without growth of any tip at which a run ends; a tip grows by a spacing with ten to a hundred broken bonds.
 pub const BLOCKS_WITHOUT_GROWTH: usize = 4096;
 
 /// Receives progress; the engine itself never prints. Returning `false` asks the run to stop.
@@ -45,8 +44,7 @@ pub trait Observer: Sync {
     fn begun(&self, _start: &Progress, _tips: &[TipRecord]) {}
     /// Called after every cycle block since N = 0, before [`Observer::block_done`], with where the tips are now.
     fn grown(&self, _tips: &[TipRecord]) {}
-    /// Called with every picture that is taken while the run goes on. Its cycles count from the start of the run, which is before
-    /// N = 0 where the crack is first grown to its initial length.
+    /// Called with every snapshot; its cycles count from the start of the run, which may be before N = 0.
     fn looked(&self, _snapshot: &Snapshot, _grid: &PointGrid) {}
 }
 
@@ -191,7 +189,6 @@ impl<'a> Record<'a> {
         let at = |total: f64| curve.iter().find(|row| row.crack_length >= total).map_or(total, |row| governing.length(row));
         let cross_check = growth.cross_check(last).map(|check| CrossCheck { crack_length: at(check.crack_length), ..check });
         let mut warnings = warnings(case, growth, of_growth, &curve);
-        warnings.extend(cross_check.and_then(|check| check.warning()));
         warnings.extend(of_order.into_iter().chain(of_zones));
         warnings.extend(failure);
         warnings.extend(phase_one.zip(case.fatigue.initiation).into_iter().flat_map(|(phase, law)| phase.warnings(&law)));
@@ -215,8 +212,7 @@ fn end_of_mechanics(error: Error, failure: &mut Option<String>) -> Result<Option
     match error {
         Error::LossOfStiffness => Ok(Some(StopReason::Severed)),
         Error::Mechanics(problem) => {
-            *failure =
-                Some(format!("the run ends here, since {problem}; give a smaller model.spacing_mm, or another model.solver"));
+            *failure = Some(format!("stopped: {problem}; reduce model.spacing_mm, or use another model.solver"));
             Ok(Some(StopReason::NoConvergence))
         }
         other => Err(other),
@@ -228,7 +224,7 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
     let mut warnings: Vec<String> = growth.body().and_then(|body| plate::warning(&body)).into_iter().collect();
     warnings.extend(of_growth);
     warnings.extend(growth.law().and_then(|law| laws::beyond_warning(case, law, curve)));
-    warnings.extend(plastic_zone::warnings(case, curve));
+    warnings.extend(plastic_zone::plane_warning(case, curve));
     warnings.extend(unstable_path(curve));
     warnings.extend(pin_arcs::line(case));
     let is_on_points = case.engine() == Engine::Points;
@@ -236,15 +232,15 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
     warnings
 }
 
-/// What the user should know of the local stress for which the S-N line of phase I is taken: its ratio, and yield.
+/// Warnings of the local stress that the S-N curve is applied to: its ratio, and yield.
 fn of_local_stress(case: &Case, phase: &PhaseOne) -> Vec<String> {
     let ratio = round_off(case.loading.ratio);
-    let mut words = vec![format!("phase I: the S-N line is taken for one at the stress ratio of the case, {ratio}")];
+    let mut words = vec![format!("initiation: S-N curve assumed valid at R = {ratio}")];
     let largest = phase.range / (1.0 - case.loading.ratio);
     if let Some(strength) = case.material.yield_strength.filter(|strength| largest > *strength) {
         words.push(format!(
-            "phase I: the largest local stress, {:.1} MPa if all stays elastic, is beyond the yield strength of {:.1} MPa: S-N lines of \
-             elastic stress do not hold there; take its life for a guess, or give the line of tests with the same concentration and load",
+            "initiation: elastic local stress {:.1} MPa exceeds the yield strength {:.1} MPa; an elastic S-N curve is not valid there: treat \
+             the initiation life as a guess, or give the curve of tests at the same concentration and load",
             largest / MPA,
             strength / MPA
         ));
@@ -272,8 +268,8 @@ fn unstable_path(curve: &[CurvePoint]) -> Option<String> {
     };
     (0..tips).find_map(unstable).map(|(tip, k_i, t_stress)| {
         format!(
-            "tip {tip} grows straight with T = {:.1} MPa along it at K_I = {:.2} MPa√m, where a straight path is unstable (T > 0): small causes \
-             decide where it turns, in a test as in this run, and its mirror image is as likely",
+            "tip {tip} grows straight at T = {:.1} MPa and K_I = {:.2} MPa√m, where a straight path is unstable (T > 0): the crack may turn to \
+             either side, in a test as well",
             t_stress / MPA,
             k_i / MPA_SQRT_M
         )
@@ -295,7 +291,7 @@ impl Guard {
         for (what, value) in [("cycles", now.cycles), ("crack length", now.crack_length)] {
             if !value.is_finite() {
                 let problem = format!("the {what} after a block came out as {value} (crack length {:.6e} m)", now.crack_length);
-                return Err(Error::Mechanics(format!("{problem}; give a smaller model.spacing_mm, and report this case")));
+                return Err(Error::Mechanics(format!("{problem}; reduce model.spacing_mm, and report this case")));
             }
         }
         if now.cycles < before {

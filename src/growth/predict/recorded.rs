@@ -184,8 +184,7 @@ impl Recorded {
         self.life_by(change, rate, |_, _| ())
     }
 
-    /// Life of a plate by a rate, m/cycle, of K_max under its own load, Pa√m, and the way of the tip, m; `seen` is told cycles and crack
-    /// lengths, m, at both ends of every interval that it has grown through.
+    /// Life of a plate by a rate, m/cycle, of K_max, Pa√m, and the path length, m; `seen` gets the ends of every interval.
     pub fn life_by(
         &self,
         change: Change,
@@ -330,8 +329,7 @@ fn places(case: &Case, prediction: &Prediction) -> Option<Vec<Place>> {
     Some(places)
 }
 
-/// Places before the first row, from the shortest crack on, the first row at their end: K of a handbook brought to that of the run at its
-/// start, else the power of the length by which K of the run begins.
+/// Lengths before the first row, with K by the handbook scaled to the run, else by the power law of its start.
 fn before(case: &Case, places: &[Place]) -> Vec<Place> {
     let start = places[0];
     let is_standard = case.specimen.convention == LengthConvention::MeanOfTips && case.loading.displacement().is_none();

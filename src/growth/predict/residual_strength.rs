@@ -85,7 +85,7 @@ pub fn check_strength(case: &Case) -> Result<()> {
         return Ok(());
     }
     let remedy = match case.material.yield_strength {
-        Some(_) => "give material.toughness_mpa_sqrt_m: supports on both sides of every section hide what it bears",
+        Some(_) => "give material.toughness_mpa_sqrt_m: supports on both sides of every section hide its collapse load",
         None => "give material.toughness_mpa_sqrt_m, material.yield_strength_mpa, or both",
     };
     Err(input_missing("--residual-strength", "needs a strength of the material", remedy))

@@ -100,14 +100,14 @@ pub(super) fn other_zones(case: &Case, curve: &[CurvePoint], own: &Recounted, en
         StopReason::NothingAges => "unlimited".to_owned(),
         _ => format!("{:.0} cycles", counted.curve.last().map_or(0.0, |row| row.cycles)),
     };
-    let [sense, side] = if plane == Plane::Strain { ["thicker", "unsafe"] } else { ["thinner", "safe"] };
+    let [sense, side] = if plane == Plane::Strain { ["thicker", "non-conservative"] } else { ["thinner", "conservative"] };
     let lives = other.map_or_else(String::new, |other| {
-        format!("; with zones of plane {plane} the life is {} instead of {} ({side} side)", life(&other), life(own))
+        format!("; with zones of plane {plane} the life is {} instead of {} ({side})", life(&other), life(own))
     });
     let [thickness, first, last] = [case.specimen.thickness, first, last].map(|size| size / MM);
     Some(format!(
-        "retardation: plastic zones are those of plane {}, but the plate of {thickness:.2} mm is {sense} than plane strain at the tip needs, \
-         {first:.2} mm at the start and {last:.2} mm at the end (2.5 (K_max/yield)², ASTM E399){lives}; give material.plane = \"{plane}\"",
+        "retardation: plastic zones of plane {}, but the plate of {thickness:.2} mm is {sense} than plane strain at the tip needs, \
+         {first:.2} mm at the start and {last:.2} mm at the end (2.5 (K_max/yield)², ASTM E399){lives}; set material.plane = \"{plane}\"",
         case.material.plane
     ))
 }
@@ -125,11 +125,8 @@ fn recounted(mut curve: Vec<CurvePoint>, stop: StopReason, of_front: usize) -> R
     if let [first, second, ..] = &mut curve[of_front..] {
         first.growth_rate = second.growth_rate;
     }
-    let warning = unlike(&curve[of_front..]).then(|| {
-        "retardation: cycles are those of the tip that grows most; the others keep the share of its growth that they have by the mean rates of a \
-         pass, and are not retarded by their own K"
-            .to_owned()
-    });
+    let warning = unlike(&curve[of_front..])
+        .then(|| "retardation is computed for the fastest tip only; the others keep their share of its growth".to_owned());
     Recounted { curve, stop, warning }
 }
 

@@ -19,8 +19,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// Where the run stands. Of the ends ahead the nearest counts: length or cycles asked for, rims straight on from the tips, toughness
-    /// with K² ∝ a, limit load as a straight line through growth.
+    /// Progress to the nearest end: length or cycle limit, edges straight ahead, toughness (K² ∝ a), collapse load (linear).
     pub(super) fn progress(&mut self, case: &Case, growth: &dyn CrackGrowth) -> Progress {
         let now = growth.now();
         let grown = now.growth();

@@ -179,6 +179,7 @@ def predict(
         stop_reason=result["stop_reason"],
         stop_meaning=result["stop_meaning"],
         verdict=result["verdict"],
+        verdict_kind=result["verdict_kind"],
         checks=tuple(result["checks"]),
         band=result["band"],
         error_estimate_percent=result["error_estimate_percent"],

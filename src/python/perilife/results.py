@@ -122,9 +122,11 @@ class Prediction(_Reported):
     stop_meaning: str
     """The same in words."""
     verdict: str
-    """Overall verdict."""
+    """All checks together, in words."""
+    verdict_kind: str
+    """The same by name: ``valid``, ``reservations`` or ``not_valid``."""
     checks: tuple[dict[str, Any], ...]
-    """Checks: name, verdict, effect on the life, text and remedy."""
+    """Each check with name, verdict (passed, caution, not_checked, failed), effect on the life, words and remedy."""
     band: dict[str, Any] | None
     """Life of 5, 50 and 95 % of plates, if the law has scatter."""
     error_estimate_percent: float | None

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::band::interval_words;
 use crate::chart::Size;
-use crate::checks::{Check, Side, Verdict};
+use crate::checks::{Check, Side, Validity, Verdict};
 use crate::curve::RunTables;
 use crate::pictures::curves::{a_n_svg, end_words, k_svg};
 use crate::pictures::plate::{Plate, plate_svg};
@@ -74,11 +74,10 @@ fn capital(text: &str) -> String {
 /// Life, end, validity.
 fn answer(run: &RunRecord, tables: &RunTables) -> String {
     let [_, sentence] = end_words(run.stop_reason);
-    let is = |verdict: Verdict| run.checks.iter().any(|check| check.verdict == verdict);
-    let holds = match (is(Verdict::Fails) || run.refused.is_some(), is(Verdict::Doubtful) || is(Verdict::NotChecked)) {
-        (true, _) => Some(false),
-        (false, true) => None,
-        (false, false) => Some(true),
+    let holds = match run.verdict_kind {
+        Validity::NotValid => Some(false),
+        Validity::Reservations => None,
+        Validity::Valid => Some(true),
     };
     let error = match (run.error_estimate_percent, &run.no_error_estimate) {
         (Some(percent), _) => {
@@ -267,10 +266,10 @@ fn law(run: &RunRecord) -> Vec<(&'static str, String)> {
 
 /// Conditions that do not hold, at most five, and the names of those that do.
 fn checks(run: &RunRecord) -> String {
-    let is_open = |check: &&Check| check.verdict != Verdict::Holds;
+    let is_open = |check: &&Check| check.verdict != Verdict::Passed;
     let open: Vec<&Check> = run.checks.iter().filter(is_open).collect();
     let row = |check: &&Check| {
-        let holds = if check.verdict == Verdict::Fails { Some(false) } else { None };
+        let holds = if check.verdict == Verdict::Failed { Some(false) } else { None };
         let (words, remedy) = (prose(&check.words), quoted(check.remedy.as_deref().unwrap_or("")));
         format!("<tr><td>{} {words}</td><td>{}</td><td>{remedy}</td></tr>\n", mark(holds), effect(check))
     };
@@ -297,8 +296,8 @@ fn messages(warnings: &[String]) -> String {
 
 fn effect(check: &Check) -> String {
     let side = match check.side {
-        Some(Side::Safe) => "too short",
-        Some(Side::Unsafe) => "too long",
+        Some(Side::Conservative) => "too short",
+        Some(Side::NonConservative) => "too long",
         Some(Side::Either) => "too long or too short",
         None => "",
     };

@@ -26,7 +26,7 @@ use perilife_calibration::template::refuse_table;
 use perilife_growth::case::Case;
 use perilife_growth::case::needs;
 use perilife_growth::predict::judgement::refuse_beforehand;
-use perilife_results::checks;
+use perilife_results::checks::{self, Check};
 use perilife_results::model_words::{self, mm, short};
 use perilife_results::pictures::plate::Plate;
 use perilife_results::specimen_picture::specimen_svg;
@@ -36,7 +36,7 @@ use perilife_scenes::assembly::preview as preview_scene;
 use perilife_scenes::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
 
 /// What a file asks for, checked.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 pub struct Checked {
     /// A file with mistakes gives an error.
     ok: bool,
@@ -45,7 +45,7 @@ pub struct Checked {
     pub name: String,
     #[serde(rename = "understood", serialize_with = "understood")]
     pub lines: Vec<Line>,
-    /// What the user should know.
+    pub checks: Vec<Check>,
     pub warnings: Vec<String>,
     /// Specimen, cracks, loads and supports as SVG.
     #[serde(skip)]
@@ -92,10 +92,7 @@ pub fn check(document: &Document, task: &Task) -> Result<Checked> {
         Task::Prediction { case, .. } => {
             refuse_beforehand(case).map_err(|error| document.locate(error))?;
             let mut checked = checked_case(document, "case", case, &case.warnings)?;
-            // What a life will rest on, as far as that is known before it.
-            let checks = checks::of_case(case);
-            checked.lines.push(line("verdict", checks::verdict(&checks)));
-            checked.lines.extend(checks::lines(&checks).into_iter().map(|words| line("rests on", words)));
+            checked.checks = checks::of_case(case);
             Ok(checked)
         }
         Task::Factors { case, .. } => checked_case(document, "case", case, &case.warnings),
@@ -138,18 +135,8 @@ fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: 
     let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
     let plate = Some(Plate::of(case));
     let spectrum = case.loading.spectrum.as_deref().map(curves);
-    Ok(Checked {
-        ok: true,
-        kind,
-        name: case.name.clone(),
-        lines,
-        warnings,
-        drawing,
-        plate,
-        spectrum,
-        echo: case.echo.clone(),
-        provenance,
-    })
+    let (name, echo) = (case.name.clone(), case.echo.clone());
+    Ok(Checked { ok: true, kind, name, lines, warnings, drawing, plate, spectrum, echo, provenance, ..Checked::default() })
 }
 
 /// A fit of laws has a plate only where its rates come from readings.
@@ -162,7 +149,7 @@ fn checked_laws(document: &Document, case: &LawCase) -> Checked {
     }
     let provenance = document.folder.opened().so_far();
     let (name, warnings, echo) = (case.name.clone(), case.warnings.clone(), case.echo.clone());
-    Checked { ok: true, kind: "calibration", name, lines, warnings, drawing, plate, spectrum: None, echo, provenance }
+    Checked { ok: true, kind: "calibration", name, lines, warnings, drawing, plate, echo, provenance, ..Checked::default() }
 }
 
 fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
@@ -170,7 +157,7 @@ fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
     let (name, echo, provenance) = (scene.name.clone(), scene.echo.clone(), scene.provenance.clone());
     let warnings = [&scene.warnings[..], &of_points].concat();
     let drawing = scene_drawing(scene);
-    Ok(Checked { ok: true, kind: "fracture", name, lines, warnings, drawing, plate: None, spectrum: None, echo, provenance })
+    Ok(Checked { ok: true, kind: "fracture", name, lines, warnings, drawing, echo, provenance, ..Checked::default() })
 }
 
 /// Lines about loads and supports that fit below the drawing of a scene.

@@ -88,9 +88,9 @@ pub(super) fn plate_lines(
     let counts = counts.map(|(number, name)| count(number, name)).join(", ");
     let (modulus, nu, plane) = (short(material.youngs_modulus / GPA), material.poisson_ratio, material.plane);
     vec![
-        line("specimen", format!("{}, {width} x {length} x {thickness} mm (width, length, thickness)", specimen.kind)),
+        line("specimen", format!("{}, {width} × {length} × {thickness} mm (W × L × B)", specimen.kind)),
         line(flaws, format!("{counts}{of_them}")),
-        line("material", format!("{}: E {modulus} GPa, nu {nu}, plane {plane}", material.name)),
+        line("material", format!("{}: E {modulus} GPa, ν {nu}, plane {plane}", material.name)),
     ]
 }
 
@@ -113,12 +113,12 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     let (specimen, fatigue) = (&case.specimen, &case.fatigue);
     let chosen = model_words::of_case(case, None);
     let held = match specimen.supports.first() {
-        None => "nothing held, loads in equilibrium",
-        Some(Support::Moved { .. }) => "nothing else held",
-        Some(Support::Fixed { .. }) => "held as [supports] or its kind says",
-        Some(Support::Elsewhere) => "held outside the plate",
-        Some(Support::ClampedEnds) => "rigid ends that cannot rotate",
-        Some(Support::RigidEnds) => "rigid ends that rotate about pins",
+        None => "no supports (loads balanced)",
+        Some(Support::Moved { .. }) => "no other supports",
+        Some(Support::Fixed { .. }) => "supports from [supports] or the specimen kind",
+        Some(Support::Elsewhere) => "supports outside the plate",
+        Some(Support::ClampedEnds) => "clamped grips",
+        Some(Support::RigidEnds) => "pinned grips",
     };
     let of_front = || specimen.part_through.map_or_else(|| "none for this specimen".to_owned(), |_| format!("{SOURCE}; {RANGE}"));
     let formula = handbook_beside(specimen)
@@ -129,14 +129,14 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         end += &format!("crack depth {} mm, or ", mm(case.stop.crack_depth));
     }
     if case.stop.at_break_through {
-        end += "break-through, or ";
+        end += "breakthrough, or ";
     }
     let mut lines = plate_lines(specimen, &case.material, ("crack", specimen.cracks.len(), crack_words(specimen)));
     let cycles = format!("{}; {held}", model_words::loading(case));
     lines.push(line("loading", cycles));
     lines.extend(case.loading.spectrum.iter().map(|spectrum| line("spectrum", spectrum::more_words(case, spectrum))));
     let by_points = matches!(case.model, Model::Points(_));
-    lines.extend(case.chosen.as_ref().map(|why| line("model", format!("{}, chosen: {why}", case.model.method()))));
+    lines.extend(case.chosen.as_ref().map(|why| line("model", format!("{} ({why})", case.model.method()))));
     lines.extend(by_points.then(|| line("bonds", model_words::words(&chosen, &model_words::OF_BONDS))));
     lines.push(line("points", points));
     lines.push(line("fatigue", law_words(case)));
@@ -152,12 +152,12 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
         lines.push(line("ageing", words));
     }
     lines.push(line("handbook K", formula));
-    let bears = case.stop.required.map(|factor| format!("not bearing {factor:.4} times the largest load, or "));
+    let bears = case.stop.required.map(|factor| format!("residual strength {factor:.4} times the largest load, or "));
     // So many that nobody asked for them.
     let last = if case.stop.cycles_max < 1e9 {
         format!("{} cycles", case.stop.cycles_max)
     } else {
-        "the end of plate or growth".to_owned()
+        "failure, or no further growth".to_owned()
     };
     lines.push(line("stop", format!("{end}{}{last}", bears.unwrap_or_default())));
     lines

@@ -13,7 +13,7 @@ const MARKS = {
   note: ["Remark: ", "M9 1.6L17 16H1z", "M9 6.5v4.4M9 12.6v1.6"],
   bad: ["Not valid: ", "M5.8 1h6.4L17 5.8v6.4L12.2 17H5.8L1 12.2V5.8z", "M6 6l6 6m0-6l-6 6"],
 };
-const OF_VERDICT = { holds: "ok", doubtful: "note", not_checked: "note", fails: "bad" };
+const OF_VERDICT = { passed: "ok", caution: "note", not_checked: "note", failed: "bad" };
 
 /** A small mark with its word for those who do not see it. */
 export function mark(kind) {
@@ -113,11 +113,11 @@ const line = (check) => element("li", { "data-check": check.name, "data-verdict"
   element("span", null, mark(OF_VERDICT[check.verdict] ?? "note")[1], sentence(check.words), check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)));
 
 /** Mark of a verdict. */
-export const kindOfVerdict = (verdict) => (verdict.startsWith("stands:") ? "ok" : verdict.startsWith("stands") ? "note" : "bad");
+export const kindOfVerdict = (kind) => ({ valid: "ok", not_valid: "bad" })[kind] ?? "note";
 
-function valid({ verdict, checks = [] }) {
+function valid({ verdict, verdict_kind: validity, checks = [] }) {
   if (!verdict) return element("p", { class: "quiet" }, "An earlier version of the program wrote this result.");
-  const kind = kindOfVerdict(verdict);
+  const kind = kindOfVerdict(validity);
   const [shown, rest] = [checks.slice(0, CHECKS_SHOWN), checks.slice(CHECKS_SHOWN)];
   return [element("h2", null, "Is it valid?"), element("p", { class: `verdict is-${kind}`, "data-value": "verdict" }, sentence(verdict)),
     element("ul", { class: "checks" }, shown.map(line)),

@@ -79,7 +79,7 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
       image.hidden = Boolean(result.plate) || !result.drawing;
       if (!image.hidden) await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
       spectrum.set(result.spectrum ?? null);
-      show(details, result.warnings.length > 0 && warningList(result.warnings), understood(result.understood));
+      show(details, result.warnings.length > 0 && warningList(result.warnings), understood(result.understood, result.checks));
       finish(result, "Checked: no errors.", "ok");
       return true;
     } catch (error) {
@@ -109,11 +109,11 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
 }
 
 /** What was understood: the plate and its load, what a life will rest on, and all else to be unfolded. */
-function understood({ verdict, rests_on: conditions, ...lines }) {
+function understood(lines, checks = []) {
   const pairs = (wanted) => Object.entries(lines).filter(([key]) => FIRST.includes(key) === wanted).map(([key, value]) => [sentence(words(key)), String(value)]);
   const [first, others] = [pairs(true), pairs(false)];
   return [terms(first.length > 0 ? first : others, "understood"),
-    conditions && element("ul", { class: "checks" }, conditions.split("; ").map((text) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], sentence(text))))),
+    checks.length > 0 && element("ul", { class: "checks" }, checks.filter((check) => check.verdict !== "passed").map(({ words: text }) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], text)))),
     first.length > 0 && others.length > 0 && element("details", { class: "quiet" }, element("summary", null, "All that was understood"), terms(others, "understood-all"))];
 }
 
