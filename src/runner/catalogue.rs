@@ -1,8 +1,8 @@
 //! Every kind of every key of the input files.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use perilife_base::input::{Folder, Quantity};
+use perilife_base::input::Folder;
 use perilife_base::keys::told::{self, Told};
 use perilife_base::keys::{Key, Need, Section};
 use perilife_base::kinds::KindLine;
@@ -156,23 +156,30 @@ pub fn stub() -> String {
     format!("{head}{}", told().iter().map(Told::stub).collect::<String>().trim_end().to_owned() + "\n")
 }
 
-/// Such lines as one object, with the constants of every growth law and model of retardation: keys of `[fatigue]` and `[loading]`, units, and whether a
-/// case has to give them.
+/// Such lines as one object, with what forms are made from: the schema, traits of specimens, and the constants of every growth law and model of
+/// retardation (keys of `[fatigue]` and `[loading]`, and whether a case has to give them).
 pub fn json(lines: Vec<(String, String, String)>) -> Value {
     let kinds = lines.into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
-    let constant = |key: &str, quantity: &Quantity, needed: bool| json!({ "key": key, "unit": quantity.unit, "what": quantity.what, "needed": needed });
     let law = |law: GrowthLawKind| {
-        let of_law = |own: &Constant| constant(own.key, &own.quantity, own.default.is_none());
+        let of_law = |own: &Constant| json!({ "key": own.key, "needed": own.default.is_none() });
         json!({ "name": law.name(), "meaning": law.meaning(), "constants": law.0.constants.iter().map(of_law).collect::<Vec<_>>() })
     };
     let retardation = |model: RetardationKind| {
         // A threshold of the law, which it may have, stands for a constant.
-        let of_model = |own: &Retarding| constant(own.key, &own.quantity, (own.default)(Plane::Stress, Some(1.0)).is_none());
+        let needed = |own: &Retarding| (own.default)(Plane::Stress, Some(1.0)).is_none();
+        let of_model = |own: &Retarding| json!({ "key": own.key, "needed": needed(own) });
         let constants: Vec<Value> = model.0.constants.iter().map(of_model).collect();
         json!({ "name": model.name(), "meaning": model.meaning(), "constants": constants })
     };
+    let traits = |kind: &SpecimenKind| {
+        let is_part_through = kind.part_through().is_some();
+        json!({ "name": kind.name(), "takes_force": kind.takes_force(), "takes_bending": kind.takes_bending(), "is_part_through": is_part_through })
+    };
+    let beside: Map<String, Value> = beside().iter().map(|told| (told.section.clone(), told.schema())).collect();
     json!({
         "kinds": kinds.collect::<Vec<_>>(),
+        "specimens": SpecimenKind::ALL.iter().map(traits).collect::<Vec<_>>(),
+        "beside": beside,
         "laws": GrowthLawKind::all().map(law).collect::<Vec<_>>(),
         "form": schema(),
         "retardations": RetardationKind::all().map(retardation).collect::<Vec<_>>(),

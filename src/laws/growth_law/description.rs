@@ -102,16 +102,19 @@ const POWER: &str = "rates over a wide range of ΔK tell it";
 
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
 /// Level C of a law.
-pub(super) const RATE: Quantity = Quantity { si: MM_PER_CYCLE, ..number("a rate in mm/cycle", 1e-60, 1e3) };
+pub(super) const fn rate_of(what: &'static str) -> Quantity {
+    Quantity { unit: "mm/cycle", si: MM_PER_CYCLE, ..number(what, 1e-60, 1e3) }
+}
 /// K_c, which several laws have.
 pub const K_C: Constant = Constant {
     role: Role::Toughness,
-    ..Constant::new("k_c_mpa_sqrt_m", "k_c", INTENSITY).searched([-6.9, 2.9], [-2.0, 0.5], NEAR_FRACTURE, 1.0)
+    ..Constant::new("k_c_mpa_sqrt_m", "k_c", TOUGHNESS).searched([-6.9, 2.9], [-2.0, 0.5], NEAR_FRACTURE, 1.0)
 };
+const TOUGHNESS: Quantity = Quantity { what: "a fracture toughness Kc", ..INTENSITY };
 /// Walker's exponent, which several laws have.
 pub const GAMMA: Constant =
     Constant::new("walker_gamma", "gamma", OF_WALKER).searched([0.0, 2.0], [0.5; 2], RATIOS, f64::INFINITY);
-const OF_WALKER: Quantity = number("a Walker exponent", 0.0, 2.0);
+const OF_WALKER: Quantity = number("a Walker exponent γ", 0.0, 2.0);
 
 impl Constant {
     /// A constant that a case has to give and no search looks for.
@@ -133,8 +136,8 @@ impl Constant {
     }
 
     /// The exponent of ΔK.
-    pub const fn exponent(key: &'static str, name: &'static str) -> Self {
-        let constant = Constant::new(key, name, number("an exponent", 0.5, 20.0)).searched([0.5, 20.0], [3.0; 2], POWER, 1.0);
+    pub const fn exponent(key: &'static str, name: &'static str, what: &'static str) -> Self {
+        let constant = Constant::new(key, name, number(what, 0.5, 20.0)).searched([0.5, 20.0], [3.0; 2], POWER, 1.0);
         Constant { is_exponent: true, ..constant }
     }
 

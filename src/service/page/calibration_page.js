@@ -19,7 +19,7 @@ const SPECIMENS_APART = 6;
 export async function openCalibration(root, id, signal) {
   const job = await getJson(`/v1/calibrations/${encodeURIComponent(id)}`, signal);
   const address = `#/predict?law=${encodeURIComponent(id)}`;
-  const use = element("a", { class: "button primary", href: address, hidden: true, "data-action": "use-law" }, "Predict a plate with this law");
+  const use = element("a", { class: "button primary", href: address, hidden: true, "data-action": "use-law" }, "Use this law");
   const head = createJobHead(job, { actions: [use] });
   const body = element("div", { class: "job-body" });
   showPage(root, head.node, body);
@@ -49,7 +49,7 @@ export async function openCalibration(root, id, signal) {
     show(body, lawCard(whole.summary),
       element("div", { class: "pictures" }, element("div", { class: "card figure" }, curves), has("rates.csv") && element("div", { class: "card figure" }, rates)),
       element("div", { class: "two" }, element("section", { class: "card", "aria-label": "Constants" }, element("h2", null, "Constants"), constants(whole.summary)),
-        element("div", { class: "stack" }, readingsLeftOut(whole.summary), specimens(whole.summary), warnings.length > 0 && warningList(warnings, "All that was noticed"))),
+        element("div", { class: "stack" }, readingsLeftOut(whole.summary), specimens(whole.summary), warnings.length > 0 && warningList(warnings, "Messages"))),
       downloadList(whole), inputText(whole));
     if (has("fit.json")) {
       getText(`${pathOf(whole)}/files/fit.json`, signal).then((text) => head.describe(describe(JSON.parse(text))), () => {});
@@ -89,15 +89,15 @@ function scatterBand(quantiles) {
     x: quantiles[low], y: quantiles.crack_length_mm, x2: quantiles[high], y2: quantiles.crack_length_mm }];
 }
 
-/** Readings that do not count, crossed out. */
+/** Excluded readings, crossed out. */
 function leftOut(readings) {
   const out = (readings?.cycles ?? []).map((_, row) => row).filter((row) => readings.left_out?.[row]);
-  return out.length > 0 ? [{ id: "left-out", name: "left out", kind: "crosses", x: out.map((row) => readings.cycles[row]), y: out.map((row) => readings.crack_length_mm[row]) }] : [];
+  return out.length > 0 ? [{ id: "left-out", name: "excluded", kind: "crosses", x: out.map((row) => readings.cycles[row]), y: out.map((row) => readings.crack_length_mm[row]) }] : [];
 }
 
-/** What was left out, each with its reason. */
+/** Excluded readings, each with its reason. */
 function readingsLeftOut({ left_out: windows = [] }) {
-  return windows.length > 0 && section("left-out", "Readings left out", element("ul", null, windows.map((one) =>
+  return windows.length > 0 && section("left-out", "Excluded readings", element("ul", null, windows.map((one) =>
     element("li", null, `${placeOf(one)}: ${one.reason}`))));
 }
 
@@ -107,7 +107,7 @@ function drawFit(place, fit, curves) {
     label: "Crack length against cycles: readings, fitted curve and its 95 % band",
     x: { label: "Cycles N", format: cycles, from: 0 },
     y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
-    note: "Thin lines: specimens. Circles: readings, of many specimens their median. Blue: the fitted law with its band.",
+    note: "Thin lines: specimens. Circles: readings (median of many). Blue: fitted law with 95 % band.",
   });
   const median = "median";
   const names = [...new Set(fit.specimen)];
@@ -152,20 +152,20 @@ function drawRates(place, rates, s) {
   return chart;
 }
 
-/** The law first: its rate where the readings fix it best, its exponent, where it holds. */
+/** The law first: its rate at the best-determined point, its exponent, its tested range. */
 function lawCard(s) {
   const remarks = misfit(s.misfit_at_ends);
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
-    element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}, where the readings fix it best`),
+    element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)} ${STRESS_INTENSITY} (best-determined point)`),
       element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), element("small", null, "mm/cycle")),
       element("p", { class: "beside" }, element("strong", null, `± ${percent(s.rate_at_pivot_relative_error, 1)}`), " (one standard error)"),
-      element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}, quoted only together with m.`)),
+      element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}; always quote C with m.`)),
     element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, fixed(s.paris_m, 2)),
       terms([
         s.curve && ["Law", "curve of the rates; C and m are the best power law"],
         Number.isFinite(s.paris_m_error) && ["±", fixed(s.paris_m_error, 2)],
         ["Life", `measured ${cycles(s.life_measured)}, fitted ${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
-        ["Misfit", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
+        ["Fit error", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
     element("div", null, element("h2", null, "Is it valid?"),
       element("p", { class: "verdict" }, `For ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}`),
       element("ul", { class: "checks" }, remarks.map(([name, text]) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], element("b", null, `${name}: `), text))))));
@@ -179,7 +179,7 @@ function constants(s) {
   const horizon = Number.isFinite(s.horizon_mm) ? `, at a horizon of ${plain(s.horizon_mm, 5)} mm` : "";
   const atPivot = `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
   const rows = [
-    [name("Rate at the pivot", atPivot), scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
+    [name("Rate at reference ΔK", atPivot), scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
     [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error, 4)],
     [name("Paris C", `${unitShown("mm/cycle")}, at ΔK = 1 ${unitShown(STRESS_INTENSITY)}`), scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 4), ""],
     [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error, 4)],
@@ -189,7 +189,7 @@ function constants(s) {
   return element("div", { class: "stack tight" },
     table("Fitted constants", columns, rows, { hidden: true, name: "constants" }),
     element("p", { class: "hint" },
-      "C and m are correlated: compare and quote the rate at the pivot, where the readings fix it best, together with m."),
+      "C and m are correlated: compare and quote the rate at the reference ΔK (best-determined point) together with m."),
     terms([
       ["Range of ΔK", `${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`],
       ["Life measured", `${cycles(s.life_measured)} cycles`],
@@ -206,7 +206,7 @@ function misfit({ low = null, high = null } = {}) {
     const [faster, longer] = share < 0 ? ["slower", "short"] : ["faster", "long"];
     const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 3)} to ${significant(at.delta_k_to_mpa_sqrt_m, 3)}`;
     const size = percent(Math.abs(share), 1);
-    return [name, `grows ${size} ${faster} than the law at ${range}: a life spent there is computed ${size} too ${longer}`];
+    return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer}`];
   };
   return [["First readings", low], ["Last readings", high]].filter(([, at]) => at).map(([name, at]) => end(name, at));
 }

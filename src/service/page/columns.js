@@ -5,8 +5,8 @@ import { element, table, uniqueId } from "./dom.js";
 import { cycles, fixed, parseNumber } from "./format.js";
 
 const KEYS = [
-  ["", "not read"], ["cycles", "cycles"], ["length", "crack length"], ["specimen", "specimen"],
-  ["force_max", "largest load"], ["force_min", "smallest load"], ["force_range", "range of load"], ["stress_ratio", "stress ratio"],
+  ["", "ignore"], ["cycles", "cycles"], ["length", "crack length"], ["specimen", "specimen"],
+  ["force_max", "maximum load"], ["force_min", "smallest load"], ["force_range", "range of load"], ["stress_ratio", "stress ratio"],
 ];
 
 /** A cell as it stands there, and what it is taken for where that is something else. */

@@ -125,7 +125,7 @@ export function bytes(count) {
 }
 
 /** Kinds that are called otherwise than their key. */
-const CALLED = { element_free_galerkin: "nodes", peridynamics: "points and bonds", ring: "ring around the tip" };
+const CALLED = { element_free_galerkin: "nodes", peridynamics: "points and bonds", ring: "interaction integral", nasgro: "NASGRO", library: "library growth data" };
 
 /** A key or kind in words: crack_length_reached becomes "crack length reached". */
 export function words(name) {

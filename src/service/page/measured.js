@@ -1,4 +1,4 @@
-// Measured files: reads them through the service, says what was recognised, shows points and wrong lines.
+// Measured files: reads them through the service, shows what was recognized, readings and wrong lines.
 
 import { postForm } from "./api.js";
 import { createChart } from "./chart.js";
@@ -10,12 +10,12 @@ import { editInPlace } from "./job.js";
 import { createLeftOut } from "./left_out.js";
 import { problemBox } from "./notices.js";
 
-const LENGTHS = { mm: "millimetres", inch: "inches", m: "metres" };
+const LENGTHS = { mm: "millimeters", inch: "inches", m: "meters" };
 const CYCLES = { cycles: "single cycles", kilocycles: "thousands of cycles", megacycles: "millions of cycles" };
 const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen",
   paired: "two columns for every specimen" };
 
-/** `onChange` is told whenever other curves stand there. Gives {files(), said(), window(), load(files)}. */
+/** `onChange` is called when the curves change. Gives {files(), said(), window(), load(files)}. */
 export function createMeasured(onChange) {
   const root = byId("measured");
   const input = byId("measured-input");
@@ -106,8 +106,8 @@ export function createMeasured(onChange) {
     const summary = `${count(found.length, "specimen")} (${list}), ${count(readings, "reading")}`;
     return element("div", { class: "file-card", "data-file": file },
       element("div", null, element("h3", null, file),
-        element("p", null, found.length > 0 ? `${summary}: ${ranges(found)}.` : "No curve could be read."),
-        words && element("p", { class: "quiet" }, `Recognised: ${words}.`),
+        element("p", null, found.length > 0 ? `${summary}: ${ranges(found)}.` : "No readings found."),
+        words && element("p", { class: "quiet" }, `Recognized: ${words}.`),
         columns.show(answered), found.length > 0 && out.readings(answered)),
       button("Remove", () => {
         files = files.filter((one) => one.name !== file);
@@ -138,20 +138,20 @@ export function createMeasured(onChange) {
       one.line ? button(`${one.file}:${one.line}`, () => jump(one), { class: "link" }) : one.file,
       one.key ?? "", one.value ?? "", one.problem ?? "", remedyOf(one), isOfColumns(one) ? "" : takeOut(one),
     ]);
-    const columns = ["File and line", "Column", "Value", "Problem", "Remedy", "Do"].map((title) => ({ title }));
+    const columns = ["File and line", "Column", "Value", "Problem", "Fix", "Action"].map((title) => ({ title }));
     return element("div", { class: "notice bad", role: "alert", "data-problems": list.length },
-      element("h3", null, list.length >= 100 ? "The first 100 problems" : count(list.length, "problem")),
-      element("p", null, list.some(isOfColumns) && "Say above the columns what they are, and under “What the files leave open” which units hold; or correct the file. ",
-        !list.some(isOfColumns) && "Take a line out with its reason, or correct the file and drop it again under the same name.", curves().length > 0 && " The chart shows the readings that are right."),
+      element("h3", null, list.length >= 100 ? "First 100 problems" : count(list.length, "problem")),
+      element("p", null, list.some(isOfColumns) && "Assign columns above and units under “Units and format”, or correct the file. ",
+        !list.some(isOfColumns) && "Exclude a line (with a reason), or correct the file and drop it again.", curves().length > 0 && " The chart shows the readings that are right."),
       table("Problems of the measured files", columns, rows, { hidden: true, name: "problems" }));
   }
 
   /** A line that is wrong stays in the file as it was dropped: `leave_out` names it, its value and the reason. */
   function takeOut({ file, line, value }) {
     if (!line) return "";
-    const place = element("span", null, button("Leave out", () => editInPlace(place, { label: `Why line ${line} does not count`, value: "",
+    const place = element("span", null, button("Exclude", () => editInPlace(place, { label: `Reason to exclude line ${line}`, value: "",
       save: (reason) => out.addRow({ file, line, value: value ?? '""', reason }),
-    }), { class: "button small", "data-action": "take-out", "aria-label": `Leave out line ${line}` }));
+    }), { class: "button small", "data-action": "take-out", "aria-label": `Exclude line ${line}` }));
     return place;
   }
 
@@ -186,7 +186,7 @@ export function createMeasured(onChange) {
       y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
     });
     const all = answer.flatMap((file) => file.curves.map((curve) => ({ file: file.file, curve })));
-    const isMany = all.length > 6; // dozens are told apart by nobody
+    const isMany = all.length > 6; // more have no tone of their own
     chart.set([...all.map(({ file, curve }, index) => ({
       id: `${file}/${curve.specimen}`, name: isMany ? undefined : curve.specimen, kind: isMany ? "thin" : "points", x: curve.cycles, y: curve.crack_length_mm, tone: isMany ? 2 : 2 + index,
     })), ...out.marks(all.map(({ curve }) => curve))]);

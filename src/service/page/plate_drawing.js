@@ -1,6 +1,7 @@
 // A plate to draw in, to scale: outline, holes, notches, cracks.
 
 import { button, element, shape, show } from "./dom.js";
+import { unitShown } from "./units.js";
 
 const MARGIN = 30;
 const HEIGHT_MAX = 430;
@@ -136,7 +137,7 @@ export function createStage(container, { label, role = "img", drawMore }) {
     const end = Number(svg.getAttribute("height")) - 4;
     return shape("g", { class: "plate-rule" },
       shape("path", { d: `M4 ${end - 5}v5h${best * view.scale}v-5` }),
-      shape("text", { x: 8 + best * view.scale, y: end }, `${best} mm`));
+      shape("text", { x: 8 + best * view.scale, y: end }, `${best} ${unitShown("mm")}`));
   }
 
   return stage;

@@ -13,7 +13,7 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
   // In a plate the length of the crack of one tip is asked for, first that which ends the life; the sum of all is no length anyone measures.
   const tips = (job.summary.tips ?? []).map((tip, index) => ({ ...tip, index })).filter((tip) => tip.crack !== null && tip.crack !== undefined);
   const choice = lead !== null && tips.length > 1 ? element("select", { id: "today-tip" },
-    tips.map((tip) => element("option", { value: String(tip.index), selected: tip.index === lead }, `Tip ${tip.index}${tip.index === lead ? ", ends the life" : ""}`))) : null;
+    tips.map((tip) => element("option", { value: String(tip.index), selected: tip.index === lead }, `Tip ${tip.index}${tip.index === lead ? " (governing)" : ""}`))) : null;
   const lengthsOf = (index) => {
     const same = tips.filter((tip) => tip.crack === tips[index].crack);
     return columns.cycles.map((_, row) => same.reduce((sum, tip) => sum + columns[`tip${tip.index}_growth_mm`][row], tips[index].crack_length_initial_mm));
@@ -54,7 +54,7 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
         // Rounded down: an interval is a promise.
         ["Inspection interval", element("span", null, value("inspection_interval_cycles",
           band ? deserved(got.inspection_interval_cycles, band, Math.floor) : cycles(Math.floor(got.inspection_interval_cycles))), inPasses)],
-        ["Used so far", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
+        ["Life used", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
       ], "remaining"));
     } catch (error) {
       if (error.name !== "AbortError") show(answer, problemBox(error, error.passes ? ask : null));
@@ -80,8 +80,8 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
     element("div", { class: "columns" },
       element("div", { class: "fields" },
         choice && field("Crack tip", "", choice),
-        field(lead === null ? "Crack length today" : "Length of its crack today", "mm", length, hint),
-        field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor; without a band remaining life / factor"))),
+        field(lead === null ? "Crack length today" : "Current crack length", "mm", length, hint),
+        field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor (median if no band)"))),
       answer));
   return {
     node,

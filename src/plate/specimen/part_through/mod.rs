@@ -47,7 +47,7 @@ pub struct Description {
     /// F over φ.
     tension: Factor,
     /// H F over φ, where the source has it.
-    bending: Option<Factor>,
+    pub(super) bending: Option<Factor>,
     limits: &'static [Limit],
 }
 
