@@ -134,7 +134,7 @@ fn a_killed_scene_goes_on_to_the_same_files() {
         (&kept, "loading.velocity_mm_s=5001", "run.ckpt: belongs to another scene"),
         (&damaged, "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
         (&kept[..kept.len() - 1], "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
-        (&older, "loading.velocity_mm_s=5000", "another version than this"),
+        (&older, "loading.velocity_mm_s=5000", "; this is "),
         (b"perilife checkpoint\n", "loading.velocity_mm_s=5000", "run.ckpt: is no checkpoint of a scene of this program"),
     ];
     for (bytes, set, words) in refused {

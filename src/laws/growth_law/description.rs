@@ -89,16 +89,17 @@ pub struct Constant {
     pub bounds: [f64; 2],
     /// Where searches start, of its variable.
     pub starts: [f64; 2],
-    /// Which rates tell it.
+    /// Which rates it needs.
     pub told_by: &'static str,
     /// Standard error above which it is not known: a share of its value, or an absolute one where ratios tell it.
     pub error_max: f64,
 }
 
-pub(super) const NEAR_FRACTURE: &str = "rates near fracture tell it";
-pub(super) const NEAR_THRESHOLD: &str = "rates near the threshold tell it";
-pub(super) const RATIOS: &str = "rates at several stress ratios tell it";
-const POWER: &str = "rates over a wide range of ΔK tell it";
+pub(super) const NEAR_FRACTURE: &str = "needs rates near fracture";
+pub(super) const NEAR_THRESHOLD: &str = "needs rates near the threshold";
+pub(super) const RATIOS: &str = "needs rates at several stress ratios";
+pub(super) const RATIOS_NEAR_THRESHOLD: &str = "needs rates near the threshold at several stress ratios";
+const POWER: &str = "needs rates over a wide range of ΔK";
 
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
 /// Level C of a law.
@@ -146,9 +147,9 @@ impl Constant {
         Constant { bounds, starts, told_by, error_max, ..self }
     }
 
-    /// Whether only rates at several stress ratios tell it.
+    /// Whether it needs rates at several stress ratios.
     pub fn is_told_by_ratios(&self) -> bool {
-        self.told_by.contains("several stress ratios")
+        [RATIOS, RATIOS_NEAR_THRESHOLD].contains(&self.told_by)
     }
 
     /// Whether several laws have it.

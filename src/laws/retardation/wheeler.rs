@@ -12,7 +12,7 @@ pub static MODEL: Description = Description {
         key: "wheeler_exponent",
         quantity: number("a Wheeler exponent m", 0.0, 10.0),
         default: |_, _| None,
-        remedy: "give that of tests with overloads, 1 to 2 for many aluminium alloys",
+        remedy: "fit to overload tests; 1 to 2 for many aluminum alloys",
     }],
     rate: Some(|constants, law, now, zone| (now.size / (zone.end() - now.a)).powf(constants[0]) * law.rate(now.k_max, now.ratio)),
     underload: "does not know underloads",

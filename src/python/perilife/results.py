@@ -31,7 +31,7 @@ class Progress:
     crack_length_mm: float | None
     """Crack length."""
     stage: str | None
-    """What is done before there is a row: laying points, building the solver, ..."""
+    """What is done before there is a row: creating points, building the solver, ..."""
 
 
 @dataclass(frozen=True)

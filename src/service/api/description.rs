@@ -33,8 +33,8 @@ pub fn complete(handlers: &OpenApi) -> Value {
     // Without failure: its keys are text.
     let mut api = serde_json::to_value(handlers).unwrap_or_default();
     for (path, id, summary, answer) in [
-        ("/healthz", "health", "Whether the process answers at all.", "It does"),
-        ("/readyz", "ready", "Whether it can take jobs and show results: the store answers.", "It can"),
+        ("/healthz", "health", "Liveness.", "It does"),
+        ("/readyz", "ready", "Readiness.", "It can"),
         ("/metrics", "metrics", "What it counts, in the text format of Prometheus.", "Names and numbers, a line each"),
     ] {
         let text = json!({ "text/plain": { "schema": { "type": "string" } } });
@@ -138,7 +138,7 @@ fn complete_response(status: &str, response: &mut Value) {
     match status {
         "401" => response["headers"]["WWW-Authenticate"] = json!({ "schema": { "type": "string" } }),
         "429" | "503" => {
-            let about = "Seconds after which another try makes sense";
+            let about = "Retry after, s";
             response["headers"]["Retry-After"] = json!({ "description": about, "schema": { "type": "integer" } });
         }
         // A file of whatever kind; the first is what clients in typed languages take it for.
@@ -167,7 +167,7 @@ fn words(status: &str) -> &'static str {
         "403" => "The role of the token does not allow it, or a page of another origin asks",
         "404" => "There is no such thing",
         "408" => "The body did not come in time",
-        "409" => "It clashes with what is there",
+        "409" => "Conflict",
         "413" => "More than this server takes, which `/v1/service` tells",
         "415" => "The body is of a type that is not taken",
         "422" => "Wrong input: `detail` says what is wrong, `input` where it stands and what would be right",

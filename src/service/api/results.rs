@@ -206,7 +206,7 @@ pub async fn remaining(
     let (rows, left) = (Row::of_table(&table)?, curve::left_of_table(&table)?);
     let summary = job_of(&app, "predictions", &id).await?.summary;
     if summary.as_ref().is_some_and(|summary| summary["life_cycles"].is_null()) {
-        return Err(Problem::conflict("the cracks stand still under these loads: the life is unlimited"));
+        return Err(Problem::conflict("unlimited life: no crack grows under these loads"));
     }
     if let Some(refused) = summary.as_ref().and_then(|summary| summary["refused"].as_str()) {
         return Err(Problem::conflict(format!("the run has no life: {refused}")));

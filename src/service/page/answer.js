@@ -56,7 +56,7 @@ export function lifeShown(s) {
 }
 
 function large(s) {
-  const value = (text, unit) => element("p", { class: "life", "data-value": "life_cycles" }, text, unit && element("small", null, unit));
+  const value = (text, unit) => element("p", { class: "life", "data-value": "life_cycles" }, text, unit && [" ", element("small", null, unit)]);
   const said = (title, text, more) => [element("h2", null, title), element("p", { class: "life words", "data-value": "life_cycles" }, text), element("p", { class: "beside" }, more)];
   const [from, to] = lengthsOf(s);
   if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, whyRefused(s)));
@@ -74,7 +74,7 @@ function large(s) {
 /** A fleet is its 5 % and median life; the run is one plate. */
 function ofFleet({ plates, life_cycles: { words: said } }, run) {
   const [low, middle, high] = [said.p05, said.p50, said.p95].map((text) => (Number.isFinite(Number(text)) ? cycles(Math.round(Number(text))) : text));
-  return [element("h2", null, "Life of the fleet, 5 % of plates"), element("p", { class: "life", "data-value": "fleet_p05" }, low, element("small", null, "cycles")),
+  return [element("h2", null, "Life of the fleet, 5 % of plates"), element("p", { class: "life", "data-value": "fleet_p05" }, low, " ", element("small", null, "cycles")),
     element("p", { class: "beside" }, `Median ${middle}, 95 % ${high} cycles (${count(plates, "plate")})`),
     element("p", { class: "quiet" }, `This run, the plate of the case alone: ${run} cycles`)];
 }

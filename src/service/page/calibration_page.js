@@ -56,7 +56,7 @@ export async function openCalibration(root, id, signal) {
     }
     loadInto(curves, async () => {
       const [fit, band, quantiles] = await Promise.all(["fit_curves.csv", "fit_band.csv", "quantiles.csv"].map(read));
-      charts.push(drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band), ...leftOut(await read("readings.csv"))]));
+      charts.push(drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band), ...leftOut(await read("readings.csv"), fit)]));
     });
     if (has("rates.csv")) loadInto(rates, async () => charts.push(drawRates(rates, await read("rates.csv"), whole.summary)));
   }
@@ -89,11 +89,17 @@ function scatterBand(quantiles) {
     x: quantiles[low], y: quantiles.crack_length_mm, x2: quantiles[high], y2: quantiles.crack_length_mm }];
 }
 
-/** Excluded readings, crossed out. */
-function leftOut(readings) {
-  const out = (readings?.cycles ?? []).map((_, row) => row).filter((row) => readings.left_out?.[row]);
-  return out.length > 0 ? [{ id: "left-out", name: "excluded", kind: "crosses", x: out.map((row) => readings.cycles[row]), y: out.map((row) => readings.crack_length_mm[row]) }] : [];
+/** Readings that were not fitted: those outside the fit window as thin marks, excluded ones crossed out. */
+function leftOut(readings, fit) {
+  const out = (readings?.cycles ?? []).map((_, row) => [readings.cycles[row], readings.crack_length_mm[row]]).filter((_, row) => readings.left_out?.[row]);
+  const [from, to] = [Math.min(...fit.crack_length_mm), Math.max(...fit.crack_length_mm)];
+  const isOutside = ([, a]) => a < from - 1e-9 || a > to + 1e-9;
+  const series = (id, name, more, points) => points.length > 0 && { id, name, ...more, x: points.map((point) => point[0]), y: points.map((point) => point[1]) };
+  return [series("outside", "outside the window", { kind: "points", tone: 7 }, out.filter(isOutside)), series("left-out", "excluded", { kind: "crosses" }, out.filter((point) => !isOutside(point)))].filter(Boolean);
 }
+
+/** A value to the second digit of its error. */
+const withError = (value, error) => fixed(value, error > 0 ? Math.min(4, Math.max(2, 1 - Math.floor(Math.log10(error)))) : 2);
 
 /** Excluded readings, each with its reason. */
 function readingsLeftOut({ left_out: windows = [] }) {
@@ -140,13 +146,13 @@ function drawRates(place, rates, s) {
     name: "rates", title: "Growth rate over ΔK", label: "Growth rate against range of stress intensity: readings and fitted law, logarithmic axes",
     x: { label: "ΔK", unit: STRESS_INTENSITY, scale: "log", format: (value) => significant(value, 4) },
     y: { label: "da/dN", unit: "mm/cycle", scale: "log", format: (value) => scientific(value, 3) },
-    note: "Circles: rates of the readings. Blue: the fitted law, drawn only where it was measured.",
+    note: "Circles: rates of the readings. Blue: fitted law in the tested ΔK range.",
   });
   const pairs = rates.delta_k_mpa_sqrt_m.map((k, index) => [k, rates.da_dn_mm_per_cycle[index]]).filter(([k, rate]) => k > 0 && rate > 0);
   const law = fittedLaw(s);
   chart.set([
     { id: "rates", name: "readings", kind: "points", tone: 2, x: pairs.map((pair) => pair[0]), y: pairs.map((pair) => pair[1]) },
-    { id: "pivot", name: "pivot", kind: "points", tone: 0, x: [s.pivot_delta_k_mpa_sqrt_m], y: [s.rate_at_pivot_mm_per_cycle] },
+    { id: "pivot", name: "reference ΔK", kind: "points", tone: 0, x: [s.pivot_delta_k_mpa_sqrt_m], y: [s.rate_at_pivot_mm_per_cycle] },
     { id: "law", name: "fitted law", kind: "line", tone: 0, x: law.map((point) => point[0]), y: law.map((point) => point[1]) },
   ]);
   return chart;
@@ -157,16 +163,16 @@ function lawCard(s) {
   const remarks = misfit(s.misfit_at_ends);
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
     element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)} ${STRESS_INTENSITY} (best-determined point)`),
-      element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), element("small", null, "mm/cycle")),
+      element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), " ", element("small", null, "mm/cycle")),
       element("p", { class: "beside" }, element("strong", null, `± ${percent(s.rate_at_pivot_relative_error, 1)}`), " (one standard error)"),
       element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}; always quote C with m.`)),
-    element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, fixed(s.paris_m, 2)),
+    element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, withError(s.paris_m, s.paris_m_error)),
       terms([
         s.curve && ["Law", "curve of the rates; C and m are the best power law"],
-        Number.isFinite(s.paris_m_error) && ["±", fixed(s.paris_m_error, 2)],
+        Number.isFinite(s.paris_m_error) && ["±", significant(s.paris_m_error, 2)],
         ["Life", `measured ${cycles(s.life_measured)}, fitted ${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
         ["Fit error", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
-    element("div", null, element("h2", null, "Is it valid?"),
+    element("div", null, element("h2", null, "Validity"),
       element("p", { class: "verdict" }, `For ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}`),
       element("ul", { class: "checks" }, remarks.map(([name, text]) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], element("b", null, `${name}: `), text))))));
 }
@@ -174,15 +180,15 @@ function lawCard(s) {
 function constants(s) {
   // An exponent that was not fitted has no error of this fit.
   const isFitted = (s.p_source ?? "fitted") === "fitted";
-  const error = (value, decimals) => (isFitted && Number.isFinite(value) ? `± ${fixed(value, decimals)}` : words(isFitted ? "" : s.p_source));
+  const error = (value) => (isFitted && Number.isFinite(value) ? `± ${significant(value, 2)}` : words(isFitted ? "" : s.p_source));
   const name = (text, unit) => [text, element("span", { class: "row-unit" }, unit)];
   const horizon = Number.isFinite(s.horizon_mm) ? `, at a horizon of ${plain(s.horizon_mm, 5)} mm` : "";
   const atPivot = `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
   const rows = [
     [name("Rate at reference ΔK", atPivot), scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
-    [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error, 4)],
+    [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error)],
     [name("Paris C", `${unitShown("mm/cycle")}, at ΔK = 1 ${unitShown(STRESS_INTENSITY)}`), scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 4), ""],
-    [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error, 4)],
+    [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error)],
     [name("Bond constant A", `1/cycle${horizon}`), scientific(s.a, 4), ""],
   ];
   const columns = [{ title: "Constant" }, { title: "Value", numeric: true }, { title: "Std. error", numeric: true }];
@@ -206,7 +212,7 @@ function misfit({ low = null, high = null } = {}) {
     const [faster, longer] = share < 0 ? ["slower", "short"] : ["faster", "long"];
     const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 3)} to ${significant(at.delta_k_to_mpa_sqrt_m, 3)}`;
     const size = percent(Math.abs(share), 1);
-    return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer}`];
+    return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer} (${longer === "short" ? "conservative" : "non-conservative"})`];
   };
   return [["First readings", low], ["Last readings", high]].filter(([, at]) => at).map(([name, at]) => end(name, at));
 }

@@ -46,7 +46,7 @@ function factorsOf({ tips = [] }) {
   return [
     element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
       element("div", null, element("h2", null, `K of tip ${first.number} at maximum load, by ${words(first.method)}`),
-        element("p", { class: "life", "data-value": "k_i" }, figure(first.k_i_mpa_sqrt_m), element("small", null, "MPa√m"))),
+        element("p", { class: "life", "data-value": "k_i" }, figure(first.k_i_mpa_sqrt_m), " ", element("small", null, "MPa√m"))),
       element("div", null, element("h2", null, "Other values"), terms([
         ["K II", `${figure(first.k_ii_mpa_sqrt_m)} MPa√m`], ["T-stress", `${figure(first.t_stress_mpa)} MPa`],
         ["Handbook", typeof handbook === "number" ? `${figure(handbook)} MPa√m` : "no formula for this plate"]], "factors")),
@@ -64,7 +64,7 @@ function livesOf({ life_cycles: lives, cases, succeeded, failed, missing, unlimi
   const open = failed + missing;
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
     element("div", null, element("h2", null, `Life, median of ${count(cases, "case")}`),
-      element("p", { class: "life", "data-value": "life_cycles" }, figure(lives.p50), element("small", null, "cycles")),
+      element("p", { class: "life", "data-value": "life_cycles" }, figure(lives.p50), " ", element("small", null, "cycles")),
       element("p", { class: "beside" }, "90 % of cases: ", element("strong", null, `${figure(lives.p05)} to ${figure(lives.p95)}`))),
     element("div", null, element("h2", null, "Varied"), terms([
       ["Design", `${words(design?.design?.kind)}${(design?.vary ?? []).length > 0 ? `: ${design.vary.map((one) => words(one.key.split(".").pop())).join(", ")}` : ""}`], ["Min, max", `${figure(lives.least)} and ${figure(lives.most)}`],

@@ -95,7 +95,7 @@ export function createMaterial(form, materials) {
   function arrange() {
     const chosen = materials.find((material) => material.name === name.input.value);
     const has = Object.values(fields.by).filter(({ key }) => chosen?.[key.metric]);
-    const shown = ({ metric }) => plain(chosen[metric].value / keyOf("material", metric).factor);
+    const shown = ({ metric }) => plain(chosen[metric].value / keyOf("material", metric).factor, 4);
     for (const field of Object.values(fields.by)) {
       if (field.key.shape !== "number") continue;
       field.input.placeholder = has.includes(field) ? shown(field.key) : "";
