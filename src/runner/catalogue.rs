@@ -91,12 +91,9 @@ pub fn lines() -> Vec<(String, String, String)> {
 
 /// Every section of case and calibration files with its keys.
 pub fn told() -> Vec<Told> {
-    let told = |section: &str, meaning: &str, keys: Vec<Key>| Told {
-        section: section.to_owned(),
-        meaning: meaning.to_owned(),
-        tag: None,
-        is_needed: ["material", "loading"].contains(&section),
-        keys,
+    let told = |section: &str, meaning: &str, keys: Vec<Key>| {
+        let is_needed = ["material", "loading"].contains(&section);
+        Told { section: section.to_owned(), meaning: meaning.to_owned(), tag: None, is_needed, keys }
     };
     let of_kind = |kind: &SpecimenKind| {
         let beta = kind.takes_beta().then_some(BETA_FILE);
@@ -125,12 +122,9 @@ pub fn told() -> Vec<Told> {
 
 /// Sections of sweeps, and those of scenes that have keys of their own.
 pub fn beside() -> Vec<Told> {
-    let told = |file: &str, section: &str, keys: &[Key]| Told {
-        section: format!("{file}.{section}"),
-        meaning: format!("Section of a {file}"),
-        tag: None,
-        is_needed: false,
-        keys: keys.to_vec(),
+    let told = |file: &str, section: &str, keys: &[Key]| {
+        let (section, meaning) = (format!("{file}.{section}"), format!("Section of a {file}"));
+        Told { section, meaning, tag: None, is_needed: false, keys: keys.to_vec() }
     };
     let sweep = [("design", DesignKeys::KEYS), ("vary[]", VaryKeys::KEYS)].map(|(section, keys)| told("sweep", section, keys));
     sweep
@@ -160,20 +154,15 @@ pub fn stub() -> String {
 /// retardation (keys of `[fatigue]` and `[loading]`, and whether a case has to give them).
 pub fn json(lines: Vec<(String, String, String)>) -> Value {
     let kinds = lines.into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
-    let law = |law: GrowthLawKind| {
-        let of_law = |own: &Constant| json!({ "key": own.key, "needed": own.default.is_none() });
-        json!({ "name": law.name(), "meaning": law.meaning(), "constants": law.0.constants.iter().map(of_law).collect::<Vec<_>>() })
-    };
-    let retardation = |model: RetardationKind| {
-        // A threshold of the law, which it may have, stands for a constant.
-        let needed = |own: &Retarding| (own.default)(Plane::Stress, Some(1.0)).is_none();
-        let of_model = |own: &Retarding| json!({ "key": own.key, "needed": needed(own) });
-        let constants: Vec<Value> = model.0.constants.iter().map(of_model).collect();
-        json!({ "name": model.name(), "meaning": model.meaning(), "constants": constants })
-    };
+    let of_law = |own: &Constant| json!({ "key": own.key, "needed": own.default.is_none() });
+    // A threshold of the law, which it may have, is taken for a constant.
+    let of_model = |own: &Retarding| json!({ "key": own.key, "needed": (own.default)(Plane::Stress, Some(1.0)).is_none() });
+    let told = |name: &str, constants: Vec<Value>| json!({ "name": name, "constants": constants });
+    let law = |law: GrowthLawKind| told(law.name(), law.0.constants.iter().map(of_law).collect());
+    let retardation = |model: RetardationKind| told(model.name(), model.0.constants.iter().map(of_model).collect());
     let traits = |kind: &SpecimenKind| {
-        let is_part_through = kind.part_through().is_some();
-        json!({ "name": kind.name(), "takes_force": kind.takes_force(), "takes_bending": kind.takes_bending(), "is_part_through": is_part_through })
+        let (force, bending, part_through) = (kind.takes_force(), kind.takes_bending(), kind.part_through().is_some());
+        json!({ "name": kind.name(), "takes_force": force, "takes_bending": bending, "is_part_through": part_through })
     };
     let beside: Map<String, Value> = beside().iter().map(|told| (told.section.clone(), told.schema())).collect();
     json!({

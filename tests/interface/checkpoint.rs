@@ -74,7 +74,7 @@ fn a_killed_run_goes_on_to_the_same_curve() {
 
     // Not for this case, or not whole: refused, and left as it is.
     let other = [&call[..], &["--set", "loading.stress_max_mpa=71"]].concat();
-    assert_refused(&perilife(folder, &other), 2, &["run.ckpt: belongs to another case", "remove it"]);
+    assert_refused(&perilife(folder, &other), 2, &["run.ckpt: is for a different case", "remove it"]);
     assert_eq!(fs::read(folder.join("run.ckpt")).unwrap(), kept);
     let mut damaged = kept.clone();
     damaged[kept.len() / 2] ^= 1;

@@ -98,7 +98,7 @@ pub struct Constant {
 pub(super) const NEAR_FRACTURE: &str = "needs rates near fracture";
 pub(super) const NEAR_THRESHOLD: &str = "needs rates near the threshold";
 pub(super) const RATIOS: &str = "needs rates at several stress ratios";
-pub(super) const RATIOS_NEAR_THRESHOLD: &str = "needs rates near the threshold at several stress ratios";
+pub(super) const LOW_RATIOS: &str = "needs rates near the threshold at several stress ratios";
 const POWER: &str = "needs rates over a wide range of ΔK";
 
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
@@ -120,20 +120,9 @@ const OF_WALKER: Quantity = number("a Walker exponent γ", 0.0, 2.0);
 impl Constant {
     /// A constant that a case has to give and no search looks for.
     pub const fn new(key: &'static str, name: &'static str, quantity: Quantity) -> Self {
-        let (role, none, told_by) = (Role::Plain, [f64::NAN; 2], POWER);
-        Constant {
-            key,
-            name,
-            quantity,
-            role,
-            is_exponent: false,
-            default: None,
-            held: None,
-            bounds: none,
-            starts: none,
-            told_by,
-            error_max: 0.0,
-        }
+        let (role, told_by, is_exponent, default, held, error_max) = (Role::Plain, POWER, false, None, None, 0.0);
+        let [bounds, starts] = [[f64::NAN; 2]; 2];
+        Constant { key, name, quantity, role, is_exponent, default, held, bounds, starts, told_by, error_max }
     }
 
     /// The exponent of ΔK.
@@ -149,7 +138,7 @@ impl Constant {
 
     /// Whether it needs rates at several stress ratios.
     pub fn is_told_by_ratios(&self) -> bool {
-        [RATIOS, RATIOS_NEAR_THRESHOLD].contains(&self.told_by)
+        [RATIOS, LOW_RATIOS].contains(&self.told_by)
     }
 
     /// Whether several laws have it.

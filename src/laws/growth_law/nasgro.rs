@@ -6,9 +6,7 @@ use std::f64::consts::PI;
 
 use toml::{Table, Value};
 
-use super::description::{
-    Constant, Description, K_C, NEAR_FRACTURE, NEAR_THRESHOLD, RATIOS, RATIOS_NEAR_THRESHOLD, Role, UNSAID, rate_of,
-};
+use super::description::{Constant, Description, K_C, LOW_RATIOS, NEAR_FRACTURE, NEAR_THRESHOLD, RATIOS, Role, UNSAID, rate_of};
 use perilife_base::input::{INTENSITY, Quantity, number};
 use perilife_base::units::MPA_SQRT_M;
 use perilife_plate::material::growth_data::{GrowthRecord, MM_PER_INCH, MPA_SQRT_M_PER_KSI_SQRT_IN};
@@ -30,12 +28,7 @@ pub static LAW: Description = Description {
         Constant::new("nasgro_c_mm_per_cycle", "c", rate_of("a NASGRO C")),
         Constant::exponent("nasgro_n", "n", "a NASGRO exponent n"),
         Constant::new("nasgro_p", "p", exponent("a threshold exponent p")).searched([0.0, 5.0], [0.25, 1.0], NEAR_THRESHOLD, 1.0),
-        Constant::new("nasgro_q", "q", exponent("an instability exponent q")).searched(
-            [0.0, 5.0],
-            [0.25, 1.0],
-            NEAR_FRACTURE,
-            1.0,
-        ),
+        Constant::new("nasgro_q", "q", exponent("a fracture exponent q")).searched([0.0, 5.0], [0.25, 1.0], NEAR_FRACTURE, 1.0),
         Constant::new("nasgro_alpha", "alpha", CONSTRAINT).searched([1.0, 3.0], [1.5, 2.5], RATIOS, 1.0),
         Constant { held: Some(0.3), ..Constant::new("nasgro_smax_over_flow", "stress_over_flow", SHARE) },
         Constant { role: Role::Threshold, ..Constant::new("nasgro_delta_k_0_mpa_sqrt_m", "threshold", DELTA_K_0) }.searched(
@@ -47,7 +40,7 @@ pub static LAW: Description = Description {
         Constant { default: Some(0.0), ..Constant::new("nasgro_c_th", "threshold_slopes", SLOPE) }.searched(
             [-5.0, 5.0],
             [0.5; 2],
-            RATIOS_NEAR_THRESHOLD,
+            LOW_RATIOS,
             2.0,
         ),
         Constant { default: Some(0.0), held: Some(0.0), ..Constant::new("nasgro_c_th_negative", "threshold_slopes", SLOPE) },

@@ -57,8 +57,10 @@ impl SpecimenKind {
 
     /// Whether pins or rollers load it, by a force.
     pub fn takes_force(self) -> bool {
-        use SpecimenKind::{CompactTension, EccentricSingleEdgeTension, Lug, SingleEdgeBend, WedgeOpening};
-        matches!(self, CompactTension | EccentricSingleEdgeTension | Lug | SingleEdgeBend | WedgeOpening)
+        matches!(
+            self,
+            Self::CompactTension | Self::EccentricSingleEdgeTension | Self::Lug | Self::SingleEdgeBend | Self::WedgeOpening
+        )
     }
 
     /// Whether its K under out-of-plane bending is known.

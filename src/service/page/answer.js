@@ -127,7 +127,7 @@ function valid({ verdict, checks = [] }) {
     rest.length > 0 && element("details", null, element("summary", null, `${count(rest.length, "more check")}`), element("ul", { class: "checks" }, rest.map(line)))];
 }
 
-/** The card. `more`: further terms beside why it ends. */
+/** The card. `more`: further terms of the end. */
 export function answerCard(s, more = []) {
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
     element("div", null, large(s)), element("div", null, why(s, more)), element("div", { "data-part": "checks" }, valid(s)));

@@ -33,7 +33,8 @@ export function onWaiting(tell) {
   notice = tell;
 }
 
-function sleep(seconds, signal) {
+/** Waits, until `signal` is aborted. */
+export function sleep(seconds, signal) {
   return new Promise((resolve, reject) => {
     const stop = () => {
       clearTimeout(timer);

@@ -4,16 +4,17 @@ import { getBlob } from "./api.js";
 import { createEditor } from "./editor.js";
 import { byId, show } from "./dom.js";
 import { EXAMPLE_NAME, EXAMPLE_TEST, exampleCsv } from "./example.js";
-import { compact, createForm, fillIn, grid, group } from "./form.js";
+import { compact, createForm, fillIn, grid, group, tell } from "./form.js";
 import { jobToStartFrom } from "./job.js";
 import { createFields } from "./key_fields.js";
 import { hasOnly, keysOf } from "./keys.js";
-import { createMeasured } from "./measured.js";
+import { OF_FILES, createMeasured } from "./measured.js";
+import { preambleOf } from "./preamble.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
 import { startRun } from "./submit.js";
 
 /** Keys of `[measured]` that are said beside the files. */
-const OF_FILES = ["files", "rates", "columns", "leave_out", "length_unit", "cycle_unit", "load_unit", "decimal", "sheet"];
+const BESIDE = ["files", "rates", "columns", "leave_out", ...OF_FILES];
 const WINDOW = ["from_crack_length_mm", "to_crack_length_mm"];
 
 /** Builds the view; gives {open(query)}. */
@@ -23,7 +24,7 @@ export function createCalibrateView(materials) {
     arrange();
     editor.check.soon();
   });
-  const ofMeasured = createFields(form, "measured", keysOf("measured").filter(({ metric }) => !OF_FILES.includes(metric)));
+  const ofMeasured = createFields(form, "measured", keysOf("measured").filter(({ metric }) => !BESIDE.includes(metric)));
   const [from, to] = WINDOW.map((metric) => ofMeasured.by[metric]);
   const specimen = createSpecimen(form);
   const material = createMaterial(form, materials);
@@ -31,6 +32,7 @@ export function createCalibrateView(materials) {
   const model = createFields(form, "model", keysOf("model"));
   const fit = createFields(form, "fit", keysOf("fit").filter(({ metric }) => metric !== "given"));
   const name = form.text("name", { label: "Name of the fit", optional: true });
+  let noted = ""; // the file whose preamble was read
   const fields = byId("test-fields");
   const start = byId("calibrate");
 
@@ -46,7 +48,7 @@ export function createCalibrateView(materials) {
 
   /** The form as a calibration was submitted; false where it has keys that no field shows, which only its text keeps. */
   function fillAll({ measured: m = {}, fit: given = {}, ...test }) {
-    const [ofFiles, own] = [true, false].map((is) => Object.fromEntries(Object.entries(m).filter(([key]) => OF_FILES.includes(key) === is)));
+    const [ofFiles, own] = [true, false].map((is) => Object.fromEntries(Object.entries(m).filter(([key]) => BESIDE.includes(key) === is)));
     const isWhole = [ofMeasured.fill(own), fit.fill(given), fill(test), !ofFiles.rates];
     setTouched(true);
     return isWhole.every(Boolean);
@@ -62,6 +64,24 @@ export function createCalibrateView(materials) {
     isWhole.push(loading.fill(l), model.fill(given));
     arrange();
     return isWhole.every(Boolean);
+  }
+
+  /** What the first file notes above its table, marked as read from it. */
+  function proposeNoted() {
+    const [file] = measured.files() ?? [];
+    if (!file?.text || file.name === noted) return;
+    noted = file.name;
+    const { kind, material: of, stress_ratio: ratio, ...sizes } = preambleOf(file.text, materials);
+    if (kind) specimen.choose(kind);
+    for (const [metric, value] of Object.entries(sizes)) {
+      const field = specimen.field(metric);
+      if (value === undefined || !field || field.touched) continue;
+      field.write(value);
+      tell(field, `read from ${file.name}`);
+    }
+    loading.propose({ stress_ratio: ratio });
+    if (of && material.fill({ name: of })) tell(material.name, `read from ${file.name}`);
+    arrange();
   }
 
   /** The crack of the specimen begins with the fit window, as long as nobody says another. */
@@ -82,6 +102,7 @@ export function createCalibrateView(materials) {
     if (range && !to.touched) to.write(range[1]);
     if (range) proposeLength();
     loading.propose(measured.loading());
+    proposeNoted();
     editor.check.soon();
   });
 

@@ -210,7 +210,7 @@ function misfit({ low = null, high = null } = {}) {
   const end = (name, at) => {
     const share = at.rate_over_law_percent / 100;
     const [faster, longer] = share < 0 ? ["slower", "short"] : ["faster", "long"];
-    const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 3)} to ${significant(at.delta_k_to_mpa_sqrt_m, 3)}`;
+    const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 3)} to ${significant(at.delta_k_to_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}`;
     const size = percent(Math.abs(share), 1);
     return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer} (${longer === "short" ? "conservative" : "non-conservative"})`];
   };

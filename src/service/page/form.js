@@ -90,7 +90,8 @@ export function createForm(onChange) {
     offer(files) {
       offered = files;
     },
-    files: () => [...fields].filter((field) => field.given && inUse(field)).map((field) => field.given),
+    /** Files of the fields; of a text all that another run had. */
+    files: (isText) => (isText ? offered : [...fields].filter((field) => field.given && inUse(field)).map((field) => field.given)),
     /** A choice among `options`: {value, title}; `needed` where the empty one is none. */
     choice(key, options) {
       const input = element("select", null, options.options.map(({ value, title }) => element("option", { value }, title)));

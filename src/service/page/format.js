@@ -82,11 +82,6 @@ export function bandOf(band) {
   return `90 % of specimens ${deserved(band[0], band)} to ${deserved(band[2], band)}`;
 }
 
-/** Crack length, mm. */
-export function millimetres(value, decimals = 2) {
-  return Number.isFinite(value) ? `${fixed(value, decimals)} mm` : NONE;
-}
-
 /** Share as percent. */
 export function percent(share, decimals = 1) {
   return Number.isFinite(share) ? `${fixed(100 * share, decimals)} %` : NONE;

@@ -2,7 +2,6 @@
 
 import { button, element, show } from "./dom.js";
 import { compact, fillIn, grid, group, need, numberIn, numbersIn, tell } from "./form.js";
-import { parseNumber } from "./format.js";
 import { hasOnly, toShown } from "./keys.js";
 
 const text = ({ input }) => input.value.trim() || undefined;

@@ -3,10 +3,13 @@
 import { postForm } from "./api.js";
 import { createChart } from "./chart.js";
 import { createColumns } from "./columns.js";
-import { button, byId, element, show, table } from "./dom.js";
+import { button, byId, element, show, table, takeDrops } from "./dom.js";
 import { excerpt } from "./excerpt.js";
+import { createForm } from "./form.js";
 import { count, cycles, fixed, plain } from "./format.js";
 import { editInPlace } from "./job.js";
+import { createFields } from "./key_fields.js";
+import { keysOf } from "./keys.js";
 import { createLeftOut } from "./left_out.js";
 import { problemBox } from "./notices.js";
 
@@ -15,14 +18,17 @@ const CYCLES = { cycles: "single cycles", kilocycles: "thousands of cycles", meg
 const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen",
   paired: "two columns for every specimen" };
 
+/** Keys that say how files are written. */
+export const OF_FILES = ["length_unit", "cycle_unit", "load_unit", "decimal", "sheet"];
+
 /** `onChange` is called when the curves change. Gives {files(), said(), window(), load(files)}. */
 export function createMeasured(onChange) {
   const root = byId("measured");
   const input = byId("measured-input");
   const drop = byId("measured-drop");
-  // What is said of the files, by the name of the key in [measured].
-  const said = { length_unit: byId("length-unit"), cycle_unit: byId("cycle-unit"), load_unit: byId("load-unit"),
-    decimal: byId("decimal"), sheet: byId("sheet") };
+  // What is said of the files, by keys of [measured].
+  const said = createFields(createForm(() => read()), "measured", keysOf("measured").filter(({ metric }) => OF_FILES.includes(metric)));
+  show(byId("units"), said.group("Units and format", OF_FILES));
   const columns = createColumns(() => read());
   const [result, chartPlace] = [byId("measured-result"), byId("measured-chart")];
   const out = createLeftOut(() => read());
@@ -61,7 +67,7 @@ export function createMeasured(onChange) {
     }
     const form = new FormData();
     for (const { name, file } of files) form.append("file", file, name);
-    for (const [key, input] of Object.entries(said)) if (input.value) form.append(key, input.value);
+    for (const [key, value] of Object.entries(said.collect())) form.append(key, value);
     if (columns.names()) form.append("columns", JSON.stringify(columns.names()));
     if (out.rows().length > 0) form.append("leave_out", JSON.stringify(out.rows()));
     if (answer.length === 0) show(result, element("p", { class: "quiet", role: "status" }, "Reading …"));
@@ -196,21 +202,9 @@ export function createMeasured(onChange) {
     add(input.files);
     input.value = ""; // the same file may be chosen again after a correction
   });
-  for (const name of ["dragenter", "dragover"]) {
-    drop.addEventListener(name, (event) => {
-      event.preventDefault();
-      drop.classList.add("over");
-    });
-  }
-  drop.addEventListener("dragleave", () => drop.classList.remove("over"));
-  drop.addEventListener("drop", (event) => {
-    event.preventDefault();
-    drop.classList.remove("over");
-    add(event.dataTransfer.files);
-  });
+  takeDrops(drop, add);
   // A file dropped beside the field must not replace the page.
   for (const name of ["dragover", "drop"]) window.addEventListener(name, (event) => event.preventDefault());
-  for (const input of Object.values(said)) input.addEventListener("change", read);
   root.dataset.measured = "empty";
 
   return {
@@ -218,7 +212,7 @@ export function createMeasured(onChange) {
     files: () => (curves().length === 0 ? null : files),
     names: () => files.map((file) => file.name),
     /** What is said of them, as keys of [measured]. */
-    said: () => ({ ...Object.fromEntries(Object.entries(said).map(([key, input]) => [key, input.value || undefined])), columns: columns.names(), leave_out: out.windows() }),
+    said: () => ({ ...said.collect(), columns: columns.names(), leave_out: out.windows() }),
     /** Crack lengths that every curve covers. */
     window() {
       const given = curves().map((curve) => curve.crack_length_mm).filter((lengths) => lengths.length > 0);
@@ -241,7 +235,7 @@ export function createMeasured(onChange) {
     /** Takes files over, with what [measured] of a calibration says of them. */
     load(next, { columns: names, leave_out: windows = [], ...others } = {}) {
       files = next;
-      for (const [key, input] of Object.entries(said)) input.value = others[key] ?? "";
+      said.fill(Object.fromEntries(OF_FILES.map((key) => [key, others[key]])));
       columns.choose(names);
       out.take(windows);
       return read();

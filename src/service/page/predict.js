@@ -14,21 +14,18 @@ import { createLoading, createMaterial, createSpecimen, isThrough } from "./spec
 import { createSides } from "./sides_form.js";
 import { createSpectrum } from "./spectrum_form.js";
 import { startRun } from "./submit.js";
-import { inShown, unitShown } from "./units.js";
+import { inShown, kept, unitShown } from "./units.js";
 
 /** The plate of the button Example. */
 const EXAMPLE = {
-  specimen: {
-    kind: "plate", width_mm: 100, length_mm: 200, thickness_mm: 2,
-    holes: [{ x_mm: 0, y_mm: 0, diameter_mm: 12 }],
-    cracks: [{ from_mm: [6, 0], to_mm: [11, 0] }],
-  },
+  specimen: { kind: "plate", width_mm: 100, length_mm: 200, thickness_mm: 2, holes: [{ x_mm: 0, y_mm: 0, diameter_mm: 12 }], cracks: [{ from_mm: [6, 0], to_mm: [11, 0] }] },
   material: { name: "al2024-t3", plane: "stress" },
   loading: { kind: "constant_amplitude", stress_max_mpa: 70, stress_ratio: 0.2 },
 };
 const EXAMPLE_LAW = { paris_c_mm_per_cycle: 1.1e-7, paris_m: 2.9 };
 
 const BY_HAND = "law:paris";
+const OF_LAW = ["fitted.toml", "fit.json"]; // files that a calibration gives
 const THRESHOLD = "delta_k_threshold_mpa_sqrt_m";
 const GAMMA = "walker_gamma";
 /** Keys of `[fatigue]` that the choice of a law has. */
@@ -128,7 +125,7 @@ export function createPredictView(materials) {
   function fill({ specimen: s, material: m, loading: l = {}, supports, fatigue: { growth_law: growthLaw, fitted, ...fatigue } = {}, ...others }) {
     const own = isFitted() || fitted ? null : lawOf({ growth_law: growthLaw, ...fatigue });
     if (own) law.input.value = `law:${own.name}`;
-    const isWhole = [specimen.fill(s, l), material.fill(m), hasOnly(others, Object.keys(SECTIONS))];
+    const isWhole = [isFitted() || !fitted, specimen.fill(s, l), material.fill(m), hasOnly(others, Object.keys(SECTIONS))];
     loading.suit(s.kind);
     isWhole.push(loading.fill(l, supports), ofFatigue.fill(fatigue), ...Object.entries(sections).map(([key, one]) => one.fill(others[key])));
     arrange();
@@ -141,7 +138,7 @@ export function createPredictView(materials) {
 
   // While another run's input is on its way, what is in the form is not what the user means to start.
   let opening = false;
-  const files = () => [...spectrum.files(), ...form.files()];
+  const files = () => Object.values(Object.fromEntries([...form.files(fields.hidden), ...spectrum.files(fields.hidden)].map((one) => [one.name, one])));
   const editor = createEditor({
     host: byId("plate-editor"), fields, panel: byId("plate-check"), form, collect, fill,
     context: () => (!fields.hidden && spectrum.missing()) || { ...(isFitted() ? { calibration: law.input.value } : {}), files: files().length > 0 ? files() : undefined },
@@ -196,7 +193,7 @@ export function createPredictView(materials) {
   law.input.addEventListener("input", () => proposeOf(calibrations.find((one) => one.id === law.input.value)));
   const starts = (own, path, what) => own.addEventListener("click", async () => {
     if (!(await editor.check.now())) return;
-    lastKind(specimen.kind());
+    kept("kind", specimen.kind());
     startRun(path, { ...editor.body(), name: name.input.value.trim() || `${what}${defaultName()}` }, {
       button: own, status: byId("predict-status"), refuse: editor.check.refuse,
     });
@@ -204,7 +201,7 @@ export function createPredictView(materials) {
   starts(start, "/v1/predictions", "");
   starts(factors, "/v1/sif", "K of ");
   byId("plate-example").addEventListener("click", () => editor.startFrom({ ...EXAMPLE, fatigue: isFitted() ? {} : EXAMPLE_LAW }));
-  specimen.choose(lastKind());
+  specimen.choose(kept("kind")); // the one that was predicted last
 
   return {
     /** The case as it is here, {input, calibration?, files?}, or a sentence that says what is missing. */
@@ -227,7 +224,7 @@ export function createPredictView(materials) {
         const job = await jobToStartFrom(from);
         if (job.calibration) await loadLaws(job.calibration);
         else law.input.value = BY_HAND;
-        const own = await filesOf(job);
+        const own = (await filesOf(job)).filter(({ name: one }) => !job.calibration || !OF_LAW.includes(one));
         form.offer(own);
         await spectrum.load(own, job.input);
         await editor.start(job.input);
@@ -242,13 +239,3 @@ export function createPredictView(materials) {
 }
 
 const titleOf = (name) => sentence(words(name));
-
-/** The kind that was predicted last, kept by the browser. */
-function lastKind(kind) {
-  try {
-    if (kind) localStorage.setItem("perilife.kind", kind);
-    return localStorage.getItem("perilife.kind");
-  } catch {
-    return null; // storage switched off
-  }
-}

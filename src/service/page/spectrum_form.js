@@ -1,6 +1,6 @@
 // A load spectrum: its file, chosen or pasted, what is omitted and clipped, and the retardation model with its constants.
 
-import { element, uniqueId } from "./dom.js";
+import { element, takeDrops, uniqueId } from "./dom.js";
 import { compact, need } from "./form.js";
 import { bytes, plain, sentence } from "./format.js";
 import { createFields } from "./key_fields.js";
@@ -62,13 +62,7 @@ export function createSpectrum(form, onChange) {
     input.value = ""; // the same file may be chosen again after a correction
   });
   area.addEventListener("input", () => take({ name: file?.name ?? PASTED, text: area.value }));
-  for (const name of ["dragenter", "dragover", "dragleave", "drop"]) {
-    drop.addEventListener(name, (event) => {
-      event.preventDefault();
-      drop.classList.toggle("over", name.startsWith("drage") || name === "dragover");
-    });
-  }
-  drop.addEventListener("drop", (event) => add(event.dataTransfer.files));
+  takeDrops(drop, add);
 
   const fieldsOf = (fields) => element("div", { class: "fields" }, fields.nodes);
   const root = element("div", { class: "stack tight spectrum-form", hidden: true }, drop, fieldsOf(ofFile), fieldsOf(ofModel));
@@ -81,7 +75,7 @@ export function createSpectrum(form, onChange) {
       root.hidden = !used;
     },
     isRetarded: () => used && isRetarded(),
-    files: () => (used && file ? [{ name: file.name, text: file.text, file: new Blob([file.text]) }] : []),
+    files: (isText) => ((used || isText) && file ? [{ name: file.name, text: file.text, file: new Blob([file.text]) }] : []),
     /** What is still missing, in a sentence. */
     missing: () => (used && !file ? "Choose or paste the file of the spectrum." : null),
     /** The file of another run, among all that it named: {name, file}. */

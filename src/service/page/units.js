@@ -23,15 +23,17 @@ const BARE = new RegExp(`(ΔK |% (?:faster|slower) at )(${NUMBER}(?: to ${NUMBER
 /** C of a law belongs to both units. */
 const LEVEL = new RegExp(`(${NUMBER}) ΔK\\^([\\d.]+) (\\(mm/cycle, MPa√m\\))`, "u");
 
-function read() {
+/** A choice that the browser keeps, after `value` is set where it is given; undefined where its storage is off. */
+export function kept(name, value) {
   try {
-    return localStorage.getItem("perilife.units") === "us";
+    if (value) localStorage.setItem(`perilife.${name}`, value);
+    return localStorage.getItem(`perilife.${name}`);
   } catch {
-    return false; // storage switched off
+    return undefined;
   }
 }
 
-export const isUs = read();
+export const isUs = kept("units") === "us";
 
 /** A written number as a value. */
 function valueOf(text) {
@@ -111,12 +113,7 @@ export function startUnits(button) {
   button.textContent = isUs ? "inch, ksi" : "mm, MPa";
   button.title = "Units of forms and figures; files stay metric";
   button.addEventListener("click", () => {
-    try {
-      localStorage.setItem("perilife.units", isUs ? "si" : "us");
-    } catch {
-      return; // nowhere to keep it
-    }
-    location.reload();
+    if (kept("units", isUs ? "si" : "us")) location.reload();
   });
   if (!isUs) return;
   changeAll(document.getElementById("main"));

@@ -134,11 +134,6 @@ impl PartThrough {
         self.description.kind
     }
 
-    /// Whether the source of K knows bending of this kind.
-    pub fn knows_bending(&self) -> bool {
-        self.description.bending.is_some()
-    }
-
     /// The crack with these semi-axes [a, c], m, in the letters of the formulas.
     pub fn front(&self, [a, c]: [f64; 2]) -> Front {
         let letters = self.description.letters;
