@@ -42,9 +42,9 @@ pub struct Wanted {
 /// A file of a finished job: `result.json`, `a_n.csv`, `fitted.toml`, pictures and so on, as the job lists them.
 #[utoipa::path(get, path = "/v1/{collection}/{id}/files/{name}", tag = "results",
     params(("collection" = String, Path), ("id" = String, Path), ("name" = String, Path), Wanted),
-    responses((status = 200, description = "The file"), (status = 206, description = "The range of it that was asked for"),
+    responses((status = 200, description = "The file"), (status = 206, description = "The requested range"),
         (status = 304, description = "It is the one of If-None-Match"), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 416, description = "The range lies beyond its end"),
+        (status = 416, description = "The range is beyond its end"),
         (status = 409, body = Problem, description = "The job has no result"), (status = 422, body = Problem)))]
 pub async fn file(
     Shared(app): Shared<App>,

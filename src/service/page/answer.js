@@ -39,7 +39,7 @@ export function leadOf(s) {
   return tip < 0 ? null : tip;
 }
 
-/** Why a life does not count; the name of the run stands above already. */
+/** Why there is no valid life, without the name of the run. */
 export const whyRefused = ({ refused }) => sentence(refused.replace(/^[^:]*: (?=the )/, ""));
 
 /** Lengths at the start and at the end, mm: of the crack that ends the life, or of the specimen. */

@@ -28,7 +28,7 @@ export class Problem extends Error {
 
 let notice = () => {};
 
-/** Says who is told (a sentence, or null when over) that a request is waiting for the service. */
+/** Sets what is called with a sentence while a request waits for the service, and with null after it. */
 export function onWaiting(tell) {
   notice = tell;
 }

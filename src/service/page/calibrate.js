@@ -13,7 +13,7 @@ import { preambleOf } from "./preamble.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
 import { startRun } from "./submit.js";
 
-/** Keys of `[measured]` that are said beside the files. */
+/** Keys of `[measured]` that are set with the files. */
 const BESIDE = ["files", "rates", "columns", "leave_out", ...OF_FILES];
 const WINDOW = ["from_crack_length_mm", "to_crack_length_mm"];
 
@@ -84,13 +84,13 @@ export function createCalibrateView(materials) {
     arrange();
   }
 
-  /** The crack of the specimen begins with the fit window, as long as nobody says another. */
+  /** The crack of the specimen begins with the fit window, unless the user sets another. */
   function proposeLength() {
     const length = specimen.field("crack_length_mm");
     if (length && !length.touched) fillIn(length, from.input.value);
   }
 
-  /** A list of laws is of use only when they can be told apart. */
+  /** Laws of a list need names that differ. */
   function defaultName() {
     const [first, ...others] = measured.names();
     return `${first.replace(/\.[a-z]+$/i, "")}${others.length > 0 ? ` and ${others.length} more` : ""}`;
@@ -135,7 +135,7 @@ export function createCalibrateView(materials) {
     });
   });
 
-  /** Starts from a calibration: its files, its test, what was left out. */
+  /** Starts from a calibration: its files, its test, excluded readings. */
   async function openFrom(id) {
     const job = await jobToStartFrom(id);
     const files = await Promise.all(job.inputs.map(async ({ name: own, href }) => {

@@ -1,4 +1,4 @@
-// Page of one calibration: the fit beside the readings, its constants with their errors, files to take away.
+// Page of one calibration: readings and fit, constants with their errors, files.
 
 import { mark } from "./answer.js";
 import { getBlob, getJson, getText } from "./api.js";
@@ -121,7 +121,7 @@ function drawFit(place, fit, curves) {
   const rows = (wanted, column) => column.filter((_, index) => fit.specimen[index] === wanted);
   const isMany = specimens.length > SPECIMENS_APART;
   const curveOf = (own, kind, tone) => ({ id: `${kind}-${own}`, name: `${own}, measured`, kind, tone, x: rows(own, fit.cycles_measured), y: rows(own, fit.crack_length_mm) });
-  // Dozens of specimens are told apart by nobody: they are thin lines, and the median has the marks.
+  // Many specimens are thin lines; the median has the marks.
   const thin = isMany ? specimens.map((own) => ({ ...curveOf(own, "thin", 2), name: undefined })) : [];
   const marked = isMany ? names.filter((name) => name === median) : names;
   chart.set([...curves, ...thin, ...marked.map((own, index) => curveOf(own, "points", isMany ? 2 : 2 + index))]);

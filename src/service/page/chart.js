@@ -155,7 +155,7 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     const drawn = [...series].sort((one, other) => (order[one.kind] ?? 3) - (order[other.kind] ?? 3));
     show(marks, drawn.map(mark));
     const named = atEnds().map((one) => [one, one.x.map((value, index) => [value, one.y[index]]).filter(finite).at(-1)]).filter(([, last]) => last);
-    let lowest = -Infinity; // of the names so far: none stands on another
+    let lowest = -Infinity; // of the names so far, so that none covers another
     show(above, drawn.map(words), named.sort(([, one], [, other]) => y(one[1]) - y(other[1])).map(([one, last]) => {
       lowest = Math.max(y(last[1]) + 4, lowest + 15);
       return shape("text", { class: "halo strong", x: x(last[0]) + 8, y: lowest }, lowered(one.name));
@@ -205,7 +205,7 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     }
   }
 
-  /** Steps below half a pixel are left out: a run of 30 000 blocks draws as fast as one of 300. */
+  /** Skips steps below half a pixel: a run of 30 000 blocks draws as fast as one of 300. */
   function thinned(points) {
     if (points.length < 2000) return points;
     let last = [Infinity, Infinity];
@@ -247,7 +247,7 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     if (readout.textContent !== text) readout.textContent = text;
   }
 
-  /** Shows a place along x and what stands there. */
+  /** Shows a place along x and its values. */
   function move(at, dots = []) {
     shared = [at, dots];
     if (!place || !Number.isFinite(at)) return;

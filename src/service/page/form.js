@@ -49,7 +49,7 @@ export function createForm(onChange) {
     input.setAttribute("aria-describedby", `${messageId} ${hintId}`);
     const name = element("span", null, label);
     const node = element("div", { class: "field" },
-      // The unit belongs to the name that is read out, although it stands beside the input.
+      // The unit belongs to the name that is read out, although it is shown next to the input.
       element("label", { for: id }, name, unit ? element("span", { class: "visually-hidden" }, `, ${unit}`) : null,
         element("span", { class: "optional", hidden: !optional }, " optional")),
       element("div", { class: "control" }, input, unitNode), message, note);
@@ -59,7 +59,7 @@ export function createForm(onChange) {
   const empty = (field) => field.input.value.trim() === "";
 
   return {
-    /** A number with its unit. Left empty it is left out. */
+    /** A number with its unit; an empty one is omitted. */
     number(key, options) {
       const input = element("input", numeric(options.signed, options.value ?? ""));
       return add({ ...wrap([key].flat(), input, { id: uniqueId("field"), ...options }), numeric: true, needed: !options.optional });
@@ -90,7 +90,6 @@ export function createForm(onChange) {
     offer(files) {
       offered = files;
     },
-    /** Files of the fields; of a text all that another run had. */
     files: (isText) => (isText ? offered : [...fields].filter((field) => field.given && inUse(field)).map((field) => field.given)),
     /** A choice among `options`: {value, title}; `needed` where the empty one is none. */
     choice(key, options) {
@@ -133,7 +132,7 @@ export function createForm(onChange) {
     clearProblems() {
       fields.forEach((field) => say(field, ""));
     },
-    /** Puts a problem of the service beside its field; true when there is such a field. */
+    /** Shows a problem of the service at its field; true when there is such a field. */
     showProblem(input) {
       const key = input?.key ?? "";
       const found = key && [...fields].find((field) => inUse(field) && field.keys.some((own) => belongs(own, key)));

@@ -39,7 +39,7 @@ export function significant(value, digits = 4) {
   return fixed(value, Math.max(0, digits - 1 - magnitude));
 }
 
-/** Like significant(), zeros at the end left out: for ticks and echoed input. */
+/** Like significant(), without zeros at the end: for ticks and echoed input. */
 export function plain(value, digits = 6) {
   const text = significant(value, digits);
   return text.includes(".") && !text.includes("×") ? text.replace(/\.?0+$/, "") : text;

@@ -22,7 +22,7 @@ export function stateBadge({ state, summary }) {
   return element("span", { class: `badge ${shown}`, "data-state": shown }, shown === "succeeded" ? "Done" : sentence(shown));
 }
 
-/** Where the form is that a run can be started anew from. */
+/** The form from which a run can be started again. */
 export function openForm(job) {
   const view = { calibration: "measure", prediction: "predict", sif: "predict" }[job.kind] ?? "new";
   return `#/${view}?from=${collectionOf(job)}/${encodeURIComponent(job.id)}`;
@@ -178,7 +178,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     bar.value = p.share ?? 0;
     show(figures, terms([
       ["Progress", percent(p.share, 0)],
-      // A fit makes several runs: where one of them stands says nothing.
+      // A fit makes several runs: the progress of one says nothing.
       prediction && ["Cycles", cycles(Math.round(p.cycles))],
       prediction && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],
       ["Elapsed", duration(p.elapsed_s)],

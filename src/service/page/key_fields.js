@@ -16,7 +16,7 @@ const READ = {
   },
 };
 
-/** A field of a key of the section at `path`; `more` is said of it beside what the key says. */
+/** A field of a key of the section at `path`; `more` are further options of the field. */
 export function fieldOf(form, path, key, more) {
   const names = [...new Set([key.name, key.metric].map((name) => `${path}.${name}`))];
   if (key.shape === "table" || key.shape === "rows") {

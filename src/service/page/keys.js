@@ -64,7 +64,7 @@ function choicesIn({ enum: names, type, "x-meanings": meanings, "x-default": val
   return names && [none, ...names.map((name, index) => ({ value: name, title: sentence(words(name)), meaning: meanings[index] }))];
 }
 
-/** A metric value of the key in the units that are shown; C of a law with the exponent beside it in `table`. */
+/** A metric value of the key in the units that are shown; C of a law by its exponent in `table`. */
 export function toShown({ factor, exponent, shape }, value, table = {}) {
   if (!isUs || (factor === 1 && !exponent)) return value;
   const size = exponent ? factor / KSI_SQRT_IN ** (table[exponent] ?? table.paris_m ?? 0) : factor;

@@ -1,4 +1,4 @@
-// Page of a fit of laws over K: the chosen law with its constants, and all candidates beside it.
+// Page of a fit of laws over K: the chosen law with its constants, and all candidates.
 
 import { element, section, table } from "./dom.js";
 import { fixed, significant } from "./format.js";

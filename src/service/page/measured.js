@@ -135,7 +135,7 @@ export function createMeasured(onChange) {
   /** Whether a problem is with what the columns are, which can be chosen here. */
   const isOfColumns = (problem) => problem.key === "header" || (problem.key ?? "").startsWith("measured.columns");
 
-  /** The first rows, which messages elsewhere end with, stand above with the choices. */
+  /** Without the first rows, which are shown above with the choices. */
   const remedyOf = (problem) => (problem.remedy ?? "").replace(/;?\s*read so far[\s\S]*$/, "");
 
   function problemTable() {
@@ -176,7 +176,7 @@ export function createMeasured(onChange) {
   function warnings() {
     // Most of them begin with the file themselves.
     const named = (file, line) => (line.startsWith(`${file}:`) ? line : `${file}: ${line}`);
-    // Whoever has said what the columns are knows which are not read.
+    // Columns that the user ignores need no warning.
     const isNews = (line) => !(columns.names() && line.includes("not read, since the name"));
     const list = answer.flatMap((file) => file.warnings.filter(isNews).map((line) => named(file.file, line)));
     return list.length > 0 && element("div", { class: "notice warn" }, element("ul", null, list.map((line) => element("li", null, line))));
@@ -203,7 +203,7 @@ export function createMeasured(onChange) {
     input.value = ""; // the same file may be chosen again after a correction
   });
   takeDrops(drop, add);
-  // A file dropped beside the field must not replace the page.
+  // A file dropped outside the field must not replace the page.
   for (const name of ["dragover", "drop"]) window.addEventListener(name, (event) => event.preventDefault());
   root.dataset.measured = "empty";
 

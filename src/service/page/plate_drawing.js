@@ -5,7 +5,7 @@ import { unitShown } from "./units.js";
 
 const MARGIN = 30;
 const HEIGHT_MAX = 430;
-const RULE_STRIP = 16; // below the picture, so that the rule never lies on the load
+const RULE_STRIP = 16; // below the picture, so that the rule never covers the load
 
 /** Outline, holes, cracks and notches of a plate of the input file, mm. Null when sizes are missing. */
 export function geometryOf(specimen) {
@@ -49,7 +49,7 @@ function closeBox(geometry) {
   };
 }
 
-/** An SVG that fits a plate into its container. `drawMore(stage)` adds what stands above the plate. */
+/** An SVG that fits a plate into its container. `drawMore(stage)` draws over the plate. */
 export function createStage(container, { label, role = "img", drawMore }) {
   let geometry = null;
   let width = 0;

@@ -25,12 +25,11 @@ const EXAMPLE = {
 const EXAMPLE_LAW = { paris_c_mm_per_cycle: 1.1e-7, paris_m: 2.9 };
 
 const BY_HAND = "law:paris";
-const OF_LAW = ["fitted.toml", "fit.json"]; // files that a calibration gives
 const THRESHOLD = "delta_k_threshold_mpa_sqrt_m";
 const GAMMA = "walker_gamma";
 /** Keys of `[fatigue]` that the choice of a law has. */
 const OF_CHOICE = ["fitted", "growth_law"];
-/** Sections beside those with forms of their own: title, and keys that are not folded. */
+/** Sections without a form of their own: title, and keys that are not folded. */
 const SECTIONS = {
   stop: ["End", ["crack_length_mm", "crack_depth_mm", "at_break_through", "cycles_max"]],
   model: ["Method", ["method", "tolerance_percent", "spacing_mm"]],
@@ -224,7 +223,7 @@ export function createPredictView(materials) {
         const job = await jobToStartFrom(from);
         if (job.calibration) await loadLaws(job.calibration);
         else law.input.value = BY_HAND;
-        const own = (await filesOf(job)).filter(({ name: one }) => !job.calibration || !OF_LAW.includes(one));
+        const own = (await filesOf(job)).filter(({ name: one }) => !job.calibration || !["fitted.toml", "fit.json"].includes(one));
         form.offer(own);
         await spectrum.load(own, job.input);
         await editor.start(job.input);

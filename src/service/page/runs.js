@@ -204,7 +204,7 @@ export function createRunsView() {
   };
 }
 
-/** What came of a run: its answer, why it ends, whether that counts; where it stands while it is not done. */
+/** Cells of a run: answer, what ends it, validity; its progress while it is not done. */
 function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
   const two = (first, second) => [element("strong", null, first), second && element("span", { class: "row-unit" }, second)];
   const sign = (name, text) => [mark(name), " ", text];

@@ -1,5 +1,5 @@
 // The plate as a sketch to draw in: new cracks and holes by pointer, ends and centres to drag or to move by arrow keys.
-// The tables beside it hold the numbers; the sketch only changes them.
+// The tables have the numbers; the sketch only changes them.
 
 import { button, element, shape, show } from "./dom.js";
 import { plain } from "./format.js";

@@ -172,7 +172,7 @@ export function createLoading(form, { sides, plate, spectrum } = {}) {
 
   return {
     element: root,
-    /** What the readings or a law say of the load, as long as nobody has typed any. */
+    /** The load of the readings or the ratio of a law, unless the user typed any. */
     propose({ stress_ratio: given, ...load }) {
       const [[metric, value] = []] = Object.entries(load);
       if (metric && !magnitude?.touched && !quantity.touched && magnitudes.some((key) => key.metric === metric)) {

@@ -1,7 +1,7 @@
 // A load spectrum: its file, chosen or pasted, what is omitted and clipped, and the retardation model with its constants.
 
 import { element, takeDrops, uniqueId } from "./dom.js";
-import { compact, need } from "./form.js";
+import { compact, grid, need } from "./form.js";
 import { bytes, plain, sentence } from "./format.js";
 import { createFields } from "./key_fields.js";
 import { keyOf, keysOf, known } from "./keys.js";
@@ -64,8 +64,7 @@ export function createSpectrum(form, onChange) {
   area.addEventListener("input", () => take({ name: file?.name ?? PASTED, text: area.value }));
   takeDrops(drop, add);
 
-  const fieldsOf = (fields) => element("div", { class: "fields" }, fields.nodes);
-  const root = element("div", { class: "stack tight spectrum-form", hidden: true }, drop, fieldsOf(ofFile), fieldsOf(ofModel));
+  const root = element("div", { class: "stack tight spectrum-form", hidden: true }, drop, grid(...ofFile.nodes), grid(...ofModel.nodes));
   arrange();
 
   return {

@@ -50,7 +50,7 @@ export function createSweep({ host, fields, panel, start, status, base, checked 
     const remove = button("Remove", () => rebuild(vary.map(collectRow).filter((_, other) => other !== index)), { class: "button small end", "aria-label": `Remove varied key ${index + 1}` });
     const row = { key, own, node: element("div", { class: "fields", "data-vary": index }, key.node, own.nodes, remove) };
     fillIn(key, given.key ?? known.find(([path]) => path.startsWith("loading."))?.[0] ?? known[0]?.[0]);
-    // Around what the case has now, so that something sensible stands there.
+    // Around the value of the case, to start from something sensible.
     const now = known.find(([path]) => path === key.input.value)?.[1];
     const around = Number.isFinite(now) ? { from: 0.9 * now, to: 1.1 * now, mean: now, standard_deviation: Math.abs(0.05 * now), median: now } : {};
     const start = { count: 5, factor: 1.1, scale: "linear", distribution: "normal", ...around };
@@ -96,7 +96,7 @@ export function createSweep({ host, fields, panel, start, status, base, checked 
     return files.get(address);
   }
 
-  /** The case and the law it names, as files beside the sweep. */
+  /** The case and the law it names, as files of the sweep. */
   function context() {
     const given = base();
     if (typeof given === "string") return given;

@@ -33,7 +33,7 @@ export function writeToml(input) {
   const isList = (value) => Array.isArray(value) && value.length > 0 && value.every((item) => isTable(item));
   const given = entries(input);
   const table = (head, section) => [head, ...entries(section).map(([item, value]) => line(item, value))].join("\n");
-  // What stands in no section comes first, lists of sections last.
+  // Keys without a section come first, lists of sections last.
   const own = given.filter(([, value]) => !isTable(value) && !isList(value)).map(([name, value]) => line(name, value)).join("\n");
   const sections = given.filter(([, value]) => isTable(value) && entries(value).length > 0).map(([name, section]) => table(`[${key(name)}]`, section));
   const lists = given.filter(([, value]) => isList(value)).flatMap(([name, list]) => list.map((section) => table(`[[${key(name)}]]`, section)));

@@ -66,7 +66,7 @@ export function told(text) {
     .replace(ALONE, (name) => UNITS[name][0]);
 }
 
-/** A number and a unit that stand apart, as in a table. */
+/** A number without its unit, as in a table. */
 export function apart(text, unit) {
   return isUs && UNITS[unit] && typeof text === "string" ? told(`${text} ${unit}`).replace(` ${UNITS[unit][0]}`, "") : text;
 }

@@ -161,7 +161,6 @@ fn the_page_leads_from_readings_to_remaining_life() {
     assert_eq!(service.get(&format!("/v1/calibrations/{fit}")).json()["name"], "Example law");
 
     // A plate with this law, drawn with a second crack that goes again; on points, which take long enough to look on.
-    // It begins with the material, thickness and stress ratio of the tests, and no error.
     page.click("[data-action=use-law]");
     page.until("document.querySelector('#plate-check').textContent.includes('Required: ')");
     page.until("document.querySelector(\"#view-predict [data-key='loading.stress_ratio']\").value === '0.2'");

@@ -46,7 +46,6 @@ impl Forms {
         self.walk.browser.run(&script);
     }
 
-    /// Opens what is folded.
     fn unfold(&self) {
         self.walk.browser.run("document.querySelectorAll('#view-predict details').forEach((one) => { one.open = true; })");
     }
@@ -54,6 +53,11 @@ impl Forms {
     fn fill(&self, key: &str, value: &str) {
         self.unfold();
         self.walk.browser.fill(&Self::field(key), value);
+    }
+
+    /// Fills fields written as `key=value`.
+    fn fill_all(&self, all: &str) {
+        all.split_whitespace().filter_map(|one| one.split_once('=')).for_each(|(key, value)| self.fill(key, value));
     }
 
     fn shown(&self, key: &str) -> bool {
@@ -85,14 +89,9 @@ fn spectra_and_part_through_cracks_have_forms() {
 
     // A panel under a spectrum, with a law of one ratio made one of all by Walker.
     choose("specimen.kind", "middle_tension");
-    for (key, value) in [("specimen.width_mm", "152.4"), ("specimen.length_mm", "300"), ("specimen.thickness_mm", "2.54")] {
-        fill(key, value);
-    }
-    fill("specimen.crack_length_mm", "9");
+    forms.fill_all("specimen.width_mm=152.4 specimen.length_mm=300 specimen.thickness_mm=2.54 specimen.crack_length_mm=9");
     choose("calibration", "law:walker");
-    for (key, value) in [("paris_c_mm_per_cycle", "8.95422e-8"), ("paris_m", "2.874"), ("walker_gamma", "0.6")] {
-        fill(&format!("fatigue.{key}"), value);
-    }
+    forms.fill_all("fatigue.paris_c_mm_per_cycle=8.95422e-8 fatigue.paris_m=2.874 fatigue.walker_gamma=0.6");
     assert!(!shown("loading.spectrum_format") && !shown("loading.retardation") && shown("loading.stress_ratio"));
     choose("loading.kind", "spectrum_scale_mpa");
     assert!(shown("loading.spectrum_format") && !shown("loading.stress_ratio") && !shown("loading.wheeler_exponent"));
@@ -149,19 +148,10 @@ fn spectra_and_part_through_cracks_have_forms() {
     choose("specimen.kind", "corner_crack_at_hole");
     assert!(shown("loading.bending_ratio") && shown("specimen.hole_diameter_mm") && shown("specimen.cracks"));
     choose("loading.kind", "stress_max_mpa");
-    for (key, value) in [
-        ("specimen.width_mm", "80"),
-        ("specimen.length_mm", "240"),
-        ("specimen.thickness_mm", "5"),
-        ("specimen.crack_depth_mm", "1.27"),
-        ("specimen.crack_half_length_mm", "1.27"),
-        ("specimen.hole_diameter_mm", "8"),
-        ("specimen.cracks", "1"),
-        ("loading.stress_max_mpa", "100"),
-        ("loading.stress_ratio", "0.1"),
-    ] {
-        fill(key, value);
-    }
+    forms.fill_all(
+        "specimen.width_mm=80 specimen.length_mm=240 specimen.thickness_mm=5 specimen.crack_depth_mm=1.27 specimen.cracks=1 \
+         specimen.crack_half_length_mm=1.27 specimen.hole_diameter_mm=8 loading.stress_max_mpa=100 loading.stress_ratio=0.1",
+    );
     choose("stop.at_break_through", "true");
     page.click("#plate-editor [data-action=toml]");
     page.until("document.querySelector('#plate-editor textarea[id$=toml]').value.includes('cracks = 1\\n')");
@@ -197,11 +187,7 @@ fn spectra_and_part_through_cracks_have_forms() {
 fn fill_forms_of(forms: &Forms, kinds: &[&str]) {
     let (page, walk) = (&forms.walk.browser, &forms.walk);
     forms.choose("calibration", "law:paris");
-    for (key, value) in [("paris_c_mm_per_cycle", "1e-8"), ("paris_m", "3")] {
-        forms.fill(&format!("fatigue.{key}"), value);
-    }
-    forms.fill("loading.stress_max_mpa", "60");
-    forms.fill("loading.stress_ratio", "0.1");
+    forms.fill_all("fatigue.paris_c_mm_per_cycle=1e-8 fatigue.paris_m=3 loading.stress_max_mpa=60 loading.stress_ratio=0.1");
     let sizes = [("width_mm", "50"), ("length_mm", "120"), ("thickness_mm", "5"), ("crack_length_mm", "3")];
     for (kind, own) in [
         ("crack_at_hole", &[("hole_diameter_mm", "10")][..]),
@@ -263,8 +249,7 @@ fn named_plates_have_forms() {
     let (page, walk) = (&forms.walk.browser, &forms.walk);
     fill_forms_of(&forms, &["stop_hole", "cruciform", "lug"]);
     forms.choose("specimen.kind", "lug");
-    forms.fill("specimen.hole_diameter_mm", "20");
-    forms.fill("loading.force_max_kn", "9");
+    forms.fill_all("specimen.hole_diameter_mm=20 loading.force_max_kn=9");
     forms.choose("specimen.head", "round");
     page.see("#predict:not([disabled])");
     walk.look("27_named_plate");
