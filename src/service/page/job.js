@@ -251,7 +251,7 @@ export function downloadList(job, special = {}) {
     button(file.name, () => fetchFile(file.href, file.name), { class: "link" }),
     element("span", { class: "quiet" }, ` ${bytes(file.bytes)}`), special[file.name]?.(file, fetchFile)));
   return element("section", { "aria-labelledby": "downloads-title" }, element("h2", { id: "downloads-title" }, "Downloads"),
-    items.length > 0 ? element("ul", { class: "downloads" }, items) : element("p", { class: "quiet" }, "This run left no files."), trouble);
+    items.length > 0 ? element("ul", { class: "downloads" }, items) : element("p", { class: "quiet" }, "No files."), trouble);
 }
 
 /** The input as it was submitted. */

@@ -23,7 +23,7 @@ const START = 0.9;
 /** Pictures of the end of a run, by the model that has them. */
 /** The section of a crack that is not through, with its fronts. */
 const SECTION = "section.svg";
-const FIELDS = { "stress.svg": "Stress at maximum load near the end of life (deformed).", "damage.svg": "Share of bonds cut or broken, at the end of the run." };
+const FIELDS = { "stress.svg": "Stress at maximum load near the end of life (deformed).", "damage.svg": "Fraction of broken bonds at the end of the run." };
 
 export async function openPrediction(root, id, signal) {
   const job = await getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal);
@@ -131,7 +131,7 @@ export async function openPrediction(root, id, signal) {
     head.offer(reportButton(done));
     head.describe(describe(result));
     below.prepend(element("div", { class: "two" }, howComputed(done, result),
-      result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "All that was noticed"))));
+      result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "Messages"))));
     const spectrum = spectrumCard(result);
     if (!spectrum) return;
     below.prepend(spectrum.node);
@@ -233,7 +233,7 @@ function pathsOf({ tip, cycles: steps, x_mm: xs, y_mm: ys }) {
   return [...byTip.values()];
 }
 
-const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id: "band", name: "9 of 10 specimens", kind: "band", tone: 0, x: low, x2: high, y: lengths }] : []);
+const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id: "band", name: "Scatter band (90 %)", kind: "band", tone: 0, x: low, x2: high, y: lengths }] : []);
 
 /** Where small-scale yielding ends, or begins where the crack was too short: length of the governing crack. */
 function limitsOf(result) {
@@ -252,7 +252,7 @@ function howComputed(job, r) {
   const range = law.delta_k_min_mpa_sqrt_m && `ΔK ${significant(law.delta_k_min_mpa_sqrt_m, 3)} to ${significant(law.delta_k_max_mpa_sqrt_m, 3)} MPa√m`;
   const isNodes = r.model?.method === "element_free_galerkin";
   const model = r.points > 0 ? `${count(r.points, isNodes ? "node" : "point")}, ${count(r.solves, "solution")}, ${duration(r.wall_s)}` : `hand calculation, ${duration(r.wall_s)}`;
-  return element("section", { class: "card", "aria-labelledby": "computed-title" }, element("h2", { id: "computed-title" }, "How it was computed"),
+  return element("section", { class: "card", "aria-labelledby": "computed-title" }, element("h2", { id: "computed-title" }, "Method"),
     terms([
       ["Growth law", [rate || given, paris].filter(Boolean).join(", ") || words(law.source)],
       range && ["Calibrated", range],
@@ -269,7 +269,7 @@ function createPlace({ columns, lengths, lead, band, chart, factorChart, plate }
   const steps = columns.cycles;
   const life = steps.at(-1);
   const cell = (name, wide) => [name, element("dd"), wide];
-  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell("Remaining life"), band: cell("9 of 10 specimens", true) };
+  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell("Remaining life"), band: cell("Scatter band (90 %)", true) };
   const told = element("b");
   const share = element("span");
   const slider = element("input", { type: "range", id: "place", min: "0", max: String(STEPS), value: "0" });

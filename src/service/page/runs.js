@@ -161,7 +161,7 @@ export function createRunsView() {
     byId("compare-clear").hidden = ticked.size === 0;
     const told = [...ticked.values()];
     byId("compare-count").textContent = ticked.size < 2
-      ? `${told.length > 0 ? `${told[0]} is selected: select another one` : "Tick two or more lives"} to compare them.`
+      ? `${told.length > 0 ? `${told[0]} is selected: select another one` : "Select two or more lives"} to compare them.`
       : `${count(ticked.size, "life", "lives")} ticked${ticked.size === COMPARE_MAX ? ", the most that can be compared" : ""}.`;
     const go = byId("compare");
     go.hidden = ticked.size < 2;
