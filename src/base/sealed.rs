@@ -39,7 +39,7 @@ impl Seal {
         let (version, rest) = rest.split_at_checked(usize::from(*length)).ok_or_else(damaged)?;
         if (u32::from_le_bytes(*form), version) != (self.form, VERSION.as_bytes()) {
             let other = String::from_utf8_lossy(version);
-            return Err(refused(format!("was written by perilife {other}, another version than this {VERSION}")));
+            return Err(refused(format!("written by perilife {other}; this is {VERSION}")));
         }
         let (sum, content) = rest.split_first_chunk::<32>().ok_or_else(damaged)?;
         if Sha256::digest(content)[..] != sum[..] {

@@ -32,10 +32,10 @@ impl Stage {
 
     pub fn words(self) -> &'static str {
         match self {
-            Stage::Points => "laying points",
-            Stage::Bonds => "drawing bonds",
-            Stage::Rim => "balancing the rim",
-            Stage::Loads => "putting on loads",
+            Stage::Points => "creating points",
+            Stage::Bonds => "creating bonds",
+            Stage::Rim => "correcting boundary bonds",
+            Stage::Loads => "applying loads",
             Stage::Solver => "building the solver",
             Stage::Equilibrium => "solving the equilibrium",
         }

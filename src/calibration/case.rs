@@ -66,8 +66,8 @@ perilife_base::keys! {
     /// Keys of `[measured]` of readings.
     pub struct MeasuredKeys {
         files: Vec<String> = key("files", "Files of readings: CSV or workbooks, one or more specimens each");
-        from: Option<f64> = length("from_crack_length_mm", "Fit window: from this crack length");
-        to: Option<f64> = length("to_crack_length_mm", "Fit window: to this crack length");
+        from: Option<f64> = length("from_crack_length_mm", "From crack length: start of the fit window");
+        to: Option<f64> = length("to_crack_length_mm", "To crack length: end of the fit window");
         length_unit: Option<LengthUnit> = key("length_unit", "Unit of crack length: where the header has none");
         cycle_unit: Option<CycleUnit> = key("cycle_unit", "Unit of cycles: where the header has none");
         precision: Option<Plain> = length("precision_mm", "Precision of the crack lengths");

@@ -32,8 +32,8 @@ pub const STEP_ERROR_PERCENT: f64 = 0.2;
 perilife_base::kinds! {
     /// What drives a crack of method `peridynamics`.
     pub enum Driver for "fatigue.driver" {
-        TipField = "tip_field": "K_I and K_II of every tip, from the field around it, steer and pace it; bonds that its line crosses are cut",
-        BondStrain = "bond_strain": "every bond loses remaining life by its own strain, and the crack goes where bonds break; from a slot until K of its tip takes over",
+        TipField = "tip_field": "K_I and K_II at each tip set its direction and rate",
+        BondStrain = "bond_strain": "bonds fail by their own strain (initiation at slots); K takes over once the crack is 1.5 horizons long",
     }
 }
 

@@ -1,8 +1,8 @@
 //! Every kind of every key of the input files.
 
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
-use perilife_base::input::{Folder, Quantity};
+use perilife_base::input::Folder;
 use perilife_base::keys::told::{self, Told};
 use perilife_base::keys::{Key, Need, Section};
 use perilife_base::kinds::KindLine;
@@ -91,12 +91,9 @@ pub fn lines() -> Vec<(String, String, String)> {
 
 /// Every section of case and calibration files with its keys.
 pub fn told() -> Vec<Told> {
-    let told = |section: &str, meaning: &str, keys: Vec<Key>| Told {
-        section: section.to_owned(),
-        meaning: meaning.to_owned(),
-        tag: None,
-        is_needed: ["material", "loading"].contains(&section),
-        keys,
+    let told = |section: &str, meaning: &str, keys: Vec<Key>| {
+        let is_needed = ["material", "loading"].contains(&section);
+        Told { section: section.to_owned(), meaning: meaning.to_owned(), tag: None, is_needed, keys }
     };
     let of_kind = |kind: &SpecimenKind| {
         let beta = kind.takes_beta().then_some(BETA_FILE);
@@ -125,12 +122,9 @@ pub fn told() -> Vec<Told> {
 
 /// Sections of sweeps, and those of scenes that have keys of their own.
 pub fn beside() -> Vec<Told> {
-    let told = |file: &str, section: &str, keys: &[Key]| Told {
-        section: format!("{file}.{section}"),
-        meaning: format!("Section of a {file}"),
-        tag: None,
-        is_needed: false,
-        keys: keys.to_vec(),
+    let told = |file: &str, section: &str, keys: &[Key]| {
+        let (section, meaning) = (format!("{file}.{section}"), format!("Section of a {file}"));
+        Told { section, meaning, tag: None, is_needed: false, keys: keys.to_vec() }
     };
     let sweep = [("design", DesignKeys::KEYS), ("vary[]", VaryKeys::KEYS)].map(|(section, keys)| told("sweep", section, keys));
     sweep
@@ -156,23 +150,25 @@ pub fn stub() -> String {
     format!("{head}{}", told().iter().map(Told::stub).collect::<String>().trim_end().to_owned() + "\n")
 }
 
-/// Such lines as one object, with the constants of every growth law and model of retardation: keys of `[fatigue]` and `[loading]`, units, and whether a
-/// case has to give them.
+/// Such lines as one object, with what forms are made from: the schema, traits of specimens, and the constants of every growth law and model of
+/// retardation (keys of `[fatigue]` and `[loading]`, and whether a case has to give them).
 pub fn json(lines: Vec<(String, String, String)>) -> Value {
     let kinds = lines.into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
-    let constant = |key: &str, quantity: &Quantity, needed: bool| json!({ "key": key, "unit": quantity.unit, "what": quantity.what, "needed": needed });
-    let law = |law: GrowthLawKind| {
-        let of_law = |own: &Constant| constant(own.key, &own.quantity, own.default.is_none());
-        json!({ "name": law.name(), "meaning": law.meaning(), "constants": law.0.constants.iter().map(of_law).collect::<Vec<_>>() })
+    let of_law = |own: &Constant| json!({ "key": own.key, "needed": own.default.is_none() });
+    // A threshold of the law, which it may have, is taken for a constant.
+    let of_model = |own: &Retarding| json!({ "key": own.key, "needed": (own.default)(Plane::Stress, Some(1.0)).is_none() });
+    let told = |name: &str, constants: Vec<Value>| json!({ "name": name, "constants": constants });
+    let law = |law: GrowthLawKind| told(law.name(), law.0.constants.iter().map(of_law).collect());
+    let retardation = |model: RetardationKind| told(model.name(), model.0.constants.iter().map(of_model).collect());
+    let traits = |kind: &SpecimenKind| {
+        let (force, bending, part_through) = (kind.takes_force(), kind.takes_bending(), kind.part_through().is_some());
+        json!({ "name": kind.name(), "takes_force": force, "takes_bending": bending, "is_part_through": part_through })
     };
-    let retardation = |model: RetardationKind| {
-        // A threshold of the law, which it may have, stands for a constant.
-        let of_model = |own: &Retarding| constant(own.key, &own.quantity, (own.default)(Plane::Stress, Some(1.0)).is_none());
-        let constants: Vec<Value> = model.0.constants.iter().map(of_model).collect();
-        json!({ "name": model.name(), "meaning": model.meaning(), "constants": constants })
-    };
+    let beside: Map<String, Value> = beside().iter().map(|told| (told.section.clone(), told.schema())).collect();
     json!({
         "kinds": kinds.collect::<Vec<_>>(),
+        "specimens": SpecimenKind::ALL.iter().map(traits).collect::<Vec<_>>(),
+        "beside": beside,
         "laws": GrowthLawKind::all().map(law).collect::<Vec<_>>(),
         "form": schema(),
         "retardations": RetardationKind::all().map(retardation).collect::<Vec<_>>(),

@@ -21,7 +21,7 @@ perilife_base::kinds! {
         Running = "running": "A worker has it.",
         Succeeded = "succeeded": "Done; its results are there.",
         Failed = "failed": "Ended without a result; its problem says why.",
-        Cancelled = "cancelled": "Ended because somebody asked for it.",
+        Cancelled = "cancelled": "Canceled by a user.",
     }
 }
 

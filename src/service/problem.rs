@@ -25,7 +25,7 @@ pub struct Problem {
     /// Where in the input it stands.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub input: Option<Box<Place>>,
-    /// Seconds after which another try makes sense.
+    /// Retry after, s.
     #[serde(skip)]
     pub retry_after: Option<u32>,
 }
@@ -80,7 +80,7 @@ impl Problem {
         Problem::new(StatusCode::BAD_REQUEST, "Bad request", detail)
     }
 
-    /// It clashes with what is there.
+    /// Conflict.
     pub fn conflict(detail: impl Into<String>) -> Self {
         Problem::new(StatusCode::CONFLICT, "Conflict", detail)
     }
@@ -104,7 +104,7 @@ impl Problem {
 
     /// A fault of this program: told without its inner workings, which stand in the log.
     pub fn internal() -> Self {
-        let detail = "a fault of the program, written to its log; please report it";
+        let detail = "internal error (logged); please report it";
         Problem::new(StatusCode::INTERNAL_SERVER_ERROR, "Internal error", detail)
     }
 

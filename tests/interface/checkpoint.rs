@@ -74,7 +74,7 @@ fn a_killed_run_goes_on_to_the_same_curve() {
 
     // Not for this case, or not whole: refused, and left as it is.
     let other = [&call[..], &["--set", "loading.stress_max_mpa=71"]].concat();
-    assert_refused(&perilife(folder, &other), 2, &["run.ckpt: belongs to another case", "remove it"]);
+    assert_refused(&perilife(folder, &other), 2, &["run.ckpt: is for a different case", "remove it"]);
     assert_eq!(fs::read(folder.join("run.ckpt")).unwrap(), kept);
     let mut damaged = kept.clone();
     damaged[kept.len() / 2] ^= 1;
@@ -134,7 +134,7 @@ fn a_killed_scene_goes_on_to_the_same_files() {
         (&kept, "loading.velocity_mm_s=5001", "run.ckpt: belongs to another scene"),
         (&damaged, "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
         (&kept[..kept.len() - 1], "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
-        (&older, "loading.velocity_mm_s=5000", "another version than this"),
+        (&older, "loading.velocity_mm_s=5000", "; this is "),
         (b"perilife checkpoint\n", "loading.velocity_mm_s=5000", "run.ckpt: is no checkpoint of a scene of this program"),
     ];
     for (bytes, set, words) in refused {

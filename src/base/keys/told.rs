@@ -4,7 +4,7 @@ use serde_json::{Map, Value as Json, json};
 
 use super::{Key, Need, Shape, all};
 use crate::kinds::KindLine;
-use crate::units::us::{System, renamed};
+use crate::units::us::{System, Unit, renamed};
 
 /// Keys of one section, or of one of its kinds.
 #[derive(Debug, Clone)]
@@ -23,10 +23,10 @@ impl Key {
         self.text.split_once(": ").unwrap_or((self.text, ""))
     }
 
-    /// Its name in US units, with metric units in one of these.
+    /// Its name in US units, with metric units in one of these: of the level C of a law at the exponent 0.
     fn twin(&self) -> Option<(String, f64)> {
         let twin = renamed(self.name, System::Us)?;
-        let factor = twin.factor(|_| None).ok()?;
+        let factor = twin.factor(|_| Some(0.0)).ok()?;
         Some((twin.name, 1.0 / factor))
     }
 
@@ -150,8 +150,10 @@ fn object(keys: &[Key]) -> Json {
         let mut own = value(&key, key.shape, 1.0);
         let (label, hint) = key.label_and_hint();
         own["title"] = json!(label);
-        own["description"] =
-            json!([hint, &key.left_out()].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; "));
+        let left_out = key.left_out();
+        let parts = [hint, &left_out].into_iter().filter(|part| !["", "-"].contains(part));
+        own["description"] = json!(parts.collect::<Vec<_>>().join("; "));
+        own["x-hint"] = json!(hint);
         own["x-unit"] = json!(key.quantity.map_or("", |quantity| quantity.unit));
         own["x-default"] = json!(if let Need::Or(words) = key.need { words } else { "" });
         own["x-needed"] = json!(key.need == Need::Required && key.group.is_none());
@@ -169,8 +171,15 @@ fn object(keys: &[Key]) -> Json {
                     other[name] = bound.clone();
                 }
                 other["x-twin"] = json!(key.name);
+                let unit = key.quantity.and_then(|quantity| Unit::named(quantity.unit, System::Si));
+                other["x-unit"] = json!(unit.map_or("", |unit| unit.word(System::Us)));
                 own["x-twin"] = json!(twin);
                 own["x-factor"] = json!(factor);
+                if let Some(exponent) =
+                    renamed(key.name, System::Us).and_then(|twin| twin.factor(|_| None).err().map(str::to_owned))
+                {
+                    own["x-exponent"] = json!(exponent);
+                }
                 if is_needed {
                     either.push(json!({ "anyOf": [{ "required": [key.name] }, { "required": [twin] }] }));
                 }

@@ -24,10 +24,10 @@ perilife_base::keys! {
 perilife_base::keys! {
     /// Keys of the initial length, as a sweep calls them.
     pub struct LengthKeys {
-        median: Option<f64> = key("median", "Median, mm: of a normal logarithm").of(LENGTH);
+        median: Option<f64> = key("median", "Median: of a normal logarithm").of(LENGTH);
         deviation_ln: Option<f64> = number("standard_deviation_ln", "Standard deviation of ln", "a standard deviation of ln", 1e-6, 3.0);
-        mean: Option<f64> = key("mean", "Mean, mm: of a normal distribution above zero").of(LENGTH);
-        deviation: Option<f64> = key("standard_deviation", "Standard deviation, mm").of(LENGTH);
+        mean: Option<f64> = key("mean", "Mean: of a normal distribution above zero").of(LENGTH);
+        deviation: Option<f64> = key("standard_deviation", "Standard deviation").of(LENGTH);
     }
 }
 

@@ -85,7 +85,7 @@ impl Checkpoint {
 
     /// Refuses the checkpoint of another case.
     pub fn check(&self, case: &Case) -> Result<()> {
-        if self.belongs_to(case) { Ok(()) } else { Err(refused("belongs to another case, or to this one before it was changed")) }
+        if self.belongs_to(case) { Ok(()) } else { Err(refused("is for a different case (or the case was edited)")) }
     }
 
     /// As bytes, with a checksum.

@@ -96,52 +96,45 @@ pub struct Constant {
     pub bounds: [f64; 2],
     /// Where searches start, of its variable.
     pub starts: [f64; 2],
-    /// Which rates tell it.
+    /// Which rates it needs.
     pub told_by: &'static str,
     /// Standard error above which it is not known: a share of its value, or an absolute one where ratios tell it.
     pub error_max: f64,
 }
 
-pub(super) const NEAR_FRACTURE: &str = "rates near fracture tell it";
-pub(super) const NEAR_THRESHOLD: &str = "rates near the threshold tell it";
-pub(super) const RATIOS: &str = "rates at several stress ratios tell it";
-const POWER: &str = "rates over a wide range of ΔK tell it";
+pub(super) const NEAR_FRACTURE: &str = "needs rates near fracture";
+pub(super) const NEAR_THRESHOLD: &str = "needs rates near the threshold";
+pub(super) const RATIOS: &str = "needs rates at several stress ratios";
+pub(super) const LOW_RATIOS: &str = "needs rates near the threshold at several stress ratios";
+const POWER: &str = "needs rates over a wide range of ΔK";
 
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
 /// Level C of a law.
-pub(super) const RATE: Quantity = Quantity { si: MM_PER_CYCLE, ..number("a rate in mm/cycle", 1e-60, 1e3) };
+pub(super) const fn rate_of(what: &'static str) -> Quantity {
+    Quantity { unit: "mm/cycle", si: MM_PER_CYCLE, ..number(what, 1e-60, 1e3) }
+}
 /// K_c, which several laws have.
 pub const K_C: Constant = Constant {
     role: Role::Toughness,
-    ..Constant::new("k_c_mpa_sqrt_m", "k_c", INTENSITY).searched([-6.9, 2.9], [-2.0, 0.5], NEAR_FRACTURE, 1.0)
+    ..Constant::new("k_c_mpa_sqrt_m", "k_c", TOUGHNESS).searched([-6.9, 2.9], [-2.0, 0.5], NEAR_FRACTURE, 1.0)
 };
+const TOUGHNESS: Quantity = Quantity { what: "a fracture toughness Kc", ..INTENSITY };
 /// Walker's exponent, which several laws have.
 pub const GAMMA: Constant =
     Constant::new("walker_gamma", "gamma", OF_WALKER).searched([0.0, 2.0], [0.5; 2], RATIOS, f64::INFINITY);
-const OF_WALKER: Quantity = number("a Walker exponent", 0.0, 2.0);
+const OF_WALKER: Quantity = number("a Walker exponent γ", 0.0, 2.0);
 
 impl Constant {
     /// A constant that a case has to give and no search looks for.
     pub const fn new(key: &'static str, name: &'static str, quantity: Quantity) -> Self {
-        let (role, none, told_by) = (Role::Plain, [f64::NAN; 2], POWER);
-        Constant {
-            key,
-            name,
-            quantity,
-            role,
-            is_exponent: false,
-            default: None,
-            held: None,
-            bounds: none,
-            starts: none,
-            told_by,
-            error_max: 0.0,
-        }
+        let (role, told_by, is_exponent, default, held, error_max) = (Role::Plain, POWER, false, None, None, 0.0);
+        let [bounds, starts] = [[f64::NAN; 2]; 2];
+        Constant { key, name, quantity, role, is_exponent, default, held, bounds, starts, told_by, error_max }
     }
 
     /// The exponent of ΔK.
-    pub const fn exponent(key: &'static str, name: &'static str) -> Self {
-        let constant = Constant::new(key, name, number("an exponent", 0.5, 20.0)).searched([0.5, 20.0], [3.0; 2], POWER, 1.0);
+    pub const fn exponent(key: &'static str, name: &'static str, what: &'static str) -> Self {
+        let constant = Constant::new(key, name, number(what, 0.5, 20.0)).searched([0.5, 20.0], [3.0; 2], POWER, 1.0);
         Constant { is_exponent: true, ..constant }
     }
 
@@ -150,9 +143,9 @@ impl Constant {
         Constant { bounds, starts, told_by, error_max, ..self }
     }
 
-    /// Whether only rates at several stress ratios tell it.
+    /// Whether it needs rates at several stress ratios.
     pub fn is_told_by_ratios(&self) -> bool {
-        self.told_by.contains("several stress ratios")
+        [RATIOS, LOW_RATIOS].contains(&self.told_by)
     }
 
     /// Whether several laws have it.

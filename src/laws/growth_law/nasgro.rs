@@ -6,16 +6,18 @@ use std::f64::consts::PI;
 
 use toml::{Table, Value};
 
-use super::description::{Constant, Description, K_C, NEAR_FRACTURE, NEAR_THRESHOLD, RATE, RATIOS, Role, UNSAID};
+use super::description::{Constant, Description, K_C, LOW_RATIOS, NEAR_FRACTURE, NEAR_THRESHOLD, RATIOS, Role, UNSAID, rate_of};
 use perilife_base::input::{INTENSITY, Quantity, number};
 use perilife_base::units::MPA_SQRT_M;
 use perilife_plate::material::growth_data::{GrowthRecord, MM_PER_INCH, MPA_SQRT_M_PER_KSI_SQRT_IN};
 
-const EXPONENT: Quantity = number("an exponent", 0.0, 20.0);
-const CONSTRAINT: Quantity = number("a constraint factor, 1 to 3", 1.0, 3.0);
-const SLOPE: Quantity = number("a slope of the threshold over R", -10.0, 10.0);
-const SHARE: Quantity = number("a share of the flow stress", 0.0, 0.99);
-const RATIOS_NEAR_THRESHOLD: &str = "rates near the threshold at several stress ratios tell it";
+const fn exponent(what: &'static str) -> Quantity {
+    number(what, 0.0, 20.0)
+}
+const CONSTRAINT: Quantity = number("a constraint factor α", 1.0, 3.0);
+const DELTA_K_0: Quantity = Quantity { what: "a threshold ΔK0 at R = 0", ..INTENSITY };
+const SLOPE: Quantity = number("a threshold slope Cth over R", -10.0, 10.0);
+const SHARE: Quantity = number("a ratio Smax/σ0", 0.0, 0.99);
 
 /// The law, of C as the rate at ΔK = 1 MPa√m, n, p of the threshold, q of instability, the constraint α (1 in plane stress, 3 in plane
 /// strain), S_max over the flow stress, ΔK₀ at R = 0, C_th for R from 0 on and below, and K_c.
@@ -23,13 +25,13 @@ pub static LAW: Description = Description {
     name: "nasgro",
     meaning: "crack closure, threshold and instability in one equation (Forman and Mettu 1992)",
     constants: &[
-        Constant::new("nasgro_c_mm_per_cycle", "c", RATE),
-        Constant::exponent("nasgro_n", "n"),
-        Constant::new("nasgro_p", "p", EXPONENT).searched([0.0, 5.0], [0.25, 1.0], NEAR_THRESHOLD, 1.0),
-        Constant::new("nasgro_q", "q", EXPONENT).searched([0.0, 5.0], [0.25, 1.0], NEAR_FRACTURE, 1.0),
+        Constant::new("nasgro_c_mm_per_cycle", "c", rate_of("a NASGRO C")),
+        Constant::exponent("nasgro_n", "n", "a NASGRO exponent n"),
+        Constant::new("nasgro_p", "p", exponent("a threshold exponent p")).searched([0.0, 5.0], [0.25, 1.0], NEAR_THRESHOLD, 1.0),
+        Constant::new("nasgro_q", "q", exponent("a fracture exponent q")).searched([0.0, 5.0], [0.25, 1.0], NEAR_FRACTURE, 1.0),
         Constant::new("nasgro_alpha", "alpha", CONSTRAINT).searched([1.0, 3.0], [1.5, 2.5], RATIOS, 1.0),
         Constant { held: Some(0.3), ..Constant::new("nasgro_smax_over_flow", "stress_over_flow", SHARE) },
-        Constant { role: Role::Threshold, ..Constant::new("nasgro_delta_k_0_mpa_sqrt_m", "threshold", INTENSITY) }.searched(
+        Constant { role: Role::Threshold, ..Constant::new("nasgro_delta_k_0_mpa_sqrt_m", "threshold", DELTA_K_0) }.searched(
             [-3.0, 9.2],
             [0.0, 3.0],
             NEAR_THRESHOLD,
@@ -38,7 +40,7 @@ pub static LAW: Description = Description {
         Constant { default: Some(0.0), ..Constant::new("nasgro_c_th", "threshold_slopes", SLOPE) }.searched(
             [-5.0, 5.0],
             [0.5; 2],
-            RATIOS_NEAR_THRESHOLD,
+            LOW_RATIOS,
             2.0,
         ),
         Constant { default: Some(0.0), held: Some(0.0), ..Constant::new("nasgro_c_th_negative", "threshold_slopes", SLOPE) },

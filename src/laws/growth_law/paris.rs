@@ -7,7 +7,7 @@ use super::walker::{self, LEVEL};
 pub static LAW: Description = Description {
     name: "paris",
     meaning: "da/dN = C ΔK^m (Paris and Erdogan 1963)",
-    constants: &[LEVEL, Constant::exponent("paris_m", "m")],
+    constants: &[LEVEL, Constant::exponent("paris_m", "m", "a Paris exponent m")],
     rate: |law, k_max, ratio| (walker::LAW.rate)(&[law[0], law[1], 1.0], k_max, ratio),
     read: None,
     complete: "give paris_c_mm_per_cycle and paris_m together, or fitted",

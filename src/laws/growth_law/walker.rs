@@ -1,19 +1,17 @@
 //! The law of Walker, which at γ = 1 is that of Paris.
 
 use super::GrowthLaw;
-use super::description::{Constant, Description, GAMMA, RATE, UNSAID};
+use super::description::{Constant, Description, GAMMA, UNSAID, rate_of};
 use crate::paris::ParisLaw;
-use perilife_base::input::Quantity;
 
 /// C.
-pub(super) const LEVEL: Constant =
-    Constant::new("paris_c_mm_per_cycle", "c", Quantity { what: "a rate in mm/cycle at ΔK = 1 MPa√m", ..RATE });
+pub(super) const LEVEL: Constant = Constant::new("paris_c_mm_per_cycle", "c", rate_of("a Paris C"));
 
 /// The law, of C, m and γ.
 pub static LAW: Description = Description {
     name: "walker",
     meaning: "da/dN = C (K_max (1-R)^γ)^m (Walker 1970)",
-    constants: &[LEVEL, Constant::exponent("paris_m", "m"), GAMMA],
+    constants: &[LEVEL, Constant::exponent("paris_m", "m", "a Paris exponent m"), GAMMA],
     rate: |law, k_max, ratio| {
         Walker { paris: ParisLaw { c: law[0], m: law[1] }, gamma: law[2], threshold: 0.0 }.rate(k_max, ratio)
     },

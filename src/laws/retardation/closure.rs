@@ -10,7 +10,7 @@ pub static MODEL: Description = Description {
     meaning: "stress ratio C_f = 1 - (1 - closure_cf0)(1 + 0.6 R)(1 - R) within the zone of an overload",
     constants: &[Constant {
         key: "closure_cf0",
-        quantity: number("a closure factor at R = 0", 0.0, 0.99),
+        quantity: number("a closure factor Cf0", 0.0, 0.99),
         default: |_, _| None,
         remedy: "give opening load over maximum at R = 0, 0.3 for many aluminium alloys",
     }],

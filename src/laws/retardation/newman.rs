@@ -6,7 +6,7 @@ use perilife_base::input::{Quantity, number};
 use perilife_plate::material::Plane;
 
 /// S_max over the flow stress.
-const SHARE: Quantity = number("a share of the flow stress", 0.0, 0.99);
+const SHARE: Quantity = number("a ratio Smax/flow stress", 0.0, 0.99);
 /// In place of a share: that of every cycle, by K and crack length.
 const BY_THE_CRACK: f64 = f64::INFINITY;
 /// Least stress ratio for which the opening is known.
@@ -23,7 +23,7 @@ pub static MODEL: Description = Description {
     constants: &[
         Constant {
             key: "newman_alpha",
-            quantity: number("a constraint factor, 1 to 3", 1.0, 3.0),
+            quantity: number("a constraint factor α", 1.0, 3.0),
             default: |plane, _| Some(if plane == Plane::Strain { 3.0 } else { 1.0 }),
             remedy: "",
         },

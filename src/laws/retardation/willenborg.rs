@@ -1,7 +1,7 @@
 //! Willenborg, Engle and Wood 1971 (AFFDL-TM-71-1-FBR), generalised by Gallagher and Hughes 1974 (AFFDL-TR-74-27).
 
 use super::description::{Constant, Description};
-use perilife_base::input::{INTENSITY, number};
+use perilife_base::input::{INTENSITY, Quantity, number};
 
 /// `da/dN = v(K_max - K_red, R_eff)`, `R_eff = (K_min - K_red)/(K_max - K_red)`, `K_red = φ [K_OL √(1 - Δa/r_OL) - K_max]`,
 /// `φ = (1 - K_th/K_max)/(S - 1)`, Δa being the growth since the overload. At K_OL √… = S K_max, the shut-off ratio, K_max - K_red is K_th and
@@ -12,13 +12,13 @@ pub static MODEL: Description = Description {
     constants: &[
         Constant {
             key: "shutoff_ratio",
-            quantity: number("a ratio of overload to cycle", 1.01, 100.0),
+            quantity: number("a shut-off ratio S", 1.01, 100.0),
             default: |_, _| None,
             remedy: "give the ratio of overload to cycle that arrests a crack, 2 to 3 for many aluminium and titanium alloys",
         },
         Constant {
             key: "willenborg_k_th_mpa_sqrt_m",
-            quantity: INTENSITY,
+            quantity: Quantity { what: "a threshold K_max at R = 0", ..INTENSITY },
             default: |_, threshold| threshold,
             remedy: "give K_max at the threshold of R = 0, or fatigue.delta_k_threshold_mpa_sqrt_m",
         },

@@ -181,7 +181,7 @@ fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
             let problem = "conflicts with specimen.holes: no K of a crack under bending includes holes";
             return Err(error::input(KEY, ratio, problem, "compute it by other means: either alone is another plate"));
         }
-        Some(flaw) if flaw.knows_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
+        Some(flaw) if kind.takes_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
         Some(_) => {
             let problem = format!("does not go with {kind}, whose K is known under tension alone");
             return Err(error::input(KEY, ratio, problem, UNBENT));

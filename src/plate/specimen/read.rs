@@ -55,6 +55,19 @@ impl SpecimenKind {
         self.part_through().is_none() && !matches!(self, SpecimenKind::RowOfHoles | SpecimenKind::StopHole)
     }
 
+    /// Whether pins or rollers load it, by a force.
+    pub fn takes_force(self) -> bool {
+        matches!(
+            self,
+            Self::CompactTension | Self::EccentricSingleEdgeTension | Self::Lug | Self::SingleEdgeBend | Self::WedgeOpening
+        )
+    }
+
+    /// Whether its K under out-of-plane bending is known.
+    pub fn takes_bending(self) -> bool {
+        self.part_through().is_some_and(|description| description.bending.is_some())
+    }
+
     /// What is wrong with the keys of its section by themselves.
     fn mistakes(self, given: Given<'_>) -> Vec<InputError> {
         let all: Vec<_> = SpecimenKind::ALL.iter().map(|kind| (kind.name(), kind.keys())).collect();

@@ -106,7 +106,7 @@ impl Lattice {
             (columns, rows, [centre[0] + s * cos - t * sin, centre[1] + s * sin + t * cos])
         };
         if columns * rows > 2e8 {
-            let problem = format!("asks for {:.0} million lattice places", columns * rows / 1e6);
+            let problem = format!("needs {:.0} million points (limit 200 million)", columns * rows / 1e6);
             let remedy = "give a larger spacing (200 million places at the most)";
             return Err(input("model.spacing_mm", spacing * 1e3, problem, remedy));
         }

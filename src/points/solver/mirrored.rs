@@ -139,7 +139,7 @@ impl EquilibriumBackend for Mirrored {
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
         let cut: Vec<Bond> = broken.iter().copied().filter(|&bond| !bonds.is_intact(bond)).collect();
         if !self.is_lost && !self.part.keeps(body, &cut) {
-            tracing::info!("the crack is not symmetric any more: the whole plate is solved from now on");
+            tracing::info!("symmetry lost: solving the whole plate");
             self.is_lost = true;
             self.inner = sides::balance(self.kind, body, bonds, self.load);
             if let Some(tolerance) = self.tolerance {

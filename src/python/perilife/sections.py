@@ -453,13 +453,13 @@ class Loading(TypedDict, total=False):
     pins: list[LoadingPins]  # Pins: in holes of the plate; -
     rollers: list[LoadingRollers]  # Rollers: on the outline of the plate; -
     retardation: Literal["none", "wheeler", "willenborg", "closure", "newman"]  # Retardation: load interaction of a spectrum; default none; -
-    wheeler_exponent: float  # exponent; -
-    shutoff_ratio: float  # ratio of overload to cycle; -
-    willenborg_k_th_mpa_sqrt_m: float  # stress intensity; -
+    wheeler_exponent: float  # Wheeler exponent m; -
+    shutoff_ratio: float  # shut-off ratio S; -
+    willenborg_k_th_mpa_sqrt_m: float  # threshold K_max at R = 0; -
     willenborg_k_th_ksi_sqrt_in: float
-    closure_cf0: float  # closure factor at R = 0; -
-    newman_alpha: float  # constraint factor, 1 to 3; -
-    newman_smax_over_flow: float  # share of the flow stress; -
+    closure_cf0: float  # closure factor Cf0; -
+    newman_alpha: float  # constraint factor α; -
+    newman_smax_over_flow: float  # ratio Smax/flow stress; -
 
 
 class Model(TypedDict, total=False):
@@ -505,26 +505,29 @@ class Fatigue(TypedDict, total=False):
     failure: Literal["stretch"]  # Failure: criterion of bonds; -
     fitted: str  # Fitted law: file that `perilife calibrate` wrote; -
     growth_law: Literal["bond_law", "paris", "walker", "forman", "nasgro", "table"]  # Growth law: default by the constants given; -
-    a: float  # constant in 1/cycle; -
-    p: float  # exponent; -
-    horizon_mm: float  # length; -
+    a: float  # bond constant A; -
+    p: float  # bond exponent p; -
+    horizon_mm: float  # horizon of A; -
     horizon_in: float
-    paris_c_mm_per_cycle: float  # rate in mm/cycle at ΔK = 1 MPa√m; -
-    paris_m: float  # exponent; -
-    forman_c_mm_per_cycle: float  # rate in mm/cycle; -
-    forman_m: float  # exponent; -
-    k_c_mpa_sqrt_m: float  # stress intensity; -
+    paris_c_mm_per_cycle: float  # Paris C; -
+    paris_c_in_per_cycle: float
+    paris_m: float  # Paris exponent m; -
+    forman_c_mm_per_cycle: float  # Forman C; -
+    forman_c_in_per_cycle: float
+    forman_m: float  # Forman exponent m; -
+    k_c_mpa_sqrt_m: float  # fracture toughness Kc; -
     k_c_ksi_sqrt_in: float
-    nasgro_c_mm_per_cycle: float  # rate in mm/cycle; -
-    nasgro_n: float  # exponent; -
-    nasgro_p: float  # exponent; -
-    nasgro_q: float  # exponent; -
-    nasgro_alpha: float  # constraint factor, 1 to 3; -
-    nasgro_smax_over_flow: float  # share of the flow stress; -
-    nasgro_delta_k_0_mpa_sqrt_m: float  # stress intensity; -
+    nasgro_c_mm_per_cycle: float  # NASGRO C; -
+    nasgro_c_in_per_cycle: float
+    nasgro_n: float  # NASGRO exponent n; -
+    nasgro_p: float  # threshold exponent p; -
+    nasgro_q: float  # fracture exponent q; -
+    nasgro_alpha: float  # constraint factor α; -
+    nasgro_smax_over_flow: float  # ratio Smax/σ0; -
+    nasgro_delta_k_0_mpa_sqrt_m: float  # threshold ΔK0 at R = 0; -
     nasgro_delta_k_0_ksi_sqrt_in: float
-    nasgro_c_th: float  # slope of the threshold over R; -
-    nasgro_c_th_negative: float  # slope of the threshold over R; -
+    nasgro_c_th: float  # threshold slope Cth over R; -
+    nasgro_c_th_negative: float  # threshold slope Cth over R; -
     growth_table: str  # Table of rates: its file; -
     growth_table_ends: Literal["refused", "held"]  # Ends of the table: beyond its rows; default refused; -
 
@@ -544,10 +547,10 @@ class Stop(TypedDict, total=False):
 
 
 class FleetInitialLengthMm(TypedDict, total=False):
-    median: float  # Median, mm: of a normal logarithm; -
+    median: float  # Median: of a normal logarithm; -
     standard_deviation_ln: float  # Standard deviation of ln; -
-    mean: float  # Mean, mm: of a normal distribution above zero; -
-    standard_deviation: float  # Standard deviation, mm; -
+    mean: float  # Mean: of a normal distribution above zero; -
+    standard_deviation: float  # Standard deviation; -
 
 
 class Fleet(TypedDict, total=False):
@@ -606,9 +609,9 @@ class MeasuredLeaveOut(TypedDict, total=False):
 
 class Measured(TypedDict, total=False):
     files: list[str]  # Files of readings: CSV or workbooks, one or more specimens each; -
-    from_crack_length_mm: float  # Fit window: from this crack length; -
+    from_crack_length_mm: float  # From crack length: start of the fit window; -
     from_crack_length_in: float
-    to_crack_length_mm: float  # Fit window: to this crack length; -
+    to_crack_length_mm: float  # To crack length: end of the fit window; -
     to_crack_length_in: float
     length_unit: Literal["mm", "inch", "m"]  # Unit of crack length: where the header has none; -
     cycle_unit: Literal["cycles", "kilocycles", "megacycles"]  # Unit of cycles: where the header has none; -

@@ -58,7 +58,7 @@ impl FullLoad {
             return Ok(());
         };
         Err(Error::Mechanics(format!(
-            "nothing holds the plate, and its loads do not balance: {:.3e} N are left along {} at ({:.3}, {:.3}) mm; give \
+            "unsupported plate, unbalanced load: {:.3e} N along {} at ({:.3}, {:.3}) mm; give \
              [supports] or balanced loads",
             (force[at] + self.external[at]).abs(),
             ["x", "y"][at % net.unknowns],
@@ -157,7 +157,7 @@ impl Equilibrium {
             }
             if fresh {
                 return Err(Error::Mechanics(format!(
-                    "equilibrium was not found within {ITERATIONS_MAX} iterations: nothing holds what the loads pull at"
+                    "no equilibrium after {ITERATIONS_MAX} iterations: the model is not restrained against the load; add a support"
                 )));
             }
             self.stale = true;

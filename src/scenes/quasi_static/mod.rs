@@ -72,10 +72,9 @@ pub fn run(
     let mut fracture = course.log.close(end, &u, bonds, SceneFigures { evaluations, touching, ..SceneFigures::default() });
     let excess = account.excess();
     if iterations.is_some() {
-        fracture.warnings.push(format!(
-            "the plate was not at rest in its load steps: {:.2} % of the work are motion or damped away",
-            100.0 * excess
-        ));
+        fracture
+            .warnings
+            .push(format!("load steps not in equilibrium: {:.2} % of the work is kinetic or damped", 100.0 * excess));
     } else if excess.abs() > EXCESS_TOLD {
         fracture.warnings.push(format!(
             "{:.2} % of the work is neither strain nor fracture energy: the plate jumped, and a scene without time does not follow \

@@ -32,7 +32,7 @@ impl Caller {
         if self.role >= role {
             return Ok(());
         }
-        let detail = format!("this needs a token of the role {role}; yours has {}", self.role);
+        let detail = format!("requires role {role}; your token has {}", self.role);
         Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail))
     }
 

@@ -184,7 +184,7 @@ pub async fn submit(
             return Err(Problem::conflict(detail));
         }
         Submitted::QueueFull => {
-            let detail = format!("{} of your jobs wait already, which is all this server takes", app.limits.queued);
+            let detail = format!("queue full: {} of your jobs are waiting (limit)", app.limits.queued);
             return Err(Problem::too_many(detail, QUEUE_MOVES_S));
         }
         Submitted::SpaceFull(stored, bytes) => {
@@ -349,7 +349,7 @@ pub async fn cancel(
     let job = job_of(&app, &collection, &id).await?;
     caller.must_own(&job.owner)?;
     if !app.store.cancel(&id).await? {
-        return Err(Problem::conflict(format!("the job has ended already: it has {}", job.state)));
+        return Err(Problem::conflict(format!("the job already finished: {}", job.state)));
     }
     let job = job_of(&app, &collection, &id).await?;
     Ok((StatusCode::ACCEPTED, Json(view(&app, job, false).await?)))
@@ -367,7 +367,7 @@ pub async fn delete(
     let job = job_of(&app, &collection, &id).await?;
     caller.must_own(&job.owner)?;
     if !app.store.delete(&id).await? {
-        return Err(Problem::conflict("the job runs: cancel it first"));
+        return Err(Problem::conflict("the job is running; cancel it first"));
     }
     Ok(StatusCode::NO_CONTENT)
 }

@@ -11,11 +11,8 @@ const ALWAYS: [&str; 4] = ["401", "403", "429", "503"];
 /// What the reading of a body may end with.
 const WITH_BODY: [&str; 4] = ["400", "408", "413", "422"];
 /// What a file may be answered with for headers that ask for a part of it, or for another than the one known.
-const WITH_FILE: [(&str, &str); 3] = [
-    ("206", "The range that was asked for"),
-    ("304", "It is the one of If-None-Match"),
-    ("416", "The range lies beyond its end"),
-];
+const WITH_FILE: [(&str, &str); 3] =
+    [("206", "The requested range"), ("304", "It is the one of If-None-Match"), ("416", "The range is beyond its end")];
 /// What an address with a name in it may be answered with: one that is no text, one that nothing has.
 const WITH_NAME: [&str; 2] = ["400", "404"];
 
@@ -33,9 +30,9 @@ pub fn complete(handlers: &OpenApi) -> Value {
     // Without failure: its keys are text.
     let mut api = serde_json::to_value(handlers).unwrap_or_default();
     for (path, id, summary, answer) in [
-        ("/healthz", "health", "Whether the process answers at all.", "It does"),
-        ("/readyz", "ready", "Whether it can take jobs and show results: the store answers.", "It can"),
-        ("/metrics", "metrics", "What it counts, in the text format of Prometheus.", "Names and numbers, a line each"),
+        ("/healthz", "health", "Liveness.", "It does"),
+        ("/readyz", "ready", "Readiness.", "It can"),
+        ("/metrics", "metrics", "Counters, in the text format of Prometheus.", "Names and numbers, a line each"),
     ] {
         let text = json!({ "text/plain": { "schema": { "type": "string" } } });
         api["paths"][path]["get"] = json!({
@@ -70,7 +67,7 @@ fn complete_schemas(schemas: &mut Value) {
     let mut properties: Map<String, Value> = fields.map(|(name, about)| (name.clone(), text(about))).collect();
     properties.insert("file".to_owned(), files("Files that the input names (repeatable)."));
     schemas["JobForm"] = json!({
-        "type": "object", "description": "What is asked for, as a form.", "properties": properties,
+        "type": "object", "description": "The request as a form.", "properties": properties,
         "required": ["input"], "additionalProperties": false,
     });
 }
@@ -138,7 +135,7 @@ fn complete_response(status: &str, response: &mut Value) {
     match status {
         "401" => response["headers"]["WWW-Authenticate"] = json!({ "schema": { "type": "string" } }),
         "429" | "503" => {
-            let about = "Seconds after which another try makes sense";
+            let about = "Retry after, s";
             response["headers"]["Retry-After"] = json!({ "description": about, "schema": { "type": "integer" } });
         }
         // A file of whatever kind; the first is what clients in typed languages take it for.
@@ -159,7 +156,7 @@ fn complete_response(status: &str, response: &mut Value) {
 /// What a status means wherever nothing else is said of it.
 fn words(status: &str) -> &'static str {
     match status {
-        "200" => "What was asked for",
+        "200" => "The answer",
         "202" => "Accepted",
         "204" => "Done",
         "400" => "The request cannot be read",
@@ -167,10 +164,10 @@ fn words(status: &str) -> &'static str {
         "403" => "The role of the token does not allow it, or a page of another origin asks",
         "404" => "There is no such thing",
         "408" => "The body did not come in time",
-        "409" => "It clashes with what is there",
-        "413" => "More than this server takes, which `/v1/service` tells",
+        "409" => "Conflict",
+        "413" => "Too large: `/v1/service` has the limits",
         "415" => "The body is of a type that is not taken",
-        "422" => "Wrong input: `detail` says what is wrong, `input` where it stands and what would be right",
+        "422" => "Wrong input: `detail` is the error, `input` its place and the fix",
         "429" => "More than this server takes of one caller at a time",
         "503" => "The store cannot be used just now, or there is too much to do; nothing that was accepted is lost",
         _ => "As the status says",

@@ -100,7 +100,7 @@ fn kind_of(request: &Request) -> Answer<Kind> {
         "application/toml" | "application/x-toml" | "text/toml" | "text/x-toml" => Ok(Kind::Toml),
         "multipart/form-data" => Ok(Kind::Form),
         other => refused(format!(
-            "the body is of type {other:?}; send TOML with content-type: application/toml, JSON with application/json, or a form with \
+            "unsupported content type {other:?}; send TOML with content-type: application/toml, JSON with application/json, or a form with \
              multipart/form-data"
         )),
     }
@@ -314,7 +314,7 @@ fn options(kind: Option<JobKind>, given: &BTreeMap<String, Value>) -> Answer<Vec
         for value in values {
             match value {
                 Value::String(text) if text.len() <= NAME_MAX => options.push(format!("{name}={text}")),
-                _ => return refused("is neither a word nor a list of words", "give one of these".to_owned()),
+                _ => return refused("must be a string or a list of strings", "give one of these".to_owned()),
             }
         }
     }

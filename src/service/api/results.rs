@@ -42,9 +42,9 @@ pub struct Wanted {
 /// A file of a finished job: `result.json`, `a_n.csv`, `fitted.toml`, pictures and so on, as the job lists them.
 #[utoipa::path(get, path = "/v1/{collection}/{id}/files/{name}", tag = "results",
     params(("collection" = String, Path), ("id" = String, Path), ("name" = String, Path), Wanted),
-    responses((status = 200, description = "The file"), (status = 206, description = "The range of it that was asked for"),
+    responses((status = 200, description = "The file"), (status = 206, description = "The requested range"),
         (status = 304, description = "It is the one of If-None-Match"), (status = 400, body = Problem), (status = 404, body = Problem),
-        (status = 416, description = "The range lies beyond its end"),
+        (status = 416, description = "The range is beyond its end"),
         (status = 409, body = Problem, description = "The job has no result"), (status = 422, body = Problem)))]
 pub async fn file(
     Shared(app): Shared<App>,
@@ -206,7 +206,7 @@ pub async fn remaining(
     let (rows, left) = (Row::of_table(&table)?, curve::left_of_table(&table)?);
     let summary = job_of(&app, "predictions", &id).await?.summary;
     if summary.as_ref().is_some_and(|summary| summary["life_cycles"].is_null()) {
-        return Err(Problem::conflict("the cracks stand still under these loads: the life is unlimited"));
+        return Err(Problem::conflict("unlimited life: no crack grows under these loads"));
     }
     if let Some(refused) = summary.as_ref().and_then(|summary| summary["refused"].as_str()) {
         return Err(Problem::conflict(format!("the run has no life: {refused}")));

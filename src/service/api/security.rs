@@ -88,7 +88,7 @@ async fn caller_of(app: &App, address: IpAddr, head: &Parts) -> Answer<Option<Ca
     // Who guesses tokens is held to the limit of his address before the store is asked; who is known has his own, even behind
     // the same proxy.
     if !app.may_ask(name.as_deref(), address, is_write) {
-        return Err(Problem::too_many("more requests than this server takes from one caller; go slower", 1));
+        return Err(Problem::too_many("rate limit exceeded; retry later", 1));
     }
     if !needs_token {
         return Ok(Some(Caller { name: String::new(), role: Role::Admin, token: String::new() }));
@@ -108,7 +108,7 @@ async fn caller_of(app: &App, address: IpAddr, head: &Parts) -> Answer<Option<Ca
                      the service is started with --trust-proxy"
                 }
                 None => "this needs a token: send the header `Authorization: Bearer TOKEN`",
-                Some(_) => "this token is not known, or its time is over",
+                Some(_) => "invalid or expired token",
             };
             Err(Problem::new(StatusCode::UNAUTHORIZED, "Unauthorized", detail))
         }
@@ -144,7 +144,7 @@ fn check_origin(security: &Security, needs_token: bool, headers: &HeaderMap, is_
             is_public || name == "localhost" || name.parse::<IpAddr>().is_ok_and(|address| address.is_loopback())
         });
         if !is_here {
-            return refused("without tokens this service answers to the names of this machine only: 127.0.0.1, [::1], localhost");
+            return refused("without tokens only 127.0.0.1, [::1] and localhost are accepted");
         }
     }
     if let Some(origin) = text(header::ORIGIN)

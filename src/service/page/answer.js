@@ -1,16 +1,16 @@
-// The answer of a prediction in one card: the life with its band, why it ends, whether it is valid.
+// The answer of a prediction in one card: the life with its band, what ends it, validity.
 
 import { element, shape, terms } from "./dom.js";
 import { bandOf, count, cycles, deserved, fixed, sentence, words } from "./format.js";
 
 const CHECKS_SHOWN = 5;
 /** What the number is, by the reason of the end. */
-const TO_THE_END = { entered_hole: "to the hole", crack_length_reached: "to the length asked for", run_out: "asked for, and the plate lives on" };
+const TO_THE_END = { entered_hole: "to the hole", crack_length_reached: "to the set crack length", run_out: "reached (run-out)" };
 const BROKEN_OFF = ["ligament_unresolved", "no_growth", "no_convergence"];
 
 const MARKS = {
-  ok: ["Holds: ", "M9 1a8 8 0 1 0 0.01 0z", "M5.2 9.2l2.6 2.7 5-5.6"],
-  note: ["Remark: ", "M9 1.6L17 16H1z", "M9 6.5v4.4M9 12.6v1.6"],
+  ok: ["Passed: ", "M9 1a8 8 0 1 0 0.01 0z", "M5.2 9.2l2.6 2.7 5-5.6"],
+  note: ["Caution: ", "M9 1.6L17 16H1z", "M9 6.5v4.4M9 12.6v1.6"],
   bad: ["Not valid: ", "M5.8 1h6.4L17 5.8v6.4L12.2 17H5.8L1 12.2V5.8z", "M6 6l6 6m0-6l-6 6"],
 };
 const OF_VERDICT = { passed: "ok", caution: "note", not_checked: "note", failed: "bad" };
@@ -39,7 +39,7 @@ export function leadOf(s) {
   return tip < 0 ? null : tip;
 }
 
-/** Why a life does not count; the name of the run stands above already. */
+/** Why there is no valid life, without the name of the run. */
 export const whyRefused = ({ refused }) => sentence(refused.replace(/^[^:]*: (?=the )/, ""));
 
 /** Lengths at the start and at the end, mm: of the crack that ends the life, or of the specimen. */
@@ -48,21 +48,24 @@ export function lengthsOf(s) {
   return [of.crack_length_initial_mm, of.crack_length_final_mm];
 }
 
+/** The life with as many digits as its band leaves, or its numerical error without one. */
+export function lifeShown(s) {
+  const error = (s.error_estimate_percent ?? 0) / 100;
+  const spread = quantilesOf(s) ?? (error > 0 ? [1 - error, 1, 1 + error].map((share) => share * s.life_cycles) : null);
+  return `${s.life_is_lower_bound ? "≥ " : ""}${spread ? deserved(spread[1], spread) : cycles(Math.round(s.life_cycles))}`;
+}
+
 function large(s) {
-  const value = (text, unit) => element("p", { class: "life", "data-value": "life_cycles" }, text, unit && element("small", null, unit));
+  const value = (text, unit) => element("p", { class: "life", "data-value": "life_cycles" }, text, unit && [" ", element("small", null, unit)]);
   const said = (title, text, more) => [element("h2", null, title), element("p", { class: "life words", "data-value": "life_cycles" }, text), element("p", { class: "beside" }, more)];
   const [from, to] = lengthsOf(s);
   if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, whyRefused(s)));
-  if (s.life_cycles === null) return said("Life", "No growth", "Every tip stays below the threshold of the law under this load: there is no number of cycles to give.");
-  const band = quantilesOf(s);
-  // Without a band as many digits as the numerical error leaves.
-  const error = (s.error_estimate_percent ?? 0) / 100;
-  const number = band ? deserved(band[1], band) : error > 0 ? deserved(s.life_cycles, [1 - error, 1, 1 + error].map((share) => share * s.life_cycles)) : cycles(Math.round(s.life_cycles));
-  const run = `${s.life_is_lower_bound ? "≥ " : ""}${number}`;
+  if (s.life_cycles === null) return said("Life", "No growth", "ΔK of every tip is below the threshold: unlimited life.");
+  const [band, run] = [quantilesOf(s), lifeShown(s)];
   if (s.fleet) return ofFleet(s.fleet, run);
   const start = `from a crack of ${fixed(from, 2)} mm`;
   const end = TO_THE_END[s.stop_reason];
-  const title = BROKEN_OFF.includes(s.stop_reason) ? `Computed up to ${fixed(to, 1)} mm only` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
+  const title = BROKEN_OFF.includes(s.stop_reason) ? `Stopped early at ${fixed(to, 1)} mm` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
   return [element("h2", null, title), value(run, "cycles"),
     element("p", { class: "beside" }, bandWords(s)), band && bar(band, [0, 1.05 * band[2]]),
     element("p", { class: "quiet" }, errorWords(s) && `Numerical error: ${errorWords(s)}`)];
@@ -71,23 +74,23 @@ function large(s) {
 /** A fleet is its 5 % and median life; the run is one plate. */
 function ofFleet({ plates, life_cycles: { words: said } }, run) {
   const [low, middle, high] = [said.p05, said.p50, said.p95].map((text) => (Number.isFinite(Number(text)) ? cycles(Math.round(Number(text))) : text));
-  return [element("h2", null, "Life of the fleet, 5 % of plates"), element("p", { class: "life", "data-value": "fleet_p05" }, low, element("small", null, "cycles")),
+  return [element("h2", null, "Life of the fleet, 5 % of plates"), element("p", { class: "life", "data-value": "fleet_p05" }, low, " ", element("small", null, "cycles")),
     element("p", { class: "beside" }, `Median ${middle}, 95 % ${high} cycles (${count(plates, "plate")})`),
     element("p", { class: "quiet" }, `This run, the plate of the case alone: ${run} cycles`)];
 }
 
 function bandWords(s) {
   const band = quantilesOf(s);
-  if (!band) return [element("strong", null, "No band: "), s.no_band ?? "an earlier version of the program wrote this result"];
+  if (!band) return [element("strong", null, "No scatter band: "), s.no_band ?? "result of an earlier version"];
   const { specimens, assumed_scatter: assumed, lot } = s.band;
   return [element("strong", null, bandOf(band)), ` (${count(specimens, "specimen")}, ${lot === "same" ? "their lot" : "another lot"}${assumed ? ", assumed scatter" : ""})`];
 }
 
-/** How wrong the life may be as a solution of its case; nothing of runs before such bounds were stated. */
+/** Estimated numerical error of life and path. */
 export function errorWords(s) {
   if (typeof s.error_estimate_percent === "number") {
-    const path = s.path_error_estimate_mm > 0 ? `, ${s.path_error_estimate_mm} mm of the path` : "";
-    return `at most ${s.error_estimate_percent} % of life${path}`;
+    const path = s.path_error_estimate_mm > 0 ? `, ≤ ${s.path_error_estimate_mm} mm in the path` : "";
+    return `≤ ${s.error_estimate_percent} % of life${path} (estimate)`;
   }
   return s.no_error_estimate && `not stated: ${s.no_error_estimate}`;
 }
@@ -104,7 +107,7 @@ function why(s, more) {
     critical && ["Critical", `${critical} mm: ${words(s.critical.criterion)}`],
     ...more,
   ].filter(Boolean);
-  return [element("h2", null, s.life_cycles === null ? "Because" : "It ends because"),
+  return [element("h2", null, s.life_cycles === null ? "Because" : "Ends by"),
     element("p", { class: "why", "data-value": "stop" }, s.stop_meaning ?? words(s.stop_reason)), terms(facts, "result")];
 }
 
@@ -116,15 +119,15 @@ const line = (check) => element("li", { "data-check": check.name, "data-verdict"
 export const kindOfVerdict = (kind) => ({ valid: "ok", not_valid: "bad" })[kind] ?? "note";
 
 function valid({ verdict, verdict_kind: validity, checks = [] }) {
-  if (!verdict) return element("p", { class: "quiet" }, "An earlier version of the program wrote this result.");
+  if (!verdict) return element("p", { class: "quiet" }, "Result of an earlier version.");
   const kind = kindOfVerdict(validity);
   const [shown, rest] = [checks.slice(0, CHECKS_SHOWN), checks.slice(CHECKS_SHOWN)];
-  return [element("h2", null, "Is it valid?"), element("p", { class: `verdict is-${kind}`, "data-value": "verdict" }, sentence(verdict)),
+  return [element("h2", null, "Validity"), element("p", { class: `verdict is-${kind}`, "data-value": "verdict" }, sentence(verdict)),
     element("ul", { class: "checks" }, shown.map(line)),
     rest.length > 0 && element("details", null, element("summary", null, `${count(rest.length, "more check")}`), element("ul", { class: "checks" }, rest.map(line)))];
 }
 
-/** The card. `more`: further terms beside why it ends. */
+/** The card. `more`: further terms of the end. */
 export function answerCard(s, more = []) {
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
     element("div", null, large(s)), element("div", null, why(s, more)), element("div", { "data-part": "checks" }, valid(s)));

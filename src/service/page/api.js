@@ -28,12 +28,13 @@ export class Problem extends Error {
 
 let notice = () => {};
 
-/** Says who is told (a sentence, or null when over) that a request is waiting for the service. */
+/** Sets what is called with a sentence while a request waits for the service, and with null after it. */
 export function onWaiting(tell) {
   notice = tell;
 }
 
-function sleep(seconds, signal) {
+/** Waits, until `signal` is aborted. */
+export function sleep(seconds, signal) {
   return new Promise((resolve, reject) => {
     const stop = () => {
       clearTimeout(timer);

@@ -6,6 +6,7 @@ import { openCalibration } from "./calibration_page.js";
 import { openComparison } from "./compare.js";
 import { byId, element, show, showPage } from "./dom.js";
 import { count } from "./format.js";
+import { loadKeys } from "./keys.js";
 import { problemBox } from "./notices.js";
 import { openOther } from "./other_page.js";
 import { createNewRunView } from "./new_run.js";
@@ -17,8 +18,7 @@ import { startUnits } from "./units.js";
 
 startUnits(byId("shown-units"));
 
-const predict = createPredictView();
-const views = { measure: createCalibrateView(), predict, runs: createRunsView(), new: createNewRunView({ predict }) };
+const views = { runs: createRunsView() }; // the others once their keys are known
 const OTHERS = { scenes: "Fracture scene", sweeps: "Sweep", sif: "Stress intensity factors" };
 const PAGES = {
   calibrations: openCalibration, predictions: openPrediction,
@@ -29,6 +29,8 @@ const TITLES = {
   calibrations: "Calibration", predictions: "Prediction", compare: "Comparison", ...OTHERS,
 };
 const NAVIGATION = { measure: "measure", predict: "predict" }; // all others belong to the runs
+
+const FORMS = ["measure", "predict", "new"];
 
 let leaving = new AbortController();
 let lastPlace = null;
@@ -45,9 +47,9 @@ async function route() {
   leaving = new AbortController();
   const { signal } = leaving;
   const { name, rest, query } = address();
-  const place = name in views ? name : "run";
+  const place = FORMS.includes(name) || name in views ? name : "run";
   views.runs.close();
-  byId("start-problem").hidden = place === "runs" || place === "run"; // the others need no materials
+  byId("start-problem").hidden = !FORMS.includes(place);
   for (const section of document.querySelectorAll("section.view")) section.hidden = section.id !== `view-${place}`;
   for (const link of document.querySelectorAll("nav a")) {
     if (link.dataset.view === (NAVIGATION[name] ?? "runs")) link.setAttribute("aria-current", "page");
@@ -57,8 +59,8 @@ async function route() {
   if (place === "run") await openRun(byId("view-run"), name, rest, signal);
   else {
     announce(place);
-    if (place !== "runs") await materialsKnown;
-    if (!signal.aborted) views[name].open?.(query);
+    if (place !== "runs") await formsReady;
+    if (!signal.aborted) views[name]?.open?.(query);
   }
 }
 
@@ -88,14 +90,15 @@ function announce(place) {
   lastPlace = place;
 }
 
-async function loadMaterials() {
+/** Builds the forms from the keys and materials that the service has. */
+async function buildForms() {
   try {
-    const { materials } = await getJson("/v1/materials");
-    views.measure.setMaterials(materials);
-    views.predict.setMaterials(materials);
+    const [{ materials }] = await Promise.all([getJson("/v1/materials"), loadKeys()]);
+    views.predict = createPredictView(materials);
+    Object.assign(views, { measure: createCalibrateView(materials), new: createNewRunView({ predict: views.predict }) });
     show(byId("start-problem"));
   } catch (error) {
-    show(byId("start-problem"), problemBox(error, loadMaterials));
+    show(byId("start-problem"), problemBox(error, () => buildForms().then(route)));
   }
 }
 
@@ -130,6 +133,6 @@ document.querySelector(".skip").addEventListener("click", (event) => {
 });
 window.addEventListener("hashchange", route);
 
-const materialsKnown = loadMaterials();
+const formsReady = buildForms();
 loadService();
 route();

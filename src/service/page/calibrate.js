@@ -4,75 +4,93 @@ import { getBlob } from "./api.js";
 import { createEditor } from "./editor.js";
 import { byId, show } from "./dom.js";
 import { EXAMPLE_NAME, EXAMPLE_TEST, exampleCsv } from "./example.js";
-import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
+import { compact, createForm, fillIn, grid, group, tell } from "./form.js";
 import { jobToStartFrom } from "./job.js";
-import { createMeasured } from "./measured.js";
+import { createFields } from "./key_fields.js";
+import { hasOnly, keysOf } from "./keys.js";
+import { OF_FILES, createMeasured } from "./measured.js";
+import { preambleOf } from "./preamble.js";
 import { createLoading, createMaterial, createSpecimen } from "./specimen_form.js";
 import { startRun } from "./submit.js";
 
-const PARAMETERS = [
-  { value: "a,p", title: "A and p" },
-  { value: "a", title: "A, p given" },
-];
+/** Keys of `[measured]` that are set with the files. */
+const BESIDE = ["files", "rates", "columns", "leave_out", ...OF_FILES];
+const WINDOW = ["from_crack_length_mm", "to_crack_length_mm"];
 
-/** Builds the view; gives {setMaterials}. */
-export function createCalibrateView() {
+/** Builds the view; gives {open(query)}. */
+export function createCalibrateView(materials) {
   const form = createForm((field) => {
-    if (field === from && !specimen.fields.crack_length_mm.touched) fillIn(specimen.fields.crack_length_mm, from.input.value);
+    if (field === from) proposeLength();
     arrange();
     editor.check.soon();
   });
-  const length = { unit: "mm", optional: true };
-  const from = form.number("measured.from_crack_length_mm", { ...length, label: "From crack length", hint: "first reading that every specimen has" });
-  const to = form.number("measured.to_crack_length_mm", { ...length, label: "To crack length", hint: "last reading that every specimen has" });
+  const ofMeasured = createFields(form, "measured", keysOf("measured").filter(({ metric }) => !BESIDE.includes(metric)));
+  const [from, to] = WINDOW.map((metric) => ofMeasured.by[metric]);
   const specimen = createSpecimen(form);
-  // Toughness ends a prediction; a test that was measured is known to have got where it got.
-  const material = createMaterial(form, { toughness: false });
+  const material = createMaterial(form, materials);
   const loading = createLoading(form);
-  const spacing = form.number("model.spacing_mm", { ...length, label: "Spacing of points", hint: "left empty: the program chooses the model" });
-  const parameters = form.choice("fit.parameters", { label: "Fitted", options: PARAMETERS });
-  const exponent = form.number("fit.p", { label: "Exponent p", hint: "of the law in use, not the Paris m" });
+  const model = createFields(form, "model", keysOf("model"));
+  const fit = createFields(form, "fit", keysOf("fit").filter(({ metric }) => metric !== "given"));
   const name = form.text("name", { label: "Name of the fit", optional: true });
+  let noted = ""; // the file whose preamble was read
   const fields = byId("test-fields");
   const start = byId("calibrate");
 
   function arrange() {
-    loading.suit(specimen.fields.kind.input.value);
-    exponent.node.hidden = parameters.input.value !== "a";
+    loading.suit(specimen.kind());
+    model.arrange();
   }
 
-  function collect() {
-    const fitted = parameters.input.value.split(",");
-    return {
-      measured: compact({ files: measured.names(), from_crack_length_mm: numberIn(from), to_crack_length_mm: numberIn(to), ...measured.said() }),
-      specimen: specimen.collect(),
-      material: material.collect(),
-      loading: loading.collect(),
-      model: compact({ spacing_mm: numberIn(spacing) }),
-      fit: compact({ parameters: fitted, p: fitted.length === 1 ? numberIn(exponent) : undefined }),
-    };
+  const collect = () => ({
+    measured: compact({ files: measured.names(), ...ofMeasured.collect(), ...measured.said() }),
+    specimen: specimen.collect(), material: material.collect(), loading: loading.collect(), model: model.collect(), fit: fit.collect(),
+  });
+
+  /** The form as a calibration was submitted; false where it has keys that no field shows, which only its text keeps. */
+  function fillAll({ measured: m = {}, fit: given = {}, ...test }) {
+    const [ofFiles, own] = [true, false].map((is) => Object.fromEntries(Object.entries(m).filter(([key]) => BESIDE.includes(key) === is)));
+    const isWhole = [ofMeasured.fill(own), fit.fill(given), fill(test), !ofFiles.rates];
+    setTouched(true);
+    return isWhole.every(Boolean);
   }
 
-  /** The form as a calibration was submitted; false where it says what no field shows, which is then lost but for its text. */
-  function fillAll({ measured: m = {}, fit = {}, ...test }) {
-    fillIn(from, m.from_crack_length_mm);
-    fillIn(to, m.to_crack_length_mm);
-    [from, to, specimen.fields.crack_length_mm].forEach((field) => {
-      field.touched = true;
-    });
-    fillIn(parameters, (fit.parameters ?? ["a", "p"]).join(","));
-    fillIn(exponent, fit.p);
-    return fill(test) && !m.rates;
+  function setTouched(is) {
+    for (const field of [from, to, specimen.field("crack_length_mm")]) if (field) field.touched = is;
   }
 
-  function fill(test) {
-    const known = specimen.fill(test.specimen) && material.fill(test.material) && loading.fill(test.loading);
-    fillIn(spacing, test.model?.spacing_mm);
+  function fill({ specimen: s, material: m, loading: l, model: given, ...others }) {
+    const isWhole = [specimen.fill(s), material.fill(m), hasOnly(others, [])];
+    loading.suit(s.kind);
+    isWhole.push(loading.fill(l), model.fill(given));
     arrange();
-    return known;
+    return isWhole.every(Boolean);
   }
 
-  /** A list of laws is of use only when they can be told apart. */
+  /** What the first file notes above its table, marked as read from it. */
+  function proposeNoted() {
+    const [file] = measured.files() ?? [];
+    if (!file?.text || file.name === noted) return;
+    noted = file.name;
+    const { kind, material: of, stress_ratio: ratio, ...sizes } = preambleOf(file.text, materials);
+    if (kind) specimen.choose(kind);
+    for (const [metric, value] of Object.entries(sizes)) {
+      const field = specimen.field(metric);
+      if (value === undefined || !field || field.touched) continue;
+      field.write(value);
+      tell(field, `read from ${file.name}`);
+    }
+    loading.propose({ stress_ratio: ratio });
+    if (of && material.fill({ name: of })) tell(material.name, `read from ${file.name}`);
+    arrange();
+  }
+
+  /** The crack of the specimen begins with the fit window, unless the user sets another. */
+  function proposeLength() {
+    const length = specimen.field("crack_length_mm");
+    if (length && !length.touched) fillIn(length, from.input.value);
+  }
+
+  /** Laws of a list need names that differ. */
   function defaultName() {
     const [first, ...others] = measured.names();
     return `${first.replace(/\.[a-z]+$/i, "")}${others.length > 0 ? ` and ${others.length} more` : ""}`;
@@ -80,15 +98,16 @@ export function createCalibrateView() {
 
   const measured = createMeasured(() => {
     const range = measured.window();
-    if (range && !from.touched) fillIn(from, range[0]);
-    if (range && !to.touched) fillIn(to, range[1]);
-    if (range && !specimen.fields.crack_length_mm.touched) fillIn(specimen.fields.crack_length_mm, from.input.value);
+    if (range && !from.touched) from.write(range[0]);
+    if (range && !to.touched) to.write(range[1]);
+    if (range) proposeLength();
     loading.propose(measured.loading());
+    proposeNoted();
     editor.check.soon();
   });
 
   show(fields, specimen.element, material.element, loading.element,
-    group("Fit", grid(from.node, to.node, spacing.node, parameters.node, exponent.node, name.node)));
+    ofMeasured.group("Fit window", WINDOW), fit.group("Fit", ["law"]), model.group("Method", ["method"]), group("Run", grid(name.node)));
 
   const editor = createEditor({
     host: byId("test-editor"), fields, panel: byId("test-check"), form, collect,
@@ -96,7 +115,7 @@ export function createCalibrateView() {
     fill: () => false,
     context: () => {
       const files = measured.files();
-      return files ? { files } : "Load measured data first: the test is checked together with it.";
+      return files ? { files } : "Add measured data first.";
     },
     onResult: (ok) => {
       start.disabled = !ok;
@@ -105,7 +124,7 @@ export function createCalibrateView() {
   arrange();
 
   byId("example").addEventListener("click", async () => {
-    for (const field of [from, to, specimen.fields.crack_length_mm]) field.touched = false;
+    setTouched(false);
     fill(EXAMPLE_TEST);
     await measured.loadExample(EXAMPLE_NAME, exampleCsv());
   });
@@ -116,7 +135,7 @@ export function createCalibrateView() {
     });
   });
 
-  /** Starts from a calibration: its files, its test, what was left out. */
+  /** Starts from a calibration: its files, its test, excluded readings. */
   async function openFrom(id) {
     const job = await jobToStartFrom(id);
     const files = await Promise.all(job.inputs.map(async ({ name: own, href }) => {
@@ -131,10 +150,6 @@ export function createCalibrateView() {
 
   editor.check.now();
   return {
-    setMaterials(list) {
-      material.setMaterials(list);
-      editor.check.soon();
-    },
     /** `from`: a calibration to start from, as collection/id. */
     async open(query) {
       if (!query.get("from")) return;

@@ -1,4 +1,4 @@
-// Page of one calibration: the fit beside the readings, its constants with their errors, files to take away.
+// Page of one calibration: readings and fit, constants with their errors, files.
 
 import { mark } from "./answer.js";
 import { getBlob, getJson, getText } from "./api.js";
@@ -19,7 +19,7 @@ const SPECIMENS_APART = 6;
 export async function openCalibration(root, id, signal) {
   const job = await getJson(`/v1/calibrations/${encodeURIComponent(id)}`, signal);
   const address = `#/predict?law=${encodeURIComponent(id)}`;
-  const use = element("a", { class: "button primary", href: address, hidden: true, "data-action": "use-law" }, "Predict a plate with this law");
+  const use = element("a", { class: "button primary", href: address, hidden: true, "data-action": "use-law" }, "Use this law");
   const head = createJobHead(job, { actions: [use] });
   const body = element("div", { class: "job-body" });
   showPage(root, head.node, body);
@@ -49,14 +49,14 @@ export async function openCalibration(root, id, signal) {
     show(body, lawCard(whole.summary),
       element("div", { class: "pictures" }, element("div", { class: "card figure" }, curves), has("rates.csv") && element("div", { class: "card figure" }, rates)),
       element("div", { class: "two" }, element("section", { class: "card", "aria-label": "Constants" }, element("h2", null, "Constants"), constants(whole.summary)),
-        element("div", { class: "stack" }, readingsLeftOut(whole.summary), specimens(whole.summary), warnings.length > 0 && warningList(warnings, "All that was noticed"))),
+        element("div", { class: "stack" }, readingsLeftOut(whole.summary), specimens(whole.summary), warnings.length > 0 && warningList(warnings, "Messages"))),
       downloadList(whole), inputText(whole));
     if (has("fit.json")) {
       getText(`${pathOf(whole)}/files/fit.json`, signal).then((text) => head.describe(describe(JSON.parse(text))), () => {});
     }
     loadInto(curves, async () => {
       const [fit, band, quantiles] = await Promise.all(["fit_curves.csv", "fit_band.csv", "quantiles.csv"].map(read));
-      charts.push(drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band), ...leftOut(await read("readings.csv"))]));
+      charts.push(drawFit(curves, fit, [...scatterBand(quantiles), ...fittedCurve(fit, band), ...leftOut(await read("readings.csv"), fit)]));
     });
     if (has("rates.csv")) loadInto(rates, async () => charts.push(drawRates(rates, await read("rates.csv"), whole.summary)));
   }
@@ -89,15 +89,21 @@ function scatterBand(quantiles) {
     x: quantiles[low], y: quantiles.crack_length_mm, x2: quantiles[high], y2: quantiles.crack_length_mm }];
 }
 
-/** Readings that do not count, crossed out. */
-function leftOut(readings) {
-  const out = (readings?.cycles ?? []).map((_, row) => row).filter((row) => readings.left_out?.[row]);
-  return out.length > 0 ? [{ id: "left-out", name: "left out", kind: "crosses", x: out.map((row) => readings.cycles[row]), y: out.map((row) => readings.crack_length_mm[row]) }] : [];
+/** Readings that were not fitted: those outside the fit window as thin marks, excluded ones crossed out. */
+function leftOut(readings, fit) {
+  const out = (readings?.cycles ?? []).map((_, row) => [readings.cycles[row], readings.crack_length_mm[row]]).filter((_, row) => readings.left_out?.[row]);
+  const [from, to] = [Math.min(...fit.crack_length_mm), Math.max(...fit.crack_length_mm)];
+  const isOutside = ([, a]) => a < from - 1e-9 || a > to + 1e-9;
+  const series = (id, name, more, points) => points.length > 0 && { id, name, ...more, x: points.map((point) => point[0]), y: points.map((point) => point[1]) };
+  return [series("outside", "outside the window", { kind: "points", tone: 7 }, out.filter(isOutside)), series("left-out", "excluded", { kind: "crosses" }, out.filter((point) => !isOutside(point)))].filter(Boolean);
 }
 
-/** What was left out, each with its reason. */
+/** A value to the second digit of its error. */
+const withError = (value, error) => fixed(value, error > 0 ? Math.min(4, Math.max(2, 1 - Math.floor(Math.log10(error)))) : 2);
+
+/** Excluded readings, each with its reason. */
 function readingsLeftOut({ left_out: windows = [] }) {
-  return windows.length > 0 && section("left-out", "Readings left out", element("ul", null, windows.map((one) =>
+  return windows.length > 0 && section("left-out", "Excluded readings", element("ul", null, windows.map((one) =>
     element("li", null, `${placeOf(one)}: ${one.reason}`))));
 }
 
@@ -107,7 +113,7 @@ function drawFit(place, fit, curves) {
     label: "Crack length against cycles: readings, fitted curve and its 95 % band",
     x: { label: "Cycles N", format: cycles, from: 0 },
     y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
-    note: "Thin lines: specimens. Circles: readings, of many specimens their median. Blue: the fitted law with its band.",
+    note: "Thin lines: specimens. Circles: readings (median of many). Blue: fitted law with 95 % band.",
   });
   const median = "median";
   const names = [...new Set(fit.specimen)];
@@ -115,7 +121,7 @@ function drawFit(place, fit, curves) {
   const rows = (wanted, column) => column.filter((_, index) => fit.specimen[index] === wanted);
   const isMany = specimens.length > SPECIMENS_APART;
   const curveOf = (own, kind, tone) => ({ id: `${kind}-${own}`, name: `${own}, measured`, kind, tone, x: rows(own, fit.cycles_measured), y: rows(own, fit.crack_length_mm) });
-  // Dozens of specimens are told apart by nobody: they are thin lines, and the median has the marks.
+  // Many specimens are thin lines; the median has the marks.
   const thin = isMany ? specimens.map((own) => ({ ...curveOf(own, "thin", 2), name: undefined })) : [];
   const marked = isMany ? names.filter((name) => name === median) : names;
   chart.set([...curves, ...thin, ...marked.map((own, index) => curveOf(own, "points", isMany ? 2 : 2 + index))]);
@@ -140,33 +146,33 @@ function drawRates(place, rates, s) {
     name: "rates", title: "Growth rate over ΔK", label: "Growth rate against range of stress intensity: readings and fitted law, logarithmic axes",
     x: { label: "ΔK", unit: STRESS_INTENSITY, scale: "log", format: (value) => significant(value, 4) },
     y: { label: "da/dN", unit: "mm/cycle", scale: "log", format: (value) => scientific(value, 3) },
-    note: "Circles: rates of the readings. Blue: the fitted law, drawn only where it was measured.",
+    note: "Circles: rates of the readings. Blue: fitted law in the tested ΔK range.",
   });
   const pairs = rates.delta_k_mpa_sqrt_m.map((k, index) => [k, rates.da_dn_mm_per_cycle[index]]).filter(([k, rate]) => k > 0 && rate > 0);
   const law = fittedLaw(s);
   chart.set([
     { id: "rates", name: "readings", kind: "points", tone: 2, x: pairs.map((pair) => pair[0]), y: pairs.map((pair) => pair[1]) },
-    { id: "pivot", name: "pivot", kind: "points", tone: 0, x: [s.pivot_delta_k_mpa_sqrt_m], y: [s.rate_at_pivot_mm_per_cycle] },
+    { id: "pivot", name: "reference ΔK", kind: "points", tone: 0, x: [s.pivot_delta_k_mpa_sqrt_m], y: [s.rate_at_pivot_mm_per_cycle] },
     { id: "law", name: "fitted law", kind: "line", tone: 0, x: law.map((point) => point[0]), y: law.map((point) => point[1]) },
   ]);
   return chart;
 }
 
-/** The law first: its rate where the readings fix it best, its exponent, where it holds. */
+/** The law first: its rate at the best-determined point, its exponent, its tested range. */
 function lawCard(s) {
   const remarks = misfit(s.misfit_at_ends);
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
-    element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}, where the readings fix it best`),
-      element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), element("small", null, "mm/cycle")),
+    element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)} ${STRESS_INTENSITY} (best-determined point)`),
+      element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), " ", element("small", null, "mm/cycle")),
       element("p", { class: "beside" }, element("strong", null, `± ${percent(s.rate_at_pivot_relative_error, 1)}`), " (one standard error)"),
-      element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}, quoted only together with m.`)),
-    element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, fixed(s.paris_m, 2)),
+      element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}; always quote C with m.`)),
+    element("div", null, element("h2", null, "Exponent m"), element("p", { class: "life" }, withError(s.paris_m, s.paris_m_error)),
       terms([
         s.curve && ["Law", "curve of the rates; C and m are the best power law"],
-        Number.isFinite(s.paris_m_error) && ["±", fixed(s.paris_m_error, 2)],
+        Number.isFinite(s.paris_m_error) && ["±", significant(s.paris_m_error, 2)],
         ["Life", `measured ${cycles(s.life_measured)}, fitted ${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
-        ["Misfit", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
-    element("div", null, element("h2", null, "Is it valid?"),
+        ["Fit error", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
+    element("div", null, element("h2", null, "Validity"),
       element("p", { class: "verdict" }, `For ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}`),
       element("ul", { class: "checks" }, remarks.map(([name, text]) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], element("b", null, `${name}: `), text))))));
 }
@@ -174,22 +180,22 @@ function lawCard(s) {
 function constants(s) {
   // An exponent that was not fitted has no error of this fit.
   const isFitted = (s.p_source ?? "fitted") === "fitted";
-  const error = (value, decimals) => (isFitted && Number.isFinite(value) ? `± ${fixed(value, decimals)}` : words(isFitted ? "" : s.p_source));
+  const error = (value) => (isFitted && Number.isFinite(value) ? `± ${significant(value, 2)}` : words(isFitted ? "" : s.p_source));
   const name = (text, unit) => [text, element("span", { class: "row-unit" }, unit)];
   const horizon = Number.isFinite(s.horizon_mm) ? `, at a horizon of ${plain(s.horizon_mm, 5)} mm` : "";
   const atPivot = `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
   const rows = [
-    [name("Rate at the pivot", atPivot), scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
-    [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error, 4)],
+    [name("Rate at reference ΔK", atPivot), scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
+    [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error)],
     [name("Paris C", `${unitShown("mm/cycle")}, at ΔK = 1 ${unitShown(STRESS_INTENSITY)}`), scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 4), ""],
-    [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error, 4)],
+    [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error)],
     [name("Bond constant A", `1/cycle${horizon}`), scientific(s.a, 4), ""],
   ];
   const columns = [{ title: "Constant" }, { title: "Value", numeric: true }, { title: "Std. error", numeric: true }];
   return element("div", { class: "stack tight" },
     table("Fitted constants", columns, rows, { hidden: true, name: "constants" }),
     element("p", { class: "hint" },
-      "C and m are correlated: compare and quote the rate at the pivot, where the readings fix it best, together with m."),
+      "C and m are correlated: compare and quote the rate at the reference ΔK (best-determined point) together with m."),
     terms([
       ["Range of ΔK", `${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`],
       ["Life measured", `${cycles(s.life_measured)} cycles`],
@@ -204,9 +210,9 @@ function misfit({ low = null, high = null } = {}) {
   const end = (name, at) => {
     const share = at.rate_over_law_percent / 100;
     const [faster, longer] = share < 0 ? ["slower", "short"] : ["faster", "long"];
-    const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 3)} to ${significant(at.delta_k_to_mpa_sqrt_m, 3)}`;
+    const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 3)} to ${significant(at.delta_k_to_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}`;
     const size = percent(Math.abs(share), 1);
-    return [name, `grows ${size} ${faster} than the law at ${range}: a life spent there is computed ${size} too ${longer}`];
+    return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer} (${longer === "short" ? "conservative" : "non-conservative"})`];
   };
   return [["First readings", low], ["Last readings", high]].filter(([, at]) => at).map(([name, at]) => end(name, at));
 }

@@ -21,8 +21,17 @@ function lowered(text) {
   return low ? [head, shape("tspan", { dy: "0.3em", "font-size": "0.75em" }, low)] : [text];
 }
 
-function tickText(value, scale) {
-  const far = scale === "log" && (value < 0.01 || value >= 1e4);
+/** Ticks at 1, 2 and 5, or at every digit where these are few. */
+function logTicks([low, high]) {
+  const powers = Array.from({ length: Math.ceil(Math.log10(high / low)) + 2 }, (_, index) => Math.floor(Math.log10(low)) + index);
+  const at = (digits) => powers.flatMap((power) => digits.map((digit) => Number(`${digit}e${power}`))).filter((value) => value >= low && value <= high);
+  const some = at([1, 2, 5]);
+  return some.length > 2 ? some : at([1, 2, 3, 4, 5, 6, 7, 8, 9]);
+}
+
+/** A tick; powers of ten on a logarithmic axis that has such ends. */
+function tickText(value, scale, [low, high]) {
+  const far = scale === "log" && (low < 0.001 || high >= 1e5);
   if (!far) return Math.abs(value) >= 1e4 ? whole(value) : plain(value, 6);
   const [mantissa, exponent] = value.toExponential(0).split("e");
   return `${mantissa === "1" ? "" : `${mantissa}·`}10${powerOf(Number(exponent))}`;
@@ -118,13 +127,12 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     const y = scale(yAxis, all("y", "y2"), [height - 40, 30]);
     const ticksOf = (axis, own, room) => {
       const made = own.copy().domain(own.domain().map((end) => end * axis.per));
-      const ticks = axis.scale === "log"
-        ? made.ticks().filter((value) => [1, 2, 5].includes(Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9)))) : made.ticks(Math.max(2, Math.floor(room)));
+      const ticks = axis.scale === "log" ? logTicks(made.domain()) : made.ticks(Math.max(2, Math.floor(room)));
       return ticks.map((value) => value / axis.per);
     };
-    const tick = (value, axis) => tickText(axis.per === 1 ? value : Number((value * axis.per).toPrecision(12)), axis.scale);
+    const tick = (value, axis, own) => tickText(axis.per === 1 ? value : Number((value * axis.per).toPrecision(12)), axis.scale, own.domain());
     const up = ticksOf(yAxis, y, (height - 70) / 52);
-    const left = 12 + 7 * Math.max(2, ...up.map((value) => tick(value, yAxis).length));
+    const left = 12 + 7 * Math.max(2, ...up.map((value) => tick(value, yAxis, y).length));
     const right = width - (atEnds().length > 0 ? 12 + 7 * Math.max(...atEnds().map((one) => one.name.length)) : 14);
     const x = scale(xAxis, all("x", "x2"), [left, right]);
     const across = ticksOf(xAxis, x, (right - left) / 96);
@@ -135,11 +143,11 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
           shape("line", { x1: 0, x2: 0, y1: 0, y2: 6, class: "hatch" })),
         shape("clipPath", { id: clip }, shape("rect", { x: left, y: place.top - 4, width: right - left + 4, height: place.bottom - place.top + 4 }))),
       up.map((value) => [shape("line", { class: "grid", x1: left, x2: right, y1: y(value), y2: y(value) }),
-        shape("text", { x: left - 8, y: y(value) + 4, "text-anchor": "end" }, tick(value, yAxis))]),
+        shape("text", { x: left - 8, y: y(value) + 4, "text-anchor": "end" }, tick(value, yAxis, y))]),
       across.map((value) => [
         yAxis.scale === "log" && shape("line", { class: "grid", x1: x(value), x2: x(value), y1: place.top, y2: place.bottom }),
         shape("line", { class: "axis", x1: x(value), x2: x(value), y1: place.bottom, y2: place.bottom + 4 }),
-        shape("text", { x: x(value), y: place.bottom + 18, "text-anchor": x(value) > right - 16 ? "end" : "middle" }, tick(value, xAxis))]).flat(),
+        shape("text", { x: x(value), y: place.bottom + 18, "text-anchor": x(value) > right - 16 ? "end" : "middle" }, tick(value, xAxis, x))]).flat(),
       shape("line", { class: "axis", x1: left, x2: right, y1: place.bottom, y2: place.bottom }),
       shape("text", { class: "axis-title", x: 0, y: 13 }, titleOf(yAxis)),
       shape("text", { class: "axis-title", x: right, y: place.bottom + 36, "text-anchor": "end" }, titleOf(xAxis)));
@@ -147,7 +155,7 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     const drawn = [...series].sort((one, other) => (order[one.kind] ?? 3) - (order[other.kind] ?? 3));
     show(marks, drawn.map(mark));
     const named = atEnds().map((one) => [one, one.x.map((value, index) => [value, one.y[index]]).filter(finite).at(-1)]).filter(([, last]) => last);
-    let lowest = -Infinity; // of the names so far: none stands on another
+    let lowest = -Infinity; // of the names so far, so that none covers another
     show(above, drawn.map(words), named.sort(([, one], [, other]) => y(one[1]) - y(other[1])).map(([one, last]) => {
       lowest = Math.max(y(last[1]) + 4, lowest + 15);
       return shape("text", { class: "halo strong", x: x(last[0]) + 8, y: lowest }, lowered(one.name));
@@ -197,7 +205,7 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     }
   }
 
-  /** Steps below half a pixel are left out: a run of 30 000 blocks draws as fast as one of 300. */
+  /** Skips steps below half a pixel: a run of 30 000 blocks draws as fast as one of 300. */
   function thinned(points) {
     if (points.length < 2000) return points;
     let last = [Infinity, Infinity];
@@ -239,7 +247,7 @@ export function createChart(container, { name, label, title, x: ofX, y: ofY, rat
     if (readout.textContent !== text) readout.textContent = text;
   }
 
-  /** Shows a place along x and what stands there. */
+  /** Shows a place along x and its values. */
   function move(at, dots = []) {
     shared = [at, dots];
     if (!place || !Number.isFinite(at)) return;

@@ -12,19 +12,19 @@ import { createSpectrumPicture } from "./spectrum_picture.js";
 
 const WAIT_MS = 350;
 const SKETCH_HEIGHT = 200;
-/** What is read first of what was understood; all else stands below. */
+/** What is shown first of the input; all else is folded. */
 const FIRST = ["specimen", "crack", "material", "loading", "spectrum", "model", "points", "stop", "computing"];
 
 /**
- * `collect()` gives {input, files, calibration} or a sentence that says what is still missing. The result stands in `panel`.
- * Gives {soon(), now(), last, source}; `onResult(ok)` is told every outcome.
+ * `collect()` gives {input, files, calibration} or a sentence that says what is missing. The result is shown in `panel`.
+ * Gives {soon(), now(), last, source}; `onResult(ok)` is called with every outcome.
  */
 export function createCheck(panel, { form, collect, onResult = () => {} }) {
   const state = element("p", { class: "check-state", role: "status" });
   // A scene is drawn by the service; of a specimen its shape is known.
-  const { node: figure, image } = createPicture("Drawing of the scene as understood: outline, cracks, loads and supports");
+  const { node: figure, image } = createPicture("Drawing of the scene with cracks, loads and supports");
   const place = element("div");
-  const plate = createPlatePath(place, "The specimen as understood: outline, cracks, loads and supports", SKETCH_HEIGHT);
+  const plate = createPlatePath(place, "Drawing of the specimen with cracks, loads and supports", SKETCH_HEIGHT);
   const ofSpectrum = element("div", { class: "stack tight", hidden: true });
   const spectrum = createSpectrumPicture(ofSpectrum);
   const details = element("div");
@@ -59,12 +59,12 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
     const missing = form.missing();
     if (missing.length > 0) {
       show(details);
-      finish(null, `Still to fill in: ${missing.join(", ")}.`, "waiting");
+      finish(null, `Required: ${missing.join(", ")}.`, "waiting");
       return false;
     }
     if (!form.numbersAreGood()) {
       show(details);
-      finish(null, "A field does not hold a number.", "problem");
+      finish(null, "A field is not a number.", "problem");
       return false;
     }
     const own = new AbortController();
@@ -88,7 +88,7 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
       const atField = form.showProblem(error.input);
       const text = sourceOf(body, error.input);
       show(details, problemBox(error, error.passes ? now : null), text && excerpt(text.text, [error.input.line], text.name));
-      finish(null, atField ? "One field needs a correction." : "The input is not complete yet, or not right.", "problem");
+      finish(null, atField ? "One field needs a correction." : "The input has errors.", "problem");
       return false;
     }
   }
@@ -114,7 +114,7 @@ function understood(lines, checks = []) {
   const [first, others] = [pairs(true), pairs(false)];
   return [terms(first.length > 0 ? first : others, "understood"),
     checks.length > 0 && element("ul", { class: "checks" }, checks.filter((check) => check.verdict !== "passed").map(({ words: text }) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], text)))),
-    first.length > 0 && others.length > 0 && element("details", { class: "quiet" }, element("summary", null, "All that was understood"), terms(others, "understood-all"))];
+    first.length > 0 && others.length > 0 && element("details", { class: "quiet" }, element("summary", null, "All inputs"), terms(others, "understood-all"))];
 }
 
 /** The text a problem speaks of: a measured file, or the TOML that was written. */

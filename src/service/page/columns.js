@@ -5,18 +5,18 @@ import { element, table, uniqueId } from "./dom.js";
 import { cycles, fixed, parseNumber } from "./format.js";
 
 const KEYS = [
-  ["", "not read"], ["cycles", "cycles"], ["length", "crack length"], ["specimen", "specimen"],
-  ["force_max", "largest load"], ["force_min", "smallest load"], ["force_range", "range of load"], ["stress_ratio", "stress ratio"],
+  ["", "ignore"], ["cycles", "cycles"], ["length", "crack length"], ["specimen", "specimen"],
+  ["force_max", "maximum load"], ["force_min", "smallest load"], ["force_range", "range of load"], ["stress_ratio", "stress ratio"],
 ];
 
-/** A cell as it stands there, and what it is taken for where that is something else. */
+/** A cell, and the value that was read where that differs. */
 function withTaken({ columns, taken }, cell, row, index) {
   const value = taken?.[row]?.[index];
   if (!Number.isFinite(value) || parseNumber(cell) === value) return cell;
   return [cell, " ", element("span", { class: "quiet nowrap" }, columns.keys[index] === "length" ? `${fixed(value, 2)} mm` : cycles(Math.round(value)))];
 }
 
-/** `onChange` is told when another choice was made. Gives {names(), clear(), show(file)}. */
+/** `onChange` is called when another choice was made. Gives {names(), clear(), show(file)}. */
 export function createColumns(onChange) {
   let chosen = {}; // key: names of its columns
 
@@ -24,7 +24,7 @@ export function createColumns(onChange) {
   const keyOf = (file, index) => file.columns?.keys[index]
     ?? Object.keys(chosen).find((key) => chosen[key].includes(nameOf(file, index))) ?? "";
 
-  /** A name that stands there twice, or none, is told by its number. */
+  /** The name of a column, or its number where the name is missing or double. */
   const nameOf = ({ header }, index) => {
     const name = header[index];
     return name !== "" && header.indexOf(name) === header.lastIndexOf(name) ? name : String(index + 1);

@@ -51,6 +51,17 @@ export function showPage(root, ...children) {
   if (had) root.querySelector("h1").focus({ preventScroll: true });
 }
 
+/** Gives files that are dropped on a node to `add`. */
+export function takeDrops(node, add) {
+  for (const name of ["dragenter", "dragover", "dragleave", "drop"]) {
+    node.addEventListener(name, (event) => {
+      event.preventDefault();
+      node.classList.toggle("over", name === "dragenter" || name === "dragover");
+      if (name === "drop") add(event.dataTransfer.files);
+    });
+  }
+}
+
 let lastNumber = 0;
 
 /** A unique id, for labels and descriptions. */

@@ -14,7 +14,7 @@ export function createEditor({ host, fields, panel, form, collect, fill, context
   const question = element("div");
   const textPart = element("div", { class: "text-mode", hidden: true },
     element("label", { for: area.id }, "Input as TOML"), area,
-    element("p", { class: "hint" }, "The file the command line takes. This text is what is run."));
+    element("p", { class: "hint" }, "Same format as the command line. This text is run."));
   const way = (name, title, act) => button(title, act, { class: "button small", "data-action": name, "aria-pressed": String(name === "form") });
   const buttons = [
     way("form", "Form", () => textMode && backToForm()),
@@ -51,7 +51,7 @@ export function createEditor({ host, fields, panel, form, collect, fill, context
       return;
     }
     show(question, element("div", { class: "notice warn", role: "alert" },
-      element("p", null, "The text says something the form has no field for, or is not right yet. Going back to the form discards the text."),
+      element("p", null, "The form cannot show this text. Switching discards your changes."),
       element("p", { class: "tool-row" },
         button("Keep the text", () => show(question)), button("Discard the text", () => setMode(false)))));
   }

@@ -1,4 +1,4 @@
-// Server-sent events over fetch: unlike EventSource it can send the token. Goes on where it broke off.
+// Server-sent events over fetch, which can send the token (EventSource cannot). Resumes after a break.
 
 import { request } from "./api.js";
 

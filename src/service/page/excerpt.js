@@ -25,5 +25,5 @@ export function excerpt(text, wrong, name) {
   ]);
   return element("figure", { class: "excerpt" },
     element("figcaption", null, `${name}, ${count(marked.size, "wrong line")} marked`),
-    element("div", { class: "excerpt-lines", tabindex: "0", role: "region", "aria-label": `Lines of ${name}` }, items));
+    element("div", { class: "excerpt-lines", tabindex: "0", role: "region", "aria-label": name }, items));
 }

@@ -1,9 +1,9 @@
-// Fields of a form: label, input, unit and the problem that belongs to it, found again by the key of the input file.
+// Fields of a form: label, input, unit, hint and the problem of its key.
 
 import { element, uniqueId } from "./dom.js";
 import { parseNumber } from "./format.js";
 
-/** A problem key names a field, a part of it, or something it is a part of: specimen.cracks[1] is told at its first cell. */
+/** Whether a problem of `key` is shown at a field: the same, a part of it, or a whole that it is a part of. */
 function belongs(fieldKey, key) {
   const inside = (whole, part) => part.startsWith(whole) && /^[.[]/.test(part.slice(whole.length));
   return fieldKey === key || inside(key, fieldKey) || inside(fieldKey, key);
@@ -14,9 +14,10 @@ function numeric(signed, value) {
   return { type: "text", inputmode: signed ? "text" : "decimal", autocomplete: "off", spellcheck: "false", value };
 }
 
-/** A set of fields that tell `onChange` when the user types. */
+/** A set of fields; `onChange` is called with the field that was edited. */
 export function createForm(onChange) {
   const fields = new Set();
+  let offered = []; // files of another run, for fields that name one
 
   function add(field) {
     fields.add(field);
@@ -48,9 +49,9 @@ export function createForm(onChange) {
     input.setAttribute("aria-describedby", `${messageId} ${hintId}`);
     const name = element("span", null, label);
     const node = element("div", { class: "field" },
-      // The unit belongs to the name that is read out, although it stands beside the input.
+      // The unit belongs to the name that is read out, although it is shown next to the input.
       element("label", { for: id }, name, unit ? element("span", { class: "visually-hidden" }, `, ${unit}`) : null,
-        optional ? element("span", { class: "optional" }, " optional") : null),
+        element("span", { class: "optional", hidden: !optional }, " optional")),
       element("div", { class: "control" }, input, unitNode), message, note);
     return { keys, input, node, message, note, unitNode, name, touched: false, wrong: false };
   }
@@ -58,7 +59,7 @@ export function createForm(onChange) {
   const empty = (field) => field.input.value.trim() === "";
 
   return {
-    /** A number with its unit. Left empty it is left out. */
+    /** A number with its unit; an empty one is omitted. */
     number(key, options) {
       const input = element("input", numeric(options.signed, options.value ?? ""));
       return add({ ...wrap([key].flat(), input, { id: uniqueId("field"), ...options }), numeric: true, needed: !options.optional });
@@ -66,8 +67,30 @@ export function createForm(onChange) {
     /** Several numbers in groups, as `numbersIn` reads them. */
     numbers(key, options) {
       const input = element("input", { type: "text", autocomplete: "off", spellcheck: "false" });
-      return add({ ...wrap([key], input, { id: uniqueId("field"), optional: true, ...options }), numeric: true, several: true });
+      return add({ ...wrap([key].flat(), input, { id: uniqueId("field"), optional: true, ...options }), numeric: true, several: true });
     },
+    /** A file that the input names: {name, file, text} in `given`. */
+    file(key, options) {
+      const input = element("input", { type: "file" });
+      const field = add(wrap([key].flat(), input, { id: uniqueId("field"), ...options }));
+      field.pick = (name) => {
+        field.given = offered.find((one) => one.name === name);
+        tell(field, field.given ? field.given.name : options.hint);
+      };
+      input.addEventListener("change", async () => {
+        const [file] = input.files;
+        input.value = ""; // the same file may be chosen again after a correction
+        if (!file) return;
+        offered = [...offered.filter((one) => one.name !== file.name), { name: file.name, file, text: await file.text() }];
+        field.pick(file.name);
+        onChange(field);
+      });
+      return field;
+    },
+    offer(files) {
+      offered = files;
+    },
+    files: (isText) => (isText ? offered : [...fields].filter((field) => field.given && inUse(field)).map((field) => field.given)),
     /** A choice among `options`: {value, title}; `needed` where the empty one is none. */
     choice(key, options) {
       const input = element("select", null, options.options.map(({ value, title }) => element("option", { value }, title)));
@@ -78,9 +101,9 @@ export function createForm(onChange) {
     /** A line of text. */
     text(key, options) {
       const input = element("input", { type: "text", autocomplete: "off", value: options.value ?? "" });
-      return add(wrap([key].flat(), input, { id: uniqueId("field"), ...options }));
+      return add({ ...wrap([key].flat(), input, { id: uniqueId("field"), ...options }), needed: options.needed });
     },
-    /** An input of a table: its name is spoken, its problem stands below the table. */
+    /** An input of a table, with its problem below the table. */
     cell(key, name, value, message) {
       const input = element("input", { ...numeric(true, value), "aria-label": name, "data-key": key });
       const node = element("td", { class: "cell" }, input);
@@ -90,11 +113,11 @@ export function createForm(onChange) {
     drop(list) {
       list.forEach((field) => fields.delete(field));
     },
-    /** Names of the fields that have to be filled in still. */
+    /** Names of the required fields that are empty. */
     missing() {
       return [...fields].filter((field) => field.needed && inUse(field) && empty(field)).map((field) => field.name.textContent);
     },
-    /** Whether every number that stands in a visible field is one; says so at those that are not. */
+    /** Whether every visible number is one; marks those that are not. */
     numbersAreGood() {
       let good = true;
       for (const field of fields) {
@@ -109,21 +132,35 @@ export function createForm(onChange) {
     clearProblems() {
       fields.forEach((field) => say(field, ""));
     },
-    /** Puts a problem of the service beside its field; true when there is such a field. */
+    /** Shows a problem of the service at its field; true when there is such a field. */
     showProblem(input) {
       const key = input?.key ?? "";
       const found = key && [...fields].find((field) => inUse(field) && field.keys.some((own) => belongs(own, key)));
       if (!found) return false;
       const remedy = input.remedy ? `: ${input.remedy}` : "";
+      found.node.closest("details")?.setAttribute("open", "");
       say(found, `${input.problem ?? "is wrong"}${remedy}`);
       return true;
     },
   };
 }
 
-/** A hidden field takes no part, nor does one in a hidden group; but the whole view may be hidden while it is being filled. */
+/** Fields in hidden groups take no part; the whole view may be hidden while it is filled. */
 function inUse(field) {
   return field.node.isConnected && !field.node.closest("[hidden]:not(.view)");
+}
+
+/** Whether a field has to be filled in. */
+export function need(field, is) {
+  field.needed = is;
+  const optional = field.node.querySelector?.(".optional");
+  if (optional) optional.hidden = is;
+}
+
+/** The line below a field. */
+export function tell(field, text = "") {
+  field.note.textContent = text;
+  field.note.hidden = text === "";
 }
 
 /** Number in a field, undefined where it is empty or none. */
@@ -132,7 +169,7 @@ export function numberIn(field) {
   return Number.isNaN(value) ? undefined : value;
 }
 
-/** What stands between semicolons, and there between blanks; commas before blanks do not count. */
+/** Groups between semicolons, of what is between blanks. */
 function groupsIn(field) {
   return field.input.value.split(";").map((group) => group.trim().split(/,?\s+/));
 }
@@ -144,7 +181,7 @@ export function numbersIn(field) {
   return groups.length > 1 ? groups : groups[0];
 }
 
-/** Sets a field as if it were typed, without telling anybody. */
+/** Sets a field without an event. */
 export function fillIn(field, value) {
   const several = (list) => list.map((item) => (Array.isArray(item) ? several(item) : item)).join(list.some(Array.isArray) ? "; " : " ");
   field.input.value = value === undefined || value === null ? "" : Array.isArray(value) ? several(value) : String(value);

@@ -39,7 +39,7 @@ export function significant(value, digits = 4) {
   return fixed(value, Math.max(0, digits - 1 - magnitude));
 }
 
-/** Like significant(), zeros at the end left out: for ticks and echoed input. */
+/** Like significant(), without zeros at the end: for ticks and echoed input. */
 export function plain(value, digits = 6) {
   const text = significant(value, digits);
   return text.includes(".") && !text.includes("×") ? text.replace(/\.?0+$/, "") : text;
@@ -82,11 +82,6 @@ export function bandOf(band) {
   return `90 % of specimens ${deserved(band[0], band)} to ${deserved(band[2], band)}`;
 }
 
-/** Crack length, mm. */
-export function millimetres(value, decimals = 2) {
-  return Number.isFinite(value) ? `${fixed(value, decimals)} mm` : NONE;
-}
-
 /** Share as percent. */
 export function percent(share, decimals = 1) {
   return Number.isFinite(share) ? `${fixed(100 * share, decimals)} %` : NONE;
@@ -125,7 +120,7 @@ export function bytes(count) {
 }
 
 /** Kinds that are called otherwise than their key. */
-const CALLED = { element_free_galerkin: "nodes", peridynamics: "points and bonds", ring: "ring around the tip" };
+const CALLED = { element_free_galerkin: "nodes", peridynamics: "points and bonds", ring: "interaction integral", nasgro: "NASGRO", library: "library growth data" };
 
 /** A key or kind in words: crack_length_reached becomes "crack length reached". */
 export function words(name) {

@@ -22,7 +22,7 @@ export function stateBadge({ state, summary }) {
   return element("span", { class: `badge ${shown}`, "data-state": shown }, shown === "succeeded" ? "Done" : sentence(shown));
 }
 
-/** Where the form is that a run can be started anew from. */
+/** The form from which a run can be started again. */
 export function openForm(job) {
   const view = { calibration: "measure", prediction: "predict", sif: "predict" }[job.kind] ?? "new";
   return `#/${view}?from=${collectionOf(job)}/${encodeURIComponent(job.id)}`;
@@ -117,7 +117,7 @@ export function createJobHead(first, { actions = [] } = {}) {
   const facts = element("p", { class: "quiet" });
   const bar = element("progress", { max: "1", "aria-label": "Progress" });
   const figures = element("div");
-  const link = element("p", { class: "quiet", hidden: true }, "The connection is interrupted, which does not harm the run. Reconnecting …");
+  const link = element("p", { class: "quiet", hidden: true }, "Connection lost; the run continues. Reconnecting …");
   const progress = element("div", { class: "progress" }, bar, figures, link);
   const aloud = element("p", { class: "visually-hidden", "aria-live": "polite" });
   const trouble = element("div");
@@ -170,20 +170,20 @@ export function createJobHead(first, { actions = [] } = {}) {
     const p = job.progress;
     if (job.state === "queued" || !p || p.stage) {
       bar.removeAttribute("value");
-      const before = job.position > 0 ? `, ${count(job.position, "run")} before it` : "";
+      const before = job.position > 0 ? `, ${count(job.position, "run")} ahead` : "";
       show(figures, element("p", null, job.state === "queued" ? `Waiting for a free worker${before}.` : p?.stage ? `Starting: ${p.stage} …` : "Starting …"));
       return;
     }
     const prediction = job.kind === "prediction";
     bar.value = p.share ?? 0;
     show(figures, terms([
-      ["Way to its end", percent(p.share, 0)],
-      // A fit makes several runs: where one of them stands says nothing.
+      ["Progress", percent(p.share, 0)],
+      // A fit makes several runs: the progress of one says nothing.
       prediction && ["Cycles", cycles(Math.round(p.cycles))],
       prediction && ["Crack length", `${fixed(p.crack_length_mm, 2)} mm`],
       ["Elapsed", duration(p.elapsed_s)],
-      // By the growth so far: what comes behind it, bounds of the error and files, is not in it.
-      ["Time left", p.share > 0.995 ? "error and files" : Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],
+      // By the growth so far, without the bounds of the error and the files that follow it.
+      ["Time left", p.share > 0.995 ? "finishing" : Number.isFinite(p.seconds_left) ? `about ${duration(p.seconds_left)}` : "not known yet"],
     ].filter(Boolean), "progress"));
   }
 
@@ -223,7 +223,7 @@ export function describe({ plate }) {
 
 /** Why a run failed, with the lines of its input where the problem names one. */
 export function failureOf(job) {
-  if (job.state === "cancelled") return element("p", { class: "notice" }, "This run was cancelled before its end.");
+  if (job.state === "cancelled") return element("p", { class: "notice" }, "Run canceled.");
   const problem = Problem.ofJob(job.problem);
   const { line, file } = problem.input ?? {};
   const ofInput = line && job.input && !/\.csv$/i.test(file ?? "");
@@ -251,7 +251,7 @@ export function downloadList(job, special = {}) {
     button(file.name, () => fetchFile(file.href, file.name), { class: "link" }),
     element("span", { class: "quiet" }, ` ${bytes(file.bytes)}`), special[file.name]?.(file, fetchFile)));
   return element("section", { "aria-labelledby": "downloads-title" }, element("h2", { id: "downloads-title" }, "Downloads"),
-    items.length > 0 ? element("ul", { class: "downloads" }, items) : element("p", { class: "quiet" }, "This run left no files."), trouble);
+    items.length > 0 ? element("ul", { class: "downloads" }, items) : element("p", { class: "quiet" }, "No files."), trouble);
 }
 
 /** The input as it was submitted. */

@@ -1,28 +1,34 @@
-// Measured files: reads them through the service, says what was recognised, shows points and wrong lines.
+// Measured files: reads them through the service, shows what was recognized, readings and wrong lines.
 
 import { postForm } from "./api.js";
 import { createChart } from "./chart.js";
 import { createColumns } from "./columns.js";
-import { button, byId, element, show, table } from "./dom.js";
+import { button, byId, element, show, table, takeDrops } from "./dom.js";
 import { excerpt } from "./excerpt.js";
+import { createForm } from "./form.js";
 import { count, cycles, fixed, plain } from "./format.js";
 import { editInPlace } from "./job.js";
+import { createFields } from "./key_fields.js";
+import { keysOf } from "./keys.js";
 import { createLeftOut } from "./left_out.js";
 import { problemBox } from "./notices.js";
 
-const LENGTHS = { mm: "millimetres", inch: "inches", m: "metres" };
+const LENGTHS = { mm: "millimeters", inch: "inches", m: "meters" };
 const CYCLES = { cycles: "single cycles", kilocycles: "thousands of cycles", megacycles: "millions of cycles" };
 const LAYOUTS = { long: "one reading a row", wide: "one column of cycles for every specimen",
   paired: "two columns for every specimen" };
 
-/** `onChange` is told whenever other curves stand there. Gives {files(), said(), window(), load(files)}. */
+/** Keys that say how files are written. */
+export const OF_FILES = ["length_unit", "cycle_unit", "load_unit", "decimal", "sheet"];
+
+/** `onChange` is called when the curves change. Gives {files(), said(), window(), load(files)}. */
 export function createMeasured(onChange) {
   const root = byId("measured");
   const input = byId("measured-input");
   const drop = byId("measured-drop");
-  // What is said of the files, by the name of the key in [measured].
-  const said = { length_unit: byId("length-unit"), cycle_unit: byId("cycle-unit"), load_unit: byId("load-unit"),
-    decimal: byId("decimal"), sheet: byId("sheet") };
+  // What is said of the files, by keys of [measured].
+  const said = createFields(createForm(() => read()), "measured", keysOf("measured").filter(({ metric }) => OF_FILES.includes(metric)));
+  show(byId("units"), said.group("Units and format", OF_FILES));
   const columns = createColumns(() => read());
   const [result, chartPlace] = [byId("measured-result"), byId("measured-chart")];
   const out = createLeftOut(() => read());
@@ -61,7 +67,7 @@ export function createMeasured(onChange) {
     }
     const form = new FormData();
     for (const { name, file } of files) form.append("file", file, name);
-    for (const [key, input] of Object.entries(said)) if (input.value) form.append(key, input.value);
+    for (const [key, value] of Object.entries(said.collect())) form.append(key, value);
     if (columns.names()) form.append("columns", JSON.stringify(columns.names()));
     if (out.rows().length > 0) form.append("leave_out", JSON.stringify(out.rows()));
     if (answer.length === 0) show(result, element("p", { class: "quiet", role: "status" }, "Reading …"));
@@ -106,8 +112,8 @@ export function createMeasured(onChange) {
     const summary = `${count(found.length, "specimen")} (${list}), ${count(readings, "reading")}`;
     return element("div", { class: "file-card", "data-file": file },
       element("div", null, element("h3", null, file),
-        element("p", null, found.length > 0 ? `${summary}: ${ranges(found)}.` : "No curve could be read."),
-        words && element("p", { class: "quiet" }, `Recognised: ${words}.`),
+        element("p", null, found.length > 0 ? `${summary}: ${ranges(found)}.` : "No readings found."),
+        words && element("p", { class: "quiet" }, `Recognized: ${words}.`),
         columns.show(answered), found.length > 0 && out.readings(answered)),
       button("Remove", () => {
         files = files.filter((one) => one.name !== file);
@@ -129,7 +135,7 @@ export function createMeasured(onChange) {
   /** Whether a problem is with what the columns are, which can be chosen here. */
   const isOfColumns = (problem) => problem.key === "header" || (problem.key ?? "").startsWith("measured.columns");
 
-  /** The first rows, which messages elsewhere end with, stand above with the choices. */
+  /** Without the first rows, which are shown above with the choices. */
   const remedyOf = (problem) => (problem.remedy ?? "").replace(/;?\s*read so far[\s\S]*$/, "");
 
   function problemTable() {
@@ -138,20 +144,20 @@ export function createMeasured(onChange) {
       one.line ? button(`${one.file}:${one.line}`, () => jump(one), { class: "link" }) : one.file,
       one.key ?? "", one.value ?? "", one.problem ?? "", remedyOf(one), isOfColumns(one) ? "" : takeOut(one),
     ]);
-    const columns = ["File and line", "Column", "Value", "Problem", "Remedy", "Do"].map((title) => ({ title }));
+    const columns = ["File and line", "Column", "Value", "Problem", "Fix", "Action"].map((title) => ({ title }));
     return element("div", { class: "notice bad", role: "alert", "data-problems": list.length },
-      element("h3", null, list.length >= 100 ? "The first 100 problems" : count(list.length, "problem")),
-      element("p", null, list.some(isOfColumns) && "Say above the columns what they are, and under “What the files leave open” which units hold; or correct the file. ",
-        !list.some(isOfColumns) && "Take a line out with its reason, or correct the file and drop it again under the same name.", curves().length > 0 && " The chart shows the readings that are right."),
+      element("h3", null, list.length >= 100 ? "First 100 problems" : count(list.length, "problem")),
+      element("p", null, list.some(isOfColumns) && "Assign columns above and units under “Units and format”, or correct the file. ",
+        !list.some(isOfColumns) && "Exclude a line (with a reason), or correct the file and drop it again.", curves().length > 0 && " The chart shows the readings that are right."),
       table("Problems of the measured files", columns, rows, { hidden: true, name: "problems" }));
   }
 
   /** A line that is wrong stays in the file as it was dropped: `leave_out` names it, its value and the reason. */
   function takeOut({ file, line, value }) {
     if (!line) return "";
-    const place = element("span", null, button("Leave out", () => editInPlace(place, { label: `Why line ${line} does not count`, value: "",
+    const place = element("span", null, button("Exclude", () => editInPlace(place, { label: `Reason to exclude line ${line}`, value: "",
       save: (reason) => out.addRow({ file, line, value: value ?? '""', reason }),
-    }), { class: "button small", "data-action": "take-out", "aria-label": `Leave out line ${line}` }));
+    }), { class: "button small", "data-action": "take-out", "aria-label": `Exclude line ${line}` }));
     return place;
   }
 
@@ -170,7 +176,7 @@ export function createMeasured(onChange) {
   function warnings() {
     // Most of them begin with the file themselves.
     const named = (file, line) => (line.startsWith(`${file}:`) ? line : `${file}: ${line}`);
-    // Whoever has said what the columns are knows which are not read.
+    // Columns that the user ignores need no warning.
     const isNews = (line) => !(columns.names() && line.includes("not read, since the name"));
     const list = answer.flatMap((file) => file.warnings.filter(isNews).map((line) => named(file.file, line)));
     return list.length > 0 && element("div", { class: "notice warn" }, element("ul", null, list.map((line) => element("li", null, line))));
@@ -186,7 +192,7 @@ export function createMeasured(onChange) {
       y: { label: "Crack length a", unit: "mm", from: 0, format: (value) => fixed(value, 2) },
     });
     const all = answer.flatMap((file) => file.curves.map((curve) => ({ file: file.file, curve })));
-    const isMany = all.length > 6; // dozens are told apart by nobody
+    const isMany = all.length > 6; // more have no tone of their own
     chart.set([...all.map(({ file, curve }, index) => ({
       id: `${file}/${curve.specimen}`, name: isMany ? undefined : curve.specimen, kind: isMany ? "thin" : "points", x: curve.cycles, y: curve.crack_length_mm, tone: isMany ? 2 : 2 + index,
     })), ...out.marks(all.map(({ curve }) => curve))]);
@@ -196,21 +202,9 @@ export function createMeasured(onChange) {
     add(input.files);
     input.value = ""; // the same file may be chosen again after a correction
   });
-  for (const name of ["dragenter", "dragover"]) {
-    drop.addEventListener(name, (event) => {
-      event.preventDefault();
-      drop.classList.add("over");
-    });
-  }
-  drop.addEventListener("dragleave", () => drop.classList.remove("over"));
-  drop.addEventListener("drop", (event) => {
-    event.preventDefault();
-    drop.classList.remove("over");
-    add(event.dataTransfer.files);
-  });
-  // A file dropped beside the field must not replace the page.
+  takeDrops(drop, add);
+  // A file dropped outside the field must not replace the page.
   for (const name of ["dragover", "drop"]) window.addEventListener(name, (event) => event.preventDefault());
-  for (const input of Object.values(said)) input.addEventListener("change", read);
   root.dataset.measured = "empty";
 
   return {
@@ -218,7 +212,7 @@ export function createMeasured(onChange) {
     files: () => (curves().length === 0 ? null : files),
     names: () => files.map((file) => file.name),
     /** What is said of them, as keys of [measured]. */
-    said: () => ({ ...Object.fromEntries(Object.entries(said).map(([key, input]) => [key, input.value || undefined])), columns: columns.names(), leave_out: out.windows() }),
+    said: () => ({ ...said.collect(), columns: columns.names(), leave_out: out.windows() }),
     /** Crack lengths that every curve covers. */
     window() {
       const given = curves().map((curve) => curve.crack_length_mm).filter((lengths) => lengths.length > 0);
@@ -241,7 +235,7 @@ export function createMeasured(onChange) {
     /** Takes files over, with what [measured] of a calibration says of them. */
     load(next, { columns: names, leave_out: windows = [], ...others } = {}) {
       files = next;
-      for (const [key, input] of Object.entries(said)) input.value = others[key] ?? "";
+      said.fill(Object.fromEntries(OF_FILES.map((key) => [key, others[key]])));
       columns.choose(names);
       out.take(windows);
       return read();

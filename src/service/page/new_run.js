@@ -1,6 +1,5 @@
 // New run: where each kind is begun; a sweep by a form, and any input file by its text.
 
-import { getJson } from "./api.js";
 import { createCheck } from "./check.js";
 import { button, byId, element, show } from "./dom.js";
 import { createForm } from "./form.js";
@@ -11,7 +10,7 @@ import { startRun } from "./submit.js";
 import { createSweep } from "./sweep_form.js";
 
 const COLLECTIONS = { case: "predictions", calibration: "calibrations", fracture: "scenes", sweep: "sweeps" };
-const SCENE = `# A plate with a crack in the middle, pulled apart in steps: at which load does it break?
+const SCENE = `# At which load does a plate with a central crack break, pulled in steps?
 [specimen]
 kind = "plate"
 width_mm = 50.0
@@ -105,9 +104,8 @@ export function createNewRunView({ predict }) {
 
   async function openSweep() {
     try {
-      const { kinds } = sweep ? {} : await getJson("/v1/kinds");
       sweep ??= createSweep({ host: byId("sweep-editor"), fields: byId("sweep-fields"), panel: byId("sweep-check"), start: byId("sweep-start"), status: byId("sweep-status"),
-        base: () => predict.body(), checked: () => predict.checked(), kinds });
+        base: () => predict.body(), checked: () => predict.checked() });
       await predict.ready();
       sweep.fromBase();
     } catch (error) {

@@ -14,7 +14,7 @@ export function problemBox(problem, retry) {
   return element("div", { class: "notice bad", role: "alert", "data-problem": problem.status ?? "" },
     element("p", null, element("strong", null, titleOf(problem)), " ", sentence(problem.message)),
     place.length > 0 && element("p", { class: "quiet" }, `At ${place.join(", ")}`),
-    untold && element("p", null, `Remedy: ${remedy}`),
+    untold && element("p", null, `Fix: ${remedy}`),
     retry && element("p", null, button("Try again", () => retry())));
 }
 

@@ -32,7 +32,7 @@ export const openOther = (collection) => async (root, id, signal) => {
   await showAtEnd(job, { head, body, announced: "Pictures and files appear here when the run is done.", finish, signal });
 };
 
-/** K of every tip by every method; the largest first, with what stands beside it. */
+/** K of every tip by every method, the largest first. */
 function factorsOf({ tips = [] }) {
   const rows = tips.flatMap((tip, number) => Object.entries(tip.methods).map(([method, read]) => ({ number, tip, method, ...read })));
   const known = rows.filter((row) => typeof row.k_i_mpa_sqrt_m === "number");
@@ -46,11 +46,11 @@ function factorsOf({ tips = [] }) {
   return [
     element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
       element("div", null, element("h2", null, `K of tip ${first.number} at maximum load, by ${words(first.method)}`),
-        element("p", { class: "life", "data-value": "k_i" }, figure(first.k_i_mpa_sqrt_m), element("small", null, "MPa√m"))),
-      element("div", null, element("h2", null, "Beside it"), terms([
+        element("p", { class: "life", "data-value": "k_i" }, figure(first.k_i_mpa_sqrt_m), " ", element("small", null, "MPa√m"))),
+      element("div", null, element("h2", null, "Other values"), terms([
         ["K II", `${figure(first.k_ii_mpa_sqrt_m)} MPa√m`], ["T-stress", `${figure(first.t_stress_mpa)} MPa`],
         ["Handbook", typeof handbook === "number" ? `${figure(handbook)} MPa√m` : "no formula for this plate"]], "factors")),
-      element("div", null, element("h2", null, "Is it valid?"), element("p", { class: `verdict ${apart.length > 0 && Math.max(...apart) < 0.01 ? "is-ok" : "is-note"}` },
+      element("div", null, element("h2", null, "Validity"), element("p", { class: `verdict ${apart.length > 0 && Math.max(...apart) < 0.01 ? "is-ok" : "is-note"}` },
         apart.length > 0 ? `Methods agree within ${significant(100 * Math.max(...apart), 2)} %` : "One method alone"))),
     table("Stress intensity factors at maximum load", [{ title: "Tip" }, { title: "Method" }, column("K I", "MPa√m"), column("K II", "MPa√m"), column("T", "MPa"), { title: "Remark" }],
       rows.map((row) => [String(row.number), words(row.method), figure(row.k_i_mpa_sqrt_m), figure(row.k_ii_mpa_sqrt_m), figure(row.t_stress_mpa), row.note ?? ""]), { name: "factors" }),
@@ -64,11 +64,11 @@ function livesOf({ life_cycles: lives, cases, succeeded, failed, missing, unlimi
   const open = failed + missing;
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
     element("div", null, element("h2", null, `Life, median of ${count(cases, "case")}`),
-      element("p", { class: "life", "data-value": "life_cycles" }, figure(lives.p50), element("small", null, "cycles")),
-      element("p", { class: "beside" }, "9 of 10 cases: ", element("strong", null, `${figure(lives.p05)} to ${figure(lives.p95)}`))),
-    element("div", null, element("h2", null, "What was varied"), terms([
-      ["Design", `${words(design?.design?.kind)}${(design?.vary ?? []).length > 0 ? `: ${design.vary.map((one) => words(one.key.split(".").pop())).join(", ")}` : ""}`], ["Least and most", `${figure(lives.least)} and ${figure(lives.most)}`],
+      element("p", { class: "life", "data-value": "life_cycles" }, figure(lives.p50), " ", element("small", null, "cycles")),
+      element("p", { class: "beside" }, "90 % of cases: ", element("strong", null, `${figure(lives.p05)} to ${figure(lives.p95)}`))),
+    element("div", null, element("h2", null, "Varied"), terms([
+      ["Design", `${words(design?.design?.kind)}${(design?.vary ?? []).length > 0 ? `: ${design.vary.map((one) => words(one.key.split(".").pop())).join(", ")}` : ""}`], ["Min, max", `${figure(lives.least)} and ${figure(lives.most)}`],
       unlimited > 0 && ["Unlimited", count(unlimited, "case")], runOuts > 0 && ["Run out", count(runOuts, "case")]].filter(Boolean), "sweep")),
-    element("div", null, element("h2", null, "Is it whole?"),
+    element("div", null, element("h2", null, "Completeness"),
       element("p", { class: `verdict ${open === 0 ? "is-ok" : "is-note"}` }, open === 0 ? `All ${count(succeeded, "case")} succeeded` : `${failed} failed, ${missing} missing of ${cases}`)));
 }

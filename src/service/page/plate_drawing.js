@@ -1,10 +1,11 @@
 // A plate to draw in, to scale: outline, holes, notches, cracks.
 
 import { button, element, shape, show } from "./dom.js";
+import { unitShown } from "./units.js";
 
 const MARGIN = 30;
 const HEIGHT_MAX = 430;
-const RULE_STRIP = 16; // below the picture, so that the rule never lies on the load
+const RULE_STRIP = 16; // below the picture, so that the rule never covers the load
 
 /** Outline, holes, cracks and notches of a plate of the input file, mm. Null when sizes are missing. */
 export function geometryOf(specimen) {
@@ -48,7 +49,7 @@ function closeBox(geometry) {
   };
 }
 
-/** An SVG that fits a plate into its container. `drawMore(stage)` adds what stands above the plate. */
+/** An SVG that fits a plate into its container. `drawMore(stage)` draws over the plate. */
 export function createStage(container, { label, role = "img", drawMore }) {
   let geometry = null;
   let width = 0;
@@ -136,7 +137,7 @@ export function createStage(container, { label, role = "img", drawMore }) {
     const end = Number(svg.getAttribute("height")) - 4;
     return shape("g", { class: "plate-rule" },
       shape("path", { d: `M4 ${end - 5}v5h${best * view.scale}v-5` }),
-      shape("text", { x: 8 + best * view.scale, y: end }, `${best} mm`));
+      shape("text", { x: 8 + best * view.scale, y: end }, `${best} ${unitShown("mm")}`));
   }
 
   return stage;

@@ -211,7 +211,7 @@ function createView(label, isWhole, heightMax) {
     show(words, above);
   }
 
-  /** Where a tip stands at shares of the life; of the first one in words, where there is room for them. */
+  /** Places of a tip at shares of the life; of the first one in words, where there is room for them. */
   function marksOf(path, cycles, isNamed) {
     if (!(data.life > 0)) return [];
     const ends = { "-1": -Infinity, 1: -Infinity }; // of the words above and below

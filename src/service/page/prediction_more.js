@@ -1,10 +1,10 @@
-// What the answer of a prediction says beside its life: passes and retardation of a spectrum, break-through of a crack that was not through.
+// Further terms of a prediction: passes and retardation of a spectrum, breakthrough of a part-through crack.
 
 import { element, terms } from "./dom.js";
 import { cycles, deserved, fixed, percent, plain, sentence, significant, whole, words } from "./format.js";
 import { createSpectrumPicture } from "./spectrum_picture.js";
 
-/** Where the crack was through, by which rule, and what the error of its K does to the life: terms of the answer card. */
+/** Breakthrough, its rule, and the effect of the error of K on the life: terms of the answer card. */
 export function partThroughTerms({ part_through: found, life_cycles: life }) {
   if (!found) return [];
   const through = found.cycles_at_break_through;
@@ -12,8 +12,8 @@ export function partThroughTerms({ part_through: found, life_cycles: life }) {
   const rounded = (value) => deserved(value, [shorter, life, longer ?? 2 * life]);
   return [
     ["Depth a", `${fixed(found.crack_depth_initial_mm, 2)} to ${fixed(found.crack_depth_final_mm, 2)} mm`],
-    ["Break-through", through === null ? "not reached" : `after ${cycles(Math.round(through))} cycles (a/t = 1), c ${fixed(found.crack_length_at_break_through_mm, 2)} mm`],
-    [`K ±${plain(found.k_error_percent)} %`, `life ${rounded(shorter)} to ${longer === null ? "no end" : rounded(longer)}`],
+    ["Breakthrough", through === null ? "not reached" : `after ${cycles(Math.round(through))} cycles (a/t = 1), c ${fixed(found.crack_length_at_break_through_mm, 2)} mm`],
+    [`K ±${plain(found.k_error_percent)} %`, `life ${rounded(shorter)} to ${longer === null ? "unlimited" : rounded(longer)}`],
   ];
 }
 
@@ -48,10 +48,10 @@ export function spectrumCard(result) {
   const facts = [
     ["File", `${spectrum.file} (${words(spectrum.format)})`],
     ["A pass", `${plain(spectrum.cycles_per_pass)} cycles of ${plain(spectrum.kinds_of_cycles)} kinds, stress ratios ${significant(spectrum.stress_ratio_min, 3)} to ${significant(spectrum.stress_ratio_max, 3)}`],
-    ["Left out", spectrum.cycles_omitted_per_pass > 0 ? `${plain(spectrum.cycles_omitted_per_pass)} cycles of a pass` : "nothing"],
-    spectrum.truncated_at && ["Cut off", `peaks above ${percent(spectrum.truncated_at, 0)} of the largest of the file`],
+    ["Omitted", spectrum.cycles_omitted_per_pass > 0 ? `${plain(spectrum.cycles_omitted_per_pass)} cycles of a pass` : "nothing"],
+    spectrum.truncated_at && ["Clipped", `peaks above ${percent(spectrum.truncated_at, 0)} of the largest of the file`],
     ["Retardation", [nameOf(spectrum), ...Object.entries(constants).map(([key, value]) => `${words(key)} ${plain(value)}`)].join(", ")],
-    mean > 0 && ["Without retardation", `${whole(mean)} cycles${life ? `; the life is ${significant(life / mean, 3)} times that` : ""}`],
+    mean > 0 && ["Without load interaction", `${whole(mean)} cycles${life ? `; the life is ${significant(life / mean, 3)} times that` : ""}`],
   ].filter(Boolean);
   return {
     node: element("section", { class: "card stack tight", "aria-labelledby": "spectrum-title", "data-part": "spectrum" },

@@ -23,7 +23,7 @@ const START = 0.9;
 /** Pictures of the end of a run, by the model that has them. */
 /** The section of a crack that is not through, with its fronts. */
 const SECTION = "section.svg";
-const FIELDS = { "stress.svg": "Stress at maximum load, late in the life; cracks drawn open.", "damage.svg": "Share of bonds cut or broken, at the end of the run." };
+const FIELDS = { "stress.svg": "Stress at maximum load near the end of life (deformed).", "damage.svg": "Fraction of broken bonds at the end of the run." };
 
 export async function openPrediction(root, id, signal) {
   const job = await getJson(`/v1/predictions/${encodeURIComponent(id)}`, signal);
@@ -36,12 +36,12 @@ export async function openPrediction(root, id, signal) {
   const fieldFigure = element("figure", { class: "card figure", "data-part": "damage", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Field")), field, fieldNote);
   const { node: section, image: sectionImage } = createPicture("Section through the crack with its front at quarters of the cycles");
   const sectionFigure = element("figure", { class: "card figure", "data-part": "section", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Section through the crack")), section,
-    element("figcaption", null, "Front at quarters of the cycles until the crack is through, or to the end; grey: at the start."));
+    element("figcaption", null, "Front at quarters of the cycles to breakthrough, or to the end; gray: at the start."));
   const curveFigure = element("div", { class: "card figure" }, curvePlace);
   const factors = element("div", { class: "card figure", hidden: true }, factorPlace);
   const plateFigure = element("figure", { class: "card figure", "data-part": "path" },
     element("div", { class: "chart-head" }, element("h2", null, "Crack path")), platePlace,
-    element("figcaption", null, "Colour: share of life, as on the slider; marks at 25, 50, 75 and 90 %. Dotted: still to come."));
+    element("figcaption", null, "Color: share of life; marks at 25, 50, 75, 90 %. Dotted: future growth."));
   const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, fieldFigure),
     element("div", { class: "stack" }, curveFigure, factors, sectionFigure));
   showPage(root, head.node, outcome, element("div", { class: "job-body" }, pictures), below);
@@ -52,7 +52,7 @@ export async function openPrediction(root, id, signal) {
     x: { label: "Cycles N", format: (value) => cycles(Math.round(value)), from: 0 },
     y: lengthAxis,
   });
-  const plate = createPlatePath(platePlace, "The plate with its cracks and the way every crack tip has gone");
+  const plate = createPlatePath(platePlace, "Plate with crack paths");
   signal.addEventListener("abort", () => {
     chart.destroy();
     plate.destroy();
@@ -131,7 +131,7 @@ export async function openPrediction(root, id, signal) {
     head.offer(reportButton(done));
     head.describe(describe(result));
     below.prepend(element("div", { class: "two" }, howComputed(done, result),
-      result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "All that was noticed"))));
+      result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "Messages"))));
     const spectrum = spectrumCard(result);
     if (!spectrum) return;
     below.prepend(spectrum.node);
@@ -183,14 +183,14 @@ export async function openPrediction(root, id, signal) {
       name: "factors", title: "Stress intensity over crack length", label: `K_I and K_II of tip ${tip} at maximum load over crack length`,
       x: { label: "Crack length a", unit: "mm", format: (value) => fixed(value, 2) },
       y: { label: "K", unit: "MPa√m", format: (value) => significant(value, 4) },
-      note: "At maximum load. Hatched: ΔK outside the range of the law. Where K was not read nothing is drawn.",
+      note: "At maximum load. Hatched: outside the tested ΔK. Gaps: K not computed.",
     });
     signal.addEventListener("abort", () => made.destroy());
     const ratio = columns.delta_k_mpa_sqrt_m[0] / Math.hypot(k[0], kk[0] ?? 0);
     const { delta_k_min_mpa_sqrt_m: least, delta_k_max_mpa_sqrt_m: most } = result?.law ?? {};
     const share = Number.isFinite(ratio) && ratio <= 1.001 ? ratio : 1;
     made.set([
-      least && { id: "below", kind: "outside", name: "below the measured ΔK", y2: [least / share] },
+      least && { id: "below", kind: "outside", name: "below the tested ΔK", y2: [least / share] },
       most && { id: "above", kind: "outside", name: "above the measured ΔK", y: [most / share] },
       { id: "k1", name: "K_I", kind: "line", smooth: "x", tone: 0, x: lengths, y: k },
       columns.depth_k_i_mpa_sqrt_m && { id: "depth", name: "K_a", kind: "line", smooth: "x", tone: 2, dashed: true, x: lengths, y: columns.depth_k_i_mpa_sqrt_m },
@@ -233,7 +233,7 @@ function pathsOf({ tip, cycles: steps, x_mm: xs, y_mm: ys }) {
   return [...byTip.values()];
 }
 
-const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id: "band", name: "9 of 10 specimens", kind: "band", tone: 0, x: low, x2: high, y: lengths }] : []);
+const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id: "band", name: "Scatter band (90 %)", kind: "band", tone: 0, x: low, x2: high, y: lengths }] : []);
 
 /** Where small-scale yielding ends, or begins where the crack was too short: length of the governing crack. */
 function limitsOf(result) {
@@ -252,14 +252,14 @@ function howComputed(job, r) {
   const range = law.delta_k_min_mpa_sqrt_m && `ΔK ${significant(law.delta_k_min_mpa_sqrt_m, 3)} to ${significant(law.delta_k_max_mpa_sqrt_m, 3)} MPa√m`;
   const isNodes = r.model?.method === "element_free_galerkin";
   const model = r.points > 0 ? `${count(r.points, isNodes ? "node" : "point")}, ${count(r.solves, "solution")}, ${duration(r.wall_s)}` : `hand calculation, ${duration(r.wall_s)}`;
-  return element("section", { class: "card", "aria-labelledby": "computed-title" }, element("h2", { id: "computed-title" }, "How it was computed"),
+  return element("section", { class: "card", "aria-labelledby": "computed-title" }, element("h2", { id: "computed-title" }, "Method"),
     terms([
       ["Growth law", [rate || given, paris].filter(Boolean).join(", ") || words(law.source)],
       range && ["Calibrated", range],
       ["Model", `${sentence(words(r.model?.method))}: ${r.model?.why?.method ?? ""}`],
       ["", model],
       errorWords(r) && ["Numerical error", errorWords(r)],
-      r.cross_check && ["Second opinion", `${whole(r.cross_check.life_cycles)} cycles by ${words(r.cross_check.method)}`],
+      r.cross_check && ["Cross-check", `${whole(r.cross_check.life_cycles)} cycles by ${words(r.cross_check.method)}`],
       ["Record", `perilife ${r.version}, run ${job.id}`],
     ].filter(Boolean), "computed"));
 }
@@ -269,7 +269,7 @@ function createPlace({ columns, lengths, lead, band, chart, factorChart, plate }
   const steps = columns.cycles;
   const life = steps.at(-1);
   const cell = (name, wide) => [name, element("dd"), wide];
-  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell("Remaining life"), band: cell("9 of 10 specimens", true) };
+  const cells = { a: cell("Crack length"), k: cell(["K", element("sub", null, "I"), " at maximum load"]), kk: cell(["K", element("sub", null, "II")], true), left: cell("Remaining life"), band: cell("Scatter band (90 %)", true) };
   const told = element("b");
   const share = element("span");
   const slider = element("input", { type: "range", id: "place", min: "0", max: String(STEPS), value: "0" });
@@ -321,14 +321,14 @@ function createPlace({ columns, lengths, lead, band, chart, factorChart, plate }
       if (!playing) play.textContent = "▶";
     };
     playing = requestAnimationFrame(step);
-  }, { "aria-label": "Play the growth" });
+  }, { "aria-label": "Play" });
   slider.addEventListener("input", () => go((life * Number(slider.value)) / STEPS, true));
   chart.pick((at) => go(at, true));
   factorChart?.pick((length) => {
     const next = lengths.findIndex((one) => one >= length);
     go(next < 0 ? life : steps[next], true);
   });
-  const node = element("section", { class: "card place", "aria-label": "One place along the life for plate, curve and K", "data-part": "place" },
+  const node = element("section", { class: "card place", "aria-label": "Position along the life", "data-part": "place" },
     element("div", { class: "play" }, play, element("div", null, element("label", { for: "place" }, element("span", null, "Cycles ", told), share), slider)),
     element("dl", { class: "read" }, Object.values(cells).map(([name, of, isWide]) => element("div", { class: isWide ? "wide-only" : null }, element("dt", null, name), of))));
   go(START * life);

@@ -1,19 +1,20 @@
-// What is left from a crack length on, and the interval to inspect at.
+// Remaining life from a crack length, and the inspection interval.
 
 import { getJson } from "./api.js";
 import { debounce, element, show, terms } from "./dom.js";
 import { bandOf, cycles, deserved, fixed, parseNumber } from "./format.js";
 import { pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
+import { inShown, unitShown } from "./units.js";
 
 const WAIT_MS = 200;
 
 /** `go(cycles)` moves the place along the life. Gives {node, setLength(mm)}. */
 export function createRemaining(job, { columns, lengths: ofLead, lead }, go, signal) {
-  // In a plate the length of the crack of one tip is asked for, first that which ends the life; the sum of all is no length anyone measures.
+  // In a plate the length of the crack of one tip, first the governing one.
   const tips = (job.summary.tips ?? []).map((tip, index) => ({ ...tip, index })).filter((tip) => tip.crack !== null && tip.crack !== undefined);
   const choice = lead !== null && tips.length > 1 ? element("select", { id: "today-tip" },
-    tips.map((tip) => element("option", { value: String(tip.index), selected: tip.index === lead }, `Tip ${tip.index}${tip.index === lead ? ", ends the life" : ""}`))) : null;
+    tips.map((tip) => element("option", { value: String(tip.index), selected: tip.index === lead }, `Tip ${tip.index}${tip.index === lead ? " (governing)" : ""}`))) : null;
   const lengthsOf = (index) => {
     const same = tips.filter((tip) => tip.crack === tips[index].crack);
     return columns.cycles.map((_, row) => same.reduce((sum, tip) => sum + columns[`tip${tip.index}_growth_mm`][row], tips[index].crack_length_initial_mm));
@@ -25,9 +26,11 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
   }
   follow(ofLead);
   // Rounded inwards: a length outside the curve has no answer.
-  const rounded = (value) => Math.min(Math.max(Math.round(value * 100), Math.ceil(shortest * 100)), Math.floor(longest * 100)) / 100;
+  const [per, digits] = [inShown(1, "mm"), inShown(1, "mm") === 1 ? 2 : 4];
+  const least = (round, value) => round(value * per * 10 ** digits) / 10 ** digits;
+  const rounded = (value) => Math.min(Math.max(least(Math.round, value), least(Math.ceil, shortest)), least(Math.floor, longest));
   const decimal = { type: "text", inputmode: "decimal", autocomplete: "off" };
-  const length = element("input", { ...decimal, id: "today-length", value: rounded(shortest).toFixed(2), "aria-describedby": "today-hint" });
+  const length = element("input", { ...decimal, id: "today-length", value: rounded(shortest).toFixed(digits), "aria-describedby": "today-hint" });
   const factor = element("input", { ...decimal, id: "inspection-factor", value: "3" });
   const answer = element("div", { "aria-live": "polite" });
   const field = (label, unit, input, hint) => element("div", { class: "field" },
@@ -37,11 +40,11 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
   async function ask() {
     const [a, f] = [parseNumber(length.value), parseNumber(factor.value)];
     if (!(a > 0) || !(f >= 1)) {
-      show(answer, element("p", { class: "field-problem" }, "Give a crack length in mm and a factor of at least 1."));
+      show(answer, element("p", { class: "field-problem" }, `Give a crack length in ${unitShown("mm")} and a factor of at least 1.`));
       return;
     }
     try {
-      const got = await getJson(`${pathOf(job)}/remaining?crack_length_mm=${a}&factor=${f}${choice ? `&tip=${choice.value}` : ""}`, signal);
+      const got = await getJson(`${pathOf(job)}/remaining?crack_length_mm=${a / per}&factor=${f}${choice ? `&tip=${choice.value}` : ""}`, signal);
       if (document.activeElement === length) go(got.cycles_at);
       // Under a spectrum an interval is planned in passes.
       const { passes, life_cycles: life } = job.summary ?? {};
@@ -49,12 +52,12 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
       const value = (key, text) => element("strong", { "data-value": key }, `${text} cycles`);
       const band = got.has_band ? [got.remaining_cycles_p05, got.remaining_cycles_p50, got.remaining_cycles_p95] : null;
       show(answer, terms([
-        [got.life_is_lower_bound ? "Remaining life, at least" : "Remaining life", value("remaining_cycles", band ? deserved(band[1], band) : cycles(Math.round(got.remaining_cycles)))],
+        [got.life_is_lower_bound ? "Remaining life ≥" : "Remaining life", value("remaining_cycles", band ? deserved(band[1], band) : cycles(Math.round(got.remaining_cycles)))],
         ["Band", band ? `median; ${bandOf(band)}` : "no band"],
         // Rounded down: an interval is a promise.
         ["Inspection interval", element("span", null, value("inspection_interval_cycles",
           band ? deserved(got.inspection_interval_cycles, band, Math.floor) : cycles(Math.floor(got.inspection_interval_cycles))), inPasses)],
-        ["Used so far", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
+        ["Life used", `${cycles(Math.round(got.cycles_at))} of ${cycles(Math.round(got.life_cycles))} cycles`],
       ], "remaining"));
     } catch (error) {
       if (error.name !== "AbortError") show(answer, problemBox(error, error.passes ? ask : null));
@@ -65,10 +68,10 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
   length.addEventListener("input", soon);
   factor.addEventListener("input", soon);
   const hint = element("p", { class: "hint", id: "today-hint" });
-  const tell = () => { hint.textContent = `${fixed(shortest, 2)} to ${fixed(longest, 2)} mm on this curve`; };
+  const tell = () => { hint.textContent = `${fixed(shortest * per, digits)} to ${fixed(longest * per, digits)} ${unitShown("mm")} on this curve`; };
   choice?.addEventListener("change", () => {
     follow(lengthsOf(tips.findIndex((tip) => String(tip.index) === choice.value)));
-    length.value = rounded(shortest).toFixed(2);
+    length.value = rounded(shortest).toFixed(digits);
     tell();
     ask();
   });
@@ -80,15 +83,15 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
     element("div", { class: "columns" },
       element("div", { class: "fields" },
         choice && field("Crack tip", "", choice),
-        field(lead === null ? "Crack length today" : "Length of its crack today", "mm", length, hint),
-        field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor; without a band remaining life / factor"))),
+        field("Current crack length", unitShown("mm"), length, hint),
+        field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor (median if no band)"))),
       answer));
   return {
     node,
     /** The slider has moved: of the tip that ends the life. */
     setLength(value) {
       if (choice && choice.value !== String(lead)) return;
-      length.value = rounded(value).toFixed(2);
+      length.value = rounded(value).toFixed(digits);
       soon();
     },
   };

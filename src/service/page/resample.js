@@ -10,7 +10,7 @@ export function curveChoices(file, fetchFile) {
   const message = element("span", { class: "field-problem", role: "alert" });
   return element("span", { class: "resample" },
     element("label", { for: "resample-amount" }, "or equally spaced, "), amount,
-    element("label", { for: "resample-kind", class: "visually-hidden" }, "What the number means"), kind,
+    element("label", { for: "resample-kind", class: "visually-hidden" }, "Sampling"), kind,
     button("Download", () => {
       const number = Number(amount.value.replaceAll(/\s/g, ""));
       const good = number > 0 && (kind.value === "every_cycles" || (Number.isInteger(number) && number >= 2));

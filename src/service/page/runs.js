@@ -1,9 +1,9 @@
-// List of all runs with their answers: opened, renamed, noted, duplicated, put away, cancelled, deleted; lives are ticked to compare them.
+// List of all runs with their answers: opened, renamed, noted, duplicated, archived, cancelled, deleted; lives are ticked to compare them.
 
-import { kindOfVerdict, mark, quantilesOf } from "./answer.js";
+import { kindOfVerdict, lifeShown, mark, quantilesOf } from "./answer.js";
 import { getJson } from "./api.js";
 import { button, byId, debounce, element, show } from "./dom.js";
-import { bandOf, count, cycles, deserved, duration, fixed, lifeOf, moment, percent, scientific, sentence, significant, words } from "./format.js";
+import { bandOf, count, cycles, duration, fixed, moment, percent, scientific, sentence, significant, words } from "./format.js";
 import { cancelJob, changeJob, confirmDelete, editInPlace, hrefOf, isFinal, nameOf, openForm, stateBadge } from "./job.js";
 import { problemBox } from "./notices.js";
 
@@ -77,14 +77,14 @@ export function createRunsView() {
 
   function empty() {
     const isNarrowed = state.value || search.value.trim() || pages.length > 1;
-    return element("div", { class: "empty" }, element("p", null, isNarrowed ? "None of the runs is like that." : "No runs yet."),
+    return element("div", { class: "empty" }, element("p", null, isNarrowed ? "No matching runs." : "No runs yet."),
       !isNarrowed && element("p", null, element("a", { href: "#/new", class: "button" }, "New run")));
   }
 
   function tableOf(items) {
     const predictions = items.some((job) => job.kind === "prediction");
     const owners = items.some((job) => job.owner);
-    const heads = [predictions && "Compare", "Name", "Answer", "Ends because", "Valid?", owners ? "By, at" : "At", "More"].filter(Boolean);
+    const heads = [predictions && "Compare", "Name", "Answer", "Ends by", "Validity", owners ? "By, at" : "At", "More"].filter(Boolean);
     const isSpoken = (title) => ["Compare", "More"].includes(title);
     return element("table", { class: "runs" },
       element("caption", { class: "visually-hidden" }, "Runs"),
@@ -98,7 +98,7 @@ export function createRunsView() {
     const [answer, why, valid] = answerOf(job);
     return element("tr", { "data-job": job.id, "data-job-state": job.state, class: job.archived ? "archived" : null },
       predictions && element("td", { class: "tick" }, job.kind === "prediction" && tick(job)),
-      element("th", { scope: "row" }, name, element("span", { class: "row-unit" }, NOUNS[job.kind] ?? words(job.kind), job.archived && ", put away"), note),
+      element("th", { scope: "row" }, name, element("span", { class: "row-unit" }, NOUNS[job.kind] ?? words(job.kind), job.archived && ", archived"), note),
       element("td", null, answer), element("td", null, why), element("td", null, valid),
       element("td", { class: "by" }, job.owner && `${job.owner}, `, moment(job.created, true), Number.isFinite(took(job)) && element("span", { class: "row-unit" }, `took ${duration(took(job))}`)),
       element("td", { class: "act" }, menuOf(job, name, note)));
@@ -114,7 +114,7 @@ export function createRunsView() {
       item("Rename", "rename", () => edit("name", name, "Name")),
       item(job.note ? "Change the note" : "Add a note", "note", () => edit("note", note, "Note")),
       element("a", { class: "button bare", href: openForm(job), "data-action": "duplicate" }, "Duplicate"),
-      item(job.archived ? "Take back" : "Put away", "archive", () => guarded(() => changeJob(job, { archived: !job.archived }))),
+      item(job.archived ? "Restore" : "Archive", "archive", () => guarded(() => changeJob(job, { archived: !job.archived }))),
       isFinal(job) ? item("Delete", "delete", () => guarded(async () => (await confirmDelete(job)) && ticked.delete(job.id)))
         : item("Cancel", "cancel", () => guarded(() => cancelJob(job))));
     const more = button("⋯", () => {
@@ -161,7 +161,7 @@ export function createRunsView() {
     byId("compare-clear").hidden = ticked.size === 0;
     const told = [...ticked.values()];
     byId("compare-count").textContent = ticked.size < 2
-      ? `${told.length > 0 ? `${told[0]} is ticked: tick another one` : "Tick two or more lives"} to compare them.`
+      ? `${told.length > 0 ? `${told[0]} is selected: select another one` : "Select two or more lives"} to compare them.`
       : `${count(ticked.size, "life", "lives")} ticked${ticked.size === COMPARE_MAX ? ", the most that can be compared" : ""}.`;
     const go = byId("compare");
     go.hidden = ticked.size < 2;
@@ -204,7 +204,7 @@ export function createRunsView() {
   };
 }
 
-/** What came of a run: its answer, why it ends, whether that counts; where it stands while it is not done. */
+/** Cells of a run: answer, what ends it, validity; its progress while it is not done. */
 function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
   const two = (first, second) => [element("strong", null, first), second && element("span", { class: "row-unit" }, second)];
   const sign = (name, text) => [mark(name), " ", text];
@@ -216,9 +216,9 @@ function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
   if (kind === "prediction") {
     const band = quantilesOf(s);
     const life = s.refused ? "not computed" : s.life_cycles === null ? "no growth"
-      : `${band ? deserved(band[1], band) : lifeOf(s)} cycles`;
+      : `${lifeShown(s)} cycles`;
     return [two(life, s.refused || s.life_cycles === null ? "" : band ? bandOf(band) : "no band"),
-      s.refused ? sentence(words(s.stop_reason)) : sentence(s.stop_meaning ?? words(s.stop_reason)), s.verdict && sign(kindOfVerdict(s.verdict_kind), s.verdict.split(":")[0])];
+      sentence(words(s.stop_reason)), s.verdict && sign(kindOfVerdict(s.verdict_kind), s.verdict.split(":")[0])];
   }
   if (kind === "calibration" && s.paris_m) {
     const range = `ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)}`;

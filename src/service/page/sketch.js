@@ -1,16 +1,17 @@
 // The plate as a sketch to draw in: new cracks and holes by pointer, ends and centres to drag or to move by arrow keys.
-// The tables beside it hold the numbers; the sketch only changes them.
+// The tables have the numbers; the sketch only changes them.
 
 import { button, element, shape, show } from "./dom.js";
 import { plain } from "./format.js";
 import { createStage, geometryOf } from "./plate_drawing.js";
+import { unitShown } from "./units.js";
 
 const TOOLS = [["move", "Move"], ["crack", "Draw a crack"], ["hole", "Place a hole"]];
 
 const HINTS = {
   move: "",
-  crack: "Press at one end of the crack and let go at the other.",
-  hole: "Press where the centre of the hole is to be.",
+  crack: "Drag from one crack end to the other.",
+  hole: "Click to place the hole center.",
 };
 
 /**
@@ -28,7 +29,7 @@ export function createSketch(container, { plate, edits }) {
   }));
   const place = element("output", { class: "quiet sketch-place" }, "");
   show(container, element("div", { class: "tool-row", role: "group", "aria-label": "Sketch tools" }, buttons), canvas, place);
-  const stage = createStage(canvas, { label: "Sketch of the plate. The tables below hold the same numbers.", role: "group", drawMore: drawHandles });
+  const stage = createStage(canvas, { label: "Sketch of the plate. The tables below have the same numbers.", role: "group", drawMore: drawHandles });
 
   function choose(name) {
     tool = name;
@@ -39,8 +40,9 @@ export function createSketch(container, { plate, edits }) {
 
   const grid = () => stepOf(Math.max(plate().width_mm || 1, 1) / 200);
   const snap = ([x, y]) => [x, y].map((value) => Number((Math.round(value / grid()) * grid()).toFixed(6)));
-  const say = ([x, y]) => {
-    place.textContent = `x ${plain(x)} mm, y ${plain(y)} mm`;
+  const inWords = (point) => ["x", "y"].map((axis, part) => `${axis} ${plain(point[part])} ${unitShown("mm")}`).join(", ");
+  const say = (point) => {
+    place.textContent = inWords(point);
   };
 
   function pointOf(event) {
@@ -64,7 +66,7 @@ export function createSketch(container, { plate, edits }) {
     };
     return shape("g", {
       class: "handle", tabindex: "0", role: "button", "data-handle": name,
-      "aria-label": `${name}, x ${plain(point[0])} mm, y ${plain(point[1])} mm. Arrow keys move it, Delete removes it.`,
+      "aria-label": `${name}, ${inWords(point)}. Arrow keys move it, Delete removes it.`,
       onkeydown: key,
       onpointerdown: (event) => {
         if (tool !== "move") return;

@@ -38,8 +38,8 @@ export function createSpectrumPicture(container) {
 function maxima(place, { maxima: levels }) {
   const stair = levels.flatMap(([level, count], index) => (index > 0 ? [[levels[index - 1][1], level], [count, level]] : [[count, level]]));
   const chart = createChart(place, {
-    name: "exceedances", title: "Exceedances of a pass", label: "Maxima of a pass of the spectrum over how many are as large or larger",
-    x: { label: "Maxima as large or larger", scale: "log", format: (value) => significant(value, 4) },
+    name: "exceedances", title: "Exceedances of a pass", label: "Maxima of a pass of the spectrum over their exceedances",
+    x: { label: "Exceedances per pass", scale: "log", format: (value) => significant(value, 4) },
     y: { label: "Maximum / largest load", from: 0, format: (value) => significant(value, 3) },
   });
   chart.set([{ id: "maxima", name: "maxima", kind: "line", tone: 0, x: stair.map(([count]) => count), y: stair.map(([, level]) => level) }]);

@@ -1,15 +1,9 @@
 // Starts a run: one key for one press of the button, repeated when the answer got lost, so that no press starts two runs.
 
-import { postInput, pressKey } from "./api.js";
+import { postInput, pressKey, sleep } from "./api.js";
 import { hrefOf } from "./job.js";
 
 const ATTEMPTS = 3;
-
-function pause(seconds) {
-  return new Promise((resolve) => {
-    setTimeout(resolve, seconds * 1000);
-  });
-}
 
 /** Posts `body` to `path` and opens the run; a refusal goes to `refuse`. */
 export async function startRun(path, body, { button, status, refuse }) {
@@ -27,7 +21,7 @@ export async function startRun(path, body, { button, status, refuse }) {
         if (!error.passes || attempt === ATTEMPTS) throw error;
         const seconds = Math.min(error.retryAfter ?? 2 * attempt, 30);
         status.textContent = `${error.message} Trying again in ${seconds} s.`;
-        await pause(seconds);
+        await sleep(seconds);
       }
     }
   } catch (error) {

@@ -1,11 +1,12 @@
-// A sweep over the plate of the form Predict: which keys vary, how, and how many cases there are. The kinds of designs and distributions
-// are those that the service lists.
+// A sweep over the plate of the form Predict: which keys vary, how, and how many cases there are.
 
 import { getText } from "./api.js";
 import { button, element, show } from "./dom.js";
 import { createEditor } from "./editor.js";
-import { compact, createForm, fillIn, grid, group, numberIn } from "./form.js";
+import { compact, createForm, fillIn, grid, group, need } from "./form.js";
 import { plain, sentence, words } from "./format.js";
+import { createFields } from "./key_fields.js";
+import { keysOf } from "./keys.js";
 import { startRun } from "./submit.js";
 import { writeToml } from "./toml.js";
 
@@ -13,26 +14,22 @@ const CASE = "case.toml";
 /** Numbers that say how a key varies: of a grid, and of every distribution. */
 const OF_GRID = ["from", "to", "count"];
 const OF_DISTRIBUTION = { uniform: ["from", "to"], log_uniform: ["from", "to"], normal: ["mean", "standard_deviation"], log_normal: ["median", "factor"] };
-const HINTS = { factor: "68 % lie between median / factor and median × factor" };
 const VARIES_MAX = 4;
 
-/** `base()` gives the case as {input, calibration?, files?} or a sentence, `checked()` as it was understood; `kinds` of the service. Gives {fromBase()}. */
-export function createSweep({ host, fields, panel, start, status, base, checked, kinds }) {
-  const options = (key) => kinds.filter((one) => one.key === key).map(({ name }) => ({ value: name, title: sentence(words(name)) }));
-  const meaning = (key, name) => kinds.find((one) => one.key === key && one.name === name)?.meaning ?? "";
+/** `base()` gives the case as {input, calibration?, files?} or a sentence, `checked()` as it was understood. Gives {fromBase()}. */
+export function createSweep({ host, fields, panel, start, status, base, checked }) {
   const form = createForm(() => {
     arrange();
     editor.check.soon();
   });
-  const design = form.choice("design.kind", { label: "Design", options: options("design.kind"), hint: " " });
-  const scatter = form.choice("design.scatter", { label: "Scatter of the law", options: options("design.scatter"), hint: " " });
-  scatter.input.value = "constants"; // any fit has its errors, few have specimens enough
-  const samples = form.number("design.samples", { label: "Cases", value: "100" });
-  const seed = form.number("design.seed", { label: "Seed", value: "1", hint: "the same seed draws the same cases" });
+  const ofDesign = createFields(form, "design", keysOf("sweep.design"));
+  // Of any fit the constants have errors, few have specimens enough.
+  ofDesign.fill({ kind: "grid", scatter: "constants", samples: 100, seed: 1 });
+  const design = ofDesign.by.kind;
   const name = form.text("name", { label: "Name of the sweep", optional: true });
   const rows = element("div", { class: "stack tight" });
   const about = element("p", { class: "quiet" });
-  let vary = []; // {key, shape, numbers}
+  let vary = []; // {key, own, node}
   const files = new Map(); // of calibrations, by their address
 
   const isGrid = () => design.input.value === "grid";
@@ -49,34 +46,25 @@ export function createSweep({ host, fields, panel, start, status, base, checked,
     const known = numbersOf(checked() ?? base().input ?? {}, "");
     const key = form.choice(`vary[${index}].key`, { label: "Varied", options: [...known.map(([path, value]) => ({ value: path, title: `${path}, now ${plain(value)}` })),
       ...(given.key && !known.some(([path]) => path === given.key) ? [{ value: given.key, title: given.key }] : [])] });
-    const shape = form.choice(`vary[${index}].distribution`, { label: "Distribution", options: options("vary.distribution") });
-    const scale = form.choice(`vary[${index}].scale`, { label: "Spaced", options: options("vary.scale") });
-    const all = [...new Set([...OF_GRID, ...Object.values(OF_DISTRIBUTION).flat()])];
-    const numbers = Object.fromEntries(all.map((one) => [one, form.number(`vary[${index}].${one}`, { label: sentence(words(one)), signed: true, hint: HINTS[one] })]));
+    const own = createFields(form, `vary[${index}]`, keysOf("sweep.vary[]").filter(({ metric }) => metric !== "key" && metric !== "values"));
     const remove = button("Remove", () => rebuild(vary.map(collectRow).filter((_, other) => other !== index)), { class: "button small end", "aria-label": `Remove varied key ${index + 1}` });
-    const row = { key, shape, scale, numbers, node: element("div", { class: "fields", "data-vary": index }, key.node, scale.node, shape.node, Object.values(numbers).map((field) => field.node), remove) };
+    const row = { key, own, node: element("div", { class: "fields", "data-vary": index }, key.node, own.nodes, remove) };
     fillIn(key, given.key ?? known.find(([path]) => path.startsWith("loading."))?.[0] ?? known[0]?.[0]);
-    fillIn(shape, given.distribution ?? "normal");
-    fillIn(scale, given.scale ?? "linear");
-    // Around what the case has now, so that something sensible stands there.
+    // Around the value of the case, to start from something sensible.
     const now = known.find(([path]) => path === key.input.value)?.[1];
     const around = Number.isFinite(now) ? { from: 0.9 * now, to: 1.1 * now, mean: now, standard_deviation: Math.abs(0.05 * now), median: now } : {};
-    for (const [one, field] of Object.entries(numbers)) {
-      const value = given.key ? given[one] : { count: 5, factor: 1.1, ...around }[one];
-      fillIn(field, Number.isFinite(value) ? Number(value.toPrecision(6)) : value);
-    }
+    const start = { count: 5, factor: 1.1, scale: "linear", distribution: "normal", ...around };
+    own.fill(given.key ? { scale: start.scale, distribution: start.distribution, ...given, key: undefined }
+      : Object.fromEntries(Object.entries(start).map(([one, value]) => [one, Number.isFinite(value) ? Number(value.toPrecision(6)) : value])));
     vary.push(row);
   }
 
-  const used = (row) => (isGrid() ? OF_GRID : OF_DISTRIBUTION[row.shape.input.value] ?? []);
-
-  function collectRow(row) {
-    const numbers = Object.fromEntries(used(row).map((one) => [one, numberIn(row.numbers[one])]));
-    return compact({ key: row.key.input.value, ...(isGrid() ? { scale: row.scale.input.value === "linear" ? undefined : row.scale.input.value } : { distribution: row.shape.input.value }), ...numbers });
-  }
+  const used = ({ own }) => (isGrid() ? ["scale", ...OF_GRID] : ["distribution", ...(OF_DISTRIBUTION[own.by.distribution.read()] ?? [])]);
+  const collectRow = ({ key, own }) => compact({ key: key.input.value, ...own.collect() });
 
   function rebuild(list) {
-    form.drop(vary.flatMap((row) => [row.key, row.shape, row.scale, ...Object.values(row.numbers)]));
+    form.drop(vary.map((row) => row.key));
+    vary.forEach((row) => row.own.drop());
     vary = [];
     list.forEach((given) => addRow(given));
     show(rows, vary.map((row) => row.node));
@@ -85,25 +73,15 @@ export function createSweep({ host, fields, panel, start, status, base, checked,
   }
 
   function arrange() {
-    const isScatter = design.input.value === "fitted_scatter";
-    scatter.node.hidden = !isScatter;
-    samples.node.hidden = isGrid();
-    seed.node.hidden = isGrid();
-    design.note.textContent = meaning("design.kind", design.input.value);
-    scatter.note.textContent = meaning("design.scatter", scatter.input.value);
+    const suits = { scatter: design.input.value === "fitted_scatter", samples: !isGrid(), seed: !isGrid() };
+    ofDesign.arrange(({ metric }) => suits[metric] ?? true);
     for (const row of vary) {
-      row.shape.node.hidden = isGrid();
-      row.scale.node.hidden = !isGrid();
-      for (const [one, field] of Object.entries(row.numbers)) field.node.hidden = !used(row).includes(one);
+      row.own.arrange(({ metric }) => used(row).includes(metric));
+      for (const field of Object.values(row.own.by)) need(field, OF_GRID.concat(Object.values(OF_DISTRIBUTION).flat()).includes(field.key.metric));
     }
   }
 
-  function collect() {
-    const isScatter = design.input.value === "fitted_scatter";
-    return { case: CASE,
-      design: compact({ kind: design.input.value, scatter: isScatter ? scatter.input.value : undefined, samples: isGrid() ? undefined : numberIn(samples), seed: isGrid() ? undefined : numberIn(seed) }),
-      vary: vary.length > 0 ? vary.map(collectRow) : undefined };
-  }
+  const collect = () => ({ case: CASE, design: ofDesign.collect(), vary: vary.length > 0 ? vary.map(collectRow) : undefined });
 
   /** A file of a calibration; undefined until it is there, null where it has none. */
   function fileOf(id, file) {
@@ -118,21 +96,21 @@ export function createSweep({ host, fields, panel, start, status, base, checked,
     return files.get(address);
   }
 
-  /** The case and the law it names, as files beside the sweep. */
+  /** The case and the law it names, as files of the sweep. */
   function context() {
     const given = base();
     if (typeof given === "string") return given;
     const fitted = given.calibration && ["fitted.toml", "fit.json"].map((file) => [file, fileOf(given.calibration, file)]);
     if (fitted?.some(([, text]) => text === undefined)) return "The law is being fetched.";
     const input = fitted && typeof given.input === "string" ? checked() : given.input;
-    if (!input) return "The case on Predict is not right yet.";
+    if (!input) return "The case on Predict has errors.";
     const text = typeof input === "string" ? input : writeToml({ ...input, ...(fitted ? { fatigue: { ...input.fatigue, fitted: "fitted.toml" } } : {}) });
     const sent = [[CASE, text], ...(fitted ?? [])].filter(([, content]) => content !== null);
     return { files: [...sent.map(([file, content]) => ({ name: file, text: content, file: new Blob([content]) })), ...(given.files ?? [])] };
   }
 
   const add = button("Vary a key", () => rebuild([...vary.map(collectRow), {}].slice(0, VARIES_MAX)), { class: "button small", "data-action": "vary" });
-  show(fields, about, group("Design", grid(design.node, scatter.node, samples.node, seed.node, name.node)), group("What varies", rows, element("p", { class: "tool-row" }, add)));
+  show(fields, about, group(design.key.label, grid(...ofDesign.nodes, name.node)), group("What varies", rows, element("p", { class: "tool-row" }, add)));
   const editor = createEditor({
     host, fields, panel, form, collect, fill: () => false, context,
     onResult: (ok) => {

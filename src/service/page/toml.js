@@ -1,8 +1,5 @@
 // Writes the input of a form as the TOML file the command line reads, so that a run made here can be repeated there.
 
-/** Keys that count: whole numbers. */
-const COUNTS = ["count", "samples", "seed", "hole", "holes", "cracks"];
-
 function text(value) {
   // JSON escapes are TOML escapes, as long as the delete character is spelt out too.
   return JSON.stringify(value).replaceAll("\u007f", "\\u007F");
@@ -12,17 +9,11 @@ function key(name) {
   return /^[A-Za-z0-9_-]+$/.test(name) ? name : text(name);
 }
 
-function number(value) {
-  const digits = String(value);
-  return /[.e]/.test(digits) ? digits : `${digits}.0`;
-}
-
-function inline(value, name) {
-  if (typeof value === "number") return COUNTS.includes(name) ? String(value) : number(value);
+function inline(value) {
   if (typeof value === "string") return text(value);
-  if (typeof value === "boolean") return String(value);
+  if (typeof value === "boolean" || typeof value === "number") return String(value);
   if (Array.isArray(value)) return `[${value.map((item) => inline(item)).join(", ")}]`;
-  return `{ ${entries(value).map(([name, item]) => `${key(name)} = ${inline(item, name)}`).join(", ")} }`;
+  return `{ ${entries(value).map(([name, item]) => `${key(name)} = ${inline(item)}`).join(", ")} }`;
 }
 
 function entries(table) {
@@ -32,7 +23,7 @@ function entries(table) {
 /** One line, or one item a line where the value is a list of tables. */
 function line(name, value) {
   const tables = Array.isArray(value) && value.length > 0 && value.every((item) => typeof item === "object" && !Array.isArray(item));
-  if (!tables) return `${key(name)} = ${inline(value, name)}`;
+  if (!tables) return `${key(name)} = ${inline(value)}`;
   return [`${key(name)} = [`, ...value.map((item) => `    ${inline(item)},`), "]"].join("\n");
 }
 
@@ -42,7 +33,7 @@ export function writeToml(input) {
   const isList = (value) => Array.isArray(value) && value.length > 0 && value.every((item) => isTable(item));
   const given = entries(input);
   const table = (head, section) => [head, ...entries(section).map(([item, value]) => line(item, value))].join("\n");
-  // What stands in no section comes first, lists of sections last.
+  // Keys without a section come first, lists of sections last.
   const own = given.filter(([, value]) => !isTable(value) && !isList(value)).map(([name, value]) => line(name, value)).join("\n");
   const sections = given.filter(([, value]) => isTable(value) && entries(value).length > 0).map(([name, section]) => table(`[${key(name)}]`, section));
   const lists = given.filter(([, value]) => isList(value)).flatMap(([name, list]) => list.map((section) => table(`[[${key(name)}]]`, section)));

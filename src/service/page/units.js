@@ -1,9 +1,9 @@
 // Units that the page shows: everything comes in mm, MPa and MPa√m; a switch, kept by the browser, has every figure shown in inch, ksi and ksi√in.
-// Words change where they enter the document, charts along their axes. What is typed, sent or was submitted stays metric.
+// Words change where they enter the document, charts along their axes; fields have the keys of the shown units.
 
-const INCH = 25.4; // mm
+export const INCH = 25.4; // mm
 const KSI = 4.4482216152605e3 / INCH ** 2; // MPa
-const KSI_SQRT_IN = KSI * Math.sqrt(INCH / 1e3); // MPa√m
+export const KSI_SQRT_IN = KSI * Math.sqrt(INCH / 1e3); // MPa√m
 /** Metric unit: its US one, and how many of it that has. */
 const UNITS = {
   "MPa√m": ["ksi√in", KSI_SQRT_IN], "mm/cycle": ["in/cycle", INCH], mm: ["inch", INCH], MPa: ["ksi", KSI],
@@ -11,27 +11,29 @@ const UNITS = {
 };
 const DIGITS_LEAST = 4;
 const SUPERSCRIPT = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-/** What stays as it is: forms, input as submitted, lists of files and what the user has named. */
-const KEPT = "#view-measure, #view-predict, #view-new, input, select, textarea, pre, code, .field, .downloads, .title-row h1, .input-text, [data-metric]";
+/** What stays as it is: fields (which have keys of the shown units), input as submitted, lists of files and names by the user. */
+const KEPT = "input, select, textarea, pre, code, .field, .row-table, .downloads, .title-row h1, .input-text, [data-metric]";
 
 const NUMBER = "[-−+]?\\d(?:[\\d\u202f]*)(?:\\.\\d+)?(?:e[-+]?\\d+| × 10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)?";
 const NAMES = Object.keys(UNITS).map((name) => name.replace("/", "\\/")).join("|");
-const QUANTITY = new RegExp(`(?<![\\w.√^])((?:${NUMBER}(?: to | × |–| ± |, (?=[^()]*\\))))*\\(?${NUMBER}\\)?)([ \u00a0\u202f]?)(${NAMES})(?![\\w√/²^])`, "gu");
+const QUANTITY = new RegExp(`(?<![\\w.√^])((?:${NUMBER}(?: to | × | x | → |–| ± |, (?=[^()]*\\))))*\\(?${NUMBER}\\)?)([ \u00a0\u202f]?)(${NAMES})(?![\\w√/²^])`, "gu");
 const ALONE = new RegExp(`(?<![\\w√/.])(${NAMES.replace("|N", "")})(?![\\w√/²^])`, "gu");
 /** A ΔK without its unit, and the second range in a list of them. */
 const BARE = new RegExp(`(ΔK |% (?:faster|slower) at )(${NUMBER}(?: to ${NUMBER})?)(?![\\d.]|\\s*(?:to |ksi|MPa))`, "gu");
 /** C of a law belongs to both units. */
 const LEVEL = new RegExp(`(${NUMBER}) ΔK\\^([\\d.]+) (\\(mm/cycle, MPa√m\\))`, "u");
 
-function read() {
+/** A choice that the browser keeps, after `value` is set where it is given; undefined where its storage is off. */
+export function kept(name, value) {
   try {
-    return localStorage.getItem("perilife.units") === "us";
+    if (value) localStorage.setItem(`perilife.${name}`, value);
+    return localStorage.getItem(`perilife.${name}`);
   } catch {
-    return false; // storage switched off
+    return undefined;
   }
 }
 
-export const isUs = read();
+export const isUs = kept("units") === "us";
 
 /** A written number as a value. */
 function valueOf(text) {
@@ -64,7 +66,7 @@ export function told(text) {
     .replace(ALONE, (name) => UNITS[name][0]);
 }
 
-/** A number and a unit that stand apart, as in a table. */
+/** A number without its unit, as in a table. */
 export function apart(text, unit) {
   return isUs && UNITS[unit] && typeof text === "string" ? told(`${text} ${unit}`).replace(` ${UNITS[unit][0]}`, "") : text;
 }
@@ -109,14 +111,9 @@ function changeAll(root) {
 /** Shows what comes into the document in the units of choice, and lets `button` change them. */
 export function startUnits(button) {
   button.textContent = isUs ? "inch, ksi" : "mm, MPa";
-  button.title = "Units of the figures on this page; forms and files stay metric";
+  button.title = "Units of forms and figures; files stay metric";
   button.addEventListener("click", () => {
-    try {
-      localStorage.setItem("perilife.units", isUs ? "si" : "us");
-    } catch {
-      return; // nowhere to keep it
-    }
-    location.reload();
+    if (kept("units", isUs ? "si" : "us")) location.reload();
   });
   if (!isUs) return;
   changeAll(document.getElementById("main"));

@@ -190,7 +190,7 @@ pub(super) async fn expect(connection: &mut sqlx::AnyConnection) -> Result<()> {
 /// Refuses tables of another version.
 fn of_another_version(other: i64) -> sqlx::Error {
     let remedy = if (FIRST..VERSION).contains(&other) {
-        "start `perilife serve` of this program once, which leads older tables on, after a copy was made"
+        "back up, then start `perilife serve` once to migrate the schema"
     } else {
         "use the program that made them, or a new database (--data or --database)"
     };

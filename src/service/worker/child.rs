@@ -88,7 +88,7 @@ fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync)) ->
     let from = order.checkpoint.as_ref().and_then(|bytes| match TaskCheckpoint::of(&task, bytes) {
         Ok(from) => Some(from),
         Err(error) => {
-            tracing::warn!("the run begins anew: {error}");
+            tracing::warn!("restarting the run: {error}");
             None
         }
     });

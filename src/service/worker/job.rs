@@ -56,7 +56,7 @@ pub fn work(shared: &Shared, claim: &Claim) {
         return hand_in(shared, claim, &ended(State::Cancelled, None), "cancelled");
     }
     if claim.attempts > limit {
-        let detail = format!("given up: {limit} workers stopped while they had it, none of them getting as far as a checkpoint");
+        let detail = format!("failed: lost {limit} workers before the first checkpoint");
         return fail(shared, claim, StatusCode::INTERNAL_SERVER_ERROR, "Given up", &detail, "given_up");
     }
     let content = loop {
@@ -237,7 +237,7 @@ fn conclude(shared: &Shared, claim: &Claim, end: End, folder: &Path) {
         End::NoRoom(why) => put_back(shared, claim, StatusCode::INSUFFICIENT_STORAGE, &why, "disk"),
         End::Died(Death::OutOfMemory) => {
             let detail = format!(
-                "ended: it wants more than the {} MB of memory that a job of this server may take (--job-memory); give a coarser \
+                "memory limit exceeded ({} MB, --job-memory); give a coarser \
                  spacing or a smaller horizon_ratio, or run it with `perilife` on a machine with more",
                 settings.memory / MEGABYTE
             );
@@ -260,7 +260,7 @@ fn conclude(shared: &Shared, claim: &Claim, end: End, folder: &Path) {
         }
         End::Cancelled => hand_in(shared, claim, &ended(State::Cancelled, None), "cancelled"),
         End::GaveWay => tracing::info!(job = claim.id, "job given back: those of others wait"),
-        End::Lost => tracing::warn!(job = claim.id, "the job is another worker's: this one was not heard of for too long"),
+        End::Lost => tracing::warn!(job = claim.id, "lease lost: another worker took the job"),
         End::Shutdown => match shared.handle.block_on(shared.store.release(claim)) {
             Ok(()) => tracing::info!(job = claim.id, "job given back"),
             Err(error) => tracing::warn!(job = claim.id, "the job cannot be given back, others take it later: {error}"),

@@ -162,6 +162,10 @@ fn the_page_leads_from_readings_to_remaining_life() {
 
     // A plate with this law, drawn with a second crack that goes again; on points, which take long enough to look on.
     page.click("[data-action=use-law]");
+    page.until("document.querySelector('#plate-check').textContent.includes('Required: ')");
+    page.until("document.querySelector(\"#view-predict [data-key='loading.stress_ratio']\").value === '0.2'");
+    walk.look("04b_use_law");
+    page.click("#plate-example");
     page.fill("#view-predict [data-key='model.spacing_mm']", "0.8");
     page.see("#predict:not([disabled])");
     let cracks = page.count("[data-rows=cracks] tbody tr");

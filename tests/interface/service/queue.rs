@@ -220,7 +220,7 @@ fn large_files_go_in_parts() {
 }
 
 /// What who has tables of an earlier version is told.
-const LED_ON: &str = "start `perilife serve` of this program once";
+const LED_ON: &str = "start `perilife serve` once to migrate the schema";
 
 /// Tables of another version are not touched, and who comes upon them is told what to do.
 #[test]

@@ -246,7 +246,7 @@ fn callers_are_held_to_their_limits() {
     let statuses: Vec<u16> = (0..5).map(|_| service.post("/v1/predictions", &of("case", QUICK)).status).collect();
     assert_eq!(statuses, [202, 202, 202, 429, 429]);
     let full = service.post("/v1/predictions", &of("case", QUICK));
-    assert!(full.header("retry-after").is_some() && full.text().contains("3 of your jobs wait already"));
+    assert!(full.header("retry-after").is_some() && full.text().contains("3 of your jobs are waiting (limit)"));
     let fast: Vec<u16> = (0..200).map(|_| service.get("/v1/service").status).collect();
     assert!(fast.contains(&429) && fast[..20].iter().all(|status| *status == 200), "{fast:?}");
 }

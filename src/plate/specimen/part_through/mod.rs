@@ -47,7 +47,7 @@ pub struct Description {
     /// F over φ.
     tension: Factor,
     /// H F over φ, where the source has it.
-    bending: Option<Factor>,
+    pub(super) bending: Option<Factor>,
     limits: &'static [Limit],
 }
 
@@ -132,11 +132,6 @@ impl SpecimenKind {
 impl PartThrough {
     pub fn kind(&self) -> SpecimenKind {
         self.description.kind
-    }
-
-    /// Whether the source of K knows bending of this kind.
-    pub fn knows_bending(&self) -> bool {
-        self.description.bending.is_some()
     }
 
     /// The crack with these semi-axes [a, c], m, in the letters of the formulas.
