@@ -171,10 +171,12 @@ impl Judged {
         }
         write_json(folder, RESULT_FILE, &self.record)?;
         write_input(folder, case)?;
-        self.answers.write(folder, case)?;
-        self.draw(folder, case, prediction)?;
-        vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)?;
-        self.strengths.as_ref().map_or(Ok(()), |strengths| write_strength(folder, case, strengths))
+        if !case.output.tables_only {
+            self.answers.write(folder, case)?;
+            self.draw(folder, case, prediction)?;
+            self.strengths.as_ref().map_or(Ok(()), |strengths| write_strength(folder, case, strengths))?;
+        }
+        vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)
     }
 
     /// Pictures of a run: plate, a-N, K and rates; damage of fatigue bonds; nodes and stress of the node model.

@@ -157,11 +157,13 @@ pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) ->
     write_json(folder, RESULT_FILE, &result)?;
     let command = "sif --method element_free_galerkin";
     provenance::write(folder, command, provenance::table_of(&case.echo), &case.provenance)?;
-    let field = StressField { cycles: 0.0, cracks: case.specimen.crack_lines(), pieces: stressed.pieces.clone() };
-    write_file(&folder.join("stress.svg"), stress_svg(&field, &case.material, &case.specimen.holes).as_bytes())?;
-    let mut of_nodes = case.clone();
-    of_nodes.model = Model::Nodes(ElementFreeSettings { resolution: stressed.resolution, ..case.nodes() });
-    write_file(&folder.join("nodes.svg"), nodes_svg(&of_nodes, &[])?.as_bytes())?;
+    if !case.output.tables_only {
+        let field = StressField { cycles: 0.0, cracks: case.specimen.crack_lines(), pieces: stressed.pieces.clone() };
+        write_file(&folder.join("stress.svg"), stress_svg(&field, &case.material, &case.specimen.holes).as_bytes())?;
+        let mut of_nodes = case.clone();
+        of_nodes.model = Model::Nodes(ElementFreeSettings { resolution: stressed.resolution, ..case.nodes() });
+        write_file(&folder.join("nodes.svg"), nodes_svg(&of_nodes, &[])?.as_bytes())?;
+    }
     let snapshot = Snapshot {
         cycles: 0.0,
         crack_length: case.specimen.crack_length,

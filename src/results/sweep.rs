@@ -50,20 +50,15 @@ pub struct PlannedCase {
 pub struct Outcome {
     pub input: String,
     /// Cycles to the end of the run.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub life_cycles: Option<f64>,
     /// Why it ended.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop_reason: Option<String>,
     /// Whether that is less than what the plate lives, all that could end it sooner being checked.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub life_is_lower_bound: Option<bool>,
     /// Crack length at the end.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crack_length_final_mm: Option<f64>,
     pub wall_s: f64,
     /// Why there is no result.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub problem: Option<String>,
     /// Whether a machine was to blame and not the input, so that the next call tries again.
     #[serde(default)]

@@ -76,11 +76,13 @@ pub fn write(folder: &Path, scene: &Scene, (fracture, tables): (&Fracture, &[(Ta
     tables.iter().try_for_each(|(table, text)| write_file(&folder.join(&table.file), text.as_bytes()))?;
     write_json(folder, RESULT_FILE, result)?;
     provenance::write(folder, "fracture", provenance::table_of(&scene.echo), &scene.provenance)?;
-    draw_charts(folder, scene, fracture)?;
     // The last state of a motion that blew up is no number.
     let finite = |snapshot: &&Snapshot| snapshot.displacement.iter().flatten().all(|u| u.is_finite());
     let snapshots: Vec<Snapshot> = fracture.snapshots.iter().filter(finite).cloned().collect();
-    draw_plate(folder, scene, fracture, &snapshots)?;
+    if !scene.output.tables_only {
+        draw_charts(folder, scene, fracture)?;
+        draw_plate(folder, scene, fracture, &snapshots)?;
+    }
     vtk::write_wanted(folder, scene.output, &fracture.grid, &snapshots)
 }
 

@@ -14,8 +14,7 @@ use perilife_results::sweep::{
 };
 
 const CASES: &str = "cases";
-/// Of an array job of Slurm: its tasks and their cases, its script, the folder of what tasks print.
-pub const TASKS_FILE: &str = "tasks";
+/// Script of an array job of Slurm.
 pub const SCRIPT_FILE: &str = "job.sh";
 /// Folder of what its tasks print.
 pub const LOGS: &str = "logs";
@@ -154,7 +153,7 @@ impl SweepFolder {
 /// Locks the folder of a sweep, which is made with its plan where there is none.
 fn enter(path: &Path, plan: &Plan, read: &Provenance, share: Share) -> Result<LockedFolder> {
     let runs = [CASES, LOGS].map(|name| format!("{name}/"));
-    let files = [PLAN_FILE, TABLE_FILE, FIGURES_FILE, CHART_FILE, TASKS_FILE, SCRIPT_FILE, &runs[0], &runs[1]];
+    let files = [PLAN_FILE, TABLE_FILE, FIGURES_FILE, CHART_FILE, SCRIPT_FILE, &runs[0], &runs[1]];
     let marker = Marker::listing(RunKind::Sweep, &files);
     LockedFolder::open(path, &marker, read, share, &[(PLAN_FILE, text_of(plan))])
 }

@@ -43,6 +43,10 @@ fn a_run_leaves_all_its_files() {
     }
     let result: serde_json::Value = serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
     assert_eq!(result["points"], made_up_run::prediction(0.0).figures.points);
+    case.output.tables_only = true;
+    keep(&case, made_up_run::prediction(0.0), &out).unwrap();
+    let files = fs::read_dir(&out).unwrap().map(|file| file.unwrap().path());
+    assert_eq!(files.filter(|file| file.extension().is_some_and(|end| end == "svg")).count(), 0);
 }
 
 #[test]

@@ -13,6 +13,8 @@ crate::keys! {
         paraview: bool = key("paraview", "ParaView files: fields at several stages"), or "false" false;
         /// Whether a run draws its cracks as they grow.
         animation: bool = key("animation", "Animation: growth.svg of the growing cracks"), or "false" false;
+        /// Whether a run leaves out its pictures.
+        tables_only: bool = key("tables_only", "Tables only: no pictures"), or "false" false;
     }
 }
 

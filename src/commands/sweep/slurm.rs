@@ -1,6 +1,5 @@
 //! Cases of a sweep by Slurm: one array job, each of whose tasks runs a part of the sweep.
 
-use std::fmt::Write as _;
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -10,7 +9,7 @@ use super::Shard;
 use perilife_base::error::{Error, Result, input};
 use perilife_calibration::sweep::DrawnCase;
 use perilife_results::output::write_file;
-use perilife_runner::sweep_folder::{LOGS, SCRIPT_FILE, SweepFolder, TASKS_FILE};
+use perilife_runner::sweep_folder::{LOGS, SCRIPT_FILE, SweepFolder};
 
 /// Most tasks of an array unless the user asks for smaller ones: Slurm's own default limit is 1001.
 const TASKS_MAX: usize = 1000;
@@ -40,11 +39,8 @@ pub fn submit(args: &super::Args, folder: &SweepFolder, left: &[&DrawnCase]) -> 
         return Err(input("--cases-per-task", per_task, "is no case at all", "give at least 1"));
     }
     let count = all.div_ceil(per_task);
-    let tasks: Vec<Shard> = (1..=count).map(|number| Shard { number, of: count }).collect();
-    let needed: Vec<usize> =
-        tasks.iter().filter(|task| left.iter().any(|case| task.has(case.number))).map(|task| task.number).collect();
-    write_file(&folder.path.join(TASKS_FILE), list(&tasks, all).as_bytes())?;
-
+    let is_needed = |number: &usize| left.iter().any(|case| Shard { number: *number, of: count }.has(case.number));
+    let needed: Vec<usize> = (1..=count).filter(is_needed).collect();
     let logs = folder.path.join(LOGS);
     fs::create_dir_all(&logs).map_err(|error| Error::file(&logs, "cannot create the folder", error))?;
     let script = folder.path.join(SCRIPT_FILE);
@@ -131,16 +127,4 @@ fn ranges(numbers: &[usize]) -> String {
     }
     let word = |(first, last): (usize, usize)| if first == last { first.to_string() } else { format!("{first}-{last}") };
     runs.into_iter().map(word).collect::<Vec<_>>().join(",")
-}
-
-/// A line for each task: its number and its cases.
-fn list(tasks: &[Shard], cases: usize) -> String {
-    let mut text = String::new();
-    for task in tasks {
-        let own: Vec<String> =
-            (1..=cases).filter(|number| task.has(*number)).map(perilife_calibration::sweep::draw::label).collect();
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{} {}", task.number, own.join(" "));
-    }
-    text
 }

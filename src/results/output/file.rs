@@ -4,8 +4,8 @@ use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
+use super::folder::resolved;
 use super::lock::{Lock, Share};
-use super::place::resolved;
 use super::staging::{Staging, visible_beside};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::input::{FileId, Provenance, STREAM};
@@ -28,18 +28,8 @@ pub struct OutputFile {
     /// As given by the user.
     name: PathBuf,
     sort: Sort,
-    place: Place,
-}
-
-#[derive(Debug)]
-enum Place {
-    Stdout,
-    /// A device or pipe is written to; renaming over it would put a file in its place.
-    Device,
-    File {
-        target: PathBuf,
-        _lock: Lock,
-    },
+    /// Its place; none of standard output, a device or a pipe, which are written to: renaming would put a file in their place.
+    target: Option<(PathBuf, Lock)>,
 }
 
 impl OutputFile {
@@ -47,13 +37,10 @@ impl OutputFile {
     /// Errors: [`Error::Input`] if it is a folder, a file that was read, one that this command did not write, or one that another
     /// process is at; [`Error::File`] if nothing can be written there.
     pub fn claim(path: &Path, sort: Sort, read: &Provenance) -> Result<OutputFile> {
-        let claimed = |place| Ok(OutputFile { name: path.to_path_buf(), sort, place });
-        if path == Path::new(STREAM) {
-            return claimed(Place::Stdout);
-        }
+        let claimed = |target| Ok(OutputFile { name: path.to_path_buf(), sort, target });
         // A pipe behind /dev/stdout has no path of its own.
-        if fs::metadata(path).is_ok_and(|there| !there.is_dir() && !there.is_file()) {
-            return claimed(Place::Device);
+        if path == Path::new(STREAM) || fs::metadata(path).is_ok_and(|there| !there.is_dir() && !there.is_file()) {
+            return claimed(None);
         }
         let refuse = |problem: &str, remedy: &str| Err(input(sort.option, path.display(), problem, remedy));
         let target = resolved(path).map_err(|error| Error::file(path, "cannot write", error))?;
@@ -68,34 +55,34 @@ impl OutputFile {
             return refuse("is a file that this command did not write", "give a new name, or remove it yourself");
         }
         let lock = Lock::of(sort.option, path, "cannot write", &target, Share::Alone)?;
-        claimed(Place::File { target, _lock: lock })
+        claimed(Some((target, lock)))
     }
 
     /// Whether it will be a file, of which something can be said on standard output.
     pub fn is_file(&self) -> bool {
-        matches!(self.place, Place::File { .. })
+        self.target.is_some()
     }
 
     /// Writes it whole or not at all.
     /// Errors: [`Error::File`] if it cannot be written; if somebody else's file has appeared there meanwhile, that stays, and the
     /// message says under what name this one is.
     pub fn write(self, bytes: &[u8]) -> Result<()> {
-        let done = match &self.place {
-            Place::Stdout => {
+        let done = match &self.target {
+            None if self.name == Path::new(STREAM) => {
                 let mut stdout = io::stdout().lock();
                 match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
                     Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
                     written => written,
                 }
             }
-            Place::Device => fs::write(&self.name, bytes),
-            Place::File { target, .. } if target.is_dir() || !is_own(target, self.sort)? => {
+            None => fs::write(&self.name, bytes),
+            Some((target, _)) if target.is_dir() || !is_own(target, self.sort)? => {
                 let other = visible_beside(target);
                 write_file(&other, bytes)?;
                 let why = format!("the target appeared meanwhile and was kept; the result is in {}", other.display());
                 Err(io::Error::other(why))
             }
-            Place::File { target, .. } => write_whole(target, bytes, false),
+            Some((target, _)) => write_whole(target, bytes, false),
         };
         self.named("cannot write", done)
     }
@@ -115,8 +102,8 @@ impl OutputFile {
 
     /// Its place, if nothing else has appeared there.
     fn own_target(&self) -> Result<&Path> {
-        match &self.place {
-            Place::File { target, .. } if is_own(target, self.sort)? => Ok(target),
+        match &self.target {
+            Some((target, _)) if is_own(target, self.sort)? => Ok(target),
             _ => Err(Error::file(&self.name, "cannot write", io::Error::other("the target appeared meanwhile and was kept"))),
         }
     }

@@ -53,7 +53,6 @@ pub struct Marker {
     /// What made the folder.
     pub kind: RunKind,
     /// The input that it was made of, where that was one file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input: Option<InputOf>,
     /// Files by their path in the folder; a name that ends in `/` is a folder of other runs, each of which has a marker of its own.
     #[serde(default)]

@@ -10,14 +10,12 @@ mod file;
 mod folder;
 mod lock;
 mod marker;
-mod place;
 mod staging;
 
 pub use file::{OutputFile, Sort, write_file};
-pub use folder::{LockedFolder, OutputFolder};
+pub use folder::{LockedFolder, OutputFolder, Room};
 pub use lock::Share;
 pub use marker::{MARKER, Marker, RunKind};
-pub use place::Room;
 pub use staging::{fold_up, is_temporary};
 
 use std::path::Path;
