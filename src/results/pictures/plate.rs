@@ -106,13 +106,13 @@ fn specimen_words(case: &Case) -> String {
 fn material_words(case: &Case) -> String {
     let material = &case.material;
     let yields =
-        material.yield_strength.map_or("no yield strength".to_owned(), |strength| format!("σ_Y {} MPa", short(strength / MPA)));
+        material.yield_strength.map_or("σ_Y not given".to_owned(), |strength| format!("σ_Y {} MPa", short(strength / MPA)));
     let tough = material.toughness.map_or("no toughness".to_owned(), |k| format!("K_c {} MPa√m", short(k / MPA_SQRT_M)));
     let modulus = short(material.youngs_modulus / GPA);
     let (name, ratio) = (&material.name, short(material.poisson_ratio));
     // Of a file its stem: where it lay is no part of what it says.
     let stem = Path::new(name).file_stem().filter(|_| name.ends_with(".toml")).map(|stem| stem.to_string_lossy());
-    let name = stem.unwrap_or_else(|| if name.is_empty() { "given by constants".into() } else { name.into() });
+    let name = stem.unwrap_or_else(|| if name.is_empty() { "user-defined".into() } else { name.into() });
     format!("{name}: E {modulus} GPa, ν {ratio}, {yields}, {tough}, plane {}", material.plane.name())
 }
 
