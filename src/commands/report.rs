@@ -11,27 +11,33 @@ use perilife_results::paper::{Signed, write};
 /// Arguments of `perilife report`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_long_help = "The page holds its pictures and its style and names no other file; a browser prints it to A4 or letter, or saves it as PDF.\n\
-                       What is not given is printed as \"not recorded\"."
+    after_long_help = "A browser prints the page to A4 or letter, or saves it as PDF. Missing data are printed as \"not recorded\".\n\
+                       Keys of section [report]: `perilife list keys report`."
 )]
 pub struct Args {
-    /// Folder that `perilife predict` or `perilife calibrate` wrote
+    /// Results folder of `perilife predict` or `perilife calibrate`
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
     /// Page to write (HTML); replaced if an earlier report made it
     #[arg(long, value_name = "FILE.html", help_heading = "Output")]
     pub out: PathBuf,
-    /// Name of the laboratory or office
-    #[arg(long, value_name = "NAME", help_heading = "Who signs")]
+    /// Report data (TOML, section [report]): number, customer, machine, ...
+    #[arg(long, value_name = "FILE.toml", help_heading = "Report data")]
+    pub data: Option<PathBuf>,
+    /// Set one item of the report data
+    #[arg(long = "set", value_name = "report.KEY=VALUE", help_heading = "Report data")]
+    pub overrides: Vec<String>,
+    /// Name and address of the laboratory
+    #[arg(long, value_name = "NAME", help_heading = "Report data")]
     pub laboratory: Option<String>,
-    /// Who tested or computed
-    #[arg(long, value_name = "NAME", help_heading = "Who signs")]
+    /// Person who tested or prepared
+    #[arg(long, value_name = "NAME", help_heading = "Report data")]
     pub operator: Option<String>,
-    /// Who checks
-    #[arg(long, value_name = "NAME", help_heading = "Who signs")]
+    /// Person who reviews
+    #[arg(long, value_name = "NAME", help_heading = "Report data")]
     pub reviewer: Option<String>,
-    /// Date of the report, in your own writing
-    #[arg(long, value_name = "DATE", help_heading = "Who signs")]
+    /// Date of issue, in any format
+    #[arg(long, value_name = "DATE", help_heading = "Report data")]
     pub date: Option<String>,
     /// What is printed.
     #[command(flatten)]
@@ -39,13 +45,15 @@ pub struct Args {
 }
 
 /// Runs `perilife report`.
-/// Errors: a folder without a whole run or fit; a file in the way.
+/// Errors: a folder without a whole run or fit; report data that cannot be read; another file at `--out`.
 pub fn run(args: &Args) -> Result<()> {
+    let read = Signed::read(args.data.as_deref(), &args.overrides)?;
     let signed = Signed {
-        laboratory: args.laboratory.clone(),
-        operator: args.operator.clone(),
-        reviewer: args.reviewer.clone(),
-        date: args.date.clone(),
+        laboratory: args.laboratory.clone().or(read.laboratory),
+        operator: args.operator.clone().or(read.operator),
+        reviewer: args.reviewer.clone().or(read.reviewer),
+        date: args.date.clone().or(read.date),
+        ..read
     };
     let (bytes, is_file) = write(&args.folder, &args.out, &signed)?;
     if is_file {

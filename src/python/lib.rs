@@ -177,18 +177,10 @@ mod _perilife {
         Ok(rows)
     }
 
-    /// Writes the page of a run or fit that stands in a folder.
+    /// Writes the report of a results folder.
     #[pyfunction]
-    fn report(
-        py: Python<'_>,
-        folder: PathBuf,
-        out: PathBuf,
-        laboratory: Option<String>,
-        operator: Option<String>,
-        reviewer: Option<String>,
-        date: Option<String>,
-    ) -> PyResult<()> {
-        let signed = Signed { laboratory, operator, reviewer, date };
+    fn report(py: Python<'_>, folder: PathBuf, out: PathBuf, data: Option<PathBuf>, overrides: Vec<String>) -> PyResult<()> {
+        let signed = Signed::read(data.as_deref(), &overrides).map_err(raised)?;
         py.detach(|| paper::write(&folder, &out, &signed)).map(drop).map_err(raised)
     }
 }

@@ -3,8 +3,7 @@
 use super::format::{AXIS, clean, trimmed};
 use perilife_base::units::shown::per;
 
-/// Linear or logarithmic axis. Ticks of a logarithmic one are not of whole decades only, which would leave ΔK from 8 to 40 MPa√m with one
-/// number.
+/// Linear or logarithmic axis. Whole decades alone would leave ΔK from 8 to 40 MPa√m with one tick.
 #[derive(Debug, Clone)]
 pub struct Axis {
     low: f64,

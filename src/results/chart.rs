@@ -1,6 +1,4 @@
-//! Charts as SVG: crack length against cycles, growth rate against ΔK, K against crack length.
-//!
-//! A chart says along its axes what it shows; numbers stand on thin lines across, without a box.
+//! Charts as SVG: crack length against cycles, da/dN against ΔK, K against crack length.
 
 use std::path::Path;
 
@@ -69,7 +67,7 @@ pub fn linear(path: &Path, title: &str, names: [&str; 2], series: &[Series]) -> 
 }
 
 /// Names of the axes of growth rates.
-pub const OF_RATES: [&str; 2] = ["Range of the stress intensity factor ΔK, MPa√m", "Growth rate da/dN, mm/cycle"];
+pub const OF_RATES: [&str; 2] = ["Stress intensity range ΔK, MPa√m", "Crack growth rate da/dN, mm/cycle"];
 
 /// Growth rate in mm/cycle against ΔK in MPa√m, both logarithmic.
 pub fn growth_rate(path: &Path, title: &str, series: &[Series]) -> Result<()> {
@@ -114,7 +112,7 @@ fn draw(path: &Path, title: &str, axes: [Axis; 2], names: [&str; 2], series: &[S
             Mark::Dots => frame.dots(&points, colour),
         }
     }
-    write_file(path, frame.finish(&format!("{title}: {} over {}", names[1], names[0])).as_bytes())
+    write_file(path, frame.finish(&format!("{title}: {} against {}", names[1], names[0])).as_bytes())
 }
 
 /// A chart in the making: two axes with their names and numbers, to which lines, areas and marks are added.
@@ -300,21 +298,21 @@ impl Frame {
     pub fn limit(&mut self, y: f64, name: &str) {
         let ([left, _, right, _], text) = (self.room, self.size.text);
         let height = self.at([self.axes[0].ends()[0], y])[1];
-        if self.holds(y) {
+        if self.contains(y) {
             self.sketch.path(&[[left, height], [right, height]], NOTE, 1.0, "3 3");
             self.sketch.name([left + 6.0, height - 4.0], name, "start", text, NOTE);
         }
     }
 
-    /// Whether a value lies on the axis along y.
-    fn holds(&self, y: f64) -> bool {
+    /// Whether a value is within the axis along y.
+    fn contains(&self, y: f64) -> bool {
         (0.0..=1.0).contains(&self.axes[1].share(y))
     }
 
-    /// Hatches what lies beyond a value along y, above or below it.
+    /// Hatches what is beyond a value along y, above or below it.
     pub fn unknown(&mut self, y: f64, is_above: bool, name: &str) {
         let ([left, top, right, bottom], text) = (self.room, self.size.text);
-        if !self.holds(y) {
+        if !self.contains(y) {
             return;
         }
         let edge = self.at([self.axes[0].ends()[0], y])[1];

@@ -77,7 +77,7 @@ impl DamagePicture<'_> {
         self.draw_column(&mut sketch, [2.0 * MARGIN + width, MARGIN], full_scale);
         let height = height.max(SHORT_SIDE) + 2.0 * MARGIN;
         scale_bar(&mut sketch, [2.0 * MARGIN + width, height - MARGIN], [scale * MM, size[0] / MM], TEXT);
-        let sentence = format!("Share of bonds cut or broken over the plate; {}", self.caption.join(", "));
+        let sentence = format!("Damage (fraction of broken bonds) over the plate; {}", self.caption.join(", "));
         Ok(sketch.picture([width + COLUMN + 3.0 * MARGIN, height], &sentence))
     }
 
@@ -107,7 +107,7 @@ impl DamagePicture<'_> {
     }
 
     fn draw_column(&self, sketch: &mut Sketch, [left, top]: Point, full_scale: f64) {
-        for (line, words) in ["Damage:", "share of bonds cut or broken"].into_iter().enumerate() {
+        for (line, words) in ["Damage (fraction of", "broken bonds)"].into_iter().enumerate() {
             sketch.name([left, top + TEXT * (1.0 + 1.35 * line as f64)], words, "start", TEXT, INK);
         }
         let (bar, thick, parts, start) = (150.0, 20.0, 50, top + 44.0);

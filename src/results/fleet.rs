@@ -175,13 +175,16 @@ impl FleetReport {
         let axes =
             [Axis::logarithmic(points.iter().map(|point| point[0]).chain(self.run)), Axis::linear([0.0, 100.0].into_iter())];
         let plates = format!("{} of {} plates", points.len(), lives.len());
-        let legend = [(Mark::Line, COMPUTED, &*plates), (Mark::Dashes, SECOND, "life of the run")];
-        let names = ["Life N, cycles", "Share of plates that have ended, %"];
+        let legend = [(Mark::Line, COMPUTED, &*plates), (Mark::Dashes, SECOND, "life with nominal inputs")];
+        let names = ["Life N, cycles", "Failed plates, %"];
         let title = format!("{name}: lives of a fleet");
         let mut frame = Frame::new(LARGE, &title, axes, names, &legend[..if self.run.is_some() { 2 } else { 1 }]);
         frame.line(&points, COMPUTED, 2.0, "");
-        self.run.iter().for_each(|&run| frame.line(&[[run, 0.0], [run, 100.0]], SECOND, 2.0, "8 5"));
-        frame.finish(&format!("{title}: share of plates that have ended over cycles"))
+        self.run.iter().for_each(|&run| frame.line(&[[run, 0.0], [run, 100.0]], SECOND, 1.2, "8 5"));
+        let quantiles = self.ranked().figures();
+        let marks = [(quantiles.p05, "5 %"), (quantiles.p50, "median")];
+        marks.into_iter().filter_map(|(life, name)| Some((life?, name))).for_each(|(life, name)| frame.mark(life, name));
+        frame.finish(&format!("{title}: failed plates against cycles"))
     }
 
     /// 5 % and median life.

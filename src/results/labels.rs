@@ -40,9 +40,8 @@ impl Box2 {
     }
 }
 
-/// Rectangles of the given sizes beside the `named` ones of `points`, inside the frame and off the `line`, which is broken where it is not
-/// finite. Where all tried places
-/// are taken, the one that covers least is.
+/// Rectangles of the given sizes next to the `named` ones of `points`, inside the frame and off the `line` (a gap where it is not finite); if no
+/// place is free, the one that covers least.
 pub fn place_labels(frame: Box2, points: &[[f64; 2]], line: &[[f64; 2]], named: &[usize], sizes: &[[f64; 2]]) -> Vec<Box2> {
     let around = |p: [f64; 2], room: f64| Box2 { low: p.map(|v| v - room), high: p.map(|v| v + room) };
     let mut taken: Vec<Box2> = points.iter().map(|p| around(*p, POINT)).collect();

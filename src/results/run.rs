@@ -233,16 +233,16 @@ impl Judged {
         let of = |tested: bool| {
             rates.iter().map(move |&(k, rate)| if is_tested(k) == tested { (k, rate) } else { (f64::NAN, f64::NAN) })
         };
-        let name = if self.record.law.range().is_some() { "within the ΔK of the tests" } else { "ΔK of the tests not known" };
+        let name = if self.record.law.range().is_some() { "within the tested ΔK" } else { "tested ΔK unknown" };
         let series = [
             Series { name: format!("predicted, {name}"), mark: Mark::Line, points: of(true).collect() },
-            Series { name: "predicted, outside".to_owned(), mark: Mark::Dashes, points: of(false).collect() },
+            Series { name: "predicted, extrapolated".to_owned(), mark: Mark::Dashes, points: of(false).collect() },
         ];
         let shown: Vec<Series> = series.into_iter().filter(|series| series.points.iter().any(|(k, _)| k.is_finite())).collect();
         if shown.is_empty() {
             return Ok(());
         }
-        chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: growth rate", case.name), &shown)
+        chart::growth_rate(&folder.join("da_dn.svg"), &format!("{}: crack growth rate", case.name), &shown)
     }
 
     /// Lines of a summary, the answer first.
@@ -423,14 +423,14 @@ fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> 
     };
     let has = |pick: fn(&Strength) -> Option<f64>| curve.iter().any(|strength| pick(strength).is_some());
     let name = match [has(|s| s.by_toughness), has(|s| s.by_net_section)] {
-        [true, true] => "residual strength, the lesser of both",
-        [true, false] => "residual strength by toughness alone: no yield strength given",
-        [false, _] => "residual strength by net-section yield alone: no toughness given",
+        [true, true] => "residual strength (lower of both)",
+        [true, false] => "residual strength by fracture only (no yield strength given)",
+        [false, _] => "residual strength by net-section yield only (no toughness given)",
     };
     let all = [
         series(name, Mark::Broad, &|s| Some(s.load())),
-        series("by toughness", Mark::Line, &|s| s.by_toughness),
-        series("by net-section yield", Mark::Dashes, &|s| s.by_net_section),
+        series("fracture (K_c)", Mark::Line, &|s| s.by_toughness),
+        series("net-section yield", Mark::Dashes, &|s| s.by_net_section),
         series("maximum load of the cycle", Mark::Line, &|s| Some(case.loading.at(s.crack_length))),
         series("required strength", Mark::Dashes, &|s| case.stop.required.map(|factor| factor * case.loading.at(s.crack_length))),
     ];

@@ -127,7 +127,7 @@ impl Sensitivities {
         let at = |value: f64| left + axis.share(value) * (width - left - right);
         let bottom = top + row * pairs.len() as f64;
         let mut sketch = Sketch::new(1.0, [0.0; 2]);
-        let title = format!("{name}: change of the life");
+        let title = format!("{name}: change in life");
         sketch.name([8.0, 26.0], &title, "start", 1.15 * text, INK);
         for (place, pair) in pairs.iter().enumerate() {
             let middle = top + (place as f64 + 0.5) * row;
@@ -151,7 +151,7 @@ impl Sensitivities {
             sketch.path(&[[at(value), bottom], [at(value), bottom + 4.0]], INK, 1.0, "");
             sketch.name([at(value), bottom + 20.0], &words, "middle", text, INK);
         }
-        sketch.name([width - right, bottom + 42.0], "Change of the life, %", "end", text, INK);
+        sketch.name([width - right, bottom + 42.0], "Change in life, %", "end", text, INK);
         sketch.picture([width, bottom + 54.0], &format!("{title} by load, initial crack length and law, in percent"))
     }
 
@@ -159,7 +159,7 @@ impl Sensitivities {
     pub fn words(&self) -> String {
         let told = |change: f64| match change.is_finite() {
             true => format!("{:+.1} %", 100.0 * change),
-            false => "unknown (unlimited life)".to_owned(),
+            false => "not available (unlimited life)".to_owned(),
         };
         let of_pair = |pair: &&[Sensitivity]| {
             let changes: Vec<String> =

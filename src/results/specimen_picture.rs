@@ -1,4 +1,4 @@
-//! The specimen of a case as a drawing to scale: outline, holes, slots, cracks, loads, supports, sizes in mm.
+//! The specimen of a case as a drawing to scale: outline, holes, slots, cracks, loads, supports, dimensions in mm.
 
 mod nodes;
 pub mod sketch;
@@ -15,7 +15,7 @@ use perilife_growth::case::Case;
 use perilife_plate::specimen::geometry::{bounding_box, distance};
 use perilife_plate::specimen::{Crack, Point, Specimen, SpecimenKind, Support};
 
-/// What a drawing says of itself, so that it is known again.
+/// Mark by which a later drawing may replace it.
 pub const SIGN: &str = "drawn by perilife check";
 /// Room around the plate for arrows, sizes and words, pixels: left, right, top, bottom.
 const MARGIN: [f64; 4] = [110.0, 190.0, 150.0, 122.0];
@@ -24,9 +24,7 @@ const PLATE_MAX: Point = [460.0, 520.0];
 /// Height of words, pixels.
 const TEXT: f64 = 12.0;
 
-/// SVG text of the specimen of `case`.
-///
-/// Red: cracks, with a dot at each tip that can grow, numbered as in `crack_path.csv`. Arrows: loads. Hatching: what is held.
+/// SVG text of the specimen of `case`; tips are numbered as in `crack_path.csv`.
 pub fn specimen_svg(case: &Case) -> String {
     drawing(&case.name, &loading(case), &case.specimen, &[], |_| {})
 }
@@ -101,8 +99,8 @@ fn draw_cracks(sketch: &mut Sketch, specimen: &Specimen) {
     }
 }
 
-/// What holds a plate, in words.
-fn held_words(specimen: &Specimen) -> Vec<String> {
+/// Supports in words.
+fn support_words(specimen: &Specimen) -> Vec<String> {
     let at = |from: &Point, to: &Point| {
         let [[a, b], [c, d]] = [from, to].map(|point| point.map(mm));
         format!("from ({a}, {b}) to ({c}, {d})")
@@ -110,15 +108,15 @@ fn held_words(specimen: &Specimen) -> Vec<String> {
     let words = |support: &Support| match support {
         Support::Fixed { from, to, x, y, .. } => {
             let ways = match (x, y) {
-                (true, true) => "x and y",
+                (true, true) => "x, y",
                 (true, false) => "x",
                 _ => "y",
             };
-            Some(format!("held in {ways} {}", at(from, to)))
+            Some(format!("fixed {ways} {}", at(from, to)))
         }
-        Support::Moved { from, to, .. } => Some(format!("moved straight {}", at(from, to))),
-        Support::ClampedEnds => Some("rigid grips at both ends, which cannot rotate".to_owned()),
-        Support::RigidEnds => Some("rigid grips at both ends, which turn on pins".to_owned()),
+        Support::Moved { from, to, .. } => Some(format!("prescribed displacement (straight) {}", at(from, to))),
+        Support::ClampedEnds => Some("rigid grips, clamped (no rotation)".to_owned()),
+        Support::RigidEnds => Some("rigid grips, pinned".to_owned()),
         Support::Elsewhere => None,
     };
     specimen.supports.iter().filter_map(words).collect()
@@ -161,7 +159,7 @@ fn draw_sizes(sketch: &mut Sketch, specimen: &Specimen, [low, high]: [Point; 2])
     }
 }
 
-/// Sizes of holes, slots and cracks of a plate in words: beside each other in the picture they would overlap.
+/// Dimensions of holes, slots and cracks of a plate in words: in the picture they would overlap.
 fn flaw_list(specimen: &Specimen) -> Vec<String> {
     let mut lines = Vec::new();
     for (i, hole) in specimen.holes.iter().enumerate() {
@@ -186,7 +184,7 @@ fn flaw_list(specimen: &Specimen) -> Vec<String> {
     }
     let micro: Vec<f64> = specimen.cracks.iter().filter(is_micro).map(|crack| distance(crack.from, crack.to)).collect();
     if !micro.is_empty() {
-        lines.push(format!("{} micro cracks up to {}", micro.len(), mm(micro.iter().fold(0.0, |a, b| f64::max(a, *b)))));
+        lines.push(format!("cracks without tips: {}, up to {}", micro.len(), mm(micro.iter().fold(0.0, |a, b| f64::max(a, *b)))));
     }
     for slot in &specimen.slots {
         let tips = tips_at(specimen, slot.from, slot.to);
@@ -210,7 +208,7 @@ fn tips_at(specimen: &Specimen, from: Point, to: Point) -> String {
     }
 }
 
-/// Directions of x and y, beside the plate.
+/// Directions of x and y.
 fn draw_axes(sketch: &mut Sketch) {
     let corner = [34.0, 112.0];
     sketch.arrow(corner, [corner[0] + 32.0, corner[1]], WORDS, 1.2);
@@ -222,19 +220,19 @@ fn draw_axes(sketch: &mut Sketch) {
 /// Lines of the flaw list that fit below the picture.
 const LIST_MAX: usize = 10;
 
-/// Rows below the picture: what the colours mean, thickness, then the list of flaws.
+/// Rows below the picture: legend, thickness, then the list of flaws.
 fn legend_rows(specimen: &Specimen) -> Vec<String> {
-    let slots = if specimen.tips.iter().any(|tip| tip.from_slot) { "; a slot's tip is the middle of its end face" } else { "" };
+    let slots = if specimen.tips.iter().any(|tip| tip.from_slot) { "; slot tip = center of its end" } else { "" };
     let mut rows = vec![
-        format!("crack through the thickness; dots: numbered tips that can grow{slots}"),
+        format!("through crack; dots: numbered tips{slots}"),
         format!("thickness {}; drawn to scale", mm(specimen.thickness)),
     ];
-    rows.extend(held_words(specimen));
+    rows.extend(support_words(specimen));
     let list = flaw_list(specimen);
     let more = list.len().saturating_sub(LIST_MAX);
     rows.extend(list.into_iter().take(LIST_MAX));
     if more > 0 {
-        rows.push(format!("and {more} more holes, cracks and slots"));
+        rows.push(format!("{more} more holes, cracks and slots"));
     }
     rows
 }

@@ -126,7 +126,7 @@ pub fn warnings(stressed: &Stressed) -> Vec<String> {
     let mut warnings = Vec::new();
     if !sharp.is_empty() {
         warnings.push(format!(
-            "{}: a sharp re-entrant corner has no bound of its elastic stress, so that the figure is that of these nodes alone; draw the \
+            "{}: elastic stress at a sharp corner is singular: the value depends on the nodes; draw the \
              corner with its radius, as several corners of outline_mm",
             sharp.join(", ")
         ));

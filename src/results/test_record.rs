@@ -1,5 +1,4 @@
-//! What a test report asks of a fit to readings: specimen, load, number of readings, and the criteria of ASTM E647 that they can be
-//! held against. Keys `test` and `criteria` of `fit.json`.
+//! Test data of a fit for its report: specimen, load, number of readings, criteria of ASTM E647. Keys `test` and `criteria` of `fit.json`.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +12,7 @@ use perilife_measured::{LeaveOut, MeasuredCurve, side_difference_max};
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_plate::specimen::{LoadMeasure, SpecimenKind};
 
-/// Specimen, material, load and formula for K; `null` what the calibration file does not say.
+/// Specimen, material, load and formula for K; `null` if not in the calibration file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TestRecord {
     pub specimen_kind: String,
@@ -34,7 +33,7 @@ pub struct TestRecord {
     pub formula_range: Option<String>,
 }
 
-/// A criterion: what is asked, what was found, and whether it holds (`null`: it cannot be judged), with a remark.
+/// A criterion: requirement, result, whether it is met (`null`: not checked), remark.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Criterion {
     pub name: String,
@@ -78,7 +77,7 @@ fn criterion(name: &str, asked: String, found: String, holds: Option<bool>, rema
     Criterion { name: name.to_owned(), asked, found, holds, remark }
 }
 
-/// The criteria of ASTM E647 that readings and specimen can be held against.
+/// The criteria of ASTM E647 that readings and specimen can be checked against.
 pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &dyn Fn(f64) -> f64) -> Vec<Criterion> {
     let mut case = calibration.case.clone();
     case.material.yield_strength = calibration.yield_strength;
@@ -89,9 +88,9 @@ pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &
             SpecimenKind::CompactTension => "W/20 ≤ B ≤ W/4, a ≥ 0.2 W",
             _ => "B ≤ W/8",
         };
-        let remark = if holds { "holds".to_owned() } else { check.words };
+        let remark = if holds { "met".to_owned() } else { check.words };
         let found = format!("B {} mm, W {} mm", clean(case.specimen.thickness / MM), clean(case.specimen.width / MM));
-        criterion("Size of the specimen (7.1, A1.3)", asked.to_owned(), found, Some(holds), remark)
+        criterion("Specimen size (7.1, A1.3)", asked.to_owned(), found, Some(holds), remark)
     });
     let mut all: Vec<Criterion> = size.into_iter().collect();
     all.push(ligament(calibration, &case, delta_k));
@@ -101,9 +100,9 @@ pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &
     all
 }
 
-/// Ligament at the longest reading that was fitted.
+/// Ligament at the longest crack used.
 fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) -> f64) -> Criterion {
-    const NAME: &str = "Ligament at the longest fitted crack (7.2)";
+    const NAME: &str = "Ligament at the longest crack used (7.2)";
     let (specimen, loading) = (&case.specimen, &case.loading);
     let longest = case.stop.crack_length;
     let rule = match specimen.kind {
@@ -111,22 +110,16 @@ fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) ->
         _ => "W − a ≥ (4/π) (K_max/σ_YS)²",
     };
     let Some(ligament) = specimen.ligament(longest) else {
-        return criterion(
-            NAME,
-            rule.to_owned(),
-            "not known".to_owned(),
-            None,
-            "cannot be judged: no standard specimen".to_owned(),
-        );
+        return criterion(NAME, rule.to_owned(), "unknown".to_owned(), None, "not applicable (no standard specimen)".to_owned());
     };
     let found = format!("{:.1} mm", ligament / MM);
     let Some(strength) = calibration.yield_strength else {
-        return criterion(NAME, rule.to_owned(), found, None, "cannot be judged: no yield strength given".to_owned());
+        return criterion(NAME, rule.to_owned(), found, None, "not checked (no yield strength)".to_owned());
     };
     let most = calibration.curves.iter().flat_map(|curve| curve.load_factor.iter().copied()).fold(1.0, f64::max);
     let asked = specimen.ligament_asked(most * loading.maximum, most * delta_k(longest) / loading.range_share(), strength);
     let holds = ligament >= asked;
-    let remark = if holds { "holds" } else { "readings with a smaller ligament are marked ligament_yields" };
+    let remark = if holds { "met" } else { "readings with a smaller ligament are flagged ligament_yields" };
     criterion(NAME, format!("{rule} = {:.1} mm", asked / MM), found, Some(holds), remark.to_owned())
 }
 
@@ -136,10 +129,13 @@ fn steps(curves: &[MeasuredCurve]) -> Criterion {
     let steps: Vec<f64> = curves.iter().flat_map(of_curve).collect();
     let least = steps.iter().copied().fold(f64::INFINITY, f64::min);
     let short = steps.iter().filter(|step| **step < STEP_MIN * (1.0 - 1e-6)).count();
-    let remark =
-        if short == 0 { "holds".to_owned() } else { format!("{short} of {} steps are shorter; kept and marked", steps.len()) };
+    let remark = if short == 0 {
+        "met".to_owned()
+    } else {
+        format!("{short} of {} increments are shorter; used and flagged", steps.len())
+    };
     criterion(
-        "Step between readings, least (8.6.2)",
+        "Minimum Δa between readings (8.6.2)",
         "Δa ≥ 0.25 mm".to_owned(),
         format!("{:.2} mm", least / MM),
         Some(short == 0),
@@ -148,25 +144,25 @@ fn steps(curves: &[MeasuredCurve]) -> Criterion {
 }
 
 fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Criterion {
-    const NAME: &str = "Lengths on the sides of a specimen";
+    const NAME: &str = "Front/back crack size difference";
     let specimen = &case.specimen;
     let most = side_difference_max(specimen.kind, specimen.width, specimen.thickness);
-    let asked = format!("differ by at most {:.2} mm", most / MM);
+    let asked = format!("≤ {:.2} mm", most / MM);
     let found = curves.iter().flat_map(|curve| curve.side_difference.iter().copied()).fold(f64::NAN, f64::max);
     if found.is_nan() {
-        return criterion(NAME, asked, "not recorded".to_owned(), None, "cannot be judged: one length a reading".to_owned());
+        return criterion(NAME, asked, "not recorded".to_owned(), None, "not checked (one crack size per reading)".to_owned());
     }
     let holds = found <= most;
-    let remark = if holds { "holds" } else { "readings with more are marked uneven_front" };
+    let remark = if holds { "met" } else { "readings with more are flagged uneven_front" };
     criterion(NAME, asked, format!("{:.2} mm", found / MM), Some(holds), remark.to_owned())
 }
 
-/// So many of them by the user, who knows the reason.
+/// `by_user`: number of those that the user excluded.
 fn readings_left_out(left_out: &[LeaveOut], by_user: usize) -> Criterion {
     let found = if left_out.is_empty() { "none".to_owned() } else { left_out.len().to_string() };
     let reasons: Vec<String> = left_out.iter().map(|one| format!("{} ({})", one.place(), one.reason)).collect();
     criterion(
-        "Readings left out",
+        "Excluded readings",
         "with reason".to_owned(),
         found,
         (left_out.len() == by_user).then_some(true),

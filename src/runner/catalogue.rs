@@ -29,6 +29,7 @@ use perilife_plate::specimen::{Edge, SpecimenKind};
 use perilife_points::bond_law::BondLawKind;
 use perilife_points::crack_tip::TipState;
 use perilife_points::solver::SolverUsed;
+use perilife_results::paper::Signed;
 use perilife_scenes::SceneEnd;
 use perilife_scenes::scene::PointLaw;
 
@@ -84,7 +85,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.push((
         beta::KEY.to_owned(),
         "beta.csv".to_owned(),
-        "K = β σ √(πa) by a table crack_length_mm,beta, for hand calculation; `perilife sif --sweep` writes one".to_owned(),
+        "table crack_length_mm,beta (K = β σ √(πa)); `perilife sif --sweep` writes one".to_owned(),
     ));
     all
 }
@@ -120,7 +121,7 @@ pub fn told() -> Vec<Told> {
     all
 }
 
-/// Sections of sweeps, and those of scenes that have keys of their own.
+/// Sections of sweeps, of scenes (their own keys) and of report data.
 pub fn beside() -> Vec<Told> {
     let told = |file: &str, section: &str, keys: &[Key]| {
         let (section, meaning) = (format!("{file}.{section}"), format!("Section of a {file}"));
@@ -130,6 +131,11 @@ pub fn beside() -> Vec<Told> {
     sweep
         .into_iter()
         .chain(perilife_scenes::read::keys().into_iter().map(|(section, keys)| told("scene", section, keys)))
+        .chain([Told {
+            section: "report".to_owned(),
+            meaning: "Report data (`report --data`)".to_owned(),
+            ..told("", "", Signed::KEYS)
+        }])
         .collect()
 }
 

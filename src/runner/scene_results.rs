@@ -113,7 +113,7 @@ fn draw_charts(folder: &Path, scene: &Scene, fracture: &Fracture) -> Result<()> 
         line("kinetic", time, |row| row.kinetic),
         line("strain", time, |row| row.strain),
         line("fracture", time, |row| row.fracture),
-        Series { mark: Mark::Dashes, ..line("work of the loads", time, |row| row.work) },
+        Series { mark: Mark::Dashes, ..line("external work", time, |row| row.work) },
     ];
     chart("energies.svg", "energies over time", [TIME, "Energy, J"], &energies)
 }
@@ -175,15 +175,14 @@ pub fn words(scene: &Scene, fracture: &Fracture) -> Vec<String> {
         format!("{}: peak load {:.4} kN", scene.name, fracture.peak_load() / KN),
         format!("  stopped        {}: {}", fracture.end, fracture.end.meaning()),
         format!("  displacement   {:.6} mm at the end, load {:.4} kN", last.displacement / MM, last.load / KN),
-        format!("  first break    {}", when(fracture.onset_step)),
+        format!("  First damage   {}", when(fracture.onset_step)),
         format!("  separated      {}", when(fracture.separated_step)),
         format!("  broken         {} of {} bonds", last.broken_bonds, figures.bonds),
     ];
     lines.extend(
-        figures
-            .touching
-            .filter(|flanks| flanks.pressed > 0)
-            .map(|flanks| format!("  flanks         pressed together over {:.0} % of the cracks", 100.0 * flanks.share())),
+        figures.touching.filter(|flanks| flanks.pressed > 0).map(|flanks| {
+            format!("  Contact        crack faces closed over {:.0} % of the crack length", 100.0 * flanks.share())
+        }),
     );
     lines.push(format!("  computed       {} points, {way}, {:.1} s", figures.points, figures.wall_s));
     lines

@@ -1,5 +1,4 @@
-//! Stability sweeps as SVG: a picture a sweep (error over the parameter, the bound, the safe ranges, failures with their reasons), and the
-//! map of all (a bar for the safe range of every method, along the range of its parameter).
+//! Stability sweeps as SVG: error against the parameter of each sweep with its limits, and the map of the ranges of all methods.
 
 use std::path::Path;
 
@@ -133,13 +132,9 @@ const RULE: &str = "#e1e1e1";
 pub fn overview(path: &Path, records: &[Record]) -> Result<()> {
     let mut sketch = Sketch::new(1.0, [0.0; 2]);
     let height = HEAD + ROW * records.len() as f64 + FOOT;
-    sketch.name([14.0, 28.0], "Where methods are safe, degrade and fail", "start", 18.0, INK);
-    let legend = [
-        (SAFE, "error within the bound"),
-        (BEYOND, "beyond the bound"),
-        (NO_RESULT, "no result, or refused"),
-        (INK, "usual value"),
-    ];
+    sketch.name([14.0, 28.0], "Accuracy limits of each method", "start", 18.0, INK);
+    let legend =
+        [(SAFE, "error within the bound"), (BEYOND, "beyond the bound"), (NO_RESULT, "no result, or refused"), (INK, "default")];
     for (place, (colour, meaning)) in legend.into_iter().enumerate() {
         let x = 14.0 + 200.0 * place as f64;
         rectangle(&mut sketch, [x, 44.0], [x + 18.0, 58.0], colour);

@@ -20,8 +20,8 @@ pub fn range(record: &Record) -> String {
     let [first, last] = sweep.range().map(short);
     let (usual, bound) = (short(sweep.usual), sweep.bound_percent);
     match (record.is_safe, record.ends) {
-        (None, _) => format!("not judged: the usual value {usual}{unit} took more than its budget"),
-        (Some(false), _) => format!("not within {bound} % at the usual value {usual}{unit}"),
+        (None, _) => format!("not evaluated: {usual}{unit} (default) exceeded the time limit"),
+        (Some(false), _) => format!("not within {bound} % at the default {usual}{unit}"),
         (Some(true), [None, None]) => format!("within {bound} % from {first} to {last}{unit}, the whole sweep"),
         (Some(true), _) => format!("{}{unit}", ends(record)),
     }

@@ -92,7 +92,7 @@ fn share(row: &Row) -> f64 {
 pub fn markdown(topics: &[&Topic], rows: &[Row]) -> String {
     let mut text = format!(
         "# Accuracy\n\nWritten by `perilife verify --markdown`: figures of the program beside their references. Errors are in percent \
-         of the reference;\nwhere that is 0, the figure is an error itself. A known miss has a second bound, which it may not \
+         of the reference;\nwhere that is 0, the figure is an error itself. A known deviation has its own limit, which it may not \
          pass.\n\n{}",
         summary(rows)
     );

@@ -60,7 +60,7 @@ fn a_fleet_with_inspections_and_sensitivities_leaves_its_files() {
     assert!(critical["by_net_section_mm"].as_f64().unwrap() > critical["by_toughness_mm"].as_f64().unwrap(), "{critical}");
     for (file, words) in [
         ("fleet.svg", "lives of a fleet"),
-        ("sensitivities.svg", "change of the life"),
+        ("sensitivities.svg", "change in life"),
         ("residual_strength.svg", "required strength"),
         ("sensitivities.csv", "initial crack length,-10 %,"),
     ] {

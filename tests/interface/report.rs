@@ -84,8 +84,11 @@ fn assert_alone(page: &str) {
 #[test]
 fn a_run_has_a_page_with_life_validity_and_hashes() {
     let dir = folders();
-    let page =
-        report(dir.path(), "run", &["--laboratory", "Lab <1> & \"Co\"", "--operator", "A. Tester", "--date", "26 Nov 2026"]);
+    let page = report(
+        dir.path(),
+        "run",
+        &["--laboratory", "Lab <1> & \"Co\"", "--operator", "A. Tester", "--date", "26 Nov 2026", "--set", "report.number=R-12"],
+    );
     assert_alone(&page);
     let result: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("run/result.json")).unwrap()).unwrap();
     let hash = result["inputs"][0]["sha256"].as_str().unwrap();
@@ -94,17 +97,20 @@ fn a_run_has_a_page_with_life_validity_and_hashes() {
         "Lab &lt;1&gt; &amp; &quot;Co&quot;",
         "A. Tester",
         "26 Nov 2026",
-        "Cycles to what was asked for",
-        "the crack has the length that was asked for",
-        "no band of plates",
+        "Cycles to the crack length limit",
+        "crack length limit reached",
+        "scatter band not available",
         "valid with reservations",
         "Fracture: not checked (no toughness given)",
-        "Numerical error at most",
+        "Numerical error ≤ 0.9 % of life (estimate)",
         "stress 12.07 to 60.35 MPa, R = 0.2",
         "al2024-t3",
         hash,
         version,
-        "Checked by, date: <span class=\"blank\">not recorded</span>",
+        "Report No.</dt><dd>R-12</dd><dt>Customer</dt><dd><span class=\"blank\">not recorded</span>",
+        "Reviewed by, date: </div>",
+        "tests/VALIDATION.md of this version",
+        "content: \"R-12, Crack growth life, panel, perilife ",
     ] {
         assert!(page.contains(words), "{words}");
     }
@@ -127,20 +133,23 @@ fn a_run_has_a_page_with_life_validity_and_hashes() {
 #[test]
 fn a_fit_has_a_page_with_every_reading() {
     let dir = folders();
-    let page = report(dir.path(), "fit", &[]);
+    fs::write(dir.path().join("data.toml"), "[report]\nrevision = \"2\"\nnumber = \"F-3\"\norientation = \"T-L\"\n").unwrap();
+    let page = report(dir.path(), "fit", &["--data", "data.toml", "--set", "report.orientation=L-T"]);
     assert_alone(&page);
     let table = page.split("Readings and growth rates").nth(1).unwrap();
     assert_eq!(table.matches("<tr").count(), 1 + 2 * 40, "a row a reading");
-    assert!(table.contains("left out: load of the &lt;precrack&gt;"), "with its reason");
-    assert!(table.contains("left out: outside the fit window"), "P2 starts below the window");
+    assert!(table.contains("excluded: load of the &lt;precrack&gt;"), "with its reason");
+    assert!(table.contains("excluded: outside the fit window"), "P2 starts below the window");
     assert_eq!(table.matches("step under 0.25 mm").count(), 4, "both readings of the short step of both panels");
     let fit: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("fit/fit.json")).unwrap()).unwrap();
     assert!((fit["paris_m"].as_f64().unwrap() - 2.874).abs() < 0.05, "{fit}");
     for words in [
         "Criteria of ASTM E647",
-        "2 of 78 steps are shorter",
-        "cannot be judged: one length a reading",
-        "Machine, load cell</dt><dd><span class=\"blank\">not recorded",
+        "2 of 78 increments are shorter; used and flagged",
+        "not checked (one crack size per reading)",
+        "Test machine, load cell</dt><dd><span class=\"blank\">not recorded",
+        "Crack plane orientation</dt><dd>L-T</dd>",
+        "Report No.</dt><dd>F-3, revision 2</dd>",
         fit["inputs"][1]["sha256"].as_str().unwrap(),
     ] {
         assert!(page.contains(words), "{words}");
@@ -178,12 +187,12 @@ fn what_cannot_be_reported_is_refused_with_words() {
         ("", None, "panel.toml", 4, &["panel.toml: cannot read"]),
         ("", None, "empty", 2, &["empty", "result.json and fit.json are missing", "perilife predict"]),
         (result, cut(result), "run", 2, &["run/result.json", "cut off or damaged", "copy the folder again"]),
-        (result, Some("[]".to_owned()), "run", 2, &["run/result.json", "is no object"]),
+        (result, Some("[]".to_owned()), "run", 2, &["run/result.json", "is not a result of `perilife predict`"]),
         (result, Some("{}".to_owned()), "run", 2, &["run/result.json", "missing field `name`"]),
         (result, with(result, "stop_reason", 7.into()), "run", 2, &["run/result.json", "stop_reason", "7", "expected a string"]),
         (result, with(result, "life_cycles", (-1.0).into()), "run", 2, &["life_cycles", "-1", "is below zero"]),
         (result, with(result, "life_cycles", "long".into()), "run", 2, &["life_cycles", "long", "expected f64"]),
-        (result, with(result, "plate", "square".into()), "run", 2, &["plate", "square", "is not as it was written"]),
+        (result, with(result, "plate", "square".into()), "run", 2, &["plate", "square", "was modified after the run"]),
         ("run/a_n.csv", cut("run/a_n.csv"), "run", 2, &["run/a_n.csv", "is cut off"]),
         ("run/a_n.csv", Some(text("run/a_n.csv").replace(",9.000", ",8.000")), "run", 2, &["run/a_n.csv", "is not the table"]),
         ("run/a_n.csv", None, "run", 2, &["run/a_n.csv", "is missing"]),
@@ -284,8 +293,8 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
         &[
             "Exceedances and ranges of the",
             "spectrum_ten_flights.csv",
-            "below 20 % of the largest range",
-            "peaks above 95 % of the largest of the file",
+            "none (all above 20 % of the largest range)",
+            "peaks above 95 % of the largest in the file",
             "wheeler",
             "wheeler_exponent",
             &grouped(life),
@@ -300,7 +309,7 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
         &page,
         &[
             "Section through the crack: depth",
-            "Length c on the face and depth a of the crack in mm over cycles",
+            "Surface length c and depth a of the crack in mm against cycles",
             "NASA TM-85793",
             "a/t = 1.000",
             "a/t = 1, up to which",
@@ -316,13 +325,13 @@ fn spectra_part_through_cracks_and_fleets_have_their_sheets() {
         &page,
         &[
             "lives of a fleet",
-            "change of the life",
+            "change in life",
             "1000, seed 1",
-            "each plate by its own law, load and critical length, from 10 mm",
+            "from a = 10 mm (law, load and critical length of each plate)",
             &grouped(looks["detectable_to_critical_cycles"]["p95"].as_f64().unwrap()),
             &grouped(looks["interval_cycles"].as_f64().unwrap().floor()).replace('\u{202f}', " "),
             "initial crack length",
-            "a crack of 12 mm with 50 %, of 25 mm with 90 %",
+            "a50 = 12 mm, a90 = 25 mm",
         ],
     );
     // A picture that does more than draw is not taken over.

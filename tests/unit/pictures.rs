@@ -208,7 +208,7 @@ fn everything_of_the_specimen_is_drawn() {
         "200 mm",
         "thickness 2 mm",
         "stress 7 to 70 MPa, R = 0.1",
-        "held in x and y",
+        "fixed x, y",
         "diameter 10 mm",
         "slot with tip 2",
         "tips 0 and 1: 11.18 mm",
@@ -309,7 +309,7 @@ fn no_line_is_drawn_where_k_was_not_read() {
     // The last of a section goes: K beyond bounds is said, and hides nothing.
     tables.tips[0].factors[8] = [4e7, 0.0];
     let svg = k_svg(&result, &tables, LARGE).unwrap();
-    assert!(svg.contains("at the end to 4.0e7, not drawn") && svg.contains(">20</text>"), "{svg}");
+    assert!(svg.contains("rises to 4.0e7 (off scale)") && svg.contains(">20</text>"), "{svg}");
     tables.tips[0].factors.fill([f64::NAN; 2]);
     assert_eq!(k_svg(&result, &tables, LARGE), None);
 }

@@ -178,7 +178,7 @@ fn compression_and_a_threshold_count_as_the_law_says() {
     assert_eq!(mean.rate(3.9e6, 0.0), 0.0);
     assert_eq!((spectrum.ratios, spectrum.smallest()), ([-10.0, 0.0], -3.0));
     let svg = spectrum_svg(&spectrum, perilife_results::chart::LARGE);
-    assert!(svg.contains("Maxima of a pass") && svg.contains("Range over the largest load") && !svg.contains("NaN"), "{svg}");
+    assert!(svg.contains("Peak exceedances per pass") && svg.contains("Range / maximum load") && !svg.contains("NaN"), "{svg}");
 }
 
 /// What may be either is asked about, by the key that settles it or the name to give.

@@ -1,6 +1,6 @@
 """Compiled part of the package."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, final
 
@@ -42,5 +42,5 @@ def check(
 def read_table(file: Path) -> tuple[list[str], list[float], list[float], list[str]]: ...
 def materials() -> list[tuple[str, str, float | None, float | None, float | None, float | None, bool]]: ...
 def report(
-    folder: Path, out: Path, laboratory: str | None, operator: str | None, reviewer: str | None, date: str | None
+    folder: Path, out: Path, data: Path | None, overrides: Sequence[str]
 ) -> None: ...

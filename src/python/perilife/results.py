@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import tempfile
@@ -97,17 +98,20 @@ class _Reported(_Run):
         self,
         path: StrPath,
         *,
-        laboratory: str | None = None,
-        operator: str | None = None,
-        reviewer: str | None = None,
-        date: str | None = None,
+        data: StrPath | None = None,
+        **items: str,
     ) -> Path:
-        """Write the self-contained HTML report for signature."""
+        """Write one self-contained HTML page, to be printed and signed.
+
+        ``data`` is a TOML file with a section ``[report]``; ``items`` are keys of that section, such as ``laboratory``,
+        ``customer``, ``number``, ``operator``, ``reviewer``, ``date``, ``orientation``, ``machine`` and ``environment``.
+        """
         with tempfile.TemporaryDirectory() as scratch:
             # A name may hold what a path means something by.
             folder = Path(scratch) / (re.sub(r"[^\w.-]+", "_", self.name).strip(".") or "run")
             self._run.save(folder)
-            _perilife.report(folder, Path(path), laboratory, operator, reviewer, date)
+            overrides = [f"report.{key}={json.dumps(value, ensure_ascii=False)}" for key, value in items.items()]
+            _perilife.report(folder, Path(path), None if data is None else Path(data), overrides)
         return Path(path)
 
 

@@ -1,4 +1,4 @@
-//! Pictures of a run that no table says enough to draw anew: as they stand in its folder.
+//! Pictures of a run that its tables do not suffice to draw again, taken from its folder.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use perilife_base::error::Result;
 use perilife_base::input::Opened;
 
-/// Pictures that a report shows as they are.
+/// Their names.
 const NAMES: [&str; 4] = ["spectrum.svg", "section.svg", "fleet.svg", "sensitivities.svg"];
 /// Elements of the drawings of this program.
 const ELEMENTS: [&str; 10] = ["svg", "g", "rect", "path", "line", "circle", "polygon", "polyline", "text", "tspan"];
@@ -16,7 +16,7 @@ const ELEMENTS: [&str; 10] = ["svg", "g", "rect", "path", "line", "circle", "pol
 pub struct Drawings(BTreeMap<&'static str, String>);
 
 impl Drawings {
-    /// Those of a folder; all that is read is added to `opened`. What is no drawing of this program is not shown.
+    /// Those of a folder; all that is read is added to `opened`. Files that this program did not draw are not shown.
     /// Errors: a file that cannot be read.
     pub(super) fn read(folder: &Path, opened: &Opened) -> Result<Self> {
         let mut found = BTreeMap::new();

@@ -1,9 +1,10 @@
-//! The report of a fit: law, readings, criteria of ASTM E647, specimen and test, and every reading with its rate.
+//! The report of a fit: law, criteria of ASTM E647, specimen and test, every reading with its rate.
 
 use serde_json::{Value, json};
 
 use super::{
-    CHART, PRINT, Signed, commit_words, figure, hashes, known, letter, mark, prose, quoted, recorded, signatures, terms,
+    CHART, PRINT, Signed, cards, figure, hashes, known, letter, mark, number, prose, quoted, recorded, signatures, software,
+    table, terms, text,
 };
 use crate::chart::Size;
 use crate::curve::RunTables;
@@ -16,21 +17,9 @@ use perilife_calibration::readings::Reading;
 use perilife_calibration::record::{CandidateRecord, LivesRecord, RatesRecord, SpecimenRecord};
 use perilife_growth::case::record::{FittedLaw, SourceFile};
 
-/// Files whose hashes are printed, at the most.
+/// Largest number of files with printed hashes.
 const HASHES_MOST: usize = 12;
 const SPECIMEN: Size = Size { width: 330.0, height: 280.0, text: 10.5 };
-/// What a test report asks for and no file of a fit holds.
-const UNRECORDED: [&str; 9] = [
-    "Orientation",
-    "Notch",
-    "Precracking",
-    "Machine, load cell",
-    "Wave, frequency",
-    "Environment",
-    "Crack measured by",
-    "Resolution of a",
-    "Interruptions",
-];
 
 /// Title, page and version of the program that fitted readings.
 pub fn of_lives(fit: &LivesRecord, plate: Option<&Plate>, tables: &FitTables, signed: &Signed) -> (String, String, String) {
@@ -41,7 +30,7 @@ pub fn of_lives(fit: &LivesRecord, plate: Option<&Plate>, tables: &FitTables, si
         _ => fit.fitted_to.clone(),
     };
     let name = if material.is_empty() { fitted_to } else { format!("{material}, {fitted_to}") };
-    let mut page = letter(signed, &name, fit.beside["finished"].as_str());
+    let mut page = letter(signed, fit.beside["finished"].as_str());
     page += &format!("<h1>Fatigue crack growth rate: {}</h1>\n", quoted(&name));
     let (kind, load) = (test["specimen_kind"].as_str().unwrap_or(""), test["load"].as_str().unwrap_or(""));
     page += &format!("<p class=\"lead\">{} specimen, {}.</p>\n", quoted(&kind.replace('_', " ")), quoted(load));
@@ -49,18 +38,18 @@ pub fn of_lives(fit: &LivesRecord, plate: Option<&Plate>, tables: &FitTables, si
     page += "<div class=\"figs\">\n";
     page += &figure(
         &tables.lives_svg(CHART),
-        "Figure 1. Crack length over cycles: readings (circles), fitted law (line) with the 95 % band of its constants; other specimens as thin lines.",
+        "Crack length against cycles: readings (circles), fitted law (line), 95 % confidence of its constants (band), other specimens (thin lines).",
         "",
     );
     page += &figure(
         &tables.rates_svg(CHART),
-        "Figure 2. Growth rate over ΔK: readings that count (circles), fitted law over its range (line), pivot (ring).",
+        "da/dN against ΔK: readings used (circles), fitted law over the tested range (line), reference ΔK (ring).",
         "",
     );
     page += "</div>\n";
     page += &criteria(&fit.beside["criteria"]);
     page += &signatures(signed, "Tested by");
-    page += &details(fit, plate);
+    page += &details(fit, plate, signed);
     page += &curve(fit);
     page += &specimens(fit);
     page += &readings(&tables.readings);
@@ -69,48 +58,37 @@ pub fn of_lives(fit: &LivesRecord, plate: Option<&Plate>, tables: &FitTables, si
 
 fn answer(fit: &LivesRecord) -> String {
     let ratio = fit.beside["test"]["stress_ratio"].as_f64().map_or_else(|| recorded(None), |value| PRINT.short(value));
-    format!(
-        "<div class=\"answer fit\"><div><h2>Growth rate at ΔK = {} MPa√m</h2><p class=\"big\">{} <small>mm/cycle</small></p>\
-         <p>± {} % (one standard error)</p></div><div><h2>Exponent m</h2><p class=\"big\">{}</p><p>± {}; C = {}</p></div>\
-         <div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p><p>MPa√m, R = {ratio}</p></div></div>\n",
-        PRINT.fixed(fit.pivot_delta_k_mpa_sqrt_m, 2),
-        PRINT.rate(fit.rate_at_pivot_mm_per_cycle, 4),
-        known(fit.rate_at_pivot_relative_error, |error| PRINT.fixed(100.0 * error, 1)),
-        PRINT.fixed(fit.paris_m, 3),
-        PRINT.fixed(fit.paris_m_error, 3),
-        PRINT.level(fit.paris_c_mm_per_cycle, Some(fit.paris_m), 4),
-        PRINT.fixed(fit.delta_k_min_mpa_sqrt_m * per("MPa√m"), 2),
-        PRINT.fixed(fit.delta_k_max_mpa_sqrt_m * per("MPa√m"), 2),
-    )
+    let rate = format!("{} <small>mm/cycle</small>", PRINT.rate(fit.rate_at_pivot_mm_per_cycle, 4));
+    let error = known(fit.rate_at_pivot_relative_error, |error| PRINT.fixed(100.0 * error, 1));
+    let c = PRINT.level(fit.paris_c_mm_per_cycle, Some(fit.paris_m), 4);
+    let at = format!("Crack growth rate at ΔK = {} MPa√m", PRINT.fixed(fit.pivot_delta_k_mpa_sqrt_m, 2));
+    let of_rate = (&*at, rate, format!("± {error} % (one standard error)"));
+    let of_m = ("Exponent m", PRINT.fixed(fit.paris_m, 3), format!("± {}; C = {c}", PRINT.fixed(fit.paris_m_error, 3)));
+    cards("fit", [of_rate, of_m, valid([fit.delta_k_min_mpa_sqrt_m, fit.delta_k_max_mpa_sqrt_m], &ratio)])
+}
+
+/// Card of the tested range.
+fn valid(range: [f64; 2], ratios: &str) -> (&'static str, String, String) {
+    let [low, high] = range.map(|k| PRINT.fixed(k * per("MPa√m"), 2));
+    ("Valid for ΔK", format!("{low} to {high}"), format!("MPa√m, R = {ratios}"))
 }
 
 fn criteria(criteria: &Value) -> String {
     let row = |criterion: &Value| {
         let text = |key: &str| prose(criterion[key].as_str().unwrap_or(""));
-        let holds = match criterion["holds"].as_bool() {
-            Some(true) => Some(true),
-            // What does not hold of a test is a remark: the reader judges what it does to the law.
-            Some(false) | None => None,
-        };
-        format!(
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{} {}</td></tr>\n",
-            text("name"),
-            text("asked"),
-            text("found"),
-            mark(holds),
-            text("remark")
-        )
+        // A criterion that is not met is a caution: the reader judges its effect on the law.
+        let met = mark(criterion["holds"].as_bool().filter(|holds| *holds));
+        vec![text("name"), text("asked"), text("found"), format!("{met} {}", text("remark"))]
     };
-    let rows: String = criteria.as_array().into_iter().flatten().map(row).collect();
-    let rows = if rows.is_empty() { format!("<tr><td colspan=\"4\">{}</td></tr>", recorded(None)) } else { rows };
-    format!(
-        "<h2>Criteria of ASTM E647</h2>\n<div class=\"scroll\"><table><thead><tr><th>Criterion</th><th>Asked</th><th>Found</th><th></th></tr></thead>\
-         <tbody>\n{rows}</tbody></table></div>\n"
-    )
+    let Some(rows) = criteria.as_array().filter(|rows| !rows.is_empty()) else {
+        return format!("<h2>Criteria of ASTM E647</h2>\n<p>{}</p>\n", recorded(None));
+    };
+    let head = ["Criterion", "Requirement", "Result", "Assessment"].map(text);
+    format!("<h2>Criteria of ASTM E647</h2>\n{}", table("", &head, rows.iter().map(row)))
 }
 
-/// Specimen, test, how the law came about, deviations, hashes.
-fn details(fit: &LivesRecord, plate: Option<&Plate>) -> String {
+/// Specimen, test, method of the fit, messages, hashes.
+fn details(fit: &LivesRecord, plate: Option<&Plate>, signed: &Signed) -> String {
     let beside = &fit.beside;
     let test = &beside["test"];
     let text = |key: &str| recorded(test[key].as_str());
@@ -122,40 +100,32 @@ fn details(fit: &LivesRecord, plate: Option<&Plate>) -> String {
         ("Material", text("material")),
         ("Width W", number("width_mm", "mm")),
         ("Thickness B", number("thickness_mm", "mm")),
-        ("Yield strength", number("yield_strength_mpa", "MPa (of the material file)")),
-        ("First reading a", number("first_reading_mm", "mm")),
-        ("Last reading a", number("last_reading_mm", "mm")),
+        ("Yield strength", number("yield_strength_mpa", "MPa (material file)")),
+        ("Initial crack size", number("first_reading_mm", "mm")),
+        ("Final crack size", number("last_reading_mm", "mm")),
         ("Specimens", test["specimens"].as_f64().map_or_else(|| recorded(None), |value| PRINT.whole(value))),
         ("Readings", test["readings"].as_f64().map_or_else(|| recorded(None), |value| PRINT.whole(value))),
     ];
     let mut of_test =
-        vec![("Load", text("load")), ("Largest load", text("load_max")), ("Stress ratio R", number("stress_ratio", ""))];
-    of_test.extend(UNRECORDED.iter().map(|what| (*what, recorded(None))));
+        vec![("Load", text("load")), ("Maximum force", text("load_max")), ("Stress ratio R", number("stress_ratio", ""))];
+    of_test.extend(signed.conditions().map(|(what, value)| (what, recorded(value))));
     let mut page = format!(
         "<div class=\"cols paged\"><div><h2>Specimen</h2>{}</div><div><h2>Test</h2>{}</div></div>\n",
         terms(&specimen),
         terms(&of_test)
     );
     let drawing = plate.map_or_else(String::new, |plate| {
-        figure(
-            &plate_svg(plate, &RunTables::default(), SPECIMEN),
-            "Figure 3. The specimen to scale with its first crack, as it was computed.",
-            "",
-        )
+        figure(&plate_svg(plate, &RunTables::default(), SPECIMEN), "Specimen as analyzed.", "")
     });
     page += &format!("<div class=\"figs\"><div>{drawing}</div><div>{}</div></div>\n", how(fit));
     let warnings: Vec<String> = fit.warnings.iter().map(|one| quoted(one)).collect();
     if !warnings.is_empty() {
-        page += &format!("<h2>Remarks of the fit</h2>\n<ul class=\"small\"><li>{}</li></ul>\n", warnings.join("</li><li>"));
+        page += &format!("<h2>Messages</h2>\n<ul class=\"small\"><li>{}</li></ul>\n", warnings.join("</li><li>"));
     }
-    page += "<h2>Readings and input as they were read</h2>\n";
+    page += &software(&fit.version, beside["commit"].as_str());
     let inputs = beside["inputs"].as_array().into_iter().flatten();
     let inputs: Vec<(&str, &str)> = inputs.filter_map(|file| Some((file["file"].as_str()?, file["sha256"].as_str()?))).collect();
-    page += &hashes(if inputs.is_empty() { sources(&fit.sources) } else { inputs }.into_iter(), HASHES_MOST);
-    let commit = commit_words(beside["commit"].as_str());
-    let version = recorded(Some(&fit.version));
-    page += &format!("<p class=\"small quiet\">perilife {version}{commit}. Units: mm, MPa√m, mm/cycle.</p>\n");
-    page
+    page + &hashes(if inputs.is_empty() { sources(&fit.sources) } else { inputs }.into_iter(), HASHES_MOST)
 }
 
 /// Names and hashes of files.
@@ -170,11 +140,11 @@ fn how(fit: &LivesRecord) -> String {
             let range = test["formula_range"].as_str().map_or_else(String::new, |range| format!(" ({})", quoted(range)));
             format!("{}: {}{range}.", quoted(formula), quoted(source))
         }
-        _ => "Of a computed plate of this shape; no formula is known for it.".to_owned(),
+        _ => "Computed for this plate (no handbook formula).".to_owned(),
     };
     let life = match (fit.life_measured, fit.life_fitted, fit.rms_life_error) {
         (Some(measured), Some(fitted), Some(rms)) => format!(
-            " Life over the window: measured {}, fitted {} cycles; rms over the readings {} %.",
+            " Life over the fit window: measured {}, fitted {} cycles; rms fit error {} %.",
             PRINT.whole(measured),
             PRINT.whole(fitted),
             PRINT.fixed(100.0 * rms, 2)
@@ -182,48 +152,53 @@ fn how(fit: &LivesRecord) -> String {
         _ => String::new(),
     };
     let window =
-        format!(" Window: a from {} to {} mm.", PRINT.short(fit.from_crack_length_mm), PRINT.short(fit.to_crack_length_mm));
+        format!(" Fit window: a = {} to {} mm.", PRINT.short(fit.from_crack_length_mm), PRINT.short(fit.to_crack_length_mm));
     let criterion = fit.criterion.name().replace('_', " ");
     let method = match fit.law {
         FittedLaw::Curve => {
-            "Natural spline of the rates over ln ΔK by restricted maximum likelihood, at the level of the lives; C and m by least \
+            "Natural spline of ln da/dN against ln ΔK by restricted maximum likelihood, scaled to the lives; C and m by least \
                           squares on cycles at equal crack length"
         }
         FittedLaw::Paris => "Least squares on cycles at equal crack length",
     };
     let misfit = |of: Misfit| {
         let [from, to] = [of.delta_k_from_mpa_sqrt_m, of.delta_k_to_mpa_sqrt_m].map(|k| PRINT.fixed(k, 1));
-        format!("{} % at ΔK {from} to {to}", PRINT.fixed(of.rate_over_law_percent, 1))
+        format!("{} % at ΔK {from} to {to} MPa√m", PRINT.fixed(of.rate_over_law_percent, 1))
     };
     let ends: Vec<String> = [fit.misfit_at_ends.low, fit.misfit_at_ends.high].into_iter().flatten().map(misfit).collect();
-    let ends = if ends.is_empty() { String::new() } else { format!(" Rate over law at the ends: {} MPa√m.", ends.join("; ")) };
+    let ends = if ends.is_empty() {
+        String::new()
+    } else {
+        format!(" Measured rate against law at the ends of the range: {}.", ends.join("; "))
+    };
     format!(
-        "<h2>Stress intensity</h2><p>{formula}</p><h2>Growth rates</h2><p>Seven-point incremental polynomial (Appendix X1); secants where \
-         a record has fewer than seven readings or the load changes. The first and last three readings carry no rate.</p>\
+        "<h2>Stress intensity</h2><p>{formula}</p><h2>Growth rates</h2><p>Seven-point incremental polynomial (Appendix X1); secant where \
+         a test has fewer than seven readings or the load changes. The first and last three readings have no rate.</p>\
          <h2>Fitted law</h2><p>da/dN = C ΔK<sup>m</sup>. {method}, criterion {}.{window}{life}{ends} C and m are correlated: quote the rate at \
-         the pivot together with m.</p><h2>Use beyond this test</h2><p>Outside the range of ΔK the law is not known; another R needs tests at that R.</p>",
+         the reference ΔK together with m.</p><h2>Use beyond this test</h2><p>Not valid outside the tested ΔK or at another R.</p>",
         quoted(&criterion)
     )
 }
 
-/// The curve of the rates by its knots.
+/// The fitted curve by its knots.
 fn curve(fit: &LivesRecord) -> String {
     let Some(curve) = &fit.curve else { return String::new() };
     let row = |i: usize| {
-        format!(
-            "<tr><td class=\"n\">{}</td><td class=\"n\">{} ± {} %</td><td class=\"n\">{} ± {}</td></tr>\n",
+        vec![
             PRINT.fixed(curve.delta_k_mpa_sqrt_m[i] * per("MPa√m"), 3),
-            PRINT.rate(curve.da_dn_mm_per_cycle[i], 4),
-            PRINT.fixed(100.0 * curve.da_dn_relative_error[i], 1),
-            PRINT.fixed(curve.m[i], 2),
-            PRINT.fixed(curve.m_error[i], 2)
-        )
+            format!(
+                "{} ± {} %",
+                PRINT.rate(curve.da_dn_mm_per_cycle[i], 4),
+                PRINT.fixed(100.0 * curve.da_dn_relative_error[i], 1)
+            ),
+            format!("{} ± {}", PRINT.fixed(curve.m[i], 2), PRINT.fixed(curve.m_error[i], 2)),
+        ]
     };
+    let head = [number("ΔK, MPa√m"), number("da/dN, mm/cycle"), number("local m")];
     format!(
-        "<h2>Curve of the rates</h2>\n<p class=\"key\">The law of all lives: a natural spline of ln da/dN over ln ΔK through these knots. C and m are the \
-         best power law.</p>\n<table class=\"readings\"><thead><tr><th class=\"n\">ΔK, MPa√m</th><th class=\"n\">da/dN, mm/cycle</th>\
-         <th class=\"n\">local m</th></tr></thead><tbody>\n{}</tbody></table>\n",
-        (0..curve.m.len()).map(row).collect::<String>()
+        "<h2>Fitted curve</h2>\n<p class=\"key\">Law used for lives: natural spline of ln da/dN against ln ΔK through these knots. C and m are the \
+         best power law.</p>\n{}",
+        table("readings", &head, (0..curve.m.len()).map(row))
     )
 }
 
@@ -234,47 +209,37 @@ fn specimens(fit: &LivesRecord) -> String {
     }
     let row = |one: &SpecimenRecord| {
         let [measured, fitted] = [one.life_measured, one.life_fitted].map(|life| known(life, |life| PRINT.whole(life)));
-        format!(
-            "<tr><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-            quoted(&one.name),
-            measured,
-            fitted,
-            known(one.rms_life_error, |error| PRINT.fixed(100.0 * error, 2))
-        )
+        vec![quoted(&one.name), measured, fitted, known(one.rms_life_error, |error| PRINT.fixed(100.0 * error, 2))]
     };
-    format!(
-        "<h2>Specimens</h2>\n<table class=\"readings\"><thead><tr><th>Specimen</th><th class=\"n\">Life measured, cycles</th>\
-         <th class=\"n\">Life fitted, cycles</th><th class=\"n\">rms error of life, %</th></tr></thead><tbody>\n{}</tbody></table>\n",
-        fit.specimens.iter().map(row).collect::<String>()
-    )
+    let head =
+        [text("Specimen"), number("Life measured, cycles"), number("Life fitted, cycles"), number("rms fit error of life, %")];
+    format!("<h2>Specimens</h2>\n{}", table("readings", &head, fit.specimens.iter().map(row)))
 }
 
 fn readings(readings: &[Reading]) -> String {
     let row = |(place, reading): (usize, &Reading)| {
-        let out = if reading.left_out.is_empty() { "" } else { " class=\"out\"" };
-        let delta_k = known(reading.delta_k_mpa_sqrt_m, |delta_k| PRINT.fixed(delta_k * per("MPa√m"), 2));
-        let growth = known(reading.da_dn_mm_per_cycle, |growth| PRINT.rate(growth, 3));
-        let by = if reading.method == "secant" { " secant" } else { "" };
-        let marks = quoted(&reading.marks.replace('_', " "));
-        let left_out =
-            if reading.left_out.is_empty() { String::new() } else { format!("left out: {}", quoted(&reading.left_out)) };
-        let remarks: Vec<String> =
-            [marks, by.trim().to_owned(), left_out].into_iter().filter(|words| !words.is_empty()).collect();
-        format!(
-            "<tr{out}><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{delta_k}</td><td class=\"n\">{growth}</td><td>{}</td></tr>\n",
-            place + 1,
+        let flags =
+            [quoted(&reading.marks.replace('_', " ")), if reading.method == "secant" { "secant".into() } else { "".into() }];
+        let excluded = Some(quoted(&reading.left_out)).filter(|why| !why.is_empty()).map(|why| format!("excluded: {why}"));
+        let flags: Vec<String> = flags.into_iter().filter(|words| !words.is_empty()).chain(excluded.clone()).collect();
+        let cells = vec![
+            (place + 1).to_string(),
             quoted(&reading.specimen),
             known(reading.cycles, |cycles| PRINT.whole(cycles)),
             known(reading.crack_length_mm, |length| PRINT.fixed(length * per("mm"), 3)),
-            remarks.join("; ")
-        )
+            known(reading.delta_k_mpa_sqrt_m, |delta_k| PRINT.fixed(delta_k * per("MPa√m"), 2)),
+            known(reading.da_dn_mm_per_cycle, |growth| PRINT.rate(growth, 3)),
+            flags.join("; "),
+        ];
+        let gray = |cell: String| if excluded.is_some() { format!("<span class=\"quiet\">{cell}</span>") } else { cell };
+        cells.into_iter().map(gray).collect::<Vec<String>>()
     };
+    let head =
+        [number("No."), text("Specimen"), number("N, cycles"), number("a, mm"), number("ΔK, MPa√m"), number("da/dN, mm/cycle")];
     format!(
-        "<h2 class=\"paged\">Readings and growth rates</h2>\n<p class=\"key\">N and a as read. ΔK and da/dN in the middle of the readings that the rate \
-         was taken from; –: no rate there. Marked readings are kept; those left out say why.</p>\n\
-         <div class=\"scroll\"><table class=\"readings\"><thead><tr><th class=\"n\">No.</th><th>Specimen</th><th class=\"n\">N, cycles</th><th class=\"n\">a, mm</th>\
-         <th class=\"n\">ΔK, MPa√m</th><th class=\"n\">da/dN, mm/cycle</th><th>Marks</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
-        readings.iter().enumerate().map(row).collect::<String>()
+        "<h2>Readings and growth rates</h2>\n<p class=\"key\">N and a as read. ΔK and da/dN at the middle of the readings of the rate; \
+         –: no rate. Flagged readings are used; excluded readings state the reason.</p>\n{}",
+        table("readings", &[&head[..], &[text("Flags")]].concat(), readings.iter().enumerate().map(row))
     )
 }
 
@@ -282,44 +247,35 @@ fn readings(readings: &[Reading]) -> String {
 pub fn of_laws(fit: &RatesRecord, rates: &[RateFitted], signed: &Signed) -> (String, String, String) {
     let law = fit.law.name();
     let name = if fit.material.is_empty() { law.to_owned() } else { format!("{}, {law}", fit.material) };
-    let mut page = letter(signed, &name, None);
-    page += &format!("<h1>Law of fatigue crack growth: {}</h1>\n", quoted(&name));
+    let mut page = letter(signed, None);
+    page += &format!("<h1>Fatigue crack growth law: {}</h1>\n", quoted(&name));
     let ratios: Vec<String> = fit.stress_ratios.iter().copied().map(|value| PRINT.short(value)).collect();
-    page += &format!(
-        "<div class=\"answer\"><div><h2>Law</h2><p class=\"big\">{}</p><p>fitted to {} rates</p></div><div><h2>Scatter of ln(da/dN)</h2>\
-         <p class=\"big\">{}</p><p>root mean square</p></div><div><h2>Valid for ΔK</h2><p class=\"big\">{} to {}</p>\
-         <p>MPa√m, R = {}</p></div></div>\n",
-        quoted(law),
-        PRINT.whole(fit.rates as f64),
-        known(fit.rms_log_rate, |rms| PRINT.fixed(rms, 3)),
-        PRINT.fixed(fit.delta_k_min_mpa_sqrt_m * per("MPa√m"), 2),
-        PRINT.fixed(fit.delta_k_max_mpa_sqrt_m * per("MPa√m"), 2),
-        ratios.join(", ")
-    );
-    let caption = "Figure 1. Growth rate over ΔK: rates (circles), the law over its range (lines), by stress ratio.";
+    let of_law = ("Law", quoted(law), format!("fitted to {} rates", PRINT.whole(fit.rates as f64)));
+    let scatter = known(fit.rms_log_rate, |rms| PRINT.fixed(rms, 3));
+    let scatter = ("Scatter of ln(da/dN)", scatter, "root mean square".to_owned());
+    let range = [fit.delta_k_min_mpa_sqrt_m, fit.delta_k_max_mpa_sqrt_m];
+    page += &cards("", [of_law, scatter, valid(range, &ratios.join(", "))]);
+    let caption = "da/dN against ΔK: measured rates (circles), fitted law at each stress ratio (lines).";
     page +=
         &format!("<div class=\"figs\">\n{}<div>{}</div></div>\n", figure(&law_svg(rates, CHART), caption, ""), constants(fit));
     page += &candidates(fit);
     page += &signatures(signed, "Tested by");
-    page += "<h2>Rates as they were read</h2>\n";
+    page += &software(&fit.version, None);
     page += &hashes(sources(&fit.sources).into_iter(), HASHES_MOST);
     let row = |(place, row): (usize, &RateFitted)| {
-        format!(
-            "<tr><td class=\"n\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-            place + 1,
+        vec![
+            (place + 1).to_string(),
             quoted(&row.series),
             PRINT.short(row.stress_ratio),
             PRINT.fixed(row.delta_k_mpa_sqrt_m * per("MPa√m"), 3),
             PRINT.rate(row.da_dn_mm_per_cycle, 3),
-            PRINT.rate(row.da_dn_fitted_mm_per_cycle, 3)
-        )
+            PRINT.rate(row.da_dn_fitted_mm_per_cycle, 3),
+        ]
     };
-    page += &format!(
-        "<h2 class=\"paged\">Rates</h2>\n<div class=\"scroll\"><table class=\"readings\"><thead><tr><th class=\"n\">No.</th><th>Test</th><th class=\"n\">R</th>\
-         <th class=\"n\">ΔK, MPa√m</th><th class=\"n\">da/dN, mm/cycle</th><th class=\"n\">by the law</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
-        rates.iter().enumerate().map(row).collect::<String>()
-    );
-    (format!("Law of fatigue crack growth, {name}"), page, fit.version.clone())
+    let head = ["R", "ΔK, MPa√m", "da/dN, mm/cycle", "fitted law, mm/cycle"].map(number);
+    let head = [&[number("No."), text("Test")][..], &head[..]].concat();
+    page += &format!("<h2>Rates</h2>\n{}", table("readings", &head, rates.iter().enumerate().map(row)));
+    (format!("Fatigue crack growth law, {name}"), page, fit.version.clone())
 }
 
 fn constants(fit: &RatesRecord) -> String {
@@ -336,16 +292,13 @@ fn constants(fit: &RatesRecord) -> String {
 
 fn candidates(fit: &RatesRecord) -> String {
     let row = |one: &CandidateRecord| {
-        let (name, left_out) = (one.law.name(), quoted(one.left_out.as_deref().unwrap_or("")));
-        format!(
-            "<tr><td>{name}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{left_out}</td></tr>\n",
+        vec![
+            one.law.name().to_owned(),
             known(one.rms_log_rate, |rms| PRINT.fixed(rms, 3)),
-            known(one.delta_aicc, |delta| PRINT.fixed(delta, 1))
-        )
+            known(one.delta_aicc, |delta| PRINT.fixed(delta, 1)),
+            quoted(one.left_out.as_deref().unwrap_or("")),
+        ]
     };
-    format!(
-        "<h2>Laws compared</h2>\n<div class=\"scroll\"><table><thead><tr><th>Law</th><th class=\"n\">scatter of ln(da/dN)</th><th class=\"n\">AICc over the least</th>\
-         <th>Left out because</th></tr></thead><tbody>\n{}</tbody></table></div>\n",
-        fit.candidates.iter().map(row).collect::<String>()
-    )
+    let head = [text("Law"), number("Scatter of ln(da/dN)"), number("ΔAICc"), text("Rejected because")];
+    format!("<h2>Laws compared</h2>\n{}", table("", &head, fit.candidates.iter().map(row)))
 }

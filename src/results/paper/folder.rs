@@ -1,4 +1,4 @@
-//! What a report is made of, read from the folder of a run or a fit.
+//! Source of a report, read from the folder of a run or a fit.
 
 use std::path::Path;
 
@@ -17,6 +17,8 @@ use perilife_base::error::{Error, InputError, Result, input};
 use perilife_base::input::Opened;
 use perilife_calibration::record::{LivesRecord, RatesRecord};
 
+const GIVE: &str = "give the results folder of `perilife predict` or `perilife calibrate`";
+
 /// A run or a fit with its tables.
 pub enum Source {
     /// Of `perilife predict`.
@@ -24,7 +26,7 @@ pub enum Source {
         /// `result.json`.
         run: Box<RunRecord>,
         tables: RunTables,
-        /// Its pictures that the tables do not say.
+        /// Its pictures that the tables cannot give.
         drawings: Drawings,
     },
     /// Of `perilife calibrate`, to readings.
@@ -44,8 +46,7 @@ pub enum Source {
 }
 
 /// Reads the folder; all that is read is added to `opened`.
-/// Errors: no folder; one that holds neither a run of cycles nor a fit; a file that is missing, cut off or not as it was written, by name, key and
-/// value.
+/// Errors: no folder; one without a run of cycles or a fit; a file that is missing, cut off or modified, by name, key and value.
 pub fn read(folder: &Path, opened: &Opened) -> Result<Source> {
     std::fs::read_dir(folder).map_err(|error| Error::file(folder, "cannot read the folder of a run", error))?;
     let files = Files { folder, opened };
@@ -55,8 +56,8 @@ pub fn read(folder: &Path, opened: &Opened) -> Result<Source> {
     if folder.join(FIT_FILE).is_file() {
         return files.fit();
     }
-    let problem = format!("holds no finished run and no fit ({RESULT_FILE} and {FIT_FILE} are missing)");
-    Err(input("DIR", folder.display(), problem, "give the --out folder of `perilife predict` or `perilife calibrate`"))
+    let problem = format!("contains no finished run and no fit ({RESULT_FILE} and {FIT_FILE} are missing)");
+    Err(input("DIR", folder.display(), problem, GIVE))
 }
 
 struct Files<'f> {
@@ -68,13 +69,8 @@ impl Files<'_> {
     fn run(&self) -> Result<Source> {
         let result = self.object(RESULT_FILE, "perilife predict")?;
         if result["life_cycles"].is_null() && result.get("peak_load_n").is_some() {
-            let problem = "holds a fracture scene, which has no life to report";
-            return Err(input(
-                "DIR",
-                self.folder.display(),
-                problem,
-                "give the --out folder of `perilife predict` or `perilife calibrate`",
-            ));
+            let problem = "contains a fracture scene, which has no life to report";
+            return Err(input("DIR", self.folder.display(), problem, GIVE));
         }
         let run: RunRecord = self.typed(&result, RESULT_FILE)?;
         if let Some(life) = run.life_cycles.filter(|life| *life < 0.0) {
@@ -112,7 +108,7 @@ impl Files<'_> {
     fn typed<R: DeserializeOwned>(&self, object: &Value, name: &str) -> Result<R> {
         serde_path_to_error::deserialize(object).map_err(|error| {
             let path = error.path().to_string();
-            let problem = format!("is not as it was written: {}", error.inner());
+            let problem = format!("was modified after the run: {}", error.inner());
             match object.pointer(&format!("/{}", path.replace('.', "/"))) {
                 Some(value) => self.bad(name, &path, value, &problem),
                 None => self.damaged(name, problem),
@@ -124,7 +120,7 @@ impl Files<'_> {
     fn table(&self, name: &str, result: &Value, by: &str) -> Result<Table> {
         let path = self.folder.join(name);
         if !path.is_file() {
-            return Err(self.damaged(name, format!("is missing beside {by}")));
+            return Err(self.damaged(name, format!("is missing; {by} lists it")));
         }
         let bytes = self.opened.read(&path, name)?;
         if let Some(entry) = listed(result, name) {
@@ -139,7 +135,7 @@ impl Files<'_> {
         let value: Value =
             serde_json::from_slice(&bytes).map_err(|error| self.damaged(name, format!("is cut off or damaged: {error}")))?;
         let is_object = value.is_object();
-        let refuse = || self.damaged(name, format!("is no object that `{command}` wrote"));
+        let refuse = || self.damaged(name, format!("is not a result of `{command}`"));
         is_object.then(|| metric_result(value)).ok_or_else(refuse)
     }
 

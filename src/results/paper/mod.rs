@@ -1,7 +1,6 @@
-//! A report that a laboratory signs: one HTML file with all that it shows, for paper and screens, of a run or a fit.
+//! The report of a run or a fit, to be printed and signed: one self-contained HTML file.
 //!
-//! It is made of what stands in the folder: `result.json` with `a_n.csv` and `crack_path.csv`, or `fit.json` with its tables. The pictures
-//! are those of the folder, drawn anew for the size of the page.
+//! Its source is the results folder; pictures are drawn again at the size of the page.
 
 mod answers;
 mod drawings;
@@ -9,10 +8,12 @@ mod fit;
 mod folder;
 mod part_through;
 mod prediction;
+mod signed;
 mod spectrum;
 
 pub use drawings::Drawings;
 pub use folder::{Source, read};
+pub use signed::Signed;
 
 use std::path::Path;
 
@@ -24,22 +25,13 @@ use perilife_base::error::Result;
 use perilife_base::input::Opened;
 use perilife_base::units::shown::told;
 
-/// What stands near the beginning of a report, and of no other file.
+/// Mark at the head of a report by which a later one may replace it.
 pub const SIGN: &str = "<meta name=\"generator\" content=\"perilife report\">";
 const STYLE: &str = include_str!("paper.css");
 /// Numbers of a report.
 const PRINT: Format = format::PRINT;
 /// Size of a chart in a report, px.
 const CHART: Size = Size { width: 330.0, height: 215.0, text: 10.5 };
-
-/// Who made the test or the computation, and when; `None` is printed as "not recorded".
-#[derive(Debug, Clone, Default)]
-pub struct Signed {
-    pub laboratory: Option<String>,
-    pub operator: Option<String>,
-    pub reviewer: Option<String>,
-    pub date: Option<String>,
-}
 
 /// The report of a run or a fit, in the units that are shown.
 pub fn html(source: &Source, signed: &Signed) -> String {
@@ -48,9 +40,10 @@ pub fn html(source: &Source, signed: &Signed) -> String {
         Source::Lives { fit, plate, tables } => fit::of_lives(fit, plate.as_ref(), tables, signed),
         Source::Laws { fit, rates } => fit::of_laws(fit, rates, signed),
     };
-    // The foot of a page stands in the style sheet: nothing there may end its text.
-    let plain: String = title.chars().filter(|c| c.is_alphanumeric() || " ,.-_".contains(*c)).take(90).collect();
-    let style = STYLE.replace("FOOT", &format!("perilife {version}, {plain}"));
+    // The page footer is text within the style sheet: no character may end it.
+    let number = signed.number_words().map_or_else(String::new, |number| number + ", ");
+    let plain: String = (number + &title).chars().filter(|c| c.is_alphanumeric() || " ,.-_/".contains(*c)).take(110).collect();
+    let style = STYLE.replace("FOOT", &format!("{plain}, perilife {version}"));
     let title = escaped(&title);
     let body = told(&body);
     format!(
@@ -60,8 +53,8 @@ pub fn html(source: &Source, signed: &Signed) -> String {
     )
 }
 
-/// Writes the report of what stands in `folder`; gives its bytes, and whether it went into a file.
-/// Errors: a folder without a whole run or fit; a file in the way.
+/// Writes the report of a results folder; returns its size in bytes and whether it went into a file.
+/// Errors: a folder without a whole run or fit; another file at `out`.
 pub fn write(folder: &Path, out: &Path, signed: &Signed) -> Result<(usize, bool)> {
     let opened = Opened::default();
     let source = read(folder, &opened)?;
@@ -72,17 +65,12 @@ pub fn write(folder: &Path, out: &Path, signed: &Signed) -> Result<(usize, bool)
     Ok((page.len(), is_file))
 }
 
-/// The commit of the program, where it is known.
-fn commit_words(commit: Option<&str>) -> String {
-    commit.map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())))
-}
-
-/// What is known, in words, else a dash.
+/// A value in words, or a dash.
 fn known(value: Option<f64>, words: impl FnOnce(f64) -> String) -> String {
     value.map_or_else(|| "–".to_owned(), words)
 }
 
-/// Text, or that nobody has recorded it.
+/// Text, or "not recorded".
 fn recorded(text: Option<&str>) -> String {
     match text.map(str::trim).filter(|text| !text.is_empty()) {
         Some(text) => quoted(text),
@@ -90,12 +78,12 @@ fn recorded(text: Option<&str>) -> String {
     }
 }
 
-/// Text as markup takes it, also between quotes.
+/// Text escaped for markup, also within quotes.
 fn quoted(text: &str) -> String {
     escaped(text).replace('"', "&quot;")
 }
 
-/// Text with the indices of its symbols lowered, as markup.
+/// Text as markup, with the subscripts of its symbols.
 fn prose(text: &str) -> String {
     const INDICES: [(&str, &str); 6] = [
         ("K_max", "K<sub>max</sub>"),
@@ -108,25 +96,78 @@ fn prose(text: &str) -> String {
     INDICES.iter().fold(quoted(text), |text, (plain, lowered)| text.replace(plain, lowered))
 }
 
-/// Laboratory, name of the report, dates.
-fn letter(signed: &Signed, name: &str, finished: Option<&str>) -> String {
-    let [laboratory, date, finished] = [signed.laboratory.as_deref(), signed.date.as_deref(), finished].map(recorded);
+/// Head of the report.
+fn letter(signed: &Signed, finished: Option<&str>) -> String {
+    let laboratory = recorded(signed.laboratory.as_deref());
+    let rows = [
+        ("Report No.", Some(recorded(signed.number_words().as_deref()))),
+        ("Customer", Some(recorded(signed.customer.as_deref()))),
+        ("Project", signed.project.as_deref().map(quoted)),
+        ("Reason for revision", signed.revision_reason.as_deref().map(quoted)),
+        ("Date of issue", Some(recorded(signed.date.as_deref()))),
+        ("Analyzed", finished.map(quoted)),
+    ];
+    let row = |(name, value): (&str, Option<String>)| Some(format!("<dt>{name}</dt><dd>{}</dd>", value?));
+    let rows: String = rows.into_iter().filter_map(row).collect();
+    format!("<header><div><p class=\"lab\">{laboratory}</p><p class=\"quiet\">Laboratory</p></div><dl>{rows}</dl></header>\n")
+}
+
+/// Three lines to sign on. No style sheet gives the number of pages to the text: it is written by hand, as signatures are.
+fn signatures(signed: &Signed, first: &str) -> String {
+    let line = |(what, who): (&str, &Option<String>)| {
+        format!("<div><span></span>{what}, date: {}</div>", who.as_deref().map_or_else(String::new, quoted))
+    };
+    let lines = [(first, &signed.operator), ("Reviewed by", &signed.reviewer), ("Approved by", &signed.approver)].map(line);
     format!(
-        "<header><div><p class=\"lab\">{laboratory}</p><p class=\"quiet\">Laboratory or office</p></div>\
-         <dl><dt>Report of</dt><dd>{}</dd><dt>Date</dt><dd>{date}</dd><dt>Computed</dt><dd>{finished}</dd></dl></header>\n",
-        quoted(name)
+        "<div class=\"sign\">{}</div>\n<p class=\"small\">Number of pages: <span class=\"fill\"></span> (numbered in the footer). \
+         Results apply only to the items described.</p>\n",
+        lines.concat()
     )
 }
 
-/// Three lines to sign on.
-fn signatures(signed: &Signed, first: &str) -> String {
-    let line = |what: &str, who: Option<&str>| format!("<div><span></span>{what}, date: {}</div>", recorded(who));
-    let [operator, reviewer] = [signed.operator.as_deref(), signed.reviewer.as_deref()];
+/// Statement on the program: version and where its validation is documented.
+fn software(version: &str, commit: Option<&str>) -> String {
+    let commit =
+        commit.map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())));
     format!(
-        "<div class=\"sign\">{}{}<div><span></span>Approved by, date</div></div>\n",
-        line(first, operator),
-        line("Checked by", reviewer)
+        "<p class=\"small quiet\">Software: perilife {}{commit}. Validation (predicted against measured lives of published tests): \
+         tests/VALIDATION.md of this version, repeated by `perilife validate`. Verification: tests/ACCURACY.md, `perilife verify`. \
+         Units: mm, MPa, MPa√m, mm/cycle. Inputs (SHA-256):</p>\n",
+        recorded(Some(version))
     )
+}
+
+/// Head of a column of a table, and the class of its cells.
+type Column = (&'static str, &'static str);
+
+const fn text(head: &'static str) -> Column {
+    (head, "")
+}
+
+/// Numbers are right-aligned.
+const fn number(head: &'static str) -> Column {
+    (head, " class=\"n\"")
+}
+
+/// A table; cells are markup.
+fn table(class: &str, head: &[Column], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let names: String = head.iter().map(|(name, class)| format!("<th{class}>{name}</th>")).collect();
+    let row = |cells: Vec<String>| {
+        let cells = head.iter().zip(cells).map(|((_, class), cell)| format!("<td{class}>{cell}</td>"));
+        format!("<tr>{}</tr>\n", cells.collect::<String>())
+    };
+    let rows: String = rows.map(row).collect();
+    format!(
+        "<div class=\"scroll\"><table class=\"{class}\"><thead><tr>{names}</tr></thead><tbody>\n{rows}</tbody></table></div>\n"
+    )
+}
+
+/// Cards side by side: title, answer, explanation; all are markup but the title.
+fn cards(class: &str, all: [(&str, String, String); 3]) -> String {
+    let card = |(title, big, below): (&str, String, String)| {
+        format!("<div><h2>{title}</h2><p class=\"big\">{big}</p><p>{below}</p></div>")
+    };
+    format!("<div class=\"answer {class}\">{}</div>\n", all.map(card).concat())
 }
 
 /// Rows of names and values; values are markup.
@@ -135,53 +176,30 @@ fn terms(rows: &[(&str, String)]) -> String {
     format!("<dl class=\"terms\">{}</dl>\n", rows.iter().map(row).collect::<String>())
 }
 
+/// Title of a section after the signatures.
+fn title(words: &str) -> String {
+    format!("<h1 class=\"sheet\">{words}</h1>\n")
+}
+
+/// A picture; the style sheet numbers it.
 fn figure(svg: &str, caption: &str, class: &str) -> String {
-    // Within HTML a drawing needs no name of its language.
+    // Within HTML an SVG needs no namespace.
     let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
     format!("<figure class=\"{class}\">{svg}<figcaption>{caption}</figcaption></figure>\n")
 }
 
-/// Pictures on the sheets behind the first, numbered on.
-struct Sheets<'d> {
-    drawings: &'d Drawings,
-    /// Number of the last figure.
-    last: usize,
-    has_begun: bool,
+/// A picture of the results folder at the width of the sheet; empty if the run has none.
+fn picture(drawings: &Drawings, name: &str, caption: &str) -> String {
+    drawings.get(name).map_or_else(String::new, |svg| figure(svg, caption, "wide"))
 }
 
-impl Sheets<'_> {
-    /// Behind the first sheet.
-    fn begin(drawings: &Drawings, last: usize) -> Sheets<'_> {
-        Sheets { drawings, last, has_begun: false }
-    }
-
-    /// Title of a section; the first one begins a sheet.
-    fn title(&mut self, words: &str) -> String {
-        let class = if self.has_begun { "sheet" } else { "sheet paged" };
-        self.has_begun = true;
-        format!("<h1 class=\"{class}\">{words}</h1>\n")
-    }
-
-    /// A drawing of the folder as wide as the sheet; nothing where the run has none.
-    fn picture(&mut self, name: &str, caption: &str) -> String {
-        let drawings = self.drawings;
-        drawings.get(name).map_or_else(String::new, |svg| self.figure(svg, caption))
-    }
-
-    /// A drawing with its number.
-    fn figure(&mut self, svg: &str, caption: &str) -> String {
-        self.last += 1;
-        figure(svg, &format!("Figure {}. {caption}.", self.last), "wide")
-    }
-}
-
-/// A sign with its word for those who do not see it.
+/// A symbol with its word for screen readers.
 fn mark(holds: Option<bool>) -> String {
     let (class, word, drawing) = match holds {
-        Some(true) => ("ok", "Holds", "<circle cx=\"9\" cy=\"9\" r=\"8\"/><path d=\"M5.2 9.2l2.6 2.7 5-5.6\"/>"),
-        None => ("note", "Remark", "<path d=\"M9 1.6L17 16H1z\"/><path d=\"M9 6.5v4.4M9 12.6v1.6\"/>"),
+        Some(true) => ("ok", "Passed", "<circle cx=\"9\" cy=\"9\" r=\"8\"/><path d=\"M5.2 9.2l2.6 2.7 5-5.6\"/>"),
+        None => ("note", "Caution", "<path d=\"M9 1.6L17 16H1z\"/><path d=\"M9 6.5v4.4M9 12.6v1.6\"/>"),
         Some(false) => {
-            ("bad", "Does not hold", "<path d=\"M5.8 1h6.4L17 5.8v6.4L12.2 17H5.8L1 12.2V5.8z\"/><path d=\"M6 6l6 6m0-6l-6 6\"/>")
+            ("bad", "Failed", "<path d=\"M5.8 1h6.4L17 5.8v6.4L12.2 17H5.8L1 12.2V5.8z\"/><path d=\"M6 6l6 6m0-6l-6 6\"/>")
         }
     };
     format!(
@@ -190,7 +208,7 @@ fn mark(holds: Option<bool>) -> String {
     )
 }
 
-/// Files with their hashes, at most so many.
+/// The first `most` files with their hashes.
 fn hashes<'f>(files: impl Iterator<Item = (&'f str, &'f str)>, most: usize) -> String {
     let line = |(name, hash): (&str, &str)| {
         let name = Path::new(name).file_name().map_or(name.into(), |last| last.to_string_lossy());
@@ -200,7 +218,7 @@ fn hashes<'f>(files: impl Iterator<Item = (&'f str, &'f str)>, most: usize) -> S
     let more = lines.len().saturating_sub(most);
     lines.truncate(most);
     if more > 0 {
-        lines.push(format!("and {more} more in the folder"));
+        lines.push(format!("{more} more files in the folder"));
     }
     if lines.is_empty() {
         lines.push(recorded(None));

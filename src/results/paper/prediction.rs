@@ -1,13 +1,13 @@
-//! The page of a run: life with its band, why it ends, whether it is valid, how wrong it may be as a solution, pictures, case, law, hashes.
+//! The report of a run: life with its band, failure mode, validity, numerical error, inspection interval, pictures, case, law, hashes.
 
 use serde_json::Value;
 
 use super::answers::quantile_words;
 use super::{
-    Drawings, PRINT, Sheets, Signed, answers, commit_words, figure, hashes, known, letter, mark, part_through, prose, quoted,
-    recorded, signatures, spectrum, terms,
+    Drawings, PRINT, Signed, answers, cards, figure, hashes, known, letter, mark, part_through, prose, quoted, recorded,
+    signatures, software, spectrum, table, terms, text,
 };
-use crate::band::interval_words;
+use crate::band::{every_words, interval_words};
 use crate::chart::Size;
 use crate::checks::{Check, Side, Validity, Verdict};
 use crate::curve::RunTables;
@@ -16,62 +16,49 @@ use crate::pictures::plate::{Plate, plate_svg};
 use crate::record::RunRecord;
 use perilife_growth::predict::StopReason;
 
-/// Conditions that do not hold and are printed, at the most.
-const CHECKS_MOST: usize = 5;
-/// Files whose hashes are printed, at the most.
+/// Largest number of files with printed hashes.
 const HASHES_MOST: usize = 5;
-/// Constants of a law that are printed, at the most.
+/// Largest number of printed constants of a law.
 const CONSTANTS_MOST: usize = 8;
-const PLATE: Size = Size { width: 365.0, height: 262.0, text: 10.5 };
+const PLATE: Size = Size { width: 365.0, height: 236.0, text: 10.5 };
 /// Size of the charts beside it, px.
-const CHART: Size = Size { width: 315.0, height: 130.0, text: 10.0 };
-/// Figures of the first sheet.
-const FIGURES: usize = 3;
+const CHART: Size = Size { width: 315.0, height: 118.0, text: 10.0 };
 
-/// Title, page and version of the program that ran.
+/// Title, page, and version of the program that ran.
 pub fn body(run: &RunRecord, tables: &RunTables, drawings: &Drawings, signed: &Signed) -> (String, String, String) {
     let (name, plate) = (&run.name, run.plate.as_ref());
-    let mut page = letter(signed, name, run.made_by.finished.as_deref());
+    let mut page = letter(signed, run.made_by.finished.as_deref());
     page += &format!("<h1>Crack growth life: {}</h1>\n", quoted(name));
     page += &format!("<p class=\"lead\">{}</p>\n", lead(plate));
     page += &answer(run, tables);
+    page += &interval(run);
     page += &figures(run, tables, plate);
     let law = terms(&law(run));
     page += &format!(
-        "<div class=\"cols\"><div><h2>As understood</h2>{}</div><div><h2>Law</h2>{law}</div></div>\n",
+        "<div class=\"cols\"><div><h2>Input</h2>{}</div><div><h2>Growth law</h2>{law}</div></div>\n",
         terms(&understood(run, plate))
     );
     page += &checks(run);
     page += &messages(&run.warnings);
-    page += &signatures(signed, "Computed by");
-    page += &format!(
-        "<p class=\"small quiet\">perilife {}{}. Units: mm, MPa, MPa√m, mm/cycle. Input and law as they were read:</p>\n",
-        quoted(&run.version),
-        commit_words(run.made_by.commit.as_deref())
-    );
+    page += &signatures(signed, "Prepared by");
+    page += &software(&run.version, run.made_by.commit.as_deref());
     page += &hashes(run.made_by.inputs.iter().map(|file| (&*file.file, &*file.sha256)), HASHES_MOST);
-    let mut sheets = Sheets::begin(drawings, FIGURES);
-    page += &spectrum::section(run, &mut sheets);
-    page += &part_through::section(run, tables, &mut sheets);
-    page += &answers::sections(run, &mut sheets);
+    page += &spectrum::section(run, drawings);
+    page += &part_through::section(run, tables, drawings);
+    page += &answers::sections(run, drawings);
     (format!("Crack growth life, {name}"), page, run.version.clone())
 }
 
 fn lead(plate: Option<&Plate>) -> String {
     match plate {
         Some(plate) if !plate.specimen.is_empty() => {
-            format!("{}; {}.", quoted(&capital(&plate.specimen)), quoted(&plate.load))
+            format!("{}; {}.", quoted(&plate.specimen), quoted(&plate.load))
         }
-        _ => "Plate and load are not recorded in this result.".to_owned(),
+        _ => "Plate and load: not recorded.".to_owned(),
     }
 }
 
-fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-/// Life, end, validity.
+/// The answer: life, end of analysis, validity with the numerical error.
 fn answer(run: &RunRecord, tables: &RunTables) -> String {
     let [_, sentence] = end_words(run.stop_reason);
     let holds = match run.verdict_kind {
@@ -82,25 +69,57 @@ fn answer(run: &RunRecord, tables: &RunTables) -> String {
     let error = match (run.error_estimate_percent, &run.no_error_estimate) {
         (Some(percent), _) => {
             let path = run.path_error_estimate_mm.filter(|path| *path > 0.0);
-            let path = path.map_or_else(String::new, |path| format!(", {} mm of the path", PRINT.short(path)));
-            format!("Numerical error at most {} % of life{path}", PRINT.short(percent))
+            let path = path.map_or_else(String::new, |path| format!(", {} mm of path", PRINT.short(path)));
+            format!("Numerical error ≤ {} % of life{path} (estimate)", PRINT.short(percent))
         }
-        (None, Some(why)) => format!("Numerical error not stated: {}", quoted(why)),
+        (None, Some(why)) => format!("Numerical error not estimated: {}", quoted(why)),
         (None, None) => "Numerical error not estimated".to_owned(),
     };
     format!(
-        "<div class=\"answer\"><div>{}</div><div><h2>It ends because</h2><p class=\"why\">{sentence}</p><p>{}</p></div>\
-         <div><h2>Is it valid?</h2><p>{} {}</p><p>{error}</p></div></div>\n",
+        "<div class=\"answer\"><div>{}</div><div><h2>End of analysis</h2><p class=\"why\">{}</p><p>{}</p></div>\
+         <div><h2>Validity</h2><p>{} {}</p><p>{error}</p></div></div>\n",
         life(run),
+        prose(sentence),
         end_length(run, tables),
         mark(holds),
         recorded(Some(&run.verdict)),
     )
 }
 
+/// Card of the inspection interval, that of the fleet where there is one; empty without inspections.
+fn interval(run: &RunRecord) -> String {
+    let Some(inspection) = &run.inspection else { return String::new() };
+    let per_pass = run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass);
+    let of_fleet = run.fleet.as_ref().and_then(|fleet| fleet.inspections.as_ref()?.interval_cycles);
+    let every = of_fleet.map_or_else(|| interval_words(inspection, per_pass), |every| every_words(every, None, per_pass));
+    let rule = if inspection.has_band || of_fleet.is_some() { "5 % remaining life" } else { "remaining life" };
+    let [from, factor] = [inspection.crack_length_mm, inspection.factor].map(|value| PRINT.short(value));
+    let pod = run.inspections.as_ref().map_or_else(String::new, |found| {
+        format!("POD: a50 = {} mm, a90 = {} mm", PRINT.short(found.a50_mm), PRINT.short(found.a90_mm))
+    });
+    let (left, band) = match inspection.quantiles() {
+        Some(all) => {
+            let [low, middle, high] = all.map(|cycles| PRINT.by_band(cycles, &all));
+            (middle, format!("median; 90 % band: {low} to {high} cycles"))
+        }
+        None => {
+            (PRINT.by_error(inspection.remaining_cycles, run.error_estimate_percent), "scatter band not available".to_owned())
+        }
+    };
+    let least = if inspection.life_is_lower_bound { "≥ " } else { "" };
+    cards(
+        "interval",
+        [
+            ("Inspection interval", every, format!("{rule} / {factor}")),
+            ("Detectable crack length", format!("{from} mm"), pod),
+            ("Remaining life from there", format!("{least}{left} <small>cycles</small>"), band),
+        ],
+    )
+}
+
 fn end_length(run: &RunRecord, tables: &RunTables) -> String {
     match (run.leading_crack(), tables.rows.last()) {
-        (Some((tip, [_, last])), _) => format!("crack of tip {tip}: {} mm long", PRINT.fixed(last, 1)),
+        (Some((tip, [_, last])), _) => format!("governing crack (tip {tip}): {} mm", PRINT.fixed(last, 1)),
         (None, Some(row)) => format!("crack length {} mm", PRINT.fixed(row.crack_length_mm, 1)),
         (None, None) => String::new(),
     }
@@ -109,59 +128,61 @@ fn end_length(run: &RunRecord, tables: &RunTables) -> String {
 fn life(run: &RunRecord) -> String {
     let card = |title: &str, value: &str, below: &str| format!("<h2>{title}</h2><p class=\"big\">{value}</p><p>{below}</p>");
     if let Some(refused) = &run.refused {
-        return card("Life", "none that counts", &quoted(refused));
+        return card("Life", "no valid life", &quoted(refused));
     }
     let Some(life) = run.life_cycles else { return card("Life", "unlimited", "no crack grows under this load") };
     let title = match run.stop_reason {
-        StopReason::EnteredHole => "Cycles to the hole",
-        StopReason::CrackLengthReached | StopReason::CrackDepthReached | StopReason::RunOut => "Cycles to what was asked for",
-        // Cut off by the model, not by the plate.
+        StopReason::EnteredHole => "Cycles until the crack enters the hole",
+        StopReason::CrackLengthReached => "Cycles to the crack length limit",
+        StopReason::CrackDepthReached => "Cycles to the crack depth limit",
+        StopReason::RunOut => "Cycles to the cycle limit (run-out)",
+        // The model stopped, not the plate.
         StopReason::LigamentUnresolved | StopReason::NoGrowth | StopReason::NoConvergence => {
-            "Cycles to where the computation ends"
+            "Cycles computed (analysis stopped early)"
         }
-        _ if run.life_is_lower_bound => "Life, at least",
+        _ if run.life_is_lower_bound => "Life (lower bound)",
         _ => "Life",
     };
     let cycles = |value: &str| format!("{value} <small>cycles</small>");
     if let Some(fleet) = &run.fleet {
         let [low, middle, high] = quantile_words(&fleet.life_cycles);
         let (plates, run) = (PRINT.whole(fleet.plates as f64), PRINT.whole(life));
-        let below = format!("median {middle}, 95 % {high} cycles, {plates} plates; this run, one plate: {run}");
-        return card("Life of the fleet, 5 % of plates", &cycles(&low), &below);
+        let below = format!("median {middle}, 95 % {high} cycles, {plates} plates; nominal inputs: {run}");
+        return card("Fleet life, 5 % of plates", &cycles(&low), &below);
     }
     if let Some(band) = &run.band {
         let [low, middle, high] = band.cycles().map(|value| PRINT.by_band(value, &band.cycles()));
-        let below = format!("9 of 10 plates: {low} to {high}; the fitted constants alone give {}", PRINT.whole(life));
+        let below = format!("90 % band: {low} to {high} cycles; fitted law alone: {}", PRINT.whole(life));
         return card(&format!("{title}, median"), &cycles(&middle), &below);
     }
     let below = match &run.no_band {
-        Some(why) => format!("no band of plates: {}", quoted(why)),
-        None => "no band of plates".to_owned(),
+        Some(why) => format!("scatter band not available: {}", quoted(why)),
+        None => "scatter band not available".to_owned(),
     };
     card(title, &cycles(&PRINT.by_error(life, run.error_estimate_percent)), &below)
 }
 
 fn figures(run: &RunRecord, tables: &RunTables, plate: Option<&Plate>) -> String {
-    let band = if tables.band.is_some() { "; band: 9 of 10 plates" } else { "" };
+    let band = if tables.band.is_some() { " (90 % band shaded)" } else { "" };
     let mut figures = match plate {
         Some(plate) => figure(
             &plate_svg(plate, tables, PLATE),
-            "Figure 1. Plate to scale, load, first crack (black) and its way, coloured by cycles; marks at 25, 50, 75 and 90 % of the life.",
+            "Plate, load, initial crack (black) and crack path, colored by cycles; marks at 25, 50, 75 and 90 % of life.",
             "tall",
         ),
-        None => format!("<p class=\"tall\">Figure 1, the plate: {}</p>", recorded(None)),
+        None => format!("<p class=\"tall\">Plate: {}</p>", recorded(None)),
     };
     if tables.rows.len() < 2 {
-        return format!("<div class=\"figs run\">\n{figures}<p>Figures 2 and 3: no crack grew.</p></div>\n");
+        return format!("<div class=\"figs run\">\n{figures}<p>No crack grew.</p></div>\n");
     }
-    figures += &figure(&a_n_svg(run, tables, CHART), &format!("Figure 2. Crack length over cycles{band}."), "");
+    figures += &figure(&a_n_svg(run, tables, CHART), &format!("Crack length against cycles{band}."), "");
     figures += &match k_svg(run, tables, CHART) {
         Some(svg) => {
-            let hatched = if svg.contains("of the law") { "; hatched: outside the ΔK of the law" } else { "" };
-            let over = if run.leading_crack().is_some() { "growth of the tips" } else { "crack length" };
-            figure(&svg, &format!("Figure 3. K at maximum load over {over}{hatched}."), "")
+            let hatched = if run.law.range().is_some() { " (hatched where outside the tested ΔK)" } else { "" };
+            let over = if run.leading_crack().is_some() { "crack extension of each tip" } else { "crack length" };
+            figure(&svg, &format!("K at maximum load against {over}{hatched}."), "")
         }
-        None => format!("<p>Figure 3, K over crack length: {}; bonds drive the crack by their own strain.</p>", recorded(None)),
+        None => format!("<p>K against crack length: {} (growth driven by bond failure).</p>", recorded(None)),
     };
     format!("<div class=\"figs run\">\n{figures}</div>\n")
 }
@@ -169,7 +190,9 @@ fn figures(run: &RunRecord, tables: &RunTables, plate: Option<&Plate>) -> String
 fn understood(run: &RunRecord, plate: Option<&Plate>) -> Vec<(&'static str, String)> {
     let two_decimals = |length: f64| PRINT.short((100.0 * length).round() / 100.0);
     let lengths = match run.leading_crack() {
-        Some((tip, [first, last])) => format!("of tip {tip}: {} mm to {} mm", two_decimals(first), two_decimals(last)),
+        Some((tip, [first, last])) => {
+            format!("{} mm to {} mm (governing crack, tip {tip})", two_decimals(first), two_decimals(last))
+        }
         None => {
             let [first, last] =
                 [run.crack_length_initial_mm, run.crack_length_final_mm].map(|length| known(length, two_decimals));
@@ -181,7 +204,7 @@ fn understood(run: &RunRecord, plate: Option<&Plate>) -> Vec<(&'static str, Stri
         ("Material", plate.map_or_else(|| recorded(None), |plate| prose(&plate.material))),
         ("Load", recorded(plate.map(|plate| &*plate.load))),
         ("Crack length", lengths),
-        ("Computed on", model(run)),
+        ("Method", model(run)),
     ];
     let given: Vec<String> = run.made_by.overrides.iter().map(|one| quoted(one)).collect();
     if !given.is_empty() {
@@ -190,28 +213,28 @@ fn understood(run: &RunRecord, plate: Option<&Plate>) -> Vec<(&'static str, Stri
     rows
 }
 
-/// By what its K was found; of a crack that is through after a part of its life both methods, with their shares of it.
+/// Method of K; of a part-through crack with breakthrough both methods, with their shares of the life.
 fn model(run: &RunRecord) -> String {
     let text = |key: &str| run.model.get(key).and_then(Value::as_str);
     let points = PRINT.whole(run.points as f64);
     match text("method") {
         Some("handbook") => {
-            let formula = format!("formula: {}", recorded(text("formula")));
+            let formula = format!("handbook K: {}", recorded(text("formula")));
             let through = run.part_through.as_ref().and_then(|found| found.cycles_at_break_through).zip(run.life_cycles);
             match through.filter(|(through, life)| through < life && run.points > 0) {
                 Some((through, life)) => {
                     let share = |cycles: f64| PRINT.fixed(100.0 * cycles / life, 0);
                     let (before, behind) = (share(through), share(life - through));
-                    format!("{formula} ({before} % of the life), then {points} nodes, element-free Galerkin ({behind} %)")
+                    format!("{formula} ({before} % of life), then {points} nodes, element-free Galerkin ({behind} %)")
                 }
                 None => formula,
             }
         }
-        Some("element_free_galerkin") => format!("{points} nodes at the end (element-free Galerkin)"),
+        Some("element_free_galerkin") => format!("element-free Galerkin, {points} nodes at the end of the analysis"),
         Some(method) => {
             let spacing = run.model.get("spacing_mm").and_then(Value::as_f64);
             let spacing = known(spacing, |spacing| PRINT.short(spacing));
-            format!("{points} points, {spacing} mm apart ({})", quoted(method))
+            format!("{}, {points} points, spacing {spacing} mm", quoted(method))
         }
         None => recorded(None),
     }
@@ -224,13 +247,16 @@ fn law(run: &RunRecord) -> Vec<(&'static str, String)> {
         let error = law
             .rate_at_pivot_relative_error
             .map_or_else(String::new, |error| format!(" ± {} %", PRINT.significant(100.0 * error, 2, f64::round)));
-        rows.push(("Growth rate", format!("{} mm/cycle{error} at ΔK {} MPa√m", PRINT.rate(rate, 3), PRINT.fixed(pivot, 1))));
+        rows.push((
+            "Crack growth rate",
+            format!("{} mm/cycle{error} at ΔK {} MPa√m", PRINT.rate(rate, 3), PRINT.fixed(pivot, 1)),
+        ));
     }
     let exponent = law.paris_m.or(law.p);
     if let Some(c) = law.paris_c_used_mm_per_cycle.or(law.paris_c_mm_per_cycle) {
-        rows.push(("C as used", PRINT.level(c, exponent, 4)));
+        rows.push(("Paris constant C", PRINT.level(c, exponent, 4)));
     }
-    rows.extend(exponent.map(|m| ("Exponent m", PRINT.with_error(m, law.paris_m_error))));
+    rows.extend(exponent.map(|m| ("Paris exponent m", PRINT.with_error(m, law.paris_m_error))));
     let of_record = law.record.as_ref().and_then(|record| serde_json::to_value(&record.fatigue).ok());
     let constants = law.constants_si.as_ref().or(of_record.as_ref()).and_then(Value::as_object);
     for (key, value) in constants.into_iter().flatten().take(CONSTANTS_MOST) {
@@ -243,52 +269,58 @@ fn law(run: &RunRecord) -> Vec<(&'static str, String)> {
         rows.push(("Constant", format!("{} {value}", quoted(key))));
     }
     let range = |[low, high]: [f64; 2]| format!("ΔK {} to {} MPa√m", PRINT.fixed(low, 1), PRINT.fixed(high, 1));
-    rows.push(("Calibrated", law.range().map_or_else(|| recorded(None), range)));
+    rows.push(("Tested ΔK range", law.range().map_or_else(|| recorded(None), range)));
     let specimens = run.band.as_ref().map(|band| {
         let assumed = if band.assumed_scatter { ", scatter assumed" } else { "" };
         format!("{} specimen{}{assumed}", band.specimens, if band.specimens == 1 { "" } else { "s" })
     });
     rows.push((
-        "From",
+        "Source",
         match &*law.source {
-            "fitted" => specimens.unwrap_or_else(|| "a fit; number of specimens not recorded".to_owned()),
-            "inline" => "constants given in the case".to_owned(),
+            "fitted" => specimens.unwrap_or_else(|| "fitted law; number of specimens not recorded".to_owned()),
+            "inline" => "constants entered by the user".to_owned(),
             other => recorded(Some(other)),
         },
     ));
-    if let Some(inspection) = &run.inspection {
-        let interval = interval_words(inspection, run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass));
-        let from = PRINT.short(inspection.crack_length_mm);
-        rows.push(("Inspect every", format!("{interval}, from a crack of {from} mm")));
-    }
     rows
 }
 
-/// Conditions that do not hold, at most five, and the names of those that do.
+/// All checks: those that did not pass with effect and action, then the names of those that passed.
 fn checks(run: &RunRecord) -> String {
     let is_open = |check: &&Check| check.verdict != Verdict::Passed;
     let open: Vec<&Check> = run.checks.iter().filter(is_open).collect();
     let row = |check: &&Check| {
         let holds = if check.verdict == Verdict::Failed { Some(false) } else { None };
         let (words, remedy) = (prose(&check.words), quoted(check.remedy.as_deref().unwrap_or("")));
-        format!("<tr><td>{} {words}</td><td>{}</td><td>{remedy}</td></tr>\n", mark(holds), effect(check))
+        vec![format!("{} {words}", mark(holds)), effect(check), remedy]
     };
-    let mut rows: String = open.iter().take(CHECKS_MOST).map(row).collect();
-    if open.len() > CHECKS_MOST {
-        rows += &format!("<tr><td colspan=\"3\">and {} more in result.json</td></tr>\n", open.len() - CHECKS_MOST);
-    }
-    let held = run.checks.iter().filter(|check| !is_open(check));
-    let names: Vec<String> = held.map(|check| quoted(&check.name.replace('_', " "))).collect();
-    if !names.is_empty() {
-        rows += &format!("<tr><td colspan=\"3\">{} holds: {}</td></tr>\n", mark(Some(true)), names.join(", "));
-    }
-    format!(
-        "<h2>Is it valid?</h2>\n<div class=\"scroll\"><table class=\"checks\"><thead><tr><th>What the life rests on</th><th>Computed life</th><th>What to do</th></tr></thead><tbody>\n\
-         {rows}</tbody></table></div>\n"
-    )
+    let open = match open.as_slice() {
+        [] => String::new(),
+        rows => table("checks", &["Check", "Effect on the life", "Action"].map(text), rows.iter().map(row)),
+    };
+    let passed = run.checks.iter().filter(|check| !is_open(check));
+    let names: Vec<String> = passed.map(title_of).collect();
+    let passed = match names.as_slice() {
+        [] => String::new(),
+        names => format!("<p class=\"small\">{} Passed: {}</p>\n", mark(Some(true)), names.join(", ")),
+    };
+    format!("<h2>Validity</h2>\n{open}{passed}")
 }
 
-/// Every message of the run, as the console has them.
+/// What a check that passed has checked.
+fn title_of(check: &Check) -> String {
+    match &*check.name {
+        "lack_of_fit" => "fit quality".to_owned(),
+        "extrapolation_below" => "ΔK range (low)".to_owned(),
+        "extrapolation_above" => "ΔK range (high)".to_owned(),
+        "part_through_factors" => "accuracy of K".to_owned(),
+        "part_through_range" => "range of K".to_owned(),
+        "e647_size" => "specimen size (E647)".to_owned(),
+        other => quoted(&other.replace('_', " ")),
+    }
+}
+
+/// Every message of the run.
 fn messages(warnings: &[String]) -> String {
     let lines: String = warnings.iter().map(|line| format!("<li>{}</li>\n", prose(line))).collect();
     if lines.is_empty() { lines } else { format!("<h2>Messages</h2>\n<ul class=\"small\">\n{lines}</ul>\n") }
@@ -296,14 +328,14 @@ fn messages(warnings: &[String]) -> String {
 
 fn effect(check: &Check) -> String {
     let side = match check.side {
-        Some(Side::Conservative) => "too short",
-        Some(Side::NonConservative) => "too long",
-        Some(Side::Either) => "too long or too short",
+        Some(Side::Conservative) => "conservative",
+        Some(Side::NonConservative) => "non-conservative",
+        Some(Side::Either) => "either direction",
         None => "",
     };
     match check.effect_percent {
         Some(percent) => format!("{} %, {side}", PRINT.short((10.0 * percent.abs()).round() / 10.0)),
-        None if side.is_empty() => "not known".to_owned(),
-        None => format!("not known, {side}"),
+        None if side.is_empty() => "unknown".to_owned(),
+        None => format!("{side} (size unknown)"),
     }
 }

@@ -1,4 +1,4 @@
-//! `a_n.svg` and `k.svg` of a run.
+//! Pictures `a_n.svg` and `k.svg` of a run.
 
 use crate::axis::Axis;
 use crate::chart::{COLOURS, COMPUTED, Frame, SECOND, Size};
@@ -9,47 +9,47 @@ use perilife_base::monotone::Monotone;
 use perilife_growth::predict::StopReason;
 use perilife_plate::specimen::Point;
 
-/// Colour of K at the deepest point of a crack that is not through.
+/// Color of K at the deepest point of a part-through crack.
 const THIRD: &str = COLOURS[2];
-/// Share of an area that the band of the specimens covers with its colour.
+/// Opacity of the scatter band.
 const BAND: f64 = 0.18;
-/// Parts of the cubic between two rows.
+/// Segments of the cubic between two rows.
 const PARTS: usize = 8;
-/// Rows from which a curve is dense enough without them.
+/// Number of rows from which a polyline is smooth enough.
 const DENSE: usize = 200;
 
-/// Percent of the rows whose K counts as usual, and times that value up to which K is drawn.
+/// Percentile of K, and its multiple up to which K is drawn.
 const USUAL_PERCENT: usize = 90;
 /// See [`USUAL_PERCENT`].
 const BEYOND: f64 = 10.0;
 
-/// Why a run ended, in the words of a picture and as a sentence.
+/// Why a run ended: label of a picture, and at length.
 pub fn end_words(reason: StopReason) -> [&'static str; 2] {
     match reason {
-        StopReason::Toughness => ["fracture", "the plate fractures"],
-        StopReason::NetSectionYield => ["net section yields", "the remaining section yields throughout"],
-        StopReason::Severed => ["severed", "the plate is in two"],
-        StopReason::LeftPlate => ["at the rim", "the crack has reached the rim"],
-        StopReason::EnteredHole => ["into the hole", "the crack runs into a hole"],
-        StopReason::CracksJoined => ["cracks join", "the cracks have joined"],
-        StopReason::CrackLengthReached => ["length asked for", "the crack has the length that was asked for"],
-        StopReason::CrackDepthReached => ["depth asked for", "the crack has the depth that was asked for"],
-        StopReason::BrokenThrough => ["through the thickness", "the crack has grown through the thickness"],
-        StopReason::RequiredStrength => ["required strength", "the plate no longer bears the load that it has to"],
-        StopReason::RunOut => ["cycles asked for", "the cycles that were asked for are over"],
+        StopReason::Toughness => ["fracture", "fracture: toughness K_c reached"],
+        StopReason::NetSectionYield => ["net-section yield", "net-section yield"],
+        StopReason::Severed => ["separation", "complete separation"],
+        StopReason::LeftPlate => ["at the edge", "the crack reached the edge"],
+        StopReason::EnteredHole => ["at the hole", "the crack entered a hole"],
+        StopReason::CracksJoined => ["link-up", "the cracks linked up"],
+        StopReason::CrackLengthReached => ["length limit", "crack length limit reached"],
+        StopReason::CrackDepthReached => ["depth limit", "crack depth limit reached"],
+        StopReason::BrokenThrough => ["breakthrough", "breakthrough"],
+        StopReason::RequiredStrength => ["required strength", "residual strength fell below the required strength"],
+        StopReason::RunOut => ["run-out", "cycle limit reached (run-out)"],
         StopReason::NothingAges => ["no growth", "no crack grows"],
-        StopReason::LigamentUnresolved => ["ligament not resolved", "the rest of the section is less than a spacing wide"],
-        StopReason::NoGrowth => ["stands still", "no tip grew any more, though bonds went on breaking"],
-        StopReason::NoConvergence => ["no convergence", "the equations could not be solved any further"],
+        StopReason::LigamentUnresolved => ["ligament not resolved", "ligament smaller than the point spacing"],
+        StopReason::NoGrowth => ["no growth", "bonds broke without crack growth"],
+        StopReason::NoConvergence => ["no convergence", "the solver did not converge"],
     }
 }
 
-/// Whether lengths are told by tip: a plate with several, whose sum is nobody's crack.
+/// Whether lengths are drawn by tip: the sum over several cracks is the length of none.
 fn by_tip(run: &RunRecord, tables: &RunTables) -> bool {
     tables.tips.len() > 1 && run.tips.iter().any(|tip| tip.crack.is_some())
 }
 
-/// The curves of a chart over cycles: length at every row, mm, and whether it ends the life.
+/// The curves of a chart against cycles: length at every row, mm, and whether its tip governs.
 fn lengths(run: &RunRecord, tables: &RunTables) -> Vec<(Vec<f64>, bool)> {
     if !by_tip(run, tables) {
         return vec![(tables.rows.iter().map(|row| row.crack_length_mm).collect(), true)];
@@ -83,7 +83,7 @@ pub(super) fn parts(pixels: f64, each: f64) -> f64 {
     (pixels / each).clamp(2.0, 6.0)
 }
 
-/// Colours of the curves of the tips, one for those that grew alike.
+/// Colors of the curves of the tips; tips with equal growth share one.
 fn colours(tables: &RunTables) -> Vec<&'static str> {
     let ends: Vec<f64> = tables.tips.iter().map(|tip| tip.growth_mm.last().copied().unwrap_or(0.0)).collect();
     let near = 0.02 * ends.iter().fold(0.0, |a: f64, b| a.max(*b));
@@ -93,7 +93,7 @@ fn colours(tables: &RunTables) -> Vec<&'static str> {
     (0..ends.len().max(1)).map(|tip| COLOURS[if ends.is_empty() { 0 } else { place(tip) } % COLOURS.len()]).collect()
 }
 
-/// Names of the tips whose curves end within a fiftieth of the chart of each other, so that both could not be told apart.
+/// Labels of the tips; curves that end within 2 % of the chart of each other share one.
 fn tips_together(ends: &[(usize, Point)], spans: Point, colours: &[&'static str]) -> Vec<(String, Point, &'static str)> {
     let mut groups: Vec<(Vec<usize>, Point)> = Vec::new();
     for (tip, end) in ends {
@@ -110,7 +110,7 @@ fn tips_together(ends: &[(usize, Point)], spans: Point, colours: &[&'static str]
     groups.into_iter().map(|(tips, end)| (name(&tips), end, colours[tips[0]])).collect()
 }
 
-/// Largest distance of points along both axes.
+/// Extent of points along both axes.
 fn spans(points: &[Point]) -> Point {
     [0, 1].map(|axis| {
         let values = || points.iter().map(|point| point[axis]);
@@ -118,11 +118,11 @@ fn spans(points: &[Point]) -> Point {
     })
 }
 
-/// Crack length over cycles: band of the specimens where there is one, curve, and a cross at the end with the reason.
+/// Crack length against cycles: scatter band if any, curve, and a cross at the end with the reason.
 pub fn a_n_svg(run: &RunRecord, tables: &RunTables, size: Size) -> String {
     let [_, sentence] = end_words(run.stop_reason);
-    let name = if by_tip(run, tables) { "Growth of each tip" } else { "Crack length" };
-    a_n(run, tables, size).finish(&format!("{name} in mm over cycles to {:.0}; it ends because {sentence}", tables.life()))
+    let name = if by_tip(run, tables) { "Crack extension of each tip" } else { "Crack length" };
+    a_n(run, tables, size).finish(&format!("{name} in mm against cycles to {:.0}; end of analysis: {sentence}", tables.life()))
 }
 
 /// The same with a dot on every curve that follows the cycles.
@@ -148,7 +148,7 @@ fn a_n(run: &RunRecord, tables: &RunTables, size: Size) -> Frame {
         Axis::linear_in(all_lengths.into_iter(), parts(size.height, 45.0)),
     ];
     let is_by_tip = curves.len() > 1;
-    let names = ["Cycles N", if is_by_tip { "Growth of each tip, mm" } else { "Crack length a, mm" }];
+    let names = ["Cycles N", if is_by_tip { "Crack extension of each tip, mm" } else { "Crack length a, mm" }];
     let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 9 } else { 0 });
     for (lengths, leads) in &curves {
         if let Some(band) = tables.band.as_ref().filter(|_| *leads) {
@@ -160,10 +160,7 @@ fn a_n(run: &RunRecord, tables: &RunTables, size: Size) -> Frame {
         run.plastic_zone.as_ref().and_then(|zone| Some((zone.too_large_from_mm?, zone))).filter(|_| !is_by_tip)
     {
         let begins = zone.too_large_to_mm;
-        frame.limit(
-            begins.unwrap_or(from),
-            if begins.is_some() { "small-scale yielding begins" } else { "small-scale yielding ends" },
-        );
+        frame.limit(begins.unwrap_or(from), if begins.is_some() { "LEFM valid from here" } else { "LEFM valid up to here" });
     }
     let lines: Vec<Vec<Point>> = curves.iter().map(|(lengths, _)| smooth(&cycles, lengths)).collect();
     let colours = colours(tables);
@@ -187,7 +184,7 @@ fn a_n(run: &RunRecord, tables: &RunTables, size: Size) -> Frame {
     frame
 }
 
-/// K_I and K_II of every tip at maximum load over crack length; `None` where no K was read.
+/// `k.svg`: K_I and K_II of every tip at maximum load against crack length; `None` if no K was computed.
 pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> {
     let is_by_tip = by_tip(run, tables);
     let length: Vec<f64> = tables.rows.iter().map(|row| row.crack_length_mm).collect();
@@ -195,7 +192,7 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
     let points = |tip: usize, mode: usize| -> Vec<Point> {
         along(tip).iter().zip(&tables.tips[tip].factors).map(|(length, factors)| [*length, factors[mode]]).collect()
     };
-    // Tips of a standard specimen are alike: the first stands for both.
+    // Tips of a standard specimen are equal by symmetry.
     let tips: Vec<usize> = (0..if is_by_tip { tables.tips.len() } else { 1.min(tables.tips.len()) }).collect();
     let known = |point: &Point| point.iter().all(|value| value.is_finite());
     let in_depth = tables.depth_factors.iter().flatten().zip(&length).map(|(k, length)| [*length, *k]);
@@ -213,7 +210,7 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
     let mut sizes: Vec<f64> = read.iter().map(|point| point[1].abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let [usual, largest] = [sizes[(sizes.len() - 1) * USUAL_PERCENT / 100], sizes[sizes.len() - 1]];
-    // Where the last of a section goes K grows beyond bounds, and would hide all before it.
+    // K diverges as the ligament vanishes; at full scale it would flatten the rest.
     let most = if largest > BEYOND * usual && usual > 0.0 { BEYOND * usual } else { largest };
     let points = |tip: usize, mode: usize| -> Vec<Point> {
         points(tip, mode).into_iter().map(|[x, k]| [x, if k.abs() <= most { k } else { f64::NAN }]).collect()
@@ -221,18 +218,22 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
     let all: Vec<Point> = read.into_iter().filter(|point| point[1].abs() <= most).collect();
     let axes = [
         Axis::linear_in(all.iter().map(|point| point[0]), parts(size.width, 95.0)),
-        Axis::linear_in(all.iter().map(|point| point[1]).chain([0.0]), parts(size.height, 45.0)),
+        // A K_II of rounding errors does not extend the axis below zero.
+        Axis::linear_in(
+            all.iter().map(|point| point[1]).filter(|k| k.abs() > 0.05 * most).chain([0.0]),
+            parts(size.height, 45.0),
+        ),
     ];
-    let names = [if is_by_tip { "Growth of the tip, mm" } else { "Crack length a, mm" }, "K at maximum load, MPa√m"];
+    let names = [if is_by_tip { "Crack extension of the tip, mm" } else { "Crack length a, mm" }, "K at maximum load, MPa√m"];
     let mut frame = Frame::with_names(size, axes, names, if is_by_tip { 13 } else { 5 });
     if let Some([low, high]) = calibrated(run) {
-        frame.unknown(high, true, "above the ΔK of the law");
+        frame.unknown(high, true, "above the tested ΔK");
         if tips.iter().any(|tip| points(*tip, 0).iter().any(|point| point[1] < low)) {
-            frame.unknown(low, false, "below the ΔK of the law");
+            frame.unknown(low, false, "below the tested ΔK");
         }
     }
     if largest > most {
-        frame.remark(&format!("at the end to {largest:.1e}, not drawn"));
+        frame.remark(&format!("rises to {largest:.1e} (off scale)"));
     }
     let mut lines: Vec<Vec<Point>> = Vec::new();
     let mut named_ends: Vec<(String, Point, &str)> = Vec::new();
@@ -257,14 +258,14 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
         named_ends.extend(tips_together(&ends, spans(&all), &of_tips).into_iter().map(named));
     }
     if let Some(through) = run.part_through.as_ref().and_then(|found| found.crack_length_at_break_through_mm) {
-        frame.mark(through, "through the thickness");
+        frame.mark(through, "breakthrough");
     }
     if let Some(last) = in_depth.iter().rfind(|point| known(point)) {
         frame.pieces(&in_depth, THIRD, 2.0, "2 3");
-        named_ends.push(("K_I in depth".to_owned(), *last, THIRD));
+        named_ends.push(("K_I at depth".to_owned(), *last, THIRD));
     }
     frame.names(&named_ends, &lines);
-    Some(frame.finish(&format!("{} over {}", names[1], names[0])))
+    Some(frame.finish(&format!("{} against {}", names[1], names[0])))
 }
 
 /// K at maximum load between which the law was fitted, MPa√m; `None` where that is not known.

@@ -46,8 +46,7 @@ pub struct Lives {
     pub fitted: Vec<Point>,
 }
 
-/// Crack length over cycles: readings of the curve that was fitted as circles, other specimens as thin lines, the law as a line with
-/// its band, `[length, low, high]`.
+/// Crack length against cycles: readings (circles), other specimens (thin lines), law (line) with its band `[length, low, high]`.
 pub fn lives_svg(curves: &[Lives], fitted_to: &str, band: &[[f64; 3]], size: Size) -> String {
     let all = || curves.iter().flat_map(|curve| curve.measured.iter().chain(&curve.fitted));
     let cycles = all().map(|point| point[0]).chain(band.iter().map(|row| row[2]));
@@ -67,7 +66,7 @@ pub fn lives_svg(curves: &[Lives], fitted_to: &str, band: &[[f64; 3]], size: Siz
         let every = curve.measured.len().div_ceil(CIRCLES_MAX).max(1);
         frame.circles(&curve.measured.iter().copied().step_by(every).collect::<Vec<_>>());
     }
-    frame.finish(&format!("Crack length over cycles of {} curves with the fitted law", curves.len()))
+    frame.finish(&format!("Crack length against cycles of {} curves with the fitted law", curves.len()))
 }
 
 /// A law over the range of ΔK that was measured: its curve, `[ΔK, da/dN]`, and the pivot.
@@ -101,7 +100,7 @@ pub fn rates_svg(readings: &[Point], laws: &[LawCurve], size: Size) -> String {
     let of_law = |law: &LawCurve| Some((law.name.clone(), *law.points.last()?, COMPUTED)).filter(|(name, ..)| !name.is_empty());
     let lines: Vec<Vec<Point>> = laws.iter().map(|law| law.points.clone()).collect();
     frame.names(&laws.iter().filter_map(of_law).collect::<Vec<_>>(), &lines);
-    frame.finish(&format!("Growth rate over the range of K: {} readings and the law over their range", readings.len()))
+    frame.finish(&format!("da/dN against ΔK: {} readings and fitted law", readings.len()))
 }
 
 #[derive(Deserialize)]

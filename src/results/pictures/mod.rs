@@ -1,6 +1,4 @@
-//! Pictures of a run and of a fit as vector drawings, for the folder of a run and for a report alike.
-//!
-//! They are drawn from what `result.json` and the tables of a folder hold, so that a report of an earlier run has the same pictures.
+//! Pictures of a run and of a fit, drawn from `result.json` or `fit.json` and the tables: in the results folder and in a report alike.
 
 pub mod curves;
 pub mod fit;

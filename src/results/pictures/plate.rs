@@ -112,7 +112,7 @@ fn material_words(case: &Case) -> String {
     let (name, ratio) = (&material.name, short(material.poisson_ratio));
     // Of a file its stem: where it lay is no part of what it says.
     let stem = Path::new(name).file_stem().filter(|_| name.ends_with(".toml")).map(|stem| stem.to_string_lossy());
-    let name = stem.unwrap_or_else(|| if name.is_empty() { "given by constants".into() } else { name.into() });
+    let name = stem.unwrap_or_else(|| if name.is_empty() { "user-defined".into() } else { name.into() });
     format!("{name}: E {modulus} GPa, ν {ratio}{yields}{tough}, plane {}", material.plane.name())
 }
 

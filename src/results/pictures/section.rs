@@ -1,7 +1,7 @@
 //! `section.svg`: the section of a plate through its part-through crack, with the front at quarters of the cycles until it is through.
 
 use super::plate::{SIZE, colour, scale_bar};
-use crate::chart::INK;
+use crate::chart::{INK, width_of};
 use crate::specimen_picture::sketch::{EDGE, PLATE, Sketch, WORDS};
 use perilife_base::units::MM;
 use perilife_growth::case::Case;
@@ -97,11 +97,11 @@ fn draw(sketch: &mut Sketch, flaw: &PartThrough, axes: [f64; 2], share: f64) {
 
 fn words(sketch: &mut Sketch, case: &Case, found: &PartThroughLife, height: f64) {
     let text = SIZE.text;
-    let end = if found.is_through { "break-through" } else { "the end of the run" };
+    let end = if found.is_through { "breakthrough" } else { "the end" };
     sketch.name([AROUND, 24.0], &format!("{}: section through the crack", case.name), "start", text + 1.0, INK);
-    let mut x = AROUND;
-    sketch.name([x, 46.0], &format!("front at share of {:.0} cycles to {end}:", found.cycles), "start", text, WORDS);
-    x += 0.5 * text * (36 + end.len()) as f64;
+    let of_fronts = format!("front at fraction of {:.0} cycles to {end}:", found.cycles);
+    sketch.name([AROUND, 46.0], &of_fronts, "start", text, WORDS);
+    let mut x = AROUND + width_of(&of_fronts, text);
     for share in SHARES {
         sketch.path(&[[x, 42.0], [x + 18.0, 42.0]], &colour(share), 2.6, "");
         sketch.name([x + 22.0, 46.0], &format!("{:.0} %", 100.0 * share), "start", text, WORDS);

@@ -32,7 +32,7 @@ fn exceedances(spectrum: &Spectrum, size: Size) -> Frame {
     }
     let counts = stair.iter().map(|point| point[0]);
     let axes = [Axis::logarithmic(counts), Axis::linear(stair.iter().map(|point| point[1]).chain([0.0]))];
-    let mut frame = Frame::new(size, "", axes, ["Maxima of a pass as large or larger", "Maximum over the largest load"], &[]);
+    let mut frame = Frame::new(size, "", axes, ["Peak exceedances per pass", "Peak / maximum load"], &[]);
     frame.line(&stair, COMPUTED, 2.0, "");
     frame
 }
@@ -45,7 +45,7 @@ fn ranges(spectrum: &Spectrum, size: Size) -> Frame {
     let floor = if high > 50.0 * low { 0.5 * low } else { 0.0 };
     let y = if floor > 0.0 { Axis::logarithmic_between(floor, 1.5 * high) } else { Axis::linear([0.0, high].into_iter()) };
     let axes = [Axis::linear_in([0.0, largest].into_iter(), 5.0), y];
-    let mut frame = Frame::new(size, "", axes, ["Range over the largest load", "Cycles of a pass"], &[]);
+    let mut frame = Frame::new(size, "", axes, ["Range / maximum load", "Cycles per pass"], &[]);
     let width = largest / BARS as f64;
     for (place, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
         let [from, to] = [(place as f64 + 0.08) * width, (place as f64 + 0.92) * width];

@@ -54,7 +54,7 @@ impl Of {
     fn title(self) -> &'static str {
         match self {
             Of::VonMises => "Von Mises stress, MPa",
-            Of::AlongY => "Stress along y, MPa; thin line: zero",
+            Of::AlongY => "σ_y, MPa (thin line: 0)",
         }
     }
 }
@@ -87,14 +87,13 @@ pub fn stress_svg(field: &StressField, material: &Material, holes: &[Hole]) -> S
     }
     super::plate::scale_bar(&mut sketch, [14.0, height - 12.0], [scale * MM, size(0) / MM], SIZE.text);
     if let Some(strength) = material.yield_strength {
-        let words = format!("red line: yield strength, {:.0} MPa; the computation is elastic", strength / MPA);
+        let words = format!("red line: yield strength {:.0} MPa (elastic analysis)", strength / MPA);
         sketch.name([SIZE.width - 12.0, height - 12.0], &words, "end", SIZE.text, QUIET);
     }
-    sketch.picture([SIZE.width, height], &format!("{lengthened}; von Mises stress and stress along y in bands"))
+    sketch.picture([SIZE.width, height], &format!("{lengthened}; bands of von Mises stress and σ_y"))
 }
 
-/// What is seen of the plate, m: all of it, or the surroundings of cracks that are small in it, with the holes beside them; with room for the
-/// displacement.
+/// Visible part of the plate, m: all of it, or the surroundings of small cracks with their holes; with room for displacements.
 fn seen(field: &StressField, holes: &[Hole]) -> [Point; 2] {
     let [low, high] = bounding_box(&field.pieces.iter().flatten().map(|corner| corner.at).collect::<Vec<Point>>());
     let mut cracks: Vec<Point> = field.cracks.iter().flat_map(CrackLine::pieces).flatten().collect();

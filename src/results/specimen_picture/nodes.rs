@@ -21,10 +21,11 @@ const RADII: usize = 3;
 pub fn nodes_svg(case: &Case, paths: &[Vec<Point>]) -> Result<String> {
     let plate = initial_plate(case)?;
     let spacing = case.nodes().resolution.far / MM;
-    let title = format!("{} nodes, {} unknowns; spacing {spacing:.2} mm far from cracks", plate.nodes.at.len(), plate.unknowns());
+    let title =
+        format!("{} nodes, {} unknowns; node spacing {spacing:.2} mm far from cracks", plate.nodes.at.len(), plate.unknowns());
     let lines = [
-        "grey: cells of integration; dots: nodes, red with near-tip fields; blue: radius of influence of three nodes".to_owned(),
-        "green: path of the tips".to_owned(),
+        "gray: integration cells; dots: nodes (red: enriched); blue: support of three nodes".to_owned(),
+        "green: crack paths".to_owned(),
     ];
     Ok(drawing(&case.name, &title, &case.specimen, &lines, |sketch| draw(sketch, case, &plate, paths)))
 }
@@ -46,7 +47,7 @@ pub fn tip_svg(case: &Case, paths: &[Vec<Point>]) -> Result<Option<String>> {
             sketch.line(sketch.place(pair[0]), sketch.place(pair[1]), CRACK, 2.4);
         }
     }
-    let words = format!("{}: tip 0, spacing {:.3} mm; red: nodes with near-tip fields", case.name, axes.spacing / MM);
+    let words = format!("{}: tip 0, node spacing {:.3} mm; red: enriched nodes", case.name, axes.spacing / MM);
     sketch.name([0.5 * TIP_PIXELS, 22.0], &words, "middle", 14.0, NODE);
     Ok(Some(sketch.picture([TIP_PIXELS; 2], &words)))
 }

@@ -17,9 +17,9 @@ const COLUMNS: usize = 3;
 /// Errors, percent, and seconds between which the scales lie, whatever lies beyond.
 const ERRORS: [f64; 2] = [0.002, 100.0];
 const SECONDS_LEAST: f64 = 0.02;
-/// 95 % quantile of the lives of 34 equal panels over their median of 253 726 cycles from 9 to 49.8 mm, less one, percent (Virkler, Hillberry
-/// and Goel 1979).
+/// 95 % quantile over median (253 726 cycles, 9 to 49.8 mm) of 34 equal panels, less one, percent (Virkler, Hillberry and Goel 1979).
 const SCATTER_PERCENT: f64 = 12.3;
+const SCATTER: &str = "specimen-to-specimen scatter, 12 %";
 
 const GREY: &str = "#55606d";
 const PALE: &str = "#8893a1";
@@ -48,7 +48,7 @@ pub fn svg(chart: &Chart, origin: &Origin) -> String {
 
 /// Title, and what colours and marks mean.
 fn head(sketch: &mut Sketch, chart: &Chart) {
-    sketch.name([16.0, 26.0], "What a result costs, and how far off it is", "start", 18.0, INK);
+    sketch.name([16.0, 26.0], "Run time against error", "start", 18.0, INK);
     let mut x = 16.0;
     let has_points = |family: &Family| chart.points.iter().any(|point| point.choice.family == *family);
     for family in Family::ALL.iter().copied().filter(|family| *family != Family::Solver && has_points(family)) {
@@ -62,7 +62,7 @@ fn head(sketch: &mut Sketch, chart: &Chart) {
         sketch.name([x + 15.0, 72.0], solver, "start", 12.0, INK);
         x += 34.0 + width_of(solver, 12.0);
     }
-    let note = "Filled and named: no other point is both faster and nearer to the truth. Star: what the program chooses. Bars: least and largest time.";
+    let note = "Filled, named: Pareto front (no point is faster and more accurate). Star: default. Bars: min and max time.";
     sketch.name([16.0, 92.0], note, "start", 12.0, GREY);
 }
 
@@ -132,16 +132,16 @@ fn limits(frame: &mut Frame, panel: &Panel, most_s: f64) -> Vec<Pixel> {
     let [left, _, right, bottom] = frame.room();
     if uncertainty > ERRORS[0] {
         frame.below(uncertainty, [SECONDS_LEAST, most_s], SHADE, 0.8);
-        frame.sketch().name([right - 4.0, bottom - 6.0], "below the error of the truth", "end", PANEL.text, GREY);
+        frame.sketch().name([right - 4.0, bottom - 6.0], "below the reference uncertainty", "end", PANEL.text, GREY);
     }
     if !panel.grows() {
         return Vec::new();
     }
     let y = frame.at([most_s, SCATTER_PERCENT])[1];
     frame.line(&[[SECONDS_LEAST, SCATTER_PERCENT], [most_s, SCATTER_PERCENT]], NOTE, 1.0, "3 3");
-    frame.sketch().name([right - 4.0, y - 4.0], "scatter of equal panels, 12 %", "end", PANEL.text, NOTE);
+    frame.sketch().name([right - 4.0, y - 4.0], SCATTER, "end", PANEL.text, NOTE);
     // Neither the line nor its words are covered by a name.
-    let words = right - 4.0 - width_of("scatter of equal panels, 12 %", PANEL.text);
+    let words = right - 4.0 - width_of(SCATTER, PANEL.text);
     vec![[words, y - 9.0], [right, y - 9.0], [right, y], [left, y], [f64::NAN; 2]]
 }
 
@@ -197,7 +197,7 @@ fn short_name(point: &Point) -> String {
         Family::TipField => "tips",
         Family::ElementFree => "nodes",
         Family::Handbook => "handbook",
-        Family::BondStrain => "published law",
+        Family::BondStrain => "bond_strain",
         Family::BondLaw | Family::Solver => "",
     };
     match (family, point.choice.words.as_str()) {

@@ -82,11 +82,11 @@ pub fn never_on_front(chart: &Chart) -> Vec<Family> {
 /// When to take a method; `None` of what is a choice within one.
 fn when(family: Family) -> Option<&'static str> {
     match family {
-        Family::Auto => Some("always, but for the reasons below"),
+        Family::Auto => Some("default"),
         Family::Handbook => Some("a standard specimen within the range of its formula"),
         Family::ElementFree => Some("any other plate: curved, short and several cracks, holes, edges, flanks in contact"),
         Family::TipField => Some("bonds and their remaining life, damage, bond laws; a second opinion"),
-        Family::BondStrain => Some("cracks that begin at slots; the published law"),
+        Family::BondStrain => Some("cracks that start at slots; bond_strain"),
         Family::BondLaw | Family::Solver => None,
     }
 }
@@ -139,7 +139,7 @@ pub fn markdown(chart: &Chart, origin: &Origin) -> String {
             );
         }
     }
-    text += "\nOmissions and tweaking: C and m of the growth law are given, nothing is fitted to a scene. The beam with three holes has points of \
+    text += "\nConditions: C and m of the growth law are given, nothing is fitted to a scene. The beam with three holes has points of \
              0.5 mm by default. Bond-based plates have a Poisson's ratio of 1/3, which changes no K under given loads. Errors are the largest \
              at 50, 75 and 95 % of the growth; those of a plate in tension and of a hole are static. Each run is a process of its own, set-up \
              included, pictures not.\n";

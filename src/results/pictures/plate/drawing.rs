@@ -111,7 +111,7 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     if !ways.is_empty() {
         ramp(&mut sketch, size);
     }
-    let sentence = format!("Plate, {}; the ways of {} crack tips, coloured by cycles", plate.load, ways.len());
+    let sentence = format!("Plate, {}; paths of {} crack tips, colored by cycles", plate.load, ways.len());
     sketch.picture([size.width, size.height], &sentence)
 }
 
@@ -222,15 +222,18 @@ impl<'a> Drawing<'a> {
             let upper = if is_lower { across.map(|part| -part) } else { across };
             let half = [1.4 * self.text, 0.6 * self.text];
             let place = |side: f64, out: f64| [0, 1].map(|i| at[i] + side * upper[i] * (out + half[i]));
-            let is_free =
-                |middle: &Point| !taken.iter().any(|other| (0..2).all(|i| (other[i] - middle[i]).abs() < 2.0 * half[i]));
-            let places = [(1.0, 10.0), (-1.0, 10.0), (1.0, 24.0), (-1.0, 24.0)];
-            // Where all is taken the mark has no words.
-            if let Some((side, out)) = places.into_iter().find(|(side, out)| is_named && is_free(&place(*side, *out))) {
+            let is_free = |middle: Point, wide: f64| {
+                let room = [wide * half[0], 2.0 * half[1]];
+                !taken.iter().any(|other| (0..2).all(|i| (other[i] - middle[i]).abs() < room[i]))
+            };
+            let places = [(1.0, 10.0), (-1.0, 10.0), (1.0, 28.0), (-1.0, 28.0)];
+            // Words of the second row need room for their line beside words of the first; without room a mark has no words.
+            let has_room = |&(side, out): &(f64, f64)| is_free(place(side, out), 2.0) && is_free(place(side, 10.0), 1.2);
+            if let Some((side, out)) = places.into_iter().find(|at| is_named && has_room(at)) {
                 let middle = place(side, out);
                 sketch.path(&[at, [0, 1].map(|i| at[i] + side * out * upper[i])], INK, 1.0, "");
                 sketch.name([middle[0], middle[1] + 0.35 * self.text], &format!("{share:.0} %"), "middle", self.text, INK);
-                taken.push(middle);
+                taken.extend([middle, place(side, 10.0)]);
             }
             sketch.ring(at, 3.0, INK, 1.3);
         }
