@@ -33,6 +33,12 @@ use perilife_results::paper::Signed;
 use perilife_scenes::SceneEnd;
 use perilife_scenes::scene::PointLaw;
 
+/// Kinds that pins or rollers load, by a force.
+const BY_FORCE: [SpecimenKind; 5] = {
+    use SpecimenKind::{CompactTension, EccentricSingleEdgeTension, Lug, SingleEdgeBend, WedgeOpening};
+    [CompactTension, EccentricSingleEdgeTension, Lug, SingleEdgeBend, WedgeOpening]
+};
+
 /// Every line, in the order of an input file: key, name, meaning.
 pub fn lines() -> Vec<(String, String, String)> {
     let of_keys = told().into_iter().chain(beside()).flat_map(|told| told.choices());
@@ -156,18 +162,16 @@ pub fn stub() -> String {
     format!("{head}{}", told().iter().map(Told::stub).collect::<String>().trim_end().to_owned() + "\n")
 }
 
-/// Such lines as one object, with what forms are made from: the schema, traits of specimens, and the constants of every growth law and model of
-/// retardation (keys of `[fatigue]` and `[loading]`, and whether a case has to give them).
+/// Such lines as one object, with what forms are made from: schema, traits of specimens, constants of laws and models of retardation.
 pub fn json(lines: Vec<(String, String, String)>) -> Value {
     let kinds = lines.into_iter().map(|(key, name, meaning)| json!({ "key": key, "name": name, "meaning": meaning }));
     let of_law = |own: &Constant| json!({ "key": own.key, "needed": own.default.is_none() });
     // A threshold of the law, which it may have, is taken for a constant.
     let of_model = |own: &Retarding| json!({ "key": own.key, "needed": (own.default)(Plane::Stress, Some(1.0)).is_none() });
     let told = |name: &str, constants: Vec<Value>| json!({ "name": name, "constants": constants });
-    let law = |law: GrowthLawKind| told(law.name(), law.0.constants.iter().map(of_law).collect());
     let retardation = |model: RetardationKind| told(model.name(), model.0.constants.iter().map(of_model).collect());
     let traits = |kind: &SpecimenKind| {
-        let (force, bending, part_through) = (kind.takes_force(), kind.takes_bending(), kind.part_through().is_some());
+        let (force, bending, part_through) = (BY_FORCE.contains(kind), kind.takes_bending(), kind.part_through().is_some());
         json!({ "name": kind.name(), "takes_force": force, "takes_bending": bending, "is_part_through": part_through })
     };
     let beside: Map<String, Value> = beside().iter().map(|told| (told.section.clone(), told.schema())).collect();
@@ -175,7 +179,7 @@ pub fn json(lines: Vec<(String, String, String)>) -> Value {
         "kinds": kinds.collect::<Vec<_>>(),
         "specimens": SpecimenKind::ALL.iter().map(traits).collect::<Vec<_>>(),
         "beside": beside,
-        "laws": GrowthLawKind::all().map(law).collect::<Vec<_>>(),
+        "laws": GrowthLawKind::all().map(|law| told(law.name(), law.0.constants.iter().map(of_law).collect())).collect::<Vec<_>>(),
         "form": schema(),
         "retardations": RetardationKind::all().map(retardation).collect::<Vec<_>>(),
     })

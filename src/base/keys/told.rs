@@ -23,11 +23,11 @@ impl Key {
         self.text.split_once(": ").unwrap_or((self.text, ""))
     }
 
-    /// Its name in US units, with metric units in one of these: of the level C of a law at the exponent 0.
-    fn twin(&self) -> Option<(String, f64)> {
+    /// Its name in US units and metric units in one of these; of the level C of a law at the exponent 0, with the key of that.
+    fn twin(&self) -> Option<(String, f64, Option<String>)> {
         let twin = renamed(self.name, System::Us)?;
-        let factor = twin.factor(|_| Some(0.0)).ok()?;
-        Some((twin.name, 1.0 / factor))
+        let (factor, exponent) = (twin.factor(|_| Some(0.0)).ok()?, twin.factor(|_| None).err().map(str::to_owned));
+        Some((twin.name, 1.0 / factor, exponent))
     }
 
     /// Range and unit, names, or sort of value.
@@ -97,7 +97,7 @@ impl Told {
     /// A table of the guide.
     pub fn manual(&self) -> String {
         let row = |(path, key): (String, Key)| {
-            let twin = key.twin().map(|(twin, _)| format!(", `{twin}`")).unwrap_or_default();
+            let twin = key.twin().map(|(twin, ..)| format!(", `{twin}`")).unwrap_or_default();
             format!("| `{path}`{twin} | {} | {} | {} |\n", key.text, key.range().replace('|', "\\|"), key.left_out())
         };
         let rows: String = self.rows().into_iter().map(row).collect();
@@ -150,9 +150,8 @@ fn object(keys: &[Key]) -> Json {
         let mut own = value(&key, key.shape, 1.0);
         let (label, hint) = key.label_and_hint();
         own["title"] = json!(label);
-        let left_out = key.left_out();
-        let parts = [hint, &left_out].into_iter().filter(|part| !["", "-"].contains(part));
-        own["description"] = json!(parts.collect::<Vec<_>>().join("; "));
+        own["description"] =
+            json!([hint, &key.left_out()].into_iter().filter(|part| !["", "-"].contains(part)).collect::<Vec<_>>().join("; "));
         own["x-hint"] = json!(hint);
         own["x-unit"] = json!(key.quantity.map_or("", |quantity| quantity.unit));
         own["x-default"] = json!(if let Need::Or(words) = key.need { words } else { "" });
@@ -165,7 +164,7 @@ fn object(keys: &[Key]) -> Json {
         }
         let is_needed = own["x-needed"] == json!(true);
         match key.twin() {
-            Some((twin, factor)) => {
+            Some((twin, factor, exponent)) => {
                 let mut other = own.clone();
                 for (name, bound) in value(&key, key.shape, factor).as_object().into_iter().flatten() {
                     other[name] = bound.clone();
@@ -175,11 +174,7 @@ fn object(keys: &[Key]) -> Json {
                 other["x-unit"] = json!(unit.map_or("", |unit| unit.word(System::Us)));
                 own["x-twin"] = json!(twin);
                 own["x-factor"] = json!(factor);
-                if let Some(exponent) =
-                    renamed(key.name, System::Us).and_then(|twin| twin.factor(|_| None).err().map(str::to_owned))
-                {
-                    own["x-exponent"] = json!(exponent);
-                }
+                own["x-exponent"] = json!(exponent);
                 if is_needed {
                     either.push(json!({ "anyOf": [{ "required": [key.name] }, { "required": [twin] }] }));
                 }
@@ -199,24 +194,20 @@ fn object(keys: &[Key]) -> Json {
 
 /// Values of a shape; bounds in units of which one is `size` metric ones.
 fn value(key: &Key, shape: Shape, size: f64) -> Json {
-    let mut number = json!({ "type": "number" });
-    if let Some(quantity) = key.quantity {
-        number["minimum"] = json!(quantity.low / size);
-        number["maximum"] = json!(quantity.high / size);
-    }
+    let number = |sort: &str| match key.quantity {
+        Some(of) => json!({ "type": sort, "minimum": of.low / size, "maximum": of.high / size }),
+        None => json!({ "type": sort }),
+    };
     match shape {
-        Shape::Number => number,
-        Shape::Whole => {
-            number["type"] = json!("integer");
-            number
-        }
+        Shape::Number => number("number"),
+        Shape::Whole => number("integer"),
         Shape::Flag => json!({ "type": "boolean" }),
         Shape::Text => json!({ "type": "string" }),
         Shape::Choice(lines) => {
             let (names, meanings): (Vec<_>, Vec<_>) = lines().into_iter().map(|line| (line.name, line.meaning)).unzip();
             json!({ "type": "string", "enum": names, "x-meanings": meanings })
         }
-        Shape::Numbers(n) => json!({ "type": "array", "items": number, "minItems": n, "maxItems": n }),
+        Shape::Numbers(n) => json!({ "type": "array", "items": number("number"), "minItems": n, "maxItems": n }),
         Shape::Other(words) => json!({ "x-values": words }),
         Shape::List(inner) => json!({ "type": "array", "items": value(key, *inner, size) }),
         Shape::Table([]) => json!({ "type": "object" }),
@@ -244,7 +235,7 @@ fn class(name: &str, keys: &[Key], tag: Option<(&str, &str)>) -> String {
         let is_needed = key.need == Need::Required && key.group.is_none() && key.twin().is_none();
         let whole = if is_needed { format!("Required[{plain}]") } else { plain.clone() };
         own.push_str(&format!("    {}: {whole}  # {}; {}\n", key.name, key.text, key.left_out()));
-        if let Some((twin, _)) = key.twin() {
+        if let Some((twin, ..)) = key.twin() {
             own.push_str(&format!("    {twin}: {plain}\n"));
         }
     }

@@ -55,14 +55,6 @@ impl SpecimenKind {
         self.part_through().is_none() && !matches!(self, SpecimenKind::RowOfHoles | SpecimenKind::StopHole)
     }
 
-    /// Whether pins or rollers load it, by a force.
-    pub fn takes_force(self) -> bool {
-        matches!(
-            self,
-            Self::CompactTension | Self::EccentricSingleEdgeTension | Self::Lug | Self::SingleEdgeBend | Self::WedgeOpening
-        )
-    }
-
     /// Whether its K under out-of-plane bending is known.
     pub fn takes_bending(self) -> bool {
         self.part_through().is_some_and(|description| description.bending.is_some())

@@ -23,17 +23,17 @@ export function createSpecimen(form, { plate } = {}) {
   kind.node.classList.add("wide");
   const place = element("div");
   let fields = null;
+  const typed = {}; // by the metric names of keys
 
-  /** Fields of the chosen kind; what others of the same name had stays. */
+  /** Fields of the chosen kind, with what was typed in others of the same name. */
   function draw() {
-    const given = Object.entries(fields?.by ?? {}).filter(([, field]) => field.input).map(([metric, field]) => [metric, field.input.value, field.touched]);
+    for (const [metric, { input, touched }] of Object.entries(fields?.by ?? {})) if (input) typed[metric] = [input.value, touched];
     fields?.drop();
     const chosen = kind.input.value;
     const keys = keysOf("specimen", chosen).filter(({ metric }) => chosen !== "plate" || !LISTS.includes(metric));
     fields = createFields(form, "specimen", keys);
-    for (const [metric, value, touched] of given) {
-      const field = fields.by[metric];
-      if (field?.input && field.key.shape !== "file") [field.input.value, field.touched] = [value, touched];
+    for (const [metric, { key, input }] of Object.entries(fields.by)) {
+      if (input && metric in typed && key.shape !== "file") [input.value, fields.by[metric].touched] = typed[metric];
     }
     const first = keys.filter(({ metric, needed, group: one }) => needed || (one && chosen !== "plate") || ONE_LENGTH.includes(metric)).map(({ metric }) => metric);
     show(place, fields.group("Specimen", first.concat(chosen === "plate" ? ["width_mm", "length_mm"] : []), chosen === "plate" && plate.element));
