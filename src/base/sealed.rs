@@ -33,13 +33,13 @@ impl Seal {
     /// one.
     pub fn read<T: DeserializeOwned>(self, bytes: &[u8]) -> Result<T> {
         let damaged = || refused("is damaged");
-        let rest = bytes.strip_prefix(self.magic).ok_or_else(|| refused(format!("is no checkpoint of {}", self.of)))?;
+        let rest = bytes.strip_prefix(self.magic).ok_or_else(|| refused(format!("is not a checkpoint of {}", self.of)))?;
         let (form, rest) = rest.split_first_chunk().ok_or_else(damaged)?;
         let (length, rest) = rest.split_first().ok_or_else(damaged)?;
         let (version, rest) = rest.split_at_checked(usize::from(*length)).ok_or_else(damaged)?;
         if (u32::from_le_bytes(*form), version) != (self.form, VERSION.as_bytes()) {
             let other = String::from_utf8_lossy(version);
-            return Err(refused(format!("was written by perilife {other}, another version than this {VERSION}")));
+            return Err(refused(format!("was written by perilife {other}; this is {VERSION}")));
         }
         let (sum, content) = rest.split_first_chunk::<32>().ok_or_else(damaged)?;
         if Sha256::digest(content)[..] != sum[..] {
@@ -53,7 +53,7 @@ impl Seal {
 pub fn refused(problem: impl Into<String>) -> Error {
     Error::Input(Box::new(InputError {
         problem: problem.into(),
-        remedy: "remove it, or name another file, to begin the run anew".to_owned(),
+        remedy: "remove it, or use another file, to start the run again".to_owned(),
         ..InputError::default()
     }))
 }

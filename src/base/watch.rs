@@ -32,12 +32,12 @@ impl Stage {
 
     pub fn words(self) -> &'static str {
         match self {
-            Stage::Points => "laying points",
-            Stage::Bonds => "drawing bonds",
-            Stage::Rim => "balancing the rim",
-            Stage::Loads => "putting on loads",
+            Stage::Points => "placing points",
+            Stage::Bonds => "building bonds",
+            Stage::Rim => "correcting the boundary",
+            Stage::Loads => "applying loads",
             Stage::Solver => "building the solver",
-            Stage::Equilibrium => "solving the equilibrium",
+            Stage::Equilibrium => "solving for equilibrium",
         }
     }
 }
@@ -110,7 +110,7 @@ pub fn at(stage: Stage, share: f64) -> Result<()> {
 }
 
 /// What work ends with that was asked to.
-const CANCELLED: &str = "the run was cancelled";
+const CANCELLED: &str = "the run was canceled";
 
 /// Who watches the work of this thread, for threads that do a part of it.
 pub fn watching() -> Option<Arc<Watch>> {

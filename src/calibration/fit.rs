@@ -135,8 +135,8 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
-            "p is not identified: the readings span only a factor {ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} is needed); \
-             widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
+            "m cannot be determined: ΔK varies only by a factor {ratio:.2} (need {DELTA_K_RATIO_MIN}); widen the window, or \
+             fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
     let power = |delta_k: f64| constants.a * delta_k.powf(constants.p);
@@ -182,7 +182,7 @@ fn population(task: &FitTask<'_>, law: &PowerLaw, warnings: &mut Vec<String>) ->
     match specimens.and_then(|specimens| fit_population(&specimens, task.fixed_p)) {
         Ok(population) => Some(population),
         Err(error) => {
-            warnings.push(format!("no scatter of lives is given: {error}"));
+            warnings.push(format!("no scatter of lives: {error}"));
             None
         }
     }
@@ -242,7 +242,7 @@ fn remarks(task: &FitTask<'_>, runs: &[Vec<Run>]) -> Vec<String> {
     if lines.len() > DOUBTS_SHOWN {
         let more = lines.len() - DOUBTS_SHOWN;
         lines.truncate(DOUBTS_SHOWN);
-        lines.push(format!("{more} more remarks of this kind on other readings: `perilife rates` names all"));
+        lines.push(format!("{more} more messages of this kind: `perilife rates` lists all"));
     }
     lines
 }
@@ -260,8 +260,8 @@ fn short_steps_warning(lengths: &[f64]) -> Option<String> {
     let short = lengths.windows(2).filter(|pair| pair[1] - pair[0] < STEP_MIN * (1.0 - 1e-9)).count();
     (short > 0).then(|| {
         format!(
-            "{short} of {} steps between readings are under {} mm (ASTM E647, 8.6.2): errors of the fit count such readings together \
-             with the next; read less often",
+            "{short} of {} steps between readings are under {} mm (ASTM E647, 8.6.2): such readings are merged for the error \
+             of the fit; read less often",
             lengths.len() - 1,
             STEP_MIN / MM
         )

@@ -269,7 +269,7 @@ pub fn doubts_beside(curve: &MeasuredCurve, runs: &[Run], delta_k: &dyn Fn(f64) 
 fn named(curve: &MeasuredCurve, runs: &[Run]) -> Vec<String> {
     let mut lines: Vec<String> = runs.iter().take(RUNS_NAMED).map(|run| run_warning(curve, *run)).collect();
     if runs.len() > RUNS_NAMED {
-        lines.push(format!("specimen {}: {} more runs of readings do not belong", curve.specimen, runs.len() - RUNS_NAMED));
+        lines.push(format!("specimen {}: {} more runs of outliers", curve.specimen, runs.len() - RUNS_NAMED));
     }
     lines
 }
@@ -292,8 +292,8 @@ fn run_warning(curve: &MeasuredCurve, run: Run) -> String {
     let [start, end] = [window.from_cycles, window.to_cycles].map(Option::unwrap_or_default);
     let [first, last] = [from, to].map(|reading| round_off(curve.crack_length[reading] / MM));
     format!(
-        "{}readings do not belong: from {first} to {last} mm the crack of specimen {} grew at {factor:.2} times the rate of its other \
-         readings at equal ΔK; a fit leaves them out; if the test explains it, say so by measured.leave_out = [{{ specimen = \"{}\", from_cycles = \
+        "{}outliers: from {first} to {last} mm specimen {} grew at {factor:.2} times the rate of its other readings at equal \
+         ΔK; excluded from the fit; if the test explains it, set measured.leave_out = [{{ specimen = \"{}\", from_cycles = \
          {start}, to_cycles = {end}, reason = \"...\" }}]",
         place(curve, from, to),
         curve.specimen,
@@ -397,9 +397,9 @@ fn level_warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[Run]) -> Opt
     }
     let StepRate { from, to, .. } = rates[shift.rate];
     Some(format!(
-        "{}no one power of ΔK can hold for specimen {}: from {} mm on the rate is {:.2} times that before at equal ΔK (F = {:.0}, common m \
-         {:.2}); if the load changed, give it for every reading (columns force_max_kn and force_min_kn), else leave the readings before or \
-         after it out (measured.leave_out or the window of crack lengths)",
+        "{}rate changes in specimen {}: above {} mm it is {:.2} times that before at equal ΔK (F = {:.0}, common m {:.2}); if \
+         the load changed, give it for every reading (columns force_max_kn and force_min_kn), else exclude the readings \
+         before or after it (measured.leave_out or the window of crack lengths)",
         place(curve, from, to),
         curve.specimen,
         round_off(curve.crack_length[from] / MM),

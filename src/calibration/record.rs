@@ -284,7 +284,7 @@ impl RatesRecord {
         let CandidateRecord { law, constants, standard_errors, rms_log_rate, .. } = candidates[fits.chosen].clone();
         let [low, high] = case.delta_k_range();
         let units = case.units.iter().map(|line| format!("  read           {line}"));
-        let range = case.range.map(|range| format!("  ΔK at R < 0    taken as {range} from the tables: {}", range.meaning()));
+        let range = case.range.map(|range| format!("  ΔK at R < 0    read as {range}: {}", range.meaning()));
         RatesRecord {
             law,
             law_asked_for: case.law,
@@ -314,9 +314,9 @@ impl RatesRecord {
         let mut lines = vec![format!("fit of laws to {} rates at R = {ratios}, ΔK {low:.3} to {high:.3} MPa√m", self.rates)];
         let next = self.next_best.zip(self.aicc_margin);
         let asked = match (self.law_asked_for, next) {
-            (FitLaw(None), Some((_, margin))) if margin < 0.0 => "best by its residuals, less than half of the others",
+            (FitLaw(None), Some((_, margin))) if margin < 0.0 => "best: residuals under half of the next",
             (FitLaw(None), _) => "best by AICc",
-            _ => "as asked for",
+            _ => "as requested",
         };
         let margin = match next {
             Some((next, margin)) if margin >= 0.0 => format!(", {margin:.1} better than {next}{}", strength(margin)),
@@ -332,7 +332,7 @@ impl RatesRecord {
         lines.push("  ±              one standard error".to_owned());
         lines.extend(self.read.iter().cloned());
         lines.extend(self.candidates.iter().map(|law| match &law.left_out {
-            Some(why) => format!("  {:<14} left out: {why}", law.law),
+            Some(why) => format!("  {:<14} rejected: {why}", law.law),
             None => {
                 let [rms, delta] = [law.rms_log_rate, law.delta_aicc].map(|figure| figure.unwrap_or(f64::NAN));
                 let count = law.fitted_constants;
@@ -362,7 +362,7 @@ impl CandidateRecord {
 /// What a difference of the criterion is worth (Burnham and Anderson 2002).
 fn strength(margin: f64) -> &'static str {
     match margin {
-        margin if margin < 2.0 => ": hardly a difference",
+        margin if margin < 2.0 => " (no clear difference)",
         margin if margin > 10.0 => "",
         _ => ": some evidence",
     }

@@ -18,7 +18,7 @@ use perilife_calibration::outliers::doubts;
 use perilife_calibration::paris::doubt_of;
 use perilife_calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table, threshold};
 use perilife_growth::case::Case;
-use perilife_measured::{ColumnNames, Import, Measured, MeasuredCurve, first_of, read_into};
+use perilife_measured::{ColumnNames, Import, Measured, MeasuredCurve, first_of, ratio_warnings, read_into};
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_results::output::{OutputFile, Sort};
 
@@ -114,6 +114,7 @@ pub fn run(args: &Args) -> Result<()> {
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
         measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        measured.warnings.extend(ratio_warnings(&measured.curves, &case.loading));
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
     let ratio = args.stress_ratio.or(case.as_ref().map(|case| case.loading.ratio)).unwrap_or(0.0);

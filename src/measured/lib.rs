@@ -29,7 +29,7 @@ pub use columns::{Layout, Series, Shape};
 pub use curve::first_of;
 pub use curve::{Loads, Measured, MeasuredCurve, PROBLEMS_MAX, READINGS_MIN, Source, side_difference_max};
 pub use import::{ColumnNames, Import, LeaveOut, check_left_out};
-pub use loads::{LoadHistory, SAME_LOAD};
+pub use loads::{LoadHistory, SAME_LOAD, ratio_warnings};
 pub use perilife_base::table::names::{Column, Named, Role};
 pub use rates::{RangeKind, RateFile, RateFileKeys, RateRow, RateTable};
 

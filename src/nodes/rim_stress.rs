@@ -285,8 +285,7 @@ fn extremes(rim: Rim, places: Vec<StressAt>, [is_sharp, is_round]: [bool; 2]) ->
     match (places.iter().copied().max_by(by_stress), places.iter().copied().min_by(by_stress)) {
         (Some(largest), Some(least)) => Ok(RimStress { rim, largest, least, is_sharp, is_round: is_round && !is_sharp }),
         _ => Err(Error::Mechanics(
-            "too few nodes are in reach of a rim to span the basis; give a larger model.influence_radius, or more model.nodes"
-                .to_owned(),
+            "too few nodes near a boundary for the basis; increase model.influence_radius or model.nodes".to_owned(),
         )),
     }
 }

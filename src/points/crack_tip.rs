@@ -39,11 +39,11 @@ const SEED_MARKS: usize = 48;
 perilife_base::kinds! {
     /// What has become of a tip.
     pub enum TipState for "state of a tip" {
-        Active = "active": "grows, or could",
-        Closed = "closed": "the load presses its flanks together: it does not grow until that ends",
-        LeftPlate = "left_plate": "has crossed the outline",
-        EnteredHole = "entered_hole": "has run into a hole or a slot",
-        LinkedUp = "linked_up": "has run into another crack",
+        Active = "active": "growing, or able to grow",
+        Closed = "closed": "crack faces in contact: no growth",
+        LeftPlate = "left_plate": "crossed the edge of the plate",
+        EnteredHole = "entered_hole": "entered a hole or slot",
+        LinkedUp = "linked_up": "joined another crack",
     }
 }
 

@@ -71,11 +71,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         ("material.name".to_owned(), record.name, meaning)
     };
     all.extend(growth_data::records().into_iter().map(record));
-    all.push((
-        GrowthLawKind::KEY.to_owned(),
-        LIBRARY.to_owned(),
-        "the growth data of the material that material.name names".to_owned(),
-    ));
+    all.push((GrowthLawKind::KEY.to_owned(), LIBRARY.to_owned(), "growth data of material.name".to_owned()));
     all.push((
         "specimen.outline_file".to_owned(),
         "part.dxf".to_owned(),
@@ -84,7 +80,7 @@ pub fn lines() -> Vec<(String, String, String)> {
     all.push((
         beta::KEY.to_owned(),
         "beta.csv".to_owned(),
-        "K = β σ √(πa) by a table crack_length_mm,beta, for hand calculation; `perilife sif --sweep` writes one".to_owned(),
+        "K = β σ √(πa) from a table crack_length_mm,beta; `perilife sif --sweep` writes one".to_owned(),
     ));
     all
 }

@@ -26,8 +26,8 @@ pub(super) fn of(
     watcher: &dyn Watcher,
 ) -> Result<Summary> {
     if let (Some(folder), false) = (folder, case.specimen.is_through()) {
-        let problem = "takes the stress of the plate on nodes, which do not know a crack that does not go through";
-        return Err(input("--out", folder.display(), problem, "leave it out"));
+        let problem = "requires nodes, which do not support part-through cracks";
+        return Err(input("--out", folder.display(), problem, "remove it"));
     }
     let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);
     let (mut found, mut tables, mut lines, mut done) = (Map::new(), String::new(), Vec::new(), Done::Nothing);
@@ -69,7 +69,7 @@ fn notes(case: &Case, tips: &[TipResult]) -> Result<Vec<String>> {
         return Ok(Vec::new());
     }
     if results().all(|result| result.intensity.k_i.is_none()) {
-        let why = results().find_map(|result| result.note.as_deref()).unwrap_or("no method gives a factor");
+        let why = results().find_map(|result| result.note.as_deref()).unwrap_or("no method gives K");
         return Err(Error::Mechanics(format!("{}: {why}", case.name)));
     }
     let mut said: Vec<String> = Vec::new();

@@ -181,7 +181,7 @@ pub fn words(scene: &Scene, fracture: &Fracture) -> Vec<String> {
         figures
             .touching
             .filter(|flanks| flanks.pressed > 0)
-            .map(|flanks| format!("  flanks         pressed together over {:.0} % of the cracks", 100.0 * flanks.share())),
+            .map(|flanks| format!("  contact        crack faces closed over {:.0} % of the cracks", 100.0 * flanks.share())),
     );
     lines.push(format!("  computed       {} points, {way}, {:.1} s", figures.points, figures.wall_s));
     lines

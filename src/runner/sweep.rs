@@ -98,10 +98,10 @@ fn words(path: &Path, plan: &Plan, figures: &Value) -> Vec<String> {
         lines.push(format!("  life           5 % {low}, median {middle}, 95 % {high} cycles"));
     }
     if let Some(count) = figures["run_outs"].as_u64().filter(|count| *count > 0) {
-        lines.push(format!("  run-outs       {count} ({:.0} %): their lives are above stop.cycles_max", percent(count)));
+        lines.push(format!("  run-outs       {count} ({:.0} %): lives above stop.cycles_max", percent(count)));
     }
     if let Some(count) = figures["unlimited"].as_u64().filter(|count| *count > 0) {
-        lines.push(format!("  unlimited      {count} ({:.0} %): nothing grows", percent(count)));
+        lines.push(format!("  unlimited      {count} ({:.0} %): no growth", percent(count)));
     }
     lines.extend(first(figures, "failures").iter().map(|failure| {
         format!(

@@ -385,13 +385,13 @@ pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, pictures: &[Snapshot
     }
     let springs = matches!(scene.model.law, SceneLaw::Bonds(_));
     let (what, remedy) = match scene.procedure {
-        Procedure::Dynamic { .. } => ("motion in time".to_owned(), "without duration_s, solver = \"secant\" has it"),
-        _ if !springs => ("bond_law = \"correspondence\"".to_owned(), "laws of bonds have it, by solver = \"secant\""),
-        _ => (format!("solver = \"{}\"", scene.model.solver), "solver = \"secant\" has it"),
+        Procedure::Dynamic { .. } => ("motion in time".to_owned(), "without duration_s solver = \"secant\" supports it"),
+        _ if !springs => ("bond_law = \"correspondence\"".to_owned(), "bond laws support it with solver = \"secant\""),
+        _ => (format!("solver = \"{}\"", scene.model.solver), "solver = \"secant\" supports it"),
     };
     Some(format!(
-        "flanks of a crack have passed through each other near {}, by up to {:.3e} mm, {:.2} % of the spacing: {what} has no \
-         contact of flanks, and the load and the stresses there are those of a crack that closes without force; {remedy}",
+        "crack faces overlap near {} by up to {:.3e} mm, {:.2} % of the spacing: {what} has no crack-face contact, so load \
+         and stress there are those of a crack that closes without force; {remedy}",
         place_mm(at),
         overlap / MM,
         100.0 * overlap / spacing

@@ -83,7 +83,7 @@ pub fn time_step(asked: Option<f64>, stable: f64) -> Result<f64> {
     match asked {
         Some(step) if step > stable => {
             let problem = format!("is above the stable step of this body, {stable:.4e} s");
-            Err(input("loading.time_step_s", step, problem, "give a smaller one, or leave it out"))
+            Err(input("loading.time_step_s", step, problem, "use a smaller one, or remove it"))
         }
         Some(step) => Ok(step),
         None => Ok(SAFETY * stable),

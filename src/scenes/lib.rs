@@ -111,7 +111,7 @@ fn follow(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpo
             let density = scene
                 .material
                 .density
-                .ok_or_else(|| input_missing("material.density_kg_m3", "is missing: motion needs mass", "give it"))?;
+                .ok_or_else(|| input_missing("material.density_kg_m3", "is missing (required for motion)", "give it"))?;
             // With all that will ever press: the time step is chosen once.
             interaction.load_to(1.0);
             let bound = interaction.stiffness_bound(&bonds);

@@ -9,11 +9,11 @@ use perilife_plate::specimen::Point;
 perilife_base::kinds! {
     /// Why a scene ended.
     pub enum SceneEnd for "stop_reason (fracture)" {
-        Done = "done": "all load steps or the whole duration were worked through",
-        Separated = "separated": "the plate is in two pieces, or what is left of it cannot carry a load, and nothing more was asked",
-        LoadFallen = "load_fallen": "the load of the platens fell a tenth below its peak: the body has failed between them",
-        NoConvergence = "no_convergence": "a load step found no equilibrium; the histories so far are kept",
-        Unstable = "unstable": "the motion blew up: energy appeared from nowhere; the histories so far are kept",
+        Done = "done": "all load steps or the whole duration completed",
+        Separated = "separated": "complete separation of the plate",
+        LoadFallen = "load_fallen": "platen load fell 10 % below its peak",
+        NoConvergence = "no_convergence": "a load step did not converge; histories so far are written",
+        Unstable = "unstable": "time integration became unstable; histories so far are written",
     }
 }
 

@@ -133,7 +133,7 @@ const RULE: &str = "#e1e1e1";
 pub fn overview(path: &Path, records: &[Record]) -> Result<()> {
     let mut sketch = Sketch::new(1.0, [0.0; 2]);
     let height = HEAD + ROW * records.len() as f64 + FOOT;
-    sketch.name([14.0, 28.0], "Where methods are safe, degrade and fail", "start", 18.0, INK);
+    sketch.name([14.0, 28.0], "Accuracy limits of each method", "start", 18.0, INK);
     let legend = [
         (SAFE, "error within the bound"),
         (BEYOND, "beyond the bound"),
@@ -162,7 +162,7 @@ pub fn overview(path: &Path, records: &[Record]) -> Result<()> {
     let version = env!("CARGO_PKG_VERSION");
     let foot = format!("perilife {version}: perilife stability --out DIR; stability.csv has every run with its reason");
     sketch.name([14.0, height - 14.0], &foot, "start", 12.0, INK);
-    write_file(path, sketch.picture([WIDTH, height], "Safe range of every method over its parameter").as_bytes())
+    write_file(path, sketch.picture([WIDTH, height], "Range of each method within its error bound").as_bytes())
 }
 
 fn rectangle(sketch: &mut Sketch, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], colour: &str) {

@@ -91,9 +91,9 @@ fn share(row: &Row) -> f64 {
 /// so that whoever computes it again gets the same text.
 pub fn markdown(topics: &[&Topic], rows: &[Row]) -> String {
     let mut text = format!(
-        "# Accuracy\n\nWritten by `perilife verify --markdown`: figures of the program beside their references. Errors are in percent \
-         of the reference;\nwhere that is 0, the figure is an error itself. A known miss has a second bound, which it may not \
-         pass.\n\n{}",
+        "# Accuracy\n\nWritten by `perilife verify --markdown`: results of the program against references. Errors are in \
+         percent of the reference;\nwhere that is 0, the result is itself an error. A known miss has a second bound that it \
+         must not exceed.\n\n{}",
         summary(rows)
     );
     for topic in topics {

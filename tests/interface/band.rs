@@ -86,7 +86,7 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
     let stdout =
         done(dir.path(), &["predict", "case.toml", "--out", "bare", "--set", without, "--inspect-from", "20", "--factor", "2"]);
-    assert!(stdout.contains("band           none: the fitted record has no [population]"), "{stdout}");
+    assert!(stdout.contains("band           none: fitted law without [population]"), "{stdout}");
     assert!(stdout.contains("the remaining life over 2, no band"), "{stdout}");
     let result = json(&dir.path().join("bare/result.json"));
     assert!(result["band"].is_null() && result["inspection"]["has_band"] == false);
@@ -131,7 +131,7 @@ fn readings_of_the_plate_narrow_what_it_has_left() {
     assert_refused(&predict(&["--inspect-from", "20", "--factor", "0.5"]), 2, &["--factor", "0.5", "is not 1 or more"]);
     // What shows after the run spares its files.
     write_readings(dir.path(), "long.csv", 47.0, 1.0);
-    let from = ["--inspect-from = 60 mm", "is not on the curve, which goes from 9 to 45"];
+    let from = ["--inspect-from = 60 mm", "is not on the curve, 9 to 45"];
     assert_refused(&predict(&["--inspect-from", "60"]), 2, &from);
     assert!(!dir.path().join("no").exists(), "a length off the curve is wrong input");
     let words = ["long.csv:", "crack_length_mm", "is not on the predicted curve"];

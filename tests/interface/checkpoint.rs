@@ -81,8 +81,8 @@ fn a_killed_run_goes_on_to_the_same_curve() {
     let broken: [(&[u8], &str); 4] = [
         (&damaged, "run.ckpt: is damaged"),
         (&kept[..kept.len() - 1], "run.ckpt: is damaged"),
-        (b"", "run.ckpt: is no checkpoint of this program"),
-        (b"cycles,crack_length_mm\n", "run.ckpt: is no checkpoint of this program"),
+        (b"", "run.ckpt: is not a checkpoint of this program"),
+        (b"cycles,crack_length_mm\n", "run.ckpt: is not a checkpoint of this program"),
     ];
     for (bytes, words) in broken {
         fs::write(folder.join("run.ckpt"), bytes).unwrap();
@@ -131,11 +131,11 @@ fn a_killed_scene_goes_on_to_the_same_files() {
     let at = older.windows(5).position(|window| window == env!("CARGO_PKG_VERSION").as_bytes()).unwrap();
     older[at] = b'9';
     let refused: [(&[u8], &str, &str); 5] = [
-        (&kept, "loading.velocity_mm_s=5001", "run.ckpt: belongs to another scene"),
+        (&kept, "loading.velocity_mm_s=5001", "run.ckpt: is of another scene"),
         (&damaged, "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
         (&kept[..kept.len() - 1], "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
-        (&older, "loading.velocity_mm_s=5000", "another version than this"),
-        (b"perilife checkpoint\n", "loading.velocity_mm_s=5000", "run.ckpt: is no checkpoint of a scene of this program"),
+        (&older, "loading.velocity_mm_s=5000", "this is "),
+        (b"perilife checkpoint\n", "loading.velocity_mm_s=5000", "run.ckpt: is not a checkpoint of a scene of this program"),
     ];
     for (bytes, set, words) in refused {
         fs::write(folder.join("run.ckpt"), bytes).unwrap();

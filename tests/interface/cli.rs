@@ -136,7 +136,7 @@ fn a_prediction_writes_what_it_promises() {
     let again = fs::read_to_string(run.join("case.toml")).unwrap();
     assert!(run.join("paraview/run.pvd").is_file() && again.contains("[output]\nparaview = true"), "{again}");
     for (key, words) in [
-        ("output.vtk=true", "output.vtk = true: is not a known key; known here: paraview"),
+        ("output.vtk=true", "output.vtk = true: unknown key; use one of: paraview"),
         ("output.paraview=1", "output.paraview = 1: is not true or false"),
     ] {
         assert_refused(&perilife(dir.path(), &["check", "small.toml", "--set", key]), 2, &[words]);

@@ -81,7 +81,7 @@ fn a_fleet_without_scatter_and_wrong_keys_are_refused() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("case.toml"), PANEL).unwrap();
     let cases: [(&[&str], &[&str]); 8] = [
-        (&["--fleet", "100"], &["fleet", "nothing that scatters", "initial_length_mm"]),
+        (&["--fleet", "100"], &["fleet", "has no scatter", "initial_length_mm"]),
         (&["--fleet", "0"], &["fleet.plates = 0", "100000"]),
         (&["--set", "fleet.initial_length_mm={ median = 3.0 }"], &["fleet.initial_length_mm", "standard_deviation_ln"]),
         (&["--set", "fleet.plate=3"], &["fleet.plate", "did you mean plates?"]),

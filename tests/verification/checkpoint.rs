@@ -249,7 +249,7 @@ fn damaged_and_foreign_checkpoints_are_refused() {
     let bytes = first(&own);
     assert_eq!(read(&bytes).to_bytes(), bytes);
     for length in (0..200).chain((200..bytes.len()).step_by(4999)) {
-        let word = if length < 20 { "is no checkpoint" } else { "damaged" };
+        let word = if length < 20 { "is not a checkpoint" } else { "damaged" };
         // A version that is cut short is another one.
         let cut = Checkpoint::from_bytes(&bytes[..length]);
         refused(cut, word);

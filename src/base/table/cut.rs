@@ -57,10 +57,8 @@ pub(super) fn text(text: &str, file: &Path, words: &dyn Vocabulary) -> Result<Ta
     // Stable: of equals the one that stands in numbers least.
     candidates.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(std::cmp::Ordering::Equal));
     let Some(&(_, best)) = candidates.first() else {
-        return Err(Fault { line: Some(lines[0].0), value: Some(lines[0].1), ..whole_file(file) }.error(
-            "is no table of 2 to 4096 columns, separated by tabs, semicolons, commas, vertical bars or blanks",
-            words.remedy(),
-        ));
+        return Err(Fault { line: Some(lines[0].0), value: Some(lines[0].1), ..whole_file(file) }
+            .error("is not a table of 2 to 4096 columns: no separator found (tab ; , | space)", words.remedy()));
     };
     let first_try = whole(best, &lines, &comments, file, words);
     if first_try.is_ok() {
@@ -183,7 +181,7 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
 /// Errors: less than two columns.
 pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) -> Result<Table> {
     let Some(place) = place(&rows, words) else {
-        return Err(whole_file(file).error("is no table of 2 to 4096 columns", words.remedy()));
+        return Err(whole_file(file).error("is not a table of 2 to 4096 columns", words.remedy()));
     };
     let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
     let header = match place.header {
@@ -195,7 +193,7 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) 
     let in_units = |(name, unit): (&String, &String)| {
         let fault = Fault { line: row_of_units.map(|row| row.line), key: Some(name), value: Some(unit), ..whole_file(file) };
         with_unit(name, unit).map_err(|own| {
-            let problem = format!("is another unit than that of the name above it, {}", own.name());
+            let problem = format!("conflicts with the unit of the name above it, {}", own.name());
             fault.error(problem, "name the unit in one place, or the same in both")
         })
     };

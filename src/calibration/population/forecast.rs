@@ -167,8 +167,8 @@ impl Population {
         Err(input(
             "loading",
             format!("ΔK {:.2} to {:.2} MPa√m", in_mpa(least), in_mpa(most)),
-            format!("is more than a factor {BEYOND_MAX} outside the calibrated {:.2} to {:.2} MPa√m", in_mpa(low), in_mpa(high)),
-            "calibrate by specimens of such ΔK, or ask for a shorter growth",
+            format!("is more than a factor {BEYOND_MAX} outside the tested ΔK {:.2} to {:.2} MPa√m", in_mpa(low), in_mpa(high)),
+            "test at such ΔK, or use a shorter crack growth range",
         ))
     }
 }
@@ -225,14 +225,19 @@ impl Forecast {
     pub fn basis(&self, basis: Basis) -> Result<f64> {
         let refuse = |value: String, problem: &str, remedy: &str| Err(input("basis", value, problem, remedy));
         if self.specimens < BASIS_SPECIMENS_MIN {
-            return refuse(format!("{} specimens", self.specimens), "are too few for a basis value", "test at least three");
+            return refuse(
+                format!("{} specimens", self.specimens),
+                "too few specimens for a basis value",
+                "test at least \
+                                   three",
+            );
         }
         if self.share_outside > 0.0 {
             let share = format!("{:.1} % of the life", 100.0 * self.share_outside);
-            return refuse(share, "is outside the calibrated range of ΔK", "calibrate by specimens of such ΔK");
+            return refuse(share, "is outside the tested ΔK range", "test at such ΔK");
         }
         if self.is_special {
-            return refuse("one specimen or another lot".to_owned(), "has no basis value", "ask it of the lot of the specimens");
+            return refuse("one specimen or another lot".to_owned(), "has no basis value", "use the lot of the specimens");
         }
         let life = self.life();
         Ok(life.median * (-tolerance_factor(basis, self.specimens) * life.deviation).exp())

@@ -122,8 +122,8 @@ impl Specimen {
             return Err(input(
                 "measured.files",
                 name,
-                "is a specimen whose crack does not grow by more than its readings scatter",
-                "give readings over a longer growth",
+                "has no growth beyond the scatter of its readings",
+                "give readings over more growth",
             ));
         }
         Ok(Specimen { name: name.to_owned(), intervals })
@@ -202,7 +202,7 @@ fn check_longer(from: f64, to: f64) -> Result<()> {
     if from > 0.0 && to > from {
         return Ok(());
     }
-    Err(input("stop.crack_length_mm", to / MM, format!("is not beyond {} mm", from / MM), "ask for a longer crack"))
+    Err(input("stop.crack_length_mm", to / MM, format!("is not beyond {} mm", from / MM), "give a longer crack"))
 }
 
 /// Quadrature over a chain of lengths, loads being steady or linear between two of them.

@@ -6,7 +6,7 @@ use perilife_base::input::{LENGTH, number};
 /// The law, of A, p and the horizon.
 pub static LAW: Description = Description {
     name: "bond_law",
-    meaning: "A and p of bonds, dλ/dN = -A ε^p: inline, or fitted",
+    meaning: "A and p of bonds, dλ/dN = -A ε^p: set in the case, or fitted",
     constants: &[
         Constant::new("a", "a", number("a constant in 1/cycle", 1e-60, 1e100)),
         Constant::exponent("p", "p"),

@@ -89,16 +89,19 @@ pub struct Constant {
     pub bounds: [f64; 2],
     /// Where searches start, of its variable.
     pub starts: [f64; 2],
-    /// Which rates tell it.
-    pub told_by: &'static str,
-    /// Standard error above which it is not known: a share of its value, or an absolute one where ratios tell it.
+    pub needs: Evidence,
+    /// Standard error above which it is not determined: a share of its value, or an absolute one where it needs several ratios.
     pub error_max: f64,
 }
 
-pub(super) const NEAR_FRACTURE: &str = "rates near fracture tell it";
-pub(super) const NEAR_THRESHOLD: &str = "rates near the threshold tell it";
-pub(super) const RATIOS: &str = "rates at several stress ratios tell it";
-const POWER: &str = "rates over a wide range of ΔK tell it";
+/// Rates from which a constant can be determined: in words, and whether at several stress ratios.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evidence(pub &'static str, pub bool);
+
+pub(super) const NEAR_FRACTURE: Evidence = Evidence("needs rates near fracture", false);
+pub(super) const NEAR_THRESHOLD: Evidence = Evidence("needs rates near the threshold", false);
+pub(super) const RATIOS: Evidence = Evidence("needs rates at several stress ratios", true);
+const POWER: Evidence = Evidence("needs rates over a wide range of ΔK", false);
 
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
 /// Level C of a law.
@@ -116,20 +119,9 @@ const OF_WALKER: Quantity = number("a Walker exponent", 0.0, 2.0);
 impl Constant {
     /// A constant that a case has to give and no search looks for.
     pub const fn new(key: &'static str, name: &'static str, quantity: Quantity) -> Self {
-        let (role, none, told_by) = (Role::Plain, [f64::NAN; 2], POWER);
-        Constant {
-            key,
-            name,
-            quantity,
-            role,
-            is_exponent: false,
-            default: None,
-            held: None,
-            bounds: none,
-            starts: none,
-            told_by,
-            error_max: 0.0,
-        }
+        let (bounds, starts, needs) = ([f64::NAN; 2], [f64::NAN; 2], POWER);
+        let (role, is_exponent, default, held, error_max) = (Role::Plain, false, None, None, 0.0);
+        Constant { key, name, quantity, role, is_exponent, default, held, bounds, starts, needs, error_max }
     }
 
     /// The exponent of ΔK.
@@ -139,13 +131,8 @@ impl Constant {
     }
 
     /// The same, searched between ends from starts.
-    pub const fn searched(self, bounds: [f64; 2], starts: [f64; 2], told_by: &'static str, error_max: f64) -> Self {
-        Constant { bounds, starts, told_by, error_max, ..self }
-    }
-
-    /// Whether only rates at several stress ratios tell it.
-    pub fn is_told_by_ratios(&self) -> bool {
-        self.told_by.contains("several stress ratios")
+    pub const fn searched(self, bounds: [f64; 2], starts: [f64; 2], needs: Evidence, error_max: f64) -> Self {
+        Constant { bounds, starts, needs, error_max, ..self }
     }
 
     /// Whether several laws have it.
@@ -176,14 +163,20 @@ impl Description {
         let is_foreign = |key: &str| is_given(key) && self.constants.iter().all(|constant| constant.key != key);
         let own_threshold = self.place(Role::Threshold).filter(|_| is_given(THRESHOLD)).map(|place| self.constants[place].key);
         let (key, problem, remedy) = match own_threshold {
-            _ if is_foreign(GAMMA.key) => (GAMMA.key, "does not go with", "or use growth_law = \"walker\"".to_owned()),
-            Some(own) => (THRESHOLD, "does not go with", format!("and give {own}")),
-            None if is_foreign(K_C.key) => (K_C.key, "is no constant of", "or give material.toughness_mpa_sqrt_m".to_owned()),
+            _ if is_foreign(GAMMA.key) => (GAMMA.key, "cannot be combined with", "or use growth_law = \"walker\"".to_owned()),
+            Some(own) => (THRESHOLD, "cannot be combined with", format!("and give {own}")),
+            None if is_foreign(K_C.key) => (
+                K_C.key,
+                "is not a constant of",
+                "or give \
+                                                      material.toughness_mpa_sqrt_m"
+                    .to_owned(),
+            ),
             None => return Ok(()),
         };
         let why = if key == THRESHOLD { ", which has its own threshold" } else { "" };
         let problem = format!("{problem} growth_law \"{}\"{why}", self.name);
-        Err(input_missing(&format!("fatigue.{key}"), problem, format!("leave it out, {remedy}")))
+        Err(input_missing(&format!("fatigue.{key}"), problem, format!("remove it, {remedy}")))
     }
 }
 
@@ -248,8 +241,7 @@ impl Given<'_> {
                     })
                 }
                 (None, None) => {
-                    let why =
-                        if constant.name == "horizon" { ": A is meaningless without the horizon it belongs to" } else { "" };
+                    let why = if constant.name == "horizon" { ": A depends on the horizon" } else { "" };
                     Err(input_missing(&path, format!("is missing{why}"), law.complete))
                 }
             }

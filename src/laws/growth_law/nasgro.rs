@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use toml::{Table, Value};
 
-use super::description::{Constant, Description, K_C, NEAR_FRACTURE, NEAR_THRESHOLD, RATE, RATIOS, Role, UNSAID};
+use super::description::{Constant, Description, Evidence, K_C, NEAR_FRACTURE, NEAR_THRESHOLD, RATE, RATIOS, Role, UNSAID};
 use perilife_base::input::{INTENSITY, Quantity, number};
 use perilife_base::units::MPA_SQRT_M;
 use perilife_plate::material::growth_data::{GrowthRecord, MM_PER_INCH, MPA_SQRT_M_PER_KSI_SQRT_IN};
@@ -15,7 +15,7 @@ const EXPONENT: Quantity = number("an exponent", 0.0, 20.0);
 const CONSTRAINT: Quantity = number("a constraint factor, 1 to 3", 1.0, 3.0);
 const SLOPE: Quantity = number("a slope of the threshold over R", -10.0, 10.0);
 const SHARE: Quantity = number("a share of the flow stress", 0.0, 0.99);
-const RATIOS_NEAR_THRESHOLD: &str = "rates near the threshold at several stress ratios tell it";
+const RATIOS_NEAR_THRESHOLD: Evidence = Evidence("needs rates near the threshold at several stress ratios", true);
 
 /// The law, of C as the rate at ΔK = 1 MPa√m, n, p of the threshold, q of instability, the constraint α (1 in plane stress, 3 in plane
 /// strain), S_max over the flow stress, ΔK₀ at R = 0, C_th for R from 0 on and below, and K_c.

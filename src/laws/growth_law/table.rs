@@ -24,8 +24,8 @@ const KEY: &str = "fatigue.growth_table";
 perilife_base::kinds! {
     /// What K and R beyond the rows of a table of rates do.
     pub enum TableEnds for "fatigue.growth_table_ends" {
-        Refused = "refused": "the run ends in an error",
-        Held = "held": "the crack grows at the rate of the last row, or ratio; how much of the life that is stands in a warning",
+        Refused = "refused": "extrapolation is refused",
+        Held = "held": "rate of the last row or ratio; a warning gives the share of life",
     }
 }
 
@@ -170,7 +170,7 @@ impl Table {
         let [at, low_mpa, high_mpa] = [delta_k, low, high].map(|k| k / MPA_SQRT_M);
         // Rows that are hit but for round-off.
         let is_beyond = delta_k > 0.0 && !(low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(&delta_k);
-        is_beyond.then(|| format!("ΔK = {at:.4} MPa√m lies beyond the table of rates, {low_mpa:.4} to {high_mpa:.4} MPa√m"))
+        is_beyond.then(|| format!("ΔK = {at:.4} MPa√m is outside the table of rates, {low_mpa:.4} to {high_mpa:.4} MPa√m"))
     }
 
     pub fn in_words(&self) -> String {
@@ -182,7 +182,8 @@ impl Table {
     pub fn lines(&self, ratios: [f64; 2]) -> Vec<String> {
         let unsaid = (!self.says_ratio).then(|| {
             format!(
-                "the table of rates names no stress ratio: its rates are used at R = {} as they are; name it in a column stress_ratio or \
+                "the table of rates has no stress ratio: its rates are used at R = {} unchanged; give it in a column \
+                 stress_ratio or \
                  by growth_table = {{ file = \"...\", stress_ratio = ... }}",
                 ratios[1]
             )
@@ -207,10 +208,10 @@ fn read(given: &Given<'_>) -> Result<Table> {
     let [first, last] = table.ends();
     if let Some(gamma) = table.walker_gamma.filter(|_| !table.says_ratio || table.curves.len() > 1) {
         let problem = match table.says_ratio {
-            true => format!("does not go with a table of several stress ratios, {first} to {last}"),
-            false => "does not go with a table that names no stress ratio".to_owned(),
+            true => format!("cannot be combined with a table of several stress ratios, {first} to {last}"),
+            false => "cannot be combined with a table without a stress ratio".to_owned(),
         };
-        let remedy = "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
+        let remedy = "remove it, or give a table with one stress ratio, or { file = \"...\", stress_ratio = ... }";
         return Err(input("fatigue.walker_gamma", gamma, problem, remedy));
     }
     // Of a spectrum some cycles may lie above several ratios: that is said. One ratio says nothing of others.
@@ -220,7 +221,8 @@ fn read(given: &Given<'_>) -> Result<Table> {
         let remedy = match is_one {
             true => "give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or add rates at this ratio to the table".to_owned(),
             false => format!(
-                "add rates at this ratio to the table, or take those of R = {last} by growth_table_ends = \"held\" (non-conservative)"
+                "add rates at this ratio to the table, or use those of R = {last} by growth_table_ends = \"held\" \
+                 (non-conservative)"
             ),
         };
         return Err(input(KEY, format!("\"{}\"", rates.file), problem, remedy));
@@ -255,7 +257,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         let ratio = if first == last { first } else { (mean * 1e4).round() / 1e4 };
         same.sort_by(|a, b| a.pair[0].total_cmp(&b.pair[0]).then(a.pair[1].total_cmp(&b.pair[1])));
         if same.len() < 2 {
-            let problem = "has a single row: a rate between rows needs two".to_owned();
+            let problem = "has a single row; interpolation needs two".to_owned();
             return Err(wrong(Some(&same[0]), "stress_ratio", first, problem));
         }
         let pairs: Vec<[f64; 2]> = same.iter().map(|row| row.pair).collect();
@@ -266,7 +268,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         };
         let Some(rows) = rising(&pairs) else {
             let [before, at] = [pairs[fall - 1][1], pairs[fall][1]].map(|rate| round_off(rate / MM_PER_CYCLE));
-            let problem = format!("does not rise against {before}, that of the next lower ΔK");
+            let problem = format!("is not above {before}, the rate at the next lower ΔK");
             return Err(wrong(Some(&same[fall]), &rates.columns[1], at, problem));
         };
         let (curve, count) = (Curve { ratio, rows }, pairs.len());

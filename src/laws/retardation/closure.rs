@@ -12,12 +12,12 @@ pub static MODEL: Description = Description {
         key: "closure_cf0",
         quantity: number("a closure factor at R = 0", 0.0, 0.99),
         default: |_, _| None,
-        remedy: "give opening load over maximum at R = 0, 0.3 for many aluminium alloys",
+        remedy: "give opening load over maximum at R = 0, 0.3 for many aluminum alloys",
     }],
     rate: Some(|constants, law, now, _| {
         let ratio = now.ratio.max(-1.0);
         let factor = 1.0 - (1.0 - constants[0]) * (1.0 + 0.6 * ratio) * (1.0 - ratio);
         law.rate(now.k_max, factor.max(now.ratio))
     }),
-    underload: "does not know underloads",
+    underload: "does not support underloads",
 };

@@ -77,10 +77,5 @@ impl Zone {
     }
 }
 
-pub static NONE: Description = Description {
-    name: "none",
-    meaning: "every cycle grows as if it were alone: no effect of the order of cycles",
-    constants: &[],
-    rate: None,
-    underload: "none",
-};
+pub static NONE: Description =
+    Description { name: "none", meaning: "no load interaction", constants: &[], rate: None, underload: "none" };

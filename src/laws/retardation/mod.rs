@@ -74,9 +74,9 @@ impl Retardation {
     pub fn read(section: &toml::Value, loading: &Loading, material: &Material, threshold: Option<f64>) -> Result<Option<Self>> {
         let given = |key: &str| value_at(section, key);
         if loading.spectrum.is_none() {
-            let problem = "says how cycles of a spectrum act on later ones, and the kind of loading is another";
+            let problem = "applies only to kind = \"spectrum\"";
             let given = Given::of(section, "loading")?;
-            return given.refuse_any(&retardation_keys(), problem, "give kind = \"spectrum\", or leave it out").map(|()| None);
+            return given.refuse_any(&retardation_keys(), problem, "set kind = \"spectrum\", or remove it").map(|()| None);
         }
         let asked = given(KEY).map(|value| RetardationKind::take(&Key::new(KEY, ""), RetardationKind::KEY, value)).transpose()?;
         let kind = asked.unwrap_or(RetardationKind(&description::NONE));
@@ -86,15 +86,11 @@ impl Retardation {
         }
         let is_own = |key: &str| key == KEY || kind.0.constants.iter().any(|constant| constant.key == key);
         if let Some(key) = retardation_keys().into_iter().find(|key| given(key).is_some() && !is_own(key)) {
-            let problem = format!("is no key of retardation = \"{kind}\"");
-            return Err(input_missing(
-                &format!("loading.{key}"),
-                problem,
-                "leave it out, or choose its model by loading.retardation",
-            ));
+            let problem = format!("is not a key of retardation = \"{kind}\"");
+            return Err(input_missing(&format!("loading.{key}"), problem, "remove it, or set its model by loading.retardation"));
         }
         let strength = material.yield_strength.ok_or_else(|| {
-            let problem = "needs the plastic zone of a tip, and the material has no yield strength";
+            let problem = "needs a yield strength (plastic zone of the tip)";
             input(RetardationKind::KEY, format!("\"{kind}\""), problem, "give material.yield_strength_mpa")
         })?;
         let constant = |constant: &description::Constant| {
@@ -104,7 +100,7 @@ impl Retardation {
                 (Some(value), _) => quantity(&constant.to_key(), &path, value),
                 (None, Some(value)) => Ok(value),
                 (None, None) => {
-                    let problem = format!("is missing, and retardation is \"{kind}\"");
+                    let problem = format!("is missing (required by retardation = \"{kind}\")");
                     Err(input_missing(&path, problem, constant.remedy))
                 }
             }

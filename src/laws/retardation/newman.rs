@@ -19,7 +19,7 @@ const LEAST: f64 = -2.0;
 /// 17:861). The yield strength in place of the flow stress is conservative: more stress opens the crack sooner.
 pub static MODEL: Description = Description {
     name: "newman",
-    meaning: "crack opening load of the overload, by Newman's S_open of R, kept within its zone (Newman 1984)",
+    meaning: "crack opening load of the overload, by Newman's S_open of R, within its plastic zone (Newman 1984)",
     constants: &[
         Constant {
             key: "newman_alpha",
@@ -44,7 +44,7 @@ pub static MODEL: Description = Description {
             _ => law.rate(now.k_max, ratio_of(wanted, open, now.ratio)),
         }
     }),
-    underload: "an underload within the zone lowers the opening load from then on",
+    underload: "an underload within the zone lowers the opening load",
 };
 
 /// Stress ratio above `low` at which cracks open at the share `wanted` of the maximum, which rises with the ratio: halved 40 times.

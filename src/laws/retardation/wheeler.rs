@@ -7,13 +7,13 @@ use perilife_base::input::number;
 /// nothing is ever arrested.
 pub static MODEL: Description = Description {
     name: "wheeler",
-    meaning: "rate times (own zone over what is left of that of the overload)^wheeler_exponent (Wheeler 1972)",
+    meaning: "rate × (plastic zone / remaining overload zone)^wheeler_exponent (Wheeler 1972)",
     constants: &[Constant {
         key: "wheeler_exponent",
         quantity: number("an exponent", 0.0, 10.0),
         default: |_, _| None,
-        remedy: "give that of tests with overloads, 1 to 2 for many aluminium alloys",
+        remedy: "give that of tests with overloads, 1 to 2 for many aluminum alloys",
     }],
     rate: Some(|constants, law, now, zone| (now.size / (zone.end() - now.a)).powf(constants[0]) * law.rate(now.k_max, now.ratio)),
-    underload: "does not know underloads",
+    underload: "does not support underloads",
 };

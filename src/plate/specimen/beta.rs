@@ -73,7 +73,7 @@ impl Specimen {
         let [first, last] = [rows[0], rows[rows.len() - 1]];
         if a < first.length * (1.0 - SLACK) || a > last.length * (1.0 + SLACK) {
             let (row, end) = if a < first.length { (first, "begins") } else { (last, "ends") };
-            let problem = format!("is where the table {end}, and the crack has {} mm at the start", round_mm(a));
+            let problem = format!("is where the table {end}; the initial crack is {} mm", round_mm(a));
             return Err(row.fault(&path, &column, problem, "give a table from the initial crack length to the end"));
         }
         self.beta = Some(BetaTable {
@@ -100,18 +100,13 @@ impl Specimen {
             Some(line.length() / self.tips_of(line).max(1) as f64)
         };
         let lengths = (0..self.tips.len()).map(length).collect::<Option<Vec<f64>>>().filter(|lengths| !lengths.is_empty());
-        let lengths = lengths.ok_or_else(|| {
-            input_missing(
-                KEY,
-                "needs sharp cracks: the end of a slot has no stress intensity factor",
-                "start a crack in the slot",
-            )
-        })?;
+        let lengths = lengths
+            .ok_or_else(|| input_missing(KEY, "requires cracks, not slots (a slot has no K)", "start a crack in the slot"))?;
         let [least, most] = [f64::min, f64::max].map(|pick| lengths.iter().copied().reduce(pick).unwrap_or(f64::NAN));
         if most > least * (1.0 + ALIKE) {
             let problem =
-                format!("is one table, and the cracks have unlike lengths, a = {} and {} mm", round_mm(least), round_mm(most));
-            return Err(input_missing(KEY, problem, "leave it out: K of every crack is then found on nodes"));
+                format!("one table cannot serve cracks of different length, a = {} and {} mm", round_mm(least), round_mm(most));
+            return Err(input_missing(KEY, problem, "remove it: K of each crack is then computed on nodes"));
         }
         Ok((most, lengths.len() as f64))
     }
@@ -153,7 +148,7 @@ impl BetaTable {
         }
         let a = self.logarithms.x()[self.logarithms.x().len() - 1];
         let row = Row { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
-        let problem = format!("is where the table ends, and growth goes on to {} mm", round_mm(self.length_at(crack_length)));
+        let problem = format!("is the end of the table; growth continues to {} mm", round_mm(self.length_at(crack_length)));
         let most = round_mm(self.bounds()[1]);
         Err(row.fault(
             self.file.as_ref(),
@@ -204,13 +199,13 @@ fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<Row>, String)> {
         }
         let row = Row { line, length: values[0] * unit, beta: values[1], unit };
         if let Some(before) = rows.last().filter(|before| before.length >= row.length) {
-            let problem = format!("does not rise above the {} mm of line {}", round_mm(before.length), before.line);
+            let problem = format!("is not above the {} mm of line {}", round_mm(before.length), before.line);
             return Err(row.fault(file, &table.header[length], problem, "sort the rows by crack length, each length once"));
         }
         rows.push(row);
     }
     match rows[..] {
         [_, _, ..] => Ok((rows, table.header[length].clone())),
-        _ => Err(whole_file(file).error("has one row, which is no curve", "give two rows or more below crack_length_mm,beta")),
+        _ => Err(whole_file(file).error("has only one row", "give two rows or more below crack_length_mm,beta")),
     }
 }

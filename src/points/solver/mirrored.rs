@@ -14,7 +14,7 @@ use perilife_base::error::Result;
 perilife_base::kinds! {
     /// Use of mirror symmetry.
     pub enum Symmetry for "model.symmetry" {
-        Auto = "auto": "a plate that is its own mirror image, with its cracks and loads, is solved on its half or quarter",
+        Auto = "auto": "a symmetric plate (cracks and loads too) is solved on its half or quarter",
         Off = "off": "the whole plate is solved",
     }
 }
@@ -139,7 +139,7 @@ impl EquilibriumBackend for Mirrored {
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
         let cut: Vec<Bond> = broken.iter().copied().filter(|&bond| !bonds.is_intact(bond)).collect();
         if !self.is_lost && !self.part.keeps(body, &cut) {
-            tracing::info!("the crack is not symmetric any more: the whole plate is solved from now on");
+            tracing::info!("the crack is no longer symmetric: the whole plate is solved from here");
             self.is_lost = true;
             self.inner = sides::balance(self.kind, body, bonds, self.load);
             if let Some(tolerance) = self.tolerance {

@@ -58,8 +58,8 @@ impl FullLoad {
             return Ok(());
         };
         Err(Error::Mechanics(format!(
-            "nothing holds the plate, and its loads do not balance: {:.3e} N are left along {} at ({:.3}, {:.3}) mm; give \
-             [supports] or balanced loads",
+            "no supports, and the loads do not balance: {:.3e} N along {} at ({:.3}, {:.3}) mm; add [supports] or balance the \
+             loads",
             (force[at] + self.external[at]).abs(),
             ["x", "y"][at % net.unknowns],
             net.positions[at / net.unknowns][0] * 1e3,
@@ -157,7 +157,7 @@ impl Equilibrium {
             }
             if fresh {
                 return Err(Error::Mechanics(format!(
-                    "equilibrium was not found within {ITERATIONS_MAX} iterations: nothing holds what the loads pull at"
+                    "no equilibrium within {ITERATIONS_MAX} iterations: the loaded part has no support"
                 )));
             }
             self.stale = true;

@@ -122,10 +122,10 @@ pub fn scenes(names: &[String]) -> Result<Vec<&'static Panel>> {
 perilife_base::kinds! {
     /// What came of a point of the chart.
     pub enum Status for "status of the chart" {
-        Measured = "measured": "ran, and its time is the median of its runs",
-        Refused = "refused": "the program refuses the case",
-        Failed = "failed": "the run failed, or its cracks end elsewhere than those of the truth",
-        Stopped = "stopped": "took longer than a run may",
+        Measured = "measured": "completed; time is the median of its runs",
+        Refused = "refused": "case refused",
+        Failed = "failed": "failed, or cracks end elsewhere than in the reference",
+        Stopped = "stopped": "time limit exceeded",
     }
 }
 

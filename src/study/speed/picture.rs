@@ -43,12 +43,12 @@ pub fn svg(chart: &Chart, origin: &Origin) -> String {
     }
     let footer = origin.footer(chart).replace('`', "");
     sketch.name([16.0, size[1] - 14.0], &footer, "start", 12.0, GREY);
-    sketch.picture(size, "Time of a run against its error, a panel a scene")
+    sketch.picture(size, "Run time against error, one panel per scene")
 }
 
 /// Title, and what colours and marks mean.
 fn head(sketch: &mut Sketch, chart: &Chart) {
-    sketch.name([16.0, 26.0], "What a result costs, and how far off it is", "start", 18.0, INK);
+    sketch.name([16.0, 26.0], "Time and error of a result", "start", 18.0, INK);
     let mut x = 16.0;
     let has_points = |family: &Family| chart.points.iter().any(|point| point.choice.family == *family);
     for family in Family::ALL.iter().copied().filter(|family| *family != Family::Solver && has_points(family)) {
@@ -62,7 +62,8 @@ fn head(sketch: &mut Sketch, chart: &Chart) {
         sketch.name([x + 15.0, 72.0], solver, "start", 12.0, INK);
         x += 34.0 + width_of(solver, 12.0);
     }
-    let note = "Filled and named: no other point is both faster and nearer to the truth. Star: what the program chooses. Bars: least and largest time.";
+    let note = "Filled and named: no other point is both faster and more accurate. Star: automatic choice. Bars: minimum and \
+                maximum time.";
     sketch.name([16.0, 92.0], note, "start", 12.0, GREY);
 }
 
@@ -99,7 +100,7 @@ fn outlined(sketch: &mut Sketch, mut corners: Vec<Pixel>, fill: &str, rim: &str)
 fn draw(panel: &Panel, points: &[&Point], most_s: f64) -> Sketch {
     let quantity = panel.quantity.split(',').next().unwrap_or_default();
     let axes = [Axis::logarithmic_between(SECONDS_LEAST, most_s), Axis::logarithmic_between(ERRORS[0], ERRORS[1])];
-    let mut frame = Frame::new(PANEL, &panel.about, axes, ["Time of a run, s", &format!("Error of {quantity}, %")], &[]);
+    let mut frame = Frame::new(PANEL, &panel.about, axes, ["Run time, s", &format!("Error of {quantity}, %")], &[]);
     let mut taken = limits(&mut frame, panel, most_s);
     let held = |[time, error]: [f64; 2]| [time.clamp(SECONDS_LEAST, most_s), error.clamp(ERRORS[0], ERRORS[1])];
     let steps = front(points, most_s, held);
@@ -132,7 +133,7 @@ fn limits(frame: &mut Frame, panel: &Panel, most_s: f64) -> Vec<Pixel> {
     let [left, _, right, bottom] = frame.room();
     if uncertainty > ERRORS[0] {
         frame.below(uncertainty, [SECONDS_LEAST, most_s], SHADE, 0.8);
-        frame.sketch().name([right - 4.0, bottom - 6.0], "below the error of the truth", "end", PANEL.text, GREY);
+        frame.sketch().name([right - 4.0, bottom - 6.0], "below the error of the reference", "end", PANEL.text, GREY);
     }
     if !panel.grows() {
         return Vec::new();

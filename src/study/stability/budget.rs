@@ -81,7 +81,7 @@ pub fn within(budget: Budget, work: impl FnOnce(&Run) -> Result<f64>) -> Outcome
     match done {
         Err(panic) => {
             let owned = panic.downcast_ref::<String>().map(String::as_str);
-            let words = owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without words");
+            let words = owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a message");
             Outcome::Failed(format!("panic: {words}"))
         }
         Ok(_) if ran_out.load(Ordering::Relaxed) => Outcome::Stopped(format!("not done within {} s", budget.seconds)),

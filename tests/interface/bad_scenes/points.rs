@@ -19,7 +19,7 @@ pub const POINTS: &[Bad] = &[
         REFINED,
         "box_mm = [[-5, -5], [5, 5]]",
         "around_flaws_mm = 2",
-        &["refinement.regions[0].around_flaws_mm", "nothing to lie around"],
+        &["refinement.regions[0].around_flaws_mm", "no crack or notch"],
     ),
     (REFINED, "regions = [{ box_mm = [[-5, -5], [5, 5]], levels = 1 }]", "regions = []", &["refinement.regions", "1 to 50"]),
     (REFINED, "edges = [\"top\", \"bottom\"]", "edges = [\"top\"]", &["supports", "floats", "along y"]),

@@ -70,7 +70,7 @@ fn a_drawing_is_sent_along() {
     let plate = sent(json!({ "bracket.dxf": drawing })).expect(200);
     assert!(plate.text().contains("\"holes\""), "{}", plate.text());
     let missing = sent(json!({})).expect(422);
-    assert!(missing.text().contains("bracket.dxf") && missing.text().contains("was not sent along"), "{}", missing.text());
+    assert!(missing.text().contains("bracket.dxf") && missing.text().contains("was not uploaded"), "{}", missing.text());
     let broken = sent(json!({ "bracket.dxf": drawing.replace("\nholes\n", "\nbores\n") })).expect(422);
     assert!(broken.text().contains("specimen.outline_file") && broken.text().contains("bores"), "{}", broken.text());
 }

@@ -28,7 +28,7 @@ perilife_base::keys! {
 fn layout(given: &Given<'_>) -> Result<Layout> {
     let Keys { length, arm_width, radius, thickness, a, angle } = Keys::read(given)?;
     let (end, arm) = (length / 2.0, arm_width / 2.0);
-    below("fillet_radius_mm", radius, end - arm, "what an arm is long")?;
+    below("fillet_radius_mm", radius, end - arm, "the length of an arm")?;
     below("crack_length_mm", a, arm, "half the width of an arm")?;
     // One inner corner, turned into all four; built so that the cross is its own mirror image but for round-off.
     let quarter: Vec<Point> =

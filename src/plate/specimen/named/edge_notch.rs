@@ -28,7 +28,7 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     let Keys { width, length, thickness, depth, radius, crack_length } = Keys::read(given)?;
     below("notch_radius_mm", radius, (depth * (1.0 + 1e-9)).min(length / 2.0), "depth of the notch and half the length")?;
     below("notch_depth_mm", depth, width, "the width")?;
-    below("crack_length_mm", crack_length.unwrap_or(0.0), width - depth, "what the notch leaves of the width")?;
+    below("crack_length_mm", crack_length.unwrap_or(0.0), width - depth, "the width minus the notch depth")?;
     let (x, y) = (width / 2.0, length / 2.0);
     let centre: Point = [-x + depth - radius, 0.0];
     let mut outline: Vec<Point> = vec![[-x, -y], [x, -y], [x, y], [-x, y]];

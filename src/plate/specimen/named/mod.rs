@@ -118,10 +118,8 @@ const HOLES: &str = "specimen.holes[";
 fn by_own_keys(error: Error, crack_key: &'static str, value: &Value) -> Error {
     let Error::Input(mut refused) = error else { return error };
     let (own, remedy) = match refused.key.as_deref() {
-        Some(key) if key.starts_with(CRACKS) => {
-            (crack_key, "give lengths of which one at the least ends in the material, clear of rims")
-        }
-        Some(key) if key.starts_with(HOLES) => ("specimen.hole_diameter_mm", "give a smaller one, or a larger plate"),
+        Some(key) if key.starts_with(CRACKS) => (crack_key, "at least one crack must end inside the material"),
+        Some(key) if key.starts_with(HOLES) => ("specimen.hole_diameter_mm", "use a smaller one, or a larger plate"),
         _ => return Error::Input(refused),
     };
     let given = own.strip_prefix("specimen.").and_then(|key| value.get(key));

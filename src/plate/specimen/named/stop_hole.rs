@@ -29,7 +29,7 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     let Keys { width, length, thickness, centre, diameter, formed } = Keys::read(given)?;
     let radius = diameter / 2.0;
     below("hole_diameter_mm", 2.0 * radius, (2.0 * centre).min(length), "the length of the crack and of the plate")?;
-    below("formed_length_mm", formed, width / 2.0 - centre - radius, "the way from the rim to the edge")?;
+    below("formed_length_mm", formed, width / 2.0 - centre - radius, "the distance from the hole edge to the plate edge")?;
     let line = |from: f64, to: f64| vec![[from, 0.0], [to, 0.0]];
     let rim = centre + radius;
     let drawing = Drawing {

@@ -62,7 +62,7 @@ const WOL: Kind = Kind {
     formula: |rest| HandbookFormula {
         name: "Novak and Rolfe WOL",
         source: "Novak and Rolfe 1969, J. Materials 4:701, K = P C3/(B √a)",
-        range: "2 % for a/W from 0.25 to 0.75",
+        range: "2 % for a/W = 0.25 to 0.75",
         bounds: [0.25, 0.75],
         of: |x, _| x.sqrt() * (30.96 + x * (-195.8 + x * (730.6 + x * (-1186.3 + 754.6 * x)))),
         error: |_| 0.02,

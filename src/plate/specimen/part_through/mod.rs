@@ -31,11 +31,10 @@ pub const STATED_ERROR: f64 = 0.05;
 pub const SOURCE: &str = "Newman and Raju 1984, NASA TM-85793";
 
 /// When a crack is through and what it is then, in words.
-pub const BREAK_THROUGH: &str = "through where the deepest point reaches the far face, a/t = 1, up to which the equations of Newman and Raju \
-                                 (1984) are made; then a straight through crack of length c";
+pub const BREAK_THROUGH: &str = "breakthrough at a/t = 1; then a straight through crack of length c";
 
 /// How well, in words.
-pub const RANGE: &str = "5 % for a/t up to 0.8, a/c from 0.2 to 2, and a crack of less than half of the width";
+pub const RANGE: &str = "5 % for a/t ≤ 0.8, a/c = 0.2 to 2, crack < half of the width";
 
 /// What one kind is.
 pub struct Description {
