@@ -119,7 +119,7 @@ pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
         let fit = fit_by_method(calibration, observer);
         watch::unless_cancelled(&calibration.case.name, fit)
     })?;
-    match paris::doubt_of(fit.paris.c, fit.paris.m) {
+    match paris::implausibility_of(fit.paris.c, fit.paris.m) {
         None => Ok(fit),
         Some(doubt) => {
             let doubts: String = fit.warnings.iter().map(|line| format!("\n  {line}")).collect();
@@ -160,12 +160,7 @@ fn check_crack(calibration: &CalibrationCase, start: f64) -> Result<()> {
     let [first, start] = [curve.crack_length[0], start].map(|length| round_off(length / MM));
     let problem =
         format!("has a first reading of {first} mm for {}; the governing crack is {start} mm long initially", curve.specimen);
-    Err(input_missing(
-        "measured.files",
-        problem,
-        "give the readings of the governing crack, along its path and over all its \
-                       tips",
-    ))
+    Err(input_missing("measured.files", problem, "give the readings of the governing crack, over all its tips"))
 }
 
 /// The fit to K of the tips of a plate that no handbook has, along their own paths.

@@ -154,7 +154,7 @@ impl CalibrationCase {
         check_through(&case.specimen)?;
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
-        measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        measured.compare_with(&case.specimen, &case.material, &case.loading)?;
         measured.leave_standing_out()?;
         let read = measured.curves.clone();
         measured.leave_out(&keys.leave_out)?;

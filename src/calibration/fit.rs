@@ -8,7 +8,9 @@ use super::confidence::{Confidence, check_identified, confidence, end_of_range};
 use super::criterion::{Criterion, misfit};
 use super::exponent::DELTA_K_RATIO_MIN;
 use super::lack_of_fit::{MisfitAtEnds, misfit_at_ends};
-use super::outliers::{Run, StepRate, doubts_beside, left_out, long_step_rates, readings_apart, runs, step_rates, without};
+use super::outliers::{
+    OutlierRun, StepRate, doubts_beside, left_out, long_step_rates, readings_apart, runs, step_rates, without,
+};
 use super::paris::{self, Paris};
 use super::population::intervals::Specimen;
 use super::population::{Population, fit as fit_population};
@@ -93,7 +95,8 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let is_fitted = fixed_p.is_none();
     let strange = runs(&task.curves.iter().map(|curve| long_step_rates(curve, task.delta_k)).collect::<Vec<_>>());
     let mut warnings = remarks(task, &strange);
-    let of_runs = |(curve, runs): (&MeasuredCurve, &Vec<Run>)| runs.iter().map(|run| left_out(curve, *run)).collect::<Vec<_>>();
+    let of_runs =
+        |(curve, runs): (&MeasuredCurve, &Vec<OutlierRun>)| runs.iter().map(|run| left_out(curve, *run)).collect::<Vec<_>>();
     let left_out = task.curves.iter().zip(&strange).flat_map(of_runs).collect();
     let belonging: Vec<MeasuredCurve> = task.curves.iter().zip(&strange).map(|(curve, runs)| without(curve, runs)).collect();
     let task = &FitTask { curves: &belonging, ..*task };
@@ -236,8 +239,8 @@ fn delta_k_range(task: &FitTask<'_>) -> [f64; 2] {
 }
 
 /// What speaks against the readings of the specimens.
-fn remarks(task: &FitTask<'_>, runs: &[Vec<Run>]) -> Vec<String> {
-    let of_curve = |(curve, runs): (&MeasuredCurve, &Vec<Run>)| doubts_beside(curve, runs, task.delta_k);
+fn remarks(task: &FitTask<'_>, runs: &[Vec<OutlierRun>]) -> Vec<String> {
+    let of_curve = |(curve, runs): (&MeasuredCurve, &Vec<OutlierRun>)| doubts_beside(curve, runs, task.delta_k);
     let mut lines: Vec<String> = task.curves.iter().zip(runs).flat_map(of_curve).collect();
     if lines.len() > DOUBTS_SHOWN {
         let more = lines.len() - DOUBTS_SHOWN;

@@ -6,7 +6,7 @@
 
 use crate::search::Constants;
 use perilife_base::error::{Error, Result};
-use perilife_base::line::line;
+use perilife_base::linear_fit::line;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_laws::growth_law::{Walker, doubt};
 use perilife_laws::paris::ParisLaw;
@@ -54,7 +54,7 @@ pub fn doubt_of_exponent(m: f64) -> Option<String> {
 }
 
 /// What is wrong with `da/dN = C ΔK^m` (mm/cycle, MPa√m) as the law of a metal: a unit that slipped shows here.
-pub fn doubt_of(c: f64, m: f64) -> Option<String> {
+pub fn implausibility_of(c: f64, m: f64) -> Option<String> {
     let paris = ParisLaw { c: c * MM_PER_CYCLE, m };
     doubt_of_exponent(m).or_else(|| doubt(&Walker { paris, gamma: 1.0, threshold: 0.0 }, 0.0))
 }

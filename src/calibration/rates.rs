@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 use nalgebra::{Matrix3, Vector3};
 
 use perilife_base::columns::Table;
-use perilife_base::line::{Line, line};
+use perilife_base::linear_fit::{Line, line};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::Case;
 use perilife_measured::{MeasuredCurve, side_difference_max};

@@ -10,28 +10,26 @@ use perilife_results::paper::{Signed, write};
 
 /// Arguments of `perilife report`.
 #[derive(Debug, clap::Args)]
-#[command(
-    after_long_help = "The page holds its pictures and its style and names no other file; a browser prints it to A4 or letter, or saves it as PDF.\n\
-                       What is not given is printed as \"not recorded\"."
-)]
+#[command(after_long_help = "One self-contained file; print to A4, Letter or PDF from a browser.\n\
+                       What is not given is printed as \"not recorded\".")]
 pub struct Args {
-    /// Folder that `perilife predict` or `perilife calibrate` wrote
+    /// Results folder of `perilife predict` or `perilife calibrate`
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
-    /// Page to write (HTML); replaced if an earlier report made it
+    /// HTML file to write
     #[arg(long, value_name = "FILE.html", help_heading = "Output")]
     pub out: PathBuf,
     /// Name of the laboratory or office
-    #[arg(long, value_name = "NAME", help_heading = "Who signs")]
+    #[arg(long, value_name = "NAME", help_heading = "Signature")]
     pub laboratory: Option<String>,
-    /// Who tested or computed
-    #[arg(long, value_name = "NAME", help_heading = "Who signs")]
+    /// Prepared by
+    #[arg(long, value_name = "NAME", help_heading = "Signature")]
     pub operator: Option<String>,
-    /// Who checks
-    #[arg(long, value_name = "NAME", help_heading = "Who signs")]
+    /// Reviewed by
+    #[arg(long, value_name = "NAME", help_heading = "Signature")]
     pub reviewer: Option<String>,
-    /// Date of the report, in your own writing
-    #[arg(long, value_name = "DATE", help_heading = "Who signs")]
+    /// Date (free text)
+    #[arg(long, value_name = "DATE", help_heading = "Signature")]
     pub date: Option<String>,
     /// What is printed.
     #[command(flatten)]

@@ -49,8 +49,7 @@ pub const RESIDUAL: f64 = 1e-5;
 perilife_base::kinds! {
     /// Numerical methods.
     pub enum Method for "model.method" {
-        Auto = "auto": "automatic: handbook within its range, else element-free Galerkin nodes; peridynamics if a \
-                peridynamics key is set",
+        Auto = "auto": "automatic: handbook within its range, else element-free Galerkin nodes; peridynamics if a peridynamics key is set",
         Peridynamics = "peridynamics": "points and bonds",
         ElementFreeGalerkin = "element_free_galerkin": "element-free Galerkin with near-tip enrichment; growth driven by K",
         Handbook = "handbook": "handbook K (standard specimen, part-through crack, or beta table), life by quadrature",

@@ -33,8 +33,7 @@ perilife_base::kinds! {
     /// What drives a crack of method `peridynamics`.
     pub enum Driver for "fatigue.driver" {
         TipField = "tip_field": "direction and rate of each tip from its K_I and K_II; bonds across the path are cut",
-        BondStrain = "bond_strain": "each bond loses life by its own strain and the crack follows broken bonds; from a slot, \
-                      until K of the tip takes over",
+        BondStrain = "bond_strain": "each bond loses life by its own strain and the crack follows broken bonds; from a slot, until K of the tip takes over",
     }
 }
 

@@ -1,8 +1,8 @@
 //! What the columns of a measured file are: one row a reading, or columns of every specimen; and in which units.
 
+use super::exclusion_flags::{is_of_thousands, rejected};
 use super::header::{columns_of, cut, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, Import};
-use super::marks::{is_of_thousands, rejected};
 use perilife_base::error::{Error, Result};
 use perilife_base::table::decimal::decide;
 use perilife_base::table::names::{Column, Kind, Named, Role, says_tip_to_tip, unit_of_specimen};

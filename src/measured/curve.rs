@@ -314,7 +314,7 @@ impl Measured {
     }
 
     /// Takes typing errors out of the curves.
-    pub(super) fn leave_typing_errors_out(&mut self) {
+    pub(super) fn exclude_typing_errors(&mut self) {
         let mut left_out = Vec::new();
         for curve in self.curves.iter_mut().filter(|curve| curve.cycles.len() > READINGS_MIN) {
             let errors = curve.typing_errors();

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, first_of};
 use perilife_base::error::{Result, input_missing};
-use perilife_base::line::line;
+use perilife_base::linear_fit::line;
 use perilife_base::table::Fault;
 use perilife_base::table::names::Role;
 use perilife_base::units::round_off;
@@ -55,7 +55,7 @@ impl Measured {
 
     /// Sets the readings against the specimen and the load of a case.
     /// Errors: readings beyond the specimen; loads that it cannot have.
-    pub fn set_against(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
+    pub fn compare_with(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
         if let Some(course) = loading.course() {
             let problem = "depends on crack length; the load of readings comes from their own columns";
             return Err(input_missing(
@@ -66,7 +66,7 @@ impl Measured {
         }
         let (limit, limit_name) = specimen.length_limit();
         self.take_whole_lengths(specimen);
-        self.leave_typing_errors_out();
+        self.exclude_typing_errors();
         self.check_lengths(limit, limit_name)?;
         self.check_half_lengths(specimen)?;
         self.resolve_loads(specimen, loading)?;

@@ -6,9 +6,9 @@
 use std::path::Path;
 
 use super::columns::column_in_unit;
+use super::exclusion_flags::{counts, rejected};
 use super::header::columns_of;
 use super::import::{ColumnNames, Import};
-use super::marks::{counts, rejected};
 use super::readings::value;
 use super::table;
 use super::wide_rates;

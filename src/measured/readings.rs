@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::columns::{Layout, Series, Shape, is_stress};
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
 use perilife_base::error::{Error, Result};
-use perilife_base::line::line;
+use perilife_base::linear_fit::line;
 use perilife_base::table::Decimal;
 use perilife_base::table::names::{Column, Role};
 use perilife_base::table::quantities::number_at;

@@ -77,7 +77,7 @@ pub struct Local {
     pub values: Vec<Value>,
     /// Q_I and Q_II of every tip that a node in reach carries, with gradients; by tip.
     pub fields: Vec<Option<TipFields>>,
-    room: linear::Room,
+    room: linear::Workspace,
 }
 
 impl Discretisation {

@@ -111,8 +111,7 @@ fn one(given: &RegionKeys, path: &str, specimen: &Specimen) -> Result<(RefinedRe
                     &key,
                     round_mm(distance),
                     "has no crack or notch to refine",
-                    "give cracks or notches, or a \
-                                                            box",
+                    "give cracks or notches, or a box",
                 ));
             }
             RefinedRegion::AroundFlaws { distance }

@@ -38,7 +38,7 @@ pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
     let usual = (deciding / 9.0).min(specimen.width / 100.0).min(specimen.length() / POINTS_ACROSS);
     let smallest = sizes.iter().copied().fold(f64::INFINITY, f64::min);
     let gap = specimen.least_gap();
-    let bend = specimen.least_straight_way();
+    let bend = specimen.shortest_path();
     let wanted = usual.min(smallest / POINTS_ON_FLAW).min(gap / POINTS_ON_GAP).min(bend / POINTS_ON_BEND);
     // Among many flaws a short one grows beside others that are read well.
     let most = if sizes.len() > FEW_FLAWS { smallest / POINTS_ON_SHORT } else { usual };

@@ -143,7 +143,7 @@ impl Task {
         };
         let import = Import { of_plate: true, ..Import::default() };
         let mut measured = perilife_measured::read_into(document.folder.opened(), &[file.to_path_buf()], &import)?;
-        measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        measured.compare_with(&case.specimen, &case.material, &case.loading)?;
         case.warnings.append(&mut measured.warnings);
         case.warnings.extend(ratio_warnings(&measured.curves, &case.loading));
         case.provenance = document.folder.opened().so_far();

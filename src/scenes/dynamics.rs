@@ -101,7 +101,7 @@ impl Standing {
 type Push = (LoadRamp, Vec<(usize, f64)>);
 
 /// A motion to be followed.
-pub struct Run<'a> {
+pub struct Simulation<'a> {
     /// Masses of all unknowns, kg.
     pub masses: &'a [f64],
     /// Time step, s.
@@ -109,7 +109,7 @@ pub struct Run<'a> {
     pub steps: usize,
 }
 
-impl Run<'_> {
+impl Simulation<'_> {
     /// Follows the motion from rest, or from where it is taken up; returns why it ended, the last state, and the evaluations of the
     /// forces.
     /// Errors: a run that was cancelled, a checkpoint of another one.

@@ -119,7 +119,7 @@ fn follow(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpo
             let masses = dynamics::masses(net, density, &bound);
             let steps = (duration / step).round().max(1.0) as usize;
             let mut course = course(steps);
-            let run = dynamics::Run { masses: &masses, step, steps };
+            let run = dynamics::Simulation { masses: &masses, step, steps };
             let (end, motion, evaluations) = run.follow(interaction.as_mut(), &mut bonds, &mut course)?;
             let figures = SceneFigures { evaluations, time_step: step, ..SceneFigures::default() };
             course.log.close(end, &motion.u, &bonds, figures)

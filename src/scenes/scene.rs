@@ -36,8 +36,7 @@ perilife_base::kinds! {
     /// Laws of damage and failure of a bond.
     pub enum DamageLaw for "damage.law" {
         None = "none": "no damage",
-        NonlinearTwoParameter = "nonlinear_two_parameter": "exponential softening beyond the elastic limit, broken at the \
-                                 final stretch (Li, Lü, Huang and Yang 2024, equation 19)",
+        NonlinearTwoParameter = "nonlinear_two_parameter": "exponential softening beyond the elastic limit, broken at the final stretch (Li, Lü, Huang and Yang 2024, equation 19)",
         CriticalStretch = "critical_stretch": "broken at the critical stretch of the fracture energy",
         CriticalEnergy = "critical_energy": "broken at the critical energy of the fracture energy, normal and tangential together, in tension only",
         PrincipalStress = "principal_stress": "broken where the mean first principal stress of both ends reaches the tensile strength (correspondence)",
@@ -55,10 +54,8 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// How the critical stretch follows from the fracture energy.
     pub enum Calibration for "damage.calibration" {
-        Growth = "growth": "a crack grows when the body releases the fracture energy (Griffith 1921); lattice trapping is \
-                  corrected",
-        BondEnergy = "bond_energy": "cut bonds store the fracture energy, as published (Silling and Askari 2005): growth \
-                      needs up to 1.5 times as much",
+        Growth = "growth": "a crack grows when the body releases the fracture energy (Griffith 1921); lattice trapping is corrected",
+        BondEnergy = "bond_energy": "cut bonds store the fracture energy, as published (Silling and Askari 2005): growth needs up to 1.5 times as much",
     }
 }
 

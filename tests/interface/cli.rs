@@ -39,9 +39,14 @@ fn subcommands() -> Vec<String> {
 fn every_command_explains_itself() {
     let here = Path::new(".");
     let (help, _) = texts(&perilife(here, &["--help"]));
-    assert!(help.contains("Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble"), "{help}");
-    assert!(help.contains("surface, corner and embedded cracks"), "{help}");
+    assert!(help.contains("Exit codes: 0 success, 2 invalid input, 3 no valid result, 4 I/O error"), "{help}");
+    assert!(help.contains("surface, corner and embedded cracks") && help.contains("\nAnalyze:\n  predict "), "{help}");
     assert!(!subcommands().is_empty());
+    for command in CommandLine::command().get_subcommands() {
+        let of_arguments = command.get_arguments().filter_map(|argument| argument.get_help());
+        let long = command.get_about().into_iter().chain(of_arguments).map(|help| help.to_string());
+        long.for_each(|help| assert!(help.chars().count() <= 70, "{help}"));
+    }
     for name in subcommands() {
         assert!(help.contains(&format!("\n  {name} ")), "{name} in {help}");
         let output = perilife(here, &[&name, "--help"]);

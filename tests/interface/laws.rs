@@ -164,7 +164,7 @@ fn rates_and_sweeps_tell_where_the_formula_does_not_hold() {
     fs::write(here.join("ct.csv"), curve(&lengths, |_| 1e5)).unwrap();
     // a/W 0.2 is 10 mm: secants at 4.5 to 9.5 mm lie below.
     let (_, stderr) = done(here, &["rates", "ct.csv", "--specimen", "ct.toml", "--method", "secant", "--out", "rates.csv"]);
-    let words = "6 of 11 rates (54.5 %), at crack lengths from 4.500 to 9.500 mm, lie outside the range of ASTM E647 compact";
+    let words = "6 of 11 rates (54.5 %), at crack lengths from 4.500 to 9.500 mm, are outside the range of ASTM E647 compact";
     assert!(stderr.contains(words), "{stderr}");
     let sweep = "case = \"ct.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"specimen.crack_length_mm\"\nvalues = [9.5, 4.0, 11.0]\n";
     fs::write(here.join("sweep.toml"), sweep).unwrap();

@@ -404,7 +404,7 @@ fn loads_are_read_in_every_unit() {
     // Without a unit: no load where it does not change, a refusal where it does, and the user's word for both.
     let still = text("Pmax;Pmin", 6.0, 0.6);
     let measured = parse(still.as_bytes(), Path::new("p.csv"), &Import::default()).unwrap();
-    assert!(measured.curves[0].loads.is_none() && measured.warnings[0].contains("Pmax is a load in a unit that is not known"));
+    assert!(measured.curves[0].loads.is_none() && measured.warnings[0].contains("Pmax ignored (unknown load unit)"));
     let changing = still.replace("14.75;6;", "14.75;7;");
     let error = parse(changing.as_bytes(), Path::new("p.csv"), &Import::default()).unwrap_err().to_string();
     assert!(error.contains("p.csv:7: Pmax = 7: is a varying load (from 6) in an unknown unit"), "{error}");

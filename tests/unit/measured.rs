@@ -236,7 +236,7 @@ fn typing_errors_are_named() {
         let rows: String = lengths.iter().enumerate().map(|(i, a)| format!("{},{a:.4}\n", 1000 * i)).collect();
         let text = format!("cycles,crack_length_mm\n{rows}");
         let mut measured = parse(text.as_bytes(), Path::new("typed.csv"), &Import::default()).unwrap();
-        measured.set_against(&case.specimen, &case.material, &case.loading).unwrap();
+        measured.compare_with(&case.specimen, &case.material, &case.loading).unwrap();
         measured
     };
     let errors = |measured: &Measured| measured.warnings.iter().filter(|line| line.contains("a typing error")).count();

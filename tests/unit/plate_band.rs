@@ -3,7 +3,7 @@
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::inspection::{InspectFrom, Inspection};
 use perilife_calibration::population::fit;
-use perilife_calibration::population::intervals::{INTERVALS_MAX, Reading, Specimen};
+use perilife_calibration::population::intervals::{INTERVALS_MAX, IntervalReading, Specimen};
 use perilife_calibration::population::plate::Plate;
 use perilife_growth::case::{Case, LawSource, Lot};
 use perilife_growth::predict::{Prediction, Silent, predict};
@@ -31,11 +31,11 @@ pub fn panel(specimens: usize, set: &[&str]) -> Case {
         let reading = |step: usize| {
             let length = (9.0 + step as f64) * MM;
             let rate = 8.95e-11 * factor * (delta_k(length) / MPA_SQRT_M).powf(2.874);
-            let now = Reading { length, cycles, counts: true };
+            let now = IntervalReading { length, cycles, counts: true };
             cycles += MM / (rate * (1.0 + 0.15 * (1.7 * (step + 5 * i) as f64).sin()));
             now
         };
-        let readings: Vec<Reading> = (0..41).map(reading).collect();
+        let readings: Vec<IntervalReading> = (0..41).map(reading).collect();
         Specimen::new(&format!("S{i}"), &readings, &delta_k, INTERVALS_MAX).unwrap()
     };
     let lot: Vec<Specimen> = FACTORS[..specimens].iter().enumerate().map(one).collect();

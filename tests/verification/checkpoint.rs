@@ -205,7 +205,7 @@ fn a_run_taken_up_hands_its_crack_over_alike() {
 /// The first checkpoint of a run, which goes no farther.
 fn first(case: &Case) -> Vec<u8> {
     let keeping = Keeping { first_only: true, ..Keeping::default() };
-    assert!(predict(case, &keeping).unwrap_err().to_string().contains("was cancelled"));
+    assert!(predict(case, &keeping).unwrap_err().to_string().contains("was canceled"));
     keeping.kept().swap_remove(0).0
 }
 
@@ -225,7 +225,7 @@ fn a_cancelled_run_goes_on() {
         parts += 1;
         match run {
             Ok(run) => break run,
-            Err(error) => assert!(error.to_string().contains("was cancelled"), "{error}"),
+            Err(error) => assert!(error.to_string().contains("was canceled"), "{error}"),
         }
         let newer = keeping.kept().pop().map(|(bytes, _)| bytes);
         assert!(newer.is_some(), "no way on within 40 blocks");

@@ -8,7 +8,7 @@ use perilife_plate::specimen::Point;
 use perilife_plate::specimen::geometry::segments_touch;
 use perilife_points::body::pre_crack::cutting_line;
 use perilife_scenes::bonds::BondState;
-use perilife_scenes::contact::Contact;
+use perilife_scenes::contact::NetContact;
 use perilife_scenes::levels::equilibrium::FullLoad;
 use perilife_scenes::quasi_static::equilibrium::{Equilibrium, Shape};
 use perilife_scenes::{Fracture, Scene, boundary::Boundary};
@@ -129,7 +129,7 @@ fn contact_is_free_under_turning_and_sliding() {
             let scene = scene(&PRESSED.replace("CRACKS", &long), if discretisation == "lattice" { &[] } else { &set });
             let (net, _) = perilife_scenes::build(&scene).unwrap();
             let bonds = BondState::new(&net, &vec![false; net.len()]);
-            let mut contact = Contact::new(&net, &scene.specimen.cracks);
+            let mut contact = NetContact::new(&net, &scene.specimen.cracks);
             contact.press_all(&bonds);
             let columns = contact.touching();
             assert!(columns.columns > 500 && columns.pressed == columns.columns, "{columns:?}");

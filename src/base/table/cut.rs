@@ -23,7 +23,7 @@ const PREAMBLE_MAX: usize = 200;
 
 /// Where the table stands among the rows of a cut.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct TableBounds {
     /// The header; `None` where the table has none.
     header: Option<usize>,
     /// First row of readings.
@@ -98,7 +98,7 @@ fn width(row: &Row) -> usize {
 }
 
 /// Where header and readings stand; `None` for less than two columns.
-pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
+pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<TableBounds> {
     let head = &rows[..rows.len().min(PREAMBLE_MAX)];
     let below = |header: usize| header + 1 + usize::from(rows.get(header + 1).is_some_and(is_row_of_units));
     let names = |row: &Row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>();
@@ -122,7 +122,7 @@ pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
         (None, None) => (Some(0), 1.min(rows.len()), 0),
     };
     let columns = width(rows.get(width_of)?);
-    (words.columns()..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: !named.is_empty() })
+    (words.columns()..=COLUMNS_MAX).contains(&columns).then_some(TableBounds { header, body, columns, named: !named.is_empty() })
 }
 
 /// Rows up to the last one that has a number: what stands behind is text.
@@ -139,7 +139,7 @@ fn is_row_of_units(row: &Row) -> bool {
     row.cells.len() <= COLUMNS_MAX && row.cells.iter().any(is_text) && row.cells.iter().all(is_unit_or_blank)
 }
 
-fn merit(rows: &[Row], place: Place) -> Merit {
+fn merit(rows: &[Row], place: TableBounds) -> Merit {
     let end = without_footer(rows).max(place.body);
     let body = || rows[place.body..end].iter().filter(|row| !row.is_blank());
     let fits = body().next().is_some() && body().all(|row| width(row) <= place.columns && row.cells.len() >= place.columns);

@@ -19,7 +19,7 @@ use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 
 use assess::assess;
-use intervals::{Row, Specimen, rows};
+use intervals::{IntervalRow, Specimen, rows};
 use noise::Noise;
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::units::{MM, MPA_SQRT_M};
@@ -316,8 +316,9 @@ fn groups(specimens: &[Specimen], law: &CurveLaw) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (place, specimen) in specimens.iter().enumerate() {
         let known = groups.iter_mut().find(|group| alike(&specimens[group.members[0]], specimen));
-        let residual =
-            |rows: &[Row]| rows.iter().zip(&specimen.intervals).map(|(row, own)| row.log_cycles - own.cycles.ln()).collect();
+        let residual = |rows: &[IntervalRow]| {
+            rows.iter().zip(&specimen.intervals).map(|(row, own)| row.log_cycles - own.cycles.ln()).collect()
+        };
         match known {
             Some(group) => {
                 group.residuals.push(residual(&group.rows));

@@ -8,7 +8,7 @@
 
 use super::Population;
 use super::forecast::{BEYOND_MAX, CELLS, Forecast, Life, Lot};
-use super::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, Zones};
+use super::intervals::{INTERVALS_MAX, Interval, IntervalReading, Specimen, Zones};
 use super::student::t_quantile;
 use perilife_base::error::{Error, InputError, Result, input};
 use perilife_base::monotone::Monotone;
@@ -325,12 +325,12 @@ impl Plate {
         }
         let loads = curve.load_history();
         let [over_length, over_way] = [self.way_over_length(), Monotone::new(self.pairs().map(|[length, way]| [way, length]))];
-        let reading = |i: usize| Reading {
+        let reading = |i: usize| IntervalReading {
             length: over_length.at(curve.crack_length[i]),
             cycles: curve.cycles[i],
             counts: curve.counts(i),
         };
-        let readings: Vec<Reading> = (0..curve.cycles.len()).map(reading).collect();
+        let readings: Vec<IntervalReading> = (0..curve.cycles.len()).map(reading).collect();
         if readings.len() == 1 {
             return Ok(Specimen { name: curve.specimen.clone(), intervals: Vec::new() });
         }

@@ -107,12 +107,7 @@ fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design>
         DesignKind::Grid => grid_size(keys, &vary, most)?,
         DesignKind::LatinHypercube | DesignKind::FittedScatter => {
             let samples = keys.samples.ok_or_else(|| {
-                input_missing(
-                    "design.samples",
-                    format!("is missing (required by kind = \"{kind}\")"),
-                    "give the number of \
-                               cases",
-                )
+                input_missing("design.samples", format!("is missing (required by kind = \"{kind}\")"), "give the number of cases")
             })?;
             check_size("design.samples", samples, most)?
         }

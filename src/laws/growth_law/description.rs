@@ -11,7 +11,7 @@ use perilife_base::units::MM_PER_CYCLE;
 use perilife_plate::material::Material;
 
 /// A law of growth: its formula, and it in the words and numbers of input files. Formulas take the constants in SI units, in their order.
-pub struct Description {
+pub struct GrowthLawSpec {
     /// Name in input and result files.
     pub name: &'static str,
     pub meaning: &'static str,
@@ -22,7 +22,7 @@ pub struct Description {
     /// ΔK, Pa√m, up to which that is 0, at R; asked for of laws with a constant of [`Role::Threshold`].
     pub threshold: fn(&[f64], f64) -> f64,
     /// Reads it from a case; `None` for bonds and powers of ΔK, either of which can stand for the other.
-    pub read: Option<fn(&Given<'_>, &'static Description) -> Result<FactorLaw>>,
+    pub read: Option<fn(&Given<'_>, &'static GrowthLawSpec) -> Result<FactorLaw>>,
     /// Keys of its own that are no constants.
     pub others: &'static [&'static str],
     /// What to give where constants are missing.
@@ -41,7 +41,7 @@ pub struct Description {
 pub type Factor = (&'static str, &'static [(&'static str, f64)]);
 
 /// What a law is where its file says nothing: a formula of its constants.
-pub(super) const UNSAID: Description = Description {
+pub(super) const UNSAID: GrowthLawSpec = GrowthLawSpec {
     name: "",
     meaning: "",
     constants: &[],
@@ -141,7 +141,7 @@ impl Constant {
     }
 }
 
-impl Description {
+impl GrowthLawSpec {
     /// Keys that no law of other constants has.
     fn own_keys(&self) -> Vec<&'static str> {
         let constants = self.constants.iter().filter(|constant| !constant.is_shared());
@@ -165,13 +165,7 @@ impl Description {
         let (key, problem, remedy) = match own_threshold {
             _ if is_foreign(GAMMA.key) => (GAMMA.key, "cannot be combined with", "or use growth_law = \"walker\"".to_owned()),
             Some(own) => (THRESHOLD, "cannot be combined with", format!("and give {own}")),
-            None if is_foreign(K_C.key) => (
-                K_C.key,
-                "is not a constant of",
-                "or give \
-                                                      material.toughness_mpa_sqrt_m"
-                    .to_owned(),
-            ),
+            None if is_foreign(K_C.key) => (K_C.key, "is not a constant of", "or give material.toughness_mpa_sqrt_m".to_owned()),
             None => return Ok(()),
         };
         let why = if key == THRESHOLD { ", which has its own threshold" } else { "" };
@@ -225,7 +219,7 @@ impl Given<'_> {
 
     /// The constants of a law in SI units, in their order.
     /// Errors: one that is missing, or beyond its bounds.
-    pub fn constants(&self, law: &Description) -> Result<Vec<f64>> {
+    pub fn constants(&self, law: &GrowthLawSpec) -> Result<Vec<f64>> {
         let is_one = |(_, own): &Factor| matches!(self.get::<f64>(own[0].0), Ok(Some(value)) if value == own[0].1);
         let of_one =
             |key: &str| law.factors.iter().filter(|factor| is_one(factor)).flat_map(|(_, own)| *own).find(|own| own.0 == key);
@@ -250,7 +244,7 @@ impl Given<'_> {
     }
 
     /// The same; `None` where the case gives none of them.
-    pub fn all_or_none(&self, law: &Description) -> Result<Option<Vec<f64>>> {
+    pub fn all_or_none(&self, law: &GrowthLawSpec) -> Result<Option<Vec<f64>>> {
         let is_given = law.own_keys().into_iter().any(|key| value_at(self.section, key).is_some());
         is_given.then(|| self.constants(law)).transpose()
     }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use toml::{Table, Value};
 
-use super::description::{Constant, Description, Evidence, K_C, NEAR_FRACTURE, NEAR_THRESHOLD, RATE, RATIOS, Role, UNSAID};
+use super::description::{Constant, Evidence, GrowthLawSpec, K_C, NEAR_FRACTURE, NEAR_THRESHOLD, RATE, RATIOS, Role, UNSAID};
 use perilife_base::input::{INTENSITY, Quantity, number};
 use perilife_base::units::MPA_SQRT_M;
 use perilife_plate::material::growth_data::{GrowthRecord, MM_PER_INCH, MPA_SQRT_M_PER_KSI_SQRT_IN};
@@ -19,7 +19,7 @@ const RATIOS_NEAR_THRESHOLD: Evidence = Evidence("needs rates near the threshold
 
 /// The law, of C as the rate at ΔK = 1 MPa√m, n, p of the threshold, q of instability, the constraint α (1 in plane stress, 3 in plane
 /// strain), S_max over the flow stress, ΔK₀ at R = 0, C_th for R from 0 on and below, and K_c.
-pub static LAW: Description = Description {
+pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "nasgro",
     meaning: "crack closure, threshold and instability in one equation (Forman and Mettu 1992)",
     constants: &[

@@ -3,14 +3,14 @@
 use serde::Serialize;
 
 use super::FactorLaw;
-use super::description::{Description, GAMMA, Given, RatedRow, Rates, UNSAID};
+use super::description::{GAMMA, Given, GrowthLawSpec, RatedRow, Rates, UNSAID};
 use super::rising::rising;
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
 use perilife_plate::loading::SAME_RATIO;
 
 /// What it says of itself.
-pub static LAW: Description = Description {
+pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "table",
     meaning: "da/dN over ΔK, and over R, as rows of a CSV file",
     constants: &[GAMMA],

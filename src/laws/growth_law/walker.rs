@@ -1,7 +1,7 @@
 //! The law of Walker, which at γ = 1 is that of Paris.
 
 use super::GrowthLaw;
-use super::description::{Constant, Description, GAMMA, RATE, UNSAID};
+use super::description::{Constant, GAMMA, GrowthLawSpec, RATE, UNSAID};
 use crate::paris::ParisLaw;
 use perilife_base::input::Quantity;
 
@@ -10,7 +10,7 @@ pub(super) const LEVEL: Constant =
     Constant::new("paris_c_mm_per_cycle", "c", Quantity { what: "a rate in mm/cycle at ΔK = 1 MPa√m", ..RATE });
 
 /// The law, of C, m and γ.
-pub static LAW: Description = Description {
+pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "walker",
     meaning: "da/dN = C (K_max (1-R)^γ)^m (Walker 1970)",
     constants: &[LEVEL, Constant::exponent("paris_m", "m"), GAMMA],

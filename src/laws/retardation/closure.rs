@@ -1,11 +1,11 @@
 //! Closure of a constant factor.
 
-use super::description::{Constant, Description};
+use super::description::{Constant, RetardationSpec};
 use perilife_base::input::number;
 
 /// `da/dN = v(K_max, C_f)` within the zone of an overload: the crack is open from C_f K_max on, `C_f = 1 - (1 - C_f0)(1 + 0.6 R)(1 - R)` (Bell
 /// and Creager 1974, AFFDL-TR-74-129), and the law takes that for its R. R is at least -1 here.
-pub static MODEL: Description = Description {
+pub static MODEL: RetardationSpec = RetardationSpec {
     name: "closure",
     meaning: "stress ratio C_f = 1 - (1 - closure_cf0)(1 + 0.6 R)(1 - R) within the zone of an overload",
     constants: &[Constant {

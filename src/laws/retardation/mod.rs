@@ -11,7 +11,7 @@ mod newman;
 mod wheeler;
 mod willenborg;
 
-pub use description::{Constant, Description, Now, Zone};
+pub use description::{Constant, Now, RetardationSpec, Zone};
 pub use march::{Laws, March, Marched, Underway, between};
 
 use std::f64::consts::PI;
@@ -25,11 +25,11 @@ use perilife_plate::loading::Loading;
 use perilife_plate::material::{Material, Plane};
 
 /// Every model, in the order of `perilife list`. A new one is a line here and its file.
-const MODELS: &[&Description] = &[&description::NONE, &wheeler::MODEL, &willenborg::MODEL, &closure::MODEL, &newman::MODEL];
+const MODELS: &[&RetardationSpec] = &[&description::NONE, &wheeler::MODEL, &willenborg::MODEL, &closure::MODEL, &newman::MODEL];
 
 perilife_base::kinds! {
     /// Which model of retardation a case has.
-    pub struct RetardationKind of Description in MODELS for "loading.retardation"
+    pub struct RetardationKind of RetardationSpec in MODELS for "loading.retardation"
 }
 
 const KEY: &str = "retardation";

@@ -1,6 +1,6 @@
 //! Opening load of Newman 1984 (Int. J. Fract. 24:R131), kept from the overload on.
 
-use super::description::{Constant, Description};
+use super::description::{Constant, RetardationSpec};
 use crate::growth_law::nasgro::opening;
 use perilife_base::input::{Quantity, number};
 use perilife_plate::material::Plane;
@@ -17,7 +17,7 @@ const LEAST: f64 = -2.0;
 /// that cycles of one size have the rate of the law. S_max over the flow stress is K_max/(σ_Y √(πa)) where the case gives none: the stress at which a
 /// crack in a wide plate has this K, by which closure of M(T), SE(T) and bending specimens agrees (McClung 1994, Fatigue Fract. Eng. Mater. Struct.
 /// 17:861). The yield strength in place of the flow stress is conservative: more stress opens the crack sooner.
-pub static MODEL: Description = Description {
+pub static MODEL: RetardationSpec = RetardationSpec {
     name: "newman",
     meaning: "crack opening load of the overload, by Newman's S_open of R, within its plastic zone (Newman 1984)",
     constants: &[

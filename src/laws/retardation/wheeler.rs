@@ -1,11 +1,11 @@
 //! Wheeler 1972 (J. Basic Eng. 94:181).
 
-use super::description::{Constant, Description};
+use super::description::{Constant, RetardationSpec};
 use perilife_base::input::number;
 
 /// `da/dN = φ v(K_max, R)`, `φ = [r_p / (a_OL + r_OL - a)]^m` while a + r_p lies within the zone of the overload. φ counts on the rate, so that
 /// nothing is ever arrested.
-pub static MODEL: Description = Description {
+pub static MODEL: RetardationSpec = RetardationSpec {
     name: "wheeler",
     meaning: "rate × (plastic zone / remaining overload zone)^wheeler_exponent (Wheeler 1972)",
     constants: &[Constant {

@@ -150,7 +150,7 @@ fn load_edges_and_pins(given: &Given<'_>, input_: &Input, held: &[Edge], specime
     given.refuse_any(
         &[&["rollers", "direction", BENT][..], kind].concat(),
         problem,
-        "this combination is not supported: pins or edges alone give a different life",
+        "use another program; either alone is a different problem",
     )?;
     let area = load_edges(given, input_, held, specimen)?;
     let edges = specimen.loads.len();
@@ -205,13 +205,7 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
         let edge: Edge = name.parse().map_err(|_| input(&path, shorten(value), "is not a side of the plate", known))?;
         let SupportEntry { depth, fix } = section(value, &path)?;
         if fix.is_empty() {
-            return Err(input(
-                &format!("{path}.fix"),
-                "[]",
-                "supports nothing",
-                "give fix = [\"x\", \"y\"], [\"x\"] or \
-                                       [\"y\"]",
-            ));
+            return Err(input(&format!("{path}.fix"), "[]", "supports nothing", "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]"));
         }
         let [low, high] = bounding_box(&specimen.outline);
         let (x, y) = (fix.contains(&Component::X), fix.contains(&Component::Y));
@@ -283,8 +277,7 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
             given.refuse_any(
                 &[BENT],
                 "cannot be combined with loading.direction: bending acts along the normal",
-                "remove one \
-                                       of them",
+                "remove one of them",
             )?;
             if parallel_ratio != 0.0 {
                 let problem = "cannot be combined with loading.direction";
@@ -301,12 +294,7 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
         let across = if vertical { [Edge::Left, Edge::Right] } else { [Edge::Bottom, Edge::Top] };
         if loaded.iter().any(|edge| across.contains(edge)) {
             let remedy = "remove one of them";
-            return Err(input(
-                "loading.stress_parallel_ratio",
-                parallel_ratio,
-                "loads sides that loading.edges already loads",
-                remedy,
-            ));
+            return Err(input("loading.stress_parallel_ratio", parallel_ratio, "loads sides that edges already loads", remedy));
         }
         let free: Vec<Edge> = across.into_iter().filter(|edge| !held.contains(edge)).collect();
         for edge in &free {

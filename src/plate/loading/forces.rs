@@ -113,13 +113,7 @@ pub(super) fn read_rollers(rollers: &[RollerEntry], specimen: &mut Specimen) -> 
         let (asked, direction) = (direction, direction.map_or(Ok(inward), |direction| direction_of(&path, direction))?);
         if direction[0] * inward[0] + direction[1] * inward[1] <= 0.0 {
             let given = asked.map_or(String::new(), |[x, y]| format!("[{x}, {y}]"));
-            return Err(input(
-                &format!("{path}.direction"),
-                given,
-                "is a pull; a roller can only push",
-                "reverse its \
-                                       direction",
-            ));
+            return Err(input(&format!("{path}.direction"), given, "is a pull; a roller can only push", "reverse its direction"));
         }
         let stretch = [-0.5, 0.5].map(|half| along(from, to, (place + half * width) / side));
         let pressure = share / (width * specimen.thickness);

@@ -173,19 +173,13 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
 /// Puts the bending that goes with the tension on a crack that does not go through.
 fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
     const KEY: &str = "loading.bending_ratio";
-    const UNBENT: &str = "use a kind with K under bending: surface_crack, corner_crack and corner_crack_at_hole";
+    const UNBENT: &str = "use a kind with K under bending: surface_crack, corner_crack or corner_crack_at_hole";
     let Some(ratio) = input.bending_ratio else { return Ok(()) };
     let (kind, all_holes) = (specimen.kind, specimen.holes.len());
     match specimen.part_through.as_mut() {
         Some(flaw) if ratio > 0.0 && all_holes > flaw.own_holes() => {
             let problem = "conflicts with specimen.holes: no K of a crack under bending includes holes";
-            return Err(error::input(
-                KEY,
-                ratio,
-                problem,
-                "this combination is not supported: holes or bending alone give a \
-                                                          different life",
-            ));
+            return Err(error::input(KEY, ratio, problem, "use another program; either alone is a different problem"));
         }
         Some(flaw) if flaw.knows_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
         Some(_) => {

@@ -177,11 +177,7 @@ impl ResidualStress {
             return Ok(());
         }
         let (problem, remedy) = match &self.field {
-            Field::Formulas(..) => (
-                "is not a number".to_owned(),
-                "give a formula with a value at every point of the crack \
-                                     path",
-            ),
+            Field::Formulas(..) => ("is not a number".to_owned(), "give a formula with a value at every point of the crack path"),
             Field::Line([from, to], _) => {
                 (format!("covers only {} to {}", place_mm(*from), place_mm(*to)), "give the stress along the whole crack path")
             }

@@ -147,7 +147,7 @@ impl BetaTable {
             return Ok(());
         }
         let a = self.logarithms.x()[self.logarithms.x().len() - 1];
-        let row = Row { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
+        let row = BetaRow { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
         let problem = format!("is the end of the table; growth continues to {} mm", round_mm(self.length_at(crack_length)));
         let most = round_mm(self.bounds()[1]);
         Err(row.fault(
@@ -161,14 +161,14 @@ impl BetaTable {
 
 /// A row of the file, SI.
 #[derive(Debug, Clone, Copy)]
-struct Row {
+struct BetaRow {
     line: usize,
     length: f64,
     beta: f64,
     unit: f64,
 }
 
-impl Row {
+impl BetaRow {
     /// What is wrong with it, its length as the file has it.
     fn fault(self, file: &Path, name: &str, problem: impl Into<String>, remedy: &str) -> Error {
         let length = ((self.length / self.unit * 1e6).round() / 1e6).to_string();
@@ -185,19 +185,19 @@ const WORDS: Words = Words {
 };
 
 /// The rows of the table, and the name of the column of lengths.
-fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<Row>, String)> {
+fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<BetaRow>, String)> {
     let table = table::read(bytes, file, &WORDS)?;
     let roles = WORDS.roles(&table)?;
     let place = |wanted: Role| roles.iter().position(|(role, _)| *role == wanted).unwrap_or_default();
     let (length, beta) = (place(Role::Length), place(Role::Beta));
     let unit = in_si(&table, length, roles[length].1, None)?;
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<BetaRow> = Vec::new();
     for (row, (line, values)) in table.rows.iter().zip(numbers(&table, &[(length, false), (beta, false)])?) {
         if let Some((column, _)) = [length, beta].into_iter().zip(&values).find(|(_, value)| **value <= 0.0) {
             let remedy = "give lengths and beta = K/(σ√(πa)), above zero";
             return Err(table.cell_fault(row, column).error("is not a number above zero", remedy));
         }
-        let row = Row { line, length: values[0] * unit, beta: values[1], unit };
+        let row = BetaRow { line, length: values[0] * unit, beta: values[1], unit };
         if let Some(before) = rows.last().filter(|before| before.length >= row.length) {
             let problem = format!("is not above the {} mm of line {}", round_mm(before.length), before.line);
             return Err(row.fault(file, &table.header[length], problem, "sort the rows by crack length, each length once"));

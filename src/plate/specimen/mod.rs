@@ -41,23 +41,16 @@ perilife_base::kinds! {
         DoubleEdgeTension = "double_edge_tension": "plate with two equal edge cracks; crack length = length of each",
         CompactTension = "compact_tension": "C(T) of ASTM E647, loaded by pins; crack length from the load line",
         Plate = "plate": "any outline with round holes, slots and straight through cracks at any angle",
-        SurfaceCrack = "surface_crack": "semi-elliptical surface crack; crack length = half length c; Newman-Raju K until \
-                        breakthrough",
-        CornerCrack = "corner_crack": "quarter-elliptical corner crack; crack length = c along the face; Newman-Raju K until \
-                       breakthrough",
-        EmbeddedCrack = "embedded_crack": "elliptical embedded crack; crack length = half length c; Newman-Raju K until \
-                         breakthrough",
-        CornerCrackAtHole = "corner_crack_at_hole": "quarter-elliptical crack at a hole, one or both sides; crack length = c \
-                             from the hole edge; Newman-Raju K until breakthrough",
+        SurfaceCrack = "surface_crack": "semi-elliptical surface crack; crack length = half length c; Newman-Raju K until breakthrough",
+        CornerCrack = "corner_crack": "quarter-elliptical corner crack; crack length = c along the face; Newman-Raju K until breakthrough",
+        EmbeddedCrack = "embedded_crack": "elliptical embedded crack; crack length = half length c; Newman-Raju K until breakthrough",
+        CornerCrackAtHole = "corner_crack_at_hole": "quarter-elliptical crack at a hole, one or both sides; crack length = c from the hole edge; Newman-Raju K until breakthrough",
         CrackAtHole = "crack_at_hole": "plate with a round hole and one or two through cracks; crack length from the hole edge",
-        RowOfHoles = "row_of_holes": "row of holes with cracks (multiple-site damage, link-up); crack length from the hole \
-                      edge",
+        RowOfHoles = "row_of_holes": "row of holes with cracks (multiple-site damage, link-up); crack length from the hole edge",
         Lug = "lug": "lug loaded by a pin, straight or round head, cracks at the hole; crack length from the hole edge",
         EdgeNotch = "edge_notch": "plate with a U-shaped edge notch and a crack at its root; crack length from the notch root",
-        StopHole = "stop_hole": "central crack with a stop hole at each end; needs [fatigue.initiation]; crack length = half \
-                    length, center to tip beyond the hole",
-        SingleEdgeBend = "single_edge_bend": "SE(B) of ASTM E399 and E1820 on three rollers, or four with inner_span_mm; \
-                          crack length from the edge",
+        StopHole = "stop_hole": "central crack with a stop hole at each end; needs [fatigue.initiation]; crack length = half length, center to tip beyond the hole",
+        SingleEdgeBend = "single_edge_bend": "SE(B) of ASTM E399 and E1820 on three rollers, or four with inner_span_mm; crack length from the edge",
         EccentricSingleEdgeTension = "eccentric_single_edge_tension": "ESE(T) of ASTM E647 annex A3, loaded by pins; crack length from the edge",
         WedgeOpening = "wedge_opening": "modified WOL of Novak and Rolfe, half height 0.486 W, loaded by pins; crack length from the load line",
         Cruciform = "cruciform": "cruciform with a central crack, uniaxial or biaxial; crack length = half length",

@@ -46,7 +46,7 @@ impl SpecimenKind {
             (SpecimenKind::SingleEdgeTension, _) => standard::SingleEdge::KEYS,
             (SpecimenKind::CompactTension, _) => standard::Compact::KEYS,
             (SpecimenKind::Plate, _) => plate::Keys::KEYS,
-            (kind, _) => kind.named().map_or(standard::Strip::KEYS, named::Description::keys),
+            (kind, _) => kind.named().map_or(standard::Strip::KEYS, named::SpecimenSpec::keys),
         }
     }
 

@@ -7,10 +7,8 @@ use perilife_plate::material::Material;
 perilife_base::kinds! {
     /// Constitutive laws of a bond.
     pub enum BondLawKind for "model.bond_law" {
-        BondBased = "bond_based": "one normal spring per bond; Poisson's ratio fixed at 1/3 (plane stress) or 1/4 (plane \
-                     strain)",
-        TwoParameter = "two_parameter": "normal and tangential spring per bond; Poisson's ratio up to 1/3 (plane stress) or \
-                        1/4 (plane strain)",
+        BondBased = "bond_based": "one normal spring per bond; Poisson's ratio fixed at 1/3 (plane stress) or 1/4 (plane strain)",
+        TwoParameter = "two_parameter": "normal and tangential spring per bond; Poisson's ratio up to 1/3 (plane stress) or 1/4 (plane strain)",
         OneBondTwoParameter = "one_bond_two_parameter": "as two_parameter, on bond stretch and shear angle (Zhu and Ni 2017)",
         StateBased = "state_based": "linear ordinary state-based (Silling et al. 2007); any Poisson's ratio",
     }

@@ -5,7 +5,7 @@
 use super::sides;
 use super::spring::GapSpring;
 use super::system::{EquilibriumBackend, Focus, SolverKind, SolverUsed};
-use crate::body::mirror::{Mirror, Part, signs};
+use crate::body::mirror::{Mirror, MirrorPart, signs};
 use crate::body::{Body, Bond};
 use crate::solver::field::Layout;
 use crate::state::Bonds;
@@ -21,7 +21,7 @@ perilife_base::kinds! {
 
 /// The part of a plate and what it is solved by.
 pub(super) struct Mirrored {
-    part: Part,
+    part: MirrorPart,
     bonds: Bonds,
     inner: Box<dyn EquilibriumBackend>,
     displacement: Vec<f64>,
@@ -53,7 +53,7 @@ impl Mirrored {
             // A held sum may reach across a line of symmetry.
             return None;
         }
-        let part = Part::of(body, Mirror::of(body, &bonds.multiplier))?;
+        let part = MirrorPart::of(body, Mirror::of(body, &bonds.multiplier))?;
         let mut multiplier = part.multiplier(body, &bonds.multiplier);
         let scaled: Vec<Bond> = bonds.scaled(body).into_iter().map(|(bond, _)| bond).collect();
         for (name, of_part) in part.multipliers_of(body, &scaled, &bonds.multiplier) {
@@ -106,7 +106,7 @@ impl Mirrored {
 }
 
 /// Calls `take` for every unknown of the plate that stands for one of these points of its part.
-fn for_copies(part: &Part, whole: &Body, places: &[u32], mut take: impl FnMut(Copied)) {
+fn for_copies(part: &MirrorPart, whole: &Body, places: &[u32], mut take: impl FnMut(Copied)) {
     let unknowns = whole.stencil.unknowns;
     let (from, to) = (Layout::of(&part.body.lattice, unknowns), Layout::of(&whole.lattice, unknowns));
     for &place in places {

@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::stiffness::{Stiffness, Strut};
+use super::stiffness::{LinearSpring, Stiffness};
 use perilife_base::error::{Error, Result};
 use perilife_points::net::Net;
 use perilife_points::net::rigid::minimal_constraints;
@@ -73,7 +73,7 @@ pub trait InternalForce {
     /// Share of its stiffness that every bond has.
     fn share(&self) -> &[f64];
     /// What the factor has to stand for beside the bonds.
-    fn struts(&self) -> &[Strut] {
+    fn struts(&self) -> &[LinearSpring] {
         &[]
     }
     /// Forces of the bonds on the points at a displacement, N, and the strain energy, J.

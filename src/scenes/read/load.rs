@@ -133,11 +133,9 @@ fn size(all: &Given<'_>, load: &LoadKeys) -> Result<f64> {
     let size = size.ok_or_else(|| all.refuse(key, "no load given", format!("give {}", quantity.what)))?;
     if size == 0.0 || (load.kind == LoadKind::Platens && size < 0.0) {
         let (problem, remedy) = match load.kind {
-            LoadKind::Platens => (
-                "must be above zero: platens press on the plate",
-                "give the displacement of the platen, \
-                                   above zero",
-            ),
+            LoadKind::Platens => {
+                ("must be above zero: platens press on the plate", "give the displacement of the platen, above zero")
+            }
             _ => ("applies no load", "give another value, or add supports in [supports]"),
         };
         return Err(all.refuse(key, problem, remedy));

@@ -54,10 +54,8 @@ pub fn put_in(value: &Value, scene: &mut Scene) -> Result<()> {
     for i in 0..count {
         let crack =
             (0..DRAWS).map(|_| field.draw(&mut random)).find(|crack| fits(*crack, scene, &kept_clear)).ok_or_else(|| {
-                let problem = format!(
-                    "does not fit: after {i} of them no position is clear of edges, cracks, loads and \
-                                       supports"
-                );
+                let problem =
+                    format!("does not fit: after {i} of them no position is clear of edges, cracks, loads and supports");
                 let remedy = "give fewer or shorter ones, or a larger region";
                 perilife_base::error::input("micro_cracks.count", count, problem, remedy)
             })?;

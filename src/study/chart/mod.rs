@@ -9,7 +9,7 @@ pub mod run;
 pub mod schedule;
 
 pub use choice::{Choice, Family};
-pub use run::Run;
+pub use run::BenchmarkRun;
 
 use std::sync::LazyLock;
 
@@ -135,7 +135,7 @@ pub struct Point {
     pub panel: &'static Panel,
     pub choice: Choice,
     /// What came of its last run.
-    pub outcome: Outcome<Run>,
+    pub outcome: Outcome<BenchmarkRun>,
     pub walls: Vec<f64>,
     /// The same over those of the reference run beside it.
     pub ratios: Vec<f64>,

@@ -77,7 +77,7 @@ fn a_checkpoint_is_nothing_that_is_read() {
             ("link", "is not a checkpoint"),
             ("notes", "is not a checkpoint"),
             ("run", "cannot"),
-            ("out/run.ckpt", "lies below --out = out"),
+            ("out/run.ckpt", "is inside --out = out"),
         ] {
             let before = content(here);
             let output = perilife(here, &[command, input, "--out", "out", "-q", "--checkpoint", file]);

@@ -299,7 +299,11 @@ fn a_database_is_named_and_not_made_by_a_slip() {
             vec!["sweep", "sweep.toml", "--out", "out", "-q", "--engine", "service", "--data", data],
         ] {
             let output = perilife(here, &call);
-            assert_refused(&output, 2, &[&format!("--data = {data}"), "holds no database of a service", "perilife serve --data"]);
+            assert_refused(
+                &output,
+                2,
+                &[&format!("--data = {data}"), "contains no database of a service", "of `perilife serve`"],
+            );
         }
         assert!(!here.join("typo").exists() && fs::read_dir(here.join("empty")).unwrap().count() == 0);
     }

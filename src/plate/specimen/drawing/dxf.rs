@@ -77,8 +77,7 @@ fn groups(text: &str) -> Result<Vec<Group<'_>>, Fault> {
         let number = code.parse().map_err(|_| {
             Fault::of(
                 format!("is not a DXF: line {} has \"{code}\" instead of a group code", 2 * pair + 1),
-                "save it as \
-                               ASCII DXF",
+                "save it as ASCII DXF",
             )
         })?;
         groups.push((number, *value, 2 * pair + 2));
@@ -186,13 +185,7 @@ impl Entity<'_> {
 
     fn needed(&self, code: i64) -> Result<f64, Fault> {
         let missing = || {
-            Fault::at(
-                &self.layer(),
-                self.kind,
-                format!("line {}: has no group code {code}", self.line),
-                "save the drawing \
-                                                         again",
-            )
+            Fault::at(&self.layer(), self.kind, format!("line {}: has no group code {code}", self.line), "save the drawing again")
         };
         self.number(code)?.ok_or_else(missing)
     }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::shapes::{AtHole, AtHoleKeys, below};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::handbook::{HandbookFormula, half};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
@@ -11,7 +11,7 @@ use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, coordinate, part};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::CrackAtHole, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::CrackAtHole, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.

@@ -4,14 +4,14 @@
 use std::f64::consts::PI;
 
 use super::shapes::{arc, below};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS};
 use crate::specimen::plate::{Drawing, turned};
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, length, number};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::Cruciform, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::Cruciform, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.

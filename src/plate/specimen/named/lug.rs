@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use super::shapes::{AtHole, AtHoleKeys, arc, below, pin};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::pin::PinKeys;
 use crate::specimen::plate::Drawing;
@@ -15,7 +15,7 @@ use crate::specimen::{Bearing, Head, Hole, Point, SpecimenKind, Support};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, key, length, part};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::Lug, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::Lug, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.

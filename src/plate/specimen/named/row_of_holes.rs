@@ -1,7 +1,7 @@
 //! A plate under tension with a row of equal holes across it, cracked at their sides, such as a riveted joint: cracks of neighbours link up.
 
 use super::shapes::{FROM_RIM, LENGTHS, SLACK, below};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
 use crate::specimen::{Hole, Point, SpecimenKind};
@@ -9,7 +9,7 @@ use perilife_base::error::{Result, input};
 use perilife_base::keys::{Given, OrNone, Section, length, number};
 use perilife_base::units::round_mm;
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::RowOfHoles, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::RowOfHoles, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.

@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use super::shapes::{below, roller};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::Drawing;
@@ -15,7 +15,7 @@ use perilife_base::error::{Result, input as error};
 use perilife_base::keys::{Given, Section, length};
 use perilife_base::units::round_mm;
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::SingleEdgeBend, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::SingleEdgeBend, keys: Keys::KEYS, layout };
 
 /// Width of a contact over W.
 const CONTACT: f64 = 0.05;

@@ -4,14 +4,14 @@
 //! are that form beyond the holes in phase I ([`perilife_laws::initiation`]); from there on they grow.
 
 use super::shapes::below;
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
 use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, length};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::StopHole, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::StopHole, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.

@@ -9,7 +9,7 @@
 //! wedge that holds the opening is `loading.kind = "displacement"`.
 
 use super::shapes::{below, pin};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::keys::{CRACK_LENGTH, THICKNESS, WIDTH};
 use crate::specimen::pin::LOOSE_PIN;
@@ -18,10 +18,10 @@ use crate::specimen::{Bearing, Hole, Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section};
 
-pub(super) const ECCENTRIC: Description =
-    Description { kind: SpecimenKind::EccentricSingleEdgeTension, keys: Keys::KEYS, layout: |given| layout(given, &ESE) };
-pub(super) const WEDGE: Description =
-    Description { kind: SpecimenKind::WedgeOpening, keys: Keys::KEYS, layout: |given| layout(given, &WOL) };
+pub(super) const ECCENTRIC: SpecimenSpec =
+    SpecimenSpec { kind: SpecimenKind::EccentricSingleEdgeTension, keys: Keys::KEYS, layout: |given| layout(given, &ESE) };
+pub(super) const WEDGE: SpecimenSpec =
+    SpecimenSpec { kind: SpecimenKind::WedgeOpening, keys: Keys::KEYS, layout: |given| layout(given, &WOL) };
 
 /// What differs between the two.
 struct Kind {

@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use super::{Description, PartThrough};
+use super::{PartThrough, PartThroughSpec};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::placement::check_holes;
 use crate::specimen::plate::{HoleKeys, read_holes};
@@ -36,13 +36,13 @@ perilife_base::keys! {
 }
 
 /// Keys of a kind.
-pub(in crate::specimen) fn keys(description: &Description) -> &'static [Key] {
+pub(in crate::specimen) fn keys(description: &PartThroughSpec) -> &'static [Key] {
     if description.has_hole { KeysAtHole::KEYS } else { Keys::KEYS }
 }
 
 /// The plate with its crack. That the length is the program's own goes into `notes`.
 pub(in crate::specimen) fn from_value(
-    description: &'static Description,
+    description: &'static PartThroughSpec,
     value: &Value,
     notes: &mut Vec<String>,
 ) -> Result<Specimen> {

@@ -51,11 +51,7 @@ impl<'s> Area<'s> {
         match *self.region {
             RefinedRegion::Box { low: from, high: to } => {
                 if (0..2).any(|i| to[i] <= from[i]) {
-                    return Err(self.refusal(
-                        "is not a box: its second corner must be above and right of its first",
-                        "swap \
-                                             them",
-                    ));
+                    return Err(self.refusal("is not a box: its second corner must be above and right of its first", "swap them"));
                 }
                 if (0..2).any(|i| to[i] <= low[i] || from[i] >= high[i]) {
                     return Err(self.refusal("is outside the plate", "move it onto the plate"));

@@ -82,7 +82,7 @@ fn is_blank(cell: &str) -> bool {
 
 /// Leaves out the rows that such columns mark, with a note; a note, too, of cells that cannot be understood.
 /// Errors: no row is left.
-pub(super) fn leave_marked_out(table: &mut Table, import: &Import) -> Result<()> {
+pub(super) fn exclude_flagged(table: &mut Table, import: &Import) -> Result<()> {
     let columns = columns_of(&table.header, &table.names, import);
     for Column { index, role, .. } in columns.into_iter().filter(|column| matches!(column.role, Role::Counts | Role::CountsNot)) {
         let (name, is_out) = (table.header[index].clone(), role == Role::CountsNot);
