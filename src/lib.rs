@@ -1,14 +1,7 @@
-//! Fatigue-life prediction of cracked plates by peridynamics.
+//! Fatigue life of cracked plates: growth laws from test data, and the life of plates that nobody tested.
 //!
-//! A plate is a lattice of points joined by bonds, and a crack is a line that cuts them. At the maximum load of a cycle the points are in
-//! equilibrium, `Σ μ f + b = 0` ([`perilife_points::solver`]). A ring around each crack tip gives K_I, K_II and T by the interaction integral
-//! ([`perilife_points::stress_intensity`]); the tip turns to the largest circumferential stress and grows by `da/dN` of its K, all tips over the same
-//! cycles, and the bonds that the longer lines cross are cut: that is [`perilife_growth::predict::increment`], the main page.
-//!
-//! Fatigue of a bond is `dλ/dN = -A ε^p`: its remaining life λ decreases from 1, and at 0 it breaks. Integrated through the zone of a
-//! steady tip this is `da/dN = β A δ^(1-p/2) (K/E')^p`, a Paris law with m = p ([`perilife_growth::rate_constant`]). So A and p drive a tip by its K
-//! ([`perilife_growth::cracks`], the default), or every bond by its own strain ([`perilife_growth::bond_strain`]). Limits: linear elasticity, small-scale
-//! yielding, through cracks in plane stress or plane strain. `src/README.md` has the theory room by room, with symbols, limits and sources.
+//! [`guide`] is the user's guide, from [`guide::theory`] on the theory with symbols, limits and sources. Start with
+//! [`perilife_growth::predict::increment`], one step of growth.
 //!
 //! As a library, from readings of a test to the life of another plate; lengths are metres inside, and names of what is not SI say so:
 //!
@@ -40,8 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The names below are those that examples use. What computes stands in members, one folder of `src` each with what it knows at its head;
-//! `src/README.md` says which imports which.
+//! The names below are those that examples use; members, one folder of `src` each, do the rest.
 #![warn(missing_docs)]
 
 pub use perilife_base::error::{Error, InputError, Result};
@@ -49,6 +41,8 @@ pub use perilife_calibration::calibrate::{Calibration, Fitted};
 pub use perilife_growth::case::Case;
 pub use perilife_growth::predict::{CurvePoint, Observer, Prediction, Progress, Silent, StopReason, predict, resume};
 pub use perilife_runner::Draft;
+#[doc(inline)]
+pub use perilife_runner::guide;
 
 #[doc(hidden)]
 pub mod commands;

@@ -298,15 +298,7 @@ fn number(cell: &str) -> Option<f64> {
 
 /// A number so that it reads back bit for bit, with at least ten significant digits; empty for NaN.
 pub fn exact_text(value: f64) -> String {
-    if value.is_nan() {
-        return String::new();
-    }
-    if value == 0.0 || !value.is_finite() || (1e-4..1e15).contains(&value.abs()) {
-        return padded(format!("{value}"));
-    }
-    let text = format!("{value:e}");
-    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    format!("{}e{exponent}", padded(mantissa.to_owned()))
+    placed(value, &format!("{value:e}"))
 }
 
 /// A quantity with 10 to 15 significant digits, so that 9 mm stay 9.000000000.
@@ -316,19 +308,37 @@ pub fn number_text(value: f64) -> String {
 
 /// With so many digits behind the first.
 fn rounded_text(value: f64, digits: usize) -> String {
-    // Such a decimal always parses; the fallback only spares a panic path.
-    exact_text(format!("{value:.digits$e}").parse().unwrap_or(value))
+    placed(value, &format!("{value:.digits$e}"))
 }
 
-/// With zeros behind the decimal point up to the digits that are wanted.
-fn padded(mut text: String) -> String {
-    let significant = text.trim_start_matches(['-', '0', '.']).bytes().filter(u8::is_ascii_digit).count();
-    if significant == 0 || significant >= DIGITS || !text.bytes().all(|b| b.is_ascii_digit() || b == b'.' || b == b'-') {
-        return text;
+/// A number in scientific form, as a decimal from 1e-4 to 1e15, with zeros behind its digits up to those that are wanted.
+fn placed(value: f64, scientific: &str) -> String {
+    let Some((mantissa, exponent)) = scientific.split_once('e').filter(|_| value != 0.0) else {
+        return if value.is_nan() { String::new() } else { format!("{value}") };
+    };
+    let power: i32 = exponent.parse().unwrap_or(0);
+    let mut text = String::with_capacity(32);
+    if value < 0.0 {
+        text.push('-');
     }
-    if !text.contains('.') {
-        text.push('.');
+    let first = text.len();
+    let digits = mantissa.trim_start_matches('-').trim_end_matches('0');
+    text.extend(digits.chars().filter(|digit| *digit != '.'));
+    let is_decimal = (-4..15).contains(&power);
+    // Digits before the decimal point.
+    let whole = if is_decimal { (power + 1).max(0) as usize } else { 1 };
+    let wanted = DIGITS.max(whole) + first;
+    while text.len() < wanted {
+        text.push('0');
     }
-    text.push_str(&"0".repeat(DIGITS - significant));
+    if is_decimal && power < 0 {
+        text.insert_str(first, &"0.000"[..(1 - power) as usize]);
+    } else if text.len() > first + whole {
+        text.insert(first + whole, '.');
+    }
+    if !is_decimal {
+        text.push('e');
+        text.push_str(exponent);
+    }
     text
 }

@@ -31,3 +31,4 @@ pub mod readings;
 pub mod results;
 pub mod search;
 pub mod sweep;
+pub mod template;

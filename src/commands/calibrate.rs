@@ -11,10 +11,11 @@ use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::Document;
 use perilife_calibration::calibrate::{Calibration, Fitted};
 use perilife_calibration::results::record;
+use perilife_calibration::template::refuse_table;
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, remove_law};
 use perilife_growth::predict::Prediction;
-use perilife_results::output::{Finished, OutputFolder, RunKind};
+use perilife_results::output::{LockedFolder, OutputFolder, RunKind};
 use perilife_results::{fit, run};
 use perilife_runner::{Task, Wanted, of_prediction};
 
@@ -49,6 +50,7 @@ pub struct Args {
 /// Errors: wrong input, mechanics without a result, or files that cannot be read or written.
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
+    refuse_table(&args.calibration)?;
     let document = Document::read(&args.calibration, &args.set)?;
     let calibration = Calibration::from_document(&document)?;
     if let Calibration::Lives(of_lives) = &calibration {
@@ -111,7 +113,7 @@ fn check_no_gamma(document: &Document) -> Result<()> {
 
 /// Prints the report, with the predictions: each case with the fit, as the command `predict` does it, into its own folder. They run side by
 /// side; what they say comes in their order.
-fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &Finished) -> Result<()> {
+fn predict_each(cases: Vec<Case>, mut report: Value, args: &Args, place: &LockedFolder) -> Result<()> {
     let console = &args.console;
     // Claimed first: a folder that cannot be written should not cost a run.
     let claim = |case: &Case| {

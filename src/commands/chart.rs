@@ -13,7 +13,7 @@ use super::console::Console;
 use super::signals;
 use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::Provenance;
-use perilife_results::output::{Marker, RunKind, Share, StandingFolder};
+use perilife_results::output::{LockedFolder, Marker, RunKind, Share};
 use perilife_study::chart::schedule::{BenchmarkRecord, Effort, Request, measure};
 use perilife_study::chart::{BenchmarkRun, Machine, run, scenes};
 use perilife_study::speed::{self, Origin, digits, seconds};
@@ -167,7 +167,7 @@ fn in_own_process(request: &Request, limit_s: f64) -> Result<Outcome<BenchmarkRu
 #[derive(Debug)]
 struct RunsFolder {
     name: PathBuf,
-    standing: StandingFolder,
+    standing: LockedFolder,
 }
 
 /// First line of the file of runs: runs of another version, machine or number of threads are not mixed with these.
@@ -180,7 +180,7 @@ impl RunsFolder {
         let files: Vec<&str> = speed::FILES.into_iter().chain([RUNS_FILE]).collect();
         let marker = Marker::listing(RunKind::Chart, &files);
         let first = format!("{}\n", header()).into_bytes();
-        let standing = StandingFolder::open(path, &marker, &Provenance::default(), Share::Alone, &[(RUNS_FILE, first)])?;
+        let standing = LockedFolder::open(path, &marker, &Provenance::default(), Share::Alone, &[(RUNS_FILE, first)])?;
         Ok(RunsFolder { name: path.to_path_buf(), standing })
     }
 

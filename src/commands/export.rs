@@ -62,7 +62,7 @@ fn curve_of(folder: &Path, opened: &Opened) -> Result<(Vec<Row>, System)> {
         return Ok((rows, asked().unwrap_or(of_run)));
     }
     let remedy = if folder.join("fitted.toml").is_file() {
-        "is a calibration; give the folder of a predicted case inside it"
+        "give the folder of a predicted case inside this calibration"
     } else {
         "give the --out folder of `perilife predict`"
     };

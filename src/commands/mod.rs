@@ -9,6 +9,7 @@ pub mod collect;
 pub mod completions;
 pub mod export;
 pub mod fracture;
+pub mod guide;
 #[cfg(feature = "service")]
 pub mod job;
 pub mod list;
@@ -140,6 +141,8 @@ commands! {
         Job: job hidden = true
     }
     "Other" {
+        /// Print a page of the guide
+        Guide: guide,
         /// Generate shell completions or the man page
         Completions: completions
     }

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
-use perilife_results::output::pending;
+use perilife_results::output::fold_up;
 
 /// Says how to go on, in the line at the end.
 type Way = Box<dyn Fn() -> String + Send>;
@@ -43,7 +43,7 @@ fn ignored() -> u64 {
 }
 
 fn end(signal: i32) {
-    pending::fold_up();
+    fold_up();
     let name = match signal {
         SIGINT => "SIGINT",
         SIGTERM => "SIGTERM",

@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::chart::LARGE;
 use super::output::{Room, write_file, write_json};
 use super::pictures::fit::{BAND_FILE, FIT_FILE, FitTables, law_svg};
 use super::pictures::plate::Plate;
-use super::{provenance, test_record};
+use super::provenance::{self, MadeBy};
+use super::test_record::{self, Criterion, TestRecord};
 use perilife_base::columns::Table;
 use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, MPA_SQRT_M};
@@ -26,6 +28,16 @@ pub const LAW_FILE: &str = RECORD;
 pub const ROOM: Room = Room { tables: 64_000, all: 1_000_000 };
 /// Growth rate over ΔK with the law.
 const DA_DN_FILE: &str = "da_dn.svg";
+
+/// What `fit.json` has of the test beside its fit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OfTest {
+    pub test: TestRecord,
+    pub criteria: Vec<Criterion>,
+    pub plate: Plate,
+    #[serde(flatten)]
+    pub made_by: MadeBy,
+}
 
 /// A fit as its folder keeps it.
 #[derive(Debug, Clone)]
@@ -55,16 +67,17 @@ impl Kept {
                 ]
                 .map(Table::with_text)
                 .to_vec();
-                let mut beside = json!({
-                    "test": test_record::test(calibration),
-                    "criteria": test_record::criteria(calibration, &left_out, &delta_k),
-                    "plate": Plate::of(&calibration.case),
-                });
                 let texts = tables.iter().map(|(table, text)| (&*table.file, &**text));
                 let texts = std::iter::once((Path::new(LAW_FILE), &*law)).chain(texts);
-                provenance::add(&mut beside, &calibration.case.provenance, texts);
+                let beside = OfTest {
+                    test: test_record::test(calibration),
+                    criteria: test_record::criteria(calibration, &left_out, &delta_k),
+                    plate: Plate::of(&calibration.case),
+                    made_by: MadeBy::of(&calibration.case.provenance, texts),
+                };
                 if let FitRecord::Lives(lives) = &mut record {
-                    lives.beside = beside;
+                    // Figures and text have a form in JSON.
+                    lives.beside = serde_json::to_value(beside).unwrap_or_default();
                 }
                 tables
             }
@@ -75,7 +88,7 @@ impl Kept {
 
     /// Content of `fit.json`.
     pub fn json(&self) -> Value {
-        json!(self.record)
+        serde_json::to_value(&self.record).unwrap_or_default()
     }
 
     /// Texts of the law and all tables by the names of their files.

@@ -170,13 +170,7 @@ impl Judged {
             write_file(&folder.join(factors::BETA_FILE), beta.as_bytes())?;
         }
         write_json(folder, RESULT_FILE, &self.record)?;
-        let mut input = provenance::table_of(&case.echo);
-        let fitted = input.get_mut("fatigue").and_then(|fatigue| fatigue.as_table_mut()?.get_mut("fitted"));
-        if let Some(record) = fitted.filter(|record| record.is_table()) {
-            // A record that came with no file stands in one beside it.
-            *record = RECORD.into();
-        }
-        provenance::write(folder, "predict", input, &case.provenance)?;
+        write_input(folder, case)?;
         self.answers.write(folder, case)?;
         self.draw(folder, case, prediction)?;
         vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)?;
@@ -287,6 +281,17 @@ impl Judged {
         lines.extend(self.answers.words());
         lines
     }
+}
+
+/// Writes `case.toml` and the files that it names: the case as it was run.
+pub fn write_input(folder: &Path, case: &Case) -> Result<()> {
+    let mut input = provenance::table_of(&case.echo);
+    let fitted = input.get_mut("fatigue").and_then(|fatigue| fatigue.as_table_mut()?.get_mut("fitted"));
+    if let Some(record) = fitted.filter(|record| record.is_table()) {
+        // A record that came with no file is one beside it.
+        *record = RECORD.into();
+    }
+    provenance::write(folder, "predict", input, &case.provenance)
 }
 
 /// Bytes that a run of this case will write, roughly.

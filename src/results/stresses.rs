@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::output::{Room, write_file, write_json};
 use super::pictures::stress::stress_svg;
@@ -17,7 +18,7 @@ use perilife_growth::case::{Case, Model};
 use perilife_growth::predict::moment::StressField;
 use perilife_growth::stress_concentration::{SETTLED, Stressed};
 use perilife_nodes::resolution::ElementFreeSettings;
-use perilife_nodes::rim_stress::{Rim, StressAt};
+use perilife_nodes::rim_stress::{Rim, RimStress, StressAt};
 
 /// A rim in words: `holes[0]`, `notches[0]`, `outline`, as its key in `[specimen]`.
 fn name(rim: Rim) -> String {
@@ -28,29 +29,66 @@ fn name(rim: Rim) -> String {
     }
 }
 
-/// As an object: every rim with its largest and least stress, where they are, and the same over the gross stress.
-pub fn object(stressed: &Stressed) -> Value {
-    let place = |place: &StressAt| {
-        let [x, y] = place.at;
-        json!({
-            "stress_mpa": place.stress / MPA, "x_mm": x / MM, "y_mm": y / MM,
-            "stress_concentration": stressed.concentration(place.stress),
-        })
-    };
-    let rims = stressed.rims.iter().map(|rim| {
-        json!({
-            "rim": name(rim.rim), "largest": place(&rim.largest), "least": place(&rim.least),
-            "has_sharp_corner": rim.is_sharp,
-        })
-    });
-    let (moved, [x, y]) = stressed.moved;
-    json!({
-        "gross_stress_mpa": stressed.gross.map(|gross| gross / MPA),
-        "rims": rims.collect::<Vec<_>>(),
-        "last_change_percent": stressed.change.map(|change| 100.0 * change),
-        "largest_displacement": { "mm": moved / MM, "x_mm": x / MM, "y_mm": y / MM },
-        "nodes": stressed.nodes, "unknowns": stressed.unknowns, "solves": stressed.solves,
-    })
+/// Every rim with its largest and least stress, where they are, and the same over the gross stress.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StressesRecord {
+    pub gross_stress_mpa: Option<f64>,
+    pub rims: Vec<RimRecord>,
+    pub last_change_percent: Option<f64>,
+    pub largest_displacement: Displacement,
+    pub nodes: usize,
+    pub unknowns: usize,
+    pub solves: usize,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RimRecord {
+    pub rim: String,
+    pub largest: StressRecord,
+    pub least: StressRecord,
+    pub has_sharp_corner: bool,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StressRecord {
+    pub stress_mpa: f64,
+    pub x_mm: f64,
+    pub y_mm: f64,
+    pub stress_concentration: Option<f64>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Displacement {
+    pub mm: f64,
+    pub x_mm: f64,
+    pub y_mm: f64,
+}
+
+impl StressesRecord {
+    pub fn of(stressed: &Stressed) -> Self {
+        let place = |StressAt { at: [x, y], stress }: StressAt| StressRecord {
+            stress_mpa: stress / MPA,
+            x_mm: x / MM,
+            y_mm: y / MM,
+            stress_concentration: stressed.concentration(stress),
+        };
+        let rim = |rim: &RimStress| RimRecord {
+            rim: name(rim.rim),
+            largest: place(rim.largest),
+            least: place(rim.least),
+            has_sharp_corner: rim.is_sharp,
+        };
+        let (moved, [x, y]) = stressed.moved;
+        StressesRecord {
+            gross_stress_mpa: stressed.gross.map(|gross| gross / MPA),
+            rims: stressed.rims.iter().map(rim).collect(),
+            last_change_percent: stressed.change.map(|change| 100.0 * change),
+            largest_displacement: Displacement { mm: moved / MM, x_mm: x / MM, y_mm: y / MM },
+            nodes: stressed.nodes,
+            unknowns: stressed.unknowns,
+            solves: stressed.solves,
+        }
+    }
 }
 
 /// One line a rim, in the units that are shown.

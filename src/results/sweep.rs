@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::chart::{self, Mark, Series};
 use super::output::{write_json, write_table};
@@ -163,36 +163,81 @@ pub fn table(plan: &Plan, outcomes: &[Option<Outcome>]) -> Table {
         .words("life_is_lower_bound", words(&|outcome| outcome.life_is_lower_bound.map(|is_lower| is_lower.to_string()), ""))
 }
 
-/// `sweep.json`: the design, counts, quantiles of life, failures. `wall_s` is the time of this call, `computing_s` that of the
-/// runs.
-pub fn figures(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Value {
-    let there = || outcomes.iter().flatten();
-    let numbered = || outcomes.iter().enumerate().filter_map(|(i, outcome)| Some((label(i + 1), outcome.as_ref()?)));
-    let lives = Lives::of(outcomes);
-    let failures: Vec<Value> =
-        numbered().filter_map(|(case, outcome)| Some(json!({ "case": case, "problem": outcome.problem.as_ref()? }))).collect();
-    let missing: Vec<String> =
-        outcomes.iter().enumerate().filter(|(_, outcome)| outcome.is_none()).map(|(i, _)| label(i + 1)).collect();
-    let run_out = |outcome: &&Outcome| outcome.stop_reason.as_deref() == Some(StopReason::RunOut.name());
-    json!({
-        "name": plan.name,
-        "cases": plan.cases.len(),
-        "succeeded": there().filter(|outcome| outcome.problem.is_none()).count(),
-        "failed": failures.len(),
-        "missing": missing.len(),
-        "run_outs": there().filter(run_out).count(),
-        "unlimited": lives.unlimited,
-        "lower_bounds": lives.bounds,
-        "life_cycles": lives.figures(),
-        "failures": failures.iter().take(FAILURES_MAX).collect::<Vec<_>>(),
-        "missing_cases": missing,
-        "warnings": warnings(outcomes),
-        "columns": plan.columns,
-        "design": plan.design,
-        "version": plan.version,
-        "wall_s": wall_s,
-        "computing_s": there().map(|outcome| outcome.wall_s).sum::<f64>(),
-    })
+/// `sweep.json`: the design, counts, quantiles of life, failures.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SweepRecord {
+    pub name: String,
+    pub cases: usize,
+    pub succeeded: usize,
+    pub failed: usize,
+    pub missing: usize,
+    pub run_outs: usize,
+    pub unlimited: usize,
+    pub lower_bounds: usize,
+    pub life_cycles: LifeQuantiles,
+    /// The first [`FAILURES_MAX`].
+    pub failures: Vec<Failure>,
+    pub missing_cases: Vec<String>,
+    pub warnings: Vec<SharedWarning>,
+    pub columns: Vec<String>,
+    pub design: Value,
+    pub version: String,
+    /// Time of this call.
+    pub wall_s: f64,
+    /// Time of the runs.
+    pub computing_s: f64,
+}
+
+/// A case without a result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    pub case: String,
+    pub problem: String,
+}
+
+/// A warning of several cases.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SharedWarning {
+    pub cases: usize,
+    /// The first case that has it, and its words.
+    pub first: String,
+    pub warning: String,
+    /// Of warnings that begin with a share the largest, and its case.
+    pub largest_percent: Option<f64>,
+    pub largest_in: Option<String>,
+}
+
+impl SweepRecord {
+    pub fn of(plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Self {
+        let there = || outcomes.iter().flatten();
+        let problem = |(i, outcome): (usize, &Option<Outcome>)| {
+            Some(Failure { case: label(i + 1), problem: outcome.as_ref()?.problem.clone()? })
+        };
+        let failures = || outcomes.iter().enumerate().filter_map(problem);
+        let missing = outcomes.iter().enumerate().filter(|(_, outcome)| outcome.is_none());
+        let missing_cases: Vec<String> = missing.map(|(i, _)| label(i + 1)).collect();
+        let run_out = |outcome: &&Outcome| outcome.stop_reason.as_deref() == Some(StopReason::RunOut.name());
+        let lives = Lives::of(outcomes);
+        SweepRecord {
+            name: plan.name.clone(),
+            cases: plan.cases.len(),
+            succeeded: there().filter(|outcome| outcome.problem.is_none()).count(),
+            failed: failures().count(),
+            missing: missing_cases.len(),
+            run_outs: there().filter(run_out).count(),
+            unlimited: lives.unlimited,
+            lower_bounds: lives.bounds,
+            life_cycles: lives.figures(),
+            failures: failures().take(FAILURES_MAX).collect(),
+            missing_cases,
+            warnings: warnings(outcomes),
+            columns: plan.columns.clone(),
+            design: plan.design.clone(),
+            version: plan.version.clone(),
+            wall_s,
+            computing_s: there().map(|outcome| outcome.wall_s).sum(),
+        }
+    }
 }
 
 /// Quantiles of lives: null where the lives do not say them, and in words.
@@ -267,14 +312,14 @@ impl Lives {
     }
 }
 
-/// Writes table, figures and picture into the folder of a sweep; returns the figures.
-pub fn write(folder: &Path, plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Result<Value> {
-    let figures = figures(plan, outcomes, wall_s);
+/// Writes table, record and picture into the folder of a sweep; returns the record.
+pub fn write(folder: &Path, plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Result<SweepRecord> {
+    let record = SweepRecord::of(plan, outcomes, wall_s);
     write_table(folder, &table(plan, outcomes))?;
     draw(&folder.join(CHART_FILE), plan, outcomes)?;
     // Last, so that whoever waits for it finds the others.
-    write_json(folder, FIGURES_FILE, &figures)?;
-    Ok(figures)
+    write_json(folder, FIGURES_FILE, &record)?;
+    Ok(record)
 }
 
 /// `life.svg`: life over the first key that varies if that is a number, else the share of cases that have ended by then.
@@ -338,7 +383,7 @@ const WARNINGS_MAX: usize = 20;
 
 /// Warnings by number of cases; those that differ in their numbers only are one, told by the first case that has it. Where they begin with a
 /// share, as of a life outside the range of a formula, the largest stands beside it.
-fn warnings(outcomes: &[Option<Outcome>]) -> Vec<Value> {
+fn warnings(outcomes: &[Option<Outcome>]) -> Vec<SharedWarning> {
     let mut found: BTreeMap<String, Vec<(usize, &str)>> = BTreeMap::new();
     for (i, outcome) in outcomes.iter().enumerate() {
         for warning in outcome.iter().flat_map(|outcome| &outcome.warnings) {
@@ -352,13 +397,13 @@ fn warnings(outcomes: &[Option<Outcome>]) -> Vec<Value> {
         let (first, text) = all[0];
         let shares = all.iter().filter_map(|(case, text)| Some((text.split_once(" % ")?.0.parse::<f64>().ok()?, *case)));
         let largest = shares.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
-        json!({
-            "cases": all.len(),
-            "first": label(first),
-            "warning": text,
-            "largest_percent": largest.map(|(share, _)| share),
-            "largest_in": largest.map(|(_, case)| label(case)),
-        })
+        SharedWarning {
+            cases: all.len(),
+            first: label(first),
+            warning: text.to_owned(),
+            largest_percent: largest.map(|(share, _)| share),
+            largest_in: largest.map(|(_, case)| label(case)),
+        }
     };
     found.into_iter().take(WARNINGS_MAX).map(told).collect()
 }

@@ -1,7 +1,7 @@
 //! What a test report asks of a fit to readings: specimen, load, number of readings, and the criteria of ASTM E647 that they can be
 //! held against. Keys `test` and `criteria` of `fit.json`.
 
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use super::checks;
 use super::model_words::{clean, loading};
@@ -10,11 +10,41 @@ use perilife_calibration::case::CalibrationCase;
 use perilife_calibration::rates::STEP_MIN;
 use perilife_growth::case::Case;
 use perilife_measured::{LeaveOut, MeasuredCurve, side_difference_max};
-use perilife_plate::specimen::handbook::handbook;
+use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_plate::specimen::{LoadMeasure, SpecimenKind};
 
 /// Specimen, material, load and formula for K; `null` what the calibration file does not say.
-pub fn test(calibration: &CalibrationCase) -> Value {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestRecord {
+    pub specimen_kind: String,
+    pub width_mm: f64,
+    pub thickness_mm: f64,
+    pub material: String,
+    pub youngs_modulus_gpa: f64,
+    pub yield_strength_mpa: Option<f64>,
+    pub load: String,
+    pub load_max: String,
+    pub stress_ratio: f64,
+    pub specimens: usize,
+    pub readings: usize,
+    pub first_reading_mm: f64,
+    pub last_reading_mm: f64,
+    pub formula: Option<String>,
+    pub formula_source: Option<String>,
+    pub formula_range: Option<String>,
+}
+
+/// A criterion: what is asked, what was found, and whether it holds (`null`: it cannot be judged), with a remark.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Criterion {
+    pub name: String,
+    pub asked: String,
+    pub found: String,
+    pub holds: Option<bool>,
+    pub remark: String,
+}
+
+pub fn test(calibration: &CalibrationCase) -> TestRecord {
     let case = &calibration.case;
     let (specimen, material) = (&case.specimen, &case.material);
     let formula = handbook(specimen);
@@ -23,33 +53,33 @@ pub fn test(calibration: &CalibrationCase) -> Value {
         LoadMeasure::Force => ("kN", case.loading.maximum / KN),
     };
     let lengths = || calibration.read.iter().flat_map(|curve| curve.crack_length.iter().copied());
-    json!({
-        "specimen_kind": specimen.kind.name(),
-        "width_mm": clean(specimen.width / MM),
-        "thickness_mm": clean(specimen.thickness / MM),
-        "material": material.name,
-        "youngs_modulus_gpa": clean(material.youngs_modulus / GPA),
-        "yield_strength_mpa": calibration.yield_strength.map(|strength| clean(strength / MPA)),
-        "load": loading(case),
-        "load_max": format!("{} {unit}", clean(load)),
-        "stress_ratio": case.loading.ratio,
-        "specimens": calibration.read.len(),
-        "readings": lengths().count(),
-        "first_reading_mm": clean(lengths().fold(f64::INFINITY, f64::min) / MM),
-        "last_reading_mm": clean(lengths().fold(0.0, f64::max) / MM),
-        "formula": formula.as_ref().map(|formula| formula.name),
-        "formula_source": formula.as_ref().map(|formula| formula.source),
-        "formula_range": formula.as_ref().map(|formula| formula.range),
-    })
+    let of_formula = |of: fn(&HandbookFormula) -> &'static str| formula.as_ref().map(|formula| of(formula).to_owned());
+    TestRecord {
+        specimen_kind: specimen.kind.name().to_owned(),
+        width_mm: clean(specimen.width / MM),
+        thickness_mm: clean(specimen.thickness / MM),
+        material: material.name.clone(),
+        youngs_modulus_gpa: clean(material.youngs_modulus / GPA),
+        yield_strength_mpa: calibration.yield_strength.map(|strength| clean(strength / MPA)),
+        load: loading(case),
+        load_max: format!("{} {unit}", clean(load)),
+        stress_ratio: case.loading.ratio,
+        specimens: calibration.read.len(),
+        readings: lengths().count(),
+        first_reading_mm: clean(lengths().fold(f64::INFINITY, f64::min) / MM),
+        last_reading_mm: clean(lengths().fold(0.0, f64::max) / MM),
+        formula: of_formula(|formula| formula.name),
+        formula_source: of_formula(|formula| formula.source),
+        formula_range: of_formula(|formula| formula.range),
+    }
 }
 
-/// A criterion: what is asked, what was found, and whether it holds (`null`: it cannot be judged), with a remark.
-fn criterion(name: &str, asked: String, found: String, holds: Option<bool>, remark: String) -> Value {
-    json!({ "name": name, "asked": asked, "found": found, "holds": holds, "remark": remark })
+fn criterion(name: &str, asked: String, found: String, holds: Option<bool>, remark: String) -> Criterion {
+    Criterion { name: name.to_owned(), asked, found, holds, remark }
 }
 
 /// The criteria of ASTM E647 that readings and specimen can be held against.
-pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &dyn Fn(f64) -> f64) -> Vec<Value> {
+pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &dyn Fn(f64) -> f64) -> Vec<Criterion> {
     let mut case = calibration.case.clone();
     case.material.yield_strength = calibration.yield_strength;
     let size = checks::of_case(&case).into_iter().find(|check| check.name == "e647_size");
@@ -63,7 +93,7 @@ pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &
         let found = format!("B {} mm, W {} mm", clean(case.specimen.thickness / MM), clean(case.specimen.width / MM));
         criterion("Size of the specimen (7.1, A1.3)", asked.to_owned(), found, Some(holds), remark)
     });
-    let mut all: Vec<Value> = size.into_iter().collect();
+    let mut all: Vec<Criterion> = size.into_iter().collect();
     all.push(ligament(calibration, &case, delta_k));
     all.push(steps(&calibration.read));
     all.push(symmetry(&calibration.read, &case));
@@ -72,7 +102,7 @@ pub fn criteria(calibration: &CalibrationCase, left_out: &[LeaveOut], delta_k: &
 }
 
 /// Ligament at the longest reading that was fitted.
-fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) -> f64) -> Value {
+fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) -> f64) -> Criterion {
     const NAME: &str = "Ligament at the longest fitted crack (7.2)";
     let (specimen, loading) = (&case.specimen, &case.loading);
     let longest = case.stop.crack_length;
@@ -100,7 +130,7 @@ fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) ->
     criterion(NAME, format!("{rule} = {:.1} mm", asked / MM), found, Some(holds), remark.to_owned())
 }
 
-fn steps(curves: &[MeasuredCurve]) -> Value {
+fn steps(curves: &[MeasuredCurve]) -> Criterion {
     let of_curve =
         |curve: &MeasuredCurve| curve.crack_length.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect::<Vec<f64>>();
     let steps: Vec<f64> = curves.iter().flat_map(of_curve).collect();
@@ -117,7 +147,7 @@ fn steps(curves: &[MeasuredCurve]) -> Value {
     )
 }
 
-fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Value {
+fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Criterion {
     const NAME: &str = "Lengths on the sides of a specimen";
     let specimen = &case.specimen;
     let most = side_difference_max(specimen.kind, specimen.width, specimen.thickness);
@@ -132,7 +162,7 @@ fn symmetry(curves: &[MeasuredCurve], case: &Case) -> Value {
 }
 
 /// So many of them by the user, who knows the reason.
-fn readings_left_out(left_out: &[LeaveOut], by_user: usize) -> Value {
+fn readings_left_out(left_out: &[LeaveOut], by_user: usize) -> Criterion {
     let found = if left_out.is_empty() { "none".to_owned() } else { left_out.len().to_string() };
     let reasons: Vec<String> = left_out.iter().map(|one| format!("{} ({})", one.place(), one.reason)).collect();
     criterion(

@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 use super::{Done, Summary, Watcher};
 use perilife_base::error::{Error, Result, input};
@@ -15,7 +16,75 @@ use perilife_growth::predict::tip_factors::{MethodResult, StressIntensityMethod,
 use perilife_growth::stress_concentration::stressed;
 use perilife_plate::specimen::handbook::handbook_beside;
 use perilife_points::crack_tip::TipState;
-use perilife_results::{model_words, stresses};
+use perilife_results::model_words;
+use perilife_results::stresses::{self, StressesRecord};
+
+/// What `sif --json` prints, and `result.json` of a plate on nodes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SifRecord {
+    /// Contact of the pins with their holes, in words.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pins: Vec<String>,
+    /// The formula beside the methods, and its range.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub handbook: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tips: Option<Vec<TipRecord>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stresses: Option<StressesRecord>,
+}
+
+/// K of a tip.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TipRecord {
+    pub x_mm: f64,
+    pub y_mm: f64,
+    pub direction: [f64; 2],
+    /// A [`MethodRecord`] by the name of each method, in the order asked for.
+    pub methods: Map<String, Value>,
+    pub handbook_k_i_mpa_sqrt_m: Option<f64>,
+    /// Of the front of a part-through crack.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub end: Option<String>,
+}
+
+/// K by one method.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MethodRecord {
+    pub k_i_mpa_sqrt_m: Option<f64>,
+    pub k_ii_mpa_sqrt_m: Option<f64>,
+    pub wall_s: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub state: Option<TipState>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub t_stress_mpa: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub note: Option<String>,
+}
+
+impl TipRecord {
+    fn of(tip: &TipResult) -> Self {
+        let method = |result: &MethodResult| MethodRecord {
+            k_i_mpa_sqrt_m: in_mpa(result.intensity.k_i),
+            k_ii_mpa_sqrt_m: in_mpa(result.intensity.k_ii),
+            wall_s: result.wall_s,
+            state: result.is_closed.then_some(TipState::Closed),
+            t_stress_mpa: result.t_stress.map(|t_stress| t_stress / MPA),
+            note: result.note.clone(),
+        };
+        let named =
+            |result: &MethodResult| (result.method.name().to_owned(), serde_json::to_value(method(result)).unwrap_or_default());
+        let [x, y] = tip.tip.position;
+        TipRecord {
+            x_mm: x / MM,
+            y_mm: y / MM,
+            direction: tip.tip.direction,
+            methods: tip.methods.iter().map(named).collect(),
+            handbook_k_i_mpa_sqrt_m: in_mpa(tip.handbook_k_i),
+            end: tip.end.map(|end| end.name().to_owned()),
+        }
+    }
+}
 
 /// Factors of the tips, and stresses where a folder for them is given or there is no crack.
 pub(super) fn of(
@@ -30,36 +99,35 @@ pub(super) fn of(
         return Err(input("--out", folder.display(), problem, "remove it"));
     }
     let has_cracks = case.specimen.tips.iter().any(|tip| !tip.from_slot);
-    let (mut found, mut tables, mut lines, mut done) = (Map::new(), String::new(), Vec::new(), Done::Nothing);
+    let (mut found, mut tables, mut lines, mut done) = (SifRecord::default(), String::new(), Vec::new(), Done::Nothing);
     if has_cracks || !on_nodes {
         let tips = stress_intensity(case, methods)?;
         for warning in notes(case, &tips)?.into_iter().chain(pin_arcs::line(case)) {
             watcher.warn(&warning);
         }
-        let pins = model_words::pins(case);
-        if !pins.is_empty() {
-            found.insert("pins".to_owned(), json!(pins));
-        }
+        found.pins = model_words::pins(case);
         tables.push_str(&table(&tips));
         let is_beside = tips.iter().any(|tip| tip.handbook_k_i.is_some());
         if let Some(formula) = handbook_beside(&case.specimen).filter(|_| is_beside) {
             let words = format!("{}: {}", formula.name, formula.range);
             tables.push_str(&format!("handbook K_I by {words}\n"));
-            found.insert("handbook".to_owned(), words.into());
+            found.handbook = Some(words);
         }
-        found.insert("tips".to_owned(), tips.iter().map(object).collect());
+        found.tips = Some(tips.iter().map(TipRecord::of).collect());
     }
     if folder.is_some() || !has_cracks {
         let stressed = stressed(case)?;
         stresses::warnings(&stressed).iter().for_each(|warning| watcher.warn(warning));
         tables.push_str(&stresses::table(&stressed));
         lines.push(stresses::words(case, &stressed));
-        found.insert("stresses".to_owned(), stresses::object(&stressed));
+        found.stresses = Some(StressesRecord::of(&stressed));
         done = Done::Stresses(Box::new(stressed));
     }
-    let mut figures = Value::Object(found.clone());
-    figures["name"] = json!(case.name);
-    Ok(Summary { result: Value::Object(found), figures, printed: tables, lines, refusal: None, done })
+    // Figures and text have a form in JSON.
+    let result = serde_json::to_value(found).unwrap_or_default();
+    let mut figures = result.clone();
+    figures["name"] = case.name.clone().into();
+    Ok(Summary { result, figures, printed: tables, lines, refusal: None, done })
 }
 
 /// What the methods say of their results, each once.
@@ -83,34 +151,6 @@ fn notes(case: &Case, tips: &[TipResult]) -> Result<Vec<String>> {
 
 fn in_mpa(factor: Option<f64>) -> Option<f64> {
     factor.map(|k| k / MPA_SQRT_M)
-}
-
-fn object(tip: &TipResult) -> Value {
-    let mut methods = Map::new();
-    for MethodResult { method, intensity, t_stress, is_closed, note, wall_s } in &tip.methods {
-        let mut entry = json!({
-            "k_i_mpa_sqrt_m": in_mpa(intensity.k_i), "k_ii_mpa_sqrt_m": in_mpa(intensity.k_ii), "wall_s": wall_s
-        });
-        if *is_closed {
-            entry["state"] = json!(TipState::Closed.name());
-        }
-        if let Some(t_stress) = t_stress {
-            entry["t_stress_mpa"] = json!(t_stress / MPA);
-        }
-        if let Some(note) = note {
-            entry["note"] = json!(note);
-        }
-        methods.insert(method.name().to_owned(), entry);
-    }
-    let [x, y] = tip.tip.position;
-    let mut object = json!({
-        "x_mm": x / MM, "y_mm": y / MM, "direction": tip.tip.direction,
-        "methods": methods, "handbook_k_i_mpa_sqrt_m": in_mpa(tip.handbook_k_i)
-    });
-    if let Some(end) = tip.end {
-        object["end"] = json!(end.name());
-    }
-    object
 }
 
 /// One line a tip and method, in the units that are shown.

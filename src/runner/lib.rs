@@ -9,6 +9,7 @@
 mod draft;
 pub mod factor_sweep;
 mod factors;
+pub mod guide;
 pub mod sweep;
 pub mod scene_model;
 pub mod scene_picture;

@@ -6,14 +6,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use serde_json::Value;
-
 use super::sweep_folder::{NAMED, SweepFolder};
 use super::{Summary, Task, Watcher};
 use perilife_base::error::{Error, Result};
 use perilife_calibration::sweep::DrawnCase;
 use perilife_growth::predict::Silent;
-use perilife_results::sweep::{Outcome, Plan, write};
+use perilife_results::sweep::{Failure, LifeQuantiles, Outcome, QuantileWords, SweepRecord, write};
 
 /// Runs cases, `threads` at a time, each of them on one thread: cases share nothing, so that is the fastest. `done` is called after
 /// each.
@@ -67,75 +65,49 @@ fn outcome(case: &DrawnCase, files: Option<&Path>) -> Result<Outcome> {
 /// Writes table, figures and picture of what is there. It counts if no case is missing and one has a result.
 pub fn collect(folder: &SweepFolder, begun: Instant, watcher: &dyn Watcher) -> Result<Summary> {
     let outcomes: Vec<Option<Outcome>> = (1..=folder.plan.cases.len()).map(|number| folder.outcome(number)).collect();
-    let figures = write(&folder.path, &folder.plan, &outcomes, begun.elapsed().as_secs_f64())?;
-    for warning in first(&figures, "warnings") {
-        let [case, text] = ["first", "warning"].map(|key| warning[key].as_str().unwrap_or_default());
-        let more = warning["cases"].as_u64().unwrap_or(1).saturating_sub(1);
-        let others = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let largest = warning["largest_percent"].as_f64().filter(|_| more > 0 && warning["largest_in"] != warning["first"]);
-        let most = largest.map_or_else(String::new, |share| {
-            format!(" (case {}: {share} %)", warning["largest_in"].as_str().unwrap_or_default())
-        });
-        watcher.warn(&format!("case {case}{others}: {text}{most}"));
+    let record = write(&folder.path, &folder.plan, &outcomes, begun.elapsed().as_secs_f64())?;
+    for warning in record.warnings.iter().take(NAMED) {
+        let others = if warning.cases > 1 { format!(" and {} more", warning.cases - 1) } else { String::new() };
+        let elsewhere = warning.largest_in.as_ref().filter(|case| warning.cases > 1 && **case != warning.first);
+        let most = warning.largest_percent.zip(elsewhere).map(|(share, case)| format!(" (case {case}: {share:?} %)"));
+        watcher.warn(&format!("case {}{others}: {}{}", warning.first, warning.warning, most.unwrap_or_default()));
     }
-    let (lines, refusal) = (words(&folder.path, &folder.plan, &figures), verdict(&folder.plan.name, &figures));
-    Ok(Summary { result: figures.clone(), figures, lines, refusal, ..Summary::default() })
+    // Figures and text have a form in JSON.
+    let result = serde_json::to_value(&record).unwrap_or_default();
+    let (lines, refusal) = (words(&folder.path, &record), verdict(&record));
+    Ok(Summary { figures: result.clone(), result, lines, refusal, ..Summary::default() })
 }
 
-fn words(path: &Path, plan: &Plan, figures: &Value) -> Vec<String> {
-    let life = |key: &str| figures["life_cycles"]["words"][key].as_str();
-    let percent = |count: u64| 100.0 * count as f64 / figures["succeeded"].as_f64().unwrap_or(f64::NAN);
-    let counts = ["succeeded", "failed", "missing"].map(|key| figures[key].as_u64().unwrap_or(0));
-    let mut lines = vec![format!(
-        "{}: {} cases, {} succeeded, {} failed, {} missing",
-        plan.name,
-        plan.cases.len(),
-        counts[0],
-        counts[1],
-        counts[2]
-    )];
-    if let (Some(low), Some(middle), Some(high)) = (life("p05"), life("p50"), life("p95")) {
+fn words(path: &Path, record: &SweepRecord) -> Vec<String> {
+    let SweepRecord { name, cases, succeeded, failed, missing, life_cycles: LifeQuantiles { words: life, .. }, .. } = record;
+    let percent = |count: usize| 100.0 * count as f64 / *succeeded as f64;
+    let mut lines = vec![format!("{name}: {cases} cases, {succeeded} succeeded, {failed} failed, {missing} missing")];
+    if let QuantileWords { p05: Some(low), p50: Some(middle), p95: Some(high) } = life {
         lines.push(format!("  life           5 % {low}, median {middle}, 95 % {high} cycles"));
     }
-    if let Some(count) = figures["run_outs"].as_u64().filter(|count| *count > 0) {
-        lines.push(format!("  run-outs       {count} ({:.0} %): lives above stop.cycles_max", percent(count)));
+    for (what, count, meaning) in
+        [("run-outs ", record.run_outs, "lives above stop.cycles_max"), ("unlimited", record.unlimited, "no growth")]
+    {
+        lines.extend((count > 0).then(|| format!("  {what}      {count} ({:.0} %): {meaning}", percent(count))));
     }
-    if let Some(count) = figures["unlimited"].as_u64().filter(|count| *count > 0) {
-        lines.push(format!("  unlimited      {count} ({:.0} %): no growth", percent(count)));
-    }
-    lines.extend(first(figures, "failures").iter().map(|failure| {
-        format!(
-            "  failed         {}: {}",
-            failure["case"].as_str().unwrap_or_default(),
-            failure["problem"].as_str().unwrap_or_default()
-        )
-    }));
-    lines.push(format!("  computed       {:.1} s of one core", figures["computing_s"].as_f64().unwrap_or(0.0)));
+    let failure = |failure: &Failure| format!("  failed         {}: {}", failure.case, failure.problem);
+    lines.extend(record.failures.iter().take(NAMED).map(failure));
+    lines.push(format!("  computed       {:.1} s of one core", record.computing_s));
     lines.push(format!("  results        {}", path.display()));
     lines
 }
 
-fn first<'f>(figures: &'f Value, key: &str) -> &'f [Value] {
-    let all = figures[key].as_array().map_or(&[][..], Vec::as_slice);
-    &all[..all.len().min(NAMED)]
-}
-
 /// Why a sweep does not count.
-fn verdict(name: &str, figures: &Value) -> Option<Error> {
-    let missing = figures["missing"].as_u64().unwrap_or(0);
-    if missing > 0 {
-        let named: Vec<&str> = first(figures, "missing_cases").iter().filter_map(Value::as_str).collect();
-        let more = if missing > NAMED as u64 { ", ..." } else { "" };
+fn verdict(record: &SweepRecord) -> Option<Error> {
+    let SweepRecord { name, cases, missing, missing_cases, .. } = record;
+    if *missing > 0 {
+        let named = missing_cases[..missing_cases.len().min(NAMED)].join(", ");
+        let more = if *missing > NAMED { ", ..." } else { "" };
         let text = format!(
-            "{name}: {missing} of {} cases are missing: {}{more}; run `perilife sweep` again with the same --out",
-            figures["cases"],
-            named.join(", ")
+            "{name}: {missing} of {cases} cases are missing: {named}{more}; run `perilife sweep` again with the same --out"
         );
         return Some(Error::Mechanics(text));
     }
-    if figures["succeeded"] == 0 {
-        let why = first(figures, "failures").first().and_then(|failure| failure["problem"].as_str()).unwrap_or_default();
-        return Some(Error::Mechanics(format!("{name}: no case has a result; the first says: {why}")));
-    }
-    None
+    let why = record.failures.first().map_or("", |failure| &*failure.problem);
+    (record.succeeded == 0).then(|| Error::Mechanics(format!("{name}: no case has a result; the first says: {why}")))
 }

@@ -8,7 +8,7 @@ use perilife_base::error::{Error, Result, input};
 use perilife_base::input::Provenance;
 use perilife_calibration::sweep::DrawnCase;
 use perilife_calibration::sweep::draw::label;
-use perilife_results::output::{Marker, OutputFolder, RunKind, Share, StandingFolder, is_temporary, write_file};
+use perilife_results::output::{LockedFolder, Marker, OutputFolder, RunKind, Share, is_temporary, write_file};
 use perilife_results::sweep::{
     CHART_FILE, FIGURES_FILE, OUTCOME_FILE, Outcome, PLAN_FILE, Plan, TABLE_FILE, read_outcome, read_plan,
 };
@@ -30,7 +30,7 @@ pub struct SweepFolder {
     pub plan: Plan,
     /// What goes because the plan has changed, in words.
     pub changed: Option<String>,
-    _standing: StandingFolder,
+    _standing: LockedFolder,
 }
 
 impl SweepFolder {
@@ -78,7 +78,7 @@ impl SweepFolder {
             let remedy = "give the --out folder of `perilife sweep`";
             return Err(input("DIR", path.display(), "is not the folder of a sweep", remedy));
         };
-        Ok(SweepFolder { path: path.to_path_buf(), plan, changed: None, _standing: StandingFolder::join(path)? })
+        Ok(SweepFolder { path: path.to_path_buf(), plan, changed: None, _standing: LockedFolder::join(path)? })
     }
 
     /// What came of a case, if it has been run: its number counts from 1.
@@ -153,11 +153,11 @@ impl SweepFolder {
 }
 
 /// Locks the folder of a sweep, which is made with its plan where there is none.
-fn enter(path: &Path, plan: &Plan, read: &Provenance, share: Share) -> Result<StandingFolder> {
+fn enter(path: &Path, plan: &Plan, read: &Provenance, share: Share) -> Result<LockedFolder> {
     let runs = [CASES, LOGS].map(|name| format!("{name}/"));
     let files = [PLAN_FILE, TABLE_FILE, FIGURES_FILE, CHART_FILE, TASKS_FILE, SCRIPT_FILE, &runs[0], &runs[1]];
     let marker = Marker::listing(RunKind::Sweep, &files);
-    StandingFolder::open(path, &marker, read, share, &[(PLAN_FILE, text_of(plan))])
+    LockedFolder::open(path, &marker, read, share, &[(PLAN_FILE, text_of(plan))])
 }
 
 fn text_of(plan: &Plan) -> Vec<u8> {

@@ -131,11 +131,11 @@ fn broken() -> Vec<(&'static str, Vec<u8>, [&'static str; 4])> {
                 "name one of mm, inch, m in the header, or set measured.length_unit (--length-unit)",
             ],
         ),
-        ("no length", text("specimen,cycles\nS1,0\n"), [":1: ", "header = cycles", "no column of crack length", "known are"]),
+        ("no length", text("specimen,cycles\nS1,0\n"), [":1: ", "header = cycles", "no column of crack length", "known columns"]),
         (
             "no cycles",
             text("specimen,crack_length_mm\nS1,9\n"),
-            [":1: ", "header = crack_length_mm", "no column of cycles", "known are"],
+            [":1: ", "header = crack_length_mm", "no column of cycles", "known columns"],
         ),
         (
             "two columns of a name",

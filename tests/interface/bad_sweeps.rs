@@ -31,7 +31,7 @@ fn bad_designs_are_refused_before_anything_runs() {
             vec!["vary[0].from = 0: must be above zero"],
         ),
         (grid(&format!("{length}distribution = \"normal\"\n")), 2, vec!["vary[0].distribution", "this is a grid"]),
-        (grid(&format!("{length}values = [8]\n[[vary]]\n{length}values = [9]\n")), 2, vec!["sweep.toml:8", "varies already"]),
+        (grid(&format!("{length}values = [8]\n[[vary]]\n{length}values = [9]\n")), 2, vec!["sweep.toml:8", "is given twice"]),
         (grid(&format!("{length}from = 8\nto = 9\ncount = 20000\n")), 2, vec!["vary[0].count = 20000"]),
         (
             grid(&format!(
@@ -40,7 +40,7 @@ fn bad_designs_are_refused_before_anything_runs() {
             2,
             vec!["10200 cases", "--most"],
         ),
-        (random(&format!("{length}values = [8]\n")), 2, vec!["vary[0].values", "belongs to a grid"]),
+        (random(&format!("{length}values = [8]\n")), 2, vec!["vary[0].values", "applies only to a grid"]),
         (
             random(&format!("{length}distribution = \"uniform\"\nfrom = 9\nto = 8\n")),
             2,

@@ -122,7 +122,7 @@ fn readings_of_the_plate_narrow_what_it_has_left() {
     let no_law = "fatigue.fitted=\"bare.toml\"";
     let record = fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap();
     fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
-    assert_refused(&predict(&["--measured", "own.csv", "--set", no_law]), 2, &["--measured", "own.csv", "no [population]"]);
+    assert_refused(&predict(&["--measured", "own.csv", "--set", no_law]), 2, &["--measured", "own.csv", "without [population]"]);
     assert_refused(&predict(&["--measured", "gone.csv"]), 4, &["gone.csv"]);
     let two = "specimen,cycles,crack_length_mm\n".to_owned()
         + &["a", "b"].map(|name| (0..6).map(|i| format!("{name},{},{}\n", 9000 * i, 9 + i)).collect::<String>()).concat();

@@ -113,10 +113,10 @@ fn a_calibration_with_a_prediction_and_its_export() {
     assert!(stdout.lines().any(|line| line.starts_with("  misfit at ends ") && line.chars().count() <= 80), "{stdout}");
     // Fields for ParaView are those of cases and scenes.
     let asked = ["calibrate", "case.toml", "--out", "no", "--set", "output.paraview=true"];
-    assert_refused(&perilife(dir.path(), &asked), 2, &["output", "belongs to a case or scene"]);
+    assert_refused(&perilife(dir.path(), &asked), 2, &["output", "applies only to a case or scene"]);
 
     // A file inside the folder of the fit is not an export's to replace; the fit itself is no run.
-    assert_refused(&perilife(dir.path(), &["export", "out/fit", "--out", "b.csv"]), 2, &["this is a calibration"]);
+    assert_refused(&perilife(dir.path(), &["export", "out/fit", "--out", "b.csv"]), 2, &["inside this calibration"]);
 }
 
 #[test]
@@ -162,4 +162,40 @@ fn the_law_behind_three_stress_ratios_is_found() {
         let of = |section: &str| fit[section][key].as_float().unwrap();
         assert!((of("fatigue") - wanted).abs() < 3.0 * of("errors"), "{key}: {} ± {}", of("fatigue"), of("errors"));
     }
+}
+
+/// A table in place of a calibration file: the file to write is in the message, filled with what the table says, and can be used.
+#[test]
+fn a_table_gets_its_calibration_file() {
+    let dir = tempdir().unwrap();
+    let rows: String = (0..12).map(|i| format!("{},{},50,10,6.0,0.1\n", 5000 * i, 12.0 * 1.05_f64.powi(i))).collect();
+    fs::write(dir.path().join("lab.csv"), format!("N,a (mm),W (mm),B (mm),Pmax (kN),R\n{rows}")).unwrap();
+    for call in [&["check", "lab.csv"][..], &["calibrate", "lab.csv", "--out", "fit"]] {
+        let output = perilife(dir.path(), call);
+        assert_refused(&output, 2, &["lab.csv: is a table of readings", "save these lines beside it as lab.toml, fill in <...>"]);
+        let (_, message) = texts(&output);
+        let (_, lines) = message.split_once("\n\n").unwrap();
+        for line in [
+            "files = [\"lab.csv\"]",
+            "# columns: N (cycles), a (mm) (length), Pmax (kN) (force_max), R (stress_ratio)",
+            "width_mm = 50",
+            "thickness_mm = 10",
+            "crack_length_mm = 12 # first reading",
+            "force_max_kn = 6",
+            "stress_ratio = 0.1",
+        ] {
+            assert!(lines.lines().any(|written| written == line), "{line}: {lines}");
+        }
+        let lines = lines.replace("kind = <...>", "kind = \"compact_tension\"").replace("name = <...>", "name = \"al2024-t3\"");
+        fs::write(dir.path().join("lab.toml"), lines.replace("length_mm = <...>", "")).unwrap();
+        let output = perilife(dir.path(), &["check", "lab.toml"]);
+        assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
+    }
+    // What the table does not say stays open.
+    fs::write(dir.path().join("lab.csv"), "cycles,crack_length_mm\n0,9\n1000,9.5\n2000,10\n3000,10.6\n4000,11.3\n").unwrap();
+    let message = texts(&perilife(dir.path(), &["check", "lab.csv"])).1;
+    assert!(
+        ["width_mm = <...>", "force_max_kn = <...>", "stress_ratio = <...>"].iter().all(|open| message.contains(open)),
+        "{message}"
+    );
 }

@@ -157,7 +157,7 @@ fn what_does_not_fit_into_memory_is_refused_before_it_is_laid_out() {
         assert_refused(
             &output,
             2,
-            &["arms.toml", "model.spacing_mm = 0.5", "lattice places", "GB of memory; limit", "give about"],
+            &["arms.toml", "model.spacing_mm = 0.5", "lattice positions", "GB of memory; limit", "give about"],
         );
     }
     assert!(!dir.path().join("run").exists());

@@ -155,7 +155,7 @@ fn a_folder_of_somebody_else_is_refused() {
     fs::create_dir(dir.path().join("thesis")).unwrap();
     fs::write(dir.path().join("thesis/chapter"), "years of work").unwrap();
     let output = perilife(dir.path(), &["predict", "small.toml", "--out", "thesis"]);
-    assert_refused(&output, 2, &["--out = thesis", "did not make", "give a new or empty folder"]);
+    assert_refused(&output, 2, &["--out = thesis", "contains other files (", "give a new or empty folder"]);
     assert_eq!(fs::read_dir(dir.path().join("thesis")).unwrap().count(), 1);
     let output = perilife(dir.path(), &["predict", "small.toml", "--out", "small.toml/run"]);
     assert_refused(&output, 4, &["small.toml/run"]);

@@ -86,7 +86,7 @@ fn a_fleet_without_scatter_and_wrong_keys_are_refused() {
         (&["--set", "fleet.initial_length_mm={ median = 3.0 }"], &["fleet.initial_length_mm", "standard_deviation_ln"]),
         (&["--set", "fleet.plate=3"], &["fleet.plate", "did you mean plates?"]),
         (&["--pod", "2,5"], &["--inspect-from"]),
-        (&["--inspect-from", "400"], &["--inspect-from = 400 mm", "from 4 to "]),
+        (&["--inspect-from", "400"], &["--inspect-from = 400 mm", "4 to "]),
         (&["--inspect-from", "6 bananas"], &["--inspect-from = 6 bananas", "0.25in"]),
         (&["--inspect-from", "10", "--pod", "5,2"], &["--pod", "longer one"]),
     ];

@@ -64,7 +64,7 @@ fn readings_at_two_ratios_become_rates_a_law_and_a_life() {
     // Another stress ratio between them.
     fs::write(here.join("panel.toml"), format!("{SHEET}{}[stop]\ncrack_length_mm = 30\n", loading(0.3))).unwrap();
     let (stdout, _) = done(here, &["calibrate", "laws.toml", "--out", "fit", "--predict", "panel.toml"]);
-    for words in ["law            walker (best by AICc", "paris_c_mm_per_cycle", "walker_gamma", "left out: ", "panel: life"] {
+    for words in ["law            walker (best by AICc", "paris_c_mm_per_cycle", "walker_gamma", "rejected: ", "panel: life"] {
         assert!(stdout.contains(words), "{words} in {stdout}");
     }
     for file in ["fitted.toml", "fit.json", "fit_rates.csv", "da_dn.svg", "panel/a_n.csv"] {
@@ -141,7 +141,7 @@ fn a_fit_without_an_optimum_writes_no_law() {
         (readings, curve(&narrow, |a| 1e5 * (a / 20.0).powi(-2)), "p cannot be determined"),
         (law("walker"), rates(&[0.1]), "walker_gamma cannot be determined: all rates are at one stress ratio"),
         (law("forman"), rates(&[0.1, 0.5]), "k_c_mpa_sqrt_m cannot be determined: best fit at the limit of its range"),
-        (law("nasgro"), rates(&[0.1, 0.5]), "not identified"),
+        (law("nasgro"), rates(&[0.1, 0.5]), "cannot be determined"),
     ];
     for (case, data, words) in cases {
         fs::write(here.join("case.toml"), &case).unwrap();

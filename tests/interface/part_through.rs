@@ -94,7 +94,11 @@ fn bad_input_is_refused_by_name() {
     assert_eq!(perilife(dir.path(), &retarded).status.code(), Some(0));
     write(dir.path(), ["", ""]);
     for more in [&["--method", "ring"][..], &["--method", "element_free_galerkin"], &["--out", "sif"]] {
-        assert_refused(&perilife(dir.path(), &[&["sif", "hole.toml"], more].concat()), 2, &["does not go through"]);
+        assert_refused(
+            &perilife(dir.path(), &[&["sif", "hole.toml"], more].concat()),
+            2,
+            &["do not support part-through cracks"],
+        );
     }
 }
 

@@ -67,8 +67,8 @@ const ROWS: &[Row] = &[
     row("negative_ratio", &["calibrate", "three.toml"], 2, &["delta_k = \"full\""], &[]),
     row("negative_ratio", &["calibrate", "three.toml", "--set", "measured.delta_k=full"], 0, &[], &[(FIT, GAMMA, 0.6, 0.05)]),
     // Beyond the end.
-    row("fracture_reading", &["calibrate", "ct.toml"], 0, &["line 26", "of the fracture"], &[(FIT, M, 3.0, 1e-3)]),
-    row("fracture_reading", &["calibrate", "mt.toml"], 0, &["49.95 mm", "of the fracture"], &[(FIT, M, 3.0, 1e-3)]),
+    row("fracture_reading", &["calibrate", "ct.toml"], 0, &["line 26", "at fracture"], &[(FIT, M, 3.0, 1e-3)]),
+    row("fracture_reading", &["calibrate", "mt.toml"], 0, &["49.95 mm", "at fracture"], &[(FIT, M, 3.0, 1e-3)]),
     row("run_out", &["predict", "run_out.toml"], 0, &["at least 40 000"], &[]),
     row("unlimited_lives", &["sweep", "eifs.toml"], 0, &["95 % unlimited", "138 (46 %)"], &[]),
     // What is wrong.

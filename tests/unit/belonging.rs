@@ -201,7 +201,7 @@ fn broken_windows_are_refused() {
             "specimen = \"B\": is not a specimen",
         ),
         ("no reason", window("from_cycles = 0, to_cycles = 1e4"), "reason: is missing"),
-        ("an empty reason", window("from_cycles = 0, to_cycles = 1e4, reason = \" \""), "says nothing"),
+        ("an empty reason", window("from_cycles = 0, to_cycles = 1e4, reason = \" \""), "has an empty reason"),
         ("half a window", window("from_cycles = 0, reason = \"x\""), "is neither a row nor cycles"),
         ("a row and cycles", window("line = 2, from_cycles = 0, to_cycles = 1, reason = \"x\""), "is neither a row nor cycles"),
         (

@@ -66,7 +66,7 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
         println!("{name}: {error}");
         assert_eq!(error.exit_code(), 2);
         let words = error.to_string();
-        assert!(words.contains("model.spacing_mm = ") && words.contains("more than 4.00 GB"), "{words}");
+        assert!(words.contains("model.spacing_mm = ") && words.contains("limit 4.00 GB"), "{words}");
         let spacing: f64 = words.split("give about ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
         let set = format!("model.spacing_mm={spacing}");
         let coarser = Case::from_toml(&format!("{specimen}{PLATE}{model}"), "case", Folder::none(), &[set]);

@@ -6,6 +6,7 @@ use perilife_base::error::Error;
 use perilife_base::input::Folder;
 use perilife_growth::case::record::{FittedLaw, FittedRecord};
 use perilife_growth::case::{Case, LawSource};
+use perilife_growth::predict::checkpoint::hash;
 use perilife_plate::material::library;
 use perilife_points::bond_law::{BondLawKind, Kernel, Rotation, SurfaceCorrection};
 
@@ -255,6 +256,11 @@ fn every_shipped_case_is_right() {
             let case = Case::from_file(&path, &[]).unwrap_or_else(|error| panic!("{error}"));
             assert!(std::fs::read_to_string(&path).unwrap().starts_with("# "), "{}: opens with its question", path.display());
             assert!(!case.specimen.tips.is_empty());
+            // What a run leaves as its input is the same case to the last bit.
+            let run = tempfile::tempdir().unwrap();
+            perilife_results::run::write_input(run.path(), &case).unwrap();
+            let again = Case::from_file(&run.path().join("case.toml"), &[]).unwrap_or_else(|error| panic!("{error}"));
+            assert_eq!(hash(&again), hash(&case), "{}", path.display());
             count += 1;
         }
     }

@@ -65,7 +65,7 @@ fn no_more_of_a_model_than_a_scene_needs() {
             MIDDLE,
             &["specimen.crack_length_mm=48"],
             ElementFreeGalerkin,
-            "does not hold at this crack length: 0.3 % for 2a/W up to 0.7",
+            "does not hold at this crack length: 0.3 % for 2a/W ≤ 0.7",
         ),
         (MIDDLE, &["specimen.length_mm=110"], ElementFreeGalerkin, "no handbook formula"),
         (DOUBLE, &[], ElementFreeGalerkin, "off in K, which is"),

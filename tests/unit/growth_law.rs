@@ -262,8 +262,8 @@ fn wrong_laws_are_refused() {
     let two = format!("{FORMAN}nasgro_n = 3\n");
     let ratios = "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,stress_ratio\n10,1e-4,0.3\n20,9e-4,0.3\n10,2e-4,0.5\n20,2e-3,0.5\n";
     let rows: [(&str, &str, &[&str], &[&str]); 19] = [
-        (RATES, &twice, &[], &["fatigue.paris_c_mm_per_cycle", "given twice"]),
-        (RATES, &two, &[], &["fatigue.nasgro_n", "given twice"]),
+        (RATES, &twice, &[], &["fatigue.forman_c_mm_per_cycle", "conflicts with fatigue.paris_c_mm_per_cycle"]),
+        (RATES, &two, &[], &["fatigue.nasgro_n", "conflicts with"]),
         (RATES, FORMAN, &["fatigue.driver=bond_strain"], &["fatigue.growth_law", "cannot drive bonds", "tip_field"]),
         (RATES, FORMAN, &["fatigue.walker_gamma=0.5"], &["fatigue.walker_gamma", "forman"]),
         (RATES, FORMAN, &["fatigue.forman_m=0.1"], &["fatigue.forman_m", "0.1"]),
@@ -279,10 +279,10 @@ fn wrong_laws_are_refused() {
             RATES,
             "paris_c_mm_per_cycle = 1e-7\nparis_m = 3\nk_c_mpa_sqrt_m = 3\n",
             &[],
-            &["fatigue.k_c_mpa_sqrt_m", "no constant"],
+            &["fatigue.k_c_mpa_sqrt_m", "not a constant"],
         ),
         (ratios, TABLE, &["loading.stress_ratio=0.6"], &["fatigue.growth_table", "rates.csv", "above 0.3 to 0.5", "held"]),
-        ("delta_k_mpa_sqrt_m,rate\n1,2\n", TABLE, &[], &["rates.csv", "da_dn_mm_per_cycle", "lacks"]),
+        ("delta_k_mpa_sqrt_m,rate\n1,2\n", TABLE, &[], &["rates.csv", "da_dn_mm_per_cycle", "has no columns"]),
         ("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n9,2e-4\n", TABLE, &[], &["rates.csv:2", "da_dn_mm_per_cycle", "rise"]),
         (
             "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n12,x\n",
@@ -326,7 +326,7 @@ fn wide_tables_of_other_programs_are_read() {
     near(table.rows[1].rate, 1e-7 * 0.0254, 1e-9);
     for (name, text, problem) in [
         ("a.dadn", "0.0 0.5\n1e-10 5.0\n", "has 2 numbers, expected 3"),
-        ("a.dadn", "0.0\n1e-10 five\n", "is no number"),
+        ("a.dadn", "0.0\n1e-10 five\n", "is not a number"),
         ("a.dadn", "# nothing\n", "has no rows"),
         ("a.lkpx", "<Material></Material>", "no table of rates"),
         ("a.lkpx", "<Material><a></b></Material>", "is not XML"),

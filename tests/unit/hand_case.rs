@@ -45,7 +45,7 @@ fn a_wrong_law_is_refused_with_the_right_one() {
             &["fatigue.paris_m = 8.5", "1 to 8"],
         ),
         (text.replace("paris_m = 3\n", ""), vec![], &["fatigue.paris_m", "missing", "together"]),
-        (text.clone(), vec!["fatigue.fitted=fitted.toml"], &["fatigue.paris_c_mm_per_cycle", "given twice"]),
+        (text.clone(), vec!["fatigue.fitted=fitted.toml"], &["fatigue.paris_c_mm_per_cycle", "conflicts with fatigue.fitted"]),
         (only_bonds(&text), vec![], &["fatigue.fitted", "no fatigue law", "paris_c_mm_per_cycle and paris_m"]),
         (text.clone(), vec!["fatigue.paris_c_mm_per_cycle=-1"], &["fatigue.paris_c_mm_per_cycle", "above zero"]),
     ];

@@ -244,7 +244,7 @@ fn columns_may_be_named_by_the_user() {
     assert!(error.contains("measured.columns.length = b: is not a column of this file; its columns are N | a (mm)"), "{error}");
     let mut columns = columns(&["cycles=N"]);
     for (text, words) in
-        [("N", "has no ="), ("depth=a", "has an unknown key"), ("cycles=M", "twice"), ("length=", "has no column")]
+        [("N", "has no ="), ("depth=a", "has an unknown key"), ("cycles=M", "repeats a column"), ("length=", "has no column")]
     {
         let error = columns.put(text).unwrap_err().to_string();
         assert!(error.contains("--column = ") && error.contains(words), "{error}");

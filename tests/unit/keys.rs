@@ -91,8 +91,8 @@ fn every_key_refuses_values_of_another_sort_and_beyond_reason() {
             }
             let Some(quantity) = key.quantity.filter(|_| matches!(key.shape, Shape::Number)) else { continue };
             for (value, words) in [
-                (1e305, "beyond reason"),
-                (-1e305, if quantity.low > 0.0 { "above zero" } else { "beyond reason" }),
+                (1e305, "out of range"),
+                (-1e305, if quantity.low > 0.0 { "above zero" } else { "out of range" }),
                 (f64::NAN, "finite"),
             ] {
                 let wrong = with(&told, &key, Value::Float(value));
@@ -157,7 +157,7 @@ fn every_twin_is_refused_in_its_own_units_and_beside_its_key() {
             let Some((twin, quantity)) = twin_of(&key).zip(key.quantity) else { continue };
             let both = format!("[{section}]\n{} = {}\n{twin} = 1.0\n", key.name, some(&key, key.shape));
             let error = Document::parse(&both, "both.toml", Folder::none(), &[]).unwrap_err().to_string();
-            let words = format!("both.toml:3: {section}.{twin} = 1.0: conflicts with {section}.{} = ", key.name);
+            let words = format!("{section}.{twin} = 1.0: conflicts with {section}.{} = ", key.name);
             assert!(error.starts_with(&words), "{error}");
             let large = format!("[{section}]\n{twin} = {:e}\n", 10.0 * quantity.high);
             let document = Document::parse(&large, "large.toml", Folder::none(), &[]).unwrap();
@@ -165,10 +165,7 @@ fn every_twin_is_refused_in_its_own_units_and_beside_its_key() {
             table.extend(document.table[section].as_table().unwrap().clone());
             let wrong = mistakes(Given { table: &table, path: section }, &told.keys, &[], None);
             let error = document.locate(Error::Input(Box::new(wrong.into_iter().next().unwrap()))).to_string();
-            assert!(
-                error.starts_with(&format!("large.toml:2: {section}.{twin} = ")) && error.contains("beyond reason"),
-                "{error}"
-            );
+            assert!(error.starts_with(&format!("{section}.{twin} = ")) && error.contains("out of range"), "{error}");
             rows += 1;
         }
     }
@@ -198,7 +195,9 @@ fn every_key_is_told_everywhere_with_its_twin() {
         let own = told.schema();
         for key in all(&told.keys) {
             let (label, _) = key.label_and_hint();
-            assert!(!label.is_empty() && !label.contains('_'), "{}.{}: {label}", told.section, key.name);
+            // K_c and δ_max are symbols, crack_length a name.
+            let is_plain = label.split(' ').all(|word| !word.contains('_') || word.chars().count() < 6);
+            assert!(!label.is_empty() && is_plain, "{}.{}: {label}", told.section, key.name);
             assert_eq!(own["properties"][key.name]["title"], label, "{}", key.name);
             assert!(
                 manual.contains(&format!("| `{}`", key.name)) && stub.contains(&format!("    {}: ", key.name)),
@@ -227,7 +226,7 @@ fn the_guide_and_the_stub_say_what_the_keys_say() {
     };
     hold("src/python/perilife/sections.py", catalogue::stub());
     let head = "# Keys of input files\n\nWritten from the keys of the program (`perilife list keys`). A key in mm, MPa, GPa, N, kN or MPa√m has a twin in US units.\n\n";
-    hold("data/keys.md", format!("{head}{}\n", catalogue::manual().trim_end()));
+    hold("src/guide/keys.md", format!("{head}{}\n", catalogue::manual().trim_end()));
     assert!(old.is_empty(), "written anew: {old:?}");
 }
 

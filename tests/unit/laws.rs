@@ -151,13 +151,13 @@ fn what_rates_do_not_tell_is_named() {
     let cases = [
         (&one_ratio, fit_by("walker"), "walker_gamma cannot be determined: all rates are at one stress ratio, R = 0.100"),
         (&one_ratio, fit_by("nasgro"), "nasgro_alpha, nasgro_c_th cannot be determined: all rates are at one stress ratio"),
-        (&one_ratio, fit_by("forman"), "k_c_mpa_sqrt_m not identified"),
+        (&one_ratio, fit_by("forman"), "k_c_mpa_sqrt_m cannot be determined"),
         (
             &straight,
             fit_by("forman"),
             "k_c_mpa_sqrt_m cannot be determined: best fit at the limit of its range, 19 times the largest K_max",
         ),
-        (&middle, fit_by("nasgro"), "not identified"),
+        (&middle, fit_by("nasgro"), "cannot be determined"),
     ];
     for (text, law, words) in cases {
         let error = fit_laws(&rows(text), law, &Given::new()).unwrap_err();
@@ -382,6 +382,6 @@ fn predictions_read_the_fitted_law() {
         let twice = life("fitted = \"fitted.toml\"\nparis_m = 3\n", &[]).unwrap_err();
         assert!(twice.to_string().contains("fatigue.paris_m: conflicts with fatigue.fitted"), "{twice}");
         let other = life("fitted = \"fitted.toml\"\ngrowth_law = \"table\"\n", &[]).unwrap_err();
-        assert!(other.to_string().contains("is not the law that fitted.toml holds"), "{other}");
+        assert!(other.to_string().contains("is not the law of fitted.toml"), "{other}");
     }
 }

@@ -127,9 +127,9 @@ fn a_pin_touches_over_at_most_half_its_hole() {
         (pins(", contact_half_angle_deg = 120"), "loading.pins[0].contact_half_angle_deg", "120"),
         (pins(", pin_diameter_mm = 1, contact_half_angle_deg = 20"), "loading.pins[0].contact_half_angle_deg", "pin_diameter_mm"),
         (pins(", pin_poisson_ratio = 0.3"), "loading.pins[0].pin_diameter_mm", "clearance"),
-        (pins(", pin_diameter_mm = 1, friction = 0.1"), "loading.pins[0].friction = 0.1", "without friction"),
-        (compact("pin_diameter_mm = 12\npin_friction = 0.1"), "specimen.pin_friction = 0.1", "without friction"),
-        (compact(&format!("pin_diameter_mm = {}", 1.01 * hole)), "specimen.pin_diameter_mm", "more than the hole"),
+        (pins(", pin_diameter_mm = 1, friction = 0.1"), "loading.pins[0].friction = 0.1", "pins are frictionless"),
+        (compact("pin_diameter_mm = 12\npin_friction = 0.1"), "specimen.pin_friction = 0.1", "pins are frictionless"),
+        (compact(&format!("pin_diameter_mm = {}", 1.01 * hole)), "specimen.pin_diameter_mm", "larger than the hole"),
         (compact("pin_diameter_mm = 12\npin_poisson_ratio = 0.6"), "specimen.pin_poisson_ratio", "0.6"),
     ];
     for (case, key, word) in wrong {
@@ -198,7 +198,7 @@ fn directions_pressures_and_displacements_that_are_refused() {
             "only crack_pressure_mpa is set",
         ),
         (PLATE, format!("{kept}stress_max_mpa = 50"), "cannot be combined with kind"),
-        (PLATE, format!("{kept}crack_pressure_mpa = 50"), "loading.displacement_max_mm: is missing"),
+        (PLATE, format!("{kept}crack_pressure_mpa = 50"), "loading.displacement_max_mm: no load given"),
         (PLATE, kept.into(), "no load given"),
         (
             PLATE,
@@ -235,7 +235,7 @@ fn directions_pressures_and_displacements_that_are_refused() {
             ),
             "moves an edge that [supports] fixes in the same direction",
         ),
-        (PLATE, "kind = \"displacement\"\ndisplacement_mm = 0.1".into(), "belongs to fracture scenes"),
+        (PLATE, "kind = \"displacement\"\ndisplacement_mm = 0.1".into(), "applies only to fracture scenes"),
         (PANEL, by_crack("[[12, 50], [30, 40]]"), "does not include the initial crack length 10 mm"),
         (PANEL, by_crack("[[5, 50], [10, 40]]"), "does not include the initial crack length 10 mm"),
         (PANEL, by_crack("[]"), "does not include the initial crack length 10 mm"),

@@ -201,7 +201,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (
             row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[0, 10], [10, 0], [0, 0]]"),
             TENSION,
-            "specimen.crack_lengths_mm = [[0, 10], [10, 0], [0, 0]]: has no end inside the material",
+            "specimen.crack_lengths_mm = [[0, 10], [10, 0], [0, 0]]: has no tip inside the material",
         ),
         (
             hole("hole_diameter_mm = 6\ncrack_length_mm = 46.99"),
@@ -291,7 +291,7 @@ fn a_crack_begins_at_the_root_however_short() {
     // An end that all but reaches the edge is said by the key of the kind.
     let through = format!("kind = \"crack_at_hole\"\n{SIZES}hole_diameter_mm = 10\ncrack_lengths_mm = [10, 44.99]");
     let warnings = read_case(&through, TENSION, "").unwrap().warnings;
-    let words = "specimen.crack_lengths_mm: a crack ends 0.01 mm from a rim";
+    let words = "specimen.crack_lengths_mm: a crack ends 0.01 mm from an edge";
     assert!(warnings.iter().any(|warning| warning.contains(words)), "{warnings:?}");
     let at_hole = format!(
         "kind = \"plate\"\n{SIZES}holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = 10 }}]\ncracks = [{{ from_mm = [0, 0], to_mm = [5.04, 0] }}]"

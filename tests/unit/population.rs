@@ -302,7 +302,7 @@ fn outside_the_range_a_life_is_wider_and_then_refused() {
     assert!(lot.forecast(&path(9.0), Some(own), Lot::Same).unwrap().basis(Basis::B).is_err());
     let two = fit(&noisy_lot(2, 0.08, 0.2, 9), None).unwrap();
     let refusal = two.forecast(&path(9.0), None, Lot::Same).unwrap().basis(Basis::B).unwrap_err().to_string();
-    assert!(refusal.contains("too few for a basis value"), "{refusal}");
+    assert!(refusal.contains("too few specimens for a basis value"), "{refusal}");
 }
 
 #[test]

@@ -146,7 +146,7 @@ fn what_a_table_of_rates_does_not_say_is_asked_for() {
     with("dK,da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "has no unit");
     with("dK (Pa),da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "has an unknown unit");
     with("dK (MPa√m),da/dN (mm/cycle),R\n-0.7,1e-5,0.1\n", &plain, "log10");
-    with("dK (MPa√m),da/dN (mm/cycle),R\n6,1e-5,1.1\n", &plain, "no stress ratio below 1");
+    with("dK (MPa√m),da/dN (mm/cycle),R\n6,1e-5,1.1\n", &plain, "not a stress ratio below 1");
     let given = RateFileKeys { stress_ratio: Some(0.1), ..RateFileKeys::default() };
     with("dK (MPa√m),da/dN (mm/cycle),R\n6,1e-5,0.1\n", &given, "is a column, and stress_ratio = 0.1");
     let negative = "dK (MPa√m),da/dN (mm/cycle),R\n12,1e-5,-0.5\n";

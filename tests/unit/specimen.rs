@@ -147,7 +147,7 @@ fn other_names_of_part_through_flaws_lead_to_the_kinds() {
     }
     for key in ["depth_mm", "crack_depth_mm", "aspect_ratio"] {
         let error = plate(&format!("{key} = 2\ncracks = [{{ from_mm = [-5, 0], to_mm = [5, 0] }}]")).unwrap_err().to_string();
-        assert!(error.contains(key) && error.contains("use one of: surface_crack"), "{error}");
+        assert!(error.contains(key) && error.contains("use one of surface_crack"), "{error}");
     }
 }
 

@@ -121,9 +121,9 @@ fn what_is_wrong_is_said_in_the_words_of_the_file() {
     let [_, us] = pairs().swap_remove(0);
     let set = ["specimen.width_in=5", "specimen.width_mm=120"].map(str::to_owned);
     let error = Document::parse(&us, "panel", Folder::none(), &set).unwrap_err().to_string();
-    assert!(error.contains("specimen.width_mm=120") && error.contains("beside specimen.width_in"), "{error}");
+    assert!(error.contains("specimen.width_mm=120") && error.contains("conflicts with specimen.width_in"), "{error}");
     let cases: [(&str, &str, &[&str]); 7] = [
-        ("width_in = 6", "width_in = 6\nwidth_mm = 152.4", &["specimen.width_in = 6", "specimen.width_mm", "given twice"]),
+        ("width_in = 6", "width_in = 6\nwidth_mm = 152.4", &["specimen.width_in = 6", "specimen.width_mm", "conflicts with"]),
         ("width_in = 6", "width_in = -6", &["specimen.width_in = -6", "must be above zero", "inch"]),
         ("width_in = 6", "width_in = \"6\"", &["specimen.width_in = \"6\"", "is not a number"]),
         ("width_in = 6", "widht_in = 6", &["specimen.widht_in = 6", "unknown key", "width_mm"]),

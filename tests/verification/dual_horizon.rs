@@ -127,7 +127,7 @@ fn wrong_refinements_are_refused() {
     let around = |distance| RefinedRegion::AroundFlaws { distance };
     for (regions, ratio, words) in [
         (vec![(a_box([60e-3, 0.0], [70e-3, 5e-3]), 1)], 3.015, "outside the plate"),
-        (vec![(a_box([10e-3, 0.0], [0.0, 5e-3]), 1)], 3.015, "no box"),
+        (vec![(a_box([10e-3, 0.0], [0.0, 5e-3]), 1)], 3.015, "not a box"),
         (vec![(a_box([0.1e-3, 0.1e-3], [0.2e-3, 0.2e-3]), 1)], 3.015, "no point"),
         (vec![(around(5e-3), 0)], 3.015, "levels"),
         (vec![(around(5e-3), 9)], 3.015, "levels"),

@@ -77,9 +77,10 @@ fn a_case_takes_the_law_of_its_material() {
     let same = predict(&given, &Silent).unwrap();
     assert_eq!(run.life_cycles(), same.life_cycles());
     assert!(given.growth_data.is_none());
-    for (fatigue, problem) in
-        [("growth_law = \"library\"\nparis_m = 3.0", "twice"), ("growth_law = \"library\"\nfitted = \"fitted.toml\"", "twice")]
-    {
+    for (fatigue, problem) in [
+        ("growth_law = \"library\"\nparis_m = 3.0", "conflicts with growth_law"),
+        ("growth_law = \"library\"\nfitted = \"fitted.toml\"", "conflicts with"),
+    ] {
         let error = case(fatigue).unwrap_err().to_string();
         assert!(error.contains(problem), "{error}");
     }

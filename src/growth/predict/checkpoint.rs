@@ -129,7 +129,7 @@ impl Pictures {
 }
 
 /// Hash of all that decides how the run of a case goes.
-pub(super) fn hash(case: &Case) -> [u8; 32] {
+pub fn hash(case: &Case) -> [u8; 32] {
     let Case { specimen, material, loading, model, fatigue, retardation, law, stop, .. } = case;
     // Debug output of floats says them to the last bit.
     let all = format!("{:?}", (specimen, material, loading, model, fatigue, retardation, law, stop));

@@ -2,13 +2,20 @@
 
 use toml::Value;
 
-use super::table::TableEnds;
 use super::{FactorLaw, GrowthLawKind};
 use perilife_base::error::{Result, input_missing};
 use perilife_base::input::{Folder, INTENSITY, Quantity, number, value_at};
 use perilife_base::keys::{Field, Key};
 use perilife_base::units::MM_PER_CYCLE;
 use perilife_plate::material::Material;
+
+perilife_base::kinds! {
+    /// What K and R beyond the rows of a table of rates do.
+    pub enum TableEnds for "fatigue.growth_table_ends" {
+        Refused = "refused": "the run ends in an error",
+        Held = "held": "the crack grows at the rate of the last row, or ratio; how much of the life that is stands in a warning",
+    }
+}
 
 /// A law of growth: its formula, and it in the words and numbers of input files. Formulas take the constants in SI units, in their order.
 pub struct GrowthLawSpec {

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::FactorLaw;
-use super::description::{GAMMA, Given, GrowthLawSpec, RatedRow, Rates, UNSAID};
+use super::description::{GAMMA, Given, GrowthLawSpec, RatedRow, Rates, TableEnds, UNSAID};
 use super::rising::rising;
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
@@ -20,14 +20,6 @@ pub static LAW: GrowthLawSpec = GrowthLawSpec {
 };
 
 const KEY: &str = "fatigue.growth_table";
-
-perilife_base::kinds! {
-    /// What K and R beyond the rows of a table of rates do.
-    pub enum TableEnds for "fatigue.growth_table_ends" {
-        Refused = "refused": "extrapolation is refused",
-        Held = "held": "rate of the last row or ratio; a warning gives the share of life",
-    }
-}
 
 /// Distance of a ratio from that of a curve up to which it has the whole of it, not the rates alone that the next one has too.
 const NEAR_RATIO: f64 = 0.005;

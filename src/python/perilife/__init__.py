@@ -1,8 +1,8 @@
-"""Fatigue life of cracked plates: from readings of a test to the life of a part.
+"""Fatigue crack growth: from test data to the life of a part with its scatter band.
 
 Quantities carry their unit in their name (mm, MPa, N, MPa√m, mm/cycle). A case is the path of a TOML file, or a dict of the same
 tables: ``{"specimen": {"kind": "middle_tension", "width_mm": 100.0, ...}, "material": {...}, "loading": {...}}``; paths in a dict
-start at the current folder. ``set={"model.spacing_mm": 0.5}`` overrides keys, as ``--set`` does.
+are relative to the current folder. ``set={"model.spacing_mm": 0.5}`` overrides keys, as ``--set`` does.
 """
 
 from __future__ import annotations
@@ -66,12 +66,25 @@ def calibrate(
     set: Mapping[str, Any] | None = None,
     progress: _Callback | None = None,
 ) -> Calibration:
-    """Fits the growth law to readings of tests.
+    """Fit a crack growth law to test data.
 
-    ``readings`` are a data frame of pandas or polars, a dict of columns, the path of a laboratory's table (CSV, text, ``.xlsx``),
-    several of these in a list, or the path of a calibration file, which has all sections itself. Columns are found by their names
-    (``specimen``, ``cycles``, ``crack_length_mm``, loads); what names do not say ``measured`` does. Rates da/dN over ΔK are fitted by
-    ``calibrate([], measured={"rates": ["rates.csv"]}, material=...)``.
+    Parameters
+    ----------
+    readings
+        Data frame of pandas or polars, dict of columns (``specimen``, ``cycles``, ``crack_length_mm``, loads), path of a table
+        (CSV, text, ``.xlsx``), a list of these, or path of a calibration file, which has all sections itself. Rates of
+        da/dN against ΔK: ``calibrate([], measured={"rates": ["rates.csv"]}, material=...)``.
+    specimen, material, loading, model, fit, measured
+        Sections of a calibration file; ``measured`` sets columns and units that the headers do not state.
+    set
+        Keys to override, ``{"section.key": value}``.
+    progress
+        Callback with a :class:`Progress`; ``False`` stops the run.
+
+    Returns
+    -------
+    Calibration
+        The law with its errors, readings and curves.
     """
     source: Case
     files: dict[str, bytes] = {}
@@ -84,7 +97,7 @@ def calibrate(
         names, files = csv_of(readings)
         of_rates = measured is not None and "rates" in measured
         if measured is not None and "files" in measured:
-            raise TypeError("the tables are the argument readings: leave files out of measured")
+            raise TypeError("the tables are the argument readings; remove files from measured")
         if bool(names) == of_rates:
             raise TypeError("give readings, or an empty list of them and measured={'rates': [...]}")
         source = {"measured": {**({"files": names} if names else {}), **(measured or {})}, **sections}
@@ -123,16 +136,29 @@ def predict(
     pod: tuple[float, float] | None = None,
     progress: _Callback | None = None,
 ) -> Prediction:
-    """Runs a case of cycles to its life.
+    """Predict crack growth and life of a case.
 
-    ``law`` takes the place of the law of the case. The options are those of ``perilife predict``: ``measured`` is a table of readings
-    of this very plate, ``pod`` the crack lengths, in mm or with a unit, that an inspection finds with 50 and with 90 %. ``progress`` is called now and
-    then with a :class:`Progress`; answering ``False`` ends the run.
+    Parameters
+    ----------
+    law
+        Replaces the law of the case.
+    measured
+        Table of readings of this plate: updates its remaining life.
+    error_estimate, cross_check
+        Estimate the numerical error; add the life by the other method.
+    residual_strength, sensitivities
+        Add the residual strength curve; the life at other load, initial crack length and law.
+    inspect_from_mm, factor, tip
+        Detectable crack length, mm, of tip number ``tip`` (default: governing tip); factor of the inspection interval.
+    pod
+        Crack lengths found with 50 and 90 % probability, mm or with a unit; requires ``inspect_from_mm``.
+    progress
+        Callback with a :class:`Progress`; ``False`` stops the run.
     """
     if pod is not None and inspect_from_mm is None:
-        raise ValueError(f"pod = {pod}: is of inspections from a crack length; give inspect_from_mm, too")
+        raise ValueError(f"pod = {pod}: requires inspect_from_mm")
     if tip is not None and (inspect_from_mm is None or tip < 0):
-        raise ValueError(f"tip = {tip}: is the number of the tip, from 0, whose crack inspect_from_mm is the length of; give both")
+        raise ValueError(f"tip = {tip}: is a tip number from 0 and requires inspect_from_mm")
     wishes: dict[str, Any] = {
         "error_estimate": error_estimate,
         "cross_check": cross_check,
@@ -167,7 +193,7 @@ def sif(
     set: Mapping[str, Any] | None = None,
     progress: _Callback | None = None,
 ) -> Factors:
-    """Stress intensity factors of every crack tip, by every method or by those that are named."""
+    """Compute stress intensity factors of each crack tip at maximum load, by all methods or those named."""
     run = _run("sif", case, name, set, None, {}, methods=methods, progress=progress)
     result = json.loads(run.result)
     columns = ["k_i_mpa_sqrt_m", "k_ii_mpa_sqrt_m", "t_stress_mpa"]
@@ -189,10 +215,10 @@ def sif_sweep(
     set: Mapping[str, Any] | None = None,
     progress: _Callback | None = None,
 ) -> FactorSweep:
-    """K, T, β and compliance over crack length along the crack's own path.
+    """Compute K, T, β and compliance over crack length along the crack path.
 
     ``lengths_mm`` are first, last and step, or the text ``"first:last:step"`` of ``perilife sif --sweep``, in the convention of the
-    specimen. ``beta.to_csv(path)`` of the result is what ``specimen.beta_file`` and AFGROW-like programs read.
+    specimen. ``beta.to_csv(path)`` of the result is read by ``specimen.beta_file`` and by AFGROW.
     """
     lengths = lengths_mm if isinstance(lengths_mm, str) else ":".join(str(float(length)) for length in lengths_mm)
     table, beta, lead, warnings = _perilife.sif_sweep(_source(case), name, overrides(set), lengths, _told(progress))
@@ -209,7 +235,7 @@ def fracture(
     set: Mapping[str, Any] | None = None,
     progress: _Callback | None = None,
 ) -> Fracture:
-    """Runs a scene without cycles: one equilibrium, a growing load, or motion in time."""
+    """Run a fracture scene (static, quasi-static or dynamic)."""
     run = _run("scene", scene, name, set, None, {}, progress=progress)
     result = json.loads(run.result)
     return Fracture(
@@ -222,7 +248,7 @@ def fracture(
 
 
 def check(case: Case, *, law: Law | None = None, name: str = "case", set: Mapping[str, Any] | None = None) -> Checked:
-    """Reads a case, calibration or scene without running it: what was understood, and a drawing of it."""
+    """Validate an input; return its interpretation and a drawing."""
     keys, files = _law(law)
     text, drawing = _perilife.check(_source(case), name, overrides(set), keys, files)
     result = json.loads(text)
@@ -239,14 +265,14 @@ def check(case: Case, *, law: Law | None = None, name: str = "case", set: Mappin
 
 
 def materials() -> tuple[Material, ...]:
-    """The materials of the library."""
+    """List the materials of the library."""
     return tuple(Material(*row) for row in _perilife.materials())
 
 
 def read_table(path: StrPath) -> Table:
-    """Reads a laboratory's table, columns and units found by their names, as ``specimen``, ``cycles`` and ``crack_length_mm``.
+    """Read a table of test data into the columns ``specimen``, ``cycles`` and ``crack_length_mm``.
 
-    To fit a law give the path itself to :func:`calibrate`, which also takes the loads and remarks that the table has.
+    To fit a law, pass the path to :func:`calibrate`, which also uses loads and remarks.
     """
     specimens, cycles, lengths, _ = _perilife.read_table(Path(path))
     columns = {"specimen": specimens, "cycles": cycles, "crack_length_mm": lengths}
@@ -292,7 +318,7 @@ def _name(case: Case, name: str) -> str:
 
 
 def _law(law: Law | None) -> tuple[Mapping[str, Any] | None, dict[str, bytes]]:
-    """Keys of ``[fatigue]`` that stand for a law, and the files that they name."""
+    """Keys of ``[fatigue]`` of a law, and the files they name."""
     if law is None or isinstance(law, Mapping):
         return law, {}
     if isinstance(law, Calibration):

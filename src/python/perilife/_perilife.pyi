@@ -1,4 +1,4 @@
-"""The part of the package that is compiled."""
+"""Compiled part of the package."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What can go wrong, with the messages of the command line."""
+"""Errors, with the messages of the command line."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import Any
 
 
 class PerilifeError(Exception):
-    """Anything that perilife refuses or cannot do."""
+    """Base class of all errors."""
 
 
 class InputError(PerilifeError, ValueError):
-    """Wrong input: where it stands, what is wrong with it and what would be right.
+    """Invalid input: file, line, key, value, problem and fix.
 
-    Attributes that are not known are ``None``; ``line`` counts from 1.
+    Unavailable attributes are ``None``; the first ``line`` is 1.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class InputError(PerilifeError, ValueError):
 
 
 class MechanicsError(PerilifeError):
-    """No convergence, a run that was ended, or mechanics that gave no result."""
+    """No convergence, a stopped run, or no valid result."""
 
 
 class FileError(PerilifeError, OSError):

@@ -1,4 +1,4 @@
-"""Readings and overrides as the program takes them."""
+"""Conversion of readings and overrides to the input of the program."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Readings = OneTable | list[OneTable]
 
 
 def csv_of(readings: Any) -> tuple[list[str], dict[str, bytes]]:
-    """Names of tables, and the content of those that are no file on disk."""
+    """Return names of tables, and the content of those that are not files on disk."""
     tables = readings if isinstance(readings, list) else [readings]
     names: list[str] = []
     files: dict[str, bytes] = {}
@@ -53,17 +53,17 @@ def _text(table: Any) -> str:
     text = io.StringIO()
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow(table)
-    # What numpy holds is written as its number.
+    # numpy scalars are written as plain numbers.
     columns = [column.tolist() if hasattr(column, "tolist") else column for column in table.values()]
     lengths = {name: len(column) for name, column in zip(table, columns)}
     if len({*lengths.values()}) > 1:
-        raise ValueError(f"readings: columns of unlike lengths: {', '.join(f'{name} {count}' for name, count in lengths.items())}")
+        raise ValueError(f"readings: columns of different lengths: {', '.join(f'{name} {count}' for name, count in lengths.items())}")
     rows.writerows(zip(*columns, strict=True))
     return text.getvalue()
 
 
 def overrides(given: Mapping[str, Any] | None) -> list[str]:
-    """``section.key=value`` for every key, values as TOML writes them."""
+    """Return ``section.key=value`` for each key, values in TOML."""
     return [f"{key}={_toml(value)}" for key, value in (given or {}).items()]
 
 

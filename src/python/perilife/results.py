@@ -1,4 +1,4 @@
-"""What comes of a call: frozen dataclasses with tables, figures and what the user should know."""
+"""Result classes: frozen dataclasses with tables, figures, checks and warnings."""
 
 from __future__ import annotations
 
@@ -22,37 +22,37 @@ StrPath = str | os.PathLike[str]
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a run is."""
+    """Progress of a run."""
 
     share: float
-    """Share of the way to its end, 0 to 1; of ``stage`` where that is given."""
+    """Fraction done, 0 to 1 (of ``stage`` if given)."""
     cycles: float | None
     """Cycles so far; ``None`` of scenes, and before the first row."""
     crack_length_mm: float | None
-    """Crack length."""
+    """Crack length, mm."""
     stage: str | None
-    """What is done before there is a row: laying points, building the solver, ..."""
+    """Step before the first row: building the model, the solver, ..."""
 
 
 @dataclass(frozen=True)
 class _Result:
-    """A result that keeps its run, so that tables are made and files are written when they are asked for."""
+    """A result with its run: tables and files are made on request."""
 
     name: str
     """Name of the case."""
     warnings: tuple[str, ...]
-    """What the user should know."""
+    """Warnings."""
     result: dict[str, Any] = field(repr=False)
-    """All figures, as the JSON file of the command line has them."""
+    """All figures, as in the JSON file of the command line."""
     summary: str = field(repr=False)
-    """The result in the words of the command line."""
+    """Summary, same text as the command line."""
 
     def __str__(self) -> str:
         return "\n".join([self.summary, *(f"warning: {warning}" for warning in self.warnings)])
 
 
 class _Written:
-    """A run in another process: its tables, and the files that it writes, into a new folder only."""
+    """A run of another process: its tables and files, saved into a new folder only."""
 
     def __init__(self, run: _perilife.Run | _Written) -> None:
         self._tables = run.tables()
@@ -77,16 +77,16 @@ class _Run(_Result):
     _run: _perilife.Run | _Written = field(repr=False, compare=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What is pickled: a run itself cannot leave its process, its tables and files can."""
+        """Return the picklable state: tables and files, not the run itself."""
         return self.__dict__ | {"_run": self._run if isinstance(self._run, _Written) else _Written(self._run)}
 
     @cached_property
     def tables(self) -> dict[str, Table]:
-        """All tables by the names of their files without ending."""
+        """All tables by file name without extension."""
         return {Path(name).stem: Table(text) for name, text in self._run.tables() if name.endswith(".csv")}
 
     def save(self, folder: StrPath, *, force: bool = False) -> Path:
-        """Writes what the command line writes into ``--out``; results of another input are replaced by ``force`` alone."""
+        """Write the files of ``--out``; replace results of another input only with ``force``."""
         self._run.save(Path(folder), force)
         return Path(folder)
 
@@ -102,7 +102,7 @@ class _Reported(_Run):
         reviewer: str | None = None,
         date: str | None = None,
     ) -> Path:
-        """Writes one self-contained HTML page, to be printed and signed."""
+        """Write the self-contained HTML report for signature."""
         with tempfile.TemporaryDirectory() as scratch:
             # A name may hold what a path means something by.
             folder = Path(scratch) / (re.sub(r"[^\w.-]+", "_", self.name).strip(".") or "run")
@@ -113,41 +113,41 @@ class _Reported(_Run):
 
 @dataclass(frozen=True)
 class Prediction(_Reported):
-    """A run of cycles: its life, why it ended, how far it can be trusted."""
+    """Predicted life with end of analysis, validity and accuracy."""
 
     life_cycles: float | None
-    """Cycles to the end; ``None`` where nothing grows."""
+    """Life N_f, cycles; ``None`` if nothing grows."""
     stop_reason: str
-    """Why the run ended, by name."""
+    """End of analysis, key."""
     stop_meaning: str
     """The same in words."""
     verdict: str
-    """What the life stands on, in words."""
+    """Overall verdict."""
     checks: tuple[dict[str, Any], ...]
-    """Each check with name, verdict, effect on the life, words and remedy."""
+    """Checks: name, verdict, effect on the life, text and remedy."""
     band: dict[str, Any] | None
-    """Cycles that 5, 50 and 95 % of specimens take, where the law is a fit whose scatter is known."""
+    """Life of 5, 50 and 95 % of plates, if the law has scatter."""
     error_estimate_percent: float | None
-    """Bound of the error of the life as a solution of this case, percent."""
+    """Estimated numerical error of the life, percent."""
 
     @property
     def a_n(self) -> Table:
-        """The curve: cycles, crack length, ΔK, da/dN, every tip, the band."""
+        """a-N curve: cycles, crack length, ΔK, da/dN, each tip, band."""
         return self.tables["a_n"]
 
     @property
     def crack_path(self) -> Table:
-        """The way of every tip, initial crack first."""
+        """Crack path of each tip, initial crack first."""
         return self.tables["crack_path"]
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draws crack length over cycles, with the band of 90 % of specimens."""
+        """Plot crack length against cycles with the 90 % band."""
         ax = _axes(ax)
         table = self.a_n
         ax.plot(table["cycles"], table["crack_length_mm"], label=self.name)
         if "cycles_p05" in table:
             low, high, length = table["cycles_p05"], table["cycles_p95"], table["crack_length_mm"]
-            ax.fill_betweenx(length, low, high, alpha=0.2, label="90 % of specimens")
+            ax.fill_betweenx(length, low, high, alpha=0.2, label="90 % band")
         return _labelled(ax, "Cycles", "Crack length, mm")
 
 
@@ -156,39 +156,39 @@ class Calibration(_Reported):
     """A law fitted to readings, or several to rates."""
 
     a: float | None
-    """A of the life of bonds at ``horizon_mm``; ``None`` of a fit without bonds."""
+    """A of the bond law at ``horizon_mm``; ``None`` for a fit without bonds."""
     p: float | None
-    """Exponent of A."""
+    """Exponent p of the bond law."""
     horizon_mm: float | None
-    """Horizon that A belongs to."""
+    """Horizon of A, mm."""
     paris_c_mm_per_cycle: float | None
     """C of da/dN = C ΔK^m, mm/cycle and MPa√m."""
     paris_m: float | None
-    """m of the same."""
+    """Exponent m of da/dN = C ΔK^m."""
     paris_m_error: float | None
-    """Its standard error."""
+    """Standard error of m."""
     fitted: str = field(repr=False)
     """The law as ``fitted.toml``."""
 
     @property
     def readings(self) -> Table:
-        """Every reading with ΔK, rate, marks and why it was left out; of a fit to rates the rates that it took."""
+        """Every reading with ΔK, rate, marks, reason if excluded; for a fit to rates those rates."""
         return self.tables["readings" if "readings" in self.tables else "rates"]
 
     @property
     def curves(self) -> Table:
-        """Measured and fitted cycles over crack length; of a fit to rates measured and fitted rates."""
+        """Measured and fitted cycles over crack length; for a fit to rates, measured and fitted rates."""
         return self.tables["fit_curves" if "fit_curves" in self.tables else "fit_rates"]
 
     def save(self, folder: StrPath, *, force: bool = False) -> Path:
-        """Writes the law into a ``.toml`` file, or all that the command line writes into a folder."""
+        """Write the law to a ``.toml`` file, or all files to a folder."""
         if Path(folder).suffix.lower() != ".toml":
             return super().save(folder, force=force)
         write_text(folder, self.fitted)
         return Path(folder)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draws da/dN of the readings over ΔK, with the law."""
+        """Plot da/dN of the readings against ΔK with the law."""
         ax = _axes(ax)
         rates = self.tables["rates"]
         delta_k = rates["delta_k_mpa_sqrt_m"]
@@ -202,13 +202,13 @@ class Calibration(_Reported):
 
 @dataclass(frozen=True)
 class Factors(_Result):
-    """Stress intensity factors of every crack tip at maximum load."""
+    """Stress intensity factors of each crack tip at maximum load."""
 
     tips: Table
-    """A row for every tip and method: place, K_I, K_II, T-stress, the value of the handbook."""
+    """A row per tip and method: position, K_I, K_II, T-stress, handbook K_I."""
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draws K_I of every tip by every method."""
+        """Plot K_I of each tip by each method."""
         ax = _axes(ax)
         for method in dict.fromkeys(self.tips["method"]):
             is_by = self.tips["method"] == method
@@ -221,14 +221,14 @@ class FactorSweep(_Result):
     """Stress intensity factors over crack length."""
 
     table: Table
-    """A row for every length and tip: place, K_I, K_II, T-stress, β, CMOD, load-line displacement, back-face strain."""
+    """A row per length and tip: position, K_I, K_II, T-stress, β, CMOD, load-line displacement, back-face strain."""
     beta: Table
-    """β over its own length of the tip that grows farthest, as ``specimen.beta_file`` reads it."""
+    """β over crack length of the tip that grows farthest, for ``specimen.beta_file``."""
     lead_tip: int
-    """Its number."""
+    """Number of that tip."""
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draws K_I of every tip over crack length."""
+        """Plot K_I of each tip against crack length."""
         ax = _axes(ax)
         for tip in dict.fromkeys(self.table["tip"]):
             is_its = self.table["tip"] == tip
@@ -238,27 +238,27 @@ class FactorSweep(_Result):
 
 @dataclass(frozen=True)
 class Fracture(_Run):
-    """A scene without cycles."""
+    """Fracture scene."""
 
     stop_reason: str
-    """Why it ended, by name."""
+    """End of analysis, key."""
     stop_meaning: str
     """The same in words."""
     peak_load_n: float | None
-    """Largest load."""
+    """Peak load, N."""
 
     @property
     def history(self) -> Table:
-        """A row for every recorded step: displacement, load, broken bonds, energies."""
+        """A row per recorded step: displacement, load, broken bonds, energies."""
         return self.tables["history"]
 
     @property
     def crack_path(self) -> Table:
-        """Where every crack front stood."""
+        """Positions of each crack front."""
         return self.tables["crack_path"]
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draws load over displacement."""
+        """Plot load against displacement."""
         ax = _axes(ax)
         ax.plot(self.history["displacement_mm"], self.history["load_n"], label=self.name)
         return _labelled(ax, "Displacement, mm", "Load, N")
@@ -266,12 +266,12 @@ class Fracture(_Run):
 
 @dataclass(frozen=True)
 class Checked(_Result):
-    """An input that was understood without running it."""
+    """A validated input."""
 
     kind: str
     """``case``, ``calibration`` or ``fracture``."""
     understood: dict[str, str]
-    """What was understood, by its name."""
+    """Interpretation of the input by label."""
     drawing: str = field(repr=False)
     """Specimen, cracks, loads and supports as SVG."""
 
@@ -284,15 +284,15 @@ class Material:
     """A material of the library."""
 
     name: str
-    """As ``material.name`` takes it."""
+    """Value of ``material.name``."""
     title: str
-    """What it is."""
+    """Alloy and condition."""
     youngs_modulus_gpa: float | None
     poisson_ratio: float | None
     yield_strength_mpa: float | None
     toughness_mpa_sqrt_m: float | None
     has_growth_data: bool
-    """Whether ``growth_law = "library"`` finds a law for it."""
+    """Has growth data for ``growth_law = "library"``."""
 
 
 def _axes(ax: Axes | None) -> Axes:

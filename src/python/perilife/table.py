@@ -28,7 +28,7 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
     """
 
     def __init__(self, text: str) -> None:
-        """Takes the text of a CSV file, which is read when a column is asked for."""
+        """Wrap the text of a CSV file, parsed on first access to a column."""
         self._text = text
 
     @cached_property
@@ -53,26 +53,26 @@ class Table(Mapping[str, "npt.NDArray[Any]"]):
         return len(next(iter(self._columns.values()), ()))
 
     def to_numpy(self) -> npt.NDArray[Any]:
-        """As a structured array with the names of the columns."""
+        """Return a structured array with the column names."""
         array = np.empty(self.rows, dtype=[(name, column.dtype) for name, column in self.items()])
         for name, column in self.items():
             array[name] = column
         return array
 
     def to_pandas(self) -> pandas.DataFrame:
-        """As a data frame of pandas."""
+        """Return a pandas data frame."""
         import pandas
 
         return pandas.DataFrame(self._columns)
 
     def to_polars(self) -> polars.DataFrame:
-        """As a data frame of polars."""
+        """Return a polars data frame."""
         import polars
 
         return polars.DataFrame(self._columns)
 
     def to_csv(self, path: str | os.PathLike[str] | None = None) -> str:
-        """As the command line writes it, with all digits; also into a file where a path is given."""
+        """Return the CSV text with all digits; also write it to ``path`` if given."""
         if path is not None:
             write_text(path, self._text)
         return self._text
@@ -89,7 +89,7 @@ _NAMES = ("specimen", "file")
 
 
 def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Writes a file; what the system refuses is a ``FileError``."""
+    """Write a file; raise ``FileError`` if the system refuses."""
     try:
         Path(path).write_text(text, encoding="utf-8")
     except OSError as error:

@@ -224,7 +224,7 @@ def test_what_is_refused_says_where_and_what_would_be_right(tmp_path: Path) -> N
         calibration(readings)
     with pytest.raises(TypeError):
         calibration(3.0)
-    with pytest.raises(ValueError, match="columns of unlike lengths: cycles 3, crack_length_mm 2"):
+    with pytest.raises(ValueError, match="columns of different lengths: cycles 3, crack_length_mm 2"):
         calibration({"cycles": [1, 2, 3], "crack_length_mm": [5, 6]})
     for tip, inspected in ((-1, 10.0), (0, None)):
         with pytest.raises(ValueError, match=f"tip = {tip}: .* give both"):

@@ -5,21 +5,20 @@ use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use super::lock::{Lock, Share};
-use super::marker::{PARTIAL, gone, temporary_beside, visible_beside};
-use super::pending::{self, Pending};
-use super::place::{resolved, was_read};
+use super::place::resolved;
+use super::staging::{Staging, visible_beside};
 use perilife_base::error::{Error, Result, input};
-use perilife_base::input::{Provenance, STREAM};
+use perilife_base::input::{FileId, Provenance, STREAM};
 use perilife_base::units::us::{System, renamed};
 
 /// Bytes by which a file shows what wrote it.
 const HEAD: u64 = 1024;
 
-/// What a command writes, and how it knows its own.
+/// What a command writes, and how it recognizes its own.
 #[derive(Debug, Clone, Copy)]
 pub struct Sort {
     pub option: &'static str,
-    /// What stands near its beginning, and in no other file.
+    /// Text near its beginning, and in no other file.
     pub sign: &'static [u8],
 }
 
@@ -56,18 +55,17 @@ impl OutputFile {
         if fs::metadata(path).is_ok_and(|there| !there.is_dir() && !there.is_file()) {
             return claimed(Place::Device);
         }
+        let refuse = |problem: &str, remedy: &str| Err(input(sort.option, path.display(), problem, remedy));
         let target = resolved(path).map_err(|error| Error::file(path, "cannot write", error))?;
-        match fs::metadata(&target) {
-            Ok(there) if was_read(&there, read) && !there.is_dir() => {
-                return Err(input(sort.option, path.display(), "is a file that this command reads", "give another name"));
-            }
-            Ok(there) if !there.is_dir() => {}
-            Err(_) if path.file_name().is_some() => {}
-            _ => return Err(input(sort.option, path.display(), "is a folder", "give the name of a file")),
+        let there = fs::metadata(&target).ok();
+        if path.file_name().is_none() || there.as_ref().is_some_and(fs::Metadata::is_dir) {
+            return refuse("is a folder", "give the name of a file");
+        }
+        if there.is_some_and(|there| read.files.iter().any(|file| file.id == Some(FileId::of(&there)))) {
+            return refuse("is a file that this command reads", "give another name");
         }
         if !is_own(&target, sort)? {
-            let problem = "is a file that this command did not write";
-            return Err(input(sort.option, path.display(), problem, "give a new name, or remove it yourself"));
+            return refuse("is a file that this command did not write", "give a new name, or remove it yourself");
         }
         let lock = Lock::of(sort.option, path, "cannot write", &target, Share::Alone)?;
         claimed(Place::File { target, _lock: lock })
@@ -80,68 +78,66 @@ impl OutputFile {
 
     /// Writes it whole or not at all.
     /// Errors: [`Error::File`] if it cannot be written; if somebody else's file has appeared there meanwhile, that stays, and the
-    /// message says under what name this one stands.
+    /// message says under what name this one is.
     pub fn write(self, bytes: &[u8]) -> Result<()> {
-        let cannot = |error| Error::file(&self.name, "cannot write", error);
-        let target = match &self.place {
+        let done = match &self.place {
             Place::Stdout => {
                 let mut stdout = io::stdout().lock();
-                return match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
-                    Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(cannot(error)),
-                    _ => Ok(()),
-                };
+                match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
+                    Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+                    written => written,
+                }
             }
-            Place::Device => return fs::write(&self.name, bytes).map_err(cannot),
-            Place::File { target, .. } => target,
+            Place::Device => fs::write(&self.name, bytes),
+            Place::File { target, .. } if target.is_dir() || !is_own(target, self.sort)? => {
+                let other = visible_beside(target);
+                write_file(&other, bytes)?;
+                let why = format!("the target appeared meanwhile and was kept; the result is in {}", other.display());
+                Err(io::Error::other(why))
+            }
+            Place::File { target, .. } => write_whole(target, bytes, false),
         };
-        if target.is_dir() || !is_own(target, self.sort)? {
-            let other = visible_beside(target);
-            write_file(&other, bytes)?;
-            let why = format!("something else has appeared there and stays; the result stands in {}", other.display());
-            return Err(cannot(io::Error::other(why)));
-        }
-        write_whole(target, bytes, false).map_err(|error| self.named(error))
+        self.named("cannot write", done)
     }
 
     /// Writes it whole or not at all, again and again; it stays whole if the machine stops, and stays as it was if this fails.
     pub fn rewrite(&self, bytes: &[u8]) -> Result<()> {
-        write_whole(self.own_target()?, bytes, true).map_err(|error| self.named(error))
+        self.named("cannot write", write_whole(self.own_target()?, bytes, true))
     }
 
     /// Removes it, if it is there: what it was for is done.
     pub fn remove(self) -> Result<()> {
-        gone(fs::remove_file(self.own_target()?)).map_err(|error| Error::file(&self.name, "cannot remove", error))
+        match fs::remove_file(self.own_target()?) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+            removed => self.named("cannot remove", removed),
+        }
     }
 
     /// Its place, if nothing else has appeared there.
     fn own_target(&self) -> Result<&Path> {
         match &self.place {
             Place::File { target, .. } if is_own(target, self.sort)? => Ok(target),
-            _ => Err(Error::file(&self.name, "cannot write", io::Error::other("something else has appeared there, and stays"))),
+            _ => Err(Error::file(&self.name, "cannot write", io::Error::other("the target appeared meanwhile and was kept"))),
         }
     }
 
-    /// The error with the name that the user gave.
-    fn named(&self, error: Error) -> Error {
-        match error {
-            Error::File { action, source, .. } => Error::file(&self.name, action, source),
-            other => other,
-        }
+    /// The outcome with the name that the user gave.
+    fn named<T>(&self, action: &'static str, done: io::Result<T>) -> Result<T> {
+        done.map_err(|error| Error::file(&self.name, action, error))
     }
 }
 
-/// Whether nothing stands there, or nothing but what this command wrote.
+/// Whether nothing is there, or nothing but what this command wrote.
 fn is_own(target: &Path, sort: Sort) -> Result<bool> {
-    let read = || -> io::Result<bool> {
-        let mut head = Vec::new();
-        fs::File::open(target)?.take(HEAD).read_to_end(&mut head)?;
-        let bears = |head: &[u8]| head.windows(sort.sign.len()).any(|part| part == sort.sign);
-        // The header of a table in US units is that of the same table.
-        Ok(head.is_empty() || bears(&head) || bears(metric_header(&head).as_bytes()))
-    };
-    match read() {
+    let mut head = Vec::new();
+    match fs::File::open(target).and_then(|file| file.take(HEAD).read_to_end(&mut head)) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
-        own => own.map_err(|error| Error::file(target, "cannot read", error)),
+        Err(error) => Err(Error::file(target, "cannot read", error)),
+        Ok(_) => {
+            let is_signed = |head: &[u8]| head.windows(sort.sign.len()).any(|part| part == sort.sign);
+            // The header of a table in US units is that of the same table.
+            Ok(head.is_empty() || is_signed(&head) || is_signed(metric_header(&head).as_bytes()))
+        }
     }
 }
 
@@ -153,33 +149,26 @@ fn metric_header(head: &[u8]) -> String {
     columns.map(metric).collect::<Vec<_>>().join(",") + "\n"
 }
 
-/// Writes a single file whole or not at all: under a temporary name beside its place, then renamed; what stood there before stays if
-/// that fails. For files of a folder in the making; what a user names is an [`OutputFile`].
+/// Writes a single file whole or not at all; what was there before stays if that fails. For files of a folder in the making; what a user
+/// names is an [`OutputFile`].
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
-    write_whole(path, bytes, false)
-}
-
-/// The same; `synced` has the bytes on the disk before the name stands for them.
-fn write_whole(path: &Path, bytes: &[u8], synced: bool) -> Result<()> {
-    let cannot = |e| Error::file(path, "cannot write", e);
     if path.is_dir() || path.file_name().is_none() {
         return Err(input("--out", path.display(), "is a folder", "give the name of a file"));
     }
+    write_whole(path, bytes, false).map_err(|error| Error::file(path, "cannot write", error))
+}
+
+/// Writes under a temporary name beside its place and publishes that; `synced` has the bytes on the disk before.
+fn write_whole(path: &Path, bytes: &[u8], synced: bool) -> io::Result<()> {
     // A link keeps pointing where it points: the file behind it is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     if fs::metadata(&target).is_ok_and(|there| !there.is_file()) {
-        return fs::write(path, bytes).map_err(cannot);
+        return fs::write(path, bytes);
     }
-    let partial = temporary_beside(&target, PARTIAL);
-    let (pending, mut file) = Pending::file_by(&partial, || fs::File::create(&partial)).map_err(cannot)?;
-    let written = file.write_all(bytes).and_then(|()| if synced { file.sync_all() } else { Ok(()) });
-    drop(file);
-    let held = pending::hold();
-    let done = written.and_then(|()| fs::rename(&partial, &target));
-    drop(held);
-    drop(pending);
-    if done.is_err() {
-        let _ = fs::remove_file(&partial);
+    let (staging, mut file) = Staging::file_beside(&target)?;
+    file.write_all(bytes)?;
+    if synced {
+        file.sync_all()?;
     }
-    done.map_err(cannot)
+    staging.publish(&target)
 }

@@ -1,44 +1,93 @@
-//! Folders of results: that of a run, made beside its place and put there when it is whole; that of a sweep, which stays between calls.
+//! Folders of results: that of a run, made beside its place and published when it is whole; that of a sweep, which stays between calls.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use super::lock::{Lock, Share};
-use super::marker::{InputOf, MARKER, Marker, OLD, PARTIAL, RunKind, parent_of, temporary_beside, visible_beside};
-use super::pending::{self, Pending};
+use super::marker::{InputOf, MARKER, Marker, RunKind, files_in};
 use super::place::{Room, folder_for, occupied, room};
+use super::staging::{OLD, Staging, all, parent_of, temporary_beside, visible_beside};
 use super::{said, write_file};
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, input};
 use perilife_base::input::Provenance;
 
-/// An output folder in the making. Until [`OutputFolder::finish`] it stands under a temporary name; dropped before that (an error, a
-/// panic) it leaves nothing behind.
+const CANNOT_CREATE: &str = "cannot create the folder";
+
+/// An output folder in the making, under a temporary name until [`OutputFolder::finish`]; dropped before that (an error, a panic) it leaves
+/// nothing behind.
 #[derive(Debug)]
 pub struct OutputFolder {
     /// As given by the user.
     name: PathBuf,
-    target: PathBuf,
-    kind: RunKind,
-    input: Option<InputOf>,
-    partial: PathBuf,
-    /// Folders above the target that did not exist before, deepest first; removed again if nothing comes of the run.
-    new_parents: Vec<PathBuf>,
+    /// Without its files.
+    marker: Marker,
     warning: Option<String>,
-    is_finished: bool,
-    // In the order in which they end.
-    _in_the_making: Vec<Pending>,
-    lock: Option<Lock>,
+    // Goes before the folder that it is in.
+    staging: Staging,
+    place: LockedFolder,
 }
 
-/// A folder in its place. Nobody else writes there while this lives.
+/// A folder that is locked: nobody else writes there while this lives. That of a run in its place, or of a sweep, filled run by run.
 #[derive(Debug)]
-pub struct Finished {
+pub struct LockedFolder {
     target: PathBuf,
-    _lock: Option<Lock>,
+    // Its file may be in a new folder, which goes after it if nothing comes into it.
+    _lock: Lock,
+    _above: Vec<Staging>,
 }
 
-impl Finished {
+impl LockedFolder {
+    /// Checks and locks the folder behind `path`, and makes what is above it.
+    fn of(path: &Path, kind: RunKind, read: &Provenance, share: Share) -> Result<Self> {
+        let target = folder_for(path, kind, read)?;
+        let parent = parent_of(&target);
+        let new: Vec<&Path> = parent.ancestors().take_while(|above| !above.as_os_str().is_empty() && !above.exists()).collect();
+        let mut above: Vec<Staging> = new.into_iter().rev().map(Staging::above).collect();
+        // The deepest goes first.
+        above.reverse();
+        fs::create_dir_all(&parent).map_err(|error| Error::file(path, CANNOT_CREATE, error))?;
+        let lock = Lock::of("--out", path, CANNOT_CREATE, &target, share)?;
+        // It may have changed while it was not locked.
+        folder_for(path, kind, read)?;
+        Ok(LockedFolder { target, _lock: lock, _above: above })
+    }
+
+    /// Opens the folder of an earlier call, or makes one with `marker` and these files.
+    pub fn open(path: &Path, marker: &Marker, read: &Provenance, share: Share, first: &[(&str, Vec<u8>)]) -> Result<Self> {
+        let folder = Self::of(path, marker.kind, read, share)?;
+        let target = &folder.target;
+        let fill = |folder: &Path| -> Result<()> {
+            first.iter().try_for_each(|(file, content)| write_file(&folder.join(file), content))?;
+            write_file(&folder.join(MARKER), marker.text().as_bytes())
+        };
+        if target.is_dir() && !target.join(MARKER).is_file() {
+            fill(target)?;
+        } else if !target.is_dir() {
+            let cannot = |error| Error::file(path, CANNOT_CREATE, error);
+            let staging = Staging::beside(target).map_err(cannot)?;
+            fill(staging.path())?;
+            match staging.publish(target) {
+                // Another part was first.
+                Err(error) if matches!(error.kind(), io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::AlreadyExists) => {}
+                published => published.map_err(cannot)?,
+            }
+        }
+        Ok(folder)
+    }
+
+    /// Takes part in a folder that is there.
+    pub fn join(path: &Path) -> Result<Self> {
+        let action = "cannot use this folder";
+        let target = fs::canonicalize(path).map_err(|error| Error::file(path, action, error))?;
+        let lock = Lock::of("DIR", path, action, &target, Share::Parts)?;
+        Ok(LockedFolder { target, _lock: lock, _above: Vec::new() })
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.target
+    }
+
     /// Makes a folder of another run in it, by its name there, a part of this one.
     pub fn adopt(&self, run: &str) -> Result<()> {
         let Some(mut marker) = Marker::read(&self.target) else { return Ok(()) };
@@ -54,58 +103,32 @@ impl OutputFolder {
     }
 
     /// Claims `path` for a run of this kind, before anything is computed. It may be new, empty, or the result of an earlier run of that
-    /// kind, which stays until [`OutputFolder::finish`]; one of another input only by `force`. What processes left there that were killed goes.
-    /// Errors: [`Error::Input`] if the path is a file, a mount point, holds anything this program did not make, results of
-    /// another kind, of another input, or an input of this run, or if another process writes there; [`Error::File`] if it cannot be written or has
-    /// no room.
+    /// kind, which stays until [`OutputFolder::finish`]; one of another input only by `force`. What killed processes left there goes.
+    /// Errors: [`Error::Input`] if the path is a file, a mount point, has anything that this program did not make, results of another
+    /// kind, of another input, or an input of this run, or if another process writes there; [`Error::File`] if it cannot be written
+    /// or has no room.
     pub fn claim(path: &Path, kind: RunKind, read: &Provenance, wanted: Room, force: bool) -> Result<OutputFolder> {
-        let cannot = |e| Error::file(path, "cannot create the folder", e);
-        let target = folder_for(path, kind, read)?;
-        let input = InputOf::of(read);
-        if let Some(other) =
-            Marker::read(&target).filter(|_| !force).and_then(|marker| Some(marker.other_input(input.as_ref())?.to_owned()))
-        {
-            let (problem, remedy) =
-                (format!("holds {} of another input, {other}", kind.words()), "give another folder, or --force to replace it");
-            return Err(perilife_base::error::input("--out", path.display(), problem, remedy));
+        let marker = Marker { input: InputOf::of(read), ..Marker::listing(kind, &[]) };
+        let place = LockedFolder::of(path, kind, read, Share::Alone)?;
+        let earlier = Marker::read(&place.target).filter(|_| !force);
+        if let Some(other) = earlier.as_ref().and_then(|earlier| earlier.other_input(marker.input.as_ref())) {
+            let problem = format!("contains {} of another input, {other}", kind.meaning());
+            return Err(input("--out", path.display(), problem, "give another folder, or --force to replace it"));
         }
-        let parent = parent_of(&target);
-        let is_new = |above: &&Path| !above.as_os_str().is_empty() && !above.exists();
-        let new_parents: Vec<PathBuf> = parent.ancestors().take_while(is_new).map(PathBuf::from).collect();
-        let in_the_making = new_parents.iter().rev().map(|above| Pending::empty(above)).collect();
-        // From here on the value itself tidies up, whatever fails.
-        let mut folder = OutputFolder {
-            name: path.to_path_buf(),
-            kind,
-            input,
-            partial: PathBuf::new(),
-            target,
-            new_parents,
-            warning: None,
-            is_finished: false,
-            _in_the_making: in_the_making,
-            lock: None,
-        };
-        fs::create_dir_all(&parent).map_err(cannot)?;
-        folder.lock = Some(Lock::of("--out", path, "cannot create the folder", &folder.target, Share::Alone)?);
-        // It may have changed while it was not locked.
-        folder_for(path, kind, read)?;
-        folder.partial = temporary_beside(&folder.target, PARTIAL);
-        let (pending, ()) = Pending::tree_by(&folder.partial, || fs::create_dir(&folder.partial)).map_err(cannot)?;
-        folder._in_the_making.push(pending);
-        let marker = Marker::listing(kind, &[]);
-        fs::write(folder.partial.join(MARKER), marker.text())
-            .map_err(|e| Error::file(path, "cannot write into the folder", e))?;
-        folder.warning = room(path, &parent, wanted)?;
-        Ok(folder)
+        let cannot = |error| Error::file(path, CANNOT_CREATE, error);
+        let staging = Staging::beside(&place.target).map_err(cannot)?;
+        // Of a run that is killed the next one finds the marker.
+        fs::write(staging.path().join(MARKER), marker.text()).map_err(cannot)?;
+        let warning = room(path, &parent_of(&place.target), wanted)?;
+        Ok(OutputFolder { name: path.to_path_buf(), marker, warning, staging, place })
     }
 
     /// Where to write until the folder is finished.
     pub fn path(&self) -> &Path {
-        &self.partial
+        self.staging.path()
     }
 
-    /// Where the results will stand, as the user named it.
+    /// Where the results will be, as the user named it.
     pub fn name(&self) -> &Path {
         &self.name
     }
@@ -122,166 +145,73 @@ impl OutputFolder {
         self.finish().map(drop)
     }
 
-    /// Has the files of the run written. If that fails, what there is stays under a visible name.
+    /// Has the files of the run written. If that fails, those that contain something stay under a visible name.
     pub fn fill<T>(&mut self, write: impl FnOnce(&Path) -> Result<T>) -> Result<T> {
-        let error = match write(&self.partial) {
-            Ok(done) => return Ok(done),
-            Err(error) => error,
-        };
-        // More than its marker: tables that hold something.
-        let size = |file: &String| fs::metadata(self.partial.join(file)).map_or(0, |there| there.len());
-        if !Marker::of(RunKind::Predict, &self.partial).is_ok_and(|marker| marker.files.iter().any(|file| size(file) > 0)) {
-            return Err(error);
-        }
-        Err(match self.show() {
-            Ok(visible) => said(error, &format!("what there is stands in {}", visible.display())),
-            Err(trouble) => said(error, &format!("what there is cannot be kept: {trouble}")),
+        write(self.path()).map_err(|error| {
+            let size = |file: &String| fs::metadata(self.path().join(file)).map_or(0, |there| there.len());
+            if !files_in(self.path(), "").is_ok_and(|files| files.iter().any(|file| size(file) > 0)) {
+                return error;
+            }
+            let place = self.show().map(|visible| format!("partial results are in {}", visible.display()));
+            said(error, &place.unwrap_or_else(|trouble| format!("partial results could not be saved: {trouble}")))
         })
     }
 
-    /// Puts the folder in its place; the files of an earlier run go, and nothing else.
+    /// Publishes the folder; the files of an earlier run go, and nothing else.
     /// Errors: [`Error::File`] if it cannot be put there, or if something has appeared there meanwhile: that stays, and the
     /// results get a visible name, which the message says.
-    pub fn finish(mut self) -> Result<Finished> {
-        let put = {
-            // Folded up before or after, not in between.
-            let _held = pending::hold();
-            self.list().map_err(|e| e.to_string()).and_then(|()| self.put())
-        };
-        match put {
-            Ok(()) => {
-                self.is_finished = true;
-                Ok(Finished { target: self.target.clone(), _lock: self.lock.take() })
-            }
-            Err(why) => {
-                let place = match self.show() {
-                    Ok(visible) => format!("the results stand in {}", visible.display()),
-                    Err(trouble) => format!("the results are lost: {trouble}"),
-                };
-                Err(Error::file(&self.name, "cannot put the results in place", io::Error::other(format!("{why}; {place}"))))
-            }
+    pub fn finish(self) -> Result<LockedFolder> {
+        let put = self.list().map_err(|error| error.to_string()).and_then(|()| self.put());
+        if let Err(why) = put {
+            let place = self.show().map(|visible| format!("results are in {}", visible.display()));
+            let place = place.unwrap_or_else(|trouble| format!("the results are lost: {trouble}"));
+            return Err(Error::file(&self.name, "cannot put the results in place", io::Error::other(format!("{why}; {place}"))));
         }
+        Ok(self.place)
     }
 
     /// Writes the marker with all files.
     fn list(&self) -> io::Result<()> {
-        let marker = Marker { input: self.input.clone(), ..Marker::of(self.kind, &self.partial)? };
-        fs::write(self.partial.join(MARKER), marker.text())
+        let marker = Marker { files: files_in(self.path(), "")?, ..self.marker.clone() };
+        fs::write(self.path().join(MARKER), marker.text())
     }
 
-    /// Asks again what stands at the target, on the folder as it is now, and takes its place, from which the files of an earlier run
-    /// go. What appears there in the last moment stays.
+    /// Checks again what is at the target, on the folder as it is now, and takes its place, from which the files of an earlier run
+    /// go. What appears there meanwhile stays.
     fn put(&self) -> std::result::Result<(), String> {
         let words = |error: io::Error| error.to_string();
-        let (partial, target) = (&self.partial, &self.target);
-        if let Some((problem, _)) = occupied(target, self.kind).map_err(words)? {
+        let target = &self.place.target;
+        // The process ends before or after, not in between.
+        let _held = all();
+        if let Some((problem, _)) = occupied(target, self.marker.kind).map_err(words)? {
             return Err(format!("it {problem}, and that stays"));
         }
         if fs::symlink_metadata(target).is_err() {
-            return fs::rename(partial, target).map_err(words);
+            return fs::rename(self.path(), target).map_err(words);
         }
         let old = temporary_beside(target, OLD);
         fs::rename(target, &old).map_err(words)?;
-        if let Err(error) = fs::rename(partial, target) {
-            // The earlier result goes back; should that fail as well, it still stands under its temporary name.
+        fs::rename(self.path(), target).map_err(|error| {
+            // The earlier result goes back; should that fail as well, the next run finds it under its temporary name.
             let _ = fs::rename(&old, target);
-            return Err(words(error));
-        }
-        if let Some(marker) = Marker::read(&old) {
-            let _ = marker.remove_from(&old);
-        }
+            words(error)
+        })?;
+        let _ = Marker::read(&old).map(|marker| marker.remove_from(&old));
         if fs::remove_dir(&old).is_err() && old.exists() {
             let visible = visible_beside(target);
             let _ = fs::rename(&old, &visible);
-            tracing::warn!("what appeared in {} in the last moment stands in {}", target.display(), visible.display());
+            tracing::warn!("files that appeared in {} meanwhile were moved to {}", target.display(), visible.display());
         }
         Ok(())
     }
 
     /// Gives what was written a visible name.
-    fn show(&mut self) -> io::Result<PathBuf> {
+    fn show(&self) -> io::Result<PathBuf> {
         let _ = self.list();
-        let visible = visible_beside(&self.target);
-        {
-            let _held = pending::hold();
-            fs::rename(&self.partial, &visible)?;
-        }
-        self.is_finished = true;
+        let visible = visible_beside(&self.place.target);
+        self.staging.publish(&visible)?;
         // As the user writes it, unless links lead elsewhere.
         let named = self.name.with_file_name(visible.file_name().unwrap_or_default());
         Ok(if named.exists() { named } else { visible })
     }
-}
-
-impl Drop for OutputFolder {
-    fn drop(&mut self) {
-        if self.is_finished {
-            return;
-        }
-        if !self.partial.as_os_str().is_empty() {
-            let _ = fs::remove_dir_all(&self.partial);
-        }
-        // Its file stands in what may be a new folder.
-        self.lock = None;
-        for parent in &self.new_parents {
-            // Removes empty folders only, so nothing another program put there is lost.
-            let _ = fs::remove_dir(parent);
-        }
-    }
-}
-
-/// The folder of a sweep, filled run by run; locked while this lives.
-#[derive(Debug)]
-pub struct StandingFolder {
-    target: PathBuf,
-    _lock: Lock,
-}
-
-impl StandingFolder {
-    /// Opens the folder of an earlier call, or makes one with `marker` and these files.
-    pub fn open(path: &Path, marker: &Marker, read: &Provenance, share: Share, first: &[(&str, Vec<u8>)]) -> Result<Self> {
-        let action = "cannot create the folder";
-        let target = folder_for(path, marker.kind, read)?;
-        fs::create_dir_all(parent_of(&target)).map_err(|error| Error::file(path, action, error))?;
-        let lock = Lock::of("--out", path, action, &target, share)?;
-        if !target.join(MARKER).is_file() {
-            begin(path, &target, marker, first)?;
-        }
-        // It may have changed while it was not locked.
-        folder_for(path, marker.kind, read)?;
-        Ok(StandingFolder { target, _lock: lock })
-    }
-
-    /// Takes part in a folder that is there.
-    pub fn join(path: &Path) -> Result<Self> {
-        let action = "cannot use this folder";
-        let target = fs::canonicalize(path).map_err(|error| Error::file(path, action, error))?;
-        let lock = Lock::of("DIR", path, action, &target, Share::Parts)?;
-        Ok(StandingFolder { target, _lock: lock })
-    }
-
-    pub fn path(&self) -> &Path {
-        &self.target
-    }
-}
-
-/// Makes the folder of a sweep, whole from the first moment on.
-fn begin(name: &Path, target: &Path, marker: &Marker, first: &[(&str, Vec<u8>)]) -> Result<()> {
-    let cannot = |error| Error::file(name, "cannot create the folder", error);
-    let fill = |folder: &Path| -> Result<()> {
-        first.iter().try_for_each(|(file, content)| write_file(&folder.join(file), content))?;
-        write_file(&folder.join(MARKER), marker.text().as_bytes())
-    };
-    if target.is_dir() {
-        return fill(target);
-    }
-    let partial = temporary_beside(target, PARTIAL);
-    let (_pending, ()) = Pending::tree_by(&partial, || fs::create_dir(&partial)).map_err(cannot)?;
-    let done = fill(&partial).and_then(|()| match fs::rename(&partial, target) {
-        // Another part was first.
-        Err(error) if matches!(error.kind(), io::ErrorKind::DirectoryNotEmpty | io::ErrorKind::AlreadyExists) => Ok(()),
-        renamed => renamed.map_err(cannot),
-    });
-    let _ = fs::remove_dir_all(&partial);
-    done
 }

@@ -1,32 +1,24 @@
 //! One writer at a time: a lock file beside what is written, which says who has it; and what processes left there that were killed.
 //!
-//! The lock is the system's, so that it ends with its process however that ends; the file is only where it is held.
+//! The lock is the system's, so that it ends with its process however that ends; the file is only where it is taken.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::marker::{MARKER, Marker, lock_of, name_of, parent_of, stem_of};
-use super::pending::Pending;
-use perilife_base::error::{Error, input};
+use super::marker::{MARKER, Marker};
+use super::staging::{Staging, lock_of, name_of, parent_of, stem_of};
+use perilife_base::error::{Error, Result, input};
 use perilife_base::input::FileId;
 
 /// A lock that was taken; given back when dropped.
 #[derive(Debug)]
-pub struct Lock {
-    file: File,
-    path: PathBuf,
+pub(super) struct Lock {
     /// Whether the system keeps others out, which not every file system does.
     is_real: bool,
-    _pending: Pending,
-}
-
-/// Why there is no lock.
-enum Refused {
-    /// Somebody else has it: who, in words.
-    Taken(String),
-    /// No lock file can be made there.
-    Impossible(io::Error),
+    // Removed before it is unlocked.
+    beside: Staging,
+    file: File,
 }
 
 /// Whether others may have it as well.
@@ -40,77 +32,72 @@ pub enum Share {
 impl Lock {
     /// Locks `target`, which an option names as `name`; who has it alone removes what killed processes left beside it. `action` is what
     /// cannot be done where no lock file can be made.
-    pub(super) fn of(
-        option: &str,
-        name: &Path,
-        action: &'static str,
-        target: &Path,
-        share: Share,
-    ) -> perilife_base::error::Result<Lock> {
-        let lock = Lock::take(&lock_of(target), share).map_err(|refused| match refused {
-            Refused::Impossible(error) => Error::file(name, action, error),
-            Refused::Taken(holder) => {
-                let problem = format!("is in use by another run: {holder}");
+    pub fn of(option: &str, name: &Path, action: &'static str, target: &Path, share: Share) -> Result<Lock> {
+        let lock = Lock::take(&lock_of(target), share).map_err(|error| match error.kind() {
+            io::ErrorKind::WouldBlock => {
+                let problem = format!("is in use by another run: {error}");
                 input(option, name.display(), problem, "wait for its end, or give another name")
             }
+            _ => Error::file(name, action, error),
         })?;
         if share == Share::Alone {
-            remove_beside(target, &lock);
+            lock.remove_beside(target);
         }
         Ok(lock)
     }
 
     /// Takes the lock file at `path`.
-    fn take(path: &Path, share: Share) -> Result<Lock, Refused> {
-        let (pending, (file, is_real)) = Pending::file_by(path, || Self::locked(path, share))?;
-        Ok(Lock { file, path: path.to_path_buf(), is_real, _pending: pending })
+    fn take(path: &Path, share: Share) -> io::Result<Lock> {
+        let (beside, (file, is_real)) = Staging::made(path, |path| fs::remove_file(path), || locked(path, share))?;
+        Ok(Lock { is_real, beside, file })
     }
 
-    /// The file, and whether the system locks it.
-    fn locked(path: &Path, share: Share) -> Result<(File, bool), Refused> {
-        loop {
-            let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path);
-            let mut file = opened.map_err(Refused::Impossible)?;
-            let locked = if share == Share::Alone { file.try_lock() } else { file.try_lock_shared() };
-            let is_real = locked.is_ok();
-            match locked {
-                Ok(()) => {}
-                Err(TryLockError::WouldBlock) => {
-                    let mut holder = String::new();
-                    let _ = file.read_to_string(&mut holder);
-                    let holder = holder.trim();
-                    let unnamed = "a process that has not said its name yet";
-                    return Err(Refused::Taken(if holder.is_empty() { unnamed.to_owned() } else { holder.to_owned() }));
-                }
-                // A file system without locks: better a result than none.
-                Err(TryLockError::Error(error)) => tracing::debug!("{}: no lock: {error}", path.display()),
+    /// Removes what processes left beside `target` that were killed while they wrote it, and, where the system gives away the lock of
+    /// another name, while they wrote that. Where it has no locks nothing is removed.
+    fn remove_beside(&self, target: &Path) {
+        let is_given_up = |lock: &Path| {
+            let is_free = File::open(lock).is_ok_and(|file| file.try_lock().is_ok());
+            is_free && Lock::take(lock, Share::Alone).is_ok_and(|lock| lock.is_real)
+        };
+        for entry in fs::read_dir(parent_of(target)).into_iter().flatten().flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let Some((stem, is_old)) = stem_of(&name) else { continue };
+            let place = parent_of(target).join(stem);
+            if if stem == name_of(target) { self.is_real } else { is_given_up(&lock_of(&place)) } {
+                remove(&entry.path(), is_old.then_some(&*place));
             }
-            // Whoever had it before may have removed the file after it was opened here.
-            let is_that = |there: fs::Metadata| file.metadata().is_ok_and(|own| FileId::of(&own) == FileId::of(&there));
-            if !fs::metadata(path).is_ok_and(is_that) {
-                continue;
-            }
-            let named = file.set_len(0).and_then(|()| file.write_all(holder().as_bytes()));
-            if let Err(error) = named {
-                tracing::debug!("{}: cannot say who has the lock: {error}", path.display());
-            }
-            return Ok((file, is_real));
         }
-    }
-
-    /// Whether a lock file stands there whose holder is gone; it is removed then.
-    fn is_given_up(path: &Path) -> bool {
-        let is_free = File::open(path).is_ok_and(|file| file.try_lock().is_ok());
-        is_free && Lock::take(path, Share::Alone).is_ok_and(|lock| lock.is_real)
     }
 }
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Removed while it is held, and only if nobody shares it.
+        // Removed while it is locked, and only if nobody shares it.
         let _ = self.file.unlock();
-        if self.file.try_lock().is_ok() {
-            let _ = fs::remove_file(&self.path);
+        if self.file.try_lock().is_err() {
+            self.beside.leave();
+        }
+    }
+}
+
+/// The file, and whether the system locks it.
+/// Errors: of the kind [`io::ErrorKind::WouldBlock`] with the words of who has it.
+fn locked(path: &Path, share: Share) -> io::Result<(File, bool)> {
+    loop {
+        let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        let locked = if share == Share::Alone { file.try_lock() } else { file.try_lock_shared() };
+        if let Err(TryLockError::WouldBlock) = locked {
+            let mut holder = String::new();
+            let _ = file.read_to_string(&mut holder);
+            let holder = if holder.trim().is_empty() { "an unknown process" } else { holder.trim() };
+            return Err(io::Error::new(io::ErrorKind::WouldBlock, holder));
+        }
+        // Whoever had it before may have removed the file after it was opened here.
+        let is_that = |there: fs::Metadata| file.metadata().is_ok_and(|own| FileId::of(&own) == FileId::of(&there));
+        if fs::metadata(path).is_ok_and(is_that) {
+            // A file system without locks or room for a name: better a result than none.
+            let _ = file.set_len(0).and_then(|()| file.write_all(holder().as_bytes()));
+            return Ok((file, locked.is_ok()));
         }
     }
 }
@@ -122,38 +109,15 @@ fn holder() -> String {
     format!("process {} on {host}, since {}\n", std::process::id(), crate::time::now())
 }
 
-/// Removes what processes left beside `target` that were killed while they wrote it or something else there. An earlier result that one
-/// of them had just moved aside goes back.
-///
-/// `lock` is that of `target`; other names count as left behind where the system gives their locks away. Where it knows no locks nothing
-/// is removed.
-fn remove_beside(target: &Path, lock: &Lock) {
-    let parent = parent_of(target);
-    let own = name_of(target);
-    for entry in fs::read_dir(&parent).into_iter().flatten().flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        let Some((stem, is_old)) = stem_of(&name) else { continue };
-        let of = parent.join(stem);
-        let is_left = if stem == own { lock.is_real } else { Lock::is_given_up(&lock_of(&of)) };
-        if is_left {
-            remove(&entry.path(), is_old.then_some(&*of));
-        }
-    }
-}
-
-/// Removes one thing that was left; `place` is where it stood if it is an earlier result.
+/// Removes one thing that was left; an earlier result that had just been moved aside goes back to its `place`.
 fn remove(path: &Path, place: Option<&Path>) {
-    let marker = Marker::read(path);
-    let is_folder = path.is_dir();
-    let _ = match (place, marker) {
+    let _ = match (place, Marker::read(path)) {
         (Some(place), Some(_)) if fs::symlink_metadata(place).is_err() => fs::rename(path, place),
         // What is not of that run stays.
         (Some(_), Some(marker)) => marker.remove_from(path).and_then(|()| fs::remove_dir(path)),
-        (None, Some(_)) => fs::remove_dir_all(path),
-        // Of an earlier version, whose marker lists nothing.
-        (None, None) if path.join(MARKER).is_file() => fs::remove_dir_all(path),
+        (None, _) if path.join(MARKER).is_file() => fs::remove_dir_all(path),
         // Begun and no more, or not ours.
-        (_, None) if is_folder => fs::remove_dir(path),
-        (_, None) => fs::remove_file(path),
+        _ if path.is_dir() => fs::remove_dir(path),
+        _ => fs::remove_file(path),
     };
 }

@@ -1,61 +1,35 @@
-//! The marker of a folder of results: of which kind they are, and which files are theirs; and names that this program gives for a while.
+//! The marker of a folder of results: of which kind they are, and which files are theirs.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::{Deserialize, Serialize};
 
+use super::staging::is_temporary;
 use perilife_base::input::Provenance;
 
 /// File that marks a folder as made by this program.
 pub const MARKER: &str = ".perilife";
 
-/// What made a folder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RunKind {
-    /// `perilife predict`.
-    Predict,
-    /// `perilife fracture`.
-    Fracture,
-    /// `perilife sif`.
-    Sif,
-    /// `perilife calibrate`.
-    Calibrate,
-    /// `perilife sweep`.
-    Sweep,
-    SweepCase,
-    /// `perilife verify`.
-    Verify,
-    /// `perilife validate`.
-    Validate,
-    /// `perilife chart`.
-    Chart,
-    /// `perilife stability`.
-    Stability,
-}
-
-impl RunKind {
-    pub fn words(self) -> &'static str {
-        match self {
-            RunKind::Predict => "a prediction",
-            RunKind::Fracture => "a fracture scene",
-            RunKind::Sif => "stresses of a plate",
-            RunKind::Calibrate => "a calibration",
-            RunKind::Sweep => "a sweep",
-            RunKind::SweepCase => "a case of a sweep",
-            RunKind::Verify => "a verification",
-            RunKind::Validate => "a validation",
-            RunKind::Chart => "a speed-accuracy chart",
-            RunKind::Stability => "a map of stability",
-        }
+perilife_base::kinds! {
+    /// What made a folder.
+    pub enum RunKind for "kind" {
+        Predict = "predict": "a prediction",
+        Fracture = "fracture": "a fracture scene",
+        Sif = "sif": "stresses of a plate",
+        Calibrate = "calibrate": "a calibration",
+        Sweep = "sweep": "a sweep",
+        SweepCase = "sweep_case": "a case of a sweep",
+        Verify = "verify": "a verification",
+        Validate = "validate": "a validation",
+        Chart = "chart": "a speed-accuracy chart",
+        Stability = "stability": "a map of stability",
     }
 }
 
-/// The input file of a run: where it is, and what it holds.
+/// The input file of a run: where it is, and what it contains.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputOf {
     /// Absolute path; the name of a stream.
@@ -70,11 +44,6 @@ impl InputOf {
         let path = first.path.as_ref().and_then(|path| fs::canonicalize(path).ok());
         let file = path.map_or_else(|| first.name.clone(), |path| path.display().to_string());
         Some(InputOf { file, sha256: first.sha256() })
-    }
-
-    /// Whether a run of one may take the place of that of the other: the same file, changed or not, or a copy of it.
-    fn is_alike(&self, other: &InputOf) -> bool {
-        self.file == other.file || self.sha256 == other.sha256
     }
 }
 
@@ -92,16 +61,9 @@ pub struct Marker {
 }
 
 impl Marker {
-    /// The marker of a folder; `None` where there is none, or one that lists no files.
+    /// The marker of a folder; `None` where there is none, or one that cannot be read.
     pub fn read(folder: &Path) -> Option<Marker> {
         toml::from_str(&fs::read_to_string(folder.join(MARKER)).ok()?).ok()
-    }
-
-    /// A marker that lists all that a folder holds now.
-    pub fn of(kind: RunKind, folder: &Path) -> io::Result<Marker> {
-        let mut files = BTreeSet::new();
-        list(folder, "", &mut files)?;
-        Ok(Marker { kind, input: None, files })
     }
 
     /// The marker of a folder that will hold these; names of folders of other runs end in `/`.
@@ -109,110 +71,83 @@ impl Marker {
         Marker { kind, input: None, files: files.iter().map(|file| (*file).to_owned()).collect() }
     }
 
-    /// The file of another input that a folder was made of.
+    /// The file of another input that a folder was made of: another file, changed or not, that is no copy of the first.
     pub fn other_input(&self, input: Option<&InputOf>) -> Option<&str> {
         let (own, new) = self.input.as_ref().zip(input)?;
-        (!own.is_alike(new)).then_some(&*own.file)
+        (own.file != new.file && own.sha256 != new.sha256).then_some(&*own.file)
     }
 
     pub fn text(&self) -> String {
         let version = env!("CARGO_PKG_VERSION");
-        let head =
-            format!("# Made by perilife {version}. The next run of this kind replaces the files listed here, and no others.\n");
+        let head = format!("# Written by perilife {version}. The next run of this kind replaces only these files.\n");
         // Names and text always have a form in TOML.
         head + &toml::to_string(self).unwrap_or_default()
     }
 
-    /// Whether a path in the folder is the marker or listed.
-    pub fn has(&self, path: &str) -> bool {
-        path == MARKER || self.files.contains(path)
-    }
-
-    /// The first thing in `folder` that is not this run's, in the order of names; below folders of other runs their own markers count.
+    /// The first thing in `folder` that is not this run's, in the order of names.
     pub fn first_foreign(&self, folder: &Path) -> io::Result<Option<PathBuf>> {
-        self.foreign_below(folder, "")
-    }
-
-    fn foreign_below(&self, folder: &Path, prefix: &str) -> io::Result<Option<PathBuf>> {
-        for name in names(folder)? {
-            let (path, own) = (folder.join(&name), format!("{prefix}{name}"));
-            let as_folder = format!("{own}/");
-            let is_folder = fs::symlink_metadata(&path)?.is_dir();
-            let foreign = if is_temporary(&name) || !is_folder && self.has(&own) {
-                None
-            } else if is_folder && self.files.contains(&as_folder) {
-                foreign_in_runs(&path)?
-            } else if is_folder && self.files.iter().any(|file| file.starts_with(&as_folder)) {
-                self.foreign_below(&path, &as_folder)?
-            } else {
-                Some(path)
-            };
-            if foreign.is_some() {
-                return Ok(foreign);
+        let mut first = None;
+        self.walk(folder, "", &mut |path, is_own| {
+            if !is_own {
+                first.get_or_insert(path.to_path_buf());
             }
-        }
-        Ok(None)
+            Ok(())
+        })?;
+        Ok(first)
     }
 
     /// Removes the files of this run from a folder, and the folders that are empty then.
     pub fn remove_from(&self, folder: &Path) -> io::Result<()> {
-        for file in &self.files {
-            let path = folder.join(file);
-            if file.ends_with('/') {
-                remove_runs(&path)?;
+        self.walk(folder, "", &mut |path, is_own| match fs::symlink_metadata(path) {
+            Ok(there) if is_own && there.is_dir() => Ok(drop(fs::remove_dir(path))),
+            Ok(_) if is_own => fs::remove_file(path),
+            _ => Ok(()),
+        })
+    }
+
+    /// Shows each thing in `folder`, what is in a folder before the folder, and whether it is of this run.
+    fn walk(&self, folder: &Path, prefix: &str, see: &mut dyn FnMut(&Path, bool) -> io::Result<()>) -> io::Result<()> {
+        for name in names(folder)? {
+            let (path, own) = (folder.join(&name), format!("{prefix}{name}"));
+            let within = format!("{own}/");
+            let is_folder = fs::symlink_metadata(&path)?.is_dir();
+            let is_own = if is_temporary(&name) {
+                continue;
+            } else if !is_folder {
+                name == MARKER && prefix.is_empty() || self.files.contains(&own)
+            } else if self.files.contains(&within) {
+                walk_runs(&path, see)?;
+                true
+            } else if self.files.iter().any(|file| file.starts_with(&within)) {
+                self.walk(&path, &within, see)?;
+                true
             } else {
-                gone(fs::remove_file(&path))?;
-            }
-            let above = Path::new(file).ancestors().skip(1).take_while(|above| !above.as_os_str().is_empty());
-            // What holds something else stays.
-            above.for_each(|above| drop(fs::remove_dir(folder.join(above))));
+                false
+            };
+            see(&path, is_own)?;
         }
-        gone(fs::remove_file(folder.join(MARKER)))
+        Ok(())
     }
 }
 
-/// The same for a folder of runs: each run's own marker says what is its.
-fn foreign_in_runs(folder: &Path) -> io::Result<Option<PathBuf>> {
+/// The same of a folder of runs: each run's own marker says what is its.
+fn walk_runs(folder: &Path, see: &mut dyn FnMut(&Path, bool) -> io::Result<()>) -> io::Result<()> {
     if let Some(marker) = Marker::read(folder) {
-        return marker.first_foreign(folder);
+        return marker.walk(folder, "", see);
     }
-    for name in names(folder)? {
+    for name in names(folder)?.into_iter().filter(|name| !is_temporary(name) && !name.ends_with(".log")) {
         let path = folder.join(&name);
-        let foreign = match () {
-            () if is_temporary(&name) || name.ends_with(".log") => None,
-            () if path.is_dir() => foreign_in_runs(&path)?,
-            () => Some(path),
-        };
-        if foreign.is_some() {
-            return Ok(foreign);
+        let is_folder = fs::symlink_metadata(&path)?.is_dir();
+        if is_folder {
+            walk_runs(&path, see)?;
         }
+        see(&path, is_folder)?;
     }
-    Ok(None)
-}
-
-fn remove_runs(folder: &Path) -> io::Result<()> {
-    match Marker::read(folder) {
-        Some(marker) => marker.remove_from(folder)?,
-        None if folder.is_dir() => {
-            for name in names(folder)? {
-                remove_runs(&folder.join(name))?;
-            }
-        }
-        None => {}
-    }
-    let _ = fs::remove_dir(folder);
     Ok(())
 }
 
-/// A file that was not there is as good as removed.
-pub(super) fn gone(removed: io::Result<()>) -> io::Result<()> {
-    match removed {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
-    }
-}
-
-/// Names in a folder, sorted; none of one that is not there.
+/// Names in a folder, sorted, that of the marker last: what is removed on the way stays known to the end. None of a folder that is not
+/// there.
 fn names(folder: &Path) -> io::Result<Vec<String>> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
@@ -220,81 +155,20 @@ fn names(folder: &Path) -> io::Result<Vec<String>> {
     };
     let mut names: Vec<String> =
         entries.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned())).collect::<io::Result<_>>()?;
-    names.sort();
+    names.sort_by(|a, b| (a == MARKER, a).cmp(&(b == MARKER, b)));
     Ok(names)
 }
 
-fn list(folder: &Path, prefix: &str, files: &mut BTreeSet<String>) -> io::Result<()> {
+/// Files of a folder by their path in it, all but its marker.
+pub(super) fn files_in(folder: &Path, prefix: &str) -> io::Result<BTreeSet<String>> {
+    let mut files = BTreeSet::new();
     for name in names(folder)?.into_iter().filter(|name| name != MARKER) {
         let path = folder.join(&name);
         if path.is_dir() {
-            list(&path, &format!("{prefix}{name}/"), files)?;
+            files.append(&mut files_in(&path, &format!("{prefix}{name}/"))?);
         } else {
             files.insert(format!("{prefix}{name}"));
         }
     }
-    Ok(())
-}
-
-/// What a name begun is called until it is whole.
-pub(super) const PARTIAL: &str = "partial";
-/// What an earlier result is called while the new one takes its place.
-pub(super) const OLD: &str = "old";
-const LOCK: &str = "lock";
-
-/// The lock file of a name.
-pub(super) fn lock_of(target: &Path) -> PathBuf {
-    parent_of(target).join(format!(".{}.{LOCK}", name_of(target)))
-}
-
-/// Whether a name is one of those that this program gives for a while.
-pub fn is_temporary(name: &str) -> bool {
-    let Some((stem, end)) = name.strip_prefix('.').and_then(|rest| rest.rsplit_once('.')) else { return false };
-    !stem.is_empty() && (end == LOCK || end == PARTIAL) || stem_of(name).is_some()
-}
-
-/// Whether this is what a name begun ends with: number of the process, and a count.
-fn is_number(end: &str) -> bool {
-    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    end.strip_prefix('-').and_then(|rest| rest.split_once('-')).is_some_and(|(a, b)| is_digits(a) && is_digits(b))
-}
-
-/// A name beside `target` that nobody else uses: hidden, with process number and a count.
-pub(super) fn temporary_beside(target: &Path, what: &str) -> PathBuf {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    loop {
-        let count = COUNT.fetch_add(1, Ordering::Relaxed);
-        let name = format!(".{}.{what}-{}-{count}", name_of(target), std::process::id());
-        let candidate = parent_of(target).join(name);
-        if fs::symlink_metadata(&candidate).is_err() {
-            return candidate;
-        }
-    }
-}
-
-/// A visible name beside `target` that nothing has.
-pub(super) fn visible_beside(target: &Path) -> PathBuf {
-    let name = |count: usize| if count == 1 { String::new() } else { format!("-{count}") };
-    let candidate = |count: usize| parent_of(target).join(format!("{}.result{}", name_of(target), name(count)));
-    // There are always free names.
-    (1..).map(candidate).find(|path| fs::symlink_metadata(path).is_err()).unwrap_or_default()
-}
-
-/// The name that a temporary name stands for, and whether it is that of an earlier result.
-pub(super) fn stem_of(name: &str) -> Option<(&str, bool)> {
-    let (stem, end) = name.strip_prefix('.')?.rsplit_once('.')?;
-    let is = |what: &str| end.strip_prefix(what).is_some_and(is_number);
-    (!stem.is_empty() && (is(PARTIAL) || is(OLD))).then(|| (stem, is(OLD)))
-}
-
-pub(super) fn name_of(path: &Path) -> String {
-    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
-}
-
-/// The folder a path stands in; the current one for a bare name.
-pub(super) fn parent_of(path: &Path) -> PathBuf {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
-        _ => PathBuf::from("."),
-    }
+    Ok(files)
 }

@@ -1,33 +1,31 @@
 //! Output that is whole or absent, and touches nothing of anybody else: the one guard of whatever a command writes.
 //!
-//! A folder of results ([`OutputFolder`]) is made under a temporary name and put in its place at the end. Its marker ([`Marker`], file
+//! A folder of results ([`OutputFolder`]) is made under a temporary name and published at the end. Its marker ([`Marker`], file
 //! `.perilife`) says of which kind the run is and which files are its own; a later run of the same kind replaces those and refuses
-//! to begin where there is anything else, an input of its own above all. The same is asked again at the end, of the folder as it is
-//! then. A single file ([`OutputFile`]) replaces only one that bears the sign of the same command, and never one that was read. Who
-//! writes holds a lock ([`lock`]), so that two never write one place, and what a killed process left behind is known as such.
-//! [`pending`] lists what has to go when the process is asked to end.
+//! to begin where there is anything else, an input of its own above all. The same is checked again at the end, of the folder as it is
+//! then. A single file ([`OutputFile`]) replaces only one with the sign of the same command, and never one that was read. Who
+//! writes takes a lock, so that two never write one place, and what a killed process left behind is recognized.
 
 mod file;
 mod folder;
-pub mod lock;
+mod lock;
 mod marker;
-pub mod pending;
 mod place;
+mod staging;
 
 pub use file::{OutputFile, Sort, write_file};
-pub use folder::{Finished, OutputFolder, StandingFolder};
+pub use folder::{LockedFolder, OutputFolder};
 pub use lock::Share;
-pub use marker::{MARKER, Marker, RunKind, is_temporary};
+pub use marker::{MARKER, Marker, RunKind};
 pub use place::Room;
+pub use staging::{fold_up, is_temporary};
 
 use std::path::Path;
 
 use serde::Serialize;
 
 use perilife_base::columns::Table;
-use perilife_base::error::Result;
-
-use perilife_base::error::Error;
+use perilife_base::error::{Error, Result};
 
 /// Writes a table into a folder in the making, in the units that are shown.
 pub fn write_table(folder: &Path, table: &Table) -> Result<()> {

@@ -5,8 +5,9 @@ mod understood;
 
 use std::path::Path;
 
+use serde::{Serialize, Serializer};
 use serde_json::map::Entry;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use self::preview::{as_input, is_quick, preview};
 pub use self::understood::Line;
@@ -21,6 +22,7 @@ use perilife_calibration::calibrate::Calibration;
 use perilife_calibration::laws::case::LawCase;
 use perilife_calibration::sweep::design::{self, CASES_MAX};
 use perilife_calibration::sweep::{DrawnCase, Sweep};
+use perilife_calibration::template::refuse_table;
 use perilife_growth::case::Case;
 use perilife_growth::case::needs;
 use perilife_growth::predict::judgement::refuse_beforehand;
@@ -34,43 +36,45 @@ use perilife_scenes::assembly::preview as preview_scene;
 use perilife_scenes::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
 
 /// What a file asks for, checked.
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 pub struct Checked {
+    /// A file with mistakes gives an error.
+    ok: bool,
     /// `case`, `calibration`, `fracture` or `sweep`.
     pub kind: &'static str,
     pub name: String,
+    #[serde(rename = "understood", serialize_with = "understood")]
     pub lines: Vec<Line>,
     /// What the user should know.
     pub warnings: Vec<String>,
     /// Specimen, cracks, loads and supports as SVG.
+    #[serde(skip)]
     pub drawing: String,
     /// The same for others to draw; none of scenes.
     pub plate: Option<Plate>,
     /// Exceedances and ranges of a pass of a spectrum, for others to draw; none of other loads.
     pub spectrum: Option<SpectrumCurves>,
+    #[serde(rename = "case")]
     pub echo: Value,
     /// Files that were read for it.
+    #[serde(skip)]
     pub provenance: Provenance,
 }
 
-impl Checked {
-    pub fn json(&self) -> Value {
-        let mut understood: Map<String, Value> = Map::new();
-        for line in &self.lines {
-            // A scene has several loads and supports.
-            match understood.entry(line.what.replace(' ', "_")) {
-                Entry::Vacant(place) => drop(place.insert(line.value.clone().into())),
-                Entry::Occupied(mut place) => {
-                    let both = format!("{}; {}", place.get().as_str().unwrap_or_default(), line.value);
-                    place.insert(both.into());
-                }
+/// Lines by what they are of.
+fn understood<S: Serializer>(lines: &[Line], serializer: S) -> std::result::Result<S::Ok, S::Error> {
+    let mut understood: Map<String, Value> = Map::new();
+    for line in lines {
+        // A scene has several loads and supports.
+        match understood.entry(line.what.replace(' ', "_")) {
+            Entry::Vacant(place) => drop(place.insert(line.value.clone().into())),
+            Entry::Occupied(mut place) => {
+                let both = format!("{}; {}", place.get().as_str().unwrap_or_default(), line.value);
+                place.insert(both.into());
             }
         }
-        json!({
-            "ok": true, "kind": self.kind, "name": self.name, "understood": understood, "warnings": self.warnings,
-            "plate": self.plate, "spectrum": self.spectrum, "case": self.echo,
-        })
     }
+    understood.serialize(serializer)
 }
 
 /// What a document that was read as a task asks for. The body is built as well where that is quick, since only then some troubles
@@ -100,6 +104,7 @@ pub fn check(document: &Document, task: &Task) -> Result<Checked> {
 
 /// [`check`] of a file. Overrides are those of the command that runs it.
 pub fn check_file(path: &Path, overrides: &[String]) -> Result<Checked> {
+    refuse_table(path)?;
     // Read once: a pipe is empty the second time.
     let mut document = Document::read(path, &[])?;
     let kind = Kind::of(&document.table);
@@ -133,7 +138,18 @@ fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: 
     let (drawing, provenance) = (specimen_svg(case), document.folder.opened().so_far());
     let plate = Some(Plate::of(case));
     let spectrum = case.loading.spectrum.as_deref().map(curves);
-    Ok(Checked { kind, name: case.name.clone(), lines, warnings, drawing, plate, spectrum, echo: case.echo.clone(), provenance })
+    Ok(Checked {
+        ok: true,
+        kind,
+        name: case.name.clone(),
+        lines,
+        warnings,
+        drawing,
+        plate,
+        spectrum,
+        echo: case.echo.clone(),
+        provenance,
+    })
 }
 
 /// A fit of laws has a plate only where its rates come from readings.
@@ -146,7 +162,7 @@ fn checked_laws(document: &Document, case: &LawCase) -> Checked {
     }
     let provenance = document.folder.opened().so_far();
     let (name, warnings, echo) = (case.name.clone(), case.warnings.clone(), case.echo.clone());
-    Checked { kind: "calibration", name, lines, warnings, drawing, plate, spectrum: None, echo, provenance }
+    Checked { ok: true, kind: "calibration", name, lines, warnings, drawing, plate, spectrum: None, echo, provenance }
 }
 
 fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
@@ -154,7 +170,7 @@ fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
     let (name, echo, provenance) = (scene.name.clone(), scene.echo.clone(), scene.provenance.clone());
     let warnings = [&scene.warnings[..], &of_points].concat();
     let drawing = scene_drawing(scene);
-    Ok(Checked { kind: "fracture", name, lines, warnings, drawing, plate: None, spectrum: None, echo, provenance })
+    Ok(Checked { ok: true, kind: "fracture", name, lines, warnings, drawing, plate: None, spectrum: None, echo, provenance })
 }
 
 /// Lines about loads and supports that fit below the drawing of a scene.

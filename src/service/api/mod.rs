@@ -6,6 +6,7 @@ mod collections;
 mod description;
 mod documents;
 mod events;
+mod guide;
 mod inputs;
 mod knowledge;
 mod results;
@@ -85,6 +86,8 @@ pub fn router(app: App) -> Router {
     let limits = app.limits.clone();
     let docs = SwaggerUi::new("/docs").external_url_unchecked("/openapi.json", description::complete(&description));
     v1.merge(Router::from(docs))
+        .route("/guide", get(guide::index))
+        .route("/guide/{page}", get(guide::page))
         .route("/healthz", get(watching::health))
         .route("/readyz", get(watching::ready))
         .route("/metrics", get(watching::metrics))

@@ -18,9 +18,9 @@ pub const KEYS: &[Bad] = &[
         "velocity_mm_s = 1\nstress_mpa = 1",
         &["loading.stress_mpa", "cannot be combined with", "velocity"],
     ),
-    (THROWN, "[damage]", "[fatigue]\na = 1\n[damage]", &["fatigue", "no cycles", "perilife predict"]),
+    (THROWN, "[damage]", "[fatigue]\na = 1\n[damage]", &["fatigue", "applies only to fatigue cases", "perilife predict"]),
     (THROWN, "[damage]", "[stop]\ncycles_max = 1\n[damage]", &["stop", "perilife predict"]),
     (THROWN, "[damage]", "[fit]\nparameters = []\n[damage]", &["fit", "perilife calibrate"]),
-    (THROWN, "[specimen]", "colour = 3\n[specimen]", &[":1:", "colour", "no section"]),
+    (THROWN, "[specimen]", "colour = 3\n[specimen]", &[":1:", "colour", "outside any section"]),
     (THROWN, "[damage]\nlaw = \"critical_energy\"", "damage = 3", &["loading.damage", "unknown key"]),
 ];

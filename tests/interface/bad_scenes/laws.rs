@@ -128,6 +128,6 @@ pub const DAMAGE: &[Bad] = &[
         PULLED,
         "law = \"nonlinear_two_parameter\"",
         "law = \"nonlinear_two_parameter\"\nfinal_stretch = 0.02\nfinal_ratio = 3",
-        &["damage.final_ratio", "given twice"],
+        &["damage.final_ratio", "conflicts with final_stretch"],
     ),
 ];

@@ -28,7 +28,7 @@ pub const PLACES: &[Bad] = &[
         "regions = [{ from_mm = [50, 0], to_mm = [55, 5] }]\ndirection = [0, 1]",
         &["loading.regions[0]", "outside the plate", "(20, 10) mm"],
     ),
-    (THROWN, "edges = [\"top\", \"bottom\"]", "edges = [\"top\"]\nregions = []", &["loading.regions", "beside edges"]),
+    (THROWN, "edges = [\"top\", \"bottom\"]", "edges = [\"top\"]\nregions = []", &["loading.regions", "conflicts with edges"]),
     (THROWN, "edges = [\"top\", \"bottom\"]", "edges = [\"top\"]\nparts = []", &["conflicts with parts", "move it to a part"]),
     (
         THROWN,
@@ -78,9 +78,9 @@ pub const PLACES: &[Bad] = &[
 pub const TIMES: &[Bad] = &[
     (THROWN, "duration_s = 1e-5\n", "", &["loading.kind", "velocity", "without time", "duration_s"]),
     (THROWN, "duration_s = 1e-5", "steps = 5", &["loading.kind", "velocity", "without time"]),
-    (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nsteps = 5", &["loading.steps", "beside duration_s"]),
+    (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nsteps = 5", &["loading.steps", "conflicts with duration_s"]),
     (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\ntime_step_s = 2e-5", &["loading.time_step_s", "longer than duration_s"]),
-    (THROWN, "density_kg_m3 = 2235\n", "", &["material.density_kg_m3", "missing", "mass"]),
+    (THROWN, "density_kg_m3 = 2235\n", "", &["material.density_kg_m3", "missing", "required for motion"]),
     (
         THROWN,
         "kind = \"velocity\"\nvelocity_mm_s = 100",
@@ -96,7 +96,7 @@ pub const TIMES: &[Bad] = &[
         "parts = [{ kind = \"displacement\", displacement_mm = 0.1, edges = [\"top\"], ramp_s = 1 }]",
         &["loading.parts[0].ramp_s", "without duration_s"],
     ),
-    (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nfrom_s = 1e-5", &["loading.from_s", "0.00001", "never act", "duration_s"]),
+    (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nfrom_s = 1e-5", &["loading.from_s", "0.00001", "before the end of the scene", "duration_s"]),
     (
         THROWN,
         "kind = \"velocity\"\nvelocity_mm_s = 100\nedges = [\"top\", \"bottom\"]",

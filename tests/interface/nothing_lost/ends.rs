@@ -88,11 +88,11 @@ fn what_appears_meanwhile_stays() {
         let (code, stderr) = ended(process);
         assert_eq!(code, Some(4), "{stderr}");
         assert!(
-            stderr.contains("out: cannot put the results in place: it holds") && stderr.contains("and that stays"),
+            stderr.contains("out: cannot put the results in place: it contains") && stderr.contains("and that stays"),
             "{stderr}"
         );
         let result = if number == 0 { "out.result".to_owned() } else { format!("out.result-{}", number + 1) };
-        assert!(stderr.trim_end().ends_with(&format!("the results stand in {result}")), "{stderr}");
+        assert!(stderr.trim_end().ends_with(&format!("; results are in {result}")), "{stderr}");
         assert!(here.join(&result).join("a_n.csv").is_file() && content(&here.join("out")) == before);
         fs::remove_dir_all(here.join("out")).unwrap();
     }
@@ -240,7 +240,7 @@ fn mounted_and_full_places() {
     let (code, stderr) = (output.status.code(), texts(&output).1);
     assert_eq!(code, Some(4), "{stderr}");
     assert!(stderr.contains("warning: out/x: ") && stderr.contains("its tables come first"), "{stderr}");
-    assert!(stderr.trim_end().ends_with("what there is stands in out/x.result"), "{stderr}");
+    assert!(stderr.trim_end().ends_with("partial results are in out/x.result"), "{stderr}");
     for file in ["a_n.csv", "crack_path.csv", "result.json", "case.toml"] {
         assert!(fs::metadata(mounted.join("x.result").join(file)).unwrap().len() > 0, "{file}");
     }
@@ -249,6 +249,6 @@ fn mounted_and_full_places() {
     let begun = Instant::now();
     let output = perilife(here, &[&SLOW[..], &["--out", "out/x", "-q"]].concat());
     unmount();
-    assert_refused(&output, 4, &["out/x: has too little room", "the tables of the run take about"]);
+    assert_refused(&output, 4, &["out/x: not enough disk space", "the tables of the run take about"]);
     assert!(begun.elapsed() < Duration::from_secs(2), "it is said before the run");
 }

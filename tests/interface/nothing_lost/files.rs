@@ -120,7 +120,7 @@ fn a_table_that_was_cut_off_is_noticed() {
     fs::write(here.join("run/a_n.csv"), &table[..row_end]).unwrap();
     assert_refused(&export(), 2, &["run/a_n.csv", "ends at ", "and the run at "]);
     fs::write(here.join("run/result.json"), &result[..200]).unwrap();
-    assert_refused(&export(), 2, &["result.json that is cut off or damaged"]);
+    assert_refused(&export(), 2, &["result.json is truncated or damaged"]);
 }
 
 /// Standard input and standard output by `-` and by their devices; a pipe is read once.

@@ -43,8 +43,8 @@ fn what_a_user_laid_there_stays() {
             done(here, &call);
             lay(&out);
             let before = content(here);
-            let named = format!("holds {}", name.split('/').next().unwrap());
-            assert_refused(&perilife(here, &call), 2, &["--out = out", &named, "did not make", "move it out of this one"]);
+            let named = format!("contains other files ({})", name.split('/').next().unwrap());
+            assert_refused(&perilife(here, &call), 2, &["--out = out", &named, "move it out of this one"]);
             assert!(content(here) == before, "{call:?} beside {name}: something has changed");
             fs::remove_dir_all(&out).unwrap();
         }
@@ -66,7 +66,7 @@ fn another_kind_is_not_replaced() {
     for (theirs, _) in KINDS {
         for (call, _) in KINDS.iter().filter(|(call, _)| call[0] != theirs[0]) {
             let output = perilife(here, &[*call, &["--out", theirs[0], "-q"]].concat());
-            assert_refused(&output, 2, &["--out = ", "holds a", "does not replace", "give a new or empty folder"]);
+            assert_refused(&output, 2, &["--out = ", "contains a", "never replaces", "give a new or empty folder"]);
         }
     }
     assert!(content(here) == before);
@@ -144,7 +144,7 @@ fn an_input_in_the_folder_is_refused() {
                     call.iter().map(|word| if word == input && !by_link { inside.as_str() } else { word }).collect();
                 let before = content(here);
                 let output = perilife(here, &[&given[..], &["--out", "out", "-q"]].concat());
-                assert_refused(&output, 2, &["--out = out", "holds an input of this run", "give another folder"]);
+                assert_refused(&output, 2, &["--out = out", "contains an input of this run", "give another folder"]);
                 assert!(content(here) == before, "{given:?}");
                 let _ = fs::remove_file(here.join(input));
                 fs::rename(here.join("out").join(input), here.join(input)).unwrap();
@@ -161,7 +161,7 @@ fn an_input_in_the_folder_is_refused() {
     fs::create_dir(here.join("data")).unwrap();
     fs::write(here.join("data/rates.csv"), table).unwrap();
     let output = perilife(here, &["predict", "t.toml", "--out", "data", "-q"]);
-    assert_refused(&output, 2, &["--out = data", "holds an input of this run, data/rates.csv"]);
+    assert_refused(&output, 2, &["--out = data", "contains an input of this run, data/rates.csv"]);
 }
 
 /// An empty folder, a link to a folder, and one that points to nothing yet.

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
 
+use perilife::guide::{PAGES, page};
 use serde_json::Value;
 use tempfile::tempdir;
 
@@ -209,4 +210,25 @@ fn requests_made_from_the_description_find_no_fault() {
     python.arg(format!("{}/openapi.json", service.url)).current_dir(dir.path());
     run(python.env("SCHEMATHESIS_HOOKS", concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/api_hooks.py")));
     service.get("/healthz").expect(200);
+}
+
+#[test]
+fn the_guide_is_served_and_lists_every_address() {
+    let dir = tempdir().unwrap();
+    let (service, api) = described(dir.path(), &["--jobs", "0"]);
+    for (_, path, _) in operations(&api) {
+        assert!(page("http").unwrap().contains(path), "{path} is not in the guide");
+    }
+    let shown = |address: &str| service.get(address).expect(200).text();
+    assert!(shown("/guide").contains("href=\"guide/laboratory\"") && shown("/guide").contains("href=\"style.css\""));
+    for (name, _) in PAGES {
+        let html = shown(&format!("/guide/{name}"));
+        assert!(html.contains("<h1>") && html.contains("href=\"../guide.css\"") && !html.contains("href=\"index.md"), "{name}");
+        for link in
+            html.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next()).filter(|link| !link.contains(['/', '.', ':']))
+        {
+            assert!(page(link).is_some(), "{name} links to {link}");
+        }
+    }
+    assert_eq!(service.get("/guide/nothing").status, 404);
 }

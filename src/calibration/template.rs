@@ -1,0 +1,71 @@
+//! The calibration file to write for a table of readings, filled with what the table says.
+
+use std::path::Path;
+
+use perilife_base::error::{Error, InputError, Result};
+use perilife_base::table::names::Role;
+use perilife_base::units::{MM, round_off};
+use perilife_measured::{Import, SAME_LOAD, Survey, survey};
+
+/// Endings of the names of tables.
+const TABLES: [&str; 3] = ["csv", "tsv", "xlsx"];
+
+/// Refuses a table of readings that is given in place of a calibration file.
+/// Errors: its remedy is the file to write.
+pub fn refuse_table(path: &Path) -> Result<()> {
+    if !path.extension().is_some_and(|end| TABLES.iter().any(|known| end.eq_ignore_ascii_case(known))) {
+        return Ok(());
+    }
+    let bytes = std::fs::read(path).map_err(|error| Error::file(path, "cannot read", error))?;
+    let [name, stem] = [path.file_name(), path.file_stem()].map(|name| name.unwrap_or_default().to_string_lossy());
+    let lines = lines(&name, &survey(&bytes, path, &Import::default()));
+    Err(Error::Input(Box::new(InputError {
+        file: Some(path.to_path_buf()),
+        problem: "is a table of readings, not a calibration file".to_owned(),
+        remedy: format!("save these lines beside it as {stem}.toml, fill in <...>, and calibrate that:\n\n{lines}"),
+        ..InputError::default()
+    })))
+}
+
+/// What the table says, and `<...>` for the rest.
+fn lines(name: &str, found: &Survey) -> String {
+    let curves = &found.measured.curves;
+    let columns = match &found.layout {
+        Some(layout) => {
+            let read = found.header.iter().zip(layout.keys(found.header.len())).filter(|(_, key)| !key.is_empty());
+            format!("# columns: {}", read.map(|(header, key)| format!("{header} ({key})")).collect::<Vec<_>>().join(", "))
+        }
+        None => format!("columns = {{ cycles = <...>, length = <...> }} # names of {}", found.header.join(" | ")),
+    };
+    let number = |value: Option<f64>| value.map_or_else(|| "<...>".to_owned(), |value| round_off(value).to_string());
+    let stated = |role: Role| {
+        let of_curves = curves.iter().flat_map(|curve| curve.stated.iter().filter(|one| one.role == role));
+        let mut values = of_curves.flat_map(|one| one.values.iter().copied());
+        let first = values.next().filter(|value| value.is_finite())?;
+        values.all(|value| (value - first).abs() <= SAME_LOAD * first).then_some(first / MM)
+    };
+    let is_central = !curves.is_empty() && curves.iter().all(|curve| curve.source.is_tip_to_tip);
+    let kind = if is_central { "\"middle_tension\"" } else { "<...> # perilife list specimen.kind" };
+    let first = curves.iter().filter_map(|curve| curve.crack_length.first()).copied().reduce(f64::min);
+    let load = found.measured.load();
+    let of_load = |key: &str| format!("{key} = {}", number(load.get(key).copied()));
+    let maximum = load.keys().find(|key| **key != "stress_ratio").unwrap_or(&"force_max_kn");
+    let (width, thickness) = (number(stated(Role::Width)), number(stated(Role::Thickness)));
+    [
+        "[measured]".to_owned(),
+        format!("files = [{name:?}]"),
+        columns,
+        "[specimen]".to_owned(),
+        format!("kind = {kind}"),
+        format!("width_mm = {width}"),
+        "length_mm = <...> # of tension specimens".to_owned(),
+        format!("thickness_mm = {thickness}"),
+        format!("crack_length_mm = {} # first reading", number(first.map(|length| length / MM))),
+        "[material]".to_owned(),
+        "name = <...> # perilife list material.name".to_owned(),
+        "[loading]".to_owned(),
+        of_load(maximum),
+        of_load("stress_ratio"),
+    ]
+    .join("\n")
+}
