@@ -49,7 +49,7 @@ pub struct Args {
     /// Tip for --inspect-from [default: governing tip]
     #[arg(long, value_name = "NUMBER", requires = "inspect_from", help_heading = "Output")]
     pub tip: Option<usize>,
-    /// Compute the probability that all inspections miss the crack
+    /// Detectable lengths a50,a90: probability that all inspections miss
     #[arg(long, value_name = "A50,A90", requires = "inspect_from", help_heading = "Output")]
     pub pod: Option<String>,
     /// Cycles of the first inspection [default: at --inspect-from]

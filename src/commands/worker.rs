@@ -61,7 +61,7 @@ impl Place {
     fn given(&self) -> Result<Option<String>> {
         let Some(url) = &self.database else { return Ok(None) };
         if url.trim().is_empty() {
-            let problem = "is empty (used when --database is not given)";
+            let problem = "is empty (PERILIFE_DATABASE, used when --database is not given)";
             return Err(input(
                 "--database",
                 "\"\"",

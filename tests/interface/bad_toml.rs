@@ -194,7 +194,7 @@ const BAD: &[Bad] = &[
     panel("stress_ratio = 0.2", "stress_ratio = 0.2\nstress_max_mpa = 60", &["loading.stress_", "conflicts with", "exactly one"]),
     panel("stress_range_mpa = 48.28", "stress_range_mpa = 1e308", &[":10:", "loading.stress_range_mpa", "out of range"]),
     panel("a = 6450.0", "a = 1e308", &["fatigue.a", "out of range"]),
-    panel("stress_range_mpa = 48.28\n", "", &["loading.stress_max_mpa", "missing", "force_range_n"]),
+    panel("stress_range_mpa = 48.28\n", "", &["loading.stress_max_mpa", "no load given", "force_range_n"]),
     panel(
         "stress_range_mpa = 48.28",
         "stress = 48.28",

@@ -127,7 +127,7 @@ fn readings_of_the_plate_narrow_what_it_has_left() {
     let two = "specimen,cycles,crack_length_mm\n".to_owned()
         + &["a", "b"].map(|name| (0..6).map(|i| format!("{name},{},{}\n", 9000 * i, 9 + i)).collect::<String>()).concat();
     fs::write(dir.path().join("two.csv"), two).unwrap();
-    assert_refused(&predict(&["--measured", "two.csv"]), 2, &["two.csv", "holds 2 specimens (a, b)"]);
+    assert_refused(&predict(&["--measured", "two.csv"]), 2, &["two.csv", "contains 2 specimens (a, b)"]);
     assert_refused(&predict(&["--inspect-from", "20", "--factor", "0.5"]), 2, &["--factor", "0.5", "is not 1 or more"]);
     // What shows after the run spares its files.
     write_readings(dir.path(), "long.csv", 47.0, 1.0);

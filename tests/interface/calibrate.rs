@@ -172,7 +172,11 @@ fn a_table_gets_its_calibration_file() {
     fs::write(dir.path().join("lab.csv"), format!("N,a (mm),W (mm),B (mm),Pmax (kN),R\n{rows}")).unwrap();
     for call in [&["check", "lab.csv"][..], &["calibrate", "lab.csv", "--out", "fit"]] {
         let output = perilife(dir.path(), call);
-        assert_refused(&output, 2, &["lab.csv: is a table of readings", "save these lines beside it as lab.toml, fill in <...>"]);
+        assert_refused(
+            &output,
+            2,
+            &["lab.csv: is a table of readings", "save these lines in its folder as lab.toml, fill in <...>"],
+        );
         let (_, message) = texts(&output);
         let (_, lines) = message.split_once("\n\n").unwrap();
         for line in [

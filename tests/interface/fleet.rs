@@ -88,7 +88,7 @@ fn a_fleet_without_scatter_and_wrong_keys_are_refused() {
         (&["--pod", "2,5"], &["--inspect-from"]),
         (&["--inspect-from", "400"], &["--inspect-from = 400 mm", "4 to "]),
         (&["--inspect-from", "6 bananas"], &["--inspect-from = 6 bananas", "0.25in"]),
-        (&["--inspect-from", "10", "--pod", "5,2"], &["--pod", "longer one"]),
+        (&["--inspect-from", "10", "--pod", "5,2"], &["--pod", "two increasing crack lengths"]),
     ];
     for (arguments, words) in cases {
         let output = perilife(dir.path(), &[&["predict", "case.toml", "--out", "run"][..], arguments].concat());

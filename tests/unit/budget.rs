@@ -79,7 +79,7 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
     let levels = scene("spacing_mm = 0.12, discretisation = \"dual_horizon\"", levels).budget();
     assert!(levels.points > 4e7, "{:e}", levels.points);
     assert!(levels.within(LIMIT).unwrap_err().to_string().contains("smaller regions of [refinement]"));
-    assert!(levels.within_points(1e6).unwrap_err().to_string().contains("more than the 1.000e6 allowed"));
+    assert!(levels.within_points(1e6).unwrap_err().to_string().contains("points; limit 1.000e6"));
 }
 
 /// Fields for ParaView, which are most of what a run leaves, are counted where they are asked for.

@@ -223,7 +223,7 @@ fn what_may_be_either_is_asked_about() {
     let converted = loading("a.csv", "smax [ksi],smin [ksi]\n10,1\n", "").unwrap();
     assert!((converted.maximum / (2.0 * 10.0 * 6.894_757e6) - 1.0).abs() < 1e-6, "{}", converted.maximum);
     let passed_over = loading("a.csv", "max,min,cycles\n2,1,5\n2,2,7\n3,1,0\n", "").unwrap().spectrum.unwrap();
-    assert!(passed_over.cycles.len() == 1 && passed_over.notes[0].contains("2 rows are not counted"), "{:?}", passed_over.notes);
+    assert!(passed_over.cycles.len() == 1 && passed_over.notes[0].contains("2 rows are omitted"), "{:?}", passed_over.notes);
 }
 
 /// Shares of the growth by class of cycle: a law of one cycle asked of every class.

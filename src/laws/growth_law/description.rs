@@ -12,8 +12,8 @@ use perilife_plate::material::Material;
 perilife_base::kinds! {
     /// What K and R beyond the rows of a table of rates do.
     pub enum TableEnds for "fatigue.growth_table_ends" {
-        Refused = "refused": "the run ends in an error",
-        Held = "held": "the crack grows at the rate of the last row, or ratio; how much of the life that is stands in a warning",
+        Refused = "refused": "extrapolation is refused",
+        Held = "held": "rate of the last row or ratio; a warning gives the share of life",
     }
 }
 

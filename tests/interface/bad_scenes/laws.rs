@@ -122,7 +122,7 @@ pub const DAMAGE: &[Bad] = &[
         PULLED,
         "law = \"nonlinear_two_parameter\"",
         "law = \"nonlinear_two_parameter\"\nfinal_stretch = 0.002",
-        &["damage.final_stretch", "not beyond"],
+        &["damage.final_stretch", "must be above"],
     ),
     (
         PULLED,

@@ -6,7 +6,7 @@ use super::files::{Bad, PRESSED, PULLED, REFINED, THROWN};
 pub const PLACES: &[Bad] = &[
     (THROWN, "edges = [\"top\", \"bottom\"]\n", "", &["loading.edges", "missing", "regions"]),
     (THROWN, "edges = [\"top\", \"bottom\"]", "edges = []", &["loading.edges", "empty"]),
-    (THROWN, "edges = [\"top\", \"bottom\"]", "edges = [\"top\", \"top\"]", &["loading.edges[1]", "twice"]),
+    (THROWN, "edges = [\"top\", \"bottom\"]", "edges = [\"top\", \"top\"]", &["loading.edges[1]", "repeated"]),
     (THROWN, "edges = [\"top\", \"bottom\"]", "edges = [\"top\"]\ngrip_mm = 11", &["loading.grip_mm", "11", "half of the plate"]),
     (THROWN, "edges = [\"top\", \"bottom\"]", "edges = [\"top\"]\nrange_mm = [5, -5]", &["loading.range_mm", "must increase"]),
     (
@@ -40,7 +40,7 @@ pub const PLACES: &[Bad] = &[
         THROWN,
         "kind = \"velocity\"\nvelocity_mm_s = 100\nedges = [\"top\", \"bottom\"]",
         "parts = [{ kind = \"velocity\", edges = [\"top\"] }]",
-        &["loading.parts[0].velocity_mm_s", "missing"],
+        &["loading.parts[0].velocity_mm_s", "no load given"],
     ),
     (PULLED, "bottom = { fix = [\"x\", \"y\"] }", "bottom = { fix = [] }", &["supports.bottom.fix", "supports nothing"]),
     (
@@ -76,8 +76,8 @@ pub const PLACES: &[Bad] = &[
 
 /// When they act.
 pub const TIMES: &[Bad] = &[
-    (THROWN, "duration_s = 1e-5\n", "", &["loading.kind", "velocity", "without time", "duration_s"]),
-    (THROWN, "duration_s = 1e-5", "steps = 5", &["loading.kind", "velocity", "without time"]),
+    (THROWN, "duration_s = 1e-5\n", "", &["loading.kind", "velocity", "requires time", "duration_s"]),
+    (THROWN, "duration_s = 1e-5", "steps = 5", &["loading.kind", "velocity", "requires time"]),
     (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nsteps = 5", &["loading.steps", "conflicts with duration_s"]),
     (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\ntime_step_s = 2e-5", &["loading.time_step_s", "longer than duration_s"]),
     (THROWN, "density_kg_m3 = 2235\n", "", &["material.density_kg_m3", "missing", "required for motion"]),
@@ -87,16 +87,21 @@ pub const TIMES: &[Bad] = &[
         "kind = \"displacement\"\ndisplacement_mm = 1",
         &["loading.ramp_s", "missing", "infinite velocity"],
     ),
-    (PULLED, "steps = 10", "steps = 10\nramp_s = 1", &["loading.ramp_s", "without duration_s"]),
-    (PULLED, "steps = 10", "time_step_s = 1", &["loading.time_step_s", "without duration_s"]),
-    (PULLED, "steps = 10", "steps = 10\nfrom_s = 1", &[":19:", "loading.from_s", "without duration_s"]),
+    (PULLED, "steps = 10", "steps = 10\nramp_s = 1", &["loading.ramp_s", "requires duration_s"]),
+    (PULLED, "steps = 10", "time_step_s = 1", &["loading.time_step_s", "requires duration_s"]),
+    (PULLED, "steps = 10", "steps = 10\nfrom_s = 1", &[":19:", "loading.from_s", "requires duration_s"]),
     (
         PULLED,
         "kind = \"displacement\"\ndisplacement_mm = 0.1\nedges = [\"top\"]",
         "parts = [{ kind = \"displacement\", displacement_mm = 0.1, edges = [\"top\"], ramp_s = 1 }]",
-        &["loading.parts[0].ramp_s", "without duration_s"],
+        &["loading.parts[0].ramp_s", "requires duration_s"],
     ),
-    (THROWN, "duration_s = 1e-5", "duration_s = 1e-5\nfrom_s = 1e-5", &["loading.from_s", "0.00001", "before the end of the scene", "duration_s"]),
+    (
+        THROWN,
+        "duration_s = 1e-5",
+        "duration_s = 1e-5\nfrom_s = 1e-5",
+        &["loading.from_s", "0.00001", "before the end of the scene", "duration_s"],
+    ),
     (
         THROWN,
         "kind = \"velocity\"\nvelocity_mm_s = 100\nedges = [\"top\", \"bottom\"]",

@@ -89,7 +89,7 @@ fn a_fit_of_laws_has_a_page() {
     page.open(&format!("{}/#/{}", service.url, job.trim_start_matches("/v1/")));
     page.see("[data-table=candidates]");
     let laws = page.text("[data-table=candidates]");
-    assert!(["paris", "walker", "nasgro_alpha not identified"].iter().all(|words| laws.contains(words)), "{laws}");
+    assert!(["paris", "walker", "nasgro_alpha cannot be determined"].iter().all(|words| laws.contains(words)), "{laws}");
     assert!(page.text("[data-table=constants]").contains("walker_gamma"));
     picture(&page, "laws");
     let complaints = page.complaints();

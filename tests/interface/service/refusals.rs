@@ -66,7 +66,7 @@ fn requests_that_cannot_be_read_are_refused() {
         ("/v1/predictions", json, vec![b' '; 2 << 20], 413, "larger than the 1048576 bytes this server takes"),
         ("/v1/predictions", json, of("case\n", QUICK).to_string().into_bytes(), 422, "is no name"),
         ("/v1/predictions", json, of("case", &fine).to_string().into_bytes(), 422, "model.spacing_mm = 0.1: gives "),
-        ("/v1/check", json, of("case", &fine).to_string().into_bytes(), 422, "more than the 1.000e5"),
+        ("/v1/check", json, of("case", &fine).to_string().into_bytes(), 422, "limit 1.000e5"),
         ("/v1/predictions", json, json!({ "input": QUICK, "calibration": "no" }).to_string().into_bytes(), 422, "is no calibration here"),
         ("/v1/predictions", json, of("case", &QUICK.replace("al2024-t3", "../../etc/passwd")).to_string().into_bytes(), 422, "was not uploaded"),
         ("/v1/predictions", json, of("case", &QUICK.replace("a = 6450.0\np = 2.86\nhorizon_mm = 3.015", "fitted = \"/etc/passwd\"")).to_string().into_bytes(), 422, "was not uploaded"),
