@@ -235,7 +235,7 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
             &good,
             &["specimen.outline_unit", "conflicts with the unit of part.dxf"],
         ),
-        ("outline_file = \"part.dxf\"\noutline_symmetry = \"x=0\"", "part.dxf", &good, &["lies beyond x = 0"]),
+        ("outline_file = \"part.dxf\"\noutline_symmetry = \"x=0\"", "part.dxf", &good, &["is beyond x = 0"]),
         (
             "width_mm = 9\nlength_mm = 9\noutline_unit = \"mm\"",
             "part.dxf",

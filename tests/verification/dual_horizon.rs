@@ -149,7 +149,7 @@ fn wrong_refinements_are_refused() {
 #[test]
 fn levels_are_graded() {
     let net = perilife_scenes::build(&plate(PLAIN, PUBLISHED, 4e-3, &[(a_box([-4e-3, -4e-3], [4e-3, 4e-3]), 3)])).unwrap().0;
-    assert!(net.warnings.iter().any(|line| line.contains("beside")), "{:?}", net.warnings);
+    assert!(net.warnings.iter().any(|line| line.contains("extra points")), "{:?}", net.warnings);
     let finest = net.spacings.iter().filter(|&&s| s < 0.6e-3).count();
     assert_eq!(finest, 256);
     for (x, (at, horizon)) in net.positions.iter().zip(&net.horizons).enumerate() {

@@ -300,6 +300,6 @@ fn what_does_not_know_residual_stress() {
         let case = case_in(dir.path(), panel, &format!("{pulled}\n{}", file("short.csv")), WALKER, &keys).unwrap();
         let error = predict(&case, &Silent).unwrap_err().to_string();
         println!("{error}");
-        assert!(error.contains("residual_stress_file") && error.contains("ends at"), "{error}");
+        assert!(error.contains("residual_stress_file") && error.contains("covers only"), "{error}");
     }
 }
