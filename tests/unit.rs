@@ -66,4 +66,5 @@ mod tables;
 mod units;
 mod verification_table;
 mod watch;
+mod words;
 mod vocabulary;

@@ -16,7 +16,7 @@ pub const UNPACKED_MAX: u64 = 512 << 20;
 
 /// What is said of a table that is too large, for behind its file.
 pub fn too_many(what: &str, count: usize, most: usize) -> String {
-    format!("has {count} {what}, more than the {most} that are read of a table")
+    format!("has {count} {what}, limit {most}")
 }
 
 /// What to do about it.

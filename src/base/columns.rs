@@ -15,7 +15,7 @@ use crate::units::words::in_units;
 const DIGITS: usize = 10;
 
 /// Remedy for files of results that are not as they were written.
-pub const AGAIN: &str = "copy the folder again, or run the command again that wrote it";
+pub const AGAIN: &str = "the folder is damaged: copy it again, or rerun the case";
 
 /// How numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,7 +13,7 @@ pub enum Error {
     #[error("{0}")]
     Mechanics(String),
     /// What is left of a plate is a mechanism, or nearly one: it carries no load (exit code 3).
-    #[error("what is left of the plate cannot carry its load")]
+    #[error("the plate is cut in two or is a mechanism")]
     LossOfStiffness,
     /// A file could not be read or written (exit code 4).
     #[error("{}: {action}: {source}", path.display())]

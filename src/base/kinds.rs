@@ -17,7 +17,7 @@ pub struct KindLine {
 
 /// Remedy for a name that is none of these.
 pub fn use_one_of(lines: &[KindLine]) -> String {
-    format!("use one of {}", lines.iter().map(|line| line.name).collect::<Vec<_>>().join(", "))
+    format!("use one of: {}", lines.iter().map(|line| line.name).collect::<Vec<_>>().join(", "))
 }
 
 /// What [`kinds!`](crate::kinds!) declares.
@@ -87,7 +87,8 @@ macro_rules! kinds {
             type Err = $crate::error::Error;
             fn from_str(text: &str) -> std::result::Result<Self, Self::Err> {
                 <Self as $crate::kinds::Named>::find(text).ok_or_else(|| {
-                    $crate::error::input(Self::KEY, format!("\"{text}\""), "is not a known kind", $crate::kinds::use_one_of(&Self::lines()))
+                    let remedy = $crate::kinds::use_one_of(&Self::lines());
+                    $crate::error::input(Self::KEY, format!("\"{text}\""), "unknown kind", remedy)
                 })
             }
         }

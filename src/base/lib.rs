@@ -18,7 +18,7 @@ pub mod machine;
 pub mod monotone;
 pub mod blended;
 pub mod quadrature;
-pub mod line;
+pub mod linear_fit;
 pub mod sealed;
 pub mod raster;
 pub mod input;

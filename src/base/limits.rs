@@ -37,7 +37,7 @@ impl Limit {
 }
 
 /// Fields of a row in the order of [`COLUMNS`].
-type Row = (String, String, String, Option<bool>, Option<f64>, Option<f64>, f64, String, String);
+type LimitRow = (String, String, String, Option<bool>, Option<f64>, Option<f64>, f64, String, String);
 
 /// Reads a table of limits; a header or a row of another form is refused.
 pub fn parse(text: &str) -> Result<Vec<Limit>> {
@@ -45,13 +45,13 @@ pub fn parse(text: &str) -> Result<Vec<Limit>> {
         input("boundaries.csv", format!("\"{what}\""), problem, "write it with `perilife stability --out DIR`")
     };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|error| broken(&error, "is no header"))?.iter().collect::<Vec<_>>().join(",");
+    let header = reader.headers().map_err(|error| broken(&error, "is not a header"))?.iter().collect::<Vec<_>>().join(",");
     if header != COLUMNS {
         return Err(broken(&header, "is not the header of a table of boundaries"));
     }
-    let limit = |row: csv::Result<Row>| {
+    let limit = |row: csv::Result<LimitRow>| {
         let (sweep, method, parameter, is_safe, low, high, bound_percent, version, date) =
-            row.map_err(|error| broken(&error, "is no row of a table of boundaries"))?;
+            row.map_err(|error| broken(&error, "is not a row of a table of boundaries"))?;
         Ok(Limit { sweep, method, parameter, is_safe, ends: [low, high], bound_percent, version, date })
     };
     reader.into_deserialize().map(limit).collect()

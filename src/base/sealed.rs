@@ -33,7 +33,7 @@ impl Seal {
     /// one.
     pub fn read<T: DeserializeOwned>(self, bytes: &[u8]) -> Result<T> {
         let damaged = || refused("is damaged");
-        let rest = bytes.strip_prefix(self.magic).ok_or_else(|| refused(format!("is no checkpoint of {}", self.of)))?;
+        let rest = bytes.strip_prefix(self.magic).ok_or_else(|| refused(format!("is not a checkpoint of {}", self.of)))?;
         let (form, rest) = rest.split_first_chunk().ok_or_else(damaged)?;
         let (length, rest) = rest.split_first().ok_or_else(damaged)?;
         let (version, rest) = rest.split_at_checked(usize::from(*length)).ok_or_else(damaged)?;
@@ -53,7 +53,7 @@ impl Seal {
 pub fn refused(problem: impl Into<String>) -> Error {
     Error::Input(Box::new(InputError {
         problem: problem.into(),
-        remedy: "remove it, or name another file, to begin the run anew".to_owned(),
+        remedy: "remove it, or use another file, to start the run again".to_owned(),
         ..InputError::default()
     }))
 }

@@ -37,7 +37,7 @@ impl Stage {
             Stage::Rim => "correcting boundary bonds",
             Stage::Loads => "applying loads",
             Stage::Solver => "building the solver",
-            Stage::Equilibrium => "solving the equilibrium",
+            Stage::Equilibrium => "solving for equilibrium",
         }
     }
 }
@@ -110,7 +110,7 @@ pub fn at(stage: Stage, share: f64) -> Result<()> {
 }
 
 /// What work ends with that was asked to.
-const CANCELLED: &str = "the run was cancelled";
+const CANCELLED: &str = "the run was canceled";
 
 /// Who watches the work of this thread, for threads that do a part of it.
 pub fn watching() -> Option<Arc<Watch>> {

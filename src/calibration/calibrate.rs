@@ -18,7 +18,7 @@ use perilife_growth::predict::factor_curve::{EXPONENT_USUAL, FactorCurve};
 use perilife_growth::predict::{Observer, RunFigures};
 use perilife_growth::rate_constant::{rate_constant, rate_constant_slope};
 use perilife_laws::paris::ParisLaw;
-use perilife_measured::MeasuredCurve;
+use perilife_measured::{MeasuredCurve, ratio_warnings};
 
 /// Change of the exponent below which the path of several tips needs no other run.
 const EXPONENT_SAME: f64 = 0.05;
@@ -49,14 +49,14 @@ impl Calibration {
     /// Reads the file and all that it names.
     pub fn from_document(document: &Document) -> Result<Self> {
         if document.table.contains_key("output") {
-            let error =
-                input_missing("output", "belongs to a case or scene: a calibration has no plate to show", "remove the section");
-            return Err(document.locate(error));
+            return Err(document.locate(input_missing("output", "applies only to a case or scene", "remove the section")));
         }
         if is_law_fit(&document.table) {
             return LawCase::from_document(document).map(|case| Calibration::Rates(Box::new(case)));
         }
-        CalibrationCase::from_document(document.clone()).map(|case| Calibration::Lives(Box::new(case)))
+        let mut case = CalibrationCase::from_document(document.clone())?;
+        case.warnings.extend(ratio_warnings(&case.read, &case.case.loading));
+        Ok(Calibration::Lives(Box::new(case)))
     }
 
     pub fn name(&self) -> &str {
@@ -119,11 +119,11 @@ pub fn calibrate(calibration: &CalibrationCase, observer: &dyn Observer) -> Resu
         let fit = fit_by_method(calibration, observer);
         watch::unless_cancelled(&calibration.case.name, fit)
     })?;
-    match paris::doubt_of(fit.paris.c, fit.paris.m) {
+    match paris::implausibility_of(fit.paris.c, fit.paris.m) {
         None => Ok(fit),
         Some(doubt) => {
             let doubts: String = fit.warnings.iter().map(|line| format!("\n  {line}")).collect();
-            Err(input_missing("measured.files", format!("give a law that no metal has: {doubt}{doubts}"), ""))
+            Err(input_missing("measured.files", format!("implausible growth law: {doubt}{doubts}"), ""))
         }
     }
 }
@@ -158,11 +158,9 @@ fn check_crack(calibration: &CalibrationCase, start: f64) -> Result<()> {
     let is_before = |curve: &&MeasuredCurve| curve.crack_length[0] < start * (1.0 - SAME_LENGTH);
     let Some(curve) = calibration.curves.iter().find(is_before) else { return Ok(()) };
     let [first, start] = [curve.crack_length[0], start].map(|length| round_off(length / MM));
-    let problem = format!(
-        "has a first reading of {first} mm for {}, and the crack that ends the life is {start} mm long at the start",
-        curve.specimen
-    );
-    Err(input_missing("measured.files", problem, "give the readings of that crack, along its path and over all its tips"))
+    let problem =
+        format!("has a first reading of {first} mm for {}; the governing crack is {start} mm long initially", curve.specimen);
+    Err(input_missing("measured.files", problem, "give the readings of the governing crack, over all its tips"))
 }
 
 /// The fit to K of the tips of a plate that no handbook has, along their own paths.
@@ -198,7 +196,7 @@ fn fit_along_path(calibration: &CalibrationCase, observer: &dyn Observer) -> Res
         };
         (fit.paris.delta_k_min, fit.paris.delta_k_max) = (reached(f64::min, f64::INFINITY), reached(f64::max, 0.0));
         if has_other_path {
-            fit.warnings.push(format!("the path of the cracks is that of m = {m:.3}, and {fitted:.3} was fitted to it"));
+            fit.warnings.push(format!("crack paths computed with m = {m:.3}; fitted m = {fitted:.3}"));
         }
         let own_path = Some(OwnPath { factors: law, runs: run });
         return of_run_on_plate(Fit { own_path, ..fit }, &calibration.case, factors);

@@ -75,7 +75,7 @@ perilife_base::keys! {
         columns: ColumnNames = COLUMNS, or "found by their names" ColumnNames::default();
         decimal: Option<Decimal> = DECIMAL;
         sheet: Option<Sheet> = SHEET;
-        leave_out: Vec<LeaveOut> = key("leave_out", "Readings left out: with the reason"), or "none" Vec::new();
+        leave_out: Vec<LeaveOut> = key("leave_out", "Excluded readings: with the reason"), or "none" Vec::new();
     }
 }
 
@@ -145,8 +145,8 @@ impl CalibrationCase {
         input: Table,
     ) -> perilife_base::error::Result<Self> {
         if !matches!(&case.law, LawSource::Missing(path) if path.as_os_str().is_empty()) {
-            let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p write it into [fit]";
-            return Err(input_missing("fatigue", "gives the law that the calibration is to find", remedy));
+            let remedy = "remove a, p, horizon_mm and fitted from [fatigue]; to fix p set it in [fit]";
+            return Err(input_missing("fatigue", "gives the law that the calibration fits", remedy));
         }
         check_walker(&case)?;
         refuse_spectrum(&case)?;
@@ -154,7 +154,7 @@ impl CalibrationCase {
         check_through(&case.specimen)?;
         let formula = handbook(&case.specimen);
         let (mut measured, sources) = readings(&keys, folder)?;
-        measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        measured.compare_with(&case.specimen, &case.material, &case.loading)?;
         measured.leave_standing_out()?;
         let read = measured.curves.clone();
         measured.leave_out(&keys.leave_out)?;
@@ -165,7 +165,7 @@ impl CalibrationCase {
         if let Some(formula) =
             formula.as_ref().filter(|formula| ![case.specimen.crack_length, longest].iter().all(|a| formula.holds_at(*a)))
         {
-            warnings.push(format!("the fit window leaves the range of the formula for K ({}: {})", formula.name, formula.range));
+            warnings.push(format!("the fit window exceeds the range of the K formula ({}: {})", formula.name, formula.range));
         }
         let delta_k_ratio =
             formula.as_ref().map(|formula| delta_k_ratio(&curves, &|length| formula.k_i(length, case.loading.maximum)));
@@ -238,13 +238,13 @@ fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> peri
 /// Readings under a spectrum have no one ΔK.
 fn refuse_spectrum(case: &Case) -> perilife_base::error::Result<()> {
     if let Some(residual) = &case.loading.residual {
-        let problem = "does not go with a calibration, which takes ΔK and rate of one stress ratio";
+        let problem = "cannot be combined with a calibration (ΔK and rate at one R)";
         return Err(input(residual.key(), residual.words(), problem, "calibrate on readings of plates without residual stress"));
     }
     if case.loading.spectrum.is_none() {
         return Ok(());
     }
-    let problem = "does not go with a calibration, which takes ΔK and rate of cycles of one size";
+    let problem = "cannot be combined with a calibration (constant amplitude only)";
     let remedy = "fit a law to curves of constant amplitude, and give the spectrum in the case that uses it";
     Err(input("loading.kind", "\"spectrum\"", problem, remedy))
 }
@@ -256,7 +256,7 @@ fn check_walker(case: &Case) -> perilife_base::error::Result<()> {
     if gamma == 1.0 {
         return Ok(());
     }
-    let problem = "cannot be given to a calibration, whose curves have one stress ratio and tell nothing about its influence";
+    let problem = "does not apply to a fit at one R";
     Err(input(
         "fatigue.walker_gamma",
         gamma,
@@ -271,21 +271,20 @@ fn check_growth_rate(case: &Case) -> perilife_base::error::Result<()> {
     if !case.spends_bond_life() {
         return Ok(());
     }
-    let problem = "cannot be given to a calibration: A and p are constants of the growth rate over K";
-    Err(input("fatigue.driver", "\"bond_strain\"", problem, "use driver = \"tip_field\", and leave out keys of fatigue bonds"))
+    let problem = "does not apply to a calibration, which fits the growth rate over K";
+    Err(input("fatigue.driver", "\"bond_strain\"", problem, "use driver = \"tip_field\", and remove keys of fatigue bonds"))
 }
 
 /// A threshold shapes no fit, since cracks grew in all of it, and stands in no record.
 fn unrecorded(case: &Case) -> Option<String> {
-    let line =
-        "fatigue.delta_k_threshold_mpa_sqrt_m does not shape the fit and stands in no record: give it in cases that use the fit";
+    let line = "fatigue.delta_k_threshold_mpa_sqrt_m has no effect on the fit; set it in the cases that use the law";
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 
 /// Curves of the measured files, and what the record says about the files.
 fn readings(keys: &MeasuredKeys, folder: &Folder) -> perilife_base::error::Result<(Measured, Vec<SourceFile>)> {
     if keys.files.is_empty() {
-        return Err(input("measured.files", "[]", "names no file", "name at least one measured a-N curve"));
+        return Err(input("measured.files", "[]", "has no file", "name at least one measured a-N curve"));
     }
     check_left_out(&keys.leave_out, &keys.files)?;
     let mut measured = Measured::default();
@@ -318,7 +317,7 @@ fn window(measured: &Measured, keys: &MeasuredKeys) -> perilife_base::error::Res
         && from >= to
     {
         let problem = format!("is not above from_crack_length_mm = {}", from / MM);
-        return Err(input("measured.to_crack_length_mm", to / MM, problem, "give a window that holds at least 5 readings"));
+        return Err(input("measured.to_crack_length_mm", to / MM, problem, "give a window with at least 5 readings"));
     }
     measured.window(from, to)
 }
@@ -326,8 +325,8 @@ fn window(measured: &Measured, keys: &MeasuredKeys) -> perilife_base::error::Res
 /// Refuses a crack that does not go through: its K depends on its shape, and that on the law which is asked for.
 fn check_through(specimen: &Specimen) -> perilife_base::error::Result<()> {
     let Some(flaw) = &specimen.part_through else { return Ok(()) };
-    let problem = "does not go through: its shape, and so its K, depends on the law that is to be fitted";
-    Err(input("specimen.kind", format!("\"{}\"", flaw.kind()), problem, "fit the law to cracks that go through"))
+    let problem = "part-through cracks cannot be used: their K depends on the law being fitted";
+    Err(input("specimen.kind", format!("\"{}\"", flaw.kind()), problem, "fit the law to through cracks"))
 }
 
 /// The model starts at the specimen's crack length, so no reading may come before it; one that its rounding puts there is at the start.
@@ -342,7 +341,7 @@ fn check_start(specimen: &Specimen, curves: &mut [MeasuredCurve]) -> perilife_ba
             return Err(input(
                 "specimen.crack_length_mm",
                 mm(start),
-                format!("is longer than the first reading of specimen {}, {} mm", curve.specimen, mm(first)),
+                format!("exceeds the first reading of specimen {}, {} mm", curve.specimen, mm(first)),
                 "start the model at the first reading, or the window (measured.from_crack_length_mm) at the model",
             ));
         }

@@ -94,16 +94,14 @@ pub(super) fn check_identified(name: &str, confidence: &Confidence, paris: &Pari
         return Ok(());
     }
     Err(Error::Mechanics(format!(
-        "{name}: the misfit has no smallest value that tells p: its standard error is {error:.2} where {low} to {high} are searched, and ΔK \
-         varies by a factor {ratio:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] \
-         parameters = [\"a\"] and p = ..."
+        "{name}: p cannot be determined: standard error {error:.2} in the search range {low} to {high}, ΔK varies by a factor \
+         {ratio:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] parameters = \
+         [\"a\"] and p = ..."
     )))
 }
 
 /// What it means that a searched p is an end of its range.
 pub(super) fn end_of_range(p: f64) -> String {
     let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
-    format!(
-        "the misfit is smallest at p = {p:.3}, an end of the range searched, {low} to {high}: the curve does not follow the law"
-    )
+    format!("best fit p = {p:.3}, at the limit of the search range {low} to {high}: the data do not follow a power law")
 }

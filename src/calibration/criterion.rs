@@ -23,8 +23,8 @@
 perilife_base::kinds! {
     /// What the least squares of a fit count.
     pub enum Criterion for "fit.criterion" {
-        BothEnds = "both_ends": "lives from the first reading and lives to the last one, each over the scatter expected of it",
-        FirstReading = "first_reading": "cycles since the first reading, all alike: plain least squares on the a-N curve",
+        BothEnds = "both_ends": "lives from the first and to the last reading, weighted by expected scatter",
+        FirstReading = "first_reading": "cycles since the first reading, equal weights: least squares on the a-N curve",
     }
 }
 

@@ -36,17 +36,22 @@ pub(super) fn exponent(fit: &FitKeys, folder: &Folder, method: Method, delta_k_r
     let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
     if !parameters.contains(&Parameter::A) {
         let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
-        return Err(input("fit.parameters", format!("[{}]", names.join(", ")), "leaves a out, which is always fitted", remedy));
+        return Err(input(
+            "fit.parameters",
+            format!("[{}]", names.join(", ")),
+            "does not contain a, which is always fitted",
+            remedy,
+        ));
     }
     match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
         (_, Some(p), Some(_)) => Err(input("fit.p", p, "conflicts with record", "give p or record")),
-        (true, Some(p), None) => Err(input("fit.p", p, "is given and fitted at once", "remove p, or write parameters = [\"a\"]")),
+        (true, Some(p), None) => Err(input("fit.p", p, "is both given and fitted", "remove p, or write parameters = [\"a\"]")),
         (true, None, None) => Ok(Exponent::default()),
         (true, None, Some(file)) => match delta_k_ratio {
             Some(ratio) => Exponent::record_if_needed(file, folder, method, ratio),
             None => {
-                let problem = "stands in for p where ΔK varies too little, which on this plate only a run shows";
-                let remedy = "leave it out, or take its p by parameters = [\"a\"]";
+                let problem = "replaces p if ΔK varies too little, which is known only after a run";
+                let remedy = "remove it, or use its p by parameters = [\"a\"]";
                 Err(input("fit.record", format!("\"{file}\""), problem, remedy))
             }
         },
@@ -107,12 +112,11 @@ impl Exponent {
     fn record_if_needed(file: &str, folder: &Folder, method: Method, delta_k_ratio: f64) -> Result<Self> {
         let of_record = Self::of_record(file, folder, method)?;
         if delta_k_ratio >= DELTA_K_RATIO_MIN {
-            let warning = format!("the fit window spans a factor {delta_k_ratio:.2} in ΔK and tells p: {file} is not used");
+            let warning = format!("ΔK varies by a factor of {delta_k_ratio:.2}, enough to fit p; {file} not used");
             return Ok(Exponent { warning: Some(warning), ..Self::default() });
         }
         let warning = format!(
-            "the fit window spans only a factor {delta_k_ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} tells p): \
-             p = {:.4} ± {:.4} is taken from {file}",
+            "ΔK varies only by a factor of {delta_k_ratio:.2} (need {DELTA_K_RATIO_MIN}): p = {:.4} ± {:.4} taken from {file}",
             of_record.fixed.unwrap_or(f64::NAN),
             of_record.error
         );

@@ -8,7 +8,9 @@ use super::confidence::{Confidence, check_identified, confidence, end_of_range};
 use super::criterion::{Criterion, misfit};
 use super::exponent::DELTA_K_RATIO_MIN;
 use super::lack_of_fit::{MisfitAtEnds, misfit_at_ends};
-use super::outliers::{Run, StepRate, doubts_beside, left_out, long_step_rates, readings_apart, runs, step_rates, without};
+use super::outliers::{
+    OutlierRun, StepRate, doubts_beside, left_out, long_step_rates, readings_apart, runs, step_rates, without,
+};
 use super::paris::{self, Paris};
 use super::population::intervals::Specimen;
 use super::population::{Population, fit as fit_population};
@@ -93,7 +95,8 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let is_fitted = fixed_p.is_none();
     let strange = runs(&task.curves.iter().map(|curve| long_step_rates(curve, task.delta_k)).collect::<Vec<_>>());
     let mut warnings = remarks(task, &strange);
-    let of_runs = |(curve, runs): (&MeasuredCurve, &Vec<Run>)| runs.iter().map(|run| left_out(curve, *run)).collect::<Vec<_>>();
+    let of_runs =
+        |(curve, runs): (&MeasuredCurve, &Vec<OutlierRun>)| runs.iter().map(|run| left_out(curve, *run)).collect::<Vec<_>>();
     let left_out = task.curves.iter().zip(&strange).flat_map(of_runs).collect();
     let belonging: Vec<MeasuredCurve> = task.curves.iter().zip(&strange).map(|(curve, runs)| without(curve, runs)).collect();
     let task = &FitTask { curves: &belonging, ..*task };
@@ -135,8 +138,8 @@ pub fn fit(task: &FitTask<'_>, law: &PowerLaw) -> Result<Fit> {
     let ratio = paris.delta_k_max / paris.delta_k_min;
     if is_fitted && ratio < DELTA_K_RATIO_MIN {
         warnings.push(format!(
-            "p is not identified: the readings span only a factor {ratio:.2} in ΔK (at least {DELTA_K_RATIO_MIN} is needed); \
-             widen the window, or fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
+            "m cannot be determined: ΔK varies only by a factor {ratio:.2} (need {DELTA_K_RATIO_MIN}); widen the window, or \
+             fix p by [fit] record = \"fitted.toml\", or by parameters = [\"a\"] and p = ..."
         ));
     }
     let power = |delta_k: f64| constants.a * delta_k.powf(constants.p);
@@ -182,7 +185,7 @@ fn population(task: &FitTask<'_>, law: &PowerLaw, warnings: &mut Vec<String>) ->
     match specimens.and_then(|specimens| fit_population(&specimens, task.fixed_p)) {
         Ok(population) => Some(population),
         Err(error) => {
-            warnings.push(format!("no scatter of lives is given: {error}"));
+            warnings.push(format!("no scatter of lives: {error}"));
             None
         }
     }
@@ -236,13 +239,13 @@ fn delta_k_range(task: &FitTask<'_>) -> [f64; 2] {
 }
 
 /// What speaks against the readings of the specimens.
-fn remarks(task: &FitTask<'_>, runs: &[Vec<Run>]) -> Vec<String> {
-    let of_curve = |(curve, runs): (&MeasuredCurve, &Vec<Run>)| doubts_beside(curve, runs, task.delta_k);
+fn remarks(task: &FitTask<'_>, runs: &[Vec<OutlierRun>]) -> Vec<String> {
+    let of_curve = |(curve, runs): (&MeasuredCurve, &Vec<OutlierRun>)| doubts_beside(curve, runs, task.delta_k);
     let mut lines: Vec<String> = task.curves.iter().zip(runs).flat_map(of_curve).collect();
     if lines.len() > DOUBTS_SHOWN {
         let more = lines.len() - DOUBTS_SHOWN;
         lines.truncate(DOUBTS_SHOWN);
-        lines.push(format!("{more} more remarks of this kind on other readings: `perilife rates` names all"));
+        lines.push(format!("{more} more messages of this kind: `perilife rates` lists all"));
     }
     lines
 }
@@ -260,8 +263,8 @@ fn short_steps_warning(lengths: &[f64]) -> Option<String> {
     let short = lengths.windows(2).filter(|pair| pair[1] - pair[0] < STEP_MIN * (1.0 - 1e-9)).count();
     (short > 0).then(|| {
         format!(
-            "{short} of {} steps between readings are under {} mm (ASTM E647, 8.6.2): errors of the fit count such readings together \
-             with the next; read less often",
+            "{short} of {} steps between readings are under {} mm (ASTM E647, 8.6.2): such readings are merged for the error \
+             of the fit; read less often",
             lengths.len() - 1,
             STEP_MIN / MM
         )

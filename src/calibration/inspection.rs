@@ -92,13 +92,13 @@ impl TipLengths {
     fn of_curve(&self, curve: &[[f64; 2]], from: InspectFrom) -> Result<(usize, [f64; 2])> {
         let tip = from.tip.unwrap_or(self.leads);
         let Some(lengths) = self.lengths.get(tip).filter(|lengths| !lengths.is_empty()) else {
-            let problem = format!("is no crack tip of this plate, which has {}", self.lengths.len());
+            let problem = format!("is not a crack tip of this plate, which has {}", self.lengths.len());
             return Err(input(from.names[2], tip, problem, "count tips from 0, as in a_n.csv"));
         };
         let (shortest, longest) = (lengths[0], lengths[lengths.len() - 1]);
         let length = from.crack_length_mm;
         if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve: the crack of tip {tip} goes from {shortest:.4} to {longest:.4} mm");
+            let problem = format!("is not on the curve: the crack of tip {tip} has {shortest:.4} to {longest:.4} mm");
             return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them, or another tip"));
         }
         let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
@@ -123,13 +123,13 @@ impl Inspection {
         from.check()?;
         let of_tip = tips.map(|tips| tips.of_curve(curve, from)).transpose()?;
         if let (None, Some(tip)) = (of_tip, from.tip) {
-            let problem = "belongs to plates with cracks of their own: this specimen has the crack length of its standard";
-            return Err(input(from.names[2], tip, problem, "leave it out"));
+            let problem = "applies only to kind = \"plate\"; this specimen has one crack length";
+            return Err(input(from.names[2], tip, problem, "remove it"));
         }
         let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, [length, _])| length), curve[curve.len() - 1]);
         let (shortest, longest) = (curve[0][0], end[0]);
         if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve, which goes from {shortest} to {longest} mm");
+            let problem = format!("is not on the curve, {shortest} to {longest} mm");
             return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them"));
         }
         let cycles_at = of_tip.map_or_else(|| Monotone::new(curve.iter().copied()).at(length), |(_, [_, cycles])| cycles);

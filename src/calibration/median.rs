@@ -68,7 +68,7 @@ pub fn median(values: &[f64]) -> f64 {
 /// many equally spaced ones as the curves have readings (median), over the range that all of them cover.
 pub fn common_lengths(curves: &[MeasuredCurve]) -> Result<Vec<f64>> {
     let Some(first) = curves.first() else {
-        return Err(input_missing("measured.files", "hold no curve", "give at least one specimen"));
+        return Err(input_missing("measured.files", "contain no curve", "give at least one specimen"));
     };
     let same = |curve: &MeasuredCurve| {
         curve.crack_length.len() == first.crack_length.len()
@@ -84,7 +84,7 @@ pub fn common_lengths(curves: &[MeasuredCurve]) -> Result<Vec<f64>> {
     if end - start <= SAME_LENGTH {
         return Err(input_missing(
             "measured.files",
-            "hold specimens whose crack lengths do not overlap, so they have no common median",
+            "contain specimens whose crack lengths do not overlap: no common median",
             "calibrate them one by one, or give curves over the same range",
         ));
     }

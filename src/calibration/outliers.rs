@@ -76,7 +76,7 @@ impl RobustLine {
 
 /// Readings between which a crack grew too slowly or too fast.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Run {
+pub struct OutlierRun {
     /// First reading.
     pub from: usize,
     /// Last reading.
@@ -224,19 +224,19 @@ fn are_off(residuals: &[f64], deviation: f64) -> Vec<bool> {
 }
 
 /// Runs of neighbouring rates of every specimen that do not belong to the curve of all.
-pub fn runs(specimens: &[Vec<StepRate>]) -> Vec<Vec<Run>> {
+pub fn runs(specimens: &[Vec<StepRate>]) -> Vec<Vec<OutlierRun>> {
     let Some((residuals, deviation)) = residuals(specimens) else { return vec![Vec::new(); specimens.len()] };
     let of_specimen = |(rates, residuals): (&Vec<StepRate>, &Vec<f64>)| {
-        let mut runs: Vec<Run> = Vec::new();
+        let mut runs: Vec<OutlierRun> = Vec::new();
         let off = are_off(residuals, deviation);
         for ((rate, residual), _) in rates.iter().zip(residuals).zip(off).filter(|(_, off)| *off) {
             let factor = residual.exp();
             match runs.last_mut() {
                 Some(run) if run.to == rate.from && (run.factor > 1.0) == (factor > 1.0) => {
                     let farther = residual.abs() > run.factor.ln().abs();
-                    *run = Run { to: rate.to, factor: if farther { factor } else { run.factor }, ..*run };
+                    *run = OutlierRun { to: rate.to, factor: if farther { factor } else { run.factor }, ..*run };
                 }
-                _ => runs.push(Run { from: rate.from, to: rate.to, factor }),
+                _ => runs.push(OutlierRun { from: rate.from, to: rate.to, factor }),
             }
         }
         runs
@@ -245,7 +245,7 @@ pub fn runs(specimens: &[Vec<StepRate>]) -> Vec<Vec<Run>> {
 }
 
 /// A curve with the growth of some runs left out.
-pub fn without(curve: &MeasuredCurve, runs: &[Run]) -> MeasuredCurve {
+pub fn without(curve: &MeasuredCurve, runs: &[OutlierRun]) -> MeasuredCurve {
     let mut left_out: Vec<bool> = (0..curve.cycles.len()).map(|step| !curve.counts(step)).collect();
     for run in runs {
         left_out[run.from + 1..=run.to].fill(true);
@@ -260,22 +260,22 @@ pub fn doubts(curve: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> Vec<String
 }
 
 /// The same where the runs are known.
-pub fn doubts_beside(curve: &MeasuredCurve, runs: &[Run], delta_k: &dyn Fn(f64) -> f64) -> Vec<String> {
+pub fn doubts_beside(curve: &MeasuredCurve, runs: &[OutlierRun], delta_k: &dyn Fn(f64) -> f64) -> Vec<String> {
     let shift = level_warning(curve, &step_rates(curve, delta_k), runs);
     named(curve, runs).into_iter().chain(shift).collect()
 }
 
 /// Warnings that name the runs of a curve by line, with the window that leaves them out.
-fn named(curve: &MeasuredCurve, runs: &[Run]) -> Vec<String> {
+fn named(curve: &MeasuredCurve, runs: &[OutlierRun]) -> Vec<String> {
     let mut lines: Vec<String> = runs.iter().take(RUNS_NAMED).map(|run| run_warning(curve, *run)).collect();
     if runs.len() > RUNS_NAMED {
-        lines.push(format!("specimen {}: {} more runs of readings do not belong", curve.specimen, runs.len() - RUNS_NAMED));
+        lines.push(format!("specimen {}: {} more runs of outliers", curve.specimen, runs.len() - RUNS_NAMED));
     }
     lines
 }
 
 /// A run as what a fit leaves out.
-pub fn left_out(curve: &MeasuredCurve, run: Run) -> LeaveOut {
+pub fn left_out(curve: &MeasuredCurve, run: OutlierRun) -> LeaveOut {
     let cycles = |reading: usize| Some(curve.source.cycles_before + curve.cycles[reading]);
     LeaveOut {
         specimen: Some(curve.specimen.clone()),
@@ -286,14 +286,14 @@ pub fn left_out(curve: &MeasuredCurve, run: Run) -> LeaveOut {
     }
 }
 
-fn run_warning(curve: &MeasuredCurve, run: Run) -> String {
-    let Run { from, to, factor } = run;
+fn run_warning(curve: &MeasuredCurve, run: OutlierRun) -> String {
+    let OutlierRun { from, to, factor } = run;
     let window = left_out(curve, run);
     let [start, end] = [window.from_cycles, window.to_cycles].map(Option::unwrap_or_default);
     let [first, last] = [from, to].map(|reading| round_off(curve.crack_length[reading] / MM));
     format!(
-        "{}readings do not belong: from {first} to {last} mm the crack of specimen {} grew at {factor:.2} times the rate of its other \
-         readings at equal ΔK; a fit leaves them out; if the test explains it, say so by measured.leave_out = [{{ specimen = \"{}\", from_cycles = \
+        "{}outliers: from {first} to {last} mm specimen {} grew at {factor:.2} times the rate of its other readings at equal \
+         ΔK; excluded from the fit; if the test explains it, set measured.leave_out = [{{ specimen = \"{}\", from_cycles = \
          {start}, to_cycles = {end}, reason = \"...\" }}]",
         place(curve, from, to),
         curve.specimen,
@@ -382,7 +382,7 @@ pub fn best_split(rates: &[StepRate]) -> Option<LevelShift> {
 }
 
 /// Where the rates of a curve have two levels, and not because of the few of them that `runs` names: those have their own warning.
-fn level_warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[Run]) -> Option<String> {
+fn level_warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[OutlierRun]) -> Option<String> {
     // Runs follow each other.
     let named = |rate: &StepRate| {
         let begun = runs.partition_point(|run| run.from <= rate.from);
@@ -397,9 +397,9 @@ fn level_warning(curve: &MeasuredCurve, rates: &[StepRate], runs: &[Run]) -> Opt
     }
     let StepRate { from, to, .. } = rates[shift.rate];
     Some(format!(
-        "{}no one power of ΔK can hold for specimen {}: from {} mm on the rate is {:.2} times that before at equal ΔK (F = {:.0}, common m \
-         {:.2}); if the load changed, give it for every reading (columns force_max_kn and force_min_kn), else leave the readings before or \
-         after it out (measured.leave_out or the window of crack lengths)",
+        "{}rate changes in specimen {}: above {} mm it is {:.2} times that before at equal ΔK (F = {:.0}, common m {:.2}); if \
+         the load changed, give it for every reading (columns force_max_kn and force_min_kn), else exclude the readings \
+         before or after it (measured.leave_out or the window of crack lengths)",
         place(curve, from, to),
         curve.specimen,
         round_off(curve.crack_length[from] / MM),

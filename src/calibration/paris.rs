@@ -6,7 +6,7 @@
 
 use crate::search::Constants;
 use perilife_base::error::{Error, Result};
-use perilife_base::line::line;
+use perilife_base::linear_fit::line;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_laws::growth_law::{Walker, doubt};
 use perilife_laws::paris::ParisLaw;
@@ -50,11 +50,11 @@ const EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=10.0;
 pub fn doubt_of_exponent(m: f64) -> Option<String> {
     let (low, high) = (EXPONENTS.start(), EXPONENTS.end());
     let words = "check the units of crack length, cycles and load";
-    (!EXPONENTS.contains(&m)).then(|| format!("m = {m:.3} is outside {low} to {high}, where metals lie: {words}"))
+    (!EXPONENTS.contains(&m)).then(|| format!("m = {m:.3} is outside {low} to {high}, the range of metals: {words}"))
 }
 
 /// What is wrong with `da/dN = C ΔK^m` (mm/cycle, MPa√m) as the law of a metal: a unit that slipped shows here.
-pub fn doubt_of(c: f64, m: f64) -> Option<String> {
+pub fn implausibility_of(c: f64, m: f64) -> Option<String> {
     let paris = ParisLaw { c: c * MM_PER_CYCLE, m };
     doubt_of_exponent(m).or_else(|| doubt(&Walker { paris, gamma: 1.0, threshold: 0.0 }, 0.0))
 }
@@ -91,7 +91,7 @@ pub fn equivalents(
         }
     }
     let Some(law) = line(&log_k, &log_rate) else {
-        return Err(Error::Mechanics("the fitted run has no growth rates to draw a Paris line through".to_owned()));
+        return Err(Error::Mechanics("the fitted run has no growth rates for a Paris line".to_owned()));
     };
     // m follows p: its slope over p is that of the sensitivities over ln ΔK.
     let m_per_p = line(&log_k, &sensitivity).map_or(0.0, |law| law.slope);

@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 use nalgebra::{Matrix3, Vector3};
 
 use perilife_base::columns::Table;
-use perilife_base::line::{Line, line};
+use perilife_base::linear_fit::{Line, line};
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_growth::case::Case;
 use perilife_measured::{MeasuredCurve, side_difference_max};
@@ -36,7 +36,7 @@ pub const HEADER: &str = "specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_
 perilife_base::kinds! {
     /// How rates are taken from readings.
     pub enum RateMethod for "rates --method" {
-        Secant = "secant": "slope between neighbouring readings",
+        Secant = "secant": "secant (point-to-point), ASTM E647",
         Polynomial7 = "polynomial7": "seven-point incremental polynomial of ASTM E647, appendix X1",
     }
 }

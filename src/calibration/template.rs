@@ -22,7 +22,7 @@ pub fn refuse_table(path: &Path) -> Result<()> {
     Err(Error::Input(Box::new(InputError {
         file: Some(path.to_path_buf()),
         problem: "is a table of readings, not a calibration file".to_owned(),
-        remedy: format!("save these lines beside it as {stem}.toml, fill in <...>, and calibrate that:\n\n{lines}"),
+        remedy: format!("save these lines in its folder as {stem}.toml, fill in <...>, and calibrate that:\n\n{lines}"),
         ..InputError::default()
     })))
 }

@@ -22,7 +22,7 @@ use perilife_runner::{Message, Summary, Task, Wanted, of_prediction};
 /// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_long_help = "DIR holds the law (fitted.toml, for fatigue.fitted), fit.json, tables of curve, band and specimens, and charts.\n\
+    after_long_help = "DIR contains the law (fitted.toml, for fatigue.fitted), fit.json, tables of curve, band and specimens, and charts.\n\
                        How to fit your own material: calibration/README.md of the source."
 )]
 pub struct Args {
@@ -35,10 +35,10 @@ pub struct Args {
     /// Replace the results of another input in DIR
     #[arg(long, help_heading = "Output")]
     pub force: bool,
-    /// Case to run with the fit, into DIR/CASE/ (repeatable)
+    /// Predict this case with the fitted law, into DIR/CASE/ (repeatable)
     #[arg(long, value_name = "CASE.toml", num_args = 1.., help_heading = "Input")]
     pub predict: Vec<PathBuf>,
-    /// Override a key of the calibration file (repeatable), e.g. --set model.spacing_mm=2
+    /// Set a key (repeatable), e.g. --set model.spacing_mm=2
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
     /// What is printed.
@@ -102,7 +102,7 @@ fn check_no_gamma(document: &Document) -> Result<()> {
         None => Ok(()),
         Some(_) => Err(document.locate(input_missing(
             "fatigue.walker_gamma",
-            "does not go with a fit of a law over K, which has its own influence of R",
+            "cannot be combined with this law, which includes R",
             "remove it from the case",
         ))),
     }

@@ -14,27 +14,27 @@ use super::signals;
 use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::Provenance;
 use perilife_results::output::{LockedFolder, Marker, RunKind, Share};
-use perilife_study::chart::schedule::{Effort, Record, Request, measure};
-use perilife_study::chart::{Machine, Run, run, scenes};
+use perilife_study::chart::schedule::{BenchmarkRecord, Effort, Request, measure};
+use perilife_study::chart::{BenchmarkRun, Machine, run, scenes};
 use perilife_study::speed::{self, Origin, digits, seconds};
 use perilife_study::tasks::Outcome;
 
 /// Arguments of `perilife chart`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Scenes to measure; all where none is given (`perilife list` names them)
+    /// Scenes to run [default: all; see `perilife list`]
     #[arg(value_name = "SCENE")]
     pub names: Vec<String>,
-    /// Few choices, one run each: under three minutes on two cores
+    /// Short version (under 3 min on 2 cores)
     #[arg(long)]
     pub quick: bool,
-    /// Folder for chart.csv, chart.svg and summary.md; a chart that was broken off goes on there
+    /// Results folder; rerun to resume an interrupted benchmark
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// One run of one scene with the keys of --set: prints its time and error
+    /// Run one scene once with the keys of --set; print time and error
     #[arg(long, conflicts_with_all = ["quick", "out"])]
     pub once: bool,
-    /// Key of the scene's case for --once (repeatable), e.g. --set model.spacing_mm=2
+    /// Set a key for --once (repeatable), e.g. --set model.spacing_mm=2
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", requires = "once")]
     pub set: Vec<String>,
     /// What is printed.
@@ -62,12 +62,12 @@ pub fn measured(args: &Args) -> Result<Value> {
     let folder = args.out.as_deref().map(RunsFolder::open).transpose()?;
     let known = folder.as_ref().map(|folder| folder.known()).transpose()?.unwrap_or_default();
     if let Some(folder) = &folder {
-        signals::say_at_the_end(&format!("finished runs stay in {}; the same command goes on from there", folder.name.display()));
+        signals::say_at_the_end(&format!("finished runs are in {}; run the same command to resume", folder.name.display()));
         if !known.is_empty() {
-            args.console.note(&format!("{}: {} runs are there already", folder.name.display(), known.len()));
+            args.console.note(&format!("{}: {} runs already finished", folder.name.display(), known.len()));
         }
     }
-    let mut keep = |record: &Record| {
+    let mut keep = |record: &BenchmarkRecord| {
         args.console.say(&line(record));
         folder.as_ref().map_or(Ok(()), |folder| folder.keep(record))
     };
@@ -93,7 +93,7 @@ fn command(args: &Args) -> String {
     format!("perilife chart{quick}{names}")
 }
 
-fn line(record: &Record) -> String {
+fn line(record: &BenchmarkRecord) -> String {
     let keys = record.request.set.join(" ");
     let told = match &record.outcome {
         Outcome::Done(run) => {
@@ -135,7 +135,7 @@ fn once(args: &Args) -> Result<()> {
 }
 
 /// Starts this program once more for one run, so that memory and caches are that run's alone.
-fn in_own_process(request: &Request, limit_s: f64) -> Result<Outcome<Run>> {
+fn in_own_process(request: &Request, limit_s: f64) -> Result<Outcome<BenchmarkRun>> {
     let failed = |source| Error::file(Path::new("perilife"), "cannot start a process of its own", source);
     let program = std::env::current_exe().map_err(failed)?;
     let mut answer = tempfile::tempfile().map_err(failed)?;
@@ -189,18 +189,18 @@ impl RunsFolder {
     }
 
     /// Runs of an earlier call; a last line that was broken off counts for nothing.
-    fn known(&self) -> Result<Vec<Record>> {
+    fn known(&self) -> Result<Vec<BenchmarkRecord>> {
         let path = self.name.join(RUNS_FILE);
         let text = fs::read_to_string(self.file()).map_err(|error| Error::file(&path, "cannot read", error))?;
         let mut lines = text.lines();
         if lines.next() != Some(header().as_str()) {
-            let problem = "holds runs of another version, machine or number of threads";
-            return Err(input("--out", self.name.display(), problem, "give another folder, or remove this one yourself"));
+            let problem = "contains runs of another version, machine or number of threads";
+            return Err(input("--out", self.name.display(), problem, "use a new folder, or delete this one"));
         }
         Ok(lines.filter_map(|line| serde_json::from_str(line).ok()).collect())
     }
 
-    fn keep(&self, record: &Record) -> Result<()> {
+    fn keep(&self, record: &BenchmarkRecord) -> Result<()> {
         let path = self.name.join(RUNS_FILE);
         let append =
             || fs::OpenOptions::new().append(true).open(self.file())?.write_all(format!("{}\n", json!(record)).as_bytes());

@@ -19,7 +19,7 @@ pub struct Args {
     /// Draw specimen, crack, loads and supports into this SVG file
     #[arg(long, value_name = "OUT.svg", help_heading = "Output")]
     pub picture: Option<PathBuf>,
-    /// Override a key of the file (repeatable), e.g. --set model.spacing_mm=2
+    /// Set a key (repeatable), e.g. --set model.spacing_mm=2
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
     /// What is printed.

@@ -22,18 +22,18 @@ const OVER_COST: u32 = 20;
 
 /// Options of a command that runs a case or a scene.
 #[derive(Debug, Clone, Default, clap::Args)]
-#[command(next_help_heading = "Going on after an interruption")]
+#[command(next_help_heading = "Checkpoint and resume")]
 pub struct Args {
-    /// Keep the state of the run in this file, and go on from it if it is there; removed when the run is done
+    /// Save state to FILE, resume from it if present; deleted at the end
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<PathBuf>,
-    /// Least time between two writings; they wait for a place from which the run can go on
+    /// Minimum time between checkpoints, s
     #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = seconds, requires = "checkpoint")]
     pub checkpoint_every: f64,
     /// Replace the results of another input in DIR
     #[arg(long, help_heading = "Output")]
     pub force: bool,
-    /// Time after which the run is asked to end, building the plate included; with a checkpoint the same command goes on later
+    /// Stop after this time, s; resume with --checkpoint
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
 }
@@ -41,7 +41,7 @@ pub struct Args {
 /// A time that is not negative.
 fn seconds(text: &str) -> std::result::Result<f64, String> {
     let time = text.parse::<f64>().ok().filter(|time| Duration::try_from_secs_f64(*time).is_ok());
-    time.ok_or_else(|| format!("`{text}` is no time in seconds, 0 or more"))
+    time.ok_or_else(|| format!("`{text}` is not a time in seconds, 0 or more"))
 }
 
 impl Args {
@@ -83,7 +83,7 @@ impl Args {
             content(path)?.map(|bytes| TaskCheckpoint::of(task, &bytes)).transpose().map_err(|error| error.in_file(path))?;
         let keeper = self.keeper(task, read, path, progress)?;
         if let Some(from) = &from {
-            console.note(&format!("{name}: goes on from {}: {}", path.display(), from.words()));
+            console.note(&format!("{name}: resuming from {}: {}", path.display(), from.words()));
         }
         let done = perilife_runner::run(task, from, Some(folder), &keeper);
         Ok((self.within_limit(name, &keeper.progress, done)?, Some(keeper.file)))
@@ -96,10 +96,10 @@ impl Args {
         }
         let way = match &self.checkpoint {
             Some(path) => way_on(path),
-            None => "give more, or keep the run with --checkpoint FILE".to_owned(),
+            None => "increase --time-limit, or use --checkpoint FILE".to_owned(),
         };
         let seconds = self.time_limit.unwrap_or_default();
-        Err(Error::Mechanics(format!("{name}: the time limit of {seconds} s is over before the run is; {way}")))
+        Err(Error::Mechanics(format!("{name}: stopped at the time limit of {seconds} s; {way}")))
     }
 
     /// Refuses a checkpoint below the folder of the results, which it would make one that holds something else.
@@ -108,8 +108,8 @@ impl Args {
         let real = |path: &Path| std::path::absolute(fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf()));
         match (real(path), real(out)) {
             (Ok(file), Ok(folder)) if file.starts_with(&folder) => {
-                let problem = format!("lies below --out = {}, which has nothing but results", out.display());
-                Err(input("--checkpoint", path.display(), problem, "give a name beside it"))
+                let problem = format!("is inside --out = {}", out.display());
+                Err(input("--checkpoint", path.display(), problem, "choose a file outside it"))
             }
             _ => Ok(()),
         }
@@ -121,7 +121,7 @@ impl Args {
         let sign = if matches!(task, Task::Scene(_)) { SCENE_SIGN } else { SIGN };
         let file = OutputFile::claim(path, Sort { option: "--checkpoint", sign }, read)?;
         if !file.is_file() {
-            return Err(input("--checkpoint", path.display(), "is no file", "give the name of a file"));
+            return Err(input("--checkpoint", path.display(), "is not a file", "give the name of a file"));
         }
         // The parser let no other time through.
         let every = Duration::try_from_secs_f64(self.checkpoint_every).unwrap_or_default();
@@ -133,8 +133,8 @@ impl Args {
 /// How to go on from a checkpoint, in words.
 fn way_on(path: &Path) -> String {
     match path.is_file() {
-        true => format!("the same command goes on from {}", path.display()),
-        false => format!("the same command begins anew: {} was not written yet", path.display()),
+        true => format!("run the same command to resume from {}", path.display()),
+        false => format!("no checkpoint yet ({}); run the same command to start over", path.display()),
     }
 }
 
@@ -211,7 +211,7 @@ impl Keeper {
             && !std::mem::replace(&mut last.has_failed, true)
         {
             // A run that cannot be kept is still worth its end.
-            self.warn(&format!("{error}: the run goes on, but cannot be taken up later"));
+            self.warn(&format!("{error}: running on without checkpoints"));
         }
         (last.at, last.cost) = (Instant::now(), begun.elapsed());
     }

@@ -13,17 +13,17 @@ use perilife_base::input::STREAM;
 /// What is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Form {
-    /// For bash.
+    /// bash
     Bash,
-    /// For elvish.
+    /// elvish
     Elvish,
-    /// For fish.
+    /// fish
     Fish,
-    /// For PowerShell.
+    /// PowerShell
     Powershell,
-    /// For zsh.
+    /// zsh
     Zsh,
-    /// A page of the manual (roff), for `man -l`
+    /// Man page (roff), for `man -l`
     Man,
 }
 

@@ -24,9 +24,9 @@ use perilife_runner::{Message, Summary, Watcher};
 
 /// Options of every command that prints results.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
-#[command(next_help_heading = "What is printed")]
+#[command(next_help_heading = "Output options")]
 pub struct Console {
-    /// Print one JSON object on stdout and nothing else there
+    /// Print the result as JSON
     #[arg(long, global = true)]
     pub json: bool,
     /// Print the first line of the result alone

@@ -23,13 +23,13 @@ pub struct Args {
     /// Folder of a finished run
     #[arg(value_name = "DIR")]
     pub run: PathBuf,
-    /// Rows, equally spaced in cycles from the first to the last, at least 2
+    /// Number of rows, equally spaced in cycles, at least 2
     #[arg(long, value_name = "COUNT", default_value_t = 200, value_parser = clap::value_parser!(u64).range(2..=ROWS_MAX), help_heading = "Sampling")]
     pub points: u64,
-    /// A row every so many cycles and one at the end, instead of --points
+    /// One row every CYCLES (instead of --points)
     #[arg(long, value_name = "CYCLES", help_heading = "Sampling")]
     pub every_cycles: Option<f64>,
-    /// Table to write (CSV); replaced if an earlier export made it
+    /// CSV file to write
     #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     pub out: PathBuf,
     /// What is printed.
@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> Result<()> {
     let is_file = file.is_file();
     file.write(curve::table(&rows).csv_in(units).as_bytes())?;
     if is_file {
-        args.console.say(&format!("{}: {} rows from {first} to {last} cycles", args.out.display(), rows.len()));
+        args.console.say(&format!("{}: {} rows, {first} to {last} cycles", args.out.display(), rows.len()));
     }
     args.console.object(&json!({ "file": args.out, "rows": rows.len(), "cycles_first": first, "cycles_last": last }))
 }
@@ -62,9 +62,9 @@ fn curve_of(folder: &Path, opened: &Opened) -> Result<(Vec<Row>, System)> {
         return Ok((rows, asked().unwrap_or(of_run)));
     }
     let remedy = if folder.join("fitted.toml").is_file() {
-        "this is a calibration: give the folder of a predicted case inside it"
+        "give the folder of a predicted case inside this calibration"
     } else {
         "give the --out folder of `perilife predict`"
     };
-    Err(input("DIR", folder.display(), format!("holds no finished run ({A_N_FILE} is missing)"), remedy))
+    Err(input("DIR", folder.display(), format!("contains no finished run ({A_N_FILE} is missing)"), remedy))
 }

@@ -13,9 +13,9 @@ use perilife_runner::{Kind, Task};
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "Loads: traction, displacement, velocity or platens. [damage]: critical stretch, critical energy, softening or principal stress.\n\
-                       A growing load is followed along the path of equilibrium through snap-back (model.solver = \"secant\"), by relaxation to rest, or\n\
-                       with loading.iterations_per_step as many published examples are, which is not at rest.\n\
-                       A run that was killed goes on from its checkpoint to the same histories, bit for bit on the same kind of processor.\n\
+                       Growing loads follow the equilibrium path through snap-back (model.solver = \"secant\"), relax to rest, or\n\
+                       run loading.iterations_per_step as published examples do (not at rest).\n\
+                       A resumed run gives the same histories (bit-identical on the same CPU type).\n\
                        Scenes of the literature: data/cases/fracture of the source."
 )]
 pub struct Args {
@@ -25,10 +25,10 @@ pub struct Args {
     /// Folder for the results [default: name of the scene]
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// Override a key of the scene (repeatable), e.g. --set model.spacing_mm=0.5
+    /// Set a key (repeatable), e.g. --set model.spacing_mm=0.5
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
-    /// Also write the fields of some moments for ParaView (paraview/run.pvd), as the key output.paraview does
+    /// Write fields for ParaView (key output.paraview)
     #[arg(long, help_heading = "Output")]
     pub paraview: bool,
     /// Keeping the run for later.

@@ -8,13 +8,13 @@ use perilife_runner::catalogue;
 /// Arguments of `perilife list`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// `keys`: every key with its range; else only keys whose name contains this: `materials`, `loading`, `growth_law`
+    /// `keys` for all keys and ranges, or part of a name, e.g. `materials`
     #[arg(value_name = "WHAT")]
     pub what: Option<String>,
-    /// Of `keys`: those of a section, or of a kind of specimen: `loading`, `specimen.lug`
+    /// With `keys`: a section or kind of specimen, e.g. `specimen.lug`
     #[arg(value_name = "SECTION")]
     pub section: Option<String>,
-    /// JSON Schema of case and calibration files, by which editors complete and check them
+    /// Print the JSON Schema of input files (for editors)
     #[arg(long)]
     pub schema: bool,
     /// What is printed.
@@ -48,7 +48,7 @@ pub fn run(args: &Args) -> Result<()> {
         return Err(input(
             "WHAT",
             given,
-            "is part of no key",
+            "no key matches",
             "use `perilife list` for all choices, `perilife list keys` for all keys",
         ));
     }
@@ -67,7 +67,7 @@ fn keys(args: &Args) -> Result<()> {
         let near = nearest(given, names);
         let list = || told.iter().map(|told| told.section.as_str()).collect::<Vec<_>>().join(", ");
         let remedy = near.map_or_else(|| format!("use one of {}", list()), |near| format!("did you mean {near}?"));
-        return Err(input("SECTION", given, "is no section", remedy));
+        return Err(input("SECTION", given, "unknown section", remedy));
     }
     let lines: Vec<Vec<String>> = asked.iter().flat_map(|told| told.lines()).map(Vec::from).collect();
     args.console.result(&aligned(&lines))?;

@@ -64,101 +64,137 @@ fn within_machine(task: &Task, document: &Document) -> Result<()> {
     task.budgets(1)?.iter().try_for_each(|budget| budget.within_machine()).map_err(|error| document.locate(error))
 }
 
-/// Declares the subcommands: doc line, name and module; gives the enum that clap parses and the call of the right `run`.
+/// Declares the subcommands by groups: doc line, name and module; gives the enum that clap parses, the call of the right `run` and the
+/// names of each group.
 macro_rules! commands {
-    ($($(#[$attribute:meta])+ $Name:ident: $module:ident $(or $alias:literal)? $(hidden = $hide:literal)?),+ $(,)?) => {
+    ($($group:literal { $($(#[$attribute:meta])+ $Name:ident: $module:ident $(or $alias:literal)? $(hidden = $hide:literal)?),+ })+) => {
         /// A subcommand with its arguments.
         #[derive(Debug, Subcommand)]
-        pub enum Command { $($(#[$attribute])+ $(#[command(alias = $alias)])? $(#[command(hide = $hide)])? $Name($module::Args)),+ }
+        pub enum Command {
+            $($($(#[$attribute])+ $(#[command(alias = $alias)])? $(#[command(hide = $hide)])? $Name($module::Args),)+)+
+        }
 
         impl Command {
             /// Runs it.
             /// Errors: what the command reports; [`perilife_base::error::Error::exit_code`] is the exit code of the process.
             pub fn run(&self) -> Result<()> {
-                #[allow(unused_doc_comments, reason = "the lines about a subcommand stand at its arm too, as its condition does")]
-                match self { $($(#[$attribute])+ Command::$Name(args) => $module::run(args)),+ }
+                #[allow(unused_doc_comments, reason = "the attributes of a subcommand are at its arm too, for its condition")]
+                match self { $($($(#[$attribute])+ Command::$Name(args) => $module::run(args),)+)+ }
             }
         }
+
+        const GROUPS: &[(&str, &[&str])] = &[$(($group, &[$(stringify!($module)),+])),+];
     };
 }
 
 commands! {
-    /// Predict crack growth: run a case, write its a-N curve and pictures
-    Predict: predict,
-    /// Run many cases of one: a grid, a random design or a law that scatters
-    Sweep: sweep,
-    /// Gather the results of a sweep whose cases were run in parts
-    Collect: collect,
-    /// Run a fracture scene without cycles: static, load steps or motion in time
-    Fracture: fracture,
-    /// Fit the fatigue law to measured a-N curves
-    Calibrate: calibrate,
-    /// Resample the a-N curve of a finished run
-    Export: export,
-    /// One page of a run or a fit, to be printed and signed
-    Report: report,
-    /// Stress intensity factors of every crack tip, beside the handbook value
-    Sif: sif,
-    /// Growth rate da/dN against ΔK from measured a-N curves
-    Rates: rates,
-    /// Run the built-in verification: computed, reference, error and bound of every row
-    Verify: verify,
-    /// Predict published tests: ratio to what was measured, band, paths
-    Validate: validate,
-    /// Measure every method, law, solver and resolution: time against error
-    Chart: chart or "bench",
-    /// Take every method across its range until it fails: safe ranges and why they end
-    Stability: stability,
-    /// Check an input file without running it
-    Check: check,
-    /// List every kind of every key of the input files
-    List: list,
-    /// Print a page of the guide
-    Guide: guide,
-    /// Print what a shell needs to complete commands, or the manual page
-    Completions: completions,
-    /// Serve calibrations and predictions over HTTP, with a web page
-    #[cfg(feature = "service")]
-    Serve: serve,
-    /// Work for a service from this or another machine
-    #[cfg(feature = "service")]
-    Worker: worker,
-    /// Make, list and remove the tokens of a service
-    #[cfg(feature = "service")]
-    Token: token,
-    /// Run one job of a worker, which starts this by itself
-    #[cfg(feature = "service")]
-    Job: job hidden = true,
+    "Analyze" {
+        /// Predict crack path, a-N curve and life of a case
+        Predict: predict,
+        /// Fit a crack growth law to test data
+        Calibrate: calibrate,
+        /// Compute stress intensity factors and compare with the handbook
+        Sif: sif,
+        /// Run a fracture simulation (static, quasi-static, dynamic)
+        Fracture: fracture,
+        /// Validate an input file
+        Check: check
+    }
+    "Data" {
+        /// Compute da/dN against ΔK from test data (ASTM E647)
+        Rates: rates,
+        /// Export an a-N curve at equal cycle steps (CSV)
+        Export: export,
+        /// Write an HTML report for signature
+        Report: report,
+        /// List input keys and their values
+        List: list
+    }
+    "Studies" {
+        /// Run a parameter study (grid, Latin hypercube, scatter)
+        Sweep: sweep,
+        /// Merge the shards of a sweep
+        Collect: collect
+    }
+    "Verify" {
+        /// Run the verification suite
+        Verify: verify,
+        /// Predict published tests and compare with measured lives
+        Validate: validate,
+        /// Find the accuracy limits of each method
+        Stability: stability,
+        /// Benchmark time against error
+        Chart: chart or "bench"
+    }
+    "Service" {
+        /// Start the HTTP service and web page
+        #[cfg(feature = "service")]
+        Serve: serve,
+        /// Start a worker for a service
+        #[cfg(feature = "service")]
+        Worker: worker,
+        /// Manage access tokens
+        #[cfg(feature = "service")]
+        Token: token,
+        /// Run one job of a worker, which starts this by itself
+        #[cfg(feature = "service")]
+        Job: job hidden = true
+    }
+    "Other" {
+        /// Print a page of the guide
+        Guide: guide,
+        /// Generate shell completions or the man page
+        Completions: completions
+    }
 }
 
-/// Fatigue-life prediction of cracked plates by peridynamics.
+/// Template of `--help`: clap has no groups of subcommands.
+fn help_template() -> String {
+    let style = clap::builder::Styles::styled();
+    let (head, name) = (style.get_header(), style.get_literal());
+    let all = Command::augment_subcommands(clap::Command::new("perilife"));
+    let line = |command: &clap::Command| {
+        format!("  {name}{:<12}{name:#} {}\n", command.get_name(), command.get_about().cloned().unwrap_or_default())
+    };
+    let of_group = |(title, names): &(&str, &[&str])| {
+        let shown = names.iter().filter_map(|name| all.find_subcommand(name)).filter(|command| !command.is_hide_set());
+        let lines: String = shown.map(line).collect();
+        if lines.is_empty() { lines } else { format!("{head}{title}:{head:#}\n{lines}\n") }
+    };
+    let groups: String = GROUPS.iter().map(of_group).collect();
+    format!("{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{groups}{head}Options:{head:#}\n{{options}}{{after-help}}")
+}
+
+/// Predict fatigue crack growth and life of cracked plates.
 ///
-/// Cracks go through the plate, or are surface, corner and embedded cracks, by hand calculation until they do.
+/// Through cracks on any path; surface, corner and embedded cracks until breakthrough and beyond.
 #[derive(Debug, Parser)]
 #[command(
     name = "perilife",
     version,
     subcommand_required = true,
     arg_required_else_help = true,
+    help_template = help_template(),
     after_help = "Units: mm, MPa, GPa, N, MPa√m, mm/cycle, or with --units us inch, ksi, Msi, lbf, ksi√in, in/cycle; every key and column carries its own.\n\
-                  Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble, 128 + number of the signal that ended it.\n\
-                  A run that ends for a mechanical reason after its crack has grown is done: stop_reason says why it stopped.\n\
-                  An output folder appears when it is whole. A run replaces the files of an earlier one of its kind (.perilife lists them), and no others.\n\
-                  `perilife <COMMAND> --help` explains a command."
+                  Exit codes: 0 success, 2 invalid input, 3 no valid result, 4 I/O error, 128+n signal n.\n\
+                  A run that ends by fracture, yield or separation exits 0; see stop_reason.\n\
+                  Output folders are written atomically. A run replaces only the files of an earlier run (listed in .perilife).\n\
+                  Help on a command: perilife <COMMAND> --help"
 )]
 pub struct CommandLine {
     /// Print all messages and details; twice for the log (the variable RUST_LOG overrides)
-    #[arg(long, short, action = clap::ArgAction::Count, global = true, help_heading = "What is printed")]
+    #[arg(long, short, action = clap::ArgAction::Count, global = true, help_heading = "Output options")]
     pub verbose: u8,
-    /// Units of what is written and printed: si (mm, MPa, MPa√m), the default, or us (inch, ksi, ksi√in). Input files take keys of both. Metric stay what is read
-    /// again as input (fitted.toml, case.toml, checkpoints), files for ParaView and Parquet, and options of the command line
+    /// Output units: si (mm, MPa, MPa√m) or us (in, ksi, ksi√in)
+    ///
+    /// Inputs accept both. Always metric: fitted.toml, case.toml, checkpoints, ParaView, Parquet, option values without a unit.
     #[arg(
         long,
         value_name = "UNITS",
         env = "PERILIFE_UNITS",
         hide_env_values = true,
         global = true,
-        help_heading = "What is printed"
+        help_heading = "Output options"
     )]
     pub units: Option<System>,
     /// What to do.

@@ -14,9 +14,9 @@ use perilife_runner::{Kind, Task};
 /// Arguments of `perilife predict`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_long_help = "DIR holds the curve (a_n.csv), the path of every tip (crack_path.csv), K and β of every tip (factors.csv; beta.txt for AFGROW),\n\
+    after_long_help = "DIR contains the curve (a_n.csv), crack paths (crack_path.csv), K and β of each tip (factors.csv; beta.txt for AFGROW),\n\
                        result.json, charts and pictures.\n\
-                       A run that was killed goes on from its checkpoint to the same curve, bit for bit on the same kind of processor."
+                       A resumed run gives the same curve (bit-identical on the same CPU type). Bare lengths are in the unit of --units."
 )]
 pub struct Args {
     /// Case file
@@ -25,49 +25,49 @@ pub struct Args {
     /// Folder for the results [default: name of the case]
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// Override a key of the case (repeatable), e.g. --set model.spacing_mm=0.5
+    /// Set a key (repeatable), e.g. --set model.spacing_mm=0.5
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
-    /// Also write the load that would end the plate at once over crack length (residual_strength.csv and .svg)
+    /// Write residual strength against crack length (.csv, .svg)
     #[arg(long, help_heading = "Output")]
     pub residual_strength: bool,
-    /// Also write the fields of some moments for ParaView (paraview/run.pvd), as the key output.paraview does
+    /// Write fields for ParaView (key output.paraview)
     #[arg(long, help_heading = "Output")]
     pub paraview: bool,
-    /// Also draw the cracks as they grow (growth.svg, which moves in a browser), as the key output.animation does
+    /// Write an animated growth.svg (key output.animation)
     #[arg(long, help_heading = "Output")]
     pub animate: bool,
-    /// Readings of this very plate (cycles, crack length), which narrow the band of what it has left
+    /// Inspection readings of this plate: update its remaining life
     #[arg(long, value_name = "READINGS.csv", help_heading = "Input")]
     pub measured: Option<PathBuf>,
-    /// Inspection interval from this crack length, 6.35mm or 0.25in: 5 % remaining life / factor; a bare number is in the unit of --units
+    /// Inspection interval from this crack length, e.g. 6.35mm or 0.25in
     #[arg(long, value_name = "LENGTH", help_heading = "Output")]
     pub inspect_from: Option<String>,
-    /// Factor of the inspection interval
+    /// Inspection factor: interval = 5 % remaining life / factor
     #[arg(long, value_name = "F", default_value_t = FACTOR, requires = "inspect_from", help_heading = "Output")]
     pub factor: f64,
-    /// Tip of a plate whose crack has that length; the one that ends the life where it is left out
+    /// Tip for --inspect-from [default: governing tip]
     #[arg(long, value_name = "NUMBER", requires = "inspect_from", help_heading = "Output")]
     pub tip: Option<usize>,
-    /// Crack lengths that an inspection finds with 50 and with 90 %, units as of --inspect-from: probability that all of them miss the crack
+    /// Detectable lengths a50,a90: probability that all inspections miss
     #[arg(long, value_name = "A50,A90", requires = "inspect_from", help_heading = "Output")]
     pub pod: Option<String>,
-    /// Cycles of the first inspection [default: at the length of --inspect-from; of a fleet when 5 % of plates have it]
+    /// Cycles of the first inspection [default: at --inspect-from]
     #[arg(long, value_name = "CYCLES", requires = "pod", help_heading = "Output")]
     pub first_inspection: Option<u64>,
-    /// Also write lives of so many plates that differ in law, initial length and load (fleet.csv and .svg), as the key fleet.plates does
+    /// Life distribution of a fleet: scatter in law, initial crack, load
     #[arg(long, value_name = "PLATES", help_heading = "Output")]
     pub fleet: Option<u64>,
-    /// Seed of the plates, as the key fleet.seed is
+    /// Random seed of the fleet (key fleet.seed)
     #[arg(long, value_name = "NUMBER", help_heading = "Output")]
     pub seed: Option<u64>,
-    /// Also write the life at somewhat other load, initial length and law (sensitivities.csv and .svg)
+    /// Sensitivity of the life to load, initial crack and law
     #[arg(long, help_heading = "Output")]
     pub sensitivities: bool,
-    /// Also print the life by the other engine, coarse: two methods that share nothing
+    /// Cross-check with the other method (coarse)
     #[arg(long, help_heading = "Output")]
     pub cross_check: bool,
-    /// Do not look for how wrong the life may be
+    /// Skip the error estimate
     #[arg(long, help_heading = "Output")]
     pub no_estimate: bool,
     /// Keeping the run for later.

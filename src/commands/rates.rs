@@ -15,10 +15,10 @@ use perilife_base::table::{
 };
 use perilife_base::units::{MM, MM_PER_CYCLE, MPA_SQRT_M};
 use perilife_calibration::outliers::doubts;
-use perilife_calibration::paris::doubt_of;
+use perilife_calibration::paris::implausibility_of;
 use perilife_calibration::rates::{HEADER, RateMethod, RatePoint, add_delta_k, paris_line, rates, table, threshold};
 use perilife_growth::case::Case;
-use perilife_measured::{ColumnNames, Import, Measured, MeasuredCurve, first_of, read_into};
+use perilife_measured::{ColumnNames, Import, Measured, MeasuredCurve, first_of, ratio_warnings, read_into};
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_results::output::{OutputFile, Sort};
 
@@ -28,50 +28,49 @@ const THICKNESS_MM: f64 = 2.5;
 /// Arguments of `perilife rates`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Measured a-N curves
+    /// Files of a-N readings
     #[arg(value_name = "MEASURED.csv", required_unless_present = "materials")]
     pub measured: Vec<PathBuf>,
-    /// Growth laws of these materials of the library, of own material files, folders of them or a fitted.toml, beside what was measured
+    /// Compare with these materials: names, files, folders, fitted.toml
     #[arg(long, value_name = "NAME", num_args = 1.., help_heading = "Input")]
     pub materials: Vec<String>,
-    /// Stress ratio of these laws; that of the case where --specimen names one
+    /// Stress ratio of these laws [default: that of --specimen]
     #[arg(long, value_name = "R", requires = "materials", help_heading = "Input")]
     pub stress_ratio: Option<f64>,
-    /// Picture of these laws and of what was measured
+    /// Chart of these laws and the rates (SVG)
     #[arg(long, value_name = "FILE.svg", requires = "materials", help_heading = "Output")]
     pub picture: Option<PathBuf>,
-    /// Case or calibration file that says specimen, load and yield strength; without it there is no ΔK
+    /// Case or calibration with specimen and load (needed for ΔK)
     #[arg(long, value_name = "CASE.toml", help_heading = "Input")]
     pub specimen: Option<PathBuf>,
-    /// Override a key of that file (repeatable)
+    /// Set a key of that file (repeatable)
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input", requires = "specimen")]
     pub set: Vec<String>,
-    /// Unit of crack length where the header does not name it: mm, inch or m
+    /// Crack length unit if the header has none: mm, inch, m
     #[arg(long, value_name = "UNIT", help_heading = "Input")]
     pub length_unit: Option<String>,
-    /// Precision of a crack length, mm: near a threshold steps down to ten times it count [default: the scatter of the readings]
+    /// Precision of a crack length, mm [default: scatter of the readings]
     #[arg(long, value_name = "MM", help_heading = "Input")]
     pub precision_mm: Option<f64>,
-    /// Unit of cycles where the header does not name it: cycles, kilocycles or megacycles
+    /// Cycle unit if the header has none: cycles, kilocycles, megacycles
     #[arg(long, value_name = "UNIT", help_heading = "Input")]
     pub cycle_unit: Option<String>,
-    /// Unit of loads where the header does not name it: N, kN, lbf, kip, kgf, MPa or ksi
+    /// Load unit if the header has none: N, kN, lbf, kip, kgf, MPa, ksi
     #[arg(long, value_name = "UNIT", help_heading = "Input")]
     pub load_unit: Option<String>,
-    /// Which column is which (repeatable): cycles, length, specimen, force_max, force_min, stress_max, stress_min or stress_ratio by name
-    /// or number, e.g. length="a (in)"; several lengths are sides of one crack
+    /// Assign a column by name or number (repeatable): length="a (in)"
     #[arg(long = "column", value_name = "KEY=NAME", help_heading = "Input")]
     pub columns: Vec<String>,
-    /// Decimal sign where the file leaves it open: . or ,
+    /// Decimal separator if ambiguous: . or ,
     #[arg(long, value_name = "SIGN", help_heading = "Input")]
     pub decimal: Option<String>,
-    /// Sheet of a workbook, by name or number
+    /// Workbook sheet, by name or number
     #[arg(long, value_name = "SHEET", help_heading = "Input")]
     pub sheet: Option<String>,
-    /// How rates are taken: secant, or polynomial7 (seven-point incremental polynomial of ASTM E647)
+    /// Rate method (ASTM E647): secant or polynomial7
     #[arg(long, value_name = "METHOD", default_value = "polynomial7", help_heading = "Method")]
     pub method: String,
-    /// Table of the rates; without it (and without --json) the table goes to stdout
+    /// CSV file to write [default: stdout]
     #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     pub out: Option<PathBuf>,
     /// What is printed.
@@ -113,7 +112,8 @@ pub fn run(args: &Args) -> Result<()> {
     let mut measured = measured.of_precision("--precision-mm", args.precision_mm)?;
     let case = args.specimen.as_deref().map(|path| case_without_law(path, &args.set)).transpose()?;
     if let Some(case) = &case {
-        measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        measured.compare_with(&case.specimen, &case.material, &case.loading)?;
+        measured.warnings.extend(ratio_warnings(&measured.curves, &case.loading));
     }
     let specimens = specimen_rates(&measured, method, case.as_ref())?;
     let ratio = args.stress_ratio.or(case.as_ref().map(|case| case.loading.ratio)).unwrap_or(0.0);
@@ -157,13 +157,13 @@ fn specimen_rates(measured: &Measured, method: RateMethod, case: Option<&Case>) 
     let mut specimens: Vec<SpecimenRates> = measured.curves.iter().map(of_curve).collect();
     let Some(case) = case else { return Ok(specimens) };
     let Some(formula) = handbook(&case.specimen) else {
-        let remedy = "give a standard specimen whose length is at least 1.5 widths, or leave --specimen out";
-        return Err(input("specimen.kind", case.specimen.kind, "has no handbook K(a) in this shape", remedy));
+        let remedy = "give a standard specimen whose length is at least 1.5 widths, or remove --specimen";
+        return Err(input("specimen.kind", case.specimen.kind, "has no handbook K(a)", remedy));
     };
     let delta_k = |length: f64| formula.delta_k(length, case.loading.maximum, case.loading.range_share());
     for (specimen, curve) in specimens.iter_mut().zip(&measured.curves) {
         add_delta_k(&mut specimen.points, case, &delta_k);
-        let law = paris_line(&specimen.points).and_then(|law| doubt_of(10_f64.powf(law.intercept), law.slope));
+        let law = paris_line(&specimen.points).and_then(|law| implausibility_of(10_f64.powf(law.intercept), law.slope));
         let of_law = law.map(|words| format!("specimen {}: {words}", curve.specimen));
         let outside = outside_formula(&specimen.points, &formula).map(|words| format!("specimen {}: {words}", curve.specimen));
         let slow = specimen.threshold().map(|(_, words)| format!("specimen {}: {words}", curve.specimen));
@@ -180,7 +180,7 @@ fn outside_formula(points: &[RatePoint], formula: &HandbookFormula) -> Option<St
     let share = 100.0 * outside.len() as f64 / points.len() as f64;
     (!outside.is_empty()).then(|| {
         format!(
-            "{} of {} rates ({share:.1} %), at crack lengths from {low:.3} to {high:.3} mm, lie outside the range of {} ({})",
+            "{} of {} rates ({share:.1} %), at crack lengths from {low:.3} to {high:.3} mm, are outside the range of {} ({})",
             outside.len(),
             points.len(),
             formula.name,

@@ -18,7 +18,7 @@ pub struct Args {
     /// Results folder of `perilife predict` or `perilife calibrate`
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
-    /// Page to write (HTML); replaced if an earlier report made it
+    /// HTML file to write
     #[arg(long, value_name = "FILE.html", help_heading = "Output")]
     pub out: PathBuf,
     /// Report data (TOML, section [report]): number, customer, machine, ...

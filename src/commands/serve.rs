@@ -13,46 +13,47 @@ use perilife_service::{Settings, serve};
 /// Arguments of `perilife serve`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_long_help = "Page: / with drawings, fits, runs as they go on and remaining life. Interface: /docs, for programs /openapi.json. A script submits by\n  curl -H \"content-type: application/toml\" --data-binary @case.toml localhost:8080/v1/predictions\n\
-                       and asks /v1/predictions/ID/remaining?crack_length_mm=20&factor=3 for the cycles that are left and the inspection interval.\n\
-                       Watching: /healthz (alive), /readyz (takes jobs), /metrics for Prometheus, the log by -v or RUST_LOG.\n\
-                       Without tokens it answers this machine alone. To let others in: perilife token add, --listen, and a proxy with TLS before it."
+    after_long_help = "Web page: /. API: /docs, for programs /openapi.json. Submit a case by\n  curl -H \"content-type: application/toml\" --data-binary @case.toml localhost:8080/v1/predictions\n\
+                       Remaining life and inspection interval: /v1/predictions/ID/remaining?crack_length_mm=20&factor=3\n\
+                       Each point of a plate takes up to 3000 bytes in a ParaView archive.\n\
+                       Monitoring: /healthz (alive), /readyz (accepts jobs), /metrics (Prometheus), log by -v or RUST_LOG.\n\
+                       Without tokens only local requests are accepted. For remote access: `perilife token add`, --listen, and a TLS proxy."
 )]
 pub struct Args {
-    /// Address; beyond this machine it needs tokens (`perilife token`) and a proxy that adds TLS
+    /// Address and port; remote access needs tokens and a TLS proxy
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", value_parser = address, help_heading = "Service")]
     pub listen: SocketAddr,
-    /// Ask for tokens even on this machine
+    /// Require a token for local requests too
     #[arg(long, help_heading = "Service")]
     pub require_token: bool,
-    /// Believe what a proxy says of a request, and let in without a token who comes through it
+    /// Trust X-Forwarded-For, and accept proxied requests without a token
     #[arg(long, help_heading = "Service")]
     pub trust_proxy: bool,
-    /// Where the service is reached from outside, such as `https://life.example.org`
+    /// Public URL of the service, e.g. https://life.example.org
     #[arg(long, value_name = "URL", value_parser = public_url, help_heading = "Service")]
     pub public_url: Option<String>,
-    /// Append a line of JSON for every change and every refusal
+    /// Append a JSON line per change and refusal
     #[arg(long, value_name = "FILE", help_heading = "Service")]
     pub audit_log: Option<PathBuf>,
-    /// Largest body of a request, MiB
+    /// Maximum size of a request body, MiB
     #[arg(long, value_name = "MIB", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "Limits")]
     pub body_mib: u32,
-    /// Most points of a plate; an archive for ParaView, where one is asked for, has up to some 3000 bytes for each
+    /// Maximum number of points of a plate
     #[arg(long, value_name = "COUNT", default_value_t = 1_000_000, help_heading = "Limits")]
     pub points: u32,
-    /// Most jobs of one owner that wait
+    /// Maximum queued jobs per owner
     #[arg(long, value_name = "COUNT", default_value_t = 1000, help_heading = "Limits")]
     pub queued: u32,
-    /// Most MiB of one owner's jobs: inputs, results, checkpoints, and what waiting jobs may write
+    /// Storage quota per owner, MiB
     #[arg(long, value_name = "MIB", default_value_t = 102_400, value_parser = clap::value_parser!(u32).range(1..), help_heading = "Limits")]
     pub quota_mib: u32,
-    /// Most connections at a time, three quarters of them from one address; beyond them only health is answered
+    /// Maximum connections (three quarters of them per address)
     #[arg(long, value_name = "COUNT", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000), help_heading = "Limits")]
     pub connections: u32,
-    /// Most requests a second of one caller
+    /// Rate limit per client, requests/s
     #[arg(long, value_name = "COUNT", default_value = "5000", help_heading = "Limits")]
     pub requests_per_second: NonZeroU32,
-    /// Most of them that submit, check or upload
+    /// Rate limit per client for submit, check and upload, requests/s
     #[arg(long, value_name = "COUNT", default_value = "1000", help_heading = "Limits")]
     pub writes_per_second: NonZeroU32,
     /// Where jobs and results are kept, and who runs them.
@@ -73,7 +74,7 @@ fn address(text: &str) -> std::result::Result<SocketAddr, String> {
     if host.is_empty() {
         return Err(wrong("it has no address; 0.0.0.0 is every one of this machine"));
     }
-    let found = text.to_socket_addrs().map_err(|error| wrong(&format!("the name is not known here ({error})")))?;
+    let found = text.to_socket_addrs().map_err(|error| wrong(&format!("unknown host name ({error})")))?;
     let found: Vec<SocketAddr> = found.collect();
     let chosen = found.iter().find(|one| one.is_ipv4()).or(found.first());
     chosen.copied().ok_or_else(|| wrong("the name has no address"))
@@ -84,7 +85,7 @@ fn public_url(text: &str) -> std::result::Result<String, String> {
     let url = text.trim_end_matches('/');
     let host = url.strip_prefix("https://").or_else(|| url.strip_prefix("http://"));
     let is_fine = host.is_some_and(|host| !host.is_empty() && !host.contains(['/', '?', '#', '@', ' ']));
-    let wrong = || "it is no address such as https://life.example.org: a scheme and a host, without a path".to_owned();
+    let wrong = || "not a URL such as https://life.example.org (scheme and host, no path)".to_owned();
     is_fine.then(|| url.to_owned()).ok_or_else(wrong)
 }
 

@@ -19,32 +19,32 @@ use perilife_runner::{Kind, Message, Task};
 /// Arguments of `perilife sif`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_long_help = "On nodes (--method element_free_galerkin) a plate needs no crack: printed are the largest and least stress along every rim, where they\n\
-                       are, and the stress concentration over the gross stress. DIR gets result.json, stress.svg and nodes.svg."
+    after_long_help = "With --method element_free_galerkin a crack is optional: prints max and min stress along each boundary, their position\n\
+                       and the stress concentration factor K_tg. DIR gets result.json, stress.svg and nodes.svg."
 )]
 pub struct Args {
-    /// Case file (a calibration file does as well); its fatigue law is not needed
+    /// Case or calibration file (growth law not needed)
     #[arg(value_name = "CASE.toml")]
     pub case: PathBuf,
-    /// Methods: ring, element_free_galerkin; both where none is given
+    /// Methods: ring, element_free_galerkin [default: both]
     #[arg(long, value_name = "METHOD", num_args = 1.., help_heading = "Method")]
     pub method: Vec<String>,
-    /// Folder for stress and displacement of the plate on nodes (with --method element_free_galerkin), or table of --sweep; replaced if an earlier run made it
+    /// Folder of stresses (element_free_galerkin), or table of --sweep
     #[arg(long, value_name = "DIR|FILE.csv", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// K, T, β and compliance over crack length in the specimen's convention, mm, along the crack's own path; writes the table --out FILE.csv
+    /// K, T, β and compliance for these crack lengths, mm (--out FILE.csv)
     #[arg(long, value_name = "FIRST:LAST:STEP", conflicts_with_all = ["method", "paraview"], help_heading = "Method")]
     pub sweep: Option<String>,
-    /// Also write β over crack length of the tip that grows farthest, for AFGROW and specimen.beta_file (with --sweep)
+    /// Write β(a) of the fastest tip for AFGROW and specimen.beta_file
     #[arg(long, value_name = "FILE.csv", requires = "sweep", help_heading = "Output")]
     pub beta: Option<PathBuf>,
     /// Replace the results of another input in DIR
     #[arg(long, requires = "out", help_heading = "Output")]
     pub force: bool,
-    /// Also write displacement and stress for ParaView (paraview/run.pvd), as the key output.paraview does
+    /// Write fields for ParaView (key output.paraview)
     #[arg(long, requires = "out", help_heading = "Output")]
     pub paraview: bool,
-    /// Override a key of the case (repeatable), e.g. --set specimen.crack_length_mm=20
+    /// Set a key (repeatable), e.g. --set specimen.crack_length_mm=20
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
     /// What is printed.
@@ -67,8 +67,8 @@ pub fn run(args: &Args) -> Result<()> {
         Some(out) => {
             let nodes = StressIntensityMethod::ElementFreeGalerkin;
             if matches!(&task, Task::Factors { methods, .. } if !methods.contains(&nodes)) {
-                let problem = "takes the stress of the plate on nodes, and no method has nodes";
-                let remedy = "add --method element_free_galerkin, or leave --out out";
+                let problem = "requires --method element_free_galerkin";
+                let remedy = "add --method element_free_galerkin, or remove --out";
                 return Err(input("--out", out.display(), problem, remedy));
             }
             // Claimed first: a folder that cannot be written should not cost a run.

@@ -49,8 +49,8 @@ fn end(signal: i32) {
         SIGTERM => "SIGTERM",
         _ => "SIGHUP",
     };
-    let nothing = || "nothing is left behind; with --checkpoint FILE a run can be taken up again".to_owned();
+    let nothing = || "nothing was written; use --checkpoint FILE to resume".to_owned();
     let way = WAY.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map_or_else(nothing, |way| way());
-    let _ = writeln!(std::io::stderr(), "ended by {name}: {way}");
+    let _ = writeln!(std::io::stderr(), "interrupted by {name}; {way}");
     std::process::exit(128 + signal);
 }

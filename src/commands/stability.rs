@@ -12,13 +12,13 @@ use perilife_study::stability_table as tables;
 /// Arguments of `perilife stability`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Sweeps to run; all where none is given (`perilife list` names them)
+    /// Sweeps to run [default: all; see `perilife list`]
     #[arg(value_name = "NAME")]
     pub names: Vec<String>,
-    /// Every third value and ends to 20 %: two minutes
+    /// Short version: every third value, limits to 20 % (2 min)
     #[arg(long)]
     pub quick: bool,
-    /// Folder for stability.csv, boundaries.csv, stability.json, stability.svg and a picture of every sweep
+    /// Results folder
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
     /// What is printed.
@@ -34,7 +34,7 @@ pub fn run(args: &Args) -> Result<()> {
     let effort = Effort { with_slow, ..if args.quick { Effort::QUICK } else { Effort::FULL } };
     if !with_slow {
         let left_out = SLOW.map(|(sweep, method)| format!("{sweep} of {method}")).join(", ");
-        args.console.note(&format!("left out, since they take most of the time: {left_out}"));
+        args.console.note(&format!("skipped (slow): {left_out}"));
     }
     let folder = args.out.as_deref().map(|path| OutputFolder::create(path, RunKind::Stability)).transpose()?;
     let records = stability::run(&sweeps, effort, &|record| args.console.say(&tables::line(record)));

@@ -25,34 +25,34 @@ use perilife_runner::sweep_folder::SweepFolder;
 /// Arguments of `perilife sweep`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_long_help = "Designs: a grid over any keys, latin_hypercube over distributions, or fitted_scatter: laws that scatter as the specimens of a\n\
-                       calibration did, or within the errors of one fit. Examples: data/sweeps of the source.\n\
-                       DIR holds sweep.csv with a row for every case, sweep.json with quantiles of life, life.svg, and the files of each in cases/."
+    after_long_help = "Designs: a grid over any keys, latin_hypercube over distributions, or fitted_scatter: laws sampled from the scatter of the\n\
+                       specimens of a calibration, or from the errors of one fit. Examples: data/sweeps of the source.\n\
+                       DIR contains sweep.csv with a row for each case, sweep.json with quantiles of life, life.svg, and the files of each in cases/."
 )]
 pub struct Args {
     /// Sweep file
     #[arg(value_name = "SWEEP.toml")]
     pub sweep: PathBuf,
-    /// Folder for the results; a sweep that was broken off goes on there
+    /// Results folder; rerun to resume an interrupted sweep
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: PathBuf,
-    /// Override a key of the case, or of design or vary (repeatable), e.g. --set design.samples=50
+    /// Set a key (repeatable), e.g. --set design.samples=50
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
-    /// Most cases that there may be
+    /// Maximum number of cases
     #[arg(long, value_name = "COUNT", default_value_t = CASES_MAX, help_heading = "Input")]
     pub most: usize,
-    /// Keep no files of the cases, only what the table says of them
+    /// Write the summary table only
     #[arg(long, help_heading = "Output")]
     pub summary_only: bool,
-    /// Who runs the cases
-    #[arg(long, value_enum, default_value_t = Engine::Local, help_heading = "Who runs the cases")]
+    /// Where the cases run
+    #[arg(long, value_enum, default_value_t = Engine::Local, help_heading = "Execution")]
     pub engine: Engine,
-    /// Cases at a time on this machine [default: one for each core]
-    #[arg(long, value_name = "COUNT", help_heading = "Who runs the cases")]
+    /// Cases in parallel on this machine [default: one per core]
+    #[arg(long, value_name = "COUNT", help_heading = "Execution")]
     pub threads: Option<usize>,
-    /// Run only part i of n, into a folder that other processes may share; `perilife collect` gathers the parts
-    #[arg(long, value_name = "I/N", help_heading = "Who runs the cases")]
+    /// Run shard I of N; merge the shards with `perilife collect`
+    #[arg(long, value_name = "I/N", help_heading = "Execution")]
     pub shard: Option<Shard>,
     /// How Slurm is asked.
     #[command(flatten)]
@@ -69,12 +69,12 @@ pub struct Args {
 /// Who runs the cases.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Engine {
-    /// The cores of this machine
+    /// Cores of this machine
     Local,
-    /// The workers of a service, here or elsewhere, through its database (--database or --data)
+    /// Workers of a service, through its database (--database or --data)
     #[cfg(feature = "service")]
     Service,
-    /// An array job of Slurm, whose nodes share the folder
+    /// Slurm array job; nodes share the folder
     Slurm,
 }
 
@@ -121,10 +121,10 @@ pub fn run(args: &Args) -> Result<()> {
     if let Some(changed) = &folder.changed {
         args.console.warn(&format!("{}: {changed}", args.out.display()));
     }
-    signals::say_at_the_end(&format!("finished cases stay in {}; the same command goes on from there", args.out.display()));
+    signals::say_at_the_end(&format!("finished cases are in {}; run the same command to resume", args.out.display()));
     let left = left(&cases, &folder, !args.summary_only);
     if left.len() < cases.len() {
-        args.console.note(&format!("{}: {} of {} cases are there already", sweep.name, cases.len() - left.len(), cases.len()));
+        args.console.note(&format!("{}: {} of {} cases already finished", sweep.name, cases.len() - left.len(), cases.len()));
     }
     match args.engine {
         Engine::Local => {
@@ -135,8 +135,7 @@ pub fn run(args: &Args) -> Result<()> {
         Engine::Service => {
             let url = args.place.url()?;
             let place = perilife_service::without_password(&url);
-            args.console
-                .note(&format!("{} jobs for the workers of {place}; they go on if this command is broken off", left.len()));
+            args.console.note(&format!("{} jobs queued at {place}; they continue if you interrupt this command", left.len()));
             service::run(&url, &left, &folder, !args.summary_only, &args.console.count(&sweep.name, left.len()))?;
         }
         Engine::Slurm => {
@@ -174,7 +173,7 @@ fn run_part(args: &Args, shard: Shard, sweep: &Sweep, cases: &[DrawnCase], folde
     let count = args.console.count(&name, left.len());
     run_here(&left, &folder, threads(args), !args.summary_only, &|| count.inc(1))?;
     let failed = own().filter(|case| folder.outcome(case.number).is_some_and(|outcome| outcome.problem.is_some())).count();
-    let line = format!("{name}: {} cases, {} of them run now, {failed} failed", own().count(), left.len());
+    let line = format!("{name}: {} cases, {} run, {failed} failed", own().count(), left.len());
     args.console.say(&line);
     args.console.object(&serde_json::json!({
         "name": sweep.name, "shard": shard.number, "shards": shard.of,

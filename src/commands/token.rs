@@ -26,22 +26,22 @@ pub struct Args {
 /// What to do with tokens.
 #[derive(Debug, clap::Subcommand)]
 pub enum Task {
-    /// Make a token and print it; it is not kept and cannot be shown again
+    /// Create a token; it is shown only once
     Add {
-        /// Whose it is
+        /// Name of the owner
         name: String,
-        /// What he may do: look (read), submit and end his own jobs (run), end those of others (admin)
+        /// Role: read, run (own jobs) or admin (all jobs)
         #[arg(long, value_enum)]
         role: Role,
-        /// Days until it ends [default: never]
+        /// Days until it expires [default: never]
         #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..=36_500))]
         days: Option<u32>,
     },
-    /// List names, roles and ends
+    /// List names, roles and expiry
     List,
     /// Remove a token
     Remove {
-        /// Whose it is
+        /// Name of the owner
         name: String,
     },
 }
@@ -53,7 +53,7 @@ pub fn run(args: &Args) -> Result<()> {
     match &args.task {
         Task::Add { name, role, days } => {
             if name.is_empty() || name.chars().any(char::is_control) {
-                return Err(input("NAME", format!("{name:?}"), "is no name", "give a word"));
+                return Err(input("NAME", format!("{name:?}"), "is not a name", "give a word"));
             }
             let secret = with_store(&url, async |store| store.add_token(name, *role, *days).await)?;
             let taken = || input("NAME", name, "has a token already", "remove it first: perilife token remove NAME");
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Result<()> {
         }
         Task::List => {
             let tokens = with_store(&url, async |store| store.tokens().await)?;
-            let end = |ms: Option<i64>| ms.map_or_else(|| "never ends".to_owned(), |ms| format!("ends {}", time(ms)));
+            let end = |ms: Option<i64>| ms.map_or_else(|| "never expires".to_owned(), |ms| format!("expires {}", time(ms)));
             let lines = tokens.iter().map(|token| {
                 format!(
                     "{:<24} {:<6} made {}, {}\n",

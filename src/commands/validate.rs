@@ -11,17 +11,17 @@ use perilife_study::validate::{page, picture, rows, sets};
 /// Arguments of `perilife validate`.
 #[derive(Debug, clap::Args)]
 #[command(
-    after_long_help = "A folder of your own tests holds source.toml ([source] and one [[test]] per prediction), the cases of the tests,\n\
+    after_long_help = "A folder of your own tests contains source.toml ([source] and one [[test]] per prediction), the cases of the tests,\n\
                              a calibration if they need one, and tables: data/README.md of the source has the keys, data/validation 17 sets."
 )]
 pub struct Args {
-    /// Sets of tests, or folders of your own; all sets if omitted (`perilife list` names them)
+    /// Sets of tests, or your own folders [default: all; see `perilife list`]
     #[arg(value_name = "NAME or FOLDER")]
     pub sets: Vec<String>,
-    /// Folder for validate.csv, validate.json, validate.md and validate.svg
+    /// Results folder
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// File for the page as Markdown
+    /// Markdown file of the page
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub markdown: Option<PathBuf>,
     /// What is printed.

@@ -14,13 +14,13 @@ use perilife_study::verification;
 /// Arguments of `perilife verify`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Topics to verify; all where none is given (`perilife list` names them)
+    /// Topics to verify [default: all; see `perilife list`]
     #[arg(value_name = "NAME")]
     pub names: Vec<String>,
-    /// Folder for verify.csv, verify.json and verify.md
+    /// Results folder
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// File for the table of every topic as Markdown, without wall times
+    /// Markdown file of all tables, without run times
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub markdown: Option<PathBuf>,
     /// What is printed.
@@ -49,12 +49,7 @@ pub fn run(args: &Args) -> Result<()> {
     }
     markdown.map_or(Ok(()), |file| file.write(page.as_bytes()))?;
     let (failed, missed) = (rows.iter().filter(|row| row.fails()).count(), rows.iter().filter(|row| !row.ok()).count());
-    args.console.say(&format!(
-        "{} rows, {} within their bounds, {} known misses",
-        rows.len(),
-        rows.len() - missed,
-        missed - failed
-    ));
+    args.console.say(&format!("{} rows, {} within bounds, {} known misses", rows.len(), rows.len() - missed, missed - failed));
     args.console.object(&json!({ "rows": object["rows"], "known_misses": missed - failed, "failed": failed }))?;
     let faults = perilife_study::faults(&topics, &rows);
     if faults.is_empty() { Ok(()) } else { Err(Error::Mechanics(faults.join("\n"))) }

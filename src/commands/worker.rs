@@ -18,10 +18,10 @@ const FILE: &str = "perilife.sqlite";
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Jobs and results")]
 pub struct Place {
-    /// Folder of the database file, which `serve` and `token add` make if it is not there
+    /// Folder of the database file; `serve` and `token add` create it
     #[arg(long, value_name = "DIR", default_value = "perilife-data", global = true)]
     pub data: PathBuf,
-    /// Database instead of that file, e.g. postgres://user:password@host/name, for several machines
+    /// Database URL instead, e.g. postgres://user:password@host/name
     #[arg(long, value_name = "URL", env = "PERILIFE_DATABASE", hide_env_values = true, global = true)]
     pub database: Option<String>,
 }
@@ -36,8 +36,13 @@ impl Place {
         match std::fs::canonicalize(self.data.join(FILE)) {
             Ok(file) => Ok(url_of_file(&file)),
             Err(error) if error.kind() == ErrorKind::NotFound => {
-                let remedy = "give the folder that `perilife serve --data` was given; it makes the database";
-                Err(input("--data", self.data.display(), format!("holds no database of a service ({FILE} is missing)"), remedy))
+                let remedy = "give the --data folder of `perilife serve`, which creates the database";
+                Err(input(
+                    "--data",
+                    self.data.display(),
+                    format!("contains no database of a service ({FILE} is missing)"),
+                    remedy,
+                ))
             }
             Err(error) => Err(Error::file(&self.data, "cannot use the folder", error)),
         }
@@ -48,7 +53,7 @@ impl Place {
         // One that is not there yet, or tells nothing, shows what it is when the database is opened.
         let Ok(about) = rustix::fs::statfs(&self.data) else { return Ok(()) };
         let Some(kind) = network_drive(about.f_type as u64) else { return Ok(()) };
-        let problem = format!("lies on a network drive ({kind}), on which SQLite cannot lock its file");
+        let problem = format!("is on a network drive ({kind}); SQLite needs a local disk");
         let remedy = "give a folder on a disk of this machine, or --database postgres://... for several machines";
         Err(input("--data", self.data.display(), problem, remedy))
     }
@@ -56,7 +61,7 @@ impl Place {
     fn given(&self) -> Result<Option<String>> {
         let Some(url) = &self.database else { return Ok(None) };
         if url.trim().is_empty() {
-            let problem = "is empty; where --database is left out, the variable PERILIFE_DATABASE counts";
+            let problem = "is empty (PERILIFE_DATABASE, used when --database is not given)";
             return Err(input(
                 "--database",
                 "\"\"",
@@ -106,28 +111,28 @@ pub struct Work {
     /// Where jobs are kept.
     #[command(flatten)]
     pub place: Place,
-    /// Jobs at a time [default: one for each core]
+    /// Jobs in parallel [default: one per core]
     #[arg(long, value_name = "COUNT")]
     pub jobs: Option<usize>,
-    /// Threads for each job
+    /// Threads per job
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = threads)]
     pub threads: usize,
-    /// Least time between two checkpoints of a job, s
+    /// Minimum time between checkpoints of a job, s
     #[arg(long, value_name = "SECONDS", default_value_t = 3)]
     pub checkpoint_every: u64,
-    /// Time without a sign of life after which another worker takes a job, s
+    /// Lease: another worker takes the job after this silence, s
     #[arg(long, value_name = "SECONDS", default_value_t = 15, value_parser = clap::value_parser!(u64).range(2..))]
     pub lease: u64,
-    /// Workers that may die over a job without getting as far as a checkpoint, until it is given up
+    /// Attempts before a job fails (workers lost without a checkpoint)
     #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..))]
     pub attempts: u32,
-    /// Most memory of a job's own process, MiB
+    /// Memory limit per job, MiB
     #[arg(long, value_name = "MIB", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(256..))]
     pub job_memory: u32,
-    /// Most computing time of a job, h
+    /// Time limit per job, h
     #[arg(long, value_name = "HOURS", default_value_t = 24.0, value_parser = hours)]
     pub job_hours: f64,
-    /// Delete finished jobs after so many days of service [default: never]
+    /// Delete finished jobs after this many days [default: never]
     #[arg(long, value_name = "DAYS", value_parser = days)]
     pub keep_days: Option<f64>,
 }
@@ -139,12 +144,12 @@ fn threads(text: &str) -> std::result::Result<usize, String> {
 
 fn hours(text: &str) -> std::result::Result<f64, String> {
     let hours = text.parse().ok().filter(|hours| *hours > 0.0 && *hours < 1e6);
-    hours.ok_or_else(|| format!("`{text}` is no time in hours above 0"))
+    hours.ok_or_else(|| format!("`{text}` is not a time in hours above 0"))
 }
 
 fn days(text: &str) -> std::result::Result<f64, String> {
     let days = text.parse().ok().filter(|days| *days > 0.0 && *days < 1e6);
-    days.ok_or_else(|| format!("`{text}` is no time in days above 0"))
+    days.ok_or_else(|| format!("`{text}` is not a time in days above 0"))
 }
 
 impl Work {
@@ -180,6 +185,6 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<()> {
     let (url, settings) = (args.work.place.url()?, args.work.settings());
     let place = perilife_service::without_password(&url);
-    let ready = || args.console.note(&format!("perilife worker: {} jobs at a time from {place}", settings.jobs));
+    let ready = || args.console.note(&format!("perilife worker: {} jobs in parallel from {place}", settings.jobs));
     perilife_service::work(&url, &settings, ready)
 }

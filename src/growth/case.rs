@@ -49,10 +49,10 @@ pub const RESIDUAL: f64 = 1e-5;
 perilife_base::kinds! {
     /// Numerical methods.
     pub enum Method for "model.method" {
-        Auto = "auto": "what the scene needs: handbook inside its range, else element_free_galerkin; peridynamics where a key of points or bonds is given",
+        Auto = "auto": "automatic: handbook within its range, else element-free Galerkin nodes; peridynamics if a peridynamics key is set",
         Peridynamics = "peridynamics": "points and bonds",
-        ElementFreeGalerkin = "element_free_galerkin": "nodes without elements, near-tip fields as unknowns; cracks driven by the K of their tips",
-        Handbook = "handbook": "hand calculation: handbook K of a standard specimen or a crack that does not go through, law over K, quadrature",
+        ElementFreeGalerkin = "element_free_galerkin": "element-free Galerkin with near-tip enrichment; growth driven by K",
+        Handbook = "handbook": "handbook K (standard specimen, part-through crack, or beta table), life by quadrature",
     }
 }
 

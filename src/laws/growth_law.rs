@@ -12,18 +12,18 @@ pub mod walker;
 use serde_json::Value;
 
 use crate::response::Response;
-use description::{Description, Role};
+use description::{GrowthLawSpec, Role};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M};
 use table::Table;
 pub use walker::Walker;
 
 /// Every law, in the order of `perilife list`; those that rates are fitted by stand in the order of their number of constants. A new one is
 /// a line here and its file.
-const LAWS: &[&Description] = &[&bonds::LAW, &paris::LAW, &walker::LAW, &forman::LAW, &nasgro::LAW, &table::LAW];
+const LAWS: &[&GrowthLawSpec] = &[&bonds::LAW, &paris::LAW, &walker::LAW, &forman::LAW, &nasgro::LAW, &table::LAW];
 
 perilife_base::kinds! {
     /// Which law of growth a case has.
-    pub struct GrowthLawKind of Description in LAWS for "fatigue.growth_law"
+    pub struct GrowthLawKind of GrowthLawSpec in LAWS for "fatigue.growth_law"
 }
 
 /// ΔK at which metals are compared, Pa√m, and the rates that they have there, mm/cycle, with room on both sides.
@@ -45,8 +45,10 @@ pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
     let [low, high] = METALS.1.map(|rate| rate * (delta_k / METALS.0).powf(METALS_EXPONENT));
     (!(low..=high).contains(&rate)).then(|| {
         format!(
-            "the rate at ΔK = {:.0} MPa√m is {rate:.2e} mm/cycle, outside {low:.0e} to {high:.0e} mm/cycle, where metals lie: check the units of rate, \
-             crack length, cycles, load and stress intensity (m/cycle is 1000 mm/cycle; C for ksi√in and in/cycle is to be multiplied by \
+            "the rate at ΔK = {:.0} MPa√m is {rate:.2e} mm/cycle, outside {low:.0e} to {high:.0e} mm/cycle, the range of \
+             metals: check the units of rate, \
+             crack length, cycles, load and stress intensity (m/cycle is 1000 mm/cycle; C for ksi√in and in/cycle must be \
+             multiplied by \
              25.4 / 1.0988^m)",
             delta_k / MPA_SQRT_M
         )
@@ -131,7 +133,7 @@ pub struct FactorLaw {
 
 impl FactorLaw {
     /// The law of these constants, SI.
-    pub fn new(of: &'static Description, constants: Vec<f64>) -> Self {
+    pub fn new(of: &'static GrowthLawSpec, constants: Vec<f64>) -> Self {
         FactorLaw { kind: GrowthLawKind(of), constants, table: None, threshold: 0.0 }
     }
 

@@ -32,15 +32,15 @@ pub const STEP_ERROR_PERCENT: f64 = 0.2;
 perilife_base::kinds! {
     /// What drives a crack of method `peridynamics`.
     pub enum Driver for "fatigue.driver" {
-        TipField = "tip_field": "K_I and K_II at each tip set its direction and rate",
-        BondStrain = "bond_strain": "bonds fail by their own strain (initiation at slots); K takes over once the crack is 1.5 horizons long",
+        TipField = "tip_field": "direction and rate of each tip from its K_I and K_II; bonds across the path are cut",
+        BondStrain = "bond_strain": "each bond loses life by its own strain and the crack follows broken bonds; from a slot, until K of the tip takes over",
     }
 }
 
 perilife_base::kinds! {
     /// Which bonds age.
     pub enum Ageing for "fatigue.ageing" {
-        CrackTip = "crack_tip": "bonds whose middle lies within zone_radius_horizons x horizon of a tracked crack tip",
+        CrackTip = "crack_tip": "bonds within zone_radius_horizons × horizon of a crack tip",
         Everywhere = "everywhere": "all bonds",
     }
 }
@@ -51,7 +51,7 @@ pub const STEADY_EXPONENTS: std::ops::RangeInclusive<f64> = 1.0..=8.0;
 /// The error of an exponent outside [`STEADY_EXPONENTS`].
 pub fn unsteady(key: &str, p: f64) -> Error {
     let (low, high) = (STEADY_EXPONENTS.start(), STEADY_EXPONENTS.end());
-    let problem = format!("is outside {low} to {high}, where it is known how fast a crack grows whose bonds age with it");
+    let problem = format!("is outside {low} to {high}, the range in which the growth rate of bonds is calibrated");
     input(
         key,
         p,

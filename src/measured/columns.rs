@@ -1,8 +1,8 @@
 //! What the columns of a measured file are: one row a reading, or columns of every specimen; and in which units.
 
+use super::exclusion_flags::{is_of_thousands, rejected};
 use super::header::{columns_of, cut, is_wide, pairs_of, place_of};
 use super::import::{ColumnNames, Import};
-use super::marks::{is_of_thousands, rejected};
 use perilife_base::error::{Error, Result};
 use perilife_base::table::decimal::decide;
 use perilife_base::table::names::{Column, Kind, Named, Role, says_tip_to_tip, unit_of_specimen};
@@ -58,9 +58,10 @@ pub struct Layout {
     pub warnings: Vec<String>,
 }
 
-const KNOWN: &str = "known are specimen, cycles (N, kilocycles, megacycles), crack_length_mm (a [mm], crack_length_inch, crack_length_m), \
+const KNOWN: &str = "known columns: specimen, cycles (N, kilocycles, megacycles), crack_length_mm (a [mm], crack_length_inch, \
+                     crack_length_m), \
                      front and back, force_max_kn and force_min_kn; a wide table starts with cycles or crack length and has at least two \
-                     more columns, all of them specimens (S1, S2, ...; a1, a2, ... may be places of one crack)";
+                     more columns, all of them specimens (S1, S2, ...; a1, a2, ... are ambiguous)";
 
 /// Recognises the layout of a table by its header and by what the user says.
 /// Errors: columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
@@ -87,7 +88,7 @@ fn check_given(table: &Table, import: &Import) -> Result<()> {
         if place_of(name, &table.header, &table.names).is_none() {
             let key = format!("measured.columns.{key}");
             let fault = Fault { file: &table.file, line: None, key: Some(&key), value: Some(name) };
-            return Err(fault.error("names no column of this file", format!("its columns are {}", table.header.join(" | "))));
+            return Err(fault.error("is not a column of this file", format!("its columns are {}", table.header.join(" | "))));
         }
     }
     Ok(())
@@ -257,7 +258,7 @@ pub(super) fn column_in_unit(table: &Table, column: Column, key: &str, like: Uni
     if let Some(unit) = stated_unit(table, column, key, given)? {
         return Ok(column.in_unit(unit));
     }
-    let problem = if column.unit == Named::Strange { "has a unit that is not known" } else { "does not say its unit" };
+    let problem = if column.unit == Named::Strange { "has an unknown unit" } else { "has no unit" };
     Err(table.header_fault(column.index).error(problem, unit_remedy(key, like)))
 }
 
@@ -285,8 +286,8 @@ fn cycle_column(table: &Table, column: Column, import: &Import) -> Result<Column
     if (column.unit, given) == (Named::No, None) {
         if let Some((line, text)) = table.preamble.iter().find(|(_, text)| is_of_thousands(text)) {
             return Err(Fault { line: Some(*line), value: Some(text), ..whole_file(&table.file) }.error(
-                "may say the unit of the cycles, which the header does not",
-                "set measured.cycle_unit = \"kilocycles\", or \"cycles\" where they are single ones (--cycle-unit), or name the unit in the \
+                "may give the unit of cycles; the header does not",
+                "set measured.cycle_unit = \"kilocycles\", or \"cycles\" (--cycle-unit), or name the unit in the \
                  header",
             ));
         }
@@ -304,11 +305,11 @@ fn load_column(table: &Table, column: Column, import: &Import, warnings: &mut Ve
     let remedy = unit_remedy(KEY, Unit::Load(LoadUnit::Newton));
     let first = table.rows.first().map_or("", |row| row.cell(column.index));
     if let Some(row) = table.rows.iter().find(|row| row.cell(column.index) != first) {
-        let problem = format!("is a load that changes (from {first}), in a unit that is not known");
+        let problem = format!("is a varying load (from {first}) in an unknown unit");
         return Err(table.cell_fault(row, column.index).error(problem, remedy));
     }
     warnings.push(format!(
-        "{}: {} is a load in a unit that is not known: not read, the load of the case holds for all readings; {remedy}",
+        "{}: {} ignored (unknown load unit); the load of the case is used; {remedy}",
         table.file.display(),
         table.header[column.index]
     ));
@@ -333,7 +334,7 @@ fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<
         }
         let Some(column) = load_column(table, column, import, warnings)? else { continue };
         if let Some(earlier) = found.last().filter(|earlier| is_stress(earlier) != is_stress(&column)) {
-            let problem = format!("is not of the quantity of {}", table.header[earlier.index]);
+            let problem = format!("is not the same quantity as {}", table.header[earlier.index]);
             return Err(table.header_fault(column.index).error(problem, "give both as forces or both as stresses"));
         }
         found.push(column);
@@ -346,7 +347,7 @@ fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<
         let largest = numbers.reduce(f64::max);
         warnings.extend(largest.filter(|largest| *largest >= 1.0).map(|_| {
             let name = &table.header[column.index];
-            format!("{}: {name} is no stress ratio below 1: not read, that of the case holds", table.file.display())
+            format!("{}: {name} ignored (not a stress ratio); R of the case is used", table.file.display())
         }));
         if largest.is_none_or(|largest| largest >= 1.0) {
             found.clear();
@@ -367,7 +368,7 @@ fn not_specimens(table: &Table, columns: &[Column]) -> Option<String> {
     let statistics = columns.iter().filter(|column| column.role == Role::Statistic);
     let names: Vec<&str> = statistics.map(|column| table.header[column.index].as_str()).collect();
     let file = table.file.display();
-    (!names.is_empty()).then(|| format!("{file}: not read, since it is of several specimens or of a model: {}", names.join(", ")))
+    (!names.is_empty()).then(|| format!("{file}: ignored (several specimens, or a model): {}", names.join(", ")))
 }
 
 /// A line about columns that nobody asked for and whose names say nothing, or a load that is not read.
@@ -379,8 +380,8 @@ fn not_read(table: &Table, columns: &[Column]) -> Option<String> {
     let names: Vec<&str> = strange.map(|column| table.header[column.index].as_str()).filter(|name| !name.is_empty()).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "{}: not read, since the name does not say what it is: {}; where one is the load of every reading, say so by \
-             measured.columns = {{ force_max = \"...\" }} (--column force_max=...)",
+            "{}: ignored columns: {}; if one is the load of every reading, set measured.columns = {{ force_max = \"...\" }} \
+             (--column force_max=...)",
             table.file.display(),
             names.join(", ")
         )
@@ -391,10 +392,10 @@ fn says_the_same(table: &Table, column: usize, key: &str) -> Error {
     let name = &table.header[column];
     let fault = table.header_fault(column);
     if table.header[..column].iter().any(|earlier| earlier.eq_ignore_ascii_case(name)) {
-        return fault.error("names two columns", "give every column its own name");
+        return fault.error("occurs twice", "give every column its own name");
     }
-    let remedy = format!("say which one counts by measured.columns = {{ {key} = \"{name}\" }} (--column {key}=\"{name}\")");
-    fault.error("says the same as an earlier column", remedy)
+    let remedy = format!("select one by measured.columns = {{ {key} = \"{name}\" }} (--column {key}=\"{name}\")");
+    fault.error("duplicates an earlier column", remedy)
 }
 
 /// A header that does not make up a test: what is missing, the first rows, and the key that settles it.
@@ -403,15 +404,15 @@ fn unknown_shape(table: &Table, columns: &[Column]) -> Error {
     let unclear = || first(|column| column.role == Role::Unclear).filter(|_| first(Column::is_length).is_none());
     let unknown = first(|column| column.role == Role::Unknown).or_else(unclear);
     let (column, problem) = match (first(|column| column.role == Role::Cycles), first(Column::is_length), unknown) {
-        (None, None, Some(column)) => (column, "is not a known column"),
-        (Some(column), None, None) => (column, "stands in a header without a column of crack length"),
-        (None, Some(column), None) => (column, "stands in a header without a column of cycles"),
-        (Some(_), None, Some(column)) => (column, "is not a known column, and none is crack length"),
-        (None, Some(_), Some(column)) => (column, "is not a known column, and none is cycles"),
-        _ => (0, "stands in a header without cycles and crack length"),
+        (None, None, Some(column)) => (column, "unknown column"),
+        (Some(column), None, None) => (column, "header has no column of crack length"),
+        (None, Some(column), None) => (column, "header has no column of cycles"),
+        (Some(_), None, Some(column)) => (column, "unknown column; no column of crack length"),
+        (None, Some(_), Some(column)) => (column, "unknown column; no column of cycles"),
+        _ => (0, "header has no columns of cycles and crack length"),
     };
     let remedy = format!(
-        "{KNOWN}; or say which is which by measured.columns = {{ cycles = \"...\", length = \"...\" }} (--column cycles=... --column \
+        "{KNOWN}; or assign them by measured.columns = {{ cycles = \"...\", length = \"...\" }} (--column cycles=... --column \
          length=...); {}",
         table.first_rows()
     );

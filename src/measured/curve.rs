@@ -286,7 +286,7 @@ impl Measured {
         let own: HashMap<&str, &MeasuredCurve> = self.curves.iter().map(|curve| (curve.specimen.as_str(), curve)).collect();
         for curve in &other.curves {
             let Some(earlier) = own.get(curve.specimen.as_str()) else { continue };
-            let problem = format!("stands in {} too", earlier.source.file.display());
+            let problem = format!("also occurs in {}", earlier.source.file.display());
             let fault = Fault { key: Some("specimen"), value: Some(&curve.specimen), ..curve.fault(0) };
             return Err(fault.error(problem, "give every specimen its own name"));
         }
@@ -302,9 +302,7 @@ impl Measured {
         let stands = |curve: &MeasuredCurve| grown(curve) <= 3.0 * curve.scatter().max(0.0);
         if let Some(first) = self.curves.first().filter(|_| self.curves.iter().all(stands)) {
             let fault = Fault { key: Some("specimen"), value: Some(&first.specimen), ..first.fault(0) };
-            return Err(
-                fault.error("has a crack that does not grow by more than its readings scatter", "give readings of growth")
-            );
+            return Err(fault.error("has no growth beyond the scatter of its readings", "give readings of growth"));
         }
         let line = |curve: &MeasuredCurve| {
             let (file, name, life) = (curve.source.file.display(), &curve.specimen, curve.life());
@@ -316,15 +314,15 @@ impl Measured {
     }
 
     /// Takes typing errors out of the curves.
-    pub(super) fn leave_typing_errors_out(&mut self) {
+    pub(super) fn exclude_typing_errors(&mut self) {
         let mut left_out = Vec::new();
         for curve in self.curves.iter_mut().filter(|curve| curve.cycles.len() > READINGS_MIN) {
             let errors = curve.typing_errors();
             left_out.extend(errors.iter().map(|&reading| {
                 let before = if reading == 0 { 1 } else { reading - 1 };
                 format!(
-                    "{}: line {}: specimen {}: {} mm is no crack length beside {} mm on line {}, and the crack falls back: a typing error, \
-                     not fitted; correct the number",
+                    "{}: line {}: specimen {}: {} mm, after {} mm on line {}: crack length drops again, likely a typing \
+                     error; excluded from the fit. Correct the number",
                     curve.source.file.display(),
                     curve.line(reading),
                     curve.specimen,
@@ -349,7 +347,7 @@ impl Measured {
             let value = format!("{}", round_off(curve.crack_length[reading] / curve.source.length_unit));
             let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(reading) };
             return Err(fault.error(
-                format!("is not inside the specimen, whose {limit_name} is {} mm", round_off(limit / MM)),
+                format!("is outside the specimen, whose {limit_name} is {} mm", round_off(limit / MM)),
                 "check the number, its unit, and whether the file gives the crack length of the specimen's test standard",
             ));
         }
@@ -364,8 +362,8 @@ impl Measured {
             let uneven: Vec<usize> = (0..curve.side_difference.len()).filter(|&i| curve.side_difference[i] > limit).collect();
             let Some(&first) = uneven.first() else { continue };
             of_sides.push(format!(
-                "{}:{}: specimen {}: crack lengths on its sides differ by {:.2} mm; at {} of {} readings by more than the {:.2} mm that \
-                 ASTM E647 accepts",
+                "{}:{}: specimen {}: front and back crack lengths differ by up to {:.2} mm; {} of {} readings exceed {:.2} mm \
+                 (ASTM E647)",
                 curve.source.file.display(),
                 curve.line(first),
                 curve.specimen,

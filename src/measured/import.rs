@@ -78,7 +78,7 @@ pub fn check_left_out(all: &[LeaveOut], files: &[String]) -> Result<()> {
         let is_mixed = [one.from_cycles, one.to_cycles].iter().any(|cycles| cycles.is_some() == is_row);
         let problem = match &one.file {
             _ if is_mixed => "is neither a row nor cycles",
-            _ if one.reason.trim().is_empty() => "has a reason that says nothing",
+            _ if one.reason.trim().is_empty() => "has an empty reason",
             Some(file) if !files.contains(file) => "has a file that is not one of measured.files",
             None if is_row && files.len() > 1 => "has no file, and there are several",
             _ => return Ok(()),
@@ -126,11 +126,11 @@ impl ColumnNames {
         let (key, name) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
         let name = name.trim().trim_matches('"');
         if name.is_empty() {
-            return Err(refuse("names no column"));
+            return Err(refuse("has no column"));
         }
-        let key = Self::key(key.trim()).ok_or_else(|| refuse("has a key that is not known"))?;
+        let key = Self::key(key.trim()).ok_or_else(|| refuse("has an unknown key"))?;
         if key.1 != Role::Length && self.0.iter().any(|(given, _)| *given == key) {
-            return Err(refuse("names a column twice"));
+            return Err(refuse("repeats a column"));
         }
         self.0.push((key, name.to_owned()));
         Ok(())
@@ -164,7 +164,7 @@ impl Field for ColumnNames {
             let at = format!("{path}.{name}");
             let known = Self::key(name).ok_or_else(|| {
                 let known = || Self::KEYS.iter().map(|(key, _)| *key);
-                input(&at, shorten(columns), "is not a known key", meant(nearest(name, known()).as_deref(), known()))
+                input(&at, shorten(columns), "unknown key", meant(nearest(name, known()).as_deref(), known()))
             })?;
             let several = columns.as_array().filter(|_| known.1 == Role::Length).map(|list| list.iter().collect());
             let all: Option<Vec<String>> = several.unwrap_or_else(|| vec![columns]).into_iter().map(text_or_number).collect();

@@ -25,7 +25,7 @@ impl Measured {
             let counted: Vec<usize> = (1..curve.cycles.len()).filter(|&step| curve.counts(step)).collect();
             if counted.len() + 1 < READINGS_MIN {
                 let kept = if counted.is_empty() { 0 } else { counted.len() + 1 };
-                let remedy = format!("leave out less: at least {READINGS_MIN} readings are needed");
+                let remedy = format!("exclude fewer: at least {READINGS_MIN} readings are needed");
                 return Err(input_missing(&key(index), format!("leaves {kept} readings"), remedy));
             }
             let kept: Vec<usize> = (counted[0] - 1..=counted[counted.len() - 1]).collect();
@@ -47,7 +47,7 @@ impl Measured {
             let names = names.chain((more > 0).then(|| format!("{more} more"))).collect::<Vec<_>>().join(", ");
             let (key, remedy) = (format!("{key}.specimen"), format!("use one of {names}"));
             match &window.specimen {
-                Some(name) => input(&key, format!("\"{name}\""), "is no specimen of the files", remedy),
+                Some(name) => input(&key, format!("\"{name}\""), "is not a specimen of the files", remedy),
                 None => input_missing(&key, "is missing, and there are several", remedy),
             }
         };
@@ -55,14 +55,14 @@ impl Measured {
         let place = window.specimen.as_ref().map_or(alone, |name| places.get(name).copied()).ok_or_else(unknown)?;
         if !(from_cycles.is_finite() && to_cycles.is_finite() && from_cycles < to_cycles) {
             let problem = format!("is not above from_cycles = {from_cycles}");
-            return Err(input(&format!("{key}.to_cycles"), to_cycles, problem, "give the window of cycles that does not count"));
+            return Err(input(&format!("{key}.to_cycles"), to_cycles, problem, "give the range of cycles to exclude"));
         }
         let curve = &mut self.curves[place];
         let count = curve.cycles.len();
         let covered = |step: usize| window.covers(curve.cycles[step - 1], curve.cycles[step]);
         let steps: Vec<usize> = (1..count).filter(|&step| covered(step)).collect();
         if steps.is_empty() {
-            let problem = format!("covers no growth of specimen {}", curve.specimen);
+            let problem = format!("contains no reading of specimen {}", curve.specimen);
             let remedy = format!("its readings go from {} to {} cycles", curve.cycles[0], curve.cycles[count - 1]);
             return Err(input(&format!("{key}.from_cycles"), from_cycles, problem, remedy));
         }

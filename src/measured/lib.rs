@@ -6,7 +6,7 @@
 //! Imports `base` and `plate`.
 //!
 //! In the order data flows: what the user says of files (`import`); the `header` that column names make up ([`perilife_base::table::names`]); the cells
-//! of a `table` (cut by [`perilife_base::table`]) without rows that `marks` leave out; its `columns`; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
+//! of a `table` (cut by [`perilife_base::table`]) without rows that `exclusion_flags` exclude; its `columns`; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
 //! accepted; cycles that fall or repeat are a mistake of the file and refused.
@@ -17,7 +17,7 @@ mod header;
 mod import;
 mod leave_out;
 mod loads;
-mod marks;
+mod exclusion_flags;
 pub mod rates;
 mod wide_rates;
 mod readings;
@@ -29,7 +29,7 @@ pub use columns::{Layout, Series, Shape};
 pub use curve::first_of;
 pub use curve::{Loads, Measured, MeasuredCurve, PROBLEMS_MAX, READINGS_MIN, Source, side_difference_max};
 pub use import::{ColumnNames, Import, LeaveOut, check_left_out};
-pub use loads::{LoadHistory, SAME_LOAD};
+pub use loads::{LoadHistory, SAME_LOAD, ratio_warnings};
 pub use perilife_base::table::names::{Column, Named, Role};
 pub use rates::{RangeKind, RateFile, RateFileKeys, RateRow, RateTable};
 

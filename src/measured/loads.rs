@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, first_of};
 use perilife_base::error::{Result, input_missing};
-use perilife_base::line::line;
+use perilife_base::linear_fit::line;
 use perilife_base::table::Fault;
 use perilife_base::table::names::Role;
 use perilife_base::units::round_off;
@@ -55,9 +55,9 @@ impl Measured {
 
     /// Sets the readings against the specimen and the load of a case.
     /// Errors: readings beyond the specimen; loads that it cannot have.
-    pub fn set_against(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
+    pub fn compare_with(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
         if let Some(course) = loading.course() {
-            let problem = "follows the crack, and the load of readings is that of their own columns";
+            let problem = "depends on crack length; the load of readings comes from their own columns";
             return Err(input_missing(
                 &course.key,
                 problem,
@@ -66,7 +66,7 @@ impl Measured {
         }
         let (limit, limit_name) = specimen.length_limit();
         self.take_whole_lengths(specimen);
-        self.leave_typing_errors_out();
+        self.exclude_typing_errors();
         self.check_lengths(limit, limit_name)?;
         self.check_half_lengths(specimen)?;
         self.resolve_loads(specimen, loading)?;
@@ -95,8 +95,8 @@ impl Measured {
             let value = round_off(curve.crack_length[0] / curve.source.length_unit).to_string();
             let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(0) };
             Err(fault.error(
-                "is twice the crack length of the case, which is half the length tip to tip",
-                "name a column of whole lengths 2a (mm), or give the length at the first reading as specimen.crack_length_mm",
+                "is the full length 2a; the case uses the half length a",
+                "name a column of full lengths 2a (mm), or give the length at the first reading as specimen.crack_length_mm",
             ))
         })
     }
@@ -119,13 +119,13 @@ impl Measured {
                     Some(format!("{:.3} of the {limit_name}", curve.crack_length[reading] / limit))
                 }
                 Some(toughness) if k_max(reading) > TOUGHNESS_FACTOR * toughness => Some(format!(
-                    "K_max {:.1} MPa√m, the toughness being {:.1} MPa√m",
+                    "K_max {:.1} MPa√m, fracture toughness {:.1} MPa√m",
                     k_max(reading) / MPA_SQRT_M,
                     toughness / MPA_SQRT_M
                 )),
                 None if is_last(reading) && k_max(reading) > LEAP_OF_K * k_max(reading - 1) && !follows(curve, &k_max) => {
                     let times = k_max(reading) / k_max(reading - 1);
-                    Some(format!("K_max is {times:.1} times that of the reading before, and the growth not that of the others"))
+                    Some(format!("K_max is {times:.1} times that of the previous reading, and the growth differs"))
                 }
                 _ => None,
             };
@@ -133,7 +133,7 @@ impl Measured {
             if first < READINGS_MIN {
                 let value = round_off(curve.crack_length[first] / curve.source.length_unit).to_string();
                 let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(first) };
-                let problem = format!("is of the fracture ({why}), and {first} readings stand before it");
+                let problem = format!("is at fracture ({why}); only {first} readings precede it");
                 return Err(fault.error(
                     problem,
                     format!("give at least {READINGS_MIN} readings of fatigue growth; check the unit and the load"),
@@ -141,12 +141,12 @@ impl Measured {
             }
             let more = curve.cycles.len() - first - 1;
             left_out.push(format!(
-                "{}: line {}: specimen {}: the reading at {} mm is of the fracture ({why}): not fitted{}",
+                "{}: line {}: specimen {}: reading at {} mm is at fracture ({why}); excluded{}",
                 curve.source.file.display(),
                 curve.line(first),
                 curve.specimen,
                 round_off(curve.crack_length[first] / MM),
-                if more > 0 { format!(", nor are the {more} behind it") } else { String::new() }
+                if more > 0 { format!(", with the {more} after it") } else { String::new() }
             ));
             *curve = curve.of_readings(&(0..first).collect::<Vec<_>>());
         }
@@ -158,11 +158,10 @@ impl Measured {
     /// Errors: stresses for a specimen that is loaded by a force on pins.
     pub fn resolve_loads(&mut self, specimen: &Specimen, loading: &Loading) -> Result<()> {
         let case_range = loading.maximum * loading.range_share();
-        let mut of_ratios = Vec::new();
         for curve in &mut self.curves {
             let Some(loads) = &curve.loads else { continue };
             let Some(per_load) = nominal_per_load(loads.measure, specimen) else {
-                let problem = format!("has loads as stresses, but a {} is loaded by a force on its pins", specimen.kind);
+                let problem = format!("has loads as stresses, but a {} needs a force on its pins", specimen.kind);
                 return Err(curve.fault(0).error(problem, "give columns of force_max and force_min"));
             };
             let factor = |(&load, &ratio): (&f64, &f64)| {
@@ -176,14 +175,17 @@ impl Measured {
                 maximum * per_load * (1.0 - ratio.max(0.0)) / case_range
             };
             let factors: Vec<f64> = loads.maximum.iter().zip(&loads.ratio).map(factor).collect();
-            of_ratios.extend(ratio_warning(curve, loads, loading));
             // Loads of the case as a machine keeps them are those of the case.
             let is_case = factors.iter().all(|factor| (factor - 1.0).abs() < 1e-6);
             curve.load_factor = if is_case { Vec::new() } else { factors };
         }
-        self.warnings.extend(first_of(of_ratios));
         Ok(())
     }
+}
+
+/// Warnings of readings at other stress ratios than that of the case, where one law of one ratio is fitted to all.
+pub fn ratio_warnings(curves: &[MeasuredCurve], loading: &Loading) -> Vec<String> {
+    first_of(curves.iter().filter_map(|curve| ratio_warning(curve, curve.loads.as_ref()?, loading)).collect())
 }
 
 /// Whether the growth up to the last reading took the cycles that the power of K of the growth before it says, within a factor
@@ -253,7 +255,7 @@ fn compare(curve: &MeasuredCurve, specimen: &Specimen, loading: &Loading) -> Res
         let fault = Fault { key: Some(&stated.column), value: Some(&value), ..curve.fault(reading) };
         return Err(fault.error(
             format!("is {of_case} by the case, at {:.4} mm of specimen {}", curve.crack_length[reading] / MM, curve.specimen),
-            "correct the specimen and loading of the case, or the column, or leave it out",
+            "correct the specimen and loading of the case, or correct or remove the column",
         ));
     }
     Ok(())
@@ -281,15 +283,14 @@ impl LoadHistory {
     }
 }
 
-/// A law belongs to one stress ratio.
 fn ratio_warning(curve: &MeasuredCurve, loads: &Loads, loading: &Loading) -> Option<String> {
     let given = || loads.ratio.iter().copied().filter(|ratio| !ratio.is_nan());
     let (low, high) = (given().fold(f64::INFINITY, f64::min), given().fold(f64::NEG_INFINITY, f64::max));
     let apart = low - loading.ratio < -SAME_RATIO || high - loading.ratio > SAME_RATIO;
     (low <= high && apart).then(|| {
         format!(
-            "specimen {}: stress ratios of the readings go from {low:.3} to {high:.3}, loading.stress_ratio is {}: ΔK is that of each \
-             reading, the law is said to be of the latter",
+            "specimen {}: R of the readings is {low:.3} to {high:.3}; ΔK uses each reading's R, the law is recorded at \
+             loading.stress_ratio = {}",
             curve.specimen, loading.ratio
         )
     })

@@ -6,9 +6,9 @@
 use std::path::Path;
 
 use super::columns::column_in_unit;
+use super::exclusion_flags::{counts, rejected};
 use super::header::columns_of;
 use super::import::{ColumnNames, Import};
-use super::marks::{counts, rejected};
 use super::readings::value;
 use super::table;
 use super::wide_rates;
@@ -29,8 +29,8 @@ perilife_base::kinds! {
     /// What of a cycle from R K_max to K_max is ΔK in a table of rates where R is negative; at R >= 0 both are (1-R) K_max. Laws take its
     /// tensile part.
     pub enum RangeKind for "measured.delta_k" {
-        Tensile = "tensile": "K_max: compression does not count (ASTM E647)",
-        Full = "full": "(1-R) K_max, as many laboratories and NASGRO have it",
+        Tensile = "tensile": "ΔK = K_max for R < 0 (ASTM E647)",
+        Full = "full": "ΔK = (1-R) K_max (NASGRO, many laboratories)",
     }
 }
 
@@ -173,8 +173,8 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         let first = own.next();
         match own.next() {
             Some(second) => Err(cells.header_fault(second.index).error(
-                "says the same as an earlier column",
-                "say which one counts by { file = \"...\", columns = { delta_k = \"...\", rate = \"...\" } }",
+                "duplicates an earlier column",
+                "select one by { file = \"...\", columns = { delta_k = \"...\", rate = \"...\" } }",
             )),
             None => Ok(first),
         }
@@ -192,8 +192,8 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     let like = Unit::Rate(RateUnit::Millimetre);
     let rate = column_in_unit(&cells, rate, "rate_unit", like, keys.rate_unit.map(Unit::Rate))?;
     if let (Some(column), Some(given)) = (ratio, keys.stress_ratio) {
-        let problem = format!("is a column, and stress_ratio = {given} is given for the file");
-        return Err(cells.header_fault(column.index).error(problem, "leave one of them out"));
+        let problem = format!("is a column, and stress_ratio = {given} is set for the file");
+        return Err(cells.header_fault(column.index).error(problem, "remove one of them"));
     }
     let flags = cells.header.iter().position(|name| name == "flags");
     let read: Vec<Column> = [rate].into_iter().chain(delta_k).chain(k_max).chain(k_min).chain(ratio).collect();
@@ -219,7 +219,7 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         }
         let above_zero = |column: Column| {
             if column.role == Role::DeltaK && row.cell(column.index).is_empty() {
-                let remedy = "give ΔK in every row: `perilife rates --specimen CASE.toml` knows it";
+                let remedy = "give ΔK in every row: `perilife rates --specimen CASE.toml` computes it";
                 return Err(cells.cell_fault(row, column.index).error("is empty", remedy));
             }
             let size = value(&cells, row, column, decimal)?;
@@ -228,7 +228,7 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
                 true => Ok(size),
                 false => Err(fault.error(
                     "is not above zero",
-                    "leave rows without growth out; logarithms need a name that says so, as log10 da/dN (mm/cycle)",
+                    "remove rows without growth; name logarithms as such, for example log10 da/dN (mm/cycle)",
                 )),
             }
         };
@@ -242,12 +242,12 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
             && (said - ratio).abs() > SAME_RATIO
             && (said >= 0.0 || ratio.abs() > SAME_RATIO)
         {
-            let problem = format!("belongs to a stress ratio of {ratio:.3}, and the row says {said}");
-            return Err(cells.cell_fault(row, k.index).error(problem, "correct the row, or leave one of the columns out"));
+            let problem = format!("gives a stress ratio of {ratio:.3}; the row has {said}");
+            return Err(cells.cell_fault(row, k.index).error(problem, "correct the row, or remove one of the columns"));
         }
         if of_row >= 1.0 {
             let fault = cells.cell_fault(row, ratio.or(k_min).unwrap_or(k).index);
-            return Err(fault.error("is no stress ratio below 1", "give K_min over K_max"));
+            return Err(fault.error("is not a stress ratio below 1", "give K_min over K_max"));
         }
         table.rows.push(RateRow {
             // R that follows from K scatters.
@@ -265,7 +265,7 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     }
     if table.flagged > 0 {
         let (of, file) = (table.flagged + table.rows.len(), file.display());
-        table.warnings.push(format!("{file}: {} of {of} rates are left out, since they are flagged", table.flagged));
+        table.warnings.push(format!("{file}: {} of {of} flagged rates excluded", table.flagged));
     }
     if k_max.is_some() {
         return Ok(table);
@@ -274,8 +274,8 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
         let Some(range) = keys.delta_k else {
             let fault = Fault { line: Some(row.line), key: Some("delta_k"), ..whole_file(file) };
             return Err(fault.error(
-                format!("has rates at R = {}, where ΔK may be the full range (1 - R) K_max or its tensile part K_max", row.ratio),
-                "say which: delta_k = \"full\" (NASGRO and many laboratories) or \"tensile\" (ASTM E647, `perilife rates`)",
+                format!("R = {}: is ΔK the full range (1 − R) K_max or K_max (ASTM E647)?", row.ratio),
+                "set delta_k = \"full\" (NASGRO and many laboratories) or \"tensile\" (ASTM E647, `perilife rates`)",
             ));
         };
         table.range = Some(range);
@@ -314,7 +314,7 @@ fn leave_censored_out(cells: &mut Table, k: Column, rate: Column) -> Result<()> 
     };
     let Some(first) = cells.rows.iter().find(|row| is_censored(row)) else { return Ok(()) };
     let [name, of_k, rate] = [&cells.header[k.index], first.cell(k.index), first.cell(rate.index)];
-    let why = format!("with a rate below the measurable one, first at {name} = {of_k}: {rate}");
+    let why = format!("below the measurable rate, first at {name} = {of_k}: {rate}");
     cells.leave_out(&why, "their ΔK is a lower bound of the threshold", is_censored)
 }
 
@@ -322,8 +322,8 @@ fn without_columns(table: &Table) -> perilife_base::error::Error {
     let names = table.header.join(",");
     let fault = Fault { file: &table.file, line: Some(table.header_line.max(1)), key: Some("header"), value: Some(&names) };
     fault.error(
-        "lacks the columns delta_k_mpa_sqrt_m and da_dn_mm_per_cycle",
-        "name them so, or as ΔK (MPa√m) and da/dN (mm/cycle), and stress_ratio; or say which is which by { file = \"...\", columns = \
+        "has no columns delta_k_mpa_sqrt_m and da_dn_mm_per_cycle",
+        "name them so, or as ΔK (MPa√m) and da/dN (mm/cycle), and stress_ratio; or assign them by { file = \"...\", columns = \
          { delta_k = \"...\", rate = \"...\" } }; `perilife rates` writes such a table from a-N readings",
     )
 }
@@ -331,5 +331,5 @@ fn without_columns(table: &Table) -> perilife_base::error::Error {
 /// The error of rates without a stress ratio.
 pub fn lacks_ratio(file: &str, key: &str) -> perilife_base::error::Error {
     let remedy = format!("add a column stress_ratio, or write {{ file = \"{file}\", stress_ratio = ... }}");
-    input_missing(key, "is no column, and no stress_ratio is given for the file", remedy)
+    input_missing(key, "is not a column, and no stress_ratio is set for the file", remedy)
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::columns::{Layout, Series, Shape, is_stress};
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
 use perilife_base::error::{Error, Result};
-use perilife_base::line::line;
+use perilife_base::linear_fit::line;
 use perilife_base::table::Decimal;
 use perilife_base::table::names::{Column, Role};
 use perilife_base::table::quantities::number_at;
@@ -45,14 +45,14 @@ pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fa
             ))?;
         } else if layout.shape == Shape::WideLengths && curve.crack_length.last() <= curve.crack_length.first() {
             fate(specimen().error(
-                "is a column that does not grow, so it is no crack length",
-                "leave columns of other quantities out of a wide table, or name one of crack length by measured.columns.length",
+                "does not increase: not a crack length",
+                "remove columns of other quantities from a wide table, or set measured.columns.length",
             ))?;
         }
         let falls = curve.crack_length.windows(2).filter(|pair| pair[1] < pair[0]).count();
         if falls > 0 {
             falling.push(format!(
-                "{}: specimen {}: crack length falls at {falls} of {} readings (taken as reading noise)",
+                "{}: specimen {}: crack length drops at {falls} of {} readings (treated as noise)",
                 table.file.display(),
                 curve.specimen,
                 curve.cycles.len()
@@ -82,7 +82,7 @@ fn curves(table: &Table, decimal: Decimal, series: &Series, fate: Fate<'_>) -> R
         let name = series.specimen.map_or(series.name.as_str(), |column| row.cell(column.index));
         if name.is_empty() {
             let fault = Fault { line: Some(row.line), key: Some("specimen"), value: Some("\"\""), ..whole_file(&table.file) };
-            fate(fault.error("is empty", "name the specimen in every row, or leave the column out"))?;
+            fate(fault.error("is empty", "name the specimen in every row, or remove the column"))?;
             continue;
         }
         let place = *places.entry(name).or_insert(curves.len());
@@ -114,8 +114,8 @@ fn correct(curve: &mut MeasuredCurve, table: &Table, decimal: Decimal, optical: 
         let slope = format!("{:.3}", line.slope);
         let fault = Fault { key: Some(&curve.source.length_column), value: Some(&slope), ..whole_file(&table.file) };
         let problem =
-            format!("is the slope of {name} over it, beyond 0.5 to 2 or with lengths below 0: they are no readings of one crack");
-        return Err(fault.error(problem, "correct the readings, or name the length to read by measured.columns"));
+            format!("is the slope of {name} over it, outside 0.5 to 2 or with lengths below 0: not readings of one crack");
+        return Err(fault.error(problem, "correct the readings, or set the length by measured.columns"));
     }
     curve.crack_length = corrected;
     let (offset, slope, count) = (line.intercept / MM, line.slope, own.len());
@@ -145,11 +145,11 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
     }
     match curve.cycles.last() {
         Some(&before) if n == before => {
-            let remedy = "keep one reading for each number of cycles";
-            return Err(fault(cycles).error("repeats the cycles of the reading before", remedy));
+            let remedy = "remove duplicate cycle counts";
+            return Err(fault(cycles).error("repeats the cycles of the previous reading", remedy));
         }
         Some(&before) if n < before => {
-            let problem = format!("is below the reading before ({})", before / cycles.factor);
+            let problem = format!("is below the previous reading ({})", before / cycles.factor);
             let remedy = "sort the readings of each specimen by cycles, or correct the number";
             return Err(fault(cycles).error(problem, remedy));
         }
@@ -206,7 +206,7 @@ fn load(table: &Table, row: &Row, decimal: Decimal, series: &Series) -> Result<O
     if largest <= 0.0 {
         return Err(table
             .cell_fault(row, column.index)
-            .error("is not above 0", "give the largest load of a cycle, tension positive"));
+            .error("is not above 0", "give the maximum load of the cycle, tension positive"));
     }
     let range_beside = if maximum.is_some() { of(range)? } else { None };
     let r = match (of(minimum)?, of(ratio)?, range_beside) {
@@ -220,9 +220,7 @@ fn load(table: &Table, row: &Row, decimal: Decimal, series: &Series) -> Result<O
     };
     if r >= 1.0 {
         let column = minimum.or(ratio).or(range).unwrap_or(column);
-        return Err(table
-            .cell_fault(row, column.index)
-            .error("leaves no range of load", "give the smallest load below the largest"));
+        return Err(table.cell_fault(row, column.index).error("gives no load range", "give a minimum load below the maximum"));
     }
     Ok(Some((largest, r)))
 }

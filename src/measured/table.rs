@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::exclusion_flags::exclude_flagged;
 use super::import::{Import, LeaveOut};
-use super::marks::leave_marked_out;
 use perilife_base::error::{Result, input};
 use perilife_base::table::{self, Table};
 
@@ -11,11 +11,11 @@ use perilife_base::table::{self, Table};
 /// Errors: as [`table::read`] and [`take_rows_out`]; a Parquet file.
 pub(super) fn read(bytes: &[u8], file: &Path, import: &Import) -> Result<Table> {
     if bytes.starts_with(b"PAR1") {
-        return Err(table::whole_file(file).error("is a Parquet file, which is not read", "save the table as CSV or .xlsx"));
+        return Err(table::whole_file(file).error("is a Parquet file, which is not supported", "save the table as CSV or .xlsx"));
     }
     let mut table = table::read(bytes, file, import)?;
     take_rows_out(&mut table, &import.left_out)?;
-    leave_marked_out(&mut table, import)?;
+    exclude_flagged(&mut table, import)?;
     Ok(table)
 }
 
@@ -34,7 +34,7 @@ fn take_rows_out(table: &mut Table, all: &[LeaveOut]) -> Result<()> {
         let Some(place) = place.filter(|_| is_there) else {
             let (line, cells) = (one.line.unwrap_or_default(), place.map_or("no row".to_owned(), |_| cells.join(" | ")));
             let problem = format!("is not a cell of line {line} of {}, which has {cells}", table.file.display());
-            let remedy = "count lines from 1, the header included, and give the cell that is wrong";
+            let remedy = "count lines from 1, the header included, and give the wrong cell";
             return Err(input(&format!("measured.leave_out[{index}].value"), format!("\"{value}\""), problem, remedy));
         };
         table.rows.remove(place);

@@ -64,7 +64,7 @@ pub(super) fn below_each_other(table: &mut Table, import: &Import) {
         let (file, column) = (table.file.display(), &table.header[first]);
         table
             .notes
-            .push(format!("{file}: {column} is read as ΔK {unit}, the unit that goes with the rates; else give intensity_unit"));
+            .push(format!("{file}: {column} read as ΔK {unit}, the unit that matches the rates; otherwise set intensity_unit"));
     }
     let cells = |row: &Row, (i, ratio, _): &(usize, &str, &str)| {
         let cells = [row.cell(own.index), row.cell(*i), ratio].into_iter().collect();
@@ -92,7 +92,7 @@ fn dadn(bytes: &[u8], file: &Path) -> Result<Wide> {
             .iter()
             .map(|word| {
                 word.parse()
-                    .map_err(|_| fault(word).error("is no number", "give a row of stress ratios, then rows of da/dN and ΔK"))
+                    .map_err(|_| fault(word).error("is not a number", "give a row of stress ratios, then rows of da/dN and ΔK"))
             })
             .collect::<Result<_>>()?;
         match &ratios {
@@ -100,7 +100,7 @@ fn dadn(bytes: &[u8], file: &Path) -> Result<Wide> {
             Some(ratios) if numbers.len() == ratios.len() + 1 => rows.push((numbers[0], numbers[1..].to_vec())),
             Some(ratios) => {
                 let problem =
-                    format!("has {} numbers, and {} are wanted: da/dN and ΔK at every ratio", numbers.len(), ratios.len() + 1);
+                    format!("has {} numbers, expected {}: da/dN and ΔK at every ratio", numbers.len(), ratios.len() + 1);
                 return Err(fault(line).error(problem, "give one ΔK for every stress ratio of the first row"));
             }
         }
@@ -123,7 +123,7 @@ fn lkpx(bytes: &[u8], file: &Path) -> Result<(Wide, &'static str)> {
         found.map(|one| one.value.into_owned())
     };
     loop {
-        let event = reader.read_event().map_err(|error| whole_file(file).error(format!("is no XML: {error}"), REMEDY))?;
+        let event = reader.read_event().map_err(|error| whole_file(file).error(format!("is not XML: {error}"), REMEDY))?;
         match event {
             Event::Eof => break,
             Event::Start(element) | Event::Empty(element) => {

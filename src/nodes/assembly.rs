@@ -9,7 +9,7 @@ use super::basis::Value;
 use super::cells::{Dividers, QuadraturePoint};
 use super::dilatation::{Dilatation, Patch, side, split};
 use super::field::{Discretisation, Local, TipFields, singular};
-use super::front::{Front, lower_product, whole_product};
+use super::front::{FrontalMatrix, lower_product, whole_product};
 use perilife_base::error::Result;
 
 /// Area of points that may be left out where nodes in reach do not span the basis, over that of a cell: in the wedge between a slant
@@ -186,7 +186,7 @@ pub fn add_cell(
     (leaf, points): (usize, &[QuadraturePoint]),
     scratch: &mut Scratch,
     places: &[u32],
-    front: &mut Front,
+    front: &mut FrontalMatrix,
 ) -> Result<()> {
     scratch.read(plate, leaf, points)?;
     scratch.number(plate, places);
@@ -240,7 +240,7 @@ pub fn add_cell(
 }
 
 /// Adds the matrix of the unknowns without fields, of which those of each node begin at one of the ascending `places`.
-fn add_nodes(plate: &Discretisation, places: &[usize], product: &[f64], front: &mut Front) {
+fn add_nodes(plate: &Discretisation, places: &[usize], product: &[f64], front: &mut FrontalMatrix) {
     let (elasticity, _) = split(plate.elasticity());
     // Stress of unit strains.
     let [direct, lateral, _] = elasticity.stress(&[[1.0, 0.0], [0.0, 0.0]]);

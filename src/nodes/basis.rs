@@ -25,9 +25,9 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// How near-tip fields come into the displacement.
     pub enum Enrichment for "model.enrichment" {
-        Tip = "tip": "both near-tip fields as unknowns of the nodes around a tip",
+        Tip = "tip": "both near-tip fields as extra unknowns at nodes around a tip",
         Intrinsic = "intrinsic": "√r cos θ/2, √r sin θ/2, and both times sin θ in the basis around a tip",
-        None = "none": "polynomials alone: K errs by 4 to 8 %",
+        None = "none": "polynomials only: error of K 4 to 8 %",
     }
 }
 

@@ -167,7 +167,7 @@ pub fn press(specimen: &Specimen, plate: &Discretisation, factor: &Factor, y: &[
         }
     }
     Err(Error::Mechanics(format!(
-        "contact of crack flanks is not found in {TURNS} turns; model.tolerance_percent moves the nodes"
+        "crack-face contact did not converge in {TURNS} iterations; change model.tolerance_percent to move the nodes"
     )))
 }
 
@@ -220,8 +220,7 @@ impl<'a> Compliance<'a> {
         let n = active.len();
         let soft = |i: usize, j: usize| if i == j { self.segments[active[i]].soft } else { 0.0 };
         let matrix = DMatrix::from_fn(n, n, |i, j| self.products[(active[i], active[j])] + soft(i, j));
-        let cholesky =
-            matrix.cholesky().ok_or_else(|| Error::Mechanics("flanks of cracks cannot be brought into contact".to_owned()))?;
+        let cholesky = matrix.cholesky().ok_or_else(|| Error::Mechanics("crack-face contact cannot be solved".to_owned()))?;
         Ok(cholesky.solve(&DVector::from_fn(n, |i, _| -free[active[i]])).iter().copied().collect())
     }
 }

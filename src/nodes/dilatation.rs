@@ -11,7 +11,7 @@
 
 use std::collections::HashMap;
 
-use super::front::Front;
+use super::front::FrontalMatrix;
 use perilife_plate::specimen::Point;
 use perilife_plate::specimen::geometry::turn;
 use perilife_plate::williams::Elasticity;
@@ -72,7 +72,7 @@ impl Dilatation {
 
     /// Adds `h (λ - λ₀) Σ A m_a m_b` of a leaf to a front in which a node has its unknowns, the first of which is `first[node]`, from
     /// `places[node]` on.
-    pub fn add(&self, leaf: usize, thickness: f64, [first, places]: [&[u32]; 2], front: &mut Front) {
+    pub fn add(&self, leaf: usize, thickness: f64, [first, places]: [&[u32]; 2], front: &mut FrontalMatrix) {
         for Patch { area, means, .. } in self.cells.get(&leaf).iter().flat_map(|(_, patches)| patches) {
             let place = |&(node, unknown, mean)| ((places[node as usize] + unknown - first[node as usize]) as usize, mean);
             let mut placed: Vec<(usize, f64)> = means.iter().map(place).collect();

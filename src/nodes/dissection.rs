@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::front::Front;
+use super::front::FrontalMatrix;
 use perilife_base::error::{Error, Result};
 use perilife_plate::specimen::Point;
 
@@ -32,7 +32,7 @@ pub struct Member {
 pub trait Matrices: Sync {
     /// Adds the members.
     /// Errors: a matrix cannot be computed.
-    fn add(&self, members: &[u32], places: &[u32], front: &mut Front) -> Result<()>;
+    fn add(&self, members: &[u32], places: &[u32], front: &mut FrontalMatrix) -> Result<()>;
 }
 
 /// A part of the plate before anything is computed.
@@ -48,16 +48,16 @@ struct Plan {
 
 /// A part of the plate with its factor.
 #[derive(Debug)]
-struct Part {
-    front: Front,
+struct Subdomain {
+    front: FrontalMatrix,
     /// Unknowns of the front, those that are eliminated first.
     unknowns: Vec<u32>,
-    parts: Vec<Part>,
+    parts: Vec<Subdomain>,
 }
 
 /// Factor L of a positive definite matrix `A = L Lᵀ`.
 #[derive(Debug)]
-pub struct Factor(Part);
+pub struct Factor(Subdomain);
 
 struct Dissection<'a, M> {
     members: &'a [Member],
@@ -225,7 +225,7 @@ impl Bisection<'_> {
     }
 }
 
-impl Part {
+impl Subdomain {
     fn solve_forward(&self, b: &mut [f64]) {
         self.parts.iter().for_each(|part| part.solve_forward(b));
         self.front.solve_forward(&self.unknowns, b);
@@ -244,7 +244,7 @@ impl Part {
 
 impl<M: Matrices> Dissection<'_, M> {
     /// Sums the matrices of a part and eliminates its nodes; gives the nodes that are left as well, by rank.
-    fn part(&self, plan: &Plan) -> Result<(Part, Vec<u32>)> {
+    fn part(&self, plan: &Plan) -> Result<(Subdomain, Vec<u32>)> {
         let members = &self.order[plan.members.clone()];
         let parts = plan.parts.par_iter().with_max_len(1).map(|part| self.part(part)).collect::<Result<Vec<_>>>()?;
         let mut places = vec![u32::MAX; self.ranks.len()];
@@ -261,11 +261,11 @@ impl<M: Matrices> Dissection<'_, M> {
         // Nodes of the part have lower ranks than those that are left.
         let open = nodes.split_off(plan.own.len());
         let own = open.first().map_or(unknowns.len(), |&node| places[node as usize] as usize);
-        let mut front = Front::new(own, unknowns.len() - own);
+        let mut front = FrontalMatrix::new(own, unknowns.len() - own);
         if parts.is_empty() {
             self.matrices.add(members, &places, &mut front)?;
         }
-        let take = |(mut part, open): (Part, Vec<u32>)| {
+        let take = |(mut part, open): (Subdomain, Vec<u32>)| {
             let of_node = |&node: &u32| {
                 let place = places[node as usize];
                 place..place + self.unknowns(node).len() as u32
@@ -274,7 +274,7 @@ impl<M: Matrices> Dissection<'_, M> {
             part
         };
         let parts = parts.into_iter().map(take).collect();
-        if front.eliminate() { Ok((Part { front, unknowns, parts }, open)) } else { Err(Error::LossOfStiffness) }
+        if front.eliminate() { Ok((Subdomain { front, unknowns, parts }, open)) } else { Err(Error::LossOfStiffness) }
     }
 
     fn unknowns(&self, node: u32) -> Range<u32> {

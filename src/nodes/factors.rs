@@ -61,7 +61,7 @@ pub fn read(
         plate
             .displacement(u, at, &mut local)
             .map(|(_, gradient)| axes.gradient_to_axes(gradient))
-            .ok_or_else(|| Error::Mechanics(format!("no displacement is known at {}: too few nodes are in reach", place_mm(at))))
+            .ok_or_else(|| Error::Mechanics(format!("no displacement at {}: too few nodes within reach", place_mm(at))))
     };
     let radius = room.min(RADIUS_SPACINGS * axes.spacing);
     integral(axes, plate.elasticity(), radius, stress, field)

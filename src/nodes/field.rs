@@ -77,7 +77,7 @@ pub struct Local {
     pub values: Vec<Value>,
     /// Q_I and Q_II of every tip that a node in reach carries, with gradients; by tip.
     pub fields: Vec<Option<TipFields>>,
-    room: linear::Room,
+    room: linear::Workspace,
 }
 
 impl Discretisation {
@@ -287,8 +287,8 @@ fn add(sum: &mut Point, factor: f64, vector: &Point) {
 /// What is said where nodes in reach of a point, with radii of influence up to `radius`, m, do not span the basis.
 pub fn singular(at: Point, radius: f64) -> Error {
     Error::Mechanics(format!(
-        "too few nodes are in reach of {} to span the basis, with radii of influence up to {:.4} mm; give a larger \
-         model.influence_radius, or more model.nodes",
+        "too few nodes near {} for the basis (radii of influence up to {:.4} mm); increase model.influence_radius or \
+         model.nodes",
         place_mm(at),
         radius / MM
     ))

@@ -12,17 +12,17 @@ use faer::{Accum, MatMut, MatRef, Par, Spec};
 /// In blocks `A = [A₁₁ ·; A₂₁ A₂₂]`: columns of A₁₁ and A₂₁ stand in one piece, which becomes the factor `[L₁₁; L₂₁]`; A₂₂ becomes the
 /// complement `A₂₂ - L₂₁ L₂₁ᵀ` (Schur), which other fronts take up.
 #[derive(Debug, Clone, Default)]
-pub struct Front {
+pub struct FrontalMatrix {
     own: usize,
     rest: usize,
     panel: Vec<f64>,
     complement: Vec<f64>,
 }
 
-impl Front {
+impl FrontalMatrix {
     /// A zero matrix of `own` unknowns to be eliminated and `rest` others.
     pub fn new(own: usize, rest: usize) -> Self {
-        Front { own, rest, panel: vec![0.0; (own + rest) * own], complement: vec![0.0; rest * rest] }
+        FrontalMatrix { own, rest, panel: vec![0.0; (own + rest) * own], complement: vec![0.0; rest * rest] }
     }
 
     /// A column, with the row at which it begins.
@@ -44,7 +44,7 @@ impl Front {
     }
 
     /// Takes up the complement of an eliminated part, whose other unknowns have these ascending `places` here.
-    pub fn take(&mut self, part: &mut Front, places: &[u32]) {
+    pub fn take(&mut self, part: &mut FrontalMatrix, places: &[u32]) {
         let complement = std::mem::take(&mut part.complement);
         // Stretches of unknowns that follow one another here as well.
         let mut stretches: Vec<[usize; 2]> = Vec::new();
@@ -112,7 +112,7 @@ impl Front {
         unknowns.iter().zip(local).for_each(|(&unknown, local)| b[unknown as usize] = local);
     }
 
-    /// [`Front::solve_forward`] of several right sides at a time, of those that load unknowns of the front.
+    /// [`FrontalMatrix::solve_forward`] of several right sides at a time, of those that load unknowns of the front.
     pub fn solve_forward_together(&self, unknowns: &[u32], sides: &mut [Vec<f64>]) {
         let size = self.own + self.rest;
         let is_loaded = |b: &&mut Vec<f64>| unknowns[..self.own].iter().any(|&unknown| b[unknown as usize] != 0.0);

@@ -12,7 +12,7 @@ type Lanes = [f64; LANES];
 
 /// Nodes of a leaf, and what they are to a point.
 #[derive(Debug, Clone, Default)]
-pub struct Room {
+pub struct Workspace {
     /// Positions and supports, filled up with a node that nothing sees.
     x: Vec<Lanes>,
     y: Vec<Lanes>,
@@ -24,7 +24,7 @@ pub struct Room {
     values: [Vec<Lanes>; 3],
 }
 
-impl Room {
+impl Workspace {
     /// Takes up the nodes of a leaf.
     pub fn load(&mut self, nodes: &[u32], positions: &[Point], supports: &[f64]) {
         let size = nodes.len().div_ceil(LANES);
@@ -32,7 +32,7 @@ impl Room {
             own.resize(size, [far; LANES]);
             own.iter_mut().next_back().into_iter().for_each(|last| *last = [far; LANES]);
         }
-        let Room { x, y, support, .. } = self;
+        let Workspace { x, y, support, .. } = self;
         let to = x.as_flattened_mut().iter_mut().zip(y.as_flattened_mut()).zip(support.as_flattened_mut());
         for (((x, y), support), &node) in to.zip(nodes) {
             ([*x, *y], *support) = (positions[node as usize], supports[node as usize]);
@@ -52,7 +52,7 @@ pub fn shape_functions(
     nodes: &[u32],
     (near, clear): (&Near, &[bool]),
     scale: f64,
-    room: &mut Room,
+    room: &mut Workspace,
     values: &mut Vec<Value>,
 ) -> bool {
     values.clear();
@@ -108,7 +108,7 @@ fn inverse(&[a11, a21, a31, a22, a32, a33]: &[f64; 6]) -> Option<[f64; 6]> {
 
 /// Straight ways.
 struct Ways<'a> {
-    room: &'a mut Room,
+    room: &'a mut Workspace,
     at: Point,
 }
 
@@ -117,7 +117,7 @@ impl pulp::NullaryFnOnce for Ways<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Ways { room: Room { x, y, length, slope: [slope_x, slope_y], .. }, at } = self;
+        let Ways { room: Workspace { x, y, length, slope: [slope_x, slope_y], .. }, at } = self;
         let n = x.len();
         let (x, y, length, slope_x, slope_y) = (&x[..n], &y[..n], &mut length[..n], &mut slope_x[..n], &mut slope_y[..n]);
         for c in 0..n {
@@ -136,7 +136,7 @@ impl pulp::NullaryFnOnce for Ways<'_> {
 
 /// Weights, their slopes and the moments of both.
 struct Moments<'a> {
-    room: &'a mut Room,
+    room: &'a mut Workspace,
     at: Point,
     scale: f64,
 }
@@ -146,7 +146,7 @@ impl pulp::NullaryFnOnce for Moments<'_> {
 
     #[inline(always)]
     fn call(self) -> Self::Output {
-        let Moments { room: Room { x, y, support, length, slope: [slope_x, slope_y], weight, .. }, at, scale } = self;
+        let Moments { room: Workspace { x, y, support, length, slope: [slope_x, slope_y], weight, .. }, at, scale } = self;
         let mut sums = [[[0.0; LANES]; 6]; 3];
         let over_scale = 1.0 / scale;
         let n = x.len();
@@ -189,7 +189,7 @@ impl pulp::NullaryFnOnce for Moments<'_> {
 
 /// Values and gradients of the shape functions.
 struct Values<'a> {
-    room: &'a mut Room,
+    room: &'a mut Workspace,
     at: Point,
     scale: f64,
     gammas: [[f64; 3]; 3],
@@ -200,8 +200,12 @@ impl pulp::NullaryFnOnce for Values<'_> {
 
     #[inline(always)]
     fn call(self) {
-        let Values { room: Room { x, y, slope: [slope_x, slope_y], weight, values: [value, of_x, of_y], .. }, at, scale, gammas } =
-            self;
+        let Values {
+            room: Workspace { x, y, slope: [slope_x, slope_y], weight, values: [value, of_x, of_y], .. },
+            at,
+            scale,
+            gammas,
+        } = self;
         let [g, g_x, g_y] = gammas;
         let over_scale = 1.0 / scale;
         let n = x.len();

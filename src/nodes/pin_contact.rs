@@ -208,7 +208,7 @@ impl Search {
             (fewest, chances) = if wrong.len() < fewest { (wrong.len(), CHANCES) } else { (fewest, chances - 1) };
             wrong.into_iter().for_each(|piece| closed[piece] = !closed[piece]);
         }
-        let problem = "no contact of a pin with its hole is found; set its contact half angle, not its diameter";
+        let problem = "pin contact did not converge; give the contact half angle instead of the diameter";
         self.descend(&before).ok_or_else(|| Error::Mechanics(problem.to_owned()))
     }
 

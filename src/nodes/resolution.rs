@@ -103,7 +103,7 @@ impl Resolution {
         let [width, height] = [0, 1].map(|i| bounds[1][i] - bounds[0][i]);
         let cells = width * height / (self.far * self.far);
         if cells > CELLS_MOST as f64 {
-            return Err(Error::Mechanics(format!("{cells:.1e} cells of integration would be needed; give fewer model.nodes")));
+            return Err(Error::Mechanics(format!("{cells:.1e} integration cells needed; reduce model.nodes")));
         }
         let mut sources = Vec::new();
         for tip in tips {
@@ -319,8 +319,8 @@ pub fn mouths(points: &[Point], hole: Hole) -> Vec<Point> {
 /// What is said where a gap asks for more cells than there may be.
 fn too_narrow(finest: &Source) -> Error {
     Error::Mechanics(format!(
-        "cracks or rims near {} ask for nodes {:.2e} mm apart, and for more than {CELLS_MOST} cells of integration in all: \
-         move apart, or join, what lies {:.2e} mm from each other there",
+        "cracks or edges near {} need nodes {:.2e} mm apart and more than {CELLS_MOST} integration cells; move apart, or \
+         join, features {:.2e} mm apart there",
         place_mm(finest.at),
         finest.spacing / MM,
         ACROSS_LIGAMENT * finest.spacing / MM

@@ -100,7 +100,7 @@ pub fn rim_stresses(specimen: &Specimen, plate: &Discretisation, u: &[f64], shar
 
 /// A place on a rim.
 #[derive(Clone, Copy)]
-struct Place {
+struct BoundaryPoint {
     at: Point,
     /// Direction of the rim; the material is on its left.
     tangent: Point,
@@ -118,12 +118,12 @@ fn half_window(spacing: f64, radius: f64) -> f64 {
 }
 
 /// Stretches of the outline between its corners, those of arcs within them; without what supports hold.
-fn outline(specimen: &Specimen, plate: &Discretisation) -> Vec<Vec<Place>> {
+fn outline(specimen: &Specimen, plate: &Discretisation) -> Vec<Vec<BoundaryPoint>> {
     let (corners, count) = (&specimen.outline, specimen.outline.len());
     let corner = |k: usize| corners[k % count];
     let is_corner = |k: usize| turn_at(corner(k + count - 1), corner(k), corner(k + 1)).abs() > ARC_TURN;
     let first = (0..count).find(|k| is_corner(*k)).unwrap_or(0);
-    let mut stretches: Vec<Vec<Place>> = vec![Vec::new()];
+    let mut stretches: Vec<Vec<BoundaryPoint>> = vec![Vec::new()];
     let mut way = 0.0;
     for k in first..first + count {
         let (a, b) = (corner(k), corner(k + 1));
@@ -150,19 +150,20 @@ fn outline(specimen: &Specimen, plate: &Discretisation) -> Vec<Vec<Place>> {
 }
 
 /// Places on a hole, clockwise, so that the material is on the left.
-fn on_hole(plate: &Discretisation, hole: &Hole) -> Vec<Place> {
+fn on_hole(plate: &Discretisation, hole: &Hole) -> Vec<BoundaryPoint> {
     let place = |k: usize| {
         let angle = -std::f64::consts::TAU * k as f64 / PLACES_ON_HOLE as f64;
         let (sin, cos) = angle.sin_cos();
         let at = [hole.centre[0] + hole.radius * cos, hole.centre[1] + hole.radius * sin];
         let spacing = plate.grid.spacing(plate.grid.leaf(at));
-        Place { at, tangent: [sin, -cos], way: -angle * hole.radius, spacing, half_window: half_window(spacing, hole.radius) }
+        let half_window = half_window(spacing, hole.radius);
+        BoundaryPoint { at, tangent: [sin, -cos], way: -angle * hole.radius, spacing, half_window }
     };
     (0..PLACES_ON_HOLE).map(place).collect()
 }
 
 /// Places on a straight side; the material is on its left. `way` is that of its first end, `radius` that of the arc that it is a side of, m.
-fn on_side(plate: &Discretisation, a: Point, b: Point, way: f64, radius: f64) -> Vec<Place> {
+fn on_side(plate: &Discretisation, a: Point, b: Point, way: f64, radius: f64) -> Vec<BoundaryPoint> {
     let grid = &plate.grid;
     let spacing_at = |at: Point| grid.spacing(grid.leaf(at));
     let least = [0.0, 0.5, 1.0].map(|share| spacing_at(along(a, b, share))).into_iter().fold(f64::INFINITY, f64::min);
@@ -172,7 +173,7 @@ fn on_side(plate: &Discretisation, a: Point, b: Point, way: f64, radius: f64) ->
         let at = along(a, b, share);
         let spacing = spacing_at(at);
         let half_window = half_window(spacing, radius);
-        Place { at, tangent: direction(a, b), way: way + share * distance(a, b), spacing, half_window }
+        BoundaryPoint { at, tangent: direction(a, b), way: way + share * distance(a, b), spacing, half_window }
     };
     (0..count).map(place).collect()
 }
@@ -186,8 +187,8 @@ struct Reader<'a> {
 }
 
 /// What is read at a place.
-struct Reading {
-    place: Place,
+struct StressSample {
+    place: BoundaryPoint,
     /// Displacement, m.
     u: Point,
     /// Stress across the rim, Pa.
@@ -196,9 +197,9 @@ struct Reading {
 
 impl Reader<'_> {
     /// Stress along a stretch of rim; `around` is the way round a closed one, m.
-    fn stresses(&self, places: &[Place], around: Option<f64>) -> Vec<StressAt> {
+    fn stresses(&self, places: &[BoundaryPoint], around: Option<f64>) -> Vec<StressAt> {
         let mut local = Local::default();
-        let read: Vec<Reading> = places.iter().filter_map(|place| self.read(place, &mut local)).collect();
+        let read: Vec<StressSample> = places.iter().filter_map(|place| self.read(place, &mut local)).collect();
         let count = read.len();
         let is_cut: Vec<bool> = (0..count).map(|index| self.is_cut(&read[index], &read[(index + 1) % count])).collect();
         let elasticity = self.plate.elasticity();
@@ -229,7 +230,7 @@ impl Reader<'_> {
         (0..count).filter_map(stress).collect()
     }
 
-    fn read(&self, place: &Place, local: &mut Local) -> Option<Reading> {
+    fn read(&self, place: &BoundaryPoint, local: &mut Local) -> Option<StressSample> {
         let ([x, y], step) = (place.tangent, INWARD * place.spacing);
         let at = [place.at[0] - step * y, place.at[1] + step * x];
         let (u, gradient) = self.plate.displacement(self.u, at, local)?;
@@ -239,7 +240,7 @@ impl Reader<'_> {
         } else {
             0.0
         };
-        Some(Reading { place: *place, u, across })
+        Some(StressSample { place: *place, u, across })
     }
 
     /// Whether a load acts on a place of a rim.
@@ -256,14 +257,14 @@ impl Reader<'_> {
     }
 
     /// Whether a crack begins between two places.
-    fn is_cut(&self, a: &Reading, b: &Reading) -> bool {
+    fn is_cut(&self, a: &StressSample, b: &StressSample) -> bool {
         let cuts = &self.plate.obstacles.cuts[..self.plate.cracks];
         cuts.iter().flat_map(|cut| cut.points.windows(2)).any(|piece| segments_touch(a.place.at, b.place.at, piece[0], piece[1]))
     }
 }
 
 /// Way along the rim from one place to another, in half windows of the first.
-fn way(from: &Place, to: &Place, around: Option<f64>) -> f64 {
+fn way(from: &BoundaryPoint, to: &BoundaryPoint, around: Option<f64>) -> f64 {
     let way = to.way - from.way;
     around.map_or(way, |around| way - around * (way / around).round()) / from.half_window
 }
@@ -285,8 +286,7 @@ fn extremes(rim: Rim, places: Vec<StressAt>, [is_sharp, is_round]: [bool; 2]) ->
     match (places.iter().copied().max_by(by_stress), places.iter().copied().min_by(by_stress)) {
         (Some(largest), Some(least)) => Ok(RimStress { rim, largest, least, is_sharp, is_round: is_round && !is_sharp }),
         _ => Err(Error::Mechanics(
-            "too few nodes are in reach of a rim to span the basis; give a larger model.influence_radius, or more model.nodes"
-                .to_owned(),
+            "too few nodes near a boundary for the basis; increase model.influence_radius or model.nodes".to_owned(),
         )),
     }
 }

@@ -8,7 +8,7 @@ use super::cells::{QuadraturePoint, quadrature};
 use super::contact::{Pressed, press};
 use super::dissection::{Factor, Matrices, Member};
 use super::field::{Discretisation, Local};
-use super::front::Front;
+use super::front::FrontalMatrix;
 use super::pins::PinColumns;
 use perilife_base::error::Result;
 use perilife_base::raster::PointGrid;
@@ -95,7 +95,7 @@ impl Stiffness<'_> {
 }
 
 impl Matrices for Stiffness<'_> {
-    fn add(&self, members: &[u32], places: &[u32], front: &mut Front) -> Result<()> {
+    fn add(&self, members: &[u32], places: &[u32], front: &mut FrontalMatrix) -> Result<()> {
         let mut scratch = Scratch::of(self.plate.nodes.at.len());
         for &member in members {
             let member = member as usize;

@@ -90,26 +90,26 @@ impl Eigenfunction {
     /// 2G u at (r, θ) for coefficient 1, in the axes of the tip.
     #[inline]
     pub fn displacement(&self, kappa: f64, r: f64, theta: f64) -> [f64; 2] {
-        Place::new(self.order, r, theta).displacement(self.symmetry, kappa)
+        PolarPoint::new(self.order, r, theta).displacement(self.symmetry, kappa)
     }
 
     /// 2G ∂u_i/∂x_j at (r, θ) for coefficient 1.
     #[inline]
     pub fn gradient(&self, kappa: f64, r: f64, theta: f64) -> [[f64; 2]; 2] {
-        Place::new(self.order, r, theta).gradient(self.symmetry, kappa)
+        PolarPoint::new(self.order, r, theta).gradient(self.symmetry, kappa)
     }
 
     /// 2G u and 2G ∂u_i/∂x_j of both functions of an order, opening first, for which angles and powers are computed once.
     #[inline]
     pub fn both(order: i32, kappa: f64, r: f64, theta: f64) -> [([f64; 2], [[f64; 2]; 2]); 2] {
-        let place = Place::new(order, r, theta);
+        let place = PolarPoint::new(order, r, theta);
         [Symmetry::Opening, Symmetry::Sliding]
             .map(|symmetry| (place.displacement(symmetry, kappa), place.gradient(symmetry, kappa)))
     }
 }
 
 /// A point as the functions of order n see it: powers of r, n/2, sine and cosine of θ, of n θ/2 and of (n/2 - 2) θ.
-struct Place {
+struct PolarPoint {
     /// r^(n/2) and r^(n/2 - 1).
     powers: [f64; 2],
     half: f64,
@@ -120,12 +120,12 @@ struct Place {
     low: (f64, f64),
 }
 
-impl Place {
+impl PolarPoint {
     #[inline]
     fn new(order: i32, r: f64, theta: f64) -> Self {
         let half = 0.5 * f64::from(order);
         let sign = if order % 2 == 0 { 1.0 } else { -1.0 };
-        Place {
+        PolarPoint {
             powers: [r.powf(half), r.powf(half - 1.0)],
             half,
             sign,
@@ -155,7 +155,7 @@ impl Place {
     /// Angular functions of both components and their derivatives over θ.
     #[inline]
     fn angular(&self, symmetry: Symmetry, kappa: f64) -> [f64; 4] {
-        let Place { half: h, sign, high: (sin_h, cos_h), low: (sin_l, cos_l), .. } = *self;
+        let PolarPoint { half: h, sign, high: (sin_h, cos_h), low: (sin_l, cos_l), .. } = *self;
         let (h_l, l) = (h * (h - 2.0), h);
         match symmetry {
             Symmetry::Opening => {

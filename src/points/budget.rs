@@ -243,7 +243,7 @@ impl Budget {
             return Ok(());
         }
         let problem = format!(
-            "makes {:.2e} points, {:.2e} lattice places and {:.2e} bonds, which take up about {} of memory, more than {}",
+            "needs {:.2e} points, {:.2e} lattice positions and {:.2e} bonds, about {} of memory; limit {}",
             self.points,
             self.places,
             self.bonds,
@@ -261,7 +261,7 @@ impl Budget {
         if self.points <= most {
             return Ok(());
         }
-        let problem = format!("gives the plate {:.3e} points, more than the {most:.3e} allowed", self.points);
+        let problem = format!("gives {:.3e} points; limit {most:.3e}", self.points);
         self.refusal(problem, (self.points / most).sqrt(), self.other_keys)
     }
 
@@ -283,7 +283,7 @@ impl Budget {
 
     /// What it takes up, in words.
     pub fn words(&self) -> String {
-        format!("a run takes about {} of memory and {} of files", megabytes(self.bytes), megabytes(self.disk_bytes))
+        format!("about {} of memory, {} of files", megabytes(self.bytes), megabytes(self.disk_bytes))
     }
 
     /// Refuses what takes up more memory than this process may still take ([`machine::free_bytes`]).

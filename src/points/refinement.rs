@@ -87,7 +87,7 @@ pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Refinement> {
     const KEY: &str = "refinement.regions";
     if input.regions.is_empty() || input.regions.len() > REGIONS_MAX {
         let remedy = format!("give 1 to {REGIONS_MAX} regions {{ box_mm = [[x, y], [x, y]], levels = 1 }}");
-        return Err(perilife_base::error::input(KEY, format!("{} regions", input.regions.len()), "is no refinement", remedy));
+        return Err(perilife_base::error::input(KEY, format!("{} regions", input.regions.len()), "is not a refinement", remedy));
     }
     let of = |(i, given): (usize, &RegionKeys)| one(given, &format!("{KEY}[{i}]"), specimen);
     Ok(Refinement { regions: input.regions.iter().enumerate().map(of).collect::<Result<_>>()? })
@@ -95,8 +95,8 @@ pub fn from_value(value: &Value, specimen: &Specimen) -> Result<Refinement> {
 
 fn one(given: &RegionKeys, path: &str, specimen: &Specimen) -> Result<(RefinedRegion, usize)> {
     if let Some(width) = given.width.filter(|_| given.band.is_none()) {
-        let problem = "is the width of a band, and there is none";
-        return Err(input(&format!("{path}.width_mm"), round_mm(width), problem, "leave it out"));
+        let problem = "is the width of a band, and there is no band";
+        return Err(input(&format!("{path}.width_mm"), round_mm(width), problem, "remove it"));
     }
     let region = match (given.corners, given.band, given.around_flaws) {
         (Some(ends), None, None) => {
@@ -107,7 +107,12 @@ fn one(given: &RegionKeys, path: &str, specimen: &Specimen) -> Result<(RefinedRe
         (None, None, Some(distance)) => {
             let key = format!("{path}.around_flaws_mm");
             if specimen.cracks.is_empty() && specimen.slots.is_empty() {
-                return Err(input(&key, round_mm(distance), "has nothing to lie around", "give cracks or notches, or a box"));
+                return Err(input(
+                    &key,
+                    round_mm(distance),
+                    "has no crack or notch to refine",
+                    "give cracks or notches, or a box",
+                ));
             }
             RefinedRegion::AroundFlaws { distance }
         }
@@ -122,16 +127,16 @@ fn one(given: &RegionKeys, path: &str, specimen: &Specimen) -> Result<(RefinedRe
 fn band([from, to]: [Point; 2], width: Option<f64>, path: &str, specimen: &Specimen) -> Result<RefinedRegion> {
     let key = format!("{path}.band_mm");
     if distance(from, to) < 1e-6 {
-        return Err(input_missing(&key, "has no length: its ends coincide", "give two different points"));
+        return Err(input_missing(&key, "has zero length: its ends coincide", "give two different points"));
     }
     let width_key = format!("{path}.width_mm");
-    let width = width.ok_or_else(|| input_missing(&width_key, "is missing", "give the whole width of the band"))?;
+    let width = width.ok_or_else(|| input_missing(&width_key, "is missing", "give the full width of the band"))?;
     let half = width / 2.0;
     let low = [from[0].min(to[0]) - half, from[1].min(to[1]) - half];
     let high = [from[0].max(to[0]) + half, from[1].max(to[1]) + half];
     let [plate_low, plate_high] = bounding_box(&specimen.outline);
     if !overlap(low, high, plate_low, plate_high) {
-        let problem = format!("lies outside the plate, which reaches from {} to {}", given_mm(plate_low), given_mm(plate_high));
+        let problem = format!("is outside the plate, {} to {}", given_mm(plate_low), given_mm(plate_high));
         return Err(input_missing(&key, problem, "move it onto the plate"));
     }
     Ok(RefinedRegion::Band { from, to, width })
@@ -146,7 +151,7 @@ pub fn corners(path: &str, [from, to]: [Point; 2], specimen: &Specimen) -> Resul
     }
     let [plate_low, plate_high] = bounding_box(&specimen.outline);
     if !overlap(low, high, plate_low, plate_high) {
-        let problem = format!("lies outside the plate, which reaches from {} to {}", given_mm(plate_low), given_mm(plate_high));
+        let problem = format!("is outside the plate, {} to {}", given_mm(plate_low), given_mm(plate_high));
         return Err(input_missing(path, problem, "move it onto the plate"));
     }
     Ok((low, high))

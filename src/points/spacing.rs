@@ -38,7 +38,7 @@ pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
     let usual = (deciding / 9.0).min(specimen.width / 100.0).min(specimen.length() / POINTS_ACROSS);
     let smallest = sizes.iter().copied().fold(f64::INFINITY, f64::min);
     let gap = specimen.least_gap();
-    let bend = specimen.least_straight_way();
+    let bend = specimen.shortest_path();
     let wanted = usual.min(smallest / POINTS_ON_FLAW).min(gap / POINTS_ON_GAP).min(bend / POINTS_ON_BEND);
     // Among many flaws a short one grows beside others that are read well.
     let most = if sizes.len() > FEW_FLAWS { smallest / POINTS_ON_SHORT } else { usual };
@@ -49,8 +49,9 @@ pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
     // A flaw has at least a point of its own.
     let spacing = finest.min(smallest);
     let warning = format!(
-        "model.spacing_mm: {} mm were taken, since {} mm would make more than {POINTS_FOR_GAP:.0e} points; a gap of {} mm at a tip \
-         has fewer than {POINTS_ON_GAP} spacings or a flaw of {} mm fewer than {POINTS_ON_FLAW}: give model.spacing_mm if its growth decides the life",
+        "model.spacing_mm: {} mm used ({} mm needs more than {POINTS_FOR_GAP:.0e} points); a gap of {} mm at a tip has fewer \
+         than {POINTS_ON_GAP} spacings or a flaw of {} mm fewer than {POINTS_ON_FLAW}; set model.spacing_mm if its growth \
+         decides the life",
         round_mm(spacing),
         round_mm(wanted),
         round_mm(gap),
@@ -63,12 +64,12 @@ pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
 /// Errors: `Error::Input` on `model.spacing_mm`.
 pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
     const KEY: &str = "model.spacing_mm";
-    const NODES: &str = "use model.method = \"element_free_galerkin\", whose nodes are that fine at the crack only";
+    const NODES: &str = "use model.method = \"element_free_galerkin\", which refines at the crack only";
     let (given, flaw) = (round_mm(spacing), specimen.smallest_flaw());
     let finest = (specimen.area() / POINTS_MAX).sqrt();
     if spacing > flaw {
-        let problem = format!("is larger than the crack ({} mm): no bond would be cut as it should", round_mm(flaw));
-        let ninth = format!("give a ninth of the crack or less, {} mm", round_mm(flaw / 9.0));
+        let problem = format!("is larger than the crack ({} mm)", round_mm(flaw));
+        let ninth = format!("use {} mm or less (crack length / 9)", round_mm(flaw / 9.0));
         return Err(input(KEY, given, problem, if flaw / 9.0 < finest { NODES.to_owned() } else { ninth }));
     }
     let thinnest = specimen.gross_width.min(specimen.length());
@@ -79,16 +80,16 @@ pub fn check_spacing(spacing: f64, specimen: &Specimen) -> Result<()> {
     let tips = specimen.tips.iter().filter(|tip| !tip.from_slot && specimen.kind.is_plate());
     let gap = tips.map(|tip| specimen.rim_distance(tip.position)).fold(f64::INFINITY, f64::min);
     if spacing > gap * (1.0 + 1e-9) {
-        let problem = format!("is larger than the {} mm between a tip and a rim", round_mm(gap));
+        let problem = format!("is larger than the {} mm between tip and edge", round_mm(gap));
         let remedy = format!(
-            "give {} mm or less, end the crack at the rim, or use model.method = \"element_free_galerkin\"",
+            "give {} mm or less, end the crack at the edge, or use model.method = \"element_free_galerkin\"",
             round_mm(gap / POINTS_ON_GAP)
         );
         return Err(input(KEY, given, problem, remedy));
     }
     let points = specimen.area() / (spacing * spacing);
     if points > POINTS_MAX {
-        let problem = format!("would make about {points:.1e} points, more than {POINTS_MAX:.0e}");
+        let problem = format!("gives about {points:.1e} points; limit {POINTS_MAX:.0e}");
         let remedy = if finest > flaw { NODES.to_owned() } else { format!("give {} mm or more, or {NODES}", round_mm(finest)) };
         return Err(input(KEY, given, problem, remedy));
     }

@@ -78,11 +78,7 @@ pub fn lines() -> Vec<(String, String, String)> {
         ("material.name".to_owned(), record.name, meaning)
     };
     all.extend(growth_data::records().into_iter().map(record));
-    all.push((
-        GrowthLawKind::KEY.to_owned(),
-        LIBRARY.to_owned(),
-        "the growth data of the material that material.name names".to_owned(),
-    ));
+    all.push((GrowthLawKind::KEY.to_owned(), LIBRARY.to_owned(), "growth data of material.name".to_owned()));
     all.push((
         "specimen.outline_file".to_owned(),
         "part.dxf".to_owned(),

@@ -86,7 +86,7 @@ impl Draft {
     /// Errors: a value that has no form in TOML.
     pub fn document(&self) -> Result<Document> {
         let text = toml::to_string(&self.table)
-            .map_err(|error| input_missing("case", format!("has no form in TOML: {error}"), "give tables of keys"))?;
+            .map_err(|error| input_missing("case", format!("cannot be written as TOML: {error}"), "give tables of keys"))?;
         Document::parse(&text, &self.name, Folder::from(Path::new("")).anew_with(self.files.iter().cloned()), &[])
     }
 

@@ -25,7 +25,7 @@ pub fn lengths(asked: &str) -> Result<Vec<f64>> {
         LENGTH.read(KEY, *number)?;
     }
     if first >= last {
-        return Err(refuse("does not rise"));
+        return Err(refuse("must increase"));
     }
     let steps = ((last - first) / step - SLACK).ceil();
     if steps > LENGTHS_MOST {

@@ -131,7 +131,7 @@ fn notes(case: &Case, tips: &[TipResult]) -> Result<Vec<String>> {
         return Ok(Vec::new());
     }
     if results().all(|result| result.intensity.k_i.is_none()) {
-        let why = results().find_map(|result| result.note.as_deref()).unwrap_or("no method gives a factor");
+        let why = results().find_map(|result| result.note.as_deref()).unwrap_or("no method gives K");
         return Err(Error::Mechanics(format!("{}: {why}", case.name)));
     }
     let mut said: Vec<String> = Vec::new();

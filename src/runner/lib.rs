@@ -136,7 +136,7 @@ impl Summary {
                 fit::write(folder, &Fitted::Rates(case, (**found).clone()), kept)
             }
             (Done::Stresses(stressed), Task::Factors { case, .. }) => stresses::write(folder, case, stressed, &self.result),
-            _ => Err(Error::Mechanics(format!("{}: factors of tips have no folder of results", task.name()))),
+            _ => Err(Error::Mechanics(format!("{}: K of tips has no results folder", task.name()))),
         }
     }
 }
@@ -211,7 +211,7 @@ pub fn of(task: &Task, from: Option<TaskCheckpoint>, folder: Option<&Path>, watc
         }
         Task::Fit(calibration) => of_fit(calibration, watcher),
         Task::Factors { case, methods, on_nodes } => factors::of(case, methods, *on_nodes, folder),
-        Task::Sweep { .. } => Err(input_missing("design", "asks for many cases", "run `perilife sweep`")),
+        Task::Sweep { .. } => Err(input_missing("design", "has many cases", "run `perilife sweep`")),
     }
 }
 

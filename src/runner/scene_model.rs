@@ -10,20 +10,20 @@ use perilife_scenes::scene::{Scene, SceneLaw};
 pub fn of_scene(scene: &Scene, finest: Option<f64>) -> Vec<Choice> {
     let model = &scene.model;
     let chosen = |key, value: Value, default: &str| {
-        let why = if given(&scene.echo, key) { "given in the file" } else { default };
+        let why = if given(&scene.echo, key) { "set in the file" } else { default };
         Choice { key, value, why: Some(why.to_owned()) }
     };
     let mut choices = match model.law {
         SceneLaw::Bonds(law) => vec![
             chosen("bond_law", law.kind.name().into(), TWO_SPRINGS),
-            chosen("kernel", law.kernel.name().into(), "default: that of the law's literature"),
-            chosen("rotation", law.rotation.name().into(), "default: a rigid turn costs nothing"),
-            chosen("surface_correction", law.surface_correction.name().into(), "default: that of the literature"),
-            chosen("kinematics", if model.finite { "finite" } else { "small" }.into(), "default: strains are small"),
+            chosen("kernel", law.kernel.name().into(), "default: as published"),
+            chosen("rotation", law.rotation.name().into(), "default: no energy of rigid rotation"),
+            chosen("surface_correction", law.surface_correction.name().into(), "default: as published"),
+            chosen("kinematics", if model.finite { "finite" } else { "small" }.into(), "default: small strains"),
         ],
         SceneLaw::Correspondence { control, factor } => vec![
             chosen("bond_law", "correspondence".into(), TWO_SPRINGS),
-            chosen("zero_energy_control", control.name().into(), "default: leaves uniform strain alone"),
+            chosen("zero_energy_control", control.name().into(), "default: does not affect uniform strain"),
             chosen("zero_energy_factor", factor.into(), "default: bending, shear and a pressed disc together"),
         ],
     };

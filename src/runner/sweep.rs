@@ -85,10 +85,9 @@ fn words(path: &Path, record: &SweepRecord) -> Vec<String> {
     if let QuantileWords { p05: Some(low), p50: Some(middle), p95: Some(high) } = life {
         lines.push(format!("  life           5 % {low}, median {middle}, 95 % {high} cycles"));
     }
-    for (what, count, meaning) in [
-        ("run-outs ", record.run_outs, "their lives are above stop.cycles_max"),
-        ("unlimited", record.unlimited, "nothing grows"),
-    ] {
+    for (what, count, meaning) in
+        [("run-outs ", record.run_outs, "lives above stop.cycles_max"), ("unlimited", record.unlimited, "no growth")]
+    {
         lines.extend((count > 0).then(|| format!("  {what}      {count} ({:.0} %): {meaning}", percent(count))));
     }
     let failure = |failure: &Failure| format!("  failed         {}: {}", failure.case, failure.problem);

@@ -44,8 +44,8 @@ impl SweepFolder {
         let earlier = earlier.ok().flatten();
         if let Some(other) = earlier.as_ref().filter(|earlier| earlier.name != folder.plan.name) {
             let done = (1..=other.cases.len()).filter(|number| folder.outcome_in(other, *number).is_some()).count();
-            let problem = format!("holds another sweep, {}, with {done} of {} cases done", other.name, other.cases.len());
-            return Err(input("--out", path.display(), problem, "give another folder, or remove this one yourself"));
+            let problem = format!("contains another sweep, {}, with {done} of {} cases done", other.name, other.cases.len());
+            return Err(input("--out", path.display(), problem, "use a new folder, or delete this one"));
         }
         if earlier.as_ref() != Some(&folder.plan.as_read()) {
             folder.changed = earlier.and_then(|earlier| folder.lost(&earlier));
@@ -63,8 +63,8 @@ impl SweepFolder {
         let standing = enter(path, &plan, read, Share::Parts)?;
         let folder = SweepFolder { path: path.to_path_buf(), plan, changed: None, _standing: standing };
         if read_plan(path)?.as_ref() != Some(&folder.plan.as_read()) {
-            let problem = "holds something else than this sweep, or the sweep has changed since it began";
-            return Err(input("--out", path.display(), problem, "give another folder, or begin anew without --shard"));
+            let problem = "contains other files, or the sweep has changed since it began";
+            return Err(input("--out", path.display(), problem, "use a new folder, or start again without --shard"));
         }
         Ok(folder)
     }
@@ -74,7 +74,7 @@ impl SweepFolder {
         let is_sweep = Marker::read(path).is_some_and(|marker| marker.kind == RunKind::Sweep);
         let plan = if is_sweep { read_plan(path)? } else { None };
         let Some(plan) = plan else {
-            let remedy = "give the folder that `perilife sweep --out` was given";
+            let remedy = "give the --out folder of `perilife sweep`";
             return Err(input("DIR", path.display(), "is not the folder of a sweep", remedy));
         };
         Ok(SweepFolder { path: path.to_path_buf(), plan, changed: None, _standing: LockedFolder::join(path)? })
@@ -101,7 +101,8 @@ impl SweepFolder {
         let named = lost[..lost.len().min(NAMED)].join(", ");
         let more = if lost.len() > NAMED { ", ..." } else { "" };
         let all = earlier.cases.len();
-        (!lost.is_empty()).then(|| format!("the plan has changed: {} of {all} finished cases go: {named}{more}", lost.len()))
+        (!lost.is_empty())
+            .then(|| format!("the plan has changed: {} of {all} finished cases are deleted: {named}{more}", lost.len()))
     }
 
     /// Whether nothing is left to do for a case; one without the files that are wanted is run again, unless it failed.

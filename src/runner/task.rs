@@ -14,7 +14,7 @@ use perilife_calibration::sweep::{DrawnCase, Sweep};
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, Method};
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
-use perilife_measured::Import;
+use perilife_measured::{Import, ratio_warnings};
 use perilife_points::budget::Budget;
 use perilife_results::band::no_band_to_narrow;
 use perilife_results::output::{Room, RunKind};
@@ -27,10 +27,10 @@ perilife_base::kinds! {
     /// What is done with a document.
     #[cfg_attr(feature = "schema", derive(utoipa::ToSchema), schema(as = JobKind, rename_all = "snake_case"))]
     pub enum Kind for "kind" {
-        Calibration = "calibration": "Fits the fatigue law to measured curves.",
+        Calibration = "calibration": "Fits the growth law to test data.",
         Prediction = "prediction": "Runs a case.",
-        Scene = "scene": "Runs a fracture scene without cycles.",
-        Sweep = "sweep": "Runs many cases of one.",
+        Scene = "scene": "Runs a fracture scene.",
+        Sweep = "sweep": "Runs a parameter study.",
         Sif = "sif": "Stress intensity factors of a case.",
     }
 }
@@ -104,9 +104,8 @@ fn quick_methods(case: &mut Case) -> Vec<StressIntensityMethod> {
     if points <= POINTS_QUICK || !case.specimen.is_through() {
         return StressIntensityMethod::ALL.to_vec();
     }
-    case.warnings.push(format!(
-        "K is that of nodes alone, since the plate would have {points:.1e} points: for K on points give --method ring"
-    ));
+    case.warnings
+        .push(format!("only the node model was used ({points:.1e} points needed otherwise); use --method ring for points"));
     vec![StressIntensityMethod::ElementFreeGalerkin]
 }
 
@@ -140,17 +139,18 @@ impl Task {
     /// Errors: a file of no readings or of several specimens, readings that are not of this plate, a case whose life has no band.
     pub fn read_plate(&mut self, document: &Document, file: &Path) -> Result<()> {
         let Task::Prediction { case, wanted } = self else {
-            return Err(input("--measured", file.display(), "is for cases with cycles", "leave it out"));
+            return Err(input("--measured", file.display(), "applies only to fatigue cases", "remove it"));
         };
         let import = Import { of_plate: true, ..Import::default() };
         let mut measured = perilife_measured::read_into(document.folder.opened(), &[file.to_path_buf()], &import)?;
-        measured.set_against(&case.specimen, &case.material, &case.loading)?;
+        measured.compare_with(&case.specimen, &case.material, &case.loading)?;
         case.warnings.append(&mut measured.warnings);
+        case.warnings.extend(ratio_warnings(&measured.curves, &case.loading));
         case.provenance = document.folder.opened().so_far();
         let [curve] = measured.curves.as_slice() else {
             let names: Vec<&str> = measured.curves.iter().map(|curve| &*curve.specimen).take(5).collect();
-            let problem = format!("holds {} specimens ({}), and a plate is one", measured.curves.len(), names.join(", "));
-            return Err(input("--measured", file.display(), problem, "give a table of the readings of this plate alone"));
+            let problem = format!("contains {} specimens ({}); expected one", measured.curves.len(), names.join(", "));
+            return Err(input("--measured", file.display(), problem, "give a table with the readings of this plate only"));
         };
         lot_of(case)?.map_err(|why| no_band_to_narrow(curve, &why))?;
         wanted.readings = Some(curve.clone());
@@ -198,7 +198,7 @@ impl Task {
     pub fn case(&self) -> Result<&Case> {
         match self {
             Task::Prediction { case, .. } => Ok(case),
-            _ => Err(input("--checkpoint", self.name(), "is no run that can be kept", "leave it out")),
+            _ => Err(input("--checkpoint", self.name(), "does not support checkpoints", "remove it")),
         }
     }
 

@@ -207,8 +207,8 @@ fn points_of(region: &Region, key: &str, scene: &Scene, net: &Net) -> Result<Vec
     let points = region.points(net, &scene.specimen);
     if points.is_empty() {
         let spacing = (scene.model.spacing / MM * 1e4).round() / 1e4;
-        let problem = format!("takes hold of no point: points stand {spacing} mm apart");
-        let remedy = "make it wider than that, move it onto a row of points, or give a smaller model.spacing_mm";
+        let problem = format!("contains no point (spacing {spacing} mm)");
+        let remedy = "make it wider than that, move it onto a row of points, or reduce model.spacing_mm";
         return Err(input(key, region, problem, remedy));
     }
     Ok(points)

@@ -55,11 +55,7 @@ impl SceneCheckpoint {
 
     /// Refuses the checkpoint of another scene.
     pub fn check(&self, scene: &Scene) -> Result<()> {
-        if self.belongs_to(scene) {
-            Ok(())
-        } else {
-            Err(refused("belongs to another scene, or to this one before it was changed"))
-        }
+        if self.belongs_to(scene) { Ok(()) } else { Err(refused("is of another scene, or of this one before a change")) }
     }
 
     /// As bytes, with a checksum.
@@ -75,7 +71,7 @@ impl SceneCheckpoint {
 
 /// A checkpoint whose sizes or procedure are not those of the run.
 pub(super) fn of_another() -> Error {
-    refused("is that of another plate or procedure")
+    refused("is of another plate or procedure")
 }
 
 /// Hash of all that decides how the run of a scene goes.
@@ -148,7 +144,7 @@ impl<'a> Course<'a> {
         if self.observer.step_done(&SceneProgress { share: self.share }) {
             return Ok(());
         }
-        Err(Error::Mechanics("the run was cancelled".to_owned()))
+        Err(Error::Mechanics("the run was canceled".to_owned()))
     }
 
     /// Offers what it takes to go on from here, the procedure standing at this place.

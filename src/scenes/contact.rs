@@ -27,7 +27,7 @@
 
 use super::bonds::BondState;
 use super::scene::{Procedure, Scene, SceneLaw};
-use crate::levels::stiffness::Strut;
+use crate::levels::stiffness::LinearSpring;
 use perilife_base::raster::Snapshot;
 use perilife_base::units::{MM, place_mm};
 use perilife_plate::specimen::geometry::{Places, segments_touch};
@@ -104,7 +104,7 @@ impl Touching {
 }
 
 /// Contact of the flanks of a net.
-pub struct Contact<'n> {
+pub struct NetContact<'n> {
     net: &'n Net,
     /// Initial cracks as they cut bonds.
     pieces: Vec<[Point; 2]>,
@@ -117,15 +117,15 @@ pub struct Contact<'n> {
     known: usize,
     columns: Vec<Column>,
     pressed: Vec<bool>,
-    struts: Vec<Strut>,
+    struts: Vec<LinearSpring>,
 }
 
-impl<'n> Contact<'n> {
+impl<'n> NetContact<'n> {
     /// Contact across the initial cracks of a net and what grows from them.
     pub fn new(net: &'n Net, cracks: &[Crack]) -> Self {
         let mut is_initial = vec![false; net.bonds.len()];
         net.pre_cut.iter().for_each(|&bond| is_initial[bond as usize] = true);
-        Contact {
+        NetContact {
             pieces: cracks.iter().map(|crack| cutting_line(net.grid.spacing, crack.from, crack.to)).collect(),
             is_initial,
             seats: Places::default(),
@@ -145,7 +145,7 @@ impl<'n> Contact<'n> {
 
     /// Pressed columns as springs between two points, for a factor that shall stand for them: the other side is the point with the
     /// largest share.
-    pub fn struts(&self) -> &[Strut] {
+    pub fn struts(&self) -> &[LinearSpring] {
         &self.struts
     }
 
@@ -225,7 +225,7 @@ impl<'n> Contact<'n> {
     fn brace(&mut self) {
         let strut = |column: &Column| {
             let to = column.shares.iter().max_by(|a, b| a.1.total_cmp(&b.1))?.0;
-            Some(Strut { from: column.point, to, normal: column.normal, stiffness: column.stiffness })
+            Some(LinearSpring { from: column.point, to, normal: column.normal, stiffness: column.stiffness })
         };
         let pressed = self.columns.iter().zip(&self.pressed).filter(|(_, pressed)| **pressed);
         self.struts = pressed.filter_map(|(column, _)| strut(column)).collect();
@@ -237,7 +237,7 @@ impl<'n> Contact<'n> {
         (self.known > 0).then(|| pressed.map(|(column, _)| column.id).collect())
     }
 
-    /// Begins anew from these bonds with what [`Contact::pressed`] gave.
+    /// Begins anew from these bonds with what [`NetContact::pressed`] gave.
     pub fn renew(&mut self, pressed: Option<&[u32]>, bonds: &BondState) {
         (self.known, self.columns, self.pressed, self.struts) = (0, Vec::new(), Vec::new(), Vec::new());
         if let Some(pressed) = pressed {
@@ -372,7 +372,7 @@ impl<'n> Contact<'n> {
 /// What is to be said of a scene whose procedure has no contact, where flanks have passed through each other: looked for in all its
 /// pictures.
 pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, pictures: &[Snapshot]) -> Option<String> {
-    let mut contact = Contact::new(net, &scene.specimen.cracks);
+    let mut contact = NetContact::new(net, &scene.specimen.cracks);
     let last = pictures.len().saturating_sub(1);
     let overlaps = pictures.iter().enumerate().filter_map(|(i, picture)| {
         // Which bonds had broken is known of the last picture alone.
@@ -385,13 +385,13 @@ pub fn warning(scene: &Scene, net: &Net, bonds: &BondState, pictures: &[Snapshot
     }
     let springs = matches!(scene.model.law, SceneLaw::Bonds(_));
     let (what, remedy) = match scene.procedure {
-        Procedure::Dynamic { .. } => ("motion in time".to_owned(), "without duration_s, solver = \"secant\" has it"),
-        _ if !springs => ("bond_law = \"correspondence\"".to_owned(), "laws of bonds have it, by solver = \"secant\""),
-        _ => (format!("solver = \"{}\"", scene.model.solver), "solver = \"secant\" has it"),
+        Procedure::Dynamic { .. } => ("motion in time".to_owned(), "without duration_s solver = \"secant\" supports it"),
+        _ if !springs => ("bond_law = \"correspondence\"".to_owned(), "bond laws support it with solver = \"secant\""),
+        _ => (format!("solver = \"{}\"", scene.model.solver), "solver = \"secant\" supports it"),
     };
     Some(format!(
-        "flanks of a crack have passed through each other near {}, by up to {:.3e} mm, {:.2} % of the spacing: {what} has no \
-         contact of flanks, and the load and the stresses there are those of a crack that closes without force; {remedy}",
+        "crack faces overlap near {} by up to {:.3e} mm, {:.2} % of the spacing: {what} has no crack-face contact, so load \
+         and stress there are those of a crack that closes without force; {remedy}",
         place_mm(at),
         overlap / MM,
         100.0 * overlap / spacing

@@ -83,7 +83,7 @@ pub fn time_step(asked: Option<f64>, stable: f64) -> Result<f64> {
     match asked {
         Some(step) if step > stable => {
             let problem = format!("is above the stable step of this body, {stable:.4e} s");
-            Err(input("loading.time_step_s", step, problem, "give a smaller one, or leave it out"))
+            Err(input("loading.time_step_s", step, problem, "use a smaller one, or remove it"))
         }
         Some(step) => Ok(step),
         None => Ok(SAFETY * stable),
@@ -101,7 +101,7 @@ impl Standing {
 type Push = (LoadRamp, Vec<(usize, f64)>);
 
 /// A motion to be followed.
-pub struct Run<'a> {
+pub struct Simulation<'a> {
     /// Masses of all unknowns, kg.
     pub masses: &'a [f64],
     /// Time step, s.
@@ -109,7 +109,7 @@ pub struct Run<'a> {
     pub steps: usize,
 }
 
-impl Run<'_> {
+impl Simulation<'_> {
     /// Follows the motion from rest, or from where it is taken up; returns why it ended, the last state, and the evaluations of the
     /// forces.
     /// Errors: a run that was cancelled, a checkpoint of another one.

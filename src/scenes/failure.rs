@@ -53,7 +53,7 @@ impl Failure {
             (Some(stretch), _) => Ok(vec![stretch; net.len()]),
             (None, Some(energy)) => critical_stretches(scene, &law, net, energy / scene.trapping()),
             (None, None) => {
-                let problem = "is missing: the critical stretch follows from it";
+                let problem = "is missing (required for the critical stretch)";
                 Err(input_missing("material.fracture_energy_j_m2", problem, "give it, or damage.critical_stretch"))
             }
         };

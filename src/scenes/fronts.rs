@@ -24,7 +24,7 @@ const AHEAD: f64 = 0.25;
 
 /// A crack front on its way.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-struct Front {
+struct DynamicFront {
     at: Point,
     /// Unit vector of growth over the last horizon; zero before there was any.
     direction: Point,
@@ -35,7 +35,7 @@ struct Front {
     before: (Point, f64),
 }
 
-impl Front {
+impl DynamicFront {
     /// How far a point lies ahead, m; `None` where it is out of reach, behind, or farther aside than ahead by more than a spacing.
     fn ahead(&self, point: Point, spacing: f64, horizon: f64) -> Option<f64> {
         let away = distance(point, self.at);
@@ -49,7 +49,7 @@ impl Front {
     }
 
     fn starting(at: Point, direction: Point, time: f64) -> Self {
-        Front { at, direction, way: vec![at], time, before: (at, time) }
+        DynamicFront { at, direction, way: vec![at], time, before: (at, time) }
     }
 
     /// Moves on; returns the speed, m/s, 0 where no time has passed.
@@ -81,7 +81,7 @@ pub struct Fronts<'n> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Standing {
     cracked: Vec<bool>,
-    fronts: Vec<Front>,
+    fronts: Vec<DynamicFront>,
     /// Whether the points cracked at the start were taken down.
     begun: bool,
     /// Where fronts stood, in the order of time.
@@ -91,10 +91,10 @@ pub struct Standing {
 impl<'n> Fronts<'n> {
     /// Fronts of points with this damage, at the tips of the specimen.
     pub fn new(specimen: &Specimen, net: &'n Net, threshold: f64) -> Self {
-        let front = |tip: &perilife_plate::specimen::TipSeed| Front::starting(tip.position, tip.direction, 0.0);
-        let fronts: Vec<Front> = specimen.tips.iter().map(front).collect();
-        let start =
-            |(tip, front): (usize, &Front)| PathPoint { tip, step: 0, time: 0.0, position: front.at, damage: 0.0, speed: 0.0 };
+        let front = |tip: &perilife_plate::specimen::TipSeed| DynamicFront::starting(tip.position, tip.direction, 0.0);
+        let fronts: Vec<DynamicFront> = specimen.tips.iter().map(front).collect();
+        let (step, [time, damage, speed]) = (0, [0.0; 3]);
+        let start = |(tip, front): (usize, &DynamicFront)| PathPoint { tip, step, time, position: front.at, damage, speed };
         let path = fronts.iter().enumerate().map(start).collect();
         Fronts { net, threshold, standing: Standing { cracked: vec![false; net.len()], fronts, begun: false, path } }
     }
@@ -143,14 +143,14 @@ impl<'n> Fronts<'n> {
 
     /// A front at that of the points away from all fronts and ways that lies nearest to one; a branch points away from where it
     /// came off, a crack far from all others anywhere.
-    fn new_front(&self, points: &[usize], time: f64) -> Option<(usize, Front)> {
+    fn new_front(&self, points: &[usize], time: f64) -> Option<(usize, DynamicFront)> {
         let off = |&i: &usize| {
             let (at, horizon) = (self.net.positions[i], self.net.horizons[i]);
             let ways = self.standing.fronts.iter().flat_map(|front| &front.way);
             let from = ways.min_by(|a, b| distance(**a, at).total_cmp(&distance(**b, at)));
             let away = from.map_or(f64::INFINITY, |&from| distance(from, at));
             let start = from.filter(|_| away <= 2.0 * REACH * horizon).map_or([0.0; 2], |&from| direction(from, at));
-            (away > REACH * horizon).then_some((away, i, Front::starting(at, start, time)))
+            (away > REACH * horizon).then_some((away, i, DynamicFront::starting(at, start, time)))
         };
         let nearest = points.iter().filter_map(off).min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some((nearest.1, nearest.2))

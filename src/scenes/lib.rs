@@ -111,7 +111,7 @@ fn follow(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpo
             let density = scene
                 .material
                 .density
-                .ok_or_else(|| input_missing("material.density_kg_m3", "is missing: motion needs mass", "give it"))?;
+                .ok_or_else(|| input_missing("material.density_kg_m3", "is missing (required for motion)", "give it"))?;
             // With all that will ever press: the time step is chosen once.
             interaction.load_to(1.0);
             let bound = interaction.stiffness_bound(&bonds);
@@ -119,7 +119,7 @@ fn follow(scene: &Scene, observer: &dyn SceneObserver, from: Option<SceneCheckpo
             let masses = dynamics::masses(net, density, &bound);
             let steps = (duration / step).round().max(1.0) as usize;
             let mut course = course(steps);
-            let run = dynamics::Run { masses: &masses, step, steps };
+            let run = dynamics::Simulation { masses: &masses, step, steps };
             let (end, motion, evaluations) = run.follow(interaction.as_mut(), &mut bonds, &mut course)?;
             let figures = SceneFigures { evaluations, time_step: step, ..SceneFigures::default() };
             course.log.close(end, &motion.u, &bonds, figures)

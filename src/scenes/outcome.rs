@@ -9,11 +9,11 @@ use perilife_plate::specimen::Point;
 perilife_base::kinds! {
     /// Why a scene ended.
     pub enum SceneEnd for "stop_reason (fracture)" {
-        Done = "done": "completed",
-        Separated = "separated": "the plate is in two pieces, or what is left of it cannot carry a load, and nothing more was asked",
-        LoadFallen = "load_fallen": "platen load dropped 10 % below its peak: the body failed",
-        NoConvergence = "no_convergence": "no equilibrium in a load step; histories are kept",
-        Unstable = "unstable": "the time integration became unstable (energy grew); histories are kept",
+        Done = "done": "all load steps or the whole duration completed",
+        Separated = "separated": "complete separation of the plate",
+        LoadFallen = "load_fallen": "platen load fell 10 % below its peak",
+        NoConvergence = "no_convergence": "a load step did not converge; histories so far are written",
+        Unstable = "unstable": "time integration became unstable; histories so far are written",
     }
 }
 

@@ -17,7 +17,7 @@ const STIFFER: f64 = 5.0;
 
 /// A point that a platen can meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Contact {
+pub struct PlatenContact {
     pub point: u32,
     /// Way of the platen until it meets the undeformed rim there, m.
     pub gap: f64,
@@ -35,7 +35,7 @@ pub struct Platen {
     /// How it moves in time.
     pub rise: LoadRamp,
     /// Points it can meet, in their order.
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<PlatenContact>,
 }
 
 impl Platen {
@@ -52,7 +52,7 @@ impl Platen {
         let met: Vec<(u32, f64)> = facing.map(|i| (i, rim(direction, outline, net.positions[i as usize]))).collect();
         let corners = outline.iter().filter(|&&corner| covers(&drive.region, corner)).map(|&corner| dot(corner, direction));
         let start = met.iter().map(|m| m.1).chain(corners).fold(f64::INFINITY, f64::min);
-        let contacts = met.into_iter().map(|(point, rim)| Contact { point, gap: rim - start, stiffness: 0.0 }).collect();
+        let contacts = met.into_iter().map(|(point, rim)| PlatenContact { point, gap: rim - start, stiffness: 0.0 }).collect();
         Some(Platen { direction, travel, rise: drive.rise, contacts })
     }
 }
@@ -165,7 +165,7 @@ impl Interaction for Pressed<'_> {
         let mut bound = self.inner.stiffness_bound(bonds);
         for (platen, way) in self.platens.iter().zip(&self.ways) {
             // Points about to be met count too: they may bulge towards the platen.
-            let near = |contact: &&Contact| contact.gap <= way + self.net.spacings[contact.point as usize];
+            let near = |contact: &&PlatenContact| contact.gap <= way + self.net.spacings[contact.point as usize];
             for contact in platen.contacts.iter().filter(near) {
                 bound[contact.point as usize][0] += contact.stiffness;
             }

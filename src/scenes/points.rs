@@ -71,7 +71,7 @@ pub fn build(scene: &Scene) -> Result<(Net, Option<Body>)> {
             Ok((dual_horizon::build(&ask)?, None))
         }
         (SceneLaw::Correspondence { .. }, arrangement) => {
-            let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
+            let problem = "does not support bond_law = \"correspondence\"";
             Err(input("model.discretisation", format!("\"{arrangement}\""), problem, "use \"lattice\""))
         }
     }

@@ -17,9 +17,9 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// What keeps a correspondence law from its zero-energy modes.
     pub enum ZeroEnergyControl for "model.zero_energy_control" {
-        None = "none": "nothing: checkerboard motions cost no energy",
-        Spring = "spring": "springs on the whole relative displacement (Breitenfeld et al. 2014): they stiffen uniform strain too",
-        Silling = "silling": "springs on the part of the relative displacement that is not uniform (Silling 2017)",
+        None = "none": "no control: checkerboard modes have no energy",
+        Spring = "spring": "springs on the full relative displacement (Breitenfeld et al. 2014); stiffens uniform strain too",
+        Silling = "silling": "springs on the nonuniform part of the relative displacement (Silling 2017)",
     }
 }
 
@@ -35,8 +35,8 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// Laws of damage and failure of a bond.
     pub enum DamageLaw for "damage.law" {
-        None = "none": "bonds stay whole",
-        NonlinearTwoParameter = "nonlinear_two_parameter": "exponential softening from the elastic limit on, broken at the final stretch (Li, Lü, Huang and Yang 2024, equation 19)",
+        None = "none": "no damage",
+        NonlinearTwoParameter = "nonlinear_two_parameter": "exponential softening beyond the elastic limit, broken at the final stretch (Li, Lü, Huang and Yang 2024, equation 19)",
         CriticalStretch = "critical_stretch": "broken at the critical stretch of the fracture energy",
         CriticalEnergy = "critical_energy": "broken at the critical energy of the fracture energy, normal and tangential together, in tension only",
         PrincipalStress = "principal_stress": "broken where the mean first principal stress of both ends reaches the tensile strength (correspondence)",
@@ -46,7 +46,7 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// Where broken bonds enter a correspondence law.
     pub enum DamageEntry for "damage.enters" {
-        Force = "force": "in the force of the bond only: stress of the point is not released",
+        Force = "force": "in the bond force only: the stress of the point is not released",
         Influence = "influence": "in the influence function, hence in shape tensor and deformation gradient too",
     }
 }
@@ -54,8 +54,8 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// How the critical stretch follows from the fracture energy.
     pub enum Calibration for "damage.calibration" {
-        Growth = "growth": "a crack grows at the load at which the body gives the fracture energy (Griffith 1921); the lattice's hold on the tip is taken out",
-        BondEnergy = "bond_energy": "the bonds that a crack cuts store the fracture energy, as published (Silling and Askari 2005): a crack needs up to 1.5 times as much to grow",
+        Growth = "growth": "a crack grows when the body releases the fracture energy (Griffith 1921); lattice trapping is corrected",
+        BondEnergy = "bond_energy": "cut bonds store the fracture energy, as published (Silling and Askari 2005): growth needs up to 1.5 times as much",
     }
 }
 

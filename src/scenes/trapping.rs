@@ -97,8 +97,8 @@ impl Scene {
         let is_lattice = self.model.arrangement == Discretisation::Lattice;
         if is_lattice && shortest < FULL_RESISTANCE * self.model.spacing {
             lines.push(format!(
-                "a crack of {:.0} spacings grows at -10 to +5 % of the load that its fracture energy asks for; from {FULL_RESISTANCE} spacings on it \
-                 is within 6 %: model.spacing_mm = {:.4}",
+                "a crack of {:.0} spacings grows within -10 to +5 % of the load of its fracture energy; from \
+                 {FULL_RESISTANCE} spacings within 6 %: set model.spacing_mm = {:.4}",
                 shortest / self.model.spacing,
                 1e3 * shortest / FULL_RESISTANCE
             ));

@@ -93,7 +93,7 @@ pub fn elastic(control: (ZeroEnergyControl, f64), spacing: f64, travel: f64) -> 
     let relaxation = Relaxation { breaking: Breaking::Never, least_load: 1.0, ..Relaxation::default() };
     let rested = relaxation.relax(&mut pressed, &mut bonds, Loads { held: &held, external: &external }, &mut u);
     if rested.end != RestEnd::AtRest {
-        return Err(Error::Mechanics(format!("the disc found no equilibrium: {rested:?}")));
+        return Err(Error::Mechanics(format!("the disc did not converge: {rested:?}")));
     }
     let driven = pressed.driven().unwrap_or_default();
     // The law alone shows the forces that the platens balance, and the stresses.

@@ -53,7 +53,7 @@ use questions::{Asker, Question, SHARED, each, file, read};
 use tasks::{chosen, side_by_side};
 use values::combinations;
 
-pub use table::{KnownMiss, Row, Table};
+pub use table::{KnownMiss, Table, VerificationRow};
 
 /// A group of rows that are computed together.
 #[derive(Debug, Deserialize)]
@@ -123,7 +123,7 @@ pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
 }
 
 impl Topic {
-    fn rows(&self) -> Result<Vec<Row>> {
+    fn rows(&self) -> Result<Vec<VerificationRow>> {
         let (mut table, asker) = (Table::new(self.name), Asker::new(&Silent));
         for questions in &self.ask {
             each(questions, &self.set, &mut |question, values| answer(&mut table, &asker, question, values))?;
@@ -163,18 +163,18 @@ fn spread(asker: &Asker<'_>, question: &Question, values: &Toml) -> Result<f64> 
 }
 
 /// Rows of some topics in their order. `done` hears of every topic as it ends.
-pub fn rows(topics: &[&'static Topic], done: &(dyn Fn(&Topic, &[Row]) + Sync)) -> Result<Vec<Row>> {
+pub fn rows(topics: &[&'static Topic], done: &(dyn Fn(&Topic, &[VerificationRow]) + Sync)) -> Result<Vec<VerificationRow>> {
     let tables = side_by_side(topics, |topic| {
         let rows = topic.rows();
         rows.iter().for_each(|rows| done(topic, rows));
         rows
     });
-    Ok(tables.into_iter().collect::<Result<Vec<Vec<Row>>>>()?.concat())
+    Ok(tables.into_iter().collect::<Result<Vec<Vec<VerificationRow>>>>()?.concat())
 }
 
 /// What is wrong with the rows of some topics, a line each: rows that fail, and topics of which another number of rows misses
 /// its bounds than is pinned.
-pub fn faults(topics: &[&Topic], rows: &[Row]) -> Vec<String> {
+pub fn faults(topics: &[&Topic], rows: &[VerificationRow]) -> Vec<String> {
     let failing = rows.iter().filter(|row| row.fails()).map(|row| {
         let bound = row.known_miss.as_ref().map_or(row.bound_percent, |miss| miss.bound_percent);
         format!("{}: {}: error {:+.3} % beyond its bound of {bound:.3} %", row.name, row.quantity, row.error_percent)

@@ -99,7 +99,7 @@ pub fn relaxed(factor: f64) -> Result<Figures> {
             let off = u.iter().zip(&exact).map(|(u, exact)| (u - exact).abs()).fold(0.0, f64::max);
             Ok(vec![("error", 100.0 * off / (STRAIN * 40.0 * MM))])
         }
-        RestEnd::BlownUp => Err(Error::Mechanics(format!("the motion blew up after {} evaluations", rested.evaluations))),
+        RestEnd::BlownUp => Err(Error::Mechanics(format!("unstable after {} evaluations", rested.evaluations))),
         RestEnd::NoConvergence | RestEnd::Breaking => {
             Err(Error::Mechanics(format!("not at rest after {} evaluations", rested.evaluations)))
         }

@@ -186,7 +186,7 @@ impl<'o> Asking<'_, 'o> {
     /// The case with further keys.
     pub fn subject(&self, more: &[String]) -> Result<Subject<'o>> {
         let (case, plate, keys) = self.texts()?;
-        let source = source(self.question, &case, &plate)?.ok_or_else(|| wrong(&keys, "asks about no case"))?;
+        let source = source(self.question, &case, &plate)?.ok_or_else(|| wrong(&keys, "has no case"))?;
         Subject::new(source, &[overrides(&keys), more.to_vec()].concat(), self.asker.observer)
     }
 
@@ -210,7 +210,7 @@ impl<'o> Asking<'_, 'o> {
 
     fn beside(&self) -> Result<&Rc<Asked<'o>>> {
         once(&self.beside, || {
-            let beside = self.question.beside.as_ref().ok_or_else(|| wrong(&self.question.quantity, "has no case beside it"))?;
+            let beside = self.question.beside.as_ref().ok_or_else(|| wrong(&self.question.quantity, "has no reference case"))?;
             let (case, plate, _) = self.texts()?;
             let case = beside.case.as_ref().map_or(Ok(case), |case| self.text(case))?;
             self.ended(self.asker.asked(self.question, &case, &plate, &overrides(&self.text(&beside.keys)?))?)
@@ -223,7 +223,7 @@ impl<'o> Asking<'_, 'o> {
         if let (Asked::Case(subject), false) = (&*asked, ends.is_empty()) {
             let stop = subject.run()?.stop;
             if !ends.iter().map(|end| self.text(end)).collect::<Result<Vec<_>>>()?.iter().any(|end| end == stop.name()) {
-                return Err(Error::Mechanics(format!("the run ended otherwise than by {}: {stop}", ends.join(" or "))));
+                return Err(Error::Mechanics(format!("the run did not end by {}: {stop}", ends.join(" or "))));
             }
         }
         Ok(asked)

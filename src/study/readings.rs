@@ -21,7 +21,7 @@ use perilife_measured::MeasuredCurve;
 
 /// Rate at a crack length, mm, of readings in lines of cycles and crack length in mm; whether the length of its step is flagged, 0 or 1.
 pub fn rates_of_readings(text: &str, method: RateMethod, length: f64) -> Result<Figures> {
-    let number = |field: &str| field.trim().parse::<f64>().map_err(|_| Error::Mechanics(format!("no reading: {field}")));
+    let number = |field: &str| field.trim().parse::<f64>().map_err(|_| Error::Mechanics(format!("no such reading: {field}")));
     let rows = text.lines().filter_map(|line| line.split_once(',')).map(|(n, a)| Ok((number(n)?, number(a)? * MM)));
     let (cycles, lengths) = rows.collect::<Result<Vec<_>>>()?.into_iter().unzip();
     let points = rates(&MeasuredCurve::new("readings", cycles, lengths), method);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::stability::{Record, Status, Sweep};
+use crate::stability::{StabilityRecord, Status, Sweep};
 use crate::stability_table::{ends, range, short};
 use crate::tasks::Outcome;
 use perilife_base::error::Result;
@@ -27,7 +27,7 @@ fn is_logarithmic(sweep: &Sweep) -> bool {
 }
 
 /// Different reasons of failure, shortened, each with the first value and the method that has it.
-fn reasons(records: &[&Record]) -> Vec<String> {
+fn reasons(records: &[&StabilityRecord]) -> Vec<String> {
     let mut found: Vec<(String, String)> = Vec::new();
     for record in records {
         for (value, outcome) in &record.points {
@@ -62,7 +62,7 @@ fn method(name: &str) -> String {
 }
 
 /// Writes the picture of a sweep with the records of its methods.
-pub fn sweep(path: &Path, sweep: &Sweep, records: &[&Record]) -> Result<()> {
+pub fn sweep(path: &Path, sweep: &Sweep, records: &[&StabilityRecord]) -> Result<()> {
     let reasons = reasons(records);
     let height = SIZE.height + LINE * (records.len() + reasons.len()) as f64 + 16.0;
     let mut sketch = draw(sweep, records).into_sketch();
@@ -79,7 +79,7 @@ pub fn sweep(path: &Path, sweep: &Sweep, records: &[&Record]) -> Result<()> {
     write_file(path, sketch.picture([SIZE.width, height], &sentence).as_bytes())
 }
 
-fn draw(sweep: &Sweep, records: &[&Record]) -> Frame {
+fn draw(sweep: &Sweep, records: &[&StabilityRecord]) -> Frame {
     let values = sweep.values.iter().copied();
     let x = if is_logarithmic(sweep) { Axis::logarithmic(values) } else { Axis::linear(values) };
     let drawn = |outcome: &Outcome<f64>| outcome.done().map(|error| error.abs().clamp(DRAWN[0], DRAWN[1]));
@@ -129,7 +129,7 @@ const NO_RESULT: &str = "#969696";
 const RULE: &str = "#e1e1e1";
 
 /// Writes the map.
-pub fn overview(path: &Path, records: &[Record]) -> Result<()> {
+pub fn overview(path: &Path, records: &[StabilityRecord]) -> Result<()> {
     let mut sketch = Sketch::new(1.0, [0.0; 2]);
     let height = HEAD + ROW * records.len() as f64 + FOOT;
     sketch.name([14.0, 28.0], "Accuracy limits of each method", "start", 18.0, INK);
@@ -157,7 +157,7 @@ pub fn overview(path: &Path, records: &[Record]) -> Result<()> {
     let version = env!("CARGO_PKG_VERSION");
     let foot = format!("perilife {version}: perilife stability --out DIR; stability.csv has every run with its reason");
     sketch.name([14.0, height - 14.0], &foot, "start", 12.0, INK);
-    write_file(path, sketch.picture([WIDTH, height], "Safe range of every method over its parameter").as_bytes())
+    write_file(path, sketch.picture([WIDTH, height], "Range of each method within its error bound").as_bytes())
 }
 
 fn rectangle(sketch: &mut Sketch, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], colour: &str) {
@@ -165,7 +165,7 @@ fn rectangle(sketch: &mut Sketch, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], colour
 }
 
 /// Every run colours the way half to its neighbours.
-fn bar(sketch: &mut Sketch, record: &Record, top: f64) {
+fn bar(sketch: &mut Sketch, record: &StabilityRecord, top: f64) {
     let sweep = record.sweep;
     let [first, last] = sweep.range();
     let place = |value: f64| {

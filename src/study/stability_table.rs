@@ -2,19 +2,19 @@
 
 use serde_json::{Value, json};
 
-use crate::stability::Record;
+use crate::stability::StabilityRecord;
 use perilife_base::cells::field;
 use perilife_base::columns::number_text as number;
 use perilife_base::limits;
 use perilife_results::time;
 
-pub fn line(record: &Record) -> String {
+pub fn line(record: &StabilityRecord) -> String {
     let sweep = record.sweep;
     format!("{}: {}: {} ({:.0} s)", sweep.name, record.method, range(record), record.wall_s)
 }
 
 /// The safe range in words.
-pub fn range(record: &Record) -> String {
+pub fn range(record: &StabilityRecord) -> String {
     let sweep = record.sweep;
     let unit = if sweep.unit.is_empty() { String::new() } else { format!(" {}", sweep.unit) };
     let [first, last] = sweep.range().map(short);
@@ -28,7 +28,7 @@ pub fn range(record: &Record) -> String {
 }
 
 /// The safe range of the map: its unit stands beside the parameter.
-pub fn ends(record: &Record) -> String {
+pub fn ends(record: &StabilityRecord) -> String {
     let (sweep, [first, last]) = (record.sweep, record.sweep.range());
     match (record.is_safe, record.ends) {
         (None, _) => "not judged".to_owned(),
@@ -48,7 +48,7 @@ pub fn short(value: f64) -> String {
 }
 
 /// `stability.csv`: a row a run; `boundary` is the end of the safe range on the side of the value, empty where it has none there.
-pub fn csv(records: &[Record]) -> String {
+pub fn csv(records: &[StabilityRecord]) -> String {
     let mut text = "sweep,method,parameter,value,status,error_percent,boundary,reason,version\n".to_owned();
     for record in records {
         let sweep = record.sweep;
@@ -72,7 +72,7 @@ pub fn csv(records: &[Record]) -> String {
 }
 
 /// `boundaries.csv`: a row a method, as [`perilife_base::limits`] reads it; an end is empty where the sweep does not find one.
-pub fn boundaries(records: &[Record]) -> String {
+pub fn boundaries(records: &[StabilityRecord]) -> String {
     let now = time::now();
     let date = now.split('T').next().unwrap_or_default();
     let mut text = format!("{}\n", limits::COLUMNS);
@@ -92,8 +92,8 @@ pub fn boundaries(records: &[Record]) -> String {
     text
 }
 
-pub fn object(records: &[Record]) -> Value {
-    let record = |record: &Record| {
+pub fn object(records: &[StabilityRecord]) -> Value {
+    let record = |record: &StabilityRecord| {
         let sweep = record.sweep;
         let points = record.points.iter().map(|(value, outcome)| {
             json!({

@@ -145,7 +145,7 @@ impl<'o> Subject<'o> {
     fn rim(&self, rim: Rim, is_largest: bool) -> Result<f64> {
         let stressed = once(&self.stressed, || stressed(&self.case))?;
         let Some(found) = stressed.rims.iter().find(|found: &&RimStress| found.rim == rim) else {
-            return fault(format!("{}: no such rim", self.case.name));
+            return fault(format!("{}: no such boundary", self.case.name));
         };
         let stress = if is_largest { found.largest.stress } else { found.least.stress };
         Ok(stressed.concentration(stress).unwrap_or(f64::NAN))
@@ -181,7 +181,7 @@ impl<'o> Subject<'o> {
     /// The row where bonds have handed all cracks over to the K of their tips.
     fn handed(&self) -> Result<&CurvePoint> {
         let row = self.run()?.curve.iter().find(|row| row.tips.iter().all(|tip| tip.factors.is_some()));
-        row.map_or_else(|| fault("no crack was handed over"), Ok)
+        row.map_or_else(|| fault("no crack initiated"), Ok)
     }
 
     pub fn read(&self, name: &str, values: &[f64]) -> Result<f64> {
@@ -249,7 +249,7 @@ impl<'o> Subject<'o> {
                 let (run, tips) = (self.run()?, self.compared()?);
                 let way = tips.iter().map(|tip| tip.length).fold(f64::INFINITY, f64::min);
                 if way < 1.0 - PATH_MISSING_MOST || !self.reference()?.ended_alike(run) {
-                    return fault(format!("another end: {} after {:.0} % of the way", run.stop, 100.0 * way));
+                    return fault(format!("another end: {} after {:.0} % of the path", run.stop, 100.0 * way));
                 }
                 Ok(largest(tips.iter().flat_map(|tip| tip.cycles)))
             }
@@ -308,7 +308,7 @@ impl<'o> Subject<'o> {
     fn on_points(&self) -> Result<PointSettings> {
         match self.case.model {
             Model::Points(points) => Ok(points),
-            model => fault(format!("{} is not asked for a plate without a crack", model.method())),
+            model => fault(format!("{} needs a crack", model.method())),
         }
     }
 
@@ -354,7 +354,7 @@ impl<'o> Subject<'o> {
             let [x, y] = body.lattice.position(place);
             match derivatives_at(&body, &bonds, &layout, &displacement, &frame, place) {
                 Some(found) => Ok(found.at([side[0] - x, side[1] - y])[1][1]),
-                None => fault("too few bonds beside the hole for a strain"),
+                None => fault("too few bonds near the hole for a strain"),
             }
         };
         let mean = 0.5 * (strain([radius, 0.0])? + strain([-radius, 0.0])?);

@@ -6,7 +6,7 @@ use super::closed::percent;
 
 /// One figure beside its reference.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct VerificationRow {
     /// Topic it belongs to.
     pub name: &'static str,
     /// What is compared, with unit and conditions.
@@ -34,7 +34,7 @@ pub struct KnownMiss {
     pub bound_percent: f64,
 }
 
-impl Row {
+impl VerificationRow {
     /// Whether the error keeps its bound; an error that is not a number does not.
     pub fn ok(&self) -> bool {
         self.error_percent.abs() <= self.bound_percent
@@ -50,7 +50,7 @@ impl Row {
 #[derive(Debug)]
 pub struct Table {
     name: &'static str,
-    rows: Vec<Row>,
+    rows: Vec<VerificationRow>,
     last: Instant,
 }
 
@@ -78,14 +78,14 @@ impl Table {
     }
 
     /// The rows, in the order in which they were computed.
-    pub fn into_rows(self) -> Vec<Row> {
+    pub fn into_rows(self) -> Vec<VerificationRow> {
         self.rows
     }
 
     fn push(&mut self, quantity: String, computed: f64, reference: f64, error_percent: f64, bound_percent: f64, source: &str) {
         let wall_s = self.last.elapsed().as_secs_f64();
         self.last = Instant::now();
-        let row = Row {
+        let row = VerificationRow {
             name: self.name,
             quantity,
             computed,

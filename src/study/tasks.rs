@@ -60,7 +60,7 @@ pub(super) fn chosen<T>(
     let known = || all.iter().map(name).collect::<Vec<_>>().join(", ");
     let find = |wanted: &String| {
         let found = all.iter().find(|one| name(one) == wanted);
-        found.ok_or_else(|| input(key, wanted, what, format!("known are {}", known())))
+        found.ok_or_else(|| input(key, wanted, what, format!("use one of: {}", known())))
     };
     names.iter().map(find).collect()
 }

@@ -66,7 +66,7 @@ impl<'a> Values<'a> {
         let mut all = String::new();
         let mut rest = text;
         while let Some((before, after)) = rest.split_once('<') {
-            let (inner, behind) = after.split_once('>').ok_or_else(|| wrong(text, "lacks a closing angle bracket"))?;
+            let (inner, behind) = after.split_once('>').ok_or_else(|| wrong(text, "has no closing angle bracket"))?;
             all += before;
             all += &match (inner.rsplit_once(':'), self.table.get(inner)) {
                 (_, Some(Value::String(own))) if depth > 0 && !own.starts_with('=') => self.filled(own, depth - 1)?,

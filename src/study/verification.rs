@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 
 use serde_json::{Value, json};
 
-use crate::{Row, Topic};
+use crate::{Topic, VerificationRow};
 use perilife_base::cells::defused;
 
-pub fn line(row: &Row) -> String {
+pub fn line(row: &VerificationRow) -> String {
     let mark = verdict(row);
     let figures = format!("{:>12} against {:>12}", number(row.computed), number(row.reference));
     let known = row.known_miss.as_ref().map_or_else(String::new, |miss| format!(", known miss {} %", bound(miss.bound_percent)));
@@ -16,8 +16,8 @@ pub fn line(row: &Row) -> String {
 }
 
 /// All rows as one JSON object, `{"rows": [...]}`.
-pub fn object(rows: &[Row]) -> Value {
-    let row = |row: &Row| {
+pub fn object(rows: &[VerificationRow]) -> Value {
+    let row = |row: &VerificationRow| {
         json!({
             "name": row.name, "quantity": row.quantity, "computed": row.computed, "reference": row.reference,
             "error_percent": row.error_percent, "bound_percent": row.bound_percent, "ok": row.ok(),
@@ -30,7 +30,7 @@ pub fn object(rows: &[Row]) -> Value {
 }
 
 /// All rows as CSV, one header line.
-pub fn csv(rows: &[Row]) -> String {
+pub fn csv(rows: &[VerificationRow]) -> String {
     let mut text =
         "name,quantity,computed,reference,error_percent,bound_percent,ok,known_miss,source,wall_s,miss_bound_percent\n"
             .to_owned();
@@ -56,7 +56,7 @@ pub fn csv(rows: &[Row]) -> String {
 
 /// A table for a document: every topic with the row that takes the largest share of its bound, the worst topic first. Known misses
 /// are counted, and left out of that where the topic has other rows.
-pub fn summary(rows: &[Row]) -> String {
+pub fn summary(rows: &[VerificationRow]) -> String {
     let mut names: Vec<&str> = rows.iter().map(|row| row.name).collect();
     names.dedup();
     let mut topics: Vec<(f64, String)> = names
@@ -83,17 +83,17 @@ pub(super) fn cell(text: &str) -> String {
 }
 
 /// Share of its bound that a row takes.
-fn share(row: &Row) -> f64 {
+fn share(row: &VerificationRow) -> f64 {
     (row.error_percent / row.bound_percent).abs()
 }
 
 /// The verification as a document: [`summary`], then all rows of every topic. It holds no wall times, and figures of few digits,
 /// so that whoever computes it again gets the same text.
-pub fn markdown(topics: &[&Topic], rows: &[Row]) -> String {
+pub fn markdown(topics: &[&Topic], rows: &[VerificationRow]) -> String {
     let mut text = format!(
-        "# Accuracy\n\nWritten by `perilife verify --markdown`: figures of the program beside their references. Errors are in percent \
-         of the reference;\nwhere that is 0, the figure is an error itself. A known deviation has its own limit, which it may not \
-         pass.\n\n{}",
+        "# Accuracy\n\nWritten by `perilife verify --markdown`: results of the program against references. Errors are in \
+         percent of the reference;\nwhere that is 0, the result is itself an error. A known miss has a second bound that it \
+         must not exceed.\n\n{}",
         summary(rows)
     );
     for topic in topics {
@@ -104,7 +104,7 @@ pub fn markdown(topics: &[&Topic], rows: &[Row]) -> String {
     text
 }
 
-fn markdown_row(row: &Row) -> String {
+fn markdown_row(row: &VerificationRow) -> String {
     let (reason, second) = row.known_miss.as_ref().map_or_else(Default::default, |miss| {
         (format!(" (known miss: {})", cell(&miss.reason)), format!("; known miss {}", bound(miss.bound_percent)))
     });
@@ -142,7 +142,7 @@ pub(super) fn four_digits(value: f64) -> String {
     format!("{:.*}", decimals.max(0) as usize, (value / unit).round() * unit)
 }
 
-fn verdict(row: &Row) -> &'static str {
+fn verdict(row: &VerificationRow) -> &'static str {
     match (row.ok(), row.fails()) {
         (true, _) => "ok",
         (false, true) => "FAIL",

@@ -102,5 +102,5 @@ pub fn frame(columns: Vec<Column>) -> Result<DataFrame> {
 
 /// What polars refuses here is a table that does not fit together, never a user's file (that is read elsewhere).
 fn trouble(error: PolarsError) -> Error {
-    Error::file(Path::new("table of specimens"), "cannot be made", std::io::Error::other(error.to_string()))
+    Error::file(Path::new("table of specimens"), "cannot be written", std::io::Error::other(error.to_string()))
 }

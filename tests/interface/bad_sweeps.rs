@@ -17,7 +17,7 @@ fn bad_designs_are_refused_before_anything_runs() {
             vec!["is not a key of a case"],
         ),
         (grid("key = \"specimen.crack_length_mm\"\nvalues = [1]\n").replace("panel", "gone"), 4, vec!["gone.toml: cannot read"]),
-        ("case = \"panel.toml\"\n[design]\nkind = \"grid\"\n".to_owned(), 2, vec!["vary: is missing: nothing varies"]),
+        ("case = \"panel.toml\"\n[design]\nkind = \"grid\"\n".to_owned(), 2, vec!["vary: is missing: no key varies"]),
         (
             grid("key = \"crack_length_mm\"\nvalues = [1]\n"),
             2,
@@ -31,7 +31,7 @@ fn bad_designs_are_refused_before_anything_runs() {
             vec!["vary[0].from = 0: must be above zero"],
         ),
         (grid(&format!("{length}distribution = \"normal\"\n")), 2, vec!["vary[0].distribution", "this is a grid"]),
-        (grid(&format!("{length}values = [8]\n[[vary]]\n{length}values = [9]\n")), 2, vec!["sweep.toml:8", "varies already"]),
+        (grid(&format!("{length}values = [8]\n[[vary]]\n{length}values = [9]\n")), 2, vec!["sweep.toml:8", "is given twice"]),
         (grid(&format!("{length}from = 8\nto = 9\ncount = 20000\n")), 2, vec!["vary[0].count = 20000"]),
         (
             grid(&format!(
@@ -40,13 +40,17 @@ fn bad_designs_are_refused_before_anything_runs() {
             2,
             vec!["10200 cases", "--most"],
         ),
-        (random(&format!("{length}values = [8]\n")), 2, vec!["vary[0].values", "belongs to a grid"]),
+        (random(&format!("{length}values = [8]\n")), 2, vec!["vary[0].values", "applies only to a grid"]),
         (
             random(&format!("{length}distribution = \"uniform\"\nfrom = 9\nto = 8\n")),
             2,
             vec!["vary[0].to = 8", "is not above from = 9"],
         ),
-        (random(&format!("{length}distribution = \"normal\"\nmean = 9\nto = 8\n")), 2, vec!["vary[0].to", "does not go with"]),
+        (
+            random(&format!("{length}distribution = \"normal\"\nmean = 9\nto = 8\n")),
+            2,
+            vec!["vary[0].to", "cannot be combined with"],
+        ),
         (
             random(&format!("{length}distribution = \"log_normal\"\nmedian = 9\nfactor = 0.5\n")),
             2,
@@ -67,7 +71,7 @@ fn bad_designs_are_refused_before_anything_runs() {
         (
             grid("key = \"specimen.crack_lenght_mm\"\nvalues = [8.0]\n"),
             2,
-            vec!["sweep.toml:5", "specimen.crack_lenght_mm", "is not a known key"],
+            vec!["sweep.toml:5", "specimen.crack_lenght_mm", "unknown key"],
         ),
         (
             grid("key = \"model.method\"\nvalues = [\"handbook\", \"guess\"]\n"),
@@ -94,7 +98,7 @@ fn bad_designs_are_refused_before_anything_runs() {
             random(&format!("{length}distribution = \"uniform\"\nfrom = 8\nto = 9\n"))
                 .replace("samples", "scatter = \"constants\"\nsamples"),
             2,
-            vec!["design.scatter", "does not go with"],
+            vec!["design.scatter", "cannot be combined with"],
         ),
     ];
     for (text, code, words) in table {

@@ -85,7 +85,7 @@ fn a_record_of_one_specimen_gives_a_band_by_assumed_scatter() {
     fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
     let stdout =
         done(dir.path(), &["predict", "case.toml", "--out", "bare", "--set", without, "--inspect-from", "20", "--factor", "2"]);
-    assert!(stdout.contains("Scatter band   not available: the fitted record has no [population]"), "{stdout}");
+    assert!(stdout.contains("Scatter band   not available: fitted law without [population]"), "{stdout}");
     assert!(stdout.contains("(remaining life / 2; no scatter band)"), "{stdout}");
     let result = json(&dir.path().join("bare/result.json"));
     assert!(result["band"].is_null() && result["inspection"]["has_band"] == false);
@@ -121,16 +121,16 @@ fn readings_of_the_plate_narrow_what_it_has_left() {
     let no_law = "fatigue.fitted=\"bare.toml\"";
     let record = fs::read_to_string(dir.path().join("fit/fitted.toml")).unwrap();
     fs::write(dir.path().join("bare.toml"), record.split("[population]").next().unwrap()).unwrap();
-    assert_refused(&predict(&["--measured", "own.csv", "--set", no_law]), 2, &["--measured", "own.csv", "no [population]"]);
+    assert_refused(&predict(&["--measured", "own.csv", "--set", no_law]), 2, &["--measured", "own.csv", "without [population]"]);
     assert_refused(&predict(&["--measured", "gone.csv"]), 4, &["gone.csv"]);
     let two = "specimen,cycles,crack_length_mm\n".to_owned()
         + &["a", "b"].map(|name| (0..6).map(|i| format!("{name},{},{}\n", 9000 * i, 9 + i)).collect::<String>()).concat();
     fs::write(dir.path().join("two.csv"), two).unwrap();
-    assert_refused(&predict(&["--measured", "two.csv"]), 2, &["two.csv", "holds 2 specimens (a, b)"]);
+    assert_refused(&predict(&["--measured", "two.csv"]), 2, &["two.csv", "contains 2 specimens (a, b)"]);
     assert_refused(&predict(&["--inspect-from", "20", "--factor", "0.5"]), 2, &["--factor", "0.5", "is not 1 or more"]);
     // What shows after the run spares its files.
     write_readings(dir.path(), "long.csv", 47.0, 1.0);
-    let from = ["--inspect-from = 60 mm", "is not on the curve, which goes from 9 to 45"];
+    let from = ["--inspect-from = 60 mm", "is not on the curve, 9 to 45"];
     assert_refused(&predict(&["--inspect-from", "60"]), 2, &from);
     assert!(!dir.path().join("no").exists(), "a length off the curve is wrong input");
     let words = ["long.csv:", "crack_length_mm", "is not on the predicted curve"];

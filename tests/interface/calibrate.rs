@@ -113,10 +113,10 @@ fn a_calibration_with_a_prediction_and_its_export() {
     assert!(stdout.lines().any(|line| line.starts_with("  At the ends    ")), "{stdout}");
     // Fields for ParaView are those of cases and scenes.
     let asked = ["calibrate", "case.toml", "--out", "no", "--set", "output.paraview=true"];
-    assert_refused(&perilife(dir.path(), &asked), 2, &["output", "belongs to a case or scene"]);
+    assert_refused(&perilife(dir.path(), &asked), 2, &["output", "applies only to a case or scene"]);
 
     // A file inside the folder of the fit is not an export's to replace; the fit itself is no run.
-    assert_refused(&perilife(dir.path(), &["export", "out/fit", "--out", "b.csv"]), 2, &["this is a calibration"]);
+    assert_refused(&perilife(dir.path(), &["export", "out/fit", "--out", "b.csv"]), 2, &["inside this calibration"]);
 }
 
 #[test]
@@ -172,7 +172,11 @@ fn a_table_gets_its_calibration_file() {
     fs::write(dir.path().join("lab.csv"), format!("N,a (mm),W (mm),B (mm),Pmax (kN),R\n{rows}")).unwrap();
     for call in [&["check", "lab.csv"][..], &["calibrate", "lab.csv", "--out", "fit"]] {
         let output = perilife(dir.path(), call);
-        assert_refused(&output, 2, &["lab.csv: is a table of readings", "save these lines beside it as lab.toml, fill in <...>"]);
+        assert_refused(
+            &output,
+            2,
+            &["lab.csv: is a table of readings", "save these lines in its folder as lab.toml, fill in <...>"],
+        );
         let (_, message) = texts(&output);
         let (_, lines) = message.split_once("\n\n").unwrap();
         for line in [

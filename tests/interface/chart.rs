@@ -36,7 +36,7 @@ fn a_quick_scene_leaves_table_picture_and_summary() {
     }
     for (file, words) in [
         ("chart.svg", "plate in uniform tension"),
-        ("summary.md", "# What to use when"),
+        ("summary.md", "# Choice of method"),
         ("runs.jsonl", "\"scene\":\"tension_plate\""),
         (".perilife", "chart.svg"),
     ] {

@@ -41,7 +41,10 @@ fn a_tip_held_by_a_no_fail_zone_is_told() {
     let (_, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{stderr}");
     for tip in ["(-15, -57)", "(5, -57)"] {
-        assert!(stderr.contains(&format!("the crack tip at {tip} mm stands in the zone around a load or support")), "{stderr}");
+        assert!(
+            stderr.contains(&format!("the crack tip at {tip} mm is inside the no-failure zone of a load or support")),
+            "{stderr}"
+        );
     }
     assert_eq!(stderr.matches("crack tip at").count(), 2, "the other crack is free: {stderr}");
     // Where no tip can grow there is no result.
@@ -154,7 +157,7 @@ fn what_does_not_fit_into_memory_is_refused_before_it_is_laid_out() {
         assert_refused(
             &output,
             2,
-            &["arms.toml", "model.spacing_mm = 0.5", "lattice places", "GB of memory, more than", "give about"],
+            &["arms.toml", "model.spacing_mm = 0.5", "lattice positions", "GB of memory; limit", "give about"],
         );
     }
     assert!(!dir.path().join("run").exists());

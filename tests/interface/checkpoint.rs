@@ -81,8 +81,8 @@ fn a_killed_run_goes_on_to_the_same_curve() {
     let broken: [(&[u8], &str); 4] = [
         (&damaged, "run.ckpt: is damaged"),
         (&kept[..kept.len() - 1], "run.ckpt: is damaged"),
-        (b"", "run.ckpt: is no checkpoint of this program"),
-        (b"cycles,crack_length_mm\n", "run.ckpt: is no checkpoint of this program"),
+        (b"", "run.ckpt: is not a checkpoint of this program"),
+        (b"cycles,crack_length_mm\n", "run.ckpt: is not a checkpoint of this program"),
     ];
     for (bytes, words) in broken {
         fs::write(folder.join("run.ckpt"), bytes).unwrap();
@@ -94,7 +94,7 @@ fn a_killed_run_goes_on_to_the_same_curve() {
     let rest = perilife(folder, &call);
     let (_, stderr) = texts(&rest);
     assert!(rest.status.success(), "{stderr}");
-    assert!(stderr.contains("case: goes on from run.ckpt: N = "), "{stderr}");
+    assert!(stderr.contains("case: resuming from run.ckpt: N = "), "{stderr}");
     for file in ["a_n.csv", "crack_path.csv", "plate.svg"] {
         let [run, whole] = ["run", "whole"].map(|out| fs::read(folder.join(out).join(file)).unwrap());
         assert!(run == whole, "{file} differs");
@@ -131,11 +131,11 @@ fn a_killed_scene_goes_on_to_the_same_files() {
     let at = older.windows(5).position(|window| window == env!("CARGO_PKG_VERSION").as_bytes()).unwrap();
     older[at] = b'9';
     let refused: [(&[u8], &str, &str); 5] = [
-        (&kept, "loading.velocity_mm_s=5001", "run.ckpt: belongs to another scene"),
+        (&kept, "loading.velocity_mm_s=5001", "run.ckpt: is of another scene"),
         (&damaged, "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
         (&kept[..kept.len() - 1], "loading.velocity_mm_s=5000", "run.ckpt: is damaged"),
         (&older, "loading.velocity_mm_s=5000", "; this is "),
-        (b"perilife checkpoint\n", "loading.velocity_mm_s=5000", "run.ckpt: is no checkpoint of a scene of this program"),
+        (b"perilife checkpoint\n", "loading.velocity_mm_s=5000", "run.ckpt: is not a checkpoint of a scene of this program"),
     ];
     for (bytes, set, words) in refused {
         fs::write(folder.join("run.ckpt"), bytes).unwrap();
@@ -147,7 +147,7 @@ fn a_killed_scene_goes_on_to_the_same_files() {
     let rest = perilife(folder, &[&["fracture", "torn.toml", "--out", "run"], &KEEP[..2]].concat());
     let (_, stderr) = texts(&rest);
     assert!(rest.status.success(), "{stderr}");
-    assert!(stderr.contains("torn: goes on from run.ckpt: step "), "{stderr}");
+    assert!(stderr.contains("torn: resuming from run.ckpt: step "), "{stderr}");
     for file in ["history.csv", "crack_path.csv", "damage.svg"] {
         let [run, whole] = ["run", "whole"].map(|out| fs::read(folder.join(out).join(file)).unwrap());
         assert!(run == whole, "{file} differs");
@@ -167,7 +167,7 @@ fn places_and_times_for_a_checkpoint_are_checked_first() {
         for time in ["-1", "nan", "soon"] {
             let output = call(&["--checkpoint", "run.ckpt", &format!("--checkpoint-every={time}")]);
             assert_eq!(output.status.code(), Some(2), "{command}, {time}");
-            assert!(texts(&output).1.contains("is no time in seconds"), "{}", texts(&output).1);
+            assert!(texts(&output).1.contains("is not a time in seconds"), "{}", texts(&output).1);
         }
         assert_eq!(call(&["--checkpoint-every", "1"]).status.code(), Some(2), "{command}");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2, "{command}: nothing new stands there");

@@ -41,9 +41,14 @@ fn subcommands() -> Vec<String> {
 fn every_command_explains_itself() {
     let here = Path::new(".");
     let (help, _) = texts(&perilife(here, &["--help"]));
-    assert!(help.contains("Exit codes: 0 done, 2 wrong input, 3 no convergence, 4 file trouble"), "{help}");
-    assert!(help.contains("surface, corner and embedded cracks"), "{help}");
+    assert!(help.contains("Exit codes: 0 success, 2 invalid input, 3 no valid result, 4 I/O error"), "{help}");
+    assert!(help.contains("surface, corner and embedded cracks") && help.contains("\nAnalyze:\n  predict "), "{help}");
     assert!(!subcommands().is_empty());
+    for command in CommandLine::command().get_subcommands() {
+        let of_arguments = command.get_arguments().filter_map(|argument| argument.get_help());
+        let long = command.get_about().into_iter().chain(of_arguments).map(|help| help.to_string());
+        long.for_each(|help| assert!(help.chars().count() <= 70, "{help}"));
+    }
     for name in subcommands() {
         assert!(help.contains(&format!("\n  {name} ")), "{name} in {help}");
         let output = perilife(here, &[&name, "--help"]);
@@ -141,7 +146,7 @@ fn a_prediction_writes_what_it_promises() {
     let again = fs::read_to_string(run.join("case.toml")).unwrap();
     assert!(run.join("paraview/run.pvd").is_file() && again.contains("[output]\nparaview = true"), "{again}");
     for (key, words) in [
-        ("output.vtk=true", "output.vtk = true: is not a known key; known here: paraview"),
+        ("output.vtk=true", "output.vtk = true: unknown key; use one of: paraview"),
         ("output.paraview=1", "output.paraview = 1: is not true or false"),
     ] {
         assert_refused(&perilife(dir.path(), &["check", "small.toml", "--set", key]), 2, &[words]);

@@ -129,7 +129,7 @@ fn cracks_side_by_side_are_refused_with_the_gap() {
     let refused = side_by_side("0.0001");
     let (_, stderr) = texts(&refused);
     assert_eq!(refused.status.code(), Some(3), "{stderr}");
-    assert!(stderr.contains("1.00e-4 mm from each other") && stderr.contains("move apart, or join"), "{stderr}");
+    assert!(stderr.contains("features 1.00e-4 mm apart") && stderr.contains("move apart, or join"), "{stderr}");
 }
 
 #[test]

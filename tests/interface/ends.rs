@@ -217,9 +217,9 @@ fn inspections_are_of_the_crack_of_a_tip() {
         code == Some(2)
             && result.is_null()
             && said.contains("--inspect-from")
-            && said.contains("the crack of tip 1 goes from 5.0000 to "),
+            && said.contains("the crack of tip 1 has 5.0000 to "),
         "{said}"
     );
     let (code, _, said) = inspect(&["--tip", "7"]);
-    assert!(code == Some(2) && said.contains("is no crack tip of this plate"), "{said}");
+    assert!(code == Some(2) && said.contains("is not a crack tip of this plate"), "{said}");
 }

@@ -99,7 +99,7 @@ fn what_cannot_be_exported_is_refused_with_words() {
     fs::write(dir.path().join("notes.csv"), "my notes").unwrap();
     let refused: [(&str, &str, i32, &[&str]); 6] = [
         ("empty", "e.csv", 2, &["empty", "a_n.csv is missing", "perilife predict"]),
-        ("fit", "e.csv", 2, &["fit", "this is a calibration"]),
+        ("fit", "e.csv", 2, &["fit", "inside this calibration"]),
         ("broken", "e.csv", 2, &["broken/a_n.csv:2", "crack_length_mm", "\"nine\""]),
         ("run", "notes.csv", 2, &["notes.csv", "did not write"]),
         ("run", "missing/e.csv", 4, &["missing/e.csv", "cannot write"]),

@@ -81,14 +81,14 @@ fn a_fleet_without_scatter_and_wrong_keys_are_refused() {
     let dir = tempdir().unwrap();
     fs::write(dir.path().join("case.toml"), PANEL).unwrap();
     let cases: [(&[&str], &[&str]); 8] = [
-        (&["--fleet", "100"], &["fleet", "nothing that scatters", "initial_length_mm"]),
+        (&["--fleet", "100"], &["fleet", "has no scatter", "initial_length_mm"]),
         (&["--fleet", "0"], &["fleet.plates = 0", "100000"]),
         (&["--set", "fleet.initial_length_mm={ median = 3.0 }"], &["fleet.initial_length_mm", "standard_deviation_ln"]),
         (&["--set", "fleet.plate=3"], &["fleet.plate", "did you mean plates?"]),
         (&["--pod", "2,5"], &["--inspect-from"]),
-        (&["--inspect-from", "400"], &["--inspect-from = 400 mm", "from 4 to "]),
+        (&["--inspect-from", "400"], &["--inspect-from = 400 mm", "4 to "]),
         (&["--inspect-from", "6 bananas"], &["--inspect-from = 6 bananas", "0.25in"]),
-        (&["--inspect-from", "10", "--pod", "5,2"], &["--pod", "longer one"]),
+        (&["--inspect-from", "10", "--pod", "5,2"], &["--pod", "two increasing crack lengths"]),
     ];
     for (arguments, words) in cases {
         let output = perilife(dir.path(), &[&["predict", "case.toml", "--out", "run"][..], arguments].concat());

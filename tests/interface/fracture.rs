@@ -66,8 +66,8 @@ fn a_scene_writes_what_it_promises() {
     }
     assert_eq!((&written["points"], &written["name"]), (&400.into(), &"torn".into()));
     assert_eq!(written["model"]["kernel"], "constant");
-    assert_eq!(written["model"]["why"]["kernel"], "default: that of the law's literature");
-    assert_eq!(written["model"]["why"]["spacing_mm"], "given in the file");
+    assert_eq!(written["model"]["why"]["kernel"], "default: as published");
+    assert_eq!(written["model"]["why"]["spacing_mm"], "set in the file");
     assert_eq!(written["case"]["loading"]["velocity_mm_s"], 5000);
     assert!(written["onset_step"].as_u64() < written["separated_step"].as_u64());
     assert!(written["fronts"][0]["x_mm"].as_f64().unwrap() > 0.0, "the crack grew: {}", written["fronts"]);
@@ -196,7 +196,7 @@ fn a_load_or_support_without_points_is_refused() {
         for command in [&["fracture", "loose.toml", "--out", "run"][..], &["check", "loose.toml"]] {
             let place = format!("loose.toml:{line}: ");
             let output = perilife(dir.path(), command);
-            assert_refused(&output, 2, &[&place, words[0], words[1], "no point", "1 mm apart", "model.spacing_mm"]);
+            assert_refused(&output, 2, &[&place, words[0], words[1], "no point", "spacing 1 mm", "model.spacing_mm"]);
         }
         assert!(!dir.path().join("run").exists());
     }

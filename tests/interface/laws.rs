@@ -136,12 +136,12 @@ fn a_fit_without_an_optimum_writes_no_law() {
     let readings = format!("[measured]\nfiles = [\"data.csv\"]\n{SHEET}{}", loading(0.1));
     let law = |law: &str| format!("[measured]\nrates = [\"data.csv\"]\n[fit]\nlaw = \"{law}\"\n");
     let cases = [
-        (readings.clone(), curve(&wide, |a| 1e6 * (a / 6.0).powf(-12.0)), "an end of the range searched, 1 to 8"),
-        (readings.clone(), curve(&wide, |a| 1e4 * (a / 6.0).powf(0.5)), "an end of the range searched, 1 to 8"),
-        (readings, curve(&narrow, |a| 1e5 * (a / 20.0).powi(-2)), "the misfit has no smallest value that tells p"),
-        (law("walker"), rates(&[0.1]), "walker_gamma not identified: all rates are of one stress ratio"),
-        (law("forman"), rates(&[0.1, 0.5]), "k_c_mpa_sqrt_m not identified: the optimum lies at an end of its range"),
-        (law("nasgro"), rates(&[0.1, 0.5]), "not identified"),
+        (readings.clone(), curve(&wide, |a| 1e6 * (a / 6.0).powf(-12.0)), "at the limit of the search range 1 to 8"),
+        (readings.clone(), curve(&wide, |a| 1e4 * (a / 6.0).powf(0.5)), "at the limit of the search range 1 to 8"),
+        (readings, curve(&narrow, |a| 1e5 * (a / 20.0).powi(-2)), "p cannot be determined"),
+        (law("walker"), rates(&[0.1]), "walker_gamma cannot be determined: all rates are at one stress ratio"),
+        (law("forman"), rates(&[0.1, 0.5]), "k_c_mpa_sqrt_m cannot be determined: best fit at the limit of its range"),
+        (law("nasgro"), rates(&[0.1, 0.5]), "cannot be determined"),
     ];
     for (case, data, words) in cases {
         fs::write(here.join("case.toml"), &case).unwrap();
@@ -164,7 +164,7 @@ fn rates_and_sweeps_tell_where_the_formula_does_not_hold() {
     fs::write(here.join("ct.csv"), curve(&lengths, |_| 1e5)).unwrap();
     // a/W 0.2 is 10 mm: secants at 4.5 to 9.5 mm lie below.
     let (_, stderr) = done(here, &["rates", "ct.csv", "--specimen", "ct.toml", "--method", "secant", "--out", "rates.csv"]);
-    let words = "6 of 11 rates (54.5 %), at crack lengths from 4.500 to 9.500 mm, lie outside the range of ASTM E647 compact";
+    let words = "6 of 11 rates (54.5 %), at crack lengths from 4.500 to 9.500 mm, are outside the range of ASTM E647 compact";
     assert!(stderr.contains(words), "{stderr}");
     let sweep = "case = \"ct.toml\"\n[design]\nkind = \"grid\"\n[[vary]]\nkey = \"specimen.crack_length_mm\"\nvalues = [9.5, 4.0, 11.0]\n";
     fs::write(here.join("sweep.toml"), sweep).unwrap();

@@ -111,7 +111,7 @@ fn a_finished_case_is_not_run_again() {
         fs::remove_file(here.join("out").join(file)).unwrap();
     }
     let output = perilife(here, &["sweep", "sweep.toml", "--out", "out"]);
-    assert!(texts(&output).1.contains("5 of 6 cases are there already"), "{}", texts(&output).1);
+    assert!(texts(&output).1.contains("5 of 6 cases already finished"), "{}", texts(&output).1);
     assert_eq!((rows(&here.join("out")), outcome("0002").unwrap()), (whole.clone(), before));
     assert_eq!(fs::read_dir(here.join("out/cases")).unwrap().count(), 6);
     // Another law is another input; fewer cases leave no others behind.
@@ -146,7 +146,7 @@ fn a_killed_sweep_goes_on() {
     assert!(!here.join("out/sweep.csv").exists(), "it was killed before its end");
     let first = fs::read(here.join("out/cases/0001/outcome.toml")).unwrap();
     let output = perilife(here, &["sweep", "sweep.toml", "--out", "out", "--threads", "2"]);
-    assert!(texts(&output).1.contains("of 5 cases are there already"), "{}", texts(&output).1);
+    assert!(texts(&output).1.contains("of 5 cases already finished"), "{}", texts(&output).1);
     assert_eq!(first, fs::read(here.join("out/cases/0001/outcome.toml")).unwrap());
     let rows = rows(&here.join("out"));
     assert!(rows.len() == 6 && rows[1..].iter().all(|row| row[3] == "crack_length_reached"), "{rows:?}");
@@ -174,7 +174,7 @@ fn a_failing_case_is_a_row() {
     assert!(row.starts_with("0002,130.0000000,,,,") && row.contains("above the tested ΔK"), "{row}");
     assert_eq!(json(&here.join("out/sweep.json"))["failures"][0]["case"], "0002");
     // It is not tried again, and where no case has a result the sweep has none.
-    assert!(texts(&perilife(here, &["sweep", "sweep.toml", "--out", "out"])).1.contains("2 of 2 cases are there already"));
+    assert!(texts(&perilife(here, &["sweep", "sweep.toml", "--out", "out"])).1.contains("2 of 2 cases already finished"));
     let output = perilife(here, &["sweep", "sweep.toml", "--out", "none", "--set", "vary[0].values=[130.0]"]);
     assert_eq!(output.status.code(), Some(3));
     assert!(
@@ -191,7 +191,7 @@ fn shards_and_collect_give_the_same_table() {
     let here = dir.path();
     done(here, &["sweep", "sweep.toml", "--out", "whole"]);
     let part = |i: &str| done(here, &["sweep", "sweep.toml", "--out", "parts", "--shard", i]);
-    assert!(part("1/4").contains("sweep 1/4: 2 cases, 2 of them run now, 0 failed"));
+    assert!(part("1/4").contains("sweep 1/4: 2 cases, 2 run, 0 failed"));
     part("3/4");
     let output = perilife(here, &["collect", "parts"]);
     assert_eq!(output.status.code(), Some(3));
@@ -268,7 +268,7 @@ fn workers_of_a_service_give_the_same_table() {
             assert!(fs::read(served.join("a_n.csv")).unwrap() == fs::read(local.join("a_n.csv")).unwrap());
         }
         // Everything is there: no worker is asked again.
-        assert!(texts(&perilife(here, &arguments)).1.contains("6 of 6 cases are there already"));
+        assert!(texts(&perilife(here, &arguments)).1.contains("6 of 6 cases already finished"));
     });
 }
 

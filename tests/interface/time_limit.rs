@@ -23,8 +23,7 @@ fn a_run_ends_when_its_time_is_over() {
     for (command, input, limit) in [("predict", "large.toml", "0.5"), ("fracture", "long.toml", "1")] {
         let begun = Instant::now();
         let output = perilife(here, &[command, input, "--out", "out", "-q", "--time-limit", limit]);
-        let words =
-            format!("the time limit of {limit} s is over before the run is; give more, or keep the run with --checkpoint FILE");
+        let words = format!("stopped at the time limit of {limit} s; increase --time-limit, or use --checkpoint FILE");
         assert_refused(&output, 3, &[&words]);
         assert!(begun.elapsed() < Duration::from_secs(30), "{command}: {:?}", begun.elapsed());
         assert_eq!(names(here), before);

@@ -78,7 +78,7 @@ fn what_does_not_go_with_the_driver_is_refused() {
     };
     refused(
         &["predict", "plate.toml", "--set", "fatigue.driver=tip_field", "--set", "fatigue.ageing=crack_tip"],
-        &["fatigue.ageing", "belongs to fatigue bonds", "bond_strain"],
+        &["fatigue.ageing", "applies only to fatigue bonds", "bond_strain"],
     );
     refused(&["predict", "plate.toml", "--set", "fatigue.driver=tips"], &["fatigue.driver", "tip_field, bond_strain"]);
     refused(&["predict", "slot.toml", "--set", "fatigue.driver=tip_field"], &["fatigue.driver", "sharp cracks", "bond_strain"]);

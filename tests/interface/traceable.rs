@@ -79,7 +79,7 @@ fn a_sweep_takes_along_what_its_cases_read() {
         fs::write(here.join(file), text.replace("1e-2", "2e-2").replace("345.0", "145.0")).unwrap();
         let output = perilife(here, &["sweep", "sweep.toml", "--out", "out", "-q"]);
         assert!(
-            output.status.success() && texts(&output).1.contains("2 of 2 finished cases go: 0001, 0002"),
+            output.status.success() && texts(&output).1.contains("2 of 2 finished cases are deleted: 0001, 0002"),
             "{}",
             texts(&output).1
         );
@@ -95,6 +95,6 @@ fn a_sweep_takes_along_what_its_cases_read() {
     crate::interface::cli::assert_refused(
         &output,
         2,
-        &["holds another sweep, sweep, with 2 of 2 cases done", "give another folder"],
+        &["contains another sweep, sweep, with 2 of 2 cases done", "use a new folder"],
     );
 }

@@ -66,7 +66,7 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
         println!("{name}: {error}");
         assert_eq!(error.exit_code(), 2);
         let words = error.to_string();
-        assert!(words.contains("model.spacing_mm = ") && words.contains("more than 4.00 GB"), "{words}");
+        assert!(words.contains("model.spacing_mm = ") && words.contains("limit 4.00 GB"), "{words}");
         let spacing: f64 = words.split("give about ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
         let set = format!("model.spacing_mm={spacing}");
         let coarser = Case::from_toml(&format!("{specimen}{PLATE}{model}"), "case", Folder::none(), &[set]);
@@ -79,7 +79,7 @@ fn plates_that_are_too_large_are_refused_with_a_spacing_that_fits() {
     let levels = scene("spacing_mm = 0.12, discretisation = \"dual_horizon\"", levels).budget();
     assert!(levels.points > 4e7, "{:e}", levels.points);
     assert!(levels.within(LIMIT).unwrap_err().to_string().contains("smaller regions of [refinement]"));
-    assert!(levels.within_points(1e6).unwrap_err().to_string().contains("more than the 1.000e6 allowed"));
+    assert!(levels.within_points(1e6).unwrap_err().to_string().contains("points; limit 1.000e6"));
 }
 
 /// Fields for ParaView, which are most of what a run leaves, are counted where they are asked for.

@@ -122,9 +122,9 @@ fn broken_calibration_files_say_what_would_be_right() {
         (
             "unknown key",
             swap("from_crack", "from_crak"),
-            "measured.from_crak_length_mm = 9.0: is not a known key; did you mean from_crack_length_mm?",
+            "measured.from_crak_length_mm = 9.0: unknown key; did you mean from_crack_length_mm?",
         ),
-        ("no files", swap("[\"curves.csv\"]", "[]"), "measured.files = []: names no file"),
+        ("no files", swap("[\"curves.csv\"]", "[]"), "measured.files = []: has no file"),
         ("files of a wrong kind", swap("[\"curves.csv\"]", "\"curves.csv\""), "measured.files"),
         (
             "window the wrong way",
@@ -144,37 +144,37 @@ fn broken_calibration_files_say_what_would_be_right() {
         (
             "model after the first reading",
             swap("crack_length_mm = 9.0\n[material]", "crack_length_mm = 9.5\n[material]"),
-            "specimen.crack_length_mm = 9.5: is longer than the first reading of specimen A, 9 mm",
+            "specimen.crack_length_mm = 9.5: exceeds the first reading of specimen A, 9 mm",
         ),
         (
             "panel too narrow",
             swap("width_mm = 152.4", "width_mm = 26.0"),
-            "curves.csv:7: crack_length_mm = 13: is not inside the specimen, whose half width is 13 mm",
+            "curves.csv:7: crack_length_mm = 13: is outside the specimen, whose half width is 13 mm",
         ),
-        ("unknown parameter", swap("[\"a\", \"p\"]", "[\"a\", \"q\"]"), "use one of a, p"),
-        ("p alone", swap("[\"a\", \"p\"]", "[\"p\"]"), "fit.parameters = [\"p\"]: leaves a out"),
+        ("unknown parameter", swap("[\"a\", \"p\"]", "[\"a\", \"q\"]"), "use one of: a, p"),
+        ("p alone", swap("[\"a\", \"p\"]", "[\"p\"]"), "fit.parameters = [\"p\"]: does not contain a"),
         ("p missing", swap("[\"a\", \"p\"]", "[\"a\"]"), "fit.p: is missing"),
-        ("p twice", swap("[\"a\", \"p\"]", "[\"a\", \"p\"]\np = 3.0"), "fit.p = 3: is given and fitted at once"),
+        ("p twice", swap("[\"a\", \"p\"]", "[\"a\", \"p\"]\np = 3.0"), "fit.p = 3: is both given and fitted"),
         (
             "law given",
             format!("{GOOD}[fatigue]\na = 1.0\np = 3.0\nhorizon_mm = 3.0\n"),
-            "fatigue: gives the law that the calibration is to find",
+            "fatigue: gives the law that the calibration fits",
         ),
         (
             "another mean-stress law",
             format!("{GOOD}[fatigue]\nwalker_gamma = 0.6\n"),
-            "fatigue.walker_gamma = 0.6: cannot be given to a calibration",
+            "fatigue.walker_gamma = 0.6: does not apply to a fit at one R",
         ),
         (
             "rate of bonds by their strain",
             format!("{GOOD}[fatigue]\ndriver = \"bond_strain\"\n"),
-            "fatigue.driver = \"bond_strain\": cannot be given to a calibration: A and p are constants of the growth rate over K; \
+            "fatigue.driver = \"bond_strain\": does not apply to a calibration, which fits the growth rate over K; \
              use driver = \"tip_field\"",
         ),
         (
             "fatigue bonds where no tip is",
             format!("{GOOD}[fatigue]\nageing = \"everywhere\"\n"),
-            "fatigue.driver = \"bond_strain\": cannot be given to a calibration",
+            "fatigue.driver = \"bond_strain\": does not apply to a calibration",
         ),
         (
             "short panel by hand calculation",
@@ -184,9 +184,9 @@ fn broken_calibration_files_say_what_would_be_right() {
         (
             "short panel, whose range of K only a run shows",
             swap("length_mm = 300.0", "length_mm = 152.4").replace("[fit]\n", "[fit]\nrecord = \"other.toml\"\n"),
-            "fit.record = \"other.toml\": stands in for p where ΔK varies too little, which on this plate only a run shows",
+            "fit.record = \"other.toml\": replaces p if ΔK varies too little, which is known only after a run",
         ),
-        ("unknown unit", swap("[specimen]", "length_unit = \"furlong\"\n[specimen]"), "use one of mm, inch, m"),
+        ("unknown unit", swap("[specimen]", "length_unit = \"furlong\"\n[specimen]"), "use one of: mm, inch, m"),
         (
             "unit against the header",
             swap("[specimen]", "length_unit = \"inch\"\n[specimen]"),
@@ -201,7 +201,7 @@ fn broken_calibration_files_say_what_would_be_right() {
     }
     // A threshold is allowed, and said to belong to the cases as well; gamma = 1 is what a record means anyway.
     let warned = read(&format!("{GOOD}[fatigue]\nwalker_gamma = 1.0\ndelta_k_threshold_mpa_sqrt_m = 2.0\n"), &[]).unwrap();
-    assert!(warned.warnings.iter().any(|line| line.contains("stands in no record")), "{:?}", warned.warnings);
+    assert!(warned.warnings.iter().any(|line| line.contains("has no effect on the fit")), "{:?}", warned.warnings);
     let error = read(&swap_file("elsewhere.csv"), &[]).unwrap_err();
     assert_eq!(error.exit_code(), 4);
     assert!(error.to_string().contains("elsewhere.csv: cannot read"), "{error}");

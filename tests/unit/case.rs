@@ -225,7 +225,7 @@ fn the_bond_law_left_open_is_one_that_the_material_can_have() {
 fn what_is_planned_is_said_to_be_planned() {
     for (key, value) in [("fatigue.failure", "energy"), ("fatigue.failure", "stress")] {
         let error = read(INLINE, &[&format!("{key}={value}")]).unwrap_err().to_string();
-        assert!(error.contains(key) && error.contains(value) && error.contains("not built yet"), "{error}");
+        assert!(error.contains(key) && error.contains(value) && error.contains("is not supported yet"), "{error}");
     }
 }
 

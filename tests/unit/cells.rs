@@ -57,7 +57,7 @@ fn names_of_specimens_go_through_tables() {
 fn tables_that_become_too_large_are_refused() {
     refused(vec![
         ("many.parquet", b"PAR1 nothing PAR1".to_vec(), "is a Parquet file".to_owned()),
-        ("lines.csv", format!("{HEAD}{}", "1\n".repeat(ROWS_MAX)).into_bytes(), format!("lines, more than the {ROWS_MAX}")),
+        ("lines.csv", format!("{HEAD}{}", "1\n".repeat(ROWS_MAX)).into_bytes(), format!("lines, limit {ROWS_MAX}")),
         (
             "claim.xlsx",
             with_texts("<sst uniqueCount=\"99999999999999\"><si><t>a</t></si></sst>", 1, 0),
@@ -68,7 +68,7 @@ fn tables_that_become_too_large_are_refused() {
             with_texts(&format!("<sst><si><t>{}</t></si></sst>", "x".repeat(1 << 20)), 300, 0),
             "bytes of text".to_owned(),
         ),
-        ("columns.xlsx", with_texts("<sst><si><t>a</t></si></sst>", 2500, 4095), format!("cells, more than the {CELLS_MAX}")),
+        ("columns.xlsx", with_texts("<sst><si><t>a</t></si></sst>", 2500, 4095), format!("cells, limit {CELLS_MAX}")),
         ("zeros.xlsx", unpacking(UNPACKED_MAX + 1), format!("unpacks to more than {UNPACKED_MAX} bytes")),
     ]);
 }
@@ -77,7 +77,7 @@ fn tables_that_become_too_large_are_refused() {
 #[ignore = "long: half a minute; cargo test cells -- --ignored --nocapture"]
 fn a_line_of_too_many_commas_is_refused() {
     let commas = format!("{HEAD}{}", ",".repeat(CELLS_MAX)).into_bytes();
-    refused(vec![("commas.csv", commas, format!("cells, more than the {CELLS_MAX}"))]);
+    refused(vec![("commas.csv", commas, format!("cells, limit {CELLS_MAX}"))]);
 }
 
 const HEAD: &str = "specimen,cycles,crack_length_mm\n";

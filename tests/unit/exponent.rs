@@ -82,7 +82,7 @@ fn a_narrow_window_takes_p_from_a_record_or_says_that_it_is_not_identified() {
 
     let free = report(NARROW, "");
     assert_eq!(free["p_source"], "not_identified");
-    warns(&free, &["p is not identified", "record"]);
+    warns(&free, &["m cannot be determined", "record"]);
 
     let taken = report(NARROW, "record = \"fitted.toml\"");
     assert_eq!([&taken["p"], &taken["p_error"], &taken["paris_m_error"]], [&json!(law.paris_m), &json!(0.04), &json!(0.04)]);
@@ -94,7 +94,7 @@ fn a_narrow_window_takes_p_from_a_record_or_says_that_it_is_not_identified() {
     // A window that tells p needs no record; [\"a\"] alone takes it all the same.
     let wide = report(WIDE, "record = \"fitted.toml\"");
     assert_eq!(wide["p_source"], "fitted");
-    warns(&wide, &["fitted.toml is not used"]);
+    warns(&wide, &["fitted.toml not used"]);
     assert_eq!(report(WIDE, "parameters = [\"a\"]\nrecord = \"fitted.toml\"")["p_source"], "fitted.toml");
     assert_eq!(report(NARROW, "parameters = [\"a\"]\np = 3")["p_source"], "given");
     let twice = calibration(&folder, NARROW, "parameters = [\"a\"]\np = 3\nrecord = \"fitted.toml\"").unwrap_err().to_string();

@@ -25,7 +25,7 @@ fn forman_becomes_unstable_at_its_toughness() {
     let law = law("forman", &[1e-8, 2.5, 60.0 * MPA_SQRT_M]);
     // ΔK = 18 of K_max = 20 at R = 0.1: 1e-8 18^2.5 / (0.9 60 - 18).
     near(law.rate(20.0 * MPA_SQRT_M, 0.1), 1e-8 * 18.0_f64.powf(2.5) / 36.0, 1e-12);
-    assert_eq!(law.rate(20.0 * MPA_SQRT_M, -1.0), law.rate(20.0 * MPA_SQRT_M, 0.0), "compression does not count");
+    assert_eq!(law.rate(20.0 * MPA_SQRT_M, -1.0), law.rate(20.0 * MPA_SQRT_M, 0.0), "ΔK = K_max for R < 0");
     assert_eq!(law.rate(60.0 * MPA_SQRT_M, 0.1), f64::INFINITY);
 }
 
@@ -232,7 +232,7 @@ fn a_second_law_is_refused() {
         }
         for kind in GrowthLawKind::all().filter(|kind| !kinds.contains(&kind.name())) {
             let named = format!("growth_law = \"{kind}\"");
-            refused(&format!("{named}\n{text}"), [&format!("fatigue.{key} = "), &named, "leave growth_law out"]);
+            refused(&format!("{named}\n{text}"), [&format!("fatigue.{key} = "), &named, "remove growth_law"]);
         }
     }
 }
@@ -262,7 +262,7 @@ fn wrong_laws_are_refused() {
     let rows: [(&str, &str, &[&str], &[&str]); 19] = [
         (RATES, &twice, &[], &["fatigue.forman_c_mm_per_cycle", "conflicts with fatigue.paris_c_mm_per_cycle"]),
         (RATES, &two, &[], &["fatigue.nasgro_n", "conflicts with"]),
-        (RATES, FORMAN, &["fatigue.driver=bond_strain"], &["fatigue.growth_law", "no law of bonds", "tip_field"]),
+        (RATES, FORMAN, &["fatigue.driver=bond_strain"], &["fatigue.growth_law", "cannot drive bonds", "tip_field"]),
         (RATES, FORMAN, &["fatigue.walker_gamma=0.5"], &["fatigue.walker_gamma", "forman"]),
         (RATES, FORMAN, &["fatigue.forman_m=0.1"], &["fatigue.forman_m", "0.1"]),
         (RATES, "forman_m = 3\n", &[], &["fatigue.forman_c_mm_per_cycle", "missing"]),
@@ -277,10 +277,10 @@ fn wrong_laws_are_refused() {
             RATES,
             "paris_c_mm_per_cycle = 1e-7\nparis_m = 3\nk_c_mpa_sqrt_m = 3\n",
             &[],
-            &["fatigue.k_c_mpa_sqrt_m", "no constant"],
+            &["fatigue.k_c_mpa_sqrt_m", "not a constant"],
         ),
         (ratios, TABLE, &["loading.stress_ratio=0.6"], &["fatigue.growth_table", "rates.csv", "above 0.3 to 0.5", "held"]),
-        ("delta_k_mpa_sqrt_m,rate\n1,2\n", TABLE, &[], &["rates.csv", "da_dn_mm_per_cycle", "lacks"]),
+        ("delta_k_mpa_sqrt_m,rate\n1,2\n", TABLE, &[], &["rates.csv", "da_dn_mm_per_cycle", "has no columns"]),
         ("delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n9,2e-4\n", TABLE, &[], &["rates.csv:2", "da_dn_mm_per_cycle", "rise"]),
         (
             "delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n10,1e-4\n12,x\n",
@@ -323,11 +323,11 @@ fn wide_tables_of_other_programs_are_read() {
     near(table.rows[1].delta_k, 10.0 * 1.098_843 * MPA_SQRT_M, 1e-5);
     near(table.rows[1].rate, 1e-7 * 0.0254, 1e-9);
     for (name, text, problem) in [
-        ("a.dadn", "0.0 0.5\n1e-10 5.0\n", "has 2 numbers, and 3 are wanted"),
-        ("a.dadn", "0.0\n1e-10 five\n", "is no number"),
+        ("a.dadn", "0.0 0.5\n1e-10 5.0\n", "has 2 numbers, expected 3"),
+        ("a.dadn", "0.0\n1e-10 five\n", "is not a number"),
         ("a.dadn", "# nothing\n", "has no rows"),
         ("a.lkpx", "<Material></Material>", "no table of rates"),
-        ("a.lkpx", "<Material><a></b></Material>", "is no XML"),
+        ("a.lkpx", "<Material><a></b></Material>", "is not XML"),
     ] {
         let error = read(name, text).unwrap_err().to_string();
         assert!(error.contains(problem), "{error}");

@@ -74,15 +74,15 @@ fn loads_must_balance() {
     ];
     // Words of the answer: what is left over.
     let bad = [
-        ("stress_max_mpa = 10\nedges = [\"top\"]", "a force along y"),
-        ("stress_max_mpa = 10\nedges = [\"top\", \"left\"]\n[supports]\nbottom = { fix = [\"y\"] }", "a force along x"),
-        ("force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }]", "a force along y"),
-        ("force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }, { hole = 2, direction = [0, -1] }]", "turn the plate"),
-        ("force_max_n = 10\npins = [{ hole = 0, direction = [1, 0] }, { hole = 1, direction = [-1, 0] }]", "turn the plate"),
-        ("force_max_n = 10\nrollers = [{ at_mm = [0, 100], contact_width_mm = 4 }]", "a force along y"),
+        ("stress_max_mpa = 10\nedges = [\"top\"]", "unbalanced force along y"),
+        ("stress_max_mpa = 10\nedges = [\"top\", \"left\"]\n[supports]\nbottom = { fix = [\"y\"] }", "unbalanced force along x"),
+        ("force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }]", "unbalanced force along y"),
+        ("force_max_n = 10\npins = [{ hole = 0, direction = [0, 1] }, { hole = 2, direction = [0, -1] }]", "unbalanced moment"),
+        ("force_max_n = 10\npins = [{ hole = 0, direction = [1, 0] }, { hole = 1, direction = [-1, 0] }]", "unbalanced moment"),
+        ("force_max_n = 10\nrollers = [{ at_mm = [0, 100], contact_width_mm = 4 }]", "unbalanced force along y"),
         (
             "force_max_n = 10\nrollers = [{ at_mm = [0, 100], contact_width_mm = 4 }, { at_mm = [9, -100], contact_width_mm = 4 }]",
-            "turn the plate",
+            "unbalanced moment",
         ),
     ];
     let with_ratio = |text: &str| match text.split_once("\n[") {
@@ -127,9 +127,9 @@ fn a_pin_touches_over_at_most_half_its_hole() {
         (pins(", contact_half_angle_deg = 120"), "loading.pins[0].contact_half_angle_deg", "120"),
         (pins(", pin_diameter_mm = 1, contact_half_angle_deg = 20"), "loading.pins[0].contact_half_angle_deg", "pin_diameter_mm"),
         (pins(", pin_poisson_ratio = 0.3"), "loading.pins[0].pin_diameter_mm", "clearance"),
-        (pins(", pin_diameter_mm = 1, friction = 0.1"), "loading.pins[0].friction = 0.1", "without friction"),
-        (compact("pin_diameter_mm = 12\npin_friction = 0.1"), "specimen.pin_friction = 0.1", "without friction"),
-        (compact(&format!("pin_diameter_mm = {}", 1.01 * hole)), "specimen.pin_diameter_mm", "more than the hole"),
+        (pins(", pin_diameter_mm = 1, friction = 0.1"), "loading.pins[0].friction = 0.1", "pins are frictionless"),
+        (compact("pin_diameter_mm = 12\npin_friction = 0.1"), "specimen.pin_friction = 0.1", "pins are frictionless"),
+        (compact(&format!("pin_diameter_mm = {}", 1.01 * hole)), "specimen.pin_diameter_mm", "larger than the hole"),
         (compact("pin_diameter_mm = 12\npin_poisson_ratio = 0.6"), "specimen.pin_poisson_ratio", "0.6"),
     ];
     for (case, key, word) in wrong {
@@ -163,7 +163,7 @@ fn a_roller_presses_uniformly_on_its_contact() {
         assert!(error.contains(key), "{wrong}: {error}");
     }
     let none = case(PLATE, "force_max_n = 10\nstress_ratio = 0\nrollers = []").unwrap_err().to_string();
-    assert!(none.contains("loading.rollers") && none.contains("loads nothing"), "{none}");
+    assert!(none.contains("loading.rollers") && none.contains("applies no load"), "{none}");
 }
 
 /// Every wrong way to give a direction, a pressure on cracks or a displacement names what is wrong.
@@ -176,52 +176,64 @@ fn directions_pressures_and_displacements_that_are_refused() {
                cracks = [{ from_mm = [-50, 0], to_mm = [-40, 0] }, { from_mm = [50, 0], to_mm = [40, 0] }]";
     let refused = [
         (PLATE, format!("{held}direction = [0, 0]"), "has no direction"),
-        (PLATE, format!("{held}direction = [[0, 1]]"), "names 1 directions for 2 sides"),
+        (PLATE, format!("{held}direction = [[0, 1]]"), "has 1 directions for 2 sides"),
         (PLATE, format!("{held}direction = \"up\""), "is not a direction"),
-        (PLATE, format!("{held}direction = [1, 0]"), "is not in equilibrium"),
-        (PLATE, format!("{held}direction = [[0, 1], [0, -1]]\nstress_parallel_ratio = 1"), "does not go with loading.direction"),
+        (PLATE, format!("{held}direction = [1, 0]"), "not in equilibrium"),
+        (
+            PLATE,
+            format!("{held}direction = [[0, 1], [0, -1]]\nstress_parallel_ratio = 1"),
+            "cannot be combined with loading.direction",
+        ),
         (
             PLATE,
             "stress_ratio = 0\nforce_max_n = 5\npins = [{ hole = 0, direction = [0, 1] }]\ndirection = [0, 1]".into(),
             "conflicts with loading.pins",
         ),
-        (PANEL, "stress_ratio = 0\nstress_max_mpa = 50\ndirection = [0, 1]".into(), "does not go with middle_tension"),
-        (PANEL, "stress_ratio = 0\ncrack_pressure_mpa = 50".into(), "does not go with middle_tension"),
+        (PANEL, "stress_ratio = 0\nstress_max_mpa = 50\ndirection = [0, 1]".into(), "cannot be combined with middle_tension"),
+        (PANEL, "stress_ratio = 0\ncrack_pressure_mpa = 50".into(), "cannot be combined with middle_tension"),
         (PLATE, "stress_ratio = 0\ncrack_pressure_mpa = -5".into(), "crack_pressure_mpa"),
         (
             PLATE,
             "stress_ratio = 0\ncrack_pressure_mpa = 5\nedges = [\"top\", \"bottom\"]".into(),
-            "none is given beside crack_pressure_mpa",
+            "only crack_pressure_mpa is set",
         ),
-        (PLATE, format!("{kept}stress_max_mpa = 50"), "does not go with kind"),
-        (PLATE, format!("{kept}crack_pressure_mpa = 50"), "loading.displacement_max_mm: is missing"),
-        (PLATE, kept.into(), "is missing: there is no load"),
-        (PLATE, format!("{kept}displacement_max_mm = 0.1\ncrack_pressure_mpa = 5"), "does not go with cycles of a displacement"),
+        (PLATE, format!("{kept}stress_max_mpa = 50"), "cannot be combined with kind"),
+        (PLATE, format!("{kept}crack_pressure_mpa = 50"), "loading.displacement_max_mm: no load given"),
+        (PLATE, kept.into(), "no load given"),
+        (
+            PLATE,
+            format!("{kept}displacement_max_mm = 0.1\ncrack_pressure_mpa = 5"),
+            "cannot be combined with cycles of a displacement",
+        ),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ndisplacement_range_mm = 0.1"), "conflicts with displacement_max_mm"),
-        (PLATE, "stress_ratio = 0\ndisplacement_max_mm = 0.1".into(), "does not go with kind"),
+        (PLATE, "stress_ratio = 0\ndisplacement_max_mm = 0.1".into(), "cannot be combined with kind"),
         (
             PLATE,
             "stress_ratio = 0\nstress_max_mpa = 50\ngrip = \"mean\"".into(),
-            "loading.grip = \"mean\": says how a moved edge is gripped",
+            "loading.grip = \"mean\": applies only to a moved edge",
         ),
         (PLATE, format!("{kept}displacement_max_mm = 0.1\ngrip = \"soft\""), "straight, mean"),
-        (PLATE, format!("{kept}displacement_max_mm = 0.1\ngrip = \"mean\"\ntransverse = \"held\""), "does not go with grip"),
+        (
+            PLATE,
+            format!("{kept}displacement_max_mm = 0.1\ngrip = \"mean\"\ntransverse = \"held\""),
+            "cannot be combined with grip",
+        ),
         (
             PLATE,
             format!("{kept}displacement_max_mm = 0.1\ntransverse = \"held\"\npins = [{{ hole = 0, direction = [0, 1] }}]"),
-            "loading.transverse = \"held\": is of moved edges",
+            "loading.transverse = \"held\": applies only to moved edges",
         ),
         (
             PLATE,
             format!("{kept}displacement_max_mm = 0.1\nedges = [\"top\", \"bottom\", \"left\", \"right\"]"),
-            "moves sides that do not face each other",
+            "cannot move sides that do not face each other",
         ),
         (
             PLATE,
             format!(
                 "{kept}displacement_max_mm = 0.1\nedges = [\"top\"]\ndirection = [1, 1]\n[supports]\nbottom = {{ fix = [\"x\", \"y\"] }}\ntop = {{ fix = [\"x\"] }}"
             ),
-            "moves an edge that [supports] holds along it",
+            "moves an edge that [supports] fixes in the same direction",
         ),
         (PLATE, "kind = \"displacement\"\ndisplacement_mm = 0.1".into(), "belongs to fracture scenes"),
         (PANEL, by_crack("[[12, 50], [30, 40]]"), "does not include the initial crack length 10 mm"),
@@ -231,9 +243,9 @@ fn directions_pressures_and_displacements_that_are_refused() {
         (PANEL, by_crack("[[5, 50], [30, -4]]"), "stress_max_mpa[1][1] = -4: must be above zero"),
         (PANEL, by_crack("[[5, 50, 1], [30, 40]]"), "is not a number, or rows [crack length, load]"),
         (PANEL, by_crack("\"high\""), "is not a number, or rows [crack length, load]"),
-        (PANEL, by_crack("[[5, 50], [30, 40]]\nresidual_stress_mpa = \"5\""), "whose load depends on the crack length"),
+        (PANEL, by_crack("[[5, 50], [30, 40]]\nresidual_stress_mpa = \"5\""), "with a load that depends on the crack length"),
         (PANEL, by_crack("[[5, 50], [30, 40]]\n[stop]\nrequired_strength_mpa = 90"), "is one for every crack length"),
-        (PLATE, by_crack("[[5, 50], [30, 40]]\ncrack_pressure_mpa = 4"), "is the same at every crack length"),
+        (PLATE, by_crack("[[5, 50], [30, 40]]\ncrack_pressure_mpa = 4"), "which is constant"),
         (two, by_crack("[[5, 50], [30, 40]]"), "the plate has several"),
     ];
     for (specimen, loading, words) in refused {

@@ -176,7 +176,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (
             hole("hole_diameter_mm = 10\ncrack_length_mm = 45"),
             TENSION,
-            "specimen.crack_length_mm = 45: is not below the way from the rim to the edge, 45 mm",
+            "specimen.crack_length_mm = 45: must be below the distance from the hole edge to the plate edge, 45 mm",
         ),
         (hole("hole_diameter_mm = 10"), TENSION, "specimen.crack_length_mm: is missing"),
         (hole("hole_diameter_mm = 10\ncrack_length_mm = 3\ncracks = 3"), TENSION, "specimen.cracks = 3"),
@@ -189,7 +189,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (row("holes = 1\npitch_mm = 20\ncrack_length_mm = 1"), TENSION, "is not 2 to 100"),
         (row("holes = 6\npitch_mm = 20\ncrack_length_mm = 1"), TENSION, "specimen.pitch_mm = 20"),
         (row("holes = 3\npitch_mm = 20\ncrack_length_mm = 8"), TENSION, "half the ligament, 7.5 mm"),
-        (row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[1, 1]]"), TENSION, "are not those of 3 holes"),
+        (row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[1, 1]]"), TENSION, "do not match the number of holes, 3"),
         (row("holes = 2\npitch_mm = 20\ncrack_lengths_mm = [[0, 0], [0, 0]]"), TENSION, "has no crack"),
         (row("holes = 2\npitch_mm = 20\ncrack_lengths_mm = [0, 2]"), TENSION, "is not a list of pairs, such as [[1, 2]"),
         (
@@ -201,22 +201,22 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (
             row("holes = 3\npitch_mm = 20\ncrack_lengths_mm = [[0, 10], [10, 0], [0, 0]]"),
             TENSION,
-            "specimen.crack_lengths_mm = [[0, 10], [10, 0], [0, 0]]: has no end inside the material",
+            "specimen.crack_lengths_mm = [[0, 10], [10, 0], [0, 0]]: has no tip inside the material",
         ),
         (
             hole("hole_diameter_mm = 6\ncrack_length_mm = 46.99"),
             TENSION,
-            "specimen.crack_length_mm = 46.99: has no end inside the material that could grow: one within a hundredth",
+            "specimen.crack_length_mm = 46.99: has no tip inside the material (a tip within 1 %",
         ),
         (
             "kind = \"crack_at_hole\"\nwidth_mm = 100\nlength_mm = 30\nthickness_mm = 2\nhole_diameter_mm = 40\ncrack_length_mm = 3".to_owned(),
             TENSION,
-            "specimen.hole_diameter_mm = 40: reaches beyond the outline",
+            "specimen.hole_diameter_mm = 40: extends past the outline",
         ),
         (
             hole("hole_diameter_mm = 10\ncrack_lengths_mm = [3, 4]\nbeta_file = \"beta.csv\""),
             TENSION,
-            "specimen.beta_file = \"beta.csv\": is one table, and cracks of unlike length have each their own K",
+            "specimen.beta_file = \"beta.csv\": one table cannot serve cracks of different length",
         ),
         (
             format!("kind = \"edge_notch\"\n{SIZES}notch_depth_mm = 8\nnotch_radius_mm = 3"),
@@ -226,24 +226,24 @@ fn what_does_not_fit_is_said_by_its_keys() {
         (
             hole("hole_diameter_mm = 10\ncrack_length_mm = 3"),
             "force_max_n = 5000\nedge_bending_ratio = \"pure\"",
-            "loading.force_max_n = 5000: is none in pure bending",
+            "loading.force_max_n = 5000: is zero in pure bending",
         ),
-        (bent("span_mm = 1.5"), FORCE, "specimen.span_mm = 1.5: is not above two contacts, 2 mm"),
-        (bent("inner_span_mm = 90"), FORCE, "specimen.inner_span_mm = 90: is not below the span less two contacts, 78 mm"),
+        (bent("span_mm = 1.5"), FORCE, "specimen.span_mm = 1.5: must be above two contacts, 2 mm"),
+        (bent("inner_span_mm = 90"), FORCE, "specimen.inner_span_mm = 90: must be below the span less two contacts, 78 mm"),
         (bent("length_mm = 70"), FORCE, "specimen.length_mm = 70: has no room for the span of 80 mm"),
-        (bent("length_mm = 70\nspan_mm = 72"), FORCE, "specimen.span_mm = 72: is not below the length less a contact, 69 mm"),
+        (bent("length_mm = 70\nspan_mm = 72"), FORCE, "specimen.span_mm = 72: must be below the length less a contact, 69 mm"),
         (lug("head = \"round\"\nedge_distance_mm = 30\ncrack_length_mm = 3"), FORCE, "specimen.edge_distance_mm = 30"),
-        (lug("head = \"square\"\ncrack_length_mm = 3"), FORCE, "use one of straight, round"),
+        (lug("head = \"square\"\ncrack_length_mm = 3"), FORCE, "use one of: straight, round"),
         (
             lug("head = \"round\"\ncrack_length_mm = 3"),
             "force_max_n = 1000\nedge_bending_ratio = 1",
-            "loading.edge_bending_ratio = 1: is of loaded edges, and the load is that of the forces of lug",
+            "loading.edge_bending_ratio = 1: applies only to loaded edges, and the load is that of the forces of lug",
         ),
         (lug("head = \"round\"\ncrack_length_mm = 3"), TENSION, "is a stress"),
         (
             lug("head = \"round\"\ncrack_length_mm = 3"),
             "force_max_n = 1\nstress_parallel_ratio = 1",
-            "does not go with the forces of lug",
+            "cannot be combined with the forces of lug",
         ),
         (
             format!("kind = \"edge_notch\"\n{SIZES}notch_depth_mm = 2\nnotch_radius_mm = 3"),
@@ -291,7 +291,7 @@ fn a_crack_begins_at_the_root_however_short() {
     // An end that all but reaches the edge is said by the key of the kind.
     let through = format!("kind = \"crack_at_hole\"\n{SIZES}hole_diameter_mm = 10\ncrack_lengths_mm = [10, 44.99]");
     let warnings = read_case(&through, TENSION, "").unwrap().warnings;
-    let words = "specimen.crack_lengths_mm: a crack ends 0.01 mm from a rim";
+    let words = "specimen.crack_lengths_mm: a crack ends 0.01 mm from an edge";
     assert!(warnings.iter().any(|warning| warning.contains(words)), "{warnings:?}");
     let at_hole = format!(
         "kind = \"plate\"\n{SIZES}holes = [{{ x_mm = 0, y_mm = 0, diameter_mm = 10 }}]\ncracks = [{{ from_mm = [0, 0], to_mm = [5.04, 0] }}]"

@@ -4,7 +4,7 @@ use perilife_base::error::Error;
 use perilife_base::quadrature::integrate;
 use perilife_base::units::{MM, MPA, MPA_SQRT_M};
 use perilife_calibration::population::forecast::{Basis, CELLS, Lot, tolerance_factor};
-use perilife_calibration::population::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, cells};
+use perilife_calibration::population::intervals::{INTERVALS_MAX, Interval, IntervalReading, Specimen, cells};
 use perilife_calibration::population::lots::{BETWEEN_LOTS, DEVIATION, FREEDOM, MEDIAN};
 use perilife_calibration::population::student::{normal_cdf, t_quantile};
 use perilife_calibration::population::{Population, fit};
@@ -23,9 +23,9 @@ fn cycles(from: f64, to: f64, delta_k: &dyn Fn(f64) -> f64, rate: &dyn Fn(f64) -
 }
 
 /// Readings at lengths (mm) of a crack that follows a law.
-fn exact(lengths: &[f64], delta_k: &dyn Fn(f64) -> f64, rate: &dyn Fn(f64) -> f64) -> Vec<Reading> {
+fn exact(lengths: &[f64], delta_k: &dyn Fn(f64) -> f64, rate: &dyn Fn(f64) -> f64) -> Vec<IntervalReading> {
     let since = |length: f64| cycles(lengths[0] * MM, length * MM, delta_k, rate);
-    lengths.iter().map(|&a| Reading { length: a * MM, cycles: since(a), counts: true }).collect()
+    lengths.iter().map(|&a| IntervalReading { length: a * MM, cycles: since(a), counts: true }).collect()
 }
 
 /// Equally spaced lengths, mm.
@@ -47,7 +47,7 @@ fn sparse_lot(m: f64) -> Vec<Specimen> {
         let mut readings = exact(lengths, &delta_k, &|k| 1e-11 * factor * k.powf(m));
         // One reading stands twice in the table, and the cycles of another do too.
         readings.insert(1, readings[1]);
-        readings.push(Reading { length: lengths[lengths.len() - 1] * MM + 0.1 * MM, ..readings[readings.len() - 1] });
+        readings.push(IntervalReading { length: lengths[lengths.len() - 1] * MM + 0.1 * MM, ..readings[readings.len() - 1] });
         Specimen::new(&format!("S{i}"), &readings, &delta_k, INTERVALS_MAX).unwrap()
     };
     lot.into_iter().enumerate().map(one).collect()
@@ -103,7 +103,7 @@ fn the_range_is_that_of_every_specimen_under_its_own_load() {
 
 #[test]
 fn readings_that_tell_no_rate_are_joined() {
-    let at = |length: f64, cycles: f64| Reading { length: length * MM, cycles, counts: true };
+    let at = |length: f64, cycles: f64| IntervalReading { length: length * MM, cycles, counts: true };
     let readings =
         [at(10.0, 0.0), at(10.0, 500.0), at(10.5, 900.0), at(10.5, 1000.0), at(11.0, 1000.0), at(10.8, 1400.0), at(11.6, 2000.0)];
     let delta_k = panel(0.1, 50.0);
@@ -146,8 +146,10 @@ fn a_load_that_changes_at_a_reading_is_that_of_its_growth() {
     let rate = |k: f64| 1e-11 * k.powf(3.3);
     let since =
         |a: f64| cycles(10.0 * MM, a.min(20.0 * MM), &delta_k, &rate) + cycles(20.0 * MM, a.max(20.0 * MM), &delta_k, &rate);
-    let readings: Vec<Reading> =
-        [10.0, 13.0, 20.0, 27.0, 33.0].iter().map(|a| Reading { length: a * MM, cycles: since(a * MM), counts: true }).collect();
+    let readings: Vec<IntervalReading> = [10.0, 13.0, 20.0, 27.0, 33.0]
+        .iter()
+        .map(|a| IntervalReading { length: a * MM, cycles: since(a * MM), counts: true })
+        .collect();
     let lot = fit(&[Specimen::new("a", &readings, &delta_k, INTERVALS_MAX).unwrap()], None).unwrap();
     assert!((lot.law.slope - 3.3).abs() < 1e-3, "{}", lot.law.slope);
 }
@@ -200,7 +202,7 @@ fn noisy_lot(count: usize, spread: f64, scatter: f64, seed: u64) -> Vec<Specimen
         let (mut process, mut sum, mut readings) = (scatter * normal.next(), 0.0, vec![]);
         for step in 0..=steps {
             let a = from + growth * step as f64;
-            readings.push(Reading { length: a + 0.05 * MM * normal.next(), cycles: sum, counts: true });
+            readings.push(IntervalReading { length: a + 0.05 * MM * normal.next(), cycles: sum, counts: true });
             // Twenty pieces between two readings.
             for piece in 0..20 {
                 let middle = a + growth * (f64::from(piece) + 0.5) / 20.0;
@@ -292,7 +294,7 @@ fn outside_the_range_a_life_is_wider_and_then_refused() {
     assert!(lower.life().deviation > 1.2 * inside.life().deviation);
     assert!(matches!(lower.basis(Basis::B), Err(Error::Input(_))));
     let refusal = under(0.4).unwrap_err().to_string();
-    assert!(refusal.contains("more than a factor 2 outside the calibrated"), "{refusal}");
+    assert!(refusal.contains("more than a factor 2 outside the tested"), "{refusal}");
     let life = inside.life();
     let [a, b] = [Basis::A, Basis::B].map(|basis| inside.basis(basis).unwrap());
     assert!(a < b && b < life.quantile(0.1) && a < life.quantile(0.01));
@@ -300,22 +302,23 @@ fn outside_the_range_a_life_is_wider_and_then_refused() {
     assert!(lot.forecast(&path(9.0), Some(own), Lot::Same).unwrap().basis(Basis::B).is_err());
     let two = fit(&noisy_lot(2, 0.08, 0.2, 9), None).unwrap();
     let refusal = two.forecast(&path(9.0), None, Lot::Same).unwrap().basis(Basis::B).unwrap_err().to_string();
-    assert!(refusal.contains("too few for a basis value"), "{refusal}");
+    assert!(refusal.contains("too few specimens for a basis value"), "{refusal}");
 }
 
 #[test]
 fn an_exponent_that_readings_do_not_tell_is_asked_for() {
     let delta_k = |_: f64| 12.0 * MPA_SQRT_M;
-    let readings: Vec<Reading> =
-        (0..20).map(|i| Reading { length: (10.0 + f64::from(i)) * MM, cycles: 1e4 * f64::from(i), counts: true }).collect();
+    let readings: Vec<IntervalReading> = (0..20)
+        .map(|i| IntervalReading { length: (10.0 + f64::from(i)) * MM, cycles: 1e4 * f64::from(i), counts: true })
+        .collect();
     let specimen = [Specimen::new("a", &readings, &delta_k, INTERVALS_MAX).unwrap()];
     let refusal = fit(&specimen, None).unwrap_err();
-    assert!(matches!(&refusal, Error::Mechanics(text) if text.contains("do not tell the exponent")), "{refusal}");
+    assert!(matches!(&refusal, Error::Mechanics(text) if text.contains("the exponent cannot be determined")), "{refusal}");
     let held = fit(&specimen, Some(2.9)).unwrap();
     assert!((held.law.slope - 2.9).abs() < 1e-9, "{}", held.law.slope);
     assert!((held.law.log_rate(12.0 * MPA_SQRT_M) - 1e-7_f64.ln()).abs() < 1e-4);
     assert!(fit(&[], None).is_err());
-    let still = [Reading { length: 0.01, cycles: 0.0, counts: true }; 3];
+    let still = [IntervalReading { length: 0.01, cycles: 0.0, counts: true }; 3];
     assert!(matches!(Specimen::new("b", &still, &delta_k, INTERVALS_MAX), Err(Error::Input(_))));
 }
 

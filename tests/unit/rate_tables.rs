@@ -143,10 +143,10 @@ fn what_a_table_of_rates_does_not_say_is_asked_for() {
         let error = table(text, keys).unwrap_err().to_string();
         assert!(error.contains(words), "{words} in {error}");
     };
-    with("dK,da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "does not say its unit");
-    with("dK (Pa),da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "has a unit that is not known");
+    with("dK,da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "has no unit");
+    with("dK (Pa),da/dN (mm/cycle),R\n6,1e-5,0.1\n", &plain, "has an unknown unit");
     with("dK (MPa√m),da/dN (mm/cycle),R\n-0.7,1e-5,0.1\n", &plain, "log10");
-    with("dK (MPa√m),da/dN (mm/cycle),R\n6,1e-5,1.1\n", &plain, "no stress ratio below 1");
+    with("dK (MPa√m),da/dN (mm/cycle),R\n6,1e-5,1.1\n", &plain, "not a stress ratio below 1");
     let given = RateFileKeys { stress_ratio: Some(0.1), ..RateFileKeys::default() };
     with("dK (MPa√m),da/dN (mm/cycle),R\n6,1e-5,0.1\n", &given, "is a column, and stress_ratio = 0.1");
     let negative = "dK (MPa√m),da/dN (mm/cycle),R\n12,1e-5,-0.5\n";
@@ -187,9 +187,9 @@ fn ends_of_k_ratios_side_by_side_and_unmeasured_rates() {
         assert!((row.ratio - ratio).abs() < 1e-9 && (row.delta_k / MPA_SQRT_M - delta_k).abs() < 1e-9, "{row:?}");
     }
     let wrong = table("ΔK (MPa√m),Kmax (MPa√m),R,da/dN (mm/cycle)\n7,10,0.1,1e-5\n", &plain).unwrap_err().to_string();
-    assert!(wrong.contains("belongs to a stress ratio of 0.300, and the row says 0.1"), "{wrong}");
+    assert!(wrong.contains("gives a stress ratio of 0.300; the row has 0.1"), "{wrong}");
     let lacks = table("Kmax (MPa√m),da/dN (mm/cycle)\n10,1e-5\n", &plain).unwrap_err().to_string();
-    assert!(lacks.contains("lacks the columns"), "{lacks}");
+    assert!(lacks.contains("has no columns"), "{lacks}");
     for (text, first, said) in [
         ("da/dN (mm/cycle),R=0.1,R=0.5\n1e-6,5,4\n1e-5,9,\n", [0.1, 5.0], true),
         ("da/dN (mm/cycle),ΔK at R 0.1 (MPa√m)\n1e-6,5\n1e-5,9\n", [0.1, 5.0], false),
@@ -202,7 +202,7 @@ fn ends_of_k_ratios_side_by_side_and_unmeasured_rates() {
         assert!((row.rate / 1e-6 / MM_PER_CYCLE - 1.0).abs() < 1e-6 && row.ratio == first[0], "{text}: {row:?}");
         assert!((row.delta_k / first[1] / MPA_SQRT_M - 1.0).abs() < 1e-5, "{text}: {row:?}");
         assert_eq!(
-            found.warnings.iter().any(|line| line.contains("the unit that goes with the rates")),
+            found.warnings.iter().any(|line| line.contains("the unit that matches the rates")),
             said,
             "{:?}",
             found.warnings

@@ -65,15 +65,9 @@ fn specimens_of_a_wide_table_have_their_cycles_in_the_unit_of_their_names() {
         all_are_the_curve(header, &read(&text, &Import::default()).unwrap(), 2);
     }
     for (header, words) in [
-        (
-            "a (mm);S1 (mm);S2",
-            "header = S1 (mm): has a unit that is not known; name one of cycles, kilocycles, megacycles in the header",
-        ),
-        (
-            "a (mm);S1 (kcycles);S2\nmm;cycles;-",
-            "lab.csv:2: S1 (kcycles) = cycles: is another unit than that of the name above it",
-        ),
-        ("a (mm);S1;S2\nin;cycles;cycles", "lab.csv:2: a (mm) = in: is another unit than that of the name above it, mm"),
+        ("a (mm);S1 (mm);S2", "header = S1 (mm): has an unknown unit; name one of cycles, kilocycles, megacycles"),
+        ("a (mm);S1 (kcycles);S2\nmm;cycles;-", "lab.csv:2: S1 (kcycles) = cycles: conflicts with the unit of the name"),
+        ("a (mm);S1;S2\nin;cycles;cycles", "lab.csv:2: a (mm) = in: conflicts with the unit of the name above it, mm"),
     ] {
         let error = read(&table(header, |n, a| format!("{a};{n};{n}")), &Import::default()).unwrap_err().to_string();
         assert!(error.contains(words), "{header}: {error}");
@@ -137,7 +131,7 @@ fn ranges_of_load_are_read_and_loads_that_are_not_are_told() {
         ("COD (mm)", false),
     ] {
         let measured = read(&table(&format!("N;a (mm);{name}"), |n, a| format!("{n};{a};{a}")), &Import::default()).unwrap();
-        let told = measured.warnings.iter().any(|line| line.contains("not read") && line.contains(name));
+        let told = measured.warnings.iter().any(|line| line.contains("ignored") && line.contains(name));
         assert_eq!(told, is_told, "{name}: {:?}", measured.warnings);
         assert!(measured.curves[0].loads.is_none(), "{name}");
     }
@@ -175,7 +169,7 @@ fn rows_marked_out_are_left_out_with_a_note() {
             };
             (1..9).fold(format!("{header};{name}\n"), |text, i| text + &row(i, i as f64) + ";" + mark(i) + "\n")
         };
-        let note = format!("1 of 8 rows are left out, marked by the column {name} (line 5); take the column out");
+        let note = format!("1 of 8 rows excluded: flagged by the column {name} (line 5); remove the column");
         let lengths = rows("N;a (mm)", &|i, x| format!("{};{}", 1000 * i, if i == 4 { 30.0 } else { 5.0 + x }));
         let measured = read(&lengths, &Import::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(measured.curves[0].cycles, [1e3, 2e3, 3e3, 5e3, 6e3, 7e3, 8e3], "{name}");
@@ -190,10 +184,10 @@ fn rows_marked_out_are_left_out_with_a_note() {
     let marked = |mark: &dyn Fn(f64) -> &'static str| table("N;a (mm);valid", |n, a| format!("{n};{a};{}", mark(a)));
     let measured = read(&marked(&|a| if a > 9.0 { "perhaps" } else { "yes" }), &Import::default()).unwrap();
     all_are_the_curve("perhaps", &measured, 1);
-    let words = "lab.csv:6: valid = \"perhaps\" does not say whether the row counts, nor do 1 more cells";
+    let words = "lab.csv:6: valid = \"perhaps\" is neither yes nor no (1 more cells)";
     assert!(measured.warnings.iter().any(|line| line.contains(words)), "{:?}", measured.warnings);
     let error = read(&marked(&|_| "no"), &Import::default()).unwrap_err().to_string();
-    assert!(error.contains("has no row that counts: each is marked by the column valid"), "{error}");
+    assert!(error.contains("has no usable row: each is flagged by the column valid"), "{error}");
     // A column that says nothing says nothing.
     assert!(read(&marked(&|_| ""), &Import::default()).unwrap().warnings.is_empty());
 }
@@ -208,16 +202,13 @@ fn what_a_workbook_hides_is_left_out_or_told() {
         let book = workbook_hiding(&[(name, rows.clone())], &[5], columns);
         let measured = parse(&book, Path::new("lab.xlsx"), &Import::default()).unwrap();
         all_are_the_curve(name, &measured, 1);
-        for words in [
-            "1 of 7 rows are left out, hidden in the workbook (line 5)",
-            "hidden columns are read like the others: a (mm), Time (s)",
-        ] {
+        for words in ["1 of 7 rows excluded: hidden in the workbook (line 5)", "hidden columns are used: a (mm), Time (s)"] {
             assert!(measured.warnings.iter().any(|line| line.contains(words)), "{name}: {:?}", measured.warnings);
         }
     }
     let book = workbook_hiding(&[("data", rows)], &[2, 3, 4, 5, 6, 7, 8], "");
     let error = parse(&book, Path::new("lab.xlsx"), &Import::default()).unwrap_err().to_string();
-    assert!(error.contains("has no row that counts: each is hidden in the workbook; unhide them"), "{error}");
+    assert!(error.contains("has no usable row: each is hidden in the workbook; unhide them"), "{error}");
 }
 
 #[test]
@@ -235,18 +226,18 @@ fn a_first_reading_is_at_the_start_within_its_rounding() {
     assert!(started(0.04, 1.0).is_ok());
     for (short, step, first) in [(0.06, 1.0, "4.94"), (0.04, 0.01, "4.96")] {
         let error = started(short, step).unwrap_err().to_string();
-        assert!(error.contains(&format!("5: is longer than the first reading of specimen lab, {first} mm")), "{error}");
+        assert!(error.contains(&format!("5: exceeds the first reading of specimen lab, {first} mm")), "{error}");
     }
 }
 
 #[test]
 fn a_name_of_several_words_does_not_move_the_cut_from_commas_to_blanks() {
-    let words = ["lab.csv:1: header = total crack length (mm): is not a known column", "columns separated by commas"];
+    let words = ["lab.csv:1: header = total crack length (mm): unknown column", "columns separated by commas"];
     let error = read(&table("N,total crack length (mm)", |n, a| format!("{n},{a}")), &Import::default()).unwrap_err().to_string();
     assert!(words.iter().all(|words| error.contains(words)), "{error}");
     let text = "ln ΔK (MPa√m),ln da/dN (mm/cycle)\n2.079,-10.1\n2.197,-9.75\n";
     let error = rates::read(text.as_bytes(), Path::new("r.csv"), &RateFileKeys::default()).unwrap_err().to_string();
-    assert!(error.contains("lacks the columns delta_k_mpa_sqrt_m") && !error.contains("blanks"), "{error}");
+    assert!(error.contains("has no columns delta_k_mpa_sqrt_m") && !error.contains("blanks"), "{error}");
 }
 
 #[test]
@@ -291,7 +282,7 @@ fn what_a_table_says_against_its_columns_is_told() {
     ] {
         let text = rows(&format!("{preamble}\nN,a (mm)"), &plain);
         let error = read(&text, &Import::default()).unwrap_err().to_string();
-        assert!(error.contains("lab.csv:1: ") && error.contains("may say the unit of the cycles"), "{preamble}: {error}");
+        assert!(error.contains("lab.csv:1: ") && error.contains("may give the unit of cycles"), "{preamble}: {error}");
         let said = Import { cycles: Some(CycleUnit::Cycles), ..Import::default() };
         all_are_the_curve(preamble, &read(&text, &said).unwrap(), 1);
     }
@@ -318,7 +309,7 @@ fn what_a_table_says_against_its_columns_is_told() {
     assert!(error.contains("measured.columns = { length = \"a ACPD (mm)\" }"), "{error}");
     for remark in ["rejected", "ungültig", "void: grips slipped", "fail"] {
         let told = warnings("N,a (mm),Comment", &|i, _| format!(",{}", if i == 2 { remark } else { "ok" }));
-        assert!(told.contains("lab.csv:4: Comment") && told.contains("it is the only one"), "{remark}: {told}");
+        assert!(told.contains("lab.csv:4: Comment") && told.contains("1 row"), "{remark}: {told}");
     }
     assert!(warnings("N,a (mm),Comment", &|_, _| ",checked".to_owned()).is_empty());
     // Statistics beside specimens are none.
@@ -326,7 +317,7 @@ fn what_a_table_says_against_its_columns_is_told() {
         let text = table(&format!("a (mm);S1;S2;{name}"), |n, a| format!("{a};{n};{n};{n}"));
         let measured = read(&text, &Import::default()).unwrap();
         all_are_the_curve(name, &measured, 2);
-        assert!(measured.warnings.iter().any(|line| line.contains(&format!("of a model: {name}"))), "{:?}", measured.warnings);
+        assert!(measured.warnings.iter().any(|line| line.contains(&format!("or a model): {name}"))), "{:?}", measured.warnings);
     }
     for name in ["Type A", "Design A", "-40 C", "Plate model 3"] {
         let text = table(&format!("a (mm);S1;S2;{name}"), |n, a| format!("{a};{n};{n};{n}"));

@@ -78,7 +78,7 @@ fn a_required_load_that_says_nothing_is_refused() {
     let wrong: [(&str, &[&str], &str); 5] = [
         (PANEL, &[toughness, "stop.required_strength_mpa=50"], "below the maximum load of the cycle"),
         (PANEL, &[toughness, "stop.limit_load_factor=0.9"], "below the maximum load of the cycle"),
-        (PANEL, &["stop.limit_load_factor=2"], "has neither toughness nor yield strength"),
+        (PANEL, &["stop.limit_load_factor=2"], "requires material.toughness or material.yield_strength"),
         (
             PANEL,
             &[toughness, "stop.limit_load_factor=2", "stop.required_strength_mpa=150"],

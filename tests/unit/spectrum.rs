@@ -185,25 +185,25 @@ fn compression_and_a_threshold_count_as_the_law_says() {
 #[test]
 fn what_may_be_either_is_asked_about() {
     let rows: [(&str, &str, &[&str]); 19] = [
-        ("100,50.0,1\n80,45.0,10\n", "", &["a.csv:1:", "3 columns without a name", "spectrum_format = \"cycles\""]),
-        ("30,0.5\n40,1.5\n", "", &["a.csv:1:", "2 columns without a name"]),
+        ("100,50.0,1\n80,45.0,10\n", "", &["a.csv:1:", "3 columns without a known name", "spectrum_format = \"cycles\""]),
+        ("30,0.5\n40,1.5\n", "", &["a.csv:1:", "2 columns without a known name"]),
         ("12,5\n110,25\n40,5\n", "", &["a.csv:1:", "12,5", "decimal commas", "turning_points"]),
         ("7\n1\n2\n1\n2\n1\n3\n", "", &["a.csv:1:", "may be the number of values, and 6 follow"]),
         ("4\n1\n3\n1\n2\n", "", &["a.csv:1:", "may be the number of values, and 4 follow"]),
-        ("max,min,cumulative cycles\n2,1,5\n", "", &["a.csv:1:", "cumulative cycles", "not a known column"]),
-        ("max,min,cycles,repeats\n2,1,5,2\n", "", &["a.csv:1:", "repeats", "same as an earlier column"]),
-        ("range,count\n2.5,1\n", "", &["a.csv:1:", "range,count", "lacks a column"]),
+        ("max,min,cumulative cycles\n2,1,5\n", "", &["a.csv:1:", "cumulative cycles", "unknown column"]),
+        ("max,min,cycles,repeats\n2,1,5,2\n", "", &["a.csv:1:", "repeats", "duplicates an earlier column"]),
+        ("range,count\n2.5,1\n", "", &["a.csv:1:", "range,count", "has no column"]),
         ("range,count\n2,1\n", "", &["a.csv:2:", "2,1", "decimal commas"]),
         ("max (N),min (N)\n2,1\n", "", &["a.csv:1:", "is in N", "spectrum_scale_n"]),
-        ("max (psi),min (psi)\n2,1\n", "", &["a.csv:1:", "unit that is not known"]),
-        ("max,min,flaps\n2,1,5\n", "", &["a.csv:1:", "flaps", "not a known column"]),
+        ("max (psi),min (psi)\n2,1\n", "", &["a.csv:1:", "unknown unit"]),
+        ("max,min,flaps\n2,1,5\n", "", &["a.csv:1:", "flaps", "unknown column"]),
         ("max,min\n2,1\n", "spectrum_format = \"turning_points\"\n", &["a.csv:1:", "another format"]),
-        ("Cycle,max,min\n1,100,0\n2,60,10\n3,55,20\n", "", &["a.csv:1:", "Cycle", "numbers the rows", "name it row"]),
-        ("N,max,min\n0,100,0\n500,60,10\n1000,55,20\n", "", &["a.csv:1:", "numbers the rows"]),
-        ("max (%),min (%)\n100,0\n80,5\n", "", &["a.csv:1:", "max (%)", "unit that is not known"]),
+        ("Cycle,max,min\n1,100,0\n2,60,10\n3,55,20\n", "", &["a.csv:1:", "Cycle", "row numbers", "rename it row"]),
+        ("N,max,min\n0,100,0\n500,60,10\n1000,55,20\n", "", &["a.csv:1:", "row numbers"]),
+        ("max (%),min (%)\n100,0\n80,5\n", "", &["a.csv:1:", "max (%)", "unknown unit"]),
         ("12 55 30\n-10\n60\n20\n75\n40\n", "", &["a.csv:1:", "12 55 30", "one load a line"]),
         ("9\n1\n3\n1\n2\n1\n3\n", "", &["a.csv:1:", "may be the number of values, and 6 follow"]),
-        ("max,min,cycles\n100,50,1\n", "truncation_percent = 20\n", &["truncation_percent", "leaves no cycle"]),
+        ("max,min,cycles\n100,50,1\n", "truncation_percent = 20\n", &["truncation_percent", "omits every tensile cycle"]),
     ];
     for (content, more, words) in rows {
         let error = loading("a.csv", content, more).unwrap_err().to_string();
@@ -223,7 +223,7 @@ fn what_may_be_either_is_asked_about() {
     let converted = loading("a.csv", "smax [ksi],smin [ksi]\n10,1\n", "").unwrap();
     assert!((converted.maximum / (2.0 * 10.0 * 6.894_757e6) - 1.0).abs() < 1e-6, "{}", converted.maximum);
     let passed_over = loading("a.csv", "max,min,cycles\n2,1,5\n2,2,7\n3,1,0\n", "").unwrap().spectrum.unwrap();
-    assert!(passed_over.cycles.len() == 1 && passed_over.notes[0].contains("2 rows are not counted"), "{:?}", passed_over.notes);
+    assert!(passed_over.cycles.len() == 1 && passed_over.notes[0].contains("2 rows are omitted"), "{:?}", passed_over.notes);
 }
 
 /// Shares of the growth by class of cycle: a law of one cycle asked of every class.

@@ -5,14 +5,14 @@ use std::cell::RefCell;
 use perilife_base::error::Error;
 use perilife_study::chart::choice::choices;
 use perilife_study::chart::run::Model;
-use perilife_study::chart::schedule::{Effort, Record, Request, measure};
-use perilife_study::chart::{Chart, Family, Run, SCENES, Status, scenes};
+use perilife_study::chart::schedule::{BenchmarkRecord, Effort, Request, measure};
+use perilife_study::chart::{BenchmarkRun, Chart, Family, SCENES, Status, scenes};
 use perilife_study::closed::concentration_of;
 use perilife_study::speed::{COLUMNS, Origin, beaten, csv, fastest_within, markdown, never_on_front, svg};
 use perilife_study::tasks::Outcome;
 
 /// A run that took and found so much.
-fn run(wall_s: f64, error_percent: f64) -> Run {
+fn run(wall_s: f64, error_percent: f64) -> BenchmarkRun {
     let model = Model {
         driver: "tip_field".to_owned(),
         bond_law: "two_parameter".to_owned(),
@@ -22,11 +22,11 @@ fn run(wall_s: f64, error_percent: f64) -> Run {
         horizon_ratio: Some(3.015),
         step: Some(0.5),
     };
-    Run { wall_s, memory_mb: 50.0, error_percent, path_rms_mm: None, points: 1000, solves: 20, model }
+    BenchmarkRun { wall_s, memory_mb: 50.0, error_percent, path_rms_mm: None, points: 1000, solves: 20, model }
 }
 
 /// A process that answers by the keys it is given: the time of a choice, and its error.
-fn answer(request: &Request) -> Outcome<Run> {
+fn answer(request: &Request) -> Outcome<BenchmarkRun> {
     let has = |word: &str| request.set.iter().any(|key| key.contains(word));
     match () {
         () if has("kernel=constant") => Outcome::Failed("no \"factor\", <none>".to_owned()),
@@ -43,7 +43,7 @@ fn answer(request: &Request) -> Outcome<Run> {
 }
 
 /// A chart of these scenes by [`answer`], and the requests in the order in which they were made.
-fn measured(names: &[&str], effort: Effort, known: Vec<Record>) -> (Chart, Vec<Request>, Vec<Record>) {
+fn measured(names: &[&str], effort: Effort, known: Vec<BenchmarkRecord>) -> (Chart, Vec<Request>, Vec<BenchmarkRecord>) {
     let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
     let asked = RefCell::new(Vec::new());
     let isolated = |request: &Request, _: f64| {
@@ -51,7 +51,7 @@ fn measured(names: &[&str], effort: Effort, known: Vec<Record>) -> (Chart, Vec<R
         Ok(answer(request))
     };
     let mut kept = Vec::new();
-    let mut keep = |record: &Record| {
+    let mut keep = |record: &BenchmarkRecord| {
         kept.push(record.clone());
         Ok::<(), Error>(())
     };

@@ -58,13 +58,13 @@ fn axes_multiply_and_columns_go_together() {
 fn what_a_question_must_not_hold_is_named() {
     for (question, words) in [
         ("read = \"1\"\nreed = \"2\"", "reed"),
-        ("read = \"1 +\"", "lacks a number"),
+        ("read = \"1 +\"", "expected a number"),
         ("read = \"nothing\"\ncase = \"<none>\"", "none: is neither a value nor a reading"),
         ("read = \"life\"\nby = \"guess\"", "guess"),
         ("read = \"along\"\nby = \"plate_in_tension\"\nkeys = \"law=bond_based\"", "no kernel"),
         ("read = \"off\"\nby = \"patch\"\nkeys = \"law=guess\"", "guess"),
         ("read = \"1\"\nover = [{ a = [1, 2], b = [1] }]", "different lengths"),
-        ("read = \"beside_life\"\nplate = \"three_cracks\"", "no case beside it"),
+        ("read = \"beside_life\"\nplate = \"three_cracks\"", "no reference case"),
         ("read = \"life\"\nplate = \"no_cracks\"", "no_cracks"),
         ("read = \"lives\"\nplate = \"slant_severance\"", "lives"),
         ("read = \"k_i(0)\"\nplate = \"slant_severance\"\nkeys = \"study.nothing=1\"", "study.nothing"),

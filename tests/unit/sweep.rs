@@ -259,9 +259,9 @@ fn too_few_specimens_and_strangers_are_refused() {
     };
     let refused = |fits: SpecimenFits| LawScatter::of_specimens(record(), &fits).unwrap_err().to_string();
     assert!(refused(fits(record().p, 4)).contains("4 specimens: are too few"));
-    assert!(refused(fits(3.1, 9)).contains("is not the exponent of the record beside it"));
+    assert!(refused(fits(3.1, 9)).contains("differs from the exponent in fit.json"));
     let exact = FittedRecord { rate_at_pivot_relative_error: 0.0, p_error: 0.0, ..record() };
-    assert!(LawScatter::of_constants(exact).unwrap_err().to_string().contains("no errors to draw from"));
+    assert!(LawScatter::of_constants(exact).unwrap_err().to_string().contains("no errors to sample"));
 }
 
 /// Cycles from 23 to 31 mm, where ΔK passes the pivot, by this law and method.

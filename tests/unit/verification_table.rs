@@ -1,7 +1,7 @@
 //! Verification rows as tables, and what is wrong with them.
 
 use perilife_study::verification::{csv, line, markdown, object, summary};
-use perilife_study::{Row, Table, Topic, faults};
+use perilife_study::{Table, Topic, VerificationRow, faults};
 
 /// Three topics: one with a miss beside a good row, one close to its bound, one whose only row misses.
 fn topics() -> [Topic; 3] {
@@ -14,7 +14,7 @@ fn topics() -> [Topic; 3] {
     })
 }
 
-fn rows() -> Vec<Row> {
+fn rows() -> Vec<VerificationRow> {
     let mut far = Table::new("far");
     far.compare("a life", 1.01, 1.0, 5.0, "by hand");
     far.compare("another life", 1.2, 1.0, 5.0, "by hand");

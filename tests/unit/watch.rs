@@ -74,7 +74,7 @@ fn a_run_that_is_asked_to_end_ends_before_its_first_row() {
         let eyes = Eyes::default();
         eyes.watch.cancel();
         let error = predict(&case, &eyes).unwrap_err().to_string();
-        assert_eq!(error, "case: the run was cancelled", "{law}");
+        assert_eq!(error, "case: the run was canceled", "{law}");
         assert_eq!(eyes.watch.now(), None, "it has not begun");
     }
     let scene = Scene::from_toml(SCENE, "scene", Folder::none(), &[]).unwrap();
@@ -82,7 +82,7 @@ fn a_run_that_is_asked_to_end_ends_before_its_first_row() {
     perilife_scenes::run(&scene, &eyes).unwrap();
     assert!(eyes.watch.now().is_some());
     eyes.watch.cancel();
-    assert_eq!(perilife_scenes::run(&scene, &eyes).unwrap_err().to_string(), "scene: the run was cancelled");
+    assert_eq!(perilife_scenes::run(&scene, &eyes).unwrap_err().to_string(), "scene: the run was canceled");
 }
 
 /// An equilibrium that was asked to end is none, whatever solver it is sought by: what an iteration has not solved for that is not factorised.
@@ -99,7 +99,7 @@ fn an_equilibrium_that_is_asked_to_end_is_none() {
         let cancelled = Arc::new(Watch::default());
         cancelled.cancel();
         let Err(error) = solved(cancelled) else { panic!("{solver:?}: solved all the same") };
-        assert_eq!(error.to_string(), "the run was cancelled", "{solver:?}");
+        assert_eq!(error.to_string(), "the run was canceled", "{solver:?}");
     }
 }
 
@@ -114,7 +114,7 @@ fn a_run_ends_within_a_row() {
             let error = predict(&case, &eyes).unwrap_err().to_string();
             // A row whose K is known already is told still.
             let rows = eyes.rows.into_inner();
-            assert!(error == "case: the run was cancelled" && (3..=4).contains(&rows), "{solver} {law}: {error}, {rows} rows");
+            assert!(error == "case: the run was canceled" && (3..=4).contains(&rows), "{solver} {law}: {error}, {rows} rows");
         }
     }
 }

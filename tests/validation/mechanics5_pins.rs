@@ -57,5 +57,5 @@ fn part_through_cracks_beside_pins_are_refused() {
     let output = perilife(path.parent().unwrap(), &["check", "corner_pin.toml"]);
     let (_, stderr) = texts(&output);
     assert_eq!(output.status.code(), Some(2), "{stderr}");
-    assert!(stderr.contains("loading.pins") && stderr.contains("through crack as long as the larger side"), "{stderr}");
+    assert!(stderr.contains("loading.pins") && stderr.contains("through crack as long as its larger axis"), "{stderr}");
 }

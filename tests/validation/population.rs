@@ -8,7 +8,7 @@ use std::sync::Mutex;
 
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::population::forecast::{CELLS, Lot};
-use perilife_calibration::population::intervals::{Interval, Reading, Specimen, cells};
+use perilife_calibration::population::intervals::{Interval, IntervalReading, Specimen, cells};
 use perilife_calibration::population::student::t_quantile;
 use perilife_calibration::population::{Population, fit};
 use perilife_measured::{Import, MeasuredCurve, read};
@@ -29,10 +29,10 @@ pub fn panels() -> Option<Vec<MeasuredCurve>> {
     Some(read(&[shared("virkler/virkler.csv")?], &Import::default()).unwrap().curves)
 }
 
-fn readings(panel: &MeasuredCurve, to: f64) -> Vec<Reading> {
+fn readings(panel: &MeasuredCurve, to: f64) -> Vec<IntervalReading> {
     let both = panel.crack_length.iter().zip(&panel.cycles);
     let before = both.take_while(|(length, _)| **length <= to + 1e-9);
-    before.map(|(&length, &cycles)| Reading { length, cycles, counts: true }).collect()
+    before.map(|(&length, &cycles)| IntervalReading { length, cycles, counts: true }).collect()
 }
 
 pub fn specimens(panels: &[MeasuredCurve], intervals_max: usize) -> Vec<Specimen> {

@@ -55,8 +55,8 @@ fn spectra_of_other_people_are_read_and_counted_as_they_mean_them() {
 #[test]
 fn what_may_be_two_spectra_is_asked_about() {
     let rows: [(&str, &str, &[&str]); 3] = [
-        ("counted_tables", "no_header", &["no_header.csv:1", "3 columns without a name", "spectrum_format = \"cycles\""]),
-        ("counted_tables", "range_count", &["range_count.csv:1", "2 columns without a name"]),
+        ("counted_tables", "no_header", &["no_header.csv:1", "3 columns without a known name", "spectrum_format = \"cycles\""]),
+        ("counted_tables", "range_count", &["range_count.csv:1", "2 columns without a known name"]),
         ("decimal_comma", "column", &["column.csv:1", "decimal commas", "spectrum_format"]),
     ];
     for (name, case, words) in rows {

@@ -205,7 +205,7 @@ fn a_run_taken_up_hands_its_crack_over_alike() {
 /// The first checkpoint of a run, which goes no farther.
 fn first(case: &Case) -> Vec<u8> {
     let keeping = Keeping { first_only: true, ..Keeping::default() };
-    assert!(predict(case, &keeping).unwrap_err().to_string().contains("was cancelled"));
+    assert!(predict(case, &keeping).unwrap_err().to_string().contains("was canceled"));
     keeping.kept().swap_remove(0).0
 }
 
@@ -225,7 +225,7 @@ fn a_cancelled_run_goes_on() {
         parts += 1;
         match run {
             Ok(run) => break run,
-            Err(error) => assert!(error.to_string().contains("was cancelled"), "{error}"),
+            Err(error) => assert!(error.to_string().contains("was canceled"), "{error}"),
         }
         let newer = keeping.kept().pop().map(|(bytes, _)| bytes);
         assert!(newer.is_some(), "no way on within 40 blocks");
@@ -249,7 +249,7 @@ fn damaged_and_foreign_checkpoints_are_refused() {
     let bytes = first(&own);
     assert_eq!(read(&bytes).to_bytes(), bytes);
     for length in (0..200).chain((200..bytes.len()).step_by(4999)) {
-        let word = if length < 20 { "is no checkpoint" } else { "damaged" };
+        let word = if length < 20 { "is not a checkpoint" } else { "damaged" };
         // A version that is cut short is another one.
         let cut = Checkpoint::from_bytes(&bytes[..length]);
         refused(cut, word);

@@ -8,7 +8,7 @@ use perilife_plate::specimen::Point;
 use perilife_plate::specimen::geometry::segments_touch;
 use perilife_points::body::pre_crack::cutting_line;
 use perilife_scenes::bonds::BondState;
-use perilife_scenes::contact::Contact;
+use perilife_scenes::contact::NetContact;
 use perilife_scenes::levels::equilibrium::FullLoad;
 use perilife_scenes::quasi_static::equilibrium::{Equilibrium, Shape};
 use perilife_scenes::{Fracture, Scene, boundary::Boundary};
@@ -129,7 +129,7 @@ fn contact_is_free_under_turning_and_sliding() {
             let scene = scene(&PRESSED.replace("CRACKS", &long), if discretisation == "lattice" { &[] } else { &set });
             let (net, _) = perilife_scenes::build(&scene).unwrap();
             let bonds = BondState::new(&net, &vec![false; net.len()]);
-            let mut contact = Contact::new(&net, &scene.specimen.cracks);
+            let mut contact = NetContact::new(&net, &scene.specimen.cracks);
             contact.press_all(&bonds);
             let columns = contact.touching();
             assert!(columns.columns > 500 && columns.pressed == columns.columns, "{columns:?}");
@@ -213,7 +213,7 @@ fn overlap_is_told_where_nothing_keeps_flanks_apart() {
         (&["loading.duration_s=1e-4", "loading.ramp_s=1e-4"], "motion in time"),
     ];
     for (way, words) in ways {
-        let told = |run: &Fracture| run.warnings.iter().any(|w| w.contains("passed through each other") && w.contains(words));
+        let told = |run: &Fracture| run.warnings.iter().any(|w| w.contains("crack faces overlap") && w.contains(words));
         let way = &[&[COARSE][..], way].concat();
         let pressed = run(&slit(0.0), way);
         assert!(told(&pressed) && pressed.figures.touching.is_none(), "{way:?}: {:?}", pressed.warnings);

@@ -171,7 +171,7 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
     let of_dxf: [(u8, &[&str], &[&str]); 24] = [
         (4, &[open, HOLE], &["layer outline", "open", "(-50", "(-50.0000, 100.0000) mm"]),
         (4, &[bow], &["crosses or touches itself", "(-50.0000, -100.0000) mm"]),
-        (4, &[RECTANGLE, spline], &["layer outline", "SPLINE at (3, 4)", "no circular arc"]),
+        (4, &[RECTANGLE, spline], &["layer outline", "SPLINE at (3, 4)", "not a circular arc"]),
         (4, &[RECTANGLE, "ELLIPSE holes 10 3 20 4"], &["layer holes", "ELLIPSE at (3, 4)"]),
         (4, &[RECTANGLE, "INSERT outline 10 3 20 4"], &["INSERT at (3, 4)", "explode"]),
         (4, &[RECTANGLE, "TEXT outline 10 3 20 4"], &["TEXT at (3, 4)"]),
@@ -179,17 +179,17 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         (
             4,
             &[RECTANGLE, "LWPOLYLINE holes 70 1 10 0 20 0 10 5 20 0 10 5 20 5"],
-            &["layer holes", "(0.0000, 0.0000) mm", "no full circle"],
+            &["layer holes", "(0.0000, 0.0000) mm", "not a full circle"],
         ),
-        (4, &[RECTANGLE, "ARC holes 10 0 20 0 40 10 50 0 51 90"], &["layer holes", "(10.0000, 0.0000) mm", "no full circle"]),
+        (4, &[RECTANGLE, "ARC holes 10 0 20 0 40 10 50 0 51 90"], &["layer holes", "(10.0000, 0.0000)", "not a full circle"]),
         (4, &[RECTANGLE, "CIRCLE cracks 10 0 20 0 40 10"], &["layer cracks", "closed"]),
         (4, &[RECTANGLE, "LWPOLYLINE outline 70 1 10 0 20 0 10 5 20 0 10 5 20 5"], &["layer outline", "second closed line"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 45 20 0 40 10"], &["holes[0]", "beyond the outline"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 45 20 0 40 10"], &["holes[0]", "past the outline"]),
         (4, &[HOLE], &["nothing on the layer outline"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 x 20 0 40 10"], &["layer holes", "\"x\" is no number"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 0 20 0"], &["layer holes", "lacks group code 40"]),
-        (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 40 1 230 -1"], &["CIRCLE at (3, 4)", "from behind"]),
-        (4, &["POLYLINE outline 70 5", "VERTEX outline 10 3 20 4", "SEQEND outline"], &["POLYLINE on line", "fitted by curves"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 x 20 0 40 10"], &["layer holes", "\"x\" is not a number"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 0 20 0"], &["layer holes", "has no group code 40"]),
+        (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 40 1 230 -1"], &["CIRCLE at (3, 4)", "extrusion -z"]),
+        (4, &["POLYLINE outline 70 5", "VERTEX outline 10 3 20 4", "SEQEND outline"], &["POLYLINE on line", "curve-fitted"]),
         (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 40 1 210 0.6 230 0.8"], &["CIRCLE at (3, 4)", "tilted plane"]),
         (4, &[RECTANGLE, "CIRCLE holes 10 3 20 4 30 2 40 1"], &["layer holes", "CIRCLE at (3, 4)", "z = 2", "z = 0"]),
         (4, &[RECTANGLE, "LWPOLYLINE cracks 38 2 70 0 10 3 20 4 10 5 20 6"], &["layer cracks", "LWPOLYLINE at (3, 4)", "z = 2"]),
@@ -201,7 +201,7 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
         (
             4,
             &[RECTANGLE, "CIRCLE holes 60 1 10 3 20 4 40 1"],
-            &["layer holes", "CIRCLE at (3, 4)", "is hidden", "show it if the plate has it"],
+            &["layer holes", "CIRCLE at (3, 4)", "is hidden", "show it if it is part of the plate"],
         ),
         (0, &[RECTANGLE], &["specimen.outline_unit", "is missing"]),
         (3, &[RECTANGLE], &["unit 3"]),
@@ -225,28 +225,28 @@ fn what_is_no_plate_is_refused_by_layer_and_place() {
     let good = dxf(4, &[RECTANGLE, HOLE, CRACK]);
     let of_keys: [(&str, &str, &str, &[&str]); 8] = [
         (DXF, "part.dxf", "0\nSECTION\n", &["ends before its end mark"]),
-        (DXF, "part.dxf", "PK\u{3}\u{4}\nfoo\n", &["is no DXF", "line 1"]),
-        ("outline_file = \"part.svg\"", "part.svg", "<svg><g>", &["is no DXF drawing", "save it as DXF"]),
-        ("outline_file = \"part.step\"", "part.step", "x", &["is no DXF drawing"]),
+        (DXF, "part.dxf", "PK\u{3}\u{4}\nfoo\n", &["is not a DXF", "line 1"]),
+        ("outline_file = \"part.svg\"", "part.svg", "<svg><g>", &["is not a DXF drawing", "save it as DXF"]),
+        ("outline_file = \"part.step\"", "part.step", "x", &["is not a DXF drawing"]),
         ("outline_file = \"part.dxf\"\nwidth_mm = 9", "part.dxf", &good, &["specimen.width_mm", "conflicts with outline_file"]),
         (
             "outline_file = \"part.dxf\"\noutline_unit = \"inch\"",
             "part.dxf",
             &good,
-            &["specimen.outline_unit", "not the unit of part.dxf"],
+            &["specimen.outline_unit", "conflicts with the unit of part.dxf"],
         ),
-        ("outline_file = \"part.dxf\"\noutline_symmetry = \"x=0\"", "part.dxf", &good, &["lies beyond x = 0"]),
+        ("outline_file = \"part.dxf\"\noutline_symmetry = \"x=0\"", "part.dxf", &good, &["is beyond x = 0"]),
         (
             "width_mm = 9\nlength_mm = 9\noutline_unit = \"mm\"",
             "part.dxf",
             &good,
-            &["specimen.outline_unit", "outline_file is missing"],
+            &["specimen.outline_unit", "outline_file, which is missing"],
         ),
     ];
     for (keys, name, text, words) in of_keys {
         refused(keys, (name, text), words);
     }
-    refused(DXF, ("other.dxf", good.as_str()), &["part.dxf", "was not sent along"]);
+    refused(DXF, ("other.dxf", good.as_str()), &["part.dxf", "was not uploaded"]);
 }
 
 /// Gaps and overlaps of a hundredth of a millimetre, along sides, across them and at an arc, leave level and upright what was drawn so.

@@ -127,7 +127,7 @@ fn wrong_refinements_are_refused() {
     let around = |distance| RefinedRegion::AroundFlaws { distance };
     for (regions, ratio, words) in [
         (vec![(a_box([60e-3, 0.0], [70e-3, 5e-3]), 1)], 3.015, "outside the plate"),
-        (vec![(a_box([10e-3, 0.0], [0.0, 5e-3]), 1)], 3.015, "no box"),
+        (vec![(a_box([10e-3, 0.0], [0.0, 5e-3]), 1)], 3.015, "not a box"),
         (vec![(a_box([0.1e-3, 0.1e-3], [0.2e-3, 0.2e-3]), 1)], 3.015, "no point"),
         (vec![(around(5e-3), 0)], 3.015, "levels"),
         (vec![(around(5e-3), 9)], 3.015, "levels"),
@@ -149,7 +149,7 @@ fn wrong_refinements_are_refused() {
 #[test]
 fn levels_are_graded() {
     let net = perilife_scenes::build(&plate(PLAIN, PUBLISHED, 4e-3, &[(a_box([-4e-3, -4e-3], [4e-3, 4e-3]), 3)])).unwrap().0;
-    assert!(net.warnings.iter().any(|line| line.contains("beside")), "{:?}", net.warnings);
+    assert!(net.warnings.iter().any(|line| line.contains("extra points")), "{:?}", net.warnings);
     let finest = net.spacings.iter().filter(|&&s| s < 0.6e-3).count();
     assert_eq!(finest, 256);
     for (x, (at, horizon)) in net.positions.iter().zip(&net.horizons).enumerate() {

@@ -19,7 +19,7 @@ const FREE: BondLaw = law(BondLawKind::TwoParameter, Rotation::Free);
 
 /// Net, loads and displacement at full load of a scene.
 fn setting(scene: &Scene) -> (Net, Vec<bool>, Vec<f64>) {
-    let SceneLaw::Bonds(law) = scene.model.law else { panic!("a law of bonds") };
+    let SceneLaw::Bonds(law) = scene.model.law else { panic!("a bond law") };
     let model = &scene.model;
     let body = Body::build(&scene.specimen, &scene.material, &law, model.spacing, model.horizon_ratio, 0.0).unwrap();
     let net = Net::of_body(&body);

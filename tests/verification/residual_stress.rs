@@ -282,9 +282,9 @@ fn what_does_not_know_residual_stress() {
         (panel, "residual_stress = \"10 *\"".to_owned(), WALKER, &[], "character"),
         (panel, "residual_stress = \"10 * z\"".to_owned(), WALKER, &[], "unknown name"),
         (panel, "residual_stress = { z = \"10\" }".to_owned(), WALKER, &[], "loading.residual_stress.z"),
-        (panel, "residual_stress = \"ln(x)\"".to_owned(), WALKER, &[], "is no number"),
+        (panel, "residual_stress = \"ln(x)\"".to_owned(), WALKER, &[], "is not a number"),
         (panel, "residual_stress = \"x\"".to_owned(), WALKER, handbook, "not symmetric"),
-        (edge, WELD.to_owned(), WALKER, handbook, "middle_tension alone"),
+        (edge, WELD.to_owned(), WALKER, handbook, "middle_tension only"),
         (panel, file("broken.csv"), WALKER, &[], "broken.csv"),
         (panel, file("none.csv"), WALKER, &[], "none.csv"),
     ];
@@ -300,6 +300,6 @@ fn what_does_not_know_residual_stress() {
         let case = case_in(dir.path(), panel, &format!("{pulled}\n{}", file("short.csv")), WALKER, &keys).unwrap();
         let error = predict(&case, &Silent).unwrap_err().to_string();
         println!("{error}");
-        assert!(error.contains("residual_stress_file") && error.contains("ends at"), "{error}");
+        assert!(error.contains("residual_stress_file") && error.contains("covers only"), "{error}");
     }
 }

@@ -84,7 +84,7 @@ fn what_resists_a_turn_is_told_with_its_cost() {
                 let (cost, inside) = (cost(&scene), 2.0 * (1.0 - 3.0 * nu.parse::<f64>().unwrap()));
                 assert!(cost > 0.7 * inside && cost < 1.05 * inside, "{law}, nu {nu}, {way:?}: {cost}");
                 let warnings = run(&scene, &Silent).unwrap().warnings;
-                let words = format!("{:.3} % of the energy of stretching", 100.0 * cost);
+                let words = format!("{:.3} % of the energy of 1e-3 strain", 100.0 * cost);
                 let told = warnings.iter().any(|w| w.contains("model.rotation = \"resisted\"") && w.contains(&words));
                 assert!(told, "{law}, nu {nu}, {way:?}: {words} in {warnings:?}");
             }

@@ -190,7 +190,7 @@ fn damaged_and_foreign_checkpoints_of_scenes_are_refused() {
         for (what, content) in [("cut", &bytes[..at]), ("changed", &changed)] {
             let error = SceneCheckpoint::from_bytes(content).expect_err(what);
             assert_eq!(error.exit_code(), 2, "{what} at byte {at}: {error}");
-            assert!(error.to_string().contains("to begin the run anew"), "{what} at byte {at}: {error}");
+            assert!(error.to_string().contains("to start the run again"), "{what} at byte {at}: {error}");
         }
     }
     let others = [

@@ -1,13 +1,13 @@
 //! The topics of `perilife verify`: cheap ones with every run of the tests, all of them where that is asked for.
 
 use perilife_study::verification::{line, markdown};
-use perilife_study::{Row, Topic, faults, rows, topics};
+use perilife_study::{Topic, VerificationRow, faults, rows, topics};
 
 /// Topics of a few seconds each.
 const CHEAP: [&str; 7] = ["golden", "static_scenes", "dual_horizon", "golden_peridynamics", "same_plate", "named_plates", "pins"];
 
 /// The rows of the topics with these names, of which none fails and as many miss as are pinned.
-fn sound(names: &[&str]) -> (Vec<&'static Topic>, Vec<Row>) {
+fn sound(names: &[&str]) -> (Vec<&'static Topic>, Vec<VerificationRow>) {
     let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
     let topics = topics(&names).unwrap();
     let rows = rows(&topics, &|_, rows| rows.iter().for_each(|row| println!("{}", line(row)))).unwrap();

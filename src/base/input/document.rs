@@ -163,10 +163,10 @@ impl Document {
     }
 
     fn put_as_given(&mut self, key: &str, value: Value) -> std::result::Result<(), &'static str> {
-        const NO_TABLE: &str = "names a key below something that is not a table";
+        const NO_TABLE: &str = "its parent is not a table";
         let steps = path_steps(key);
         if steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()) {
-            return Err("does not name section and key");
+            return Err("expected SECTION.KEY=VALUE");
         }
         let (last, parents) = (&steps[steps.len() - 1], &steps[..steps.len() - 1]);
         let mut place = self.as_given.entry(parents[0].clone()).or_insert_with(|| Value::Table(Table::new()));
@@ -179,7 +179,7 @@ impl Document {
                 twin(last).map(|twin| table.remove(&twin));
                 table.insert(last.clone(), value);
             }
-            Value::Array(_) => *child(place, last).ok_or("names an entry the list does not have")? = value,
+            Value::Array(_) => *child(place, last).ok_or("the list has no such entry")? = value,
             _ => return Err(NO_TABLE),
         }
         Ok(())
@@ -204,8 +204,8 @@ fn syntax_error(error: &toml::de::Error, text: &str, file: Option<&Path>) -> Err
         line,
         key: None,
         value,
-        problem: format!("is not TOML: {}", error.message().replace('\n', ", ")),
-        remedy: "write key = value lines under [section] headings, each key once, text in quotes".into(),
+        problem: format!("invalid TOML: {}", error.message().replace('\n', ", ")),
+        remedy: "use `key = value` lines under `[section]`, each key once, text in quotes".into(),
         ..InputError::default()
     }))
 }
@@ -256,20 +256,20 @@ impl<'t> Sections<'t> {
                 if let Some((_, problem, remedy)) = strangers.iter().find(|(names, ..)| names.contains(&name.as_str())) {
                     return Err(input(name, shorten(value), *problem, *remedy));
                 }
-                let what = if value.is_table() { "is not a known section" } else { "stands in no section" };
+                let what = if value.is_table() { "unknown section" } else { "key outside any section" };
                 let near =
                     nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("did you mean [{near}]? "));
                 return Err(input(name, shorten(value), what, format!("{near}known sections: {}", known.join(", "))));
             }
             if !value.is_table() {
-                return Err(input(name, shorten(value), "is not a section", format!("write [{name}] and its keys below")));
+                return Err(input(name, shorten(value), "is not a section", format!("add a section [{name}]")));
             }
         }
         Ok(Sections { table, empty: Value::Table(Table::new()) })
     }
 
     pub fn required(&self, section: &str) -> Result<&Value> {
-        self.given(section).ok_or_else(|| input_missing(section, "is missing", format!("write a section [{section}]")))
+        self.given(section).ok_or_else(|| input_missing(section, "is missing", format!("add a section [{section}]")))
     }
 
     /// A section, without keys where it is left out.

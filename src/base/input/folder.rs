@@ -70,7 +70,7 @@ impl Folder {
             let has = |name: &str| self.at_hand.contains_key(name);
             let is_other = |file: &&OpenedFile| file.path.is_none() && file.name != name && last(&file.name) == last(name);
             if let Some(other) = opened.files.iter().filter(is_other).find(|other| !has(name) || !has(&other.name)) {
-                let problem = format!("has the last part of \"{}\", and one such file was sent", other.name);
+                let problem = format!("ambiguous: \"{}\" has the same file name", other.name);
                 return Err(input("file", format!("\"{name}\""), problem, "send each under its own name"));
             }
             let file = OpenedFile { name: name.to_owned(), path: None, id: None, content: content.clone().into() };
@@ -81,7 +81,7 @@ impl Folder {
             let names: Vec<&str> = self.at_hand.keys().map(String::as_str).collect();
             let given = if names.is_empty() { "nothing".to_owned() } else { names.join(", ") };
             let remedy = format!("send it with the input, which came with {given}");
-            return Err(input("file", format!("\"{name}\""), "was not sent along", remedy));
+            return Err(input("file", format!("\"{name}\""), "was not uploaded", remedy));
         };
         self.opened.read(&folder.join(name), name)
     }
@@ -205,7 +205,7 @@ fn read(path: &Path) -> Result<(Vec<u8>, Option<FileId>)> {
 fn stdin() -> Result<Vec<u8>> {
     static IS_READ: AtomicBool = AtomicBool::new(false);
     if IS_READ.swap(true, Ordering::Relaxed) {
-        return Err(input("file", STREAM, "is standard input, which was read already", "name it once, and files for the others"));
+        return Err(input("file", STREAM, "standard input was already read", "name it once, and files for the others"));
     }
     let mut content = Vec::new();
     let read = std::io::stdin().lock().read_to_end(&mut content);

@@ -50,7 +50,7 @@ impl Quantity {
             return Err(input(key, value, "must be above zero", self.remedy()));
         }
         if value < self.low || value > self.high {
-            return Err(input(key, value, "is beyond reason", self.remedy()));
+            return Err(input(key, value, "is out of range", self.remedy()));
         }
         Ok(value * self.si)
     }

@@ -18,7 +18,8 @@ pub const OF_SCENES: &[(&str, &[&str])] = &[
 ];
 
 /// Remedy of a fatigue case that asks for points of several levels.
-pub const LEVELS_OF_SCENES: &str = "leave it out: levels are for scenes without cycles (`perilife fracture`); for fatigue use method = \
+pub const LEVELS_OF_SCENES: &str = "remove it: levels are for scenes without cycles (`perilife fracture`); for fatigue use \
+                                    method = \
      \"element_free_galerkin\", whose nodes refine themselves";
 
 /// Reads what the program wrote, a record or a source of tests, as a `T` that denies unknown fields; what users write is read by their
@@ -70,13 +71,13 @@ fn explain(error: &toml::de::Error, value: &Value, path: &str) -> Error {
     if let Some(name) = quoted_after(message, "unknown field `") {
         let key = format!("{place}.{name}");
         let known = message.split_once("expected ").map_or("", |(_, list)| list).trim_start_matches("one of ").replace('`', "");
-        return input(&key, given(&key), "is not a known key", format!("known here: {known}"));
+        return input(&key, given(&key), "unknown key", format!("use one of: {known}"));
     }
     if let Some(name) = quoted_after(message, "missing field `") {
-        return input_missing(&format!("{place}.{name}"), "is missing", "this key is required here");
+        return input_missing(&format!("{place}.{name}"), "is missing", "add the key");
     }
-    if let Some((_, remedy)) = message.split_once("is not a known kind; ") {
-        return input(&place, given(&place), "is not a known kind", remedy.trim_end());
+    if let Some((_, remedy)) = message.split_once("unknown kind; ") {
+        return input(&place, given(&place), "unknown kind", remedy.trim_end());
     }
     let wanted = match message.rsplit_once("expected ").map_or("another kind of value", |(_, wanted)| wanted).trim() {
         "f64" => "a number",

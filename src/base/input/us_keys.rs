@@ -61,7 +61,7 @@ fn below(table: &mut Table, above: &str, written: &mut Vec<Written>) -> Result<(
         }
         let sibling = |name: &str| given.get(name).and_then(number_of);
         let factor = si.factor(sibling).map_err(|exponent| {
-            let problem = format!("is missing, and the unit of {} depends on it", path(key));
+            let problem = format!("required: sets the unit of {}", path(key));
             input_missing(&path(exponent), problem, format!("give it, or {}", path(&si.name)))
         })?;
         written.push(Written { metric: path(&si.name), us: path(key), value: value.clone() });

@@ -138,7 +138,7 @@ impl Field for toml::Table {
 
 /// What its reader looks at by itself.
 impl Field for Value {
-    const SHAPE: Shape = Shape::Other("a value that its reader takes");
+    const SHAPE: Shape = Shape::Other("a valid value");
     fn take(_: &Key, _: &str, value: &Value) -> Result<Self> {
         Ok(value.clone())
     }
@@ -186,12 +186,12 @@ impl<T: Named> Field for T {
         }
         let listed = |list: &[(&str, &[&str])]| list.iter().any(|(key, names)| *key == path && names.contains(&text));
         let (problem, remedy) = if listed(OF_SCENES) {
-            ("belongs to fracture scenes, not to a fatigue case", format!("run `perilife fracture`, or {list}"))
+            ("applies only to fracture scenes", format!("run `perilife fracture`, or {list}"))
         } else if listed(PLANNED) {
-            ("is not built yet", list)
+            ("is not supported yet", list)
         } else {
             let near = nearest(text, lines.iter().map(|line| line.name));
-            ("is not a known kind", near.map_or(list, |near| format!("did you mean \"{near}\"?")))
+            ("unknown kind", near.map_or(list, |near| format!("did you mean \"{near}\"?")))
         };
         Err(input(path, shorten(value), problem, remedy))
     }

@@ -1,4 +1,4 @@
-//! Names of keys that are not known here: whose they are, and which of the known ones was meant.
+//! Names of keys that are not use one of: whose they are, and which of the known ones was meant.
 
 use toml::Value;
 
@@ -35,7 +35,7 @@ pub(super) fn stranger(
         |known: &&str| stem(known).is_some_and(|own| own == name || name.rsplit_once('_').is_some_and(|(given, _)| given == own));
     if let Some(meant) = names().find(is_meant) {
         let twin = renamed(meant, System::Us).map_or_else(String::new, |twin| format!(" or {}", twin.name));
-        return (told("is not a known key".into(), format!("did you mean {meant}{twin}?")), Some(meant.to_owned()));
+        return (told("unknown key".into(), format!("did you mean {meant}{twin}?")), Some(meant.to_owned()));
     }
     let Kinds { tag, own, all: kinds } = kinds.unwrap_or(&Kinds { tag: "", own: "", all: &[] });
     let has_it = |(_, keys): &&(&str, &'static [Key])| all(keys).iter().any(|key| key.name == name);
@@ -43,11 +43,11 @@ pub(super) fn stranger(
     if let [first, ..] = owners[..] {
         let more = if owners.len() > 3 { format!(" and {} more", owners.len() - 3) } else { String::new() };
         let shown = owners.iter().take(3).copied().collect::<Vec<_>>().join(", ");
-        let problem = format!("is not a key of {tag} = \"{own}\": it belongs to {shown}{more}");
-        return (told(problem, format!("leave it out, or use {tag} = \"{first}\"")), None);
+        let problem = format!("is not a key of {tag} = \"{own}\"; applies only to {shown}{more}");
+        return (told(problem, format!("remove it, or use {tag} = \"{first}\"")), None);
     }
     let near = nearest(name, names());
-    (told("is not a known key".into(), meant(near.as_deref(), names())), near)
+    (told("unknown key".into(), meant(near.as_deref(), names())), near)
 }
 
 /// A name without its unit, if it has one.
@@ -59,7 +59,7 @@ fn stem(name: &str) -> Option<&str> {
 pub fn meant<'n>(near: Option<&str>, known: impl Iterator<Item = &'n str>) -> String {
     let all = || known.collect::<Vec<_>>().join(", ");
     near.map_or_else(
-        || format!("known here: {}", Some(all()).filter(|all| !all.is_empty()).as_deref().unwrap_or("none")),
+        || format!("use one of: {}", Some(all()).filter(|all| !all.is_empty()).as_deref().unwrap_or("none")),
         |near| format!("did you mean {near}?"),
     )
 }

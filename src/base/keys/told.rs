@@ -50,7 +50,7 @@ impl Key {
             Need::Or(words) => words.to_owned(),
             _ => "-".to_owned(),
         };
-        let group = self.group.map(|what| format!("one of those that say {what}"));
+        let group = self.group.map(|what| format!("one key of {what}"));
         let only = self.only.map(|(of, with)| format!("with {of} = {}", with.join(", ")));
         [Some(own).filter(|own| own != "-" || (group.is_none() && only.is_none())), group, only]
             .into_iter()
@@ -102,7 +102,7 @@ impl Told {
         };
         let rows: String = self.rows().into_iter().map(row).collect();
         format!(
-            "### `[{}]`\n\n{}\n\n| key | meaning | values | left out |\n|---|---|---|---|\n{rows}\n",
+            "### `[{}]`\n\n{}\n\n| key | meaning | values | default |\n|---|---|---|---|\n{rows}\n",
             self.section, self.meaning
         )
     }

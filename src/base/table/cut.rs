@@ -23,7 +23,7 @@ const PREAMBLE_MAX: usize = 200;
 
 /// Where the table stands among the rows of a cut.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct TableBounds {
     /// The header; `None` where the table has none.
     header: Option<usize>,
     /// First row of readings.
@@ -57,10 +57,8 @@ pub(super) fn text(text: &str, file: &Path, words: &dyn Vocabulary) -> Result<Ta
     // Stable: of equals the one that stands in numbers least.
     candidates.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(std::cmp::Ordering::Equal));
     let Some(&(_, best)) = candidates.first() else {
-        return Err(Fault { line: Some(lines[0].0), value: Some(lines[0].1), ..whole_file(file) }.error(
-            "is no table of 2 to 4096 columns, separated by tabs, semicolons, commas, vertical bars or blanks",
-            words.remedy(),
-        ));
+        return Err(Fault { line: Some(lines[0].0), value: Some(lines[0].1), ..whole_file(file) }
+            .error("is not a table of 2 to 4096 columns: no separator found (tab ; , | space)", words.remedy()));
     };
     let first_try = whole(best, &lines, &comments, file, words);
     if first_try.is_ok() {
@@ -100,7 +98,7 @@ fn width(row: &Row) -> usize {
 }
 
 /// Where header and readings stand; `None` for less than two columns.
-pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
+pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<TableBounds> {
     let head = &rows[..rows.len().min(PREAMBLE_MAX)];
     let below = |header: usize| header + 1 + usize::from(rows.get(header + 1).is_some_and(is_row_of_units));
     let names = |row: &Row| row.cells.iter().map(str::to_owned).collect::<Vec<String>>();
@@ -124,7 +122,7 @@ pub(super) fn place(rows: &[Row], words: &dyn Vocabulary) -> Option<Place> {
         (None, None) => (Some(0), 1.min(rows.len()), 0),
     };
     let columns = width(rows.get(width_of)?);
-    (words.columns()..=COLUMNS_MAX).contains(&columns).then_some(Place { header, body, columns, named: !named.is_empty() })
+    (words.columns()..=COLUMNS_MAX).contains(&columns).then_some(TableBounds { header, body, columns, named: !named.is_empty() })
 }
 
 /// Rows up to the last one that has a number: what stands behind is text.
@@ -141,7 +139,7 @@ fn is_row_of_units(row: &Row) -> bool {
     row.cells.len() <= COLUMNS_MAX && row.cells.iter().any(is_text) && row.cells.iter().all(is_unit_or_blank)
 }
 
-fn merit(rows: &[Row], place: Place) -> Merit {
+fn merit(rows: &[Row], place: TableBounds) -> Merit {
     let end = without_footer(rows).max(place.body);
     let body = || rows[place.body..end].iter().filter(|row| !row.is_blank());
     let fits = body().next().is_some() && body().all(|row| width(row) <= place.columns && row.cells.len() >= place.columns);
@@ -183,7 +181,7 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
 /// Errors: less than two columns.
 pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) -> Result<Table> {
     let Some(place) = place(&rows, words) else {
-        return Err(whole_file(file).error("is no table of 2 to 4096 columns", words.remedy()));
+        return Err(whole_file(file).error("is not a table of 2 to 4096 columns", words.remedy()));
     };
     let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
     let header = match place.header {
@@ -195,7 +193,7 @@ pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) 
     let in_units = |(name, unit): (&String, &String)| {
         let fault = Fault { line: row_of_units.map(|row| row.line), key: Some(name), value: Some(unit), ..whole_file(file) };
         with_unit(name, unit).map_err(|own| {
-            let problem = format!("is another unit than that of the name above it, {}", own.name());
+            let problem = format!("conflicts with the unit of the name above it, {}", own.name());
             fault.error(problem, "name the unit in one place, or the same in both")
         })
     };

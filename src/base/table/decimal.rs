@@ -41,7 +41,7 @@ pub fn decide(table: &Table, columns: &[Numbers], given: Option<Decimal>) -> Res
         let own_sign = column.counts && seen.open[decided as usize].is_some() && seen.proofs[decided as usize].is_none();
         let other_sign = !column.counts && seen.open[decided.other() as usize].is_some();
         if own_sign || other_sign {
-            return Err(open(seen).unwrap_or_else(|| table.header_fault(seen.column).error("is open", "")));
+            return Err(open(seen).unwrap_or_else(|| table.header_fault(seen.column).error("is ambiguous", "")));
         }
     }
     Ok(decided)
@@ -99,16 +99,12 @@ impl<'t> Seen<'t> {
     }
 }
 
-const REMEDY: &str = "say which by measured.decimal = \".\" or \",\" (--decimal) where it is a file of readings, or write it without separators of thousands";
+const REMEDY: &str = "set measured.decimal = \".\" or \",\" (--decimal) for readings, or remove the thousands separators";
 
 fn open_column(table: &Table, row: &Row, column: usize) -> Error {
     let cell = row.cell(column);
     let readings = [Decimal::Point, Decimal::Comma].map(|decimal| number(cell, decimal).unwrap_or(f64::NAN));
-    let problem = format!(
-        "is {} if the point is the decimal sign and {} if the comma is, and nothing in the column says which: every such number in it \
-         has three digits behind the sign",
-        readings[0], readings[1]
-    );
+    let problem = format!("is ambiguous: {} or {}", readings[0], readings[1]);
     table.cell_fault(row, column).error(problem, REMEDY)
 }
 
@@ -119,5 +115,5 @@ fn contradiction(table: &Table, point: (&Row, usize), comma: (&Row, usize)) -> E
         point.0.cell(point.1),
         point.0.line
     );
-    table.cell_fault(comma.0, comma.1).error(problem, "write the whole file with one decimal sign")
+    table.cell_fault(comma.0, comma.1).error(problem, "use one decimal sign in the whole file")
 }

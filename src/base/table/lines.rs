@@ -30,7 +30,7 @@ pub fn decoded<'a>(bytes: &'a [u8], file: &Path) -> Result<Cow<'a, str>> {
     if let Some(place) = text.find(strange) {
         let line = 1 + text[..place].matches('\n').count();
         return Err(Fault { line: Some(line), ..whole_file(file) }
-            .error("is no text (it has characters that no table has)", "save the table as CSV in UTF-8, or as .xlsx"));
+            .error("is not text (it has control characters)", "save the table as CSV in UTF-8, or as .xlsx"));
     }
     Ok(text)
 }

@@ -55,7 +55,7 @@ pub fn read(bytes: &[u8], file: &Path, words: &dyn Vocabulary) -> Result<Table> 
     }
     if let Some(sheet) = words.sheet() {
         let fault = Fault { key: Some("measured.sheet"), value: Some(&sheet.0), ..whole_file(file) };
-        return Err(fault.error("is given for a file that is no workbook", "leave sheet out, or give the .xlsx file"));
+        return Err(fault.error("is set for a file that is not a workbook", "remove sheet, or give the .xlsx file"));
     }
     cut::text(&lines::decoded(bytes, file)?, file, words)
 }

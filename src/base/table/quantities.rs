@@ -62,16 +62,16 @@ impl Words {
             return Err(of_row(row.line, row.cell(0)).error(problem, self.remedy));
         }
         if let Some(strange) = known.iter().position(Option::is_none) {
-            return Err(fault(strange, "is not a known column"));
+            return Err(fault(strange, "unknown column"));
         }
         if !(self.is_enough)(&roles) {
             let names = table.header.join(",");
             let fault = Fault { key: Some("header"), ..of_row(table.header_line, &names) };
-            return Err(fault.error("lacks a column", self.remedy));
+            return Err(fault.error("has no column", self.remedy));
         }
         let twice = |at: &usize| roles[*at] != Role::Other && roles[..*at].contains(&roles[*at]);
         match (0..roles.len()).find(twice) {
-            Some(second) => Err(fault(second, "says the same as an earlier column")),
+            Some(second) => Err(fault(second, "duplicates an earlier column")),
             None => Ok(known.into_iter().flatten().collect()),
         }
     }
@@ -80,13 +80,12 @@ impl Words {
 /// The unit of a name, in SI; the unit that is meant where the name has none.
 /// Errors: no unit at all, or one of another quantity.
 pub fn in_si(table: &Table, column: usize, unit: Named, otherwise: Option<Unit>) -> Result<f64> {
-    let fault =
-        |problem: &str| Err(table.header_fault(column).error(problem, "write the unit behind the name, as in \"a (mm)\""));
+    let fault = |problem: &str| Err(table.header_fault(column).error(problem, "write the unit after the name: \"a (mm)\""));
     match (unit, otherwise) {
         (Named::Is(unit), _) => Ok(unit.si()),
         (Named::No, Some(unit)) => Ok(unit.si()),
         (Named::No, None) => fault("has no unit"),
-        (Named::Strange, _) => fault("has a unit that is not known"),
+        (Named::Strange, _) => fault("has an unknown unit"),
     }
 }
 
@@ -107,7 +106,7 @@ pub fn number_at(table: &Table, row: &Row, column: usize, decimal: Decimal) -> R
     let refused = |problem: &str, remedy: &str| Err(table.cell_fault(row, column).error(problem, remedy));
     match number(cell, decimal) {
         Some(number) if number.is_finite() => Ok(number),
-        None if cell.is_empty() => refused("is empty", "give a number or leave the whole row out"),
+        None if cell.is_empty() => refused("is empty", "give a number or remove the row"),
         None if is_number(cell) => refused(
             &format!("is not a number whose decimal sign is the {} of this file", decimal.words()),
             "give a plain number such as 1234.5 or 1.2345e3, the same decimal sign in the whole file, thousands in groups of three",
@@ -115,6 +114,6 @@ pub fn number_at(table: &Table, row: &Row, column: usize, decimal: Decimal) -> R
         None if !cell.parse::<f64>().is_ok_and(|number| !number.is_finite()) => {
             refused("is not a number", "give a plain number such as 1234.5 or 1.2345e3, thousands in groups of three")
         }
-        _ => refused("is not a finite number", "give the reading, or leave the whole row out"),
+        _ => refused("is not a finite number", "give the reading, or remove the row"),
     }
 }

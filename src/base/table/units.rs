@@ -50,11 +50,11 @@ crate::kinds! {
 crate::kinds! {
     /// Units of da/dN in tables of rates.
     pub enum RateUnit for "measured.rate_unit" {
-        Millimetre = "mm/cycle": "millimetres in a cycle",
-        Metre = "m/cycle": "metres in a cycle",
-        Inch = "in/cycle": "inches in a cycle",
-        Micrometre = "um/cycle": "micrometres in a cycle",
-        Nanometre = "nm/cycle": "nanometres in a cycle",
+        Millimetre = "mm/cycle": "millimeters per cycle",
+        Metre = "m/cycle": "meters per cycle",
+        Inch = "in/cycle": "inches per cycle",
+        Micrometre = "um/cycle": "micrometers per cycle",
+        Nanometre = "nm/cycle": "nanometers per cycle",
     }
 }
 

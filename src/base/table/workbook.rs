@@ -57,10 +57,8 @@ pub(super) fn table(bytes: &[u8], file: &Path, words: &dyn Vocabulary) -> Result
         _ => {
             let names: Vec<String> = found.iter().map(|(name, _)| format!("{name:?}")).collect();
             let problem = format!("has {} sheets of readings: {}", names.len(), names.join(", "));
-            Err(whole_file(file).error(
-                problem,
-                format!("say which by measured.sheet = {} (--sheet) where it is a file of readings, or keep one sheet", names[0]),
-            ))
+            Err(whole_file(file)
+                .error(problem, format!("set measured.sheet = {} (--sheet) for readings, or keep one sheet", names[0])))
         }
     }
 }
@@ -71,7 +69,7 @@ fn without_hidden(mut table: Table, bytes: &[u8], sheet: &str) -> Result<Table> 
     let names = hidden.columns.iter().filter_map(|column| table.header.get(*column)).filter(|name| !name.is_empty());
     let names: Vec<&str> = names.map(String::as_str).collect();
     if !names.is_empty() {
-        let note = format!("{}: hidden columns are read like the others: {}", table.file.display(), names.join(", "));
+        let note = format!("{}: hidden columns are used: {}", table.file.display(), names.join(", "));
         table.notes.push(note);
     }
     table.leave_out("hidden in the workbook", "unhide them to read them", |row| hidden.rows.contains(&row.line))?;
@@ -84,7 +82,7 @@ fn chosen<'s>(wanted: &Sheet, sheets: &'s [String], file: &Path) -> Result<&'s s
     let by_number = || sheets.get(wanted.0.parse::<usize>().ok()?.checked_sub(1)?);
     by_name.or_else(by_number).map(String::as_str).ok_or_else(|| {
         let known: Vec<String> = sheets.iter().enumerate().map(|(index, name)| format!("{} {name:?}", index + 1)).collect();
-        sheet_fault(file, &wanted.0).error("is no sheet of this workbook", format!("its sheets are {}", known.join(", ")))
+        sheet_fault(file, &wanted.0).error("is not a sheet of this workbook", format!("its sheets are {}", known.join(", ")))
     })
 }
 
@@ -232,7 +230,7 @@ fn check_size(bytes: &[u8], file: &Path) -> Result<()> {
         let sink: &mut dyn Write = if is_text { &mut claims } else { &mut nothing };
         let unpacked = std::io::copy(&mut entry.take(left), sink).map_err(|error| broken(error.to_string()))?;
         if claims.largest > CELLS_MAX as u64 {
-            return Err(whole_file(file).error(format!("says that it has {} texts", claims.largest), SMALLER));
+            return Err(whole_file(file).error(format!("declares {} texts", claims.largest), SMALLER));
         }
         left -= unpacked;
         if left == 0 {
@@ -244,5 +242,5 @@ fn check_size(bytes: &[u8], file: &Path) -> Result<()> {
 }
 
 fn broken(file: &Path, reason: &str) -> Error {
-    whole_file(file).error(format!("is no workbook of the kind .xlsx ({reason})"), "save it as .xlsx or as CSV")
+    whole_file(file).error(format!("is not an .xlsx workbook ({reason})"), "save it as .xlsx or as CSV")
 }

@@ -139,13 +139,12 @@ impl LawCase {
     fn add_readings(&mut self, rest: Document) -> Result<()> {
         let test = CalibrationCase::from_document(rest)?;
         if test.delta_k(test.case.specimen.crack_length).is_none() {
-            let problem = "has no handbook K(a) in this shape, over which the rates of readings could stand";
-            let remedy = "fit the law paris, whose K is that of the crack's own path, or give tables of rates: measured.rates";
+            let problem = "has no handbook K(a), which rates from readings need";
+            let remedy = "fit the law paris (K along the crack path), or give tables of rates: measured.rates";
             return Err(input("specimen.kind", format!("\"{}\"", test.case.specimen.kind), problem, remedy));
         }
         self.rows.extend(of_readings(&test, &|length| test.delta_k(length).unwrap_or(f64::NAN)));
-        // Stress ratios beside that of the case are what these laws are about.
-        self.warnings.extend(test.warnings.iter().filter(|line| !line.contains("stress ratios of the readings")).cloned());
+        self.warnings.extend(test.warnings.iter().cloned());
         self.sources.extend(test.sources.iter().cloned());
         self.material.clone_from(&test.case.material.name);
         self.test = Some(Box::new(test));
@@ -156,17 +155,17 @@ impl LawCase {
         let (from, to) = (keys.from.unwrap_or(0.0), keys.to.unwrap_or(f64::INFINITY));
         if from >= to {
             let problem = format!("is not above from_delta_k_mpa_sqrt_m = {}", from / MPA_SQRT_M);
-            return Err(input("measured.to_delta_k_mpa_sqrt_m", to / MPA_SQRT_M, problem, "give a window that holds rates"));
+            return Err(input("measured.to_delta_k_mpa_sqrt_m", to / MPA_SQRT_M, problem, "give a window with rates"));
         }
         self.rows.retain(|row| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(&row.delta_k));
         let count = self.rows.len();
         if count < 3 {
-            let problem = format!("rates are left of the tables, and {} are flagged", self.flagged);
+            let problem = format!("rates remain, and {} are flagged", self.flagged);
             let remedy = match self.flagged {
-                0 => "give three rates at least; widen the window in ΔK",
+                0 => "give at least three rates; widen the window in ΔK",
                 _ => {
-                    "write the table by `perilife rates --precision-mm` where steps near a threshold are short; to take a flagged rate as it is, empty \
-                     its cell in the column flags"
+                    "write the table by `perilife rates --precision-mm` if steps near the threshold are short; to use a \
+                     flagged rate, clear its cell in the column flags"
                 }
             };
             return Err(input("measured.rates", count, problem, remedy));
@@ -211,12 +210,12 @@ fn alone(table: &Table) -> Result<String> {
             ("material", _) | ("measured" | "fit", None) => {}
             ("measured" | "fit", Some(key)) => {
                 let known = names(if section == "measured" { RatesKeys::KEYS } else { LawKeys::KEYS }).join(", ");
-                let problem = "is no key of a fit to tables of rates";
-                return Err(input_missing(&format!("{section}.{key}"), problem, format!("known here: {known}")));
+                let problem = "is not a key of a fit to tables of rates";
+                return Err(input_missing(&format!("{section}.{key}"), problem, format!("use one of: {known}")));
             }
             _ => {
-                let remedy = "leave the section out, or name a-N readings: measured.files = [\"...csv\"]";
-                return Err(input_missing(section, "says nothing about tables of rates, which have ΔK and R", remedy));
+                let remedy = "remove the section, or give a-N readings: measured.files = [\"...csv\"]";
+                return Err(input_missing(section, "does not apply to tables of rates, which have ΔK and R", remedy));
             }
         }
     }

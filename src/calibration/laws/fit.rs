@@ -74,7 +74,7 @@ impl LawFit {
     pub(super) fn judge_errors(&mut self) {
         let unknown = self.constants.iter().find_map(|constant| {
             let parameter = self.kind.0.constants[1..].iter().find(|parameter| parameter.key == constant.key)?;
-            let size = if parameter.is_told_by_ratios() { 1.0 } else { constant.value.abs() };
+            let size = if parameter.needs.1 { 1.0 } else { constant.value.abs() };
             let error = constant.error.filter(|error| *error > parameter.error_max * size)?;
             Some(unidentified(parameter, &format!("{:.3e} ± {error:.1e}", constant.value)))
         });
@@ -97,11 +97,11 @@ pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFi
     let bounds: Vec<[f64; 2]> = free.iter().map(|parameter| parameter.bounds).collect();
     let shape = |variables: &[f64]| candidate.shape(variables);
     if candidate.shape(&free.iter().map(|parameter| parameter.starts[0]).collect::<Vec<_>>()).is_none() {
-        return LawFit::none(kind, "its given constants let a crack of the table stand still, or break".to_owned());
+        return LawFit::none(kind, "its given constants predict arrest or fracture within the data".to_owned());
     }
     let minima = starts(&free).into_par_iter().filter_map(|start| minimise(&shape, &measured, &start, &bounds));
     let Some(best) = minima.min_by(|a, b| a.sum().total_cmp(&b.sum())) else {
-        return LawFit::none(kind, "no least sum of squares was found".to_owned());
+        return LawFit::none(kind, "the least-squares fit did not converge".to_owned());
     };
     let scatter = best.sum() / (rows.len() - free.len() - 1) as f64;
     let trouble = at_end(&free, &best).or_else(|| trade(&free, &best.slopes));
@@ -144,12 +144,12 @@ fn at_end(free: &[Parameter], best: &Minimum) -> Option<String> {
         (Role::Threshold, false) => "the smallest ΔK of the rates".to_owned(),
         (Role::Plain, low) => format!("{}", parameter.bounds[usize::from(!low)]),
     };
-    Some(unidentified(parameter, &format!("the optimum lies at an end of its range, {end}")))
+    Some(unidentified(parameter, &format!("best fit at the limit of its range, {end}")))
 }
 
 /// Why a law is out of question, the key of the constant first.
 fn unidentified(parameter: &Parameter, why: &str) -> String {
-    format!("{} not identified: {why}; {}, or give it by fit.given", parameter.key, parameter.told_by)
+    format!("{} cannot be determined: {why}; {}, or set it in fit.given", parameter.key, parameter.needs.0)
 }
 
 /// A constant that others can make up for.
@@ -168,7 +168,7 @@ fn trade(free: &[Parameter], slopes: &DMatrix<f64>) -> Option<String> {
     let eigen = (scaled.transpose() * scaled).symmetric_eigen();
     let (least, most) = (eigen.eigenvalues.imin(), eigen.eigenvalues.max());
     let parameter = &free[eigen.eigenvectors.column(least).icamax()];
-    (eigen.eigenvalues[least] < SINGULAR * most).then(|| unidentified(parameter, "other constants make up for it"))
+    (eigen.eigenvalues[least] < SINGULAR * most).then(|| unidentified(parameter, "other constants compensate for it"))
 }
 
 /// Standard errors of ln C and of all constants behind it, from `s² (JᵀJ)⁻¹`, taken from the variables to the constants by their slopes.
@@ -204,8 +204,8 @@ pub(super) fn check_given(given: &Given) -> Result<()> {
         let path = format!("fit.given.{key}");
         let Some(constant) = known.iter().find(|constant| constant.key == key) else {
             let known: Vec<&str> = known.iter().map(|constant| constant.key).collect();
-            let remedy = format!("known here: {}; C is always fitted", known.join(", "));
-            return Err(input(&path, value, "is no constant of a law that can be given", remedy));
+            let remedy = format!("use one of: {}; C is always fitted", known.join(", "));
+            return Err(input(&path, value, "is not a constant that can be given", remedy));
         };
         constant.quantity.read(&path, value)?;
     }
@@ -231,19 +231,18 @@ impl<'a> Candidate<'a> {
         let candidate = Candidate { kind, constants, given: values, rows };
         let ratios = || rows.iter().map(|row| row.ratio.max(0.0));
         let (low, high) = (ratios().fold(f64::INFINITY, f64::min), ratios().fold(f64::NEG_INFINITY, f64::max));
-        let lacks: Vec<&str> =
-            candidate.free().filter(|constant| constant.is_told_by_ratios()).map(|constant| constant.key).collect();
+        let lacks: Vec<&str> = candidate.free().filter(|constant| constant.needs.1).map(|constant| constant.key).collect();
         if high - low < SAME_RATIO && !lacks.is_empty() {
-            let one = format!("all rates are of one stress ratio, R = {:.3}{}", rows[0].ratio, closed(rows));
-            return Err(format!("{} not identified: {one}; give by fit.given", lacks.join(", ")));
+            let one = format!("all rates are at one stress ratio, R = {:.3}{}", rows[0].ratio, closed(rows));
+            return Err(format!("{} cannot be determined: {one}; set in fit.given", lacks.join(", ")));
         }
         let least = rows.iter().map(|row| row.ratio).fold(f64::INFINITY, f64::min);
         if let Some((what, limit)) = kind.0.compression.filter(|(_, limit)| least < *limit) {
-            return Err(format!("its {what} is not known at R = {least}, below {limit}"));
+            return Err(format!("its {what} is not defined at R = {least}, below {limit}"));
         }
         let k_c = kind.0.place(Role::Toughness).and_then(|place| Some((constants[place - 1].key, candidate.given[place - 1]?)));
         if let Some((key, k_c)) = k_c.filter(|(_, k_c)| *k_c * MPA_SQRT_M <= candidate.k_max()) {
-            return Err(format!("{key} = {k_c} is given, and a crack grew at K_max = {:.3}", candidate.k_max() / MPA_SQRT_M));
+            return Err(format!("{key} = {k_c} is below the tested K_max = {:.3}", candidate.k_max() / MPA_SQRT_M));
         }
         Ok(candidate)
     }
@@ -295,5 +294,5 @@ impl<'a> Candidate<'a> {
 /// Why rates at several negative ratios count as one.
 fn closed(rows: &[RateRow]) -> &'static str {
     let differ = rows.iter().any(|row| (row.ratio - rows[0].ratio).abs() >= SAME_RATIO);
-    if differ { ", and negative ones count as 0: compression does not open a crack" } else { "" }
+    if differ { ", R < 0 treated as 0" } else { "" }
 }

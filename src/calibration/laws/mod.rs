@@ -46,7 +46,7 @@ impl FitLaw {
 
     /// Meaning in one line.
     pub fn meaning(self) -> &'static str {
-        self.0.and_then(|kind| kind.0.fit).unwrap_or("the one of them that the rates are for, by Akaike's criterion")
+        self.0.and_then(|kind| kind.0.fit).unwrap_or("the best of them by Akaike's criterion (AICc)")
     }
 }
 
@@ -138,7 +138,7 @@ fn judged(kind: GrowthLawKind, given: &Given, rows: &[RateRow], effective: f64) 
 fn choose(candidates: &[LawFit], wanted: FitLaw) -> Result<usize> {
     if let Some(kind) = wanted.0 {
         let place = candidates.iter().position(|candidate| candidate.kind == kind).unwrap_or(0);
-        let no_law = |why: &String| Error::Mechanics(format!("the rates do not tell the law {wanted}: {why}"));
+        let no_law = |why: &String| Error::Mechanics(format!("law {wanted} cannot be fitted: {why}"));
         return candidates[place].left_out.as_ref().map_or(Ok(place), |why| Err(no_law(why)));
     }
     let left = || candidates.iter().enumerate().filter(|(_, candidate)| candidate.left_out.is_none());
@@ -151,7 +151,7 @@ fn choose(candidates: &[LawFit], wanted: FitLaw) -> Result<usize> {
             let reasons = candidates
                 .iter()
                 .filter_map(|candidate| Some(format!("\n  {}: {}", candidate.kind, candidate.left_out.as_ref()?)));
-            Error::Mechanics(format!("the rates tell no law:{}", reasons.collect::<String>()))
+            Error::Mechanics(format!("no law can be fitted:{}", reasons.collect::<String>()))
         })
 }
 
@@ -217,8 +217,8 @@ impl Smooth {
         let [bend, scatter] = [bend, scatter].map(|sum| (sum / known.len() as f64).sqrt());
         (!known.is_empty() && bend > (RMS_FACTOR * scatter).max(BEND_MIN)).then(|| {
             format!(
-                "the law {} does not bend as the rates do: they lie {bend:.3} of ln da/dN from it, and {scatter:.3} from a smooth curve through \
-                 every test; growth_law = \"table\" with growth_table takes the rates as they are",
+                "law {} misses the shape of the data: rms {bend:.3} in ln da/dN, {scatter:.3} for a smooth curve per test; \
+                 growth_law = \"table\" with growth_table uses the rates directly",
                 law.kind
             )
         })
@@ -251,11 +251,11 @@ fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
     };
     lines.extend(rows.chunk_by(|a, b| a.series == b.series).filter_map(of_test));
     if let Some((kind, margin)) = fits.margin.filter(|(_, margin)| *margin < -WORSE) {
-        lines.push(format!("the rates are not for the law {}: {kind} is better by {:.1} of AICc", law.kind, -margin));
+        lines.push(format!("law {} is not the best: {kind} is better by {:.1} in AICc", law.kind, -margin));
     }
     if fits.effective_rates < 0.9 * rows.len() as f64 {
         lines.push(format!(
-            "neighbouring rates are correlated (of a parabola through seven readings they are): {} rates count as {:.0}",
+            "neighboring rates are correlated (seven-point polynomial): {} rates weigh as {:.0}",
             rows.len(),
             fits.effective_rates
         ));
@@ -266,7 +266,7 @@ fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
         .collect();
     lines.extend(far.iter().take(NAMED).cloned());
     if far.len() > NAMED {
-        lines.push(format!("{} more rates lie beyond a factor {FACTOR} of the law", far.len() - NAMED));
+        lines.push(format!("{} more rates are off by more than a factor of {FACTOR}", far.len() - NAMED));
     }
     lines
 }
@@ -279,6 +279,6 @@ fn check_metal(law: &LawFit, rows: &[RateRow]) -> Result<()> {
     let fitted = law.kind.0.of(law.constants.iter().map(|constant| constant.value));
     match of_power.or_else(|| doubt(&fitted, ratio)) {
         None => Ok(()),
-        Some(doubt) => Err(input_missing("measured.rates", format!("give a law that no metal has: {doubt}"), "")),
+        Some(doubt) => Err(input_missing("measured.rates", format!("implausible growth law: {doubt}"), "")),
     }
 }

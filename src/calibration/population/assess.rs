@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::intervals::{Interval, Row, Specimen, rows};
+use super::intervals::{Interval, IntervalRow, Specimen, rows};
 use super::noise::{Noise, cholesky, whiten};
 use super::reml::{departures, estimate, likelihood, variances};
 use super::{Found, Member, Population, SLOPE_SAME, SPECIMENS_FOR_SCATTER, groups, lots, penalty, slope_of_readings};
@@ -63,7 +63,7 @@ fn own_law(intervals: &[Interval], lot: &CurveLaw, noise: &Noise) -> Option<[f64
         let rows = rows(&law, intervals);
         let mut factor = noise.covariance(&rows);
         cholesky(&mut factor, n)?;
-        let line = |(row, own): (&Row, &Interval)| [row.design[0], row.design[1], row.log_cycles - own.cycles.ln()];
+        let line = |(row, own): (&IntervalRow, &Interval)| [row.design[0], row.design[1], row.log_cycles - own.cycles.ln()];
         let mut white: Vec<f64> = rows.iter().zip(intervals).flat_map(line).collect();
         whiten(&factor, n, &mut white, 3);
         let (mut curvature, mut right) = (Matrix2::zeros(), Vector2::zeros());

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::Population;
-use super::intervals::{Interval, Row, Specimen, rows};
+use super::intervals::{Interval, IntervalRow, Specimen, rows};
 use super::lots::BETWEEN_LOTS;
 use super::noise::{cholesky, whiten};
 use super::student::{noncentral_t_quantile, t_quantile};
@@ -86,7 +86,8 @@ impl Population {
         let reached = all.last().map_or(0.0, |row| row.zone[1]);
         let of_path = rows(&self.law, path);
         // No error of a reading is left in a life.
-        all.extend(of_path.iter().map(|row| Row { density: [0.0; 2], zone: row.zone.map(|zone| zone + reached), ..*row }));
+        let reached_by = |row: &IntervalRow| row.zone.map(|zone| zone + reached);
+        all.extend(of_path.iter().map(|row| IntervalRow { density: [0.0; 2], zone: reached_by(row), ..*row }));
         let n = all.len();
         let covariance = self.of_rows(&all, lot);
 
@@ -133,7 +134,7 @@ impl Population {
     }
 
     /// `Z T Zᵀ + X V Xᵀ + cov(e)`, whole, by rows.
-    fn of_rows(&self, rows: &[Row], lot: Lot) -> Vec<f64> {
+    fn of_rows(&self, rows: &[IntervalRow], lot: Lot) -> Vec<f64> {
         let n = rows.len();
         let mut whole = self.noise.covariance(rows);
         let t = self.between.matrix();
@@ -167,8 +168,8 @@ impl Population {
         Err(input(
             "loading",
             format!("ΔK {:.2} to {:.2} MPa√m", in_mpa(least), in_mpa(most)),
-            format!("is more than a factor {BEYOND_MAX} outside the calibrated {:.2} to {:.2} MPa√m", in_mpa(low), in_mpa(high)),
-            "calibrate by specimens of such ΔK, or ask for a shorter growth",
+            format!("is more than a factor {BEYOND_MAX} outside the tested ΔK {:.2} to {:.2} MPa√m", in_mpa(low), in_mpa(high)),
+            "test at such ΔK, or use a shorter crack growth range",
         ))
     }
 }
@@ -225,14 +226,14 @@ impl Forecast {
     pub fn basis(&self, basis: Basis) -> Result<f64> {
         let refuse = |value: String, problem: &str, remedy: &str| Err(input("basis", value, problem, remedy));
         if self.specimens < BASIS_SPECIMENS_MIN {
-            return refuse(format!("{} specimens", self.specimens), "are too few for a basis value", "test at least three");
+            return refuse(format!("{} specimens", self.specimens), "too few specimens for a basis value", "test at least three");
         }
         if self.share_outside > 0.0 {
             let share = format!("{:.1} % of the life", 100.0 * self.share_outside);
-            return refuse(share, "is outside the calibrated range of ΔK", "calibrate by specimens of such ΔK");
+            return refuse(share, "is outside the tested ΔK range", "test at such ΔK");
         }
         if self.is_special {
-            return refuse("one specimen or another lot".to_owned(), "has no basis value", "ask it of the lot of the specimens");
+            return refuse("one specimen or another lot".to_owned(), "has no basis value", "use the lot of the specimens");
         }
         let life = self.life();
         Ok(life.median * (-tolerance_factor(basis, self.specimens) * life.deviation).exp())

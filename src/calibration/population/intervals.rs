@@ -36,7 +36,7 @@ pub type RangesOfTips<'a> = &'a dyn Fn(f64) -> Vec<f64>;
 
 /// One reading of a specimen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
+pub struct IntervalReading {
     /// Crack length, m.
     pub length: f64,
     pub cycles: f64,
@@ -81,8 +81,9 @@ impl Specimen {
     /// Readings of a curve under its own loads; `delta_k` is that of the load of the case.
     /// Errors: as [`Specimen::new`].
     pub fn of_curve(curve: &MeasuredCurve, delta_k: RangesOfTips<'_>) -> Result<Self> {
-        let reading = |i: usize| Reading { length: curve.crack_length[i], cycles: curve.cycles[i], counts: curve.counts(i) };
-        let readings: Vec<Reading> = (0..curve.cycles.len()).map(reading).collect();
+        let reading =
+            |i: usize| IntervalReading { length: curve.crack_length[i], cycles: curve.cycles[i], counts: curve.counts(i) };
+        let readings: Vec<IntervalReading> = (0..curve.cycles.len()).map(reading).collect();
         let loads = curve.load_history();
         let under_load = |length: f64| delta_k(length).into_iter().map(|k| k * loads.at(length)).collect();
         Specimen::of_tips(&curve.specimen, &readings, &under_load, INTERVALS_MAX)
@@ -92,15 +93,15 @@ impl Specimen {
     ///
     /// Readings at one length or one cycle count, and readings that fall back, are passed over: an interval goes on until both have risen.
     /// Errors: a ΔK that is not above 0; no interval.
-    pub fn new(name: &str, readings: &[Reading], delta_k: RangeOfK<'_>, intervals_max: usize) -> Result<Self> {
+    pub fn new(name: &str, readings: &[IntervalReading], delta_k: RangeOfK<'_>, intervals_max: usize) -> Result<Self> {
         Self::of_tips(name, readings, &|length| vec![delta_k(length)], intervals_max)
     }
 
     /// The same for several tips.
-    fn of_tips(name: &str, readings: &[Reading], delta_k: RangesOfTips<'_>, intervals_max: usize) -> Result<Self> {
+    fn of_tips(name: &str, readings: &[IntervalReading], delta_k: RangesOfTips<'_>, intervals_max: usize) -> Result<Self> {
         let least = least_growth(readings);
         // Runs of readings between growths that do not count.
-        let runs: Vec<Vec<Reading>> =
+        let runs: Vec<Vec<IntervalReading>> =
             readings.chunk_by(|_, next| next.counts).map(|run| rising(run, least)).filter(|run| run.len() > 1).collect();
         let all: usize = runs.iter().map(|run| run.len() - 1).sum();
         let joined = all.div_ceil(intervals_max.max(1)).max(1);
@@ -122,8 +123,8 @@ impl Specimen {
             return Err(input(
                 "measured.files",
                 name,
-                "is a specimen whose crack does not grow by more than its readings scatter",
-                "give readings over a longer growth",
+                "has no growth beyond the scatter of its readings",
+                "give readings over more growth",
             ));
         }
         Ok(Specimen { name: name.to_owned(), intervals })
@@ -202,7 +203,7 @@ fn check_longer(from: f64, to: f64) -> Result<()> {
     if from > 0.0 && to > from {
         return Ok(());
     }
-    Err(input("stop.crack_length_mm", to / MM, format!("is not beyond {} mm", from / MM), "ask for a longer crack"))
+    Err(input("stop.crack_length_mm", to / MM, format!("is not beyond {} mm", from / MM), "give a longer crack"))
 }
 
 /// Quadrature over a chain of lengths, loads being steady or linear between two of them.
@@ -247,7 +248,7 @@ fn integrate(lengths: &[f64], zone: f64, delta_k: RangesOfTips<'_>) -> Result<In
 }
 
 /// Growth below which two readings do not tell a rate, m.
-fn least_growth(readings: &[Reading]) -> f64 {
+fn least_growth(readings: &[IntervalReading]) -> f64 {
     // Readings repeated at one length would make a smooth curve look rough.
     let mut lengths: Vec<f64> = readings.iter().map(|reading| reading.length).collect();
     lengths.dedup_by(|a, b| (*a - *b).abs() <= SAME_LENGTH * b.abs());
@@ -265,8 +266,8 @@ fn least_growth(readings: &[Reading]) -> f64 {
 }
 
 /// Readings of which each is longer than the one before it by more than `least` (m), after more cycles.
-fn rising(run: &[Reading], least: f64) -> Vec<Reading> {
-    let mut kept: Vec<Reading> = run.first().copied().into_iter().collect();
+fn rising(run: &[IntervalReading], least: f64) -> Vec<IntervalReading> {
+    let mut kept: Vec<IntervalReading> = run.first().copied().into_iter().collect();
     for reading in run {
         let last = kept[kept.len() - 1];
         let growth = reading.length - last.length;
@@ -287,7 +288,7 @@ fn rising(run: &[Reading], least: f64) -> Vec<Reading> {
 
 /// An interval as the law sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Row {
+pub(super) struct IntervalRow {
     /// Means of 1, x, φ_k over the interval, weighted with its cycles.
     pub design: [f64; EFFECTS],
     /// ln of the cycles by the law.
@@ -319,7 +320,7 @@ fn of_tips(law: &CurveLaw, log_k: &[f64]) -> ([f64; EFFECTS], f64) {
 }
 
 /// Intervals as the law sees them.
-pub(super) fn rows(law: &CurveLaw, intervals: &[Interval]) -> Vec<Row> {
+pub(super) fn rows(law: &CurveLaw, intervals: &[Interval]) -> Vec<IntervalRow> {
     let [low, high] = law.range.map(f64::ln);
     let mut end = f64::NAN;
     let row = |interval: &Interval| {
@@ -339,7 +340,7 @@ pub(super) fn rows(law: &CurveLaw, intervals: &[Interval]) -> Vec<Row> {
         }
         let follows = interval.from == end;
         end = interval.to;
-        Row {
+        IntervalRow {
             design: design.map(|sum| sum / cycles),
             log_cycles: cycles.ln(),
             density: [0, 1].map(|side| 1.0 / (of_tips(law, &interval.ends[side]).1 * cycles)),

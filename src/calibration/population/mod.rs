@@ -19,7 +19,7 @@ use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
 
 use assess::assess;
-use intervals::{Row, Specimen, rows};
+use intervals::{IntervalRow, Specimen, rows};
 use noise::Noise;
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::units::{MM, MPA_SQRT_M};
@@ -210,7 +210,7 @@ struct Found {
 /// Errors: no specimen; [`Error::Mechanics`] where the readings have no law, or do not tell its exponent.
 pub fn fit(specimens: &[Specimen], slope: Option<f64>) -> Result<Population> {
     let priors = Priors::of(specimens.len());
-    let no_law = || Error::Mechanics("the readings give no growth law: their rates have no smallest misfit".to_owned());
+    let no_law = || Error::Mechanics("no growth law can be fitted to the readings: the fit did not converge".to_owned());
     let law = start(specimens, slope)?;
     let count: usize = specimens.iter().map(|specimen| specimen.intervals.len()).sum();
     if slope.is_none() && (law.range_ratio() < RANGE_MIN || count < 2) {
@@ -257,9 +257,9 @@ fn check_identified(law: &CurveLaw, error: f64) -> Result<()> {
         return Ok(());
     }
     Err(Error::Mechanics(format!(
-        "the readings do not tell the exponent: m = {:.3}, its standard error is {error:.2} where {low} to {high} are searched, and ΔK varies \
-         by a factor {:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] parameters = \
-         [\"a\"] and p = ...",
+        "the exponent cannot be determined: m = {:.3}, standard error {error:.2} in the search range {low} to {high}, ΔK \
+         varies by a factor {:.4}; widen the window (measured.from_crack_length_mm and to_crack_length_mm), or fix p by [fit] \
+         parameters = [\"a\"] and p = ...",
         law.slope,
         law.range_ratio()
     )))
@@ -278,7 +278,7 @@ fn start(specimens: &[Specimen], slope: Option<f64>) -> Result<CurveLaw> {
     let all = || specimens.iter().flat_map(|specimen| &specimen.intervals);
     let count = all().count();
     if count == 0 {
-        return Err(input_missing("measured.files", "hold no growth", "give at least one specimen with two readings"));
+        return Err(input_missing("measured.files", "contain no growth", "give at least one specimen with two readings"));
     }
     let (mut low, mut high, mut sum, mut cycles) = (f64::INFINITY, f64::NEG_INFINITY, 0.0, 0.0);
     for interval in all() {
@@ -316,8 +316,9 @@ fn groups(specimens: &[Specimen], law: &CurveLaw) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for (place, specimen) in specimens.iter().enumerate() {
         let known = groups.iter_mut().find(|group| alike(&specimens[group.members[0]], specimen));
-        let residual =
-            |rows: &[Row]| rows.iter().zip(&specimen.intervals).map(|(row, own)| row.log_cycles - own.cycles.ln()).collect();
+        let residual = |rows: &[IntervalRow]| {
+            rows.iter().zip(&specimen.intervals).map(|(row, own)| row.log_cycles - own.cycles.ln()).collect()
+        };
         match known {
             Some(group) => {
                 group.residuals.push(residual(&group.rows));

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::intervals::Row;
+use super::intervals::IntervalRow;
 
 /// Noise of ln da/dN along one crack.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -28,7 +28,7 @@ fn averaged(q: f64) -> f64 {
 
 impl Noise {
     /// Variance of an interval without errors of reading.
-    pub(super) fn variance(&self, row: &Row) -> f64 {
+    pub(super) fn variance(&self, row: &IntervalRow) -> f64 {
         let q = (row.zone[1] - row.zone[0]) / self.length;
         // 2 (1 - g) / q loses all digits of a short interval: its series.
         let within = if q < 1e-3 { 1.0 - q / 3.0 + q * q / 12.0 } else { 2.0 / q * (1.0 - averaged(q)) };
@@ -36,12 +36,12 @@ impl Noise {
     }
 
     /// Variance that the errors of both readings add.
-    pub(super) fn reading_variance(&self, row: &Row) -> f64 {
+    pub(super) fn reading_variance(&self, row: &IntervalRow) -> f64 {
         self.reading * self.reading * (row.density[0].powi(2) + row.density[1].powi(2))
     }
 
     /// Covariance of intervals in order, its lower half by rows.
-    pub(super) fn covariance(&self, rows: &[Row]) -> Vec<f64> {
+    pub(super) fn covariance(&self, rows: &[IntervalRow]) -> Vec<f64> {
         let n = rows.len();
         let mut lower = vec![0.0; n * n];
         // From one later interval to the next the exponential falls by one factor, whatever the interval it is correlated with.

@@ -8,7 +8,7 @@
 
 use super::Population;
 use super::forecast::{BEYOND_MAX, CELLS, Forecast, Life, Lot};
-use super::intervals::{INTERVALS_MAX, Interval, Reading, Specimen, Zones};
+use super::intervals::{INTERVALS_MAX, Interval, IntervalReading, Specimen, Zones};
 use super::student::t_quantile;
 use perilife_base::error::{Error, InputError, Result, input};
 use perilife_base::monotone::Monotone;
@@ -89,7 +89,7 @@ impl Population {
     pub fn of_record(record: &FittedRecord) -> Result<Option<Population>> {
         let Some(table) = &record.population else { return Ok(None) };
         let wrong = |value: String, problem: &str| {
-            input("fatigue.fitted", value, format!("has a [population] {problem}"), "calibrate again, which writes it anew")
+            input("fatigue.fitted", value, format!("has a [population] {problem}"), "calibrate again")
         };
         let lot: Population = match table.clone().try_into() {
             Ok(lot) => lot,
@@ -112,7 +112,7 @@ impl Population {
             .chain(lot.covariance.as_flattened().iter().copied())
             .find(|v| !v.is_finite())
             .map(|v| ("numbers", v)));
-        problem.map_or(Ok(Some(lot)), |(key, value)| Err(wrong(format!("{key} = {value}"), "of no lot")))
+        problem.map_or(Ok(Some(lot)), |(key, value)| Err(wrong(format!("{key} = {value}"), "without a lot")))
     }
 }
 
@@ -120,29 +120,29 @@ impl Population {
 /// Errors: as [`Population::of_record`].
 pub fn lot_of(case: &Case) -> Result<std::result::Result<Population, NoBand>> {
     if case.fatigue.initiation.is_some() {
-        return Ok(Err("phase I is of an S-N law, whose scatter is not known".to_owned()));
+        return Ok(Err("scatter of the S-N curve unknown".to_owned()));
     }
     let LawSource::Fitted(record) = &case.law else {
-        return Ok(Err("the law of the case is no fitted record of measured lives".to_owned()));
+        return Ok(Err("growth law entered as constants; use a fitted law".to_owned()));
     };
     let Some(lot) = Population::of_record(record)? else {
-        return Ok(Err("the fitted record has no [population]: calibrate again".to_owned()));
+        return Ok(Err("fitted law without [population]; calibrate again".to_owned()));
     };
     if case.loading.residual.is_some() {
-        return Ok(Err("the plate has residual stress, and the specimens had none".to_owned()));
+        return Ok(Err("not available with residual stress".to_owned()));
     }
     if case.loading.spectrum.is_some() {
-        return Ok(Err("the loads are a spectrum, and the specimens had cycles of one size".to_owned()));
+        return Ok(Err("not available for spectrum loading".to_owned()));
     }
     if (case.loading.ratio - record.stress_ratio).abs() > 1e-9 {
         let (given, recorded) = (case.loading.ratio, record.stress_ratio);
-        return Ok(Err(format!("the stress ratio {given} is not that of the calibration, {recorded}")));
+        return Ok(Err(format!("law fitted at R = {recorded}, case R = {given}")));
     }
     if !case.specimen.is_through() {
-        return Ok(Err("how two ends of a front scatter that grow apart is not known".to_owned()));
+        return Ok(Err("not available for part-through cracks".to_owned()));
     }
     if case.specimen.convention == LengthConvention::SumOfTips && case.spends_bond_life() {
-        return Ok(Err("bonds that spend their own life do not tell K of every tip of a drawn plate".to_owned()));
+        return Ok(Err("not available with driver = \"bond_strain\"".to_owned()));
     }
     Ok(Ok(lot))
 }
@@ -165,7 +165,7 @@ impl Plate {
         let [low, high] = [lot.law.range[0] / BEYOND_MAX, lot.law.range[1] * BEYOND_MAX];
         let is_inside = |i: &usize| (low..=high).contains(&rows[*i].delta_k);
         let (Some(&first), Some(&last)) = (known.first(), known.iter().rev().find(|i| is_inside(i))) else {
-            return Err(if known.is_empty() { "no ΔK is known".to_owned() } else { out_of_range(&lot, rows[known[0]].delta_k) });
+            return Err(if known.is_empty() { "ΔK unknown".to_owned() } else { out_of_range(&lot, rows[known[0]].delta_k) });
         };
         if let Some(&row) = known.iter().take_while(|i| **i < last).find(|i| !is_inside(i)) {
             return Err(out_of_range(&lot, rows[row].delta_k));
@@ -173,7 +173,7 @@ impl Plate {
         let rest = (rows[first].cycles + life - rows[last].cycles) / life;
         let too_high = known.iter().find(|i| **i > last);
         if rest > REST_MAX {
-            let why = too_high.map_or_else(|| "ΔK is not known".to_owned(), |&row| out_of_range(&lot, rows[row].delta_k));
+            let why = too_high.map_or_else(|| "ΔK unknown".to_owned(), |&row| out_of_range(&lot, rows[row].delta_k));
             return Err(format!("{why}, over {:.1} % of the life", 100.0 * rest));
         }
         let mut reached = f64::NEG_INFINITY;
@@ -312,7 +312,7 @@ impl Plate {
                     key: Some(length_column.clone()),
                     value: Some(round_off(length / length_unit).to_string()),
                     problem: format!(
-                        "is not on the predicted curve, which goes from {} to {} mm",
+                        "is not on the predicted curve, {} to {} mm",
                         round_off(shortest / MM),
                         round_off(longest / MM)
                     ),
@@ -325,12 +325,12 @@ impl Plate {
         }
         let loads = curve.load_history();
         let [over_length, over_way] = [self.way_over_length(), Monotone::new(self.pairs().map(|[length, way]| [way, length]))];
-        let reading = |i: usize| Reading {
+        let reading = |i: usize| IntervalReading {
             length: over_length.at(curve.crack_length[i]),
             cycles: curve.cycles[i],
             counts: curve.counts(i),
         };
-        let readings: Vec<Reading> = (0..curve.cycles.len()).map(reading).collect();
+        let readings: Vec<IntervalReading> = (0..curve.cycles.len()).map(reading).collect();
         if readings.len() == 1 {
             return Ok(Specimen { name: curve.specimen.clone(), intervals: Vec::new() });
         }
@@ -346,7 +346,7 @@ impl Plate {
             |problem: String| Err(input("crack length, mm", round_off(length / MM), problem, "give a length between them"));
         if length < self.lengths[first] * (1.0 - SAME_LENGTH) || way >= self.way[last] {
             let [from, to] = [first, last].map(|i| round_off(self.lengths[i] / MM));
-            return refuse(format!("is not on the part of the curve whose ΔK is known, from {from} to {to} mm"));
+            return refuse(format!("is not on the part of the curve with a known ΔK, {from} to {to} mm"));
         }
         let read = own.and_then(|own| own.intervals.last()).map_or(f64::NEG_INFINITY, |interval| interval.to);
         if way < read * (1.0 - SAME_LENGTH) {
@@ -417,7 +417,7 @@ fn scaled(quantiles: Quantiles, run: f64, of: f64) -> Quantiles {
 fn out_of_range(lot: &Population, delta_k: f64) -> NoBand {
     let [low, high] = lot.law.range.map(|k| k / MPA_SQRT_M);
     format!(
-        "ΔK = {:.2} MPa√m is more than a factor {BEYOND_MAX} outside the calibrated {low:.2} to {high:.2} MPa√m",
+        "ΔK = {:.2} MPa√m is more than a factor {BEYOND_MAX} outside the tested {low:.2} to {high:.2} MPa√m",
         delta_k / MPA_SQRT_M
     )
 }

@@ -12,7 +12,7 @@ use argmin::solver::quasinewton::LBFGS;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use rayon::prelude::*;
 
-use super::intervals::Row;
+use super::intervals::IntervalRow;
 use super::noise::{Noise, cholesky, whiten};
 use super::{Between, Priors};
 use perilife_laws::curve::EFFECTS;
@@ -38,7 +38,7 @@ pub(super) type Parameters = [f64; PARAMETERS];
 
 /// Specimens that were read at the same lengths under the same loads.
 pub(super) struct Group {
-    pub rows: Vec<Row>,
+    pub rows: Vec<IntervalRow>,
     /// ln of cycles by the law over measured ones, of every specimen.
     pub residuals: Vec<Vec<f64>>,
     /// Places of the specimens among all.

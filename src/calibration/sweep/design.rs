@@ -10,8 +10,8 @@ use perilife_base::keys::{self, key};
 perilife_base::kinds! {
     /// Where the scatter of a fatigue law comes from.
     pub enum Scatter for "design.scatter" {
-        Specimens = "specimens": "from specimen to specimen: mean and covariance of their own fits in fit.json",
-        Constants = "constants": "of the fit to all of them: standard errors of the rate at the pivot and of the exponent",
+        Specimens = "specimens": "scatter between specimens (fit.json)",
+        Constants = "constants": "standard errors of the common fit (rate at the reference ΔK, exponent)",
     }
 }
 
@@ -88,21 +88,26 @@ fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design>
     for (i, one) in vary.iter().enumerate() {
         if vary[..i].iter().any(|earlier| earlier.key == one.key) {
             let place = format!("vary[{i}].key");
-            return Err(input(&place, format!("\"{}\"", one.key), "varies already", "give each key once"));
+            return Err(input(&place, format!("\"{}\"", one.key), "is given twice", "give each key once"));
         }
     }
     if vary.is_empty() && kind != DesignKind::FittedScatter {
-        return Err(input_missing("vary", "is missing: nothing varies", "write a section [[vary]] with a key and its values"));
+        return Err(input_missing("vary", "is missing: no key varies", "write a section [[vary]] with a key and its values"));
     }
     if let Some(scatter) = keys.scatter.filter(|_| kind != DesignKind::FittedScatter) {
-        let remedy = format!("leave it out, or use kind = \"{}\"", DesignKind::FittedScatter);
-        return Err(input("design.scatter", format!("\"{scatter}\""), format!("does not go with kind = \"{kind}\""), remedy));
+        let remedy = format!("remove it, or use kind = \"{}\"", DesignKind::FittedScatter);
+        return Err(input(
+            "design.scatter",
+            format!("\"{scatter}\""),
+            format!("cannot be combined with kind = \"{kind}\""),
+            remedy,
+        ));
     }
     let cases = match kind {
         DesignKind::Grid => grid_size(keys, &vary, most)?,
         DesignKind::LatinHypercube | DesignKind::FittedScatter => {
             let samples = keys.samples.ok_or_else(|| {
-                input_missing("design.samples", format!("is missing, and kind is \"{kind}\""), "give the number of cases")
+                input_missing("design.samples", format!("is missing (required by kind = \"{kind}\")"), "give the number of cases")
             })?;
             check_size("design.samples", samples, most)?
         }
@@ -114,8 +119,8 @@ fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design>
 fn grid_size(keys: &DesignKeys, vary: &[Vary], most: usize) -> Result<usize> {
     let stranger = keys.samples.map(|n| ("design.samples", n as u64)).or(keys.seed.map(|seed| ("design.seed", seed)));
     if let Some((key, value)) = stranger {
-        let remedy = "leave it out: the values of the keys say what a grid has";
-        return Err(input(key, value, format!("does not go with kind = \"{}\"", DesignKind::Grid), remedy));
+        let remedy = "remove it: the values of the keys define a grid";
+        return Err(input(key, value, format!("cannot be combined with kind = \"{}\"", DesignKind::Grid), remedy));
     }
     let sizes = vary.iter().map(|one| if let Spread::Values(values) = &one.spread { values.len() } else { 1 });
     check_size("vary", sizes.fold(1, usize::saturating_mul), most)
@@ -123,10 +128,10 @@ fn grid_size(keys: &DesignKeys, vary: &[Vary], most: usize) -> Result<usize> {
 
 fn check_size(key: &str, cases: usize, most: usize) -> Result<usize> {
     if cases == 0 {
-        return Err(input(key, cases, "is no case at all", "give at least 1"));
+        return Err(input(key, cases, "must be at least 1", "give at least 1"));
     }
     if cases > most {
-        let problem = format!("makes {cases} cases, more than the {most} that there may be");
+        let problem = format!("makes {cases} cases; limit {most}");
         return Err(input(key, format!("{cases} cases"), problem, "make it smaller, or allow more by --most"));
     }
     Ok(cases)

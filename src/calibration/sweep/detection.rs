@@ -44,7 +44,7 @@ impl FromStr for Detection {
         let lengths: Option<Vec<f64>> = text.split(',').map(length_given).collect();
         match lengths.as_deref() {
             Some(&[a50, a90]) if a50 > 0.0 && a90 > a50 && a90.is_finite() => Ok(Detection { a50, a90 }),
-            Some([_, _]) => Err(wrong("is no crack length above zero and a longer one")),
+            Some([_, _]) => Err(wrong("must be two increasing crack lengths above zero")),
             _ => Err(wrong("is not two numbers")),
         }
     }

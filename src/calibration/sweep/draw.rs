@@ -128,8 +128,7 @@ impl Sweep {
         let fitted =
             value_at(&Value::Table(self.base.table.clone()), "fatigue.fitted").and_then(|name| name.as_str().map(str::to_owned));
         let Some(fitted) = fitted else {
-            let problem =
-                format!("is missing, and design.kind = \"{}\" draws from the record it names", DesignKind::FittedScatter);
+            let problem = format!("is missing (required by design.kind = \"{}\")", DesignKind::FittedScatter);
             return Err(self.base.locate(input_missing(
                 "fatigue.fitted",
                 problem,

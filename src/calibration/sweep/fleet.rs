@@ -90,7 +90,7 @@ pub fn check(fleet: &Fleet, one_law: Option<&NoBand>) -> Result<()> {
         None => Ok(()),
         Some(why) => Err(input_missing(
             "fleet",
-            format!("has nothing that scatters: {why}"),
+            format!("has no scatter: {why}"),
             "give fleet.initial_length_mm = { median, standard_deviation_ln }, fleet.load_scatter, or a fitted record of several specimens",
         )),
     }

@@ -51,12 +51,12 @@ impl LawScatter {
     /// Scatter from specimen to specimen: mean and covariance (over n - 1) of their own fits.
     pub fn of_specimens(record: FittedRecord, fits: &SpecimenFits) -> Result<Self> {
         if (fits.p / record.p - 1.0).abs() > 1e-9 {
-            let problem = format!("is not the exponent of the record beside it, {}", record.p);
+            let problem = format!("differs from the exponent in fit.json, {}", record.p);
             return Err(input("p", fits.p, problem, "keep fitted.toml and fit.json of one calibration together"));
         }
         let n = fits.specimens.len();
         if n < SPECIMENS_MIN {
-            let problem = format!("are too few for a scatter, which takes {SPECIMENS_MIN} or more");
+            let problem = format!("are too few for a scatter (need {SPECIMENS_MIN})");
             let remedy = "calibrate on more specimens, or use design.scatter = \"constants\"";
             return Err(input("specimens", format!("{n} specimens"), problem, remedy));
         }
@@ -67,7 +67,7 @@ impl LawScatter {
             |fit: &SpecimenRecord| record.rate_at_pivot_mm_per_cycle.ln() + (fit.a / of_record).ln() + slope * (fit.p - record.p);
         let pairs: Vec<[f64; 2]> = fits.specimens.iter().map(|fit| [rate(fit), fit.p]).collect();
         if pairs.iter().flatten().any(|value| !value.is_finite()) {
-            return Err(input_missing("specimens", "hold an a or p that is no number above zero", "calibrate again"));
+            return Err(input_missing("specimens", "contain an a or p that is not a number above zero", "calibrate again"));
         }
         let mean = [0, 1].map(|i| pairs.iter().map(|pair| pair[i]).sum::<f64>() / n as f64);
         let moment =
@@ -82,7 +82,7 @@ impl LawScatter {
         if !errors.iter().all(|error| error.is_finite() && *error >= 0.0) || errors == [0.0; 2] {
             let remedy = "use the record of a calibration with errors, or design.scatter = \"specimens\"";
             let key = "rate_at_pivot_relative_error";
-            return Err(input(key, errors[0], "and p_error give no errors to draw from", remedy));
+            return Err(input(key, errors[0], "and p_error contain no errors to sample", remedy));
         }
         let mean = [record.rate_at_pivot_mm_per_cycle.ln(), record.p];
         let covariance = [[errors[0].powi(2), 0.0], [0.0, errors[1].powi(2)]];
@@ -135,13 +135,13 @@ pub fn read(record: FittedRecord, fitted: &str, folder: &Folder, scatter: Scatte
     let path = folder.path(&beside);
     let bytes = folder.read(&beside).map_err(|error| match error {
         Error::File { path, source, .. } => {
-            let action = "cannot read the fits of the specimens (`perilife calibrate` writes them beside its record)";
+            let action = "cannot read the fits of the specimens (`perilife calibrate` writes fit.json with its record)";
             Error::file(&path, action, source)
         }
         other => other,
     })?;
     let fits: SpecimenFits = serde_json::from_slice(&bytes).map_err(|error| {
-        let problem = format!("is no report of a calibration: {error}");
+        let problem = format!("is not a calibration result: {error}");
         input_missing("file", problem, "calibrate again").in_file(&path)
     })?;
     LawScatter::of_specimens(record, &fits).map_err(|error| error.in_file(&path))

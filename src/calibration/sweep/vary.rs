@@ -12,16 +12,16 @@ perilife_base::kinds! {
     /// How the cases of a sweep are chosen.
     pub enum DesignKind for "design.kind" {
         Grid = "grid": "every combination of the values of all keys, the last key fastest",
-        LatinHypercube = "latin_hypercube": "random: of every key one value from each of as many strata as there are samples",
-        FittedScatter = "fitted_scatter": "the fatigue law scatters as a calibration found it; other keys may vary beside",
+        LatinHypercube = "latin_hypercube": "random (Latin hypercube): one value of each key from each stratum",
+        FittedScatter = "fitted_scatter": "growth law sampled from the scatter of a calibration; other keys may vary too",
     }
 }
 
 perilife_base::kinds! {
     /// Shape of a distribution.
     pub enum DistributionKind for "vary.distribution" {
-        Uniform = "uniform": "every value between from and to is equally likely",
-        LogUniform = "log_uniform": "the logarithm is uniform between those of from and to",
+        Uniform = "uniform": "uniform between from and to",
+        LogUniform = "log_uniform": "uniform in the logarithm between from and to",
         Normal = "normal": "normal, with mean and standard_deviation",
         LogNormal = "log_normal": "the logarithm is normal, with median and standard_deviation_ln, or factor = exp of it",
     }
@@ -30,8 +30,8 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// How the values of a grid lie between two.
     pub enum Scale for "vary.scale" {
-        Linear = "linear": "equal differences from from to to",
-        Log = "log": "equal ratios from from to to",
+        Linear = "linear": "equal differences, from to to",
+        Log = "log": "equal ratios, from to to",
     }
 }
 
@@ -90,8 +90,8 @@ fn check_key(key: &str, path: &str, kind: DesignKind) -> Result<()> {
         return Err(input(&place, format!("\"{key}\""), "is not a key of a case", remedy));
     }
     if kind == DesignKind::FittedScatter && section == "fatigue" && law_keys().any(|key| key == rest) {
-        let remedy = format!("leave it out, or use design.kind = \"{}\"", DesignKind::LatinHypercube);
-        return Err(input(&place, format!("\"{key}\""), format!("is drawn by design.kind = \"{kind}\" already"), remedy));
+        let remedy = format!("remove it, or use design.kind = \"{}\"", DesignKind::LatinHypercube);
+        return Err(input(&place, format!("\"{key}\""), format!("is already sampled by design.kind = \"{kind}\""), remedy));
     }
     Ok(())
 }
@@ -110,7 +110,7 @@ const OF_SPACING: [&str; 4] = ["from", "to", "count", "scale"];
 impl Reader<'_> {
     fn grid(&self, most: usize) -> Result<Spread> {
         let input = self.input;
-        let problem = "belongs to a random design, and this is a grid";
+        let problem = "applies only to a random design; this is a grid";
         self.given.refuse_any(&OF_DISTRIBUTIONS, problem, "give values, or from, to and count")?;
         let Some(values) = &input.values else { return self.spaced(most) };
         self.given.refuse_any(&OF_SPACING, "conflicts with values", "give values, or from, to and count")?;
@@ -136,7 +136,7 @@ impl Reader<'_> {
         let count = self.input.count.ok_or_else(|| self.missing("count"))?;
         if !(2..=most.max(2)).contains(&count) {
             let remedy = format!("give 2 to {}", most.max(2));
-            return Err(input(&self.key("count"), count, "is no number of values between two", remedy));
+            return Err(input(&self.key("count"), count, "is not a number of values between two", remedy));
         }
         let scale = self.input.scale.unwrap_or(Scale::Linear);
         if scale == Scale::Log {
@@ -158,7 +158,7 @@ impl Reader<'_> {
 
     fn random(&self, kind: DesignKind) -> Result<Spread> {
         let input = self.input;
-        let problem = format!("belongs to a grid, and this is a design of kind \"{kind}\"");
+        let problem = format!("applies only to a grid; this is a design of kind \"{kind}\"");
         self.given.refuse_any(&["values", "count", "scale"], &problem, "give a distribution")?;
         let shape = input.distribution.ok_or_else(|| self.missing("distribution"))?;
         let own: &[&str] = match shape {
@@ -168,7 +168,7 @@ impl Reader<'_> {
         };
         let strangers: Vec<&str> =
             OF_DISTRIBUTIONS[1..].iter().chain(&OF_SPACING).copied().filter(|key| !own.contains(key)).collect();
-        let problem = format!("does not go with distribution = \"{shape}\"");
+        let problem = format!("cannot be combined with distribution = \"{shape}\"");
         self.given.refuse_any(&strangers, &problem, &format!("give {}", own.join(" and ")))?;
         Ok(Spread::Random(match shape {
             DistributionKind::Uniform => {
@@ -198,7 +198,7 @@ impl Reader<'_> {
                 if factor.is_finite() && factor > 1.0 {
                     return Ok(factor.ln());
                 }
-                let remedy = "give exp of the standard deviation of ln: 68 % lie between median / factor and median x factor";
+                let remedy = "factor = exp(standard deviation of ln): 68 % within median ÷ or × factor";
                 Err(input(&self.key("factor"), factor, "must be above 1", remedy))
             }
             (None, given) => {
@@ -243,7 +243,7 @@ impl Reader<'_> {
         let remedy = match key {
             "from" | "to" | "count" if self.input.distribution.is_none() => "give values, or from, to and count",
             "distribution" => "give uniform, log_uniform, normal or log_normal",
-            _ => "give the parameters of the distribution; `perilife list` names them",
+            _ => "give the parameters of the distribution; `perilife list` shows them",
         };
         input_missing(&self.key(key), "is missing", remedy)
     }

@@ -77,7 +77,7 @@ async fn patiently<T>(ask: impl AsyncFn() -> store::Result<T>) -> store::Result<
     loop {
         match ask().await {
             Err(error) if is_gone(&error) => {
-                tracing::warn!("the database does not answer: {error}");
+                tracing::warn!("database not reachable: {error}");
                 tokio::time::sleep(TRY_EVERY).await;
             }
             answer => return answer,
@@ -135,12 +135,12 @@ async fn fetch(
     with_files: bool,
 ) -> store::Result<Result<()>> {
     let ended = |why: &str| {
-        let text = format!("{}: its job {why}; run the same command again to submit it anew", case.name);
+        let text = format!("{}: its job {why}; run the same command to submit it again", case.name);
         Ok(Err(Error::Mechanics(text)))
     };
     let Some(job) = job else { return ended("was deleted") };
     if job.state == State::Cancelled {
-        return ended("was cancelled");
+        return ended("was canceled");
     }
     if let Some(problem) = &job.problem {
         let outcome = Outcome { try_again: is_lost(&job), ..Outcome::failed(case, &problem.detail, 0.0) };

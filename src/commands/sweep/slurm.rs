@@ -17,13 +17,13 @@ const TASKS_MAX: usize = 1000;
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Slurm")]
 pub struct Args {
-    /// Cases for each task of the array [default: as few as give at most 1000 tasks]
+    /// Cases per array task [default: fewest for at most 1000 tasks]
     #[arg(long, value_name = "COUNT")]
     pub cases_per_task: Option<usize>,
-    /// Option for sbatch (repeatable), e.g. --sbatch-option=--time=02:00:00
+    /// sbatch option (repeatable), e.g. --sbatch-option=--time=02:00:00
     #[arg(long, value_name = "OPTION", allow_hyphen_values = true)]
     pub sbatch_option: Vec<String>,
-    /// Wait for the array, and collect
+    /// Wait for the array, then collect
     #[arg(long)]
     pub wait: bool,
 }
@@ -36,7 +36,7 @@ pub fn submit(args: &super::Args, folder: &SweepFolder, left: &[&DrawnCase]) -> 
     let all = folder.plan.cases.len();
     let per_task = args.slurm.cases_per_task.unwrap_or_else(|| all.div_ceil(TASKS_MAX));
     if per_task == 0 {
-        return Err(input("--cases-per-task", per_task, "is no case at all", "give at least 1"));
+        return Err(input("--cases-per-task", per_task, "must be at least 1", "give at least 1"));
     }
     let count = all.div_ceil(per_task);
     let is_needed = |number: &usize| left.iter().any(|case| Shard { number: *number, of: count }.has(case.number));
@@ -80,7 +80,7 @@ fn sbatch(args: &super::Args, script: &Path, count: usize) -> Result<bool> {
         return Err(cannot(std::io::Error::other(format!("{status}: {words}"))));
     }
     if !status.success() {
-        console.warn(&format!("job {job}: a task ended with trouble ({status}) {words}; see {LOGS} in the folder"));
+        console.warn(&format!("job {job}: a task failed ({status}) {words}; see {LOGS}"));
     }
     Ok(args.slurm.wait)
 }

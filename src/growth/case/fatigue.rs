@@ -61,14 +61,14 @@ pub(super) fn from_value(
 /// The given driver; else tips, unless a key of bonds is given or a tip is not sharp. Keys of bonds conflict with tips.
 fn read_driver(input: &FatigueKeys, of_bonds: Option<&str>, method: Method, specimen: &Specimen) -> Result<Driver> {
     if method == Method::ElementFreeGalerkin {
-        let remedy = "leave it out, or use model.method = \"peridynamics\"";
+        let remedy = "remove it, or use model.method = \"peridynamics\"";
         return match (input.driver, of_bonds) {
             (Some(Driver::BondStrain), _) => {
-                let problem = "needs bonds, and model.method = \"element_free_galerkin\" has none";
+                let problem = "requires bonds; model.method = \"element_free_galerkin\" has none";
                 Err(perilife_base::error::input("fatigue.driver", "\"bond_strain\"", problem, remedy))
             }
             (_, Some(key)) => {
-                let problem = "belongs to fatigue bonds, and model.method is \"element_free_galerkin\"";
+                let problem = "applies only to fatigue bonds, not to model.method = \"element_free_galerkin\"";
                 Err(input_missing(&format!("fatigue.{key}"), problem, remedy))
             }
             _ => Ok(Driver::TipField),
@@ -76,8 +76,8 @@ fn read_driver(input: &FatigueKeys, of_bonds: Option<&str>, method: Method, spec
     }
     match (input.driver, of_bonds) {
         (Some(Driver::TipField), Some(key)) if method == Method::Peridynamics => {
-            let problem = "belongs to fatigue bonds, and fatigue.driver is \"tip_field\"";
-            Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or use driver = \"bond_strain\""))
+            let problem = "applies only to fatigue bonds, not to fatigue.driver = \"tip_field\"";
+            Err(input_missing(&format!("fatigue.{key}"), problem, "remove it, or use driver = \"bond_strain\""))
         }
         (Some(driver), _) => Ok(driver),
         (None, None) if specimen.has_sharp_tips() => Ok(Driver::TipField),
@@ -90,19 +90,15 @@ fn read_driver(input: &FatigueKeys, of_bonds: Option<&str>, method: Method, spec
 fn read_initiation(input: &FatigueKeys, (driver, specimen, loading): (Driver, &Specimen, &Loading)) -> Result<Option<SnLaw>> {
     let Some(law) = input.initiation else {
         if specimen.kind == SpecimenKind::StopHole {
-            let problem = "is missing: the crack was stopped, and only an S-N law says when the holes crack again";
-            return Err(input_missing(
-                initiation::KEY,
-                problem,
-                "give range_mpa, cycles and slope of one point and the line through it",
-            ));
+            let problem = "required: initiation at the stop holes needs an S-N curve";
+            return Err(input_missing(initiation::KEY, problem, "give range_mpa, cycles and slope of the S-N curve"));
         }
         return Ok(None);
     };
     if driver != Driver::TipField || !specimen.is_through() || loading.spectrum.is_some() || loading.control != LoadControl::Load
     {
-        let problem = "goes with cycles of one load and through cracks that grow by K of their tips";
-        return Err(input_missing(initiation::KEY, problem, "leave it out"));
+        let problem = "requires constant amplitude and through cracks driven by K";
+        return Err(input_missing(initiation::KEY, problem, "remove it"));
     }
     Ok(Some(law))
 }
@@ -112,8 +108,8 @@ fn read_step_error(slice: &FatigueKeys, has_tips: bool) -> Result<f64> {
     const KEY: &str = "fatigue.step_error_percent";
     let error = slice.step_error_percent;
     if let Some(error) = error.filter(|_| !has_tips) {
-        let problem = "belongs to growth by K of the tips, and the driver is \"bond_strain\", which solves after every break";
-        return Err(input(KEY, error, problem, "leave it out, or use driver = \"tip_field\""));
+        let problem = "applies only to driver = \"tip_field\", not to \"bond_strain\"";
+        return Err(input(KEY, error, problem, "remove it, or use driver = \"tip_field\""));
     }
     Ok(error.unwrap_or(STEP_ERROR_PERCENT))
 }
@@ -145,14 +141,14 @@ pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Sp
         const KEY: &str = "crack_length_mm";
         if length <= specimen.shortest_crack() {
             let start = perilife_base::units::round_mm(specimen.shortest_crack());
-            let problem = format!("is not beyond the initial crack length {start} mm");
-            return Err(given.refuse(KEY, problem, "give a longer crack, or leave it out"));
+            let problem = format!("must be above the initial crack length {start} mm");
+            return Err(given.refuse(KEY, problem, "give a longer crack, or remove it"));
         }
         let (limit, _) = specimen.length_limit();
         if specimen.convention == LengthConvention::MeanOfTips && length >= limit {
             let limit = perilife_base::units::round_mm(limit);
-            let problem = format!("is beyond the plate, which ends at {limit} mm");
-            return Err(given.refuse(KEY, problem, "give a shorter crack, or leave it out"));
+            let problem = format!("is outside the plate, which ends at {limit} mm");
+            return Err(given.refuse(KEY, problem, "give a shorter crack, or remove it"));
         }
     }
     let (crack_depth, at_break_through) = stop_in_depth(&given, &own, specimen)?;
@@ -169,19 +165,19 @@ pub(super) fn stop_from_value(value: &Value, (specimen, material, loading): (&Sp
 fn stop_in_depth(given: &Given<'_>, own: &StopKeys, specimen: &Specimen) -> Result<(f64, bool)> {
     const DEPTH: &str = "crack_depth_mm";
     let Some(flaw) = &specimen.part_through else {
-        let problem = format!("belongs to cracks that do not go through, and that of {} does", specimen.kind);
-        given.refuse_any(&[DEPTH, "at_break_through"], &problem, "leave it out")?;
+        let problem = format!("applies only to part-through cracks; {} has a through crack", specimen.kind);
+        given.refuse_any(&[DEPTH, "at_break_through"], &problem, "remove it")?;
         return Ok((f64::INFINITY, false));
     };
     if let Some(depth) = own.crack_depth {
         let [start, through] = [flaw.depth, flaw.through_depth()].map(perilife_base::units::round_mm);
         if depth <= flaw.depth {
-            let problem = format!("is not beyond the initial crack depth {start} mm");
-            return Err(given.refuse(DEPTH, problem, "give a larger depth, or leave it out"));
+            let problem = format!("must be above the initial crack depth {start} mm");
+            return Err(given.refuse(DEPTH, problem, "give a larger depth, or remove it"));
         }
         if depth > flaw.through_depth() {
-            let problem = format!("is beyond {through} mm, where the crack is through");
-            return Err(given.refuse(DEPTH, problem, "give a smaller depth, or at_break_through = true"));
+            let problem = format!("exceeds the thickness {through} mm");
+            return Err(given.refuse(DEPTH, problem, "use a smaller depth, or at_break_through = true"));
         }
     }
     Ok((own.crack_depth.unwrap_or(f64::INFINITY), own.at_break_through == Some(true)))
@@ -198,7 +194,7 @@ fn required_load(stop: &StopKeys, specimen: &Specimen, material: &Material, load
             (STRENGTH, strength, strength * MPA / loading.maximum)
         }
         (None, Some(strength)) => {
-            let problem = format!("is a gross stress, and a {} is loaded by a force on its pins", specimen.kind);
+            let problem = format!("is a gross stress, but a {} needs a force on its pins", specimen.kind);
             return Err(input(STRENGTH, strength, problem, format!("set {FACTOR} = required load / maximum load")));
         }
     };
@@ -217,12 +213,7 @@ fn required_load(stop: &StopKeys, specimen: &Specimen, material: &Material, load
     let ends = [(stop.toughness, material.toughness), (stop.net_section, material.yield_strength)];
     if !ends.iter().any(|(asked, strength)| *asked && strength.is_some()) {
         let remedy = "give material.toughness_mpa_sqrt_m, yield_strength_mpa or both";
-        return Err(input(
-            key,
-            given,
-            "cannot be compared: the material has neither toughness nor yield strength that ends the life",
-            remedy,
-        ));
+        return Err(input(key, given, "requires material.toughness or material.yield_strength", remedy));
     }
     Ok(Some(factor))
 }

@@ -11,8 +11,8 @@ use perilife_laws::{Ageing, Driver};
 perilife_base::kinds! {
     /// Lot of material that the plate of a case is of, beside that of the calibration.
     pub enum Lot for "fatigue.lot" {
-        Same = "same": "that of the tested specimens: the band of lives is their scatter",
-        Other = "other": "another one of the same material: the band includes the scatter between lots",
+        Same = "same": "same lot as the specimens: band = scatter within the lot",
+        Other = "other": "other lot of the same material: band includes lot-to-lot scatter",
     }
 }
 

@@ -81,7 +81,7 @@ fn length(given: &LengthKeys) -> Result<InitialLength> {
         (None, None, Some(mean), Some(deviation)) => Ok(InitialLength::Normal { mean, deviation }),
         _ => {
             let remedy = "give { median, standard_deviation_ln } (the logarithm is normal) or { mean, standard_deviation } (normal, above zero)";
-            Err(input_missing(LENGTH_KEY, "is no distribution of two numbers", remedy))
+            Err(input_missing(LENGTH_KEY, "is not a distribution of two numbers", remedy))
         }
     }
 }

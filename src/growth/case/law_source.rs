@@ -33,24 +33,24 @@ pub(super) fn read(threshold: f64, hands_over: Option<bool>, given: &Given<'_>) 
     let is_given = |key: &str| value_at(given.section, key).is_some();
     if let Some((kind, read)) = kind.and_then(|kind| Some((kind, kind.0.read?))) {
         if hands_over.is_some() {
-            let problem = "is no law of bonds, whose rate is a power of their strain";
+            let problem = "cannot drive bonds (only a power law can)";
             let remedy = "use fatigue.driver = \"tip_field\", or model.method = \"handbook\"";
             return Err(input(GrowthLawKind::KEY, format!("\"{kind}\""), problem, remedy));
         }
         kind.0.refuse_foreign(&is_given)?;
         if let Some((what, least)) = kind.0.compression.filter(|(_, least)| given.ratios[1] < *least) {
-            let problem = format!("lies below {least}, to which the {what} of growth_law \"{kind}\" is known");
+            let problem = format!("is below {least}, the lowest R for the {what} of growth_law \"{kind}\"");
             return Err(input("loading.stress_ratio", given.ratios[0], problem, "use another growth_law"));
         }
         return read(given, kind.0).map(|law| Some(LawSource::Factor(FactorLaw { threshold, ..law })));
     }
     if is_given(K_C.key) {
-        let remedy = "leave it out, or choose its law by fatigue.growth_law";
-        return Err(input_missing("fatigue.k_c_mpa_sqrt_m", "is no constant of this growth law", remedy));
+        let remedy = "remove it, or set its law by fatigue.growth_law";
+        return Err(input_missing("fatigue.k_c_mpa_sqrt_m", "is not a constant of this growth law", remedy));
     }
     let is_there = |key: &Constant| if key.is_shared() { is_given(key.key) } else { own.is_some() };
     if let Some((kind, lacks)) = kind.and_then(|kind| Some((kind, kind.0.constants.iter().find(|key| !is_there(key))?))) {
-        let problem = format!("is missing, and growth_law is \"{kind}\"");
+        let problem = format!("is missing (required by growth_law = \"{kind}\")");
         return Err(input_missing(&format!("fatigue.{}", lacks.key), problem, "give all constants of the law"));
     }
     if let Some(fitted) = given.get::<String>("fitted")? {
@@ -83,8 +83,8 @@ fn only_law(asked: Option<GrowthLawKind>, fatigue: &Value) -> Result<Option<Vec<
         return Err(input(&second, value, problem, "give one law: fitted, or the constants of one kind"));
     }
     if let Some(kind) = asked.filter(|kind| !kinds.contains(kind)) {
-        let problem = format!("is no constant of fatigue.growth_law = \"{kind}\"");
-        return Err(input(&key, value, problem, "give the constants of that law, or leave growth_law out"));
+        let problem = format!("is not a constant of fatigue.growth_law = \"{kind}\"");
+        return Err(input(&key, value, problem, "give the constants of that law, or remove growth_law"));
     }
     Ok(Some(kinds))
 }
@@ -114,7 +114,7 @@ fn read_record(name: &str, folder: &Folder) -> Result<LawSource> {
 pub fn fitted_record(name: &str, folder: &Folder) -> Result<FittedRecord> {
     let document = Document::in_folder(folder, name, &[])?;
     if LawRecord::is_of(&document.table) {
-        let problem = "holds a law over K that was fitted to rates, not A and p";
+        let problem = "contains a da/dN-ΔK law, not A and p";
         return Err(input("fitted", format!("\"{name}\""), problem, "give a record of a fit to a-N readings"));
     }
     let mut table = document.table.clone();
@@ -148,8 +148,8 @@ pub(super) fn expanded(fatigue: &Value, folder: &Folder) -> Result<Option<(Value
     let record = slice::<LawRecord>(&Value::Table(document.table.clone()), "record").map_err(|error| document.locate(error))?;
     let mut table = fatigue.as_table().cloned().unwrap_or_default();
     if let Some(asked) = table.get("growth_law").and_then(Value::as_str).filter(|asked| *asked != record.kind()) {
-        let problem = format!("is not the law that {name} holds, {}", record.kind());
-        return Err(input("fatigue.growth_law", format!("\"{asked}\""), problem, "leave it out, or give a record of that law"));
+        let problem = format!("is not the law of {name}, {}", record.kind());
+        return Err(input("fatigue.growth_law", format!("\"{asked}\""), problem, "remove it, or give a record of that law"));
     }
     table.remove("fitted");
     table.remove("growth_law");
@@ -168,9 +168,9 @@ pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, fold
     if value_at(fatigue, "growth_law").and_then(Value::as_str) != Some(LIBRARY) {
         return Ok(None);
     }
-    const REMEDY: &str = "name a record of `perilife list materials`, or an own file with [growth]";
+    const REMEDY: &str = "set material.name to an entry of `perilife list materials`, or to your own file with [growth]";
     let Some(name) = value_at(material, "name").and_then(Value::as_str) else {
-        let problem = "is missing, and fatigue.growth_law is \"library\"";
+        let problem = "is missing (required by fatigue.growth_law = \"library\")";
         return Err(input_missing("material.name", problem, REMEDY));
     };
     let Some((keys, words)) = growth_keys(name, thickness, folder)? else {
@@ -180,7 +180,7 @@ pub(super) fn of_library(fatigue: &Value, material: &Value, thickness: f64, fold
     table.remove("growth_law");
     if let Some(key) = law_keys().chain([GAMMA.key]).find(|key| table.contains_key(*key)) {
         let problem = "conflicts with growth_law = \"library\"";
-        return Err(input_missing(&format!("fatigue.{key}"), problem, "leave it out, or give all constants in the case"));
+        return Err(input_missing(&format!("fatigue.{key}"), problem, "remove it, or give all constants in the case"));
     }
     table.extend(keys);
     Ok(Some((Value::Table(table), words)))
@@ -240,13 +240,11 @@ pub(crate) fn ratio_line(record: &LawRecord, ratio: f64, key: &str) -> Result<Op
     }
     let fits = || GrowthLawKind::all().map(|kind| kind.0).filter(|law| law.fit.is_some());
     if fits().any(|law| law.name == record.kind() && !law.takes_ratio) {
-        let problem = format!(
-            "is outside the stress ratios that the law was fitted to, {low} to {high}, and ΔK alone says nothing about R"
-        );
+        let problem = format!("is outside the fitted stress ratios, {low} to {high}; this law does not include R");
         let others: Vec<&str> = fits().filter(|law| law.takes_ratio).map(|law| law.name).collect();
         let (last, before) = others.split_last().map_or(("", String::new()), |(last, before)| (last, before.join(", ")));
         let remedy = format!("fit {before} or {last} to rates at several ratios");
         return Err(input(key, ratio, problem, remedy));
     }
-    Ok(Some(format!("the law {} was fitted to stress ratios from {low} to {high} and is used at {ratio}", record.kind())))
+    Ok(Some(format!("law {} fitted for R = {low} to {high}, used at R = {ratio}", record.kind())))
 }

@@ -90,8 +90,8 @@ pub(super) fn refuse_strangers(model: &Given<'_>, method: Method, chosen: Option
         return Ok(());
     };
     let (owner, why) = (owners[0], chosen.map_or_else(String::new, |why| format!(" ({why})")));
-    let problem = format!("belongs to model.method = \"{owner}\", and the method is \"{method}\"{why}");
-    Err(model.refuse(key.name, problem, format!("leave it out, or use model.method = \"{owner}\"")))
+    let problem = format!("applies only to model.method = \"{owner}\"; the method is \"{method}\"{why}");
+    Err(model.refuse(key.name, problem, format!("remove it, or use model.method = \"{owner}\"")))
 }
 
 /// Makes `[model]` one of nodes: what it says of points goes, but for keys that were `asked` for beside the file.
@@ -113,8 +113,8 @@ pub(super) fn too_fine(spacing: f64, specimen: &Specimen, settings: &ElementFree
     let nodes = specimen.area() / settings.resolution.far.powi(2);
     (nodes > NODES_USUAL).then(|| {
         format!(
-            "model.spacing_mm = {} makes some {nodes:.0} nodes far from cracks: nodes are refined by themselves where tips, rims and \
-             ligaments ask for it; leave the key out",
+            "model.spacing_mm = {} gives about {nodes:.0} nodes far from cracks: nodes refine automatically at tips, edges \
+             and ligaments; remove the key",
             round_mm(spacing)
         )
     })

@@ -26,12 +26,12 @@ pub(super) fn settle(case: &mut Case) -> Result<()> {
     };
     let refused = |problem: &str, remedy: &str| Err(input(key, value.clone(), problem, remedy));
     if case.loading.control != LoadControl::Load {
-        let problem = "touches as its force says, which is not the same at every crack length";
+        let problem = "has a contact arc that depends on force, which varies with crack length";
         return refused(problem, "give its contact half angle");
     }
     if matches!(case.model, Model::Handbook(_)) {
         return refused(
-            "is not known to the handbook, whose K is that of its own pins",
+            "is not supported by the handbook formula (it assumes its own pins)",
             "use model.method = \"element_free_galerkin\"",
         );
     }

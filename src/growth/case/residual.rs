@@ -18,21 +18,21 @@ pub(super) fn check(case: &Case) -> Result<()> {
     let Some(residual) = case.loading.residual.as_deref() else { return Ok(()) };
     let refuse = |problem: &str, remedy: &str| Err(input(residual.key(), residual.words(), problem, remedy));
     if case.loading.control != LoadControl::Load {
-        let problem = "does not go with cycles whose load depends on the crack length";
+        let problem = "cannot be combined with a load that depends on the crack length";
         return refuse(problem, "give one load, such as loading.stress_max_mpa");
     }
     match case.engine() {
         Engine::Nodes | Engine::Points => {}
         Engine::Handbook if case.specimen.kind != SpecimenKind::MiddleTension => {
-            let problem = "needs the K of forces on the faces of the crack, which the handbook has for middle_tension alone";
+            let problem = "needs K of crack-face forces, which the handbook has for middle_tension only";
             return refuse(problem, "use model.method = \"element_free_galerkin\" or \"peridynamics\"");
         }
         Engine::Handbook => check_symmetry(case, residual)?,
         Engine::PartThrough => {
-            return refuse("is known to through cracks alone", "describe a crack that goes through the thickness");
+            return refuse("is supported for through cracks only", "use a through crack");
         }
         Engine::Bonds | Engine::BondsThenPoints => {
-            let problem = "shifts K, and bonds that lose life by their own strain have none";
+            let problem = "changes K, which driver = \"bond_strain\" does not use";
             return refuse(
                 problem,
                 "use fatigue.driver = \"tip_field\" with sharp cracks, or model.method = \"element_free_galerkin\"",
@@ -56,7 +56,7 @@ fn check_law(case: &Case, residual: &ResidualStress) -> Result<()> {
     if !of_one_ratio {
         return Ok(());
     }
-    let problem = format!("gives every length another stress ratio, and the law ({name}) is of one");
+    let problem = format!("changes R along the crack; law ({name}) is for one R");
     let remedy = "give fatigue.walker_gamma (1 = no mean-stress effect), or growth_law = \"walker\", \"forman\" or \"nasgro\"";
     Err(input(residual.key(), residual.words(), problem, remedy))
 }
@@ -75,10 +75,7 @@ fn check_symmetry(case: &Case, residual: &ResidualStress) -> Result<()> {
     match (0..=LOOKED_AT).map(sides).find(is_apart) {
         None => Ok(()),
         Some((x, _)) => {
-            let problem = format!(
-                "is not symmetric about the middle of the plate, or shears it, at x = {:.3} mm: both tips have unlike K",
-                x * 1e3
-            );
+            let problem = format!("is not symmetric at x = {:.3} mm: K differs between the tips", x * 1e3);
             Err(input(residual.key(), residual.words(), problem, "use model.method = \"element_free_galerkin\""))
         }
     }

@@ -12,13 +12,13 @@ use perilife_plate::material::Material;
 perilife_base::kinds! {
     /// What K and R beyond the rows of a table of rates do.
     pub enum TableEnds for "fatigue.growth_table_ends" {
-        Refused = "refused": "the run ends in an error",
-        Held = "held": "the crack grows at the rate of the last row, or ratio; how much of the life that is stands in a warning",
+        Refused = "refused": "extrapolation is refused",
+        Held = "held": "rate of the last row or ratio; a warning gives the share of life",
     }
 }
 
 /// A law of growth: its formula, and it in the words and numbers of input files. Formulas take the constants in SI units, in their order.
-pub struct Description {
+pub struct GrowthLawSpec {
     /// Name in input and result files.
     pub name: &'static str,
     pub meaning: &'static str,
@@ -29,7 +29,7 @@ pub struct Description {
     /// ΔK, Pa√m, up to which that is 0, at R; asked for of laws with a constant of [`Role::Threshold`].
     pub threshold: fn(&[f64], f64) -> f64,
     /// Reads it from a case; `None` for bonds and powers of ΔK, either of which can stand for the other.
-    pub read: Option<fn(&Given<'_>, &'static Description) -> Result<FactorLaw>>,
+    pub read: Option<fn(&Given<'_>, &'static GrowthLawSpec) -> Result<FactorLaw>>,
     /// Keys of its own that are no constants.
     pub others: &'static [&'static str],
     /// What to give where constants are missing.
@@ -48,7 +48,7 @@ pub struct Description {
 pub type Factor = (&'static str, &'static [(&'static str, f64)]);
 
 /// What a law is where its file says nothing: a formula of its constants.
-pub(super) const UNSAID: Description = Description {
+pub(super) const UNSAID: GrowthLawSpec = GrowthLawSpec {
     name: "",
     meaning: "",
     constants: &[],
@@ -96,17 +96,19 @@ pub struct Constant {
     pub bounds: [f64; 2],
     /// Where searches start, of its variable.
     pub starts: [f64; 2],
-    /// Which rates it needs.
-    pub told_by: &'static str,
-    /// Standard error above which it is not known: a share of its value, or an absolute one where ratios tell it.
+    pub needs: Evidence,
+    /// Standard error above which it is not determined: a share of its value, or an absolute one where it needs several ratios.
     pub error_max: f64,
 }
 
-pub(super) const NEAR_FRACTURE: &str = "needs rates near fracture";
-pub(super) const NEAR_THRESHOLD: &str = "needs rates near the threshold";
-pub(super) const RATIOS: &str = "needs rates at several stress ratios";
-pub(super) const LOW_RATIOS: &str = "needs rates near the threshold at several stress ratios";
-const POWER: &str = "needs rates over a wide range of ΔK";
+/// Rates from which a constant can be determined: in words, and whether at several stress ratios.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evidence(pub &'static str, pub bool);
+
+pub(super) const NEAR_FRACTURE: Evidence = Evidence("needs rates near fracture", false);
+pub(super) const NEAR_THRESHOLD: Evidence = Evidence("needs rates near the threshold", false);
+pub(super) const RATIOS: Evidence = Evidence("needs rates at several stress ratios", true);
+const POWER: Evidence = Evidence("needs rates over a wide range of ΔK", false);
 
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
 /// Level C of a law.
@@ -127,9 +129,9 @@ const OF_WALKER: Quantity = number("a Walker exponent γ", 0.0, 2.0);
 impl Constant {
     /// A constant that a case has to give and no search looks for.
     pub const fn new(key: &'static str, name: &'static str, quantity: Quantity) -> Self {
-        let (role, told_by, is_exponent, default, held, error_max) = (Role::Plain, POWER, false, None, None, 0.0);
-        let [bounds, starts] = [[f64::NAN; 2]; 2];
-        Constant { key, name, quantity, role, is_exponent, default, held, bounds, starts, told_by, error_max }
+        let (bounds, starts, needs) = ([f64::NAN; 2], [f64::NAN; 2], POWER);
+        let (role, is_exponent, default, held, error_max) = (Role::Plain, false, None, None, 0.0);
+        Constant { key, name, quantity, role, is_exponent, default, held, bounds, starts, needs, error_max }
     }
 
     /// The exponent of ΔK.
@@ -139,13 +141,8 @@ impl Constant {
     }
 
     /// The same, searched between ends from starts.
-    pub const fn searched(self, bounds: [f64; 2], starts: [f64; 2], told_by: &'static str, error_max: f64) -> Self {
-        Constant { bounds, starts, told_by, error_max, ..self }
-    }
-
-    /// Whether it needs rates at several stress ratios.
-    pub fn is_told_by_ratios(&self) -> bool {
-        [RATIOS, LOW_RATIOS].contains(&self.told_by)
+    pub const fn searched(self, bounds: [f64; 2], starts: [f64; 2], needs: Evidence, error_max: f64) -> Self {
+        Constant { bounds, starts, needs, error_max, ..self }
     }
 
     /// Whether several laws have it.
@@ -154,7 +151,7 @@ impl Constant {
     }
 }
 
-impl Description {
+impl GrowthLawSpec {
     /// Keys that no law of other constants has.
     fn own_keys(&self) -> Vec<&'static str> {
         let constants = self.constants.iter().filter(|constant| !constant.is_shared());
@@ -176,14 +173,14 @@ impl Description {
         let is_foreign = |key: &str| is_given(key) && self.constants.iter().all(|constant| constant.key != key);
         let own_threshold = self.place(Role::Threshold).filter(|_| is_given(THRESHOLD)).map(|place| self.constants[place].key);
         let (key, problem, remedy) = match own_threshold {
-            _ if is_foreign(GAMMA.key) => (GAMMA.key, "does not go with", "or use growth_law = \"walker\"".to_owned()),
-            Some(own) => (THRESHOLD, "does not go with", format!("and give {own}")),
-            None if is_foreign(K_C.key) => (K_C.key, "is no constant of", "or give material.toughness_mpa_sqrt_m".to_owned()),
+            _ if is_foreign(GAMMA.key) => (GAMMA.key, "cannot be combined with", "or use growth_law = \"walker\"".to_owned()),
+            Some(own) => (THRESHOLD, "cannot be combined with", format!("and give {own}")),
+            None if is_foreign(K_C.key) => (K_C.key, "is not a constant of", "or give material.toughness_mpa_sqrt_m".to_owned()),
             None => return Ok(()),
         };
         let why = if key == THRESHOLD { ", which has its own threshold" } else { "" };
         let problem = format!("{problem} growth_law \"{}\"{why}", self.name);
-        Err(input_missing(&format!("fatigue.{key}"), problem, format!("leave it out, {remedy}")))
+        Err(input_missing(&format!("fatigue.{key}"), problem, format!("remove it, {remedy}")))
     }
 }
 
@@ -232,7 +229,7 @@ impl Given<'_> {
 
     /// The constants of a law in SI units, in their order.
     /// Errors: one that is missing, or beyond its bounds.
-    pub fn constants(&self, law: &Description) -> Result<Vec<f64>> {
+    pub fn constants(&self, law: &GrowthLawSpec) -> Result<Vec<f64>> {
         let is_one = |(_, own): &Factor| matches!(self.get::<f64>(own[0].0), Ok(Some(value)) if value == own[0].1);
         let of_one =
             |key: &str| law.factors.iter().filter(|factor| is_one(factor)).flat_map(|(_, own)| *own).find(|own| own.0 == key);
@@ -248,8 +245,7 @@ impl Given<'_> {
                     })
                 }
                 (None, None) => {
-                    let why =
-                        if constant.name == "horizon" { ": A is meaningless without the horizon it belongs to" } else { "" };
+                    let why = if constant.name == "horizon" { ": A depends on the horizon" } else { "" };
                     Err(input_missing(&path, format!("is missing{why}"), law.complete))
                 }
             }
@@ -258,7 +254,7 @@ impl Given<'_> {
     }
 
     /// The same; `None` where the case gives none of them.
-    pub fn all_or_none(&self, law: &Description) -> Result<Option<Vec<f64>>> {
+    pub fn all_or_none(&self, law: &GrowthLawSpec) -> Result<Option<Vec<f64>>> {
         let is_given = law.own_keys().into_iter().any(|key| value_at(self.section, key).is_some());
         is_given.then(|| self.constants(law)).transpose()
     }

@@ -1,11 +1,11 @@
 //! The law of Forman: Paris growth that becomes unstable at K_max = K_c (Forman, Kearney and Engle 1967, J. Basic Eng. 89:459).
 
-use super::description::{Constant, Description, K_C, UNSAID, rate_of};
+use super::description::{Constant, GrowthLawSpec, K_C, UNSAID, rate_of};
 use perilife_base::units::MPA_SQRT_M;
 
 const LEVEL: Constant = Constant::new("forman_c_mm_per_cycle", "c", rate_of("a Forman C"));
 /// The law, of C, m and K_c.
-pub static LAW: Description = Description {
+pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "forman",
     meaning: "da/dN = C ΔK^m / ((1-R) K_c - ΔK) (Forman, Kearney and Engle 1967)",
     constants: &[LEVEL, Constant::exponent("forman_m", "m", "a Forman exponent m"), K_C],

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use toml::{Table, Value};
 
-use super::description::{Constant, Description, K_C, LOW_RATIOS, NEAR_FRACTURE, NEAR_THRESHOLD, RATIOS, Role, UNSAID, rate_of};
+use super::description::{Constant, Evidence, GrowthLawSpec, K_C, NEAR_FRACTURE, NEAR_THRESHOLD, RATIOS, Role, UNSAID, rate_of};
 use perilife_base::input::{INTENSITY, Quantity, number};
 use perilife_base::units::MPA_SQRT_M;
 use perilife_plate::material::growth_data::{GrowthRecord, MM_PER_INCH, MPA_SQRT_M_PER_KSI_SQRT_IN};
@@ -18,10 +18,11 @@ const CONSTRAINT: Quantity = number("a constraint factor α", 1.0, 3.0);
 const DELTA_K_0: Quantity = Quantity { what: "a threshold ΔK0 at R = 0", ..INTENSITY };
 const SLOPE: Quantity = number("a threshold slope Cth over R", -10.0, 10.0);
 const SHARE: Quantity = number("a ratio Smax/σ0", 0.0, 0.99);
+const RATIOS_NEAR_THRESHOLD: Evidence = Evidence("needs rates near the threshold at several stress ratios", true);
 
 /// The law, of C as the rate at ΔK = 1 MPa√m, n, p of the threshold, q of instability, the constraint α (1 in plane stress, 3 in plane
 /// strain), S_max over the flow stress, ΔK₀ at R = 0, C_th for R from 0 on and below, and K_c.
-pub static LAW: Description = Description {
+pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "nasgro",
     meaning: "crack closure, threshold and instability in one equation (Forman and Mettu 1992)",
     constants: &[
@@ -40,7 +41,7 @@ pub static LAW: Description = Description {
         Constant { default: Some(0.0), ..Constant::new("nasgro_c_th", "threshold_slopes", SLOPE) }.searched(
             [-5.0, 5.0],
             [0.5; 2],
-            LOW_RATIOS,
+            RATIOS_NEAR_THRESHOLD,
             2.0,
         ),
         Constant { default: Some(0.0), held: Some(0.0), ..Constant::new("nasgro_c_th_negative", "threshold_slopes", SLOPE) },

@@ -1,10 +1,10 @@
 //! The law of Paris as a growth law: that of Walker at γ = 1.
 
-use super::description::{Constant, Description, UNSAID};
+use super::description::{Constant, GrowthLawSpec, UNSAID};
 use super::walker::{self, LEVEL};
 
 /// The law, of C and m.
-pub static LAW: Description = Description {
+pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "paris",
     meaning: "da/dN = C ΔK^m (Paris and Erdogan 1963)",
     constants: &[LEVEL, Constant::exponent("paris_m", "m", "a Paris exponent m")],

@@ -3,14 +3,14 @@
 use serde::Serialize;
 
 use super::FactorLaw;
-use super::description::{Description, GAMMA, Given, RatedRow, Rates, TableEnds, UNSAID};
+use super::description::{GAMMA, Given, GrowthLawSpec, RatedRow, Rates, TableEnds, UNSAID};
 use super::rising::rising;
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
 use perilife_plate::loading::SAME_RATIO;
 
 /// What it says of itself.
-pub static LAW: Description = Description {
+pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "table",
     meaning: "da/dN over ΔK, and over R, as rows of a CSV file",
     constants: &[GAMMA],
@@ -162,7 +162,7 @@ impl Table {
         let [at, low_mpa, high_mpa] = [delta_k, low, high].map(|k| k / MPA_SQRT_M);
         // Rows that are hit but for round-off.
         let is_beyond = delta_k > 0.0 && !(low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(&delta_k);
-        is_beyond.then(|| format!("ΔK = {at:.4} MPa√m lies beyond the table of rates, {low_mpa:.4} to {high_mpa:.4} MPa√m"))
+        is_beyond.then(|| format!("ΔK = {at:.4} MPa√m is outside the table of rates, {low_mpa:.4} to {high_mpa:.4} MPa√m"))
     }
 
     pub fn in_words(&self) -> String {
@@ -174,7 +174,8 @@ impl Table {
     pub fn lines(&self, ratios: [f64; 2]) -> Vec<String> {
         let unsaid = (!self.says_ratio).then(|| {
             format!(
-                "the table of rates names no stress ratio: its rates are used at R = {} as they are; name it in a column stress_ratio or \
+                "the table of rates has no stress ratio: its rates are used at R = {} unchanged; give it in a column \
+                 stress_ratio or \
                  by growth_table = {{ file = \"...\", stress_ratio = ... }}",
                 ratios[1]
             )
@@ -199,10 +200,10 @@ fn read(given: &Given<'_>) -> Result<Table> {
     let [first, last] = table.ends();
     if let Some(gamma) = table.walker_gamma.filter(|_| !table.says_ratio || table.curves.len() > 1) {
         let problem = match table.says_ratio {
-            true => format!("does not go with a table of several stress ratios, {first} to {last}"),
-            false => "does not go with a table that names no stress ratio".to_owned(),
+            true => format!("cannot be combined with a table of several stress ratios, {first} to {last}"),
+            false => "cannot be combined with a table without a stress ratio".to_owned(),
         };
-        let remedy = "leave it out, or give a table of one stress ratio that it names, or { file = \"...\", stress_ratio = ... }";
+        let remedy = "remove it, or give a table with one stress ratio, or { file = \"...\", stress_ratio = ... }";
         return Err(input("fatigue.walker_gamma", gamma, problem, remedy));
     }
     // Of a spectrum some cycles may lie above several ratios: that is said. One ratio says nothing of others.
@@ -212,7 +213,8 @@ fn read(given: &Given<'_>) -> Result<Table> {
         let remedy = match is_one {
             true => "give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or add rates at this ratio to the table".to_owned(),
             false => format!(
-                "add rates at this ratio to the table, or take those of R = {last} by growth_table_ends = \"held\" (non-conservative)"
+                "add rates at this ratio to the table, or use those of R = {last} by growth_table_ends = \"held\" \
+                 (non-conservative)"
             ),
         };
         return Err(input(KEY, format!("\"{}\"", rates.file), problem, remedy));
@@ -247,7 +249,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         let ratio = if first == last { first } else { (mean * 1e4).round() / 1e4 };
         same.sort_by(|a, b| a.pair[0].total_cmp(&b.pair[0]).then(a.pair[1].total_cmp(&b.pair[1])));
         if same.len() < 2 {
-            let problem = "has a single row: a rate between rows needs two".to_owned();
+            let problem = "has a single row; interpolation needs two".to_owned();
             return Err(wrong(Some(&same[0]), "stress_ratio", first, problem));
         }
         let pairs: Vec<[f64; 2]> = same.iter().map(|row| row.pair).collect();
@@ -258,7 +260,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         };
         let Some(rows) = rising(&pairs) else {
             let [before, at] = [pairs[fall - 1][1], pairs[fall][1]].map(|rate| round_off(rate / MM_PER_CYCLE));
-            let problem = format!("does not rise against {before}, that of the next lower ΔK");
+            let problem = format!("is not above {before}, the rate at the next lower ΔK");
             return Err(wrong(Some(&same[fall]), &rates.columns[1], at, problem));
         };
         let (curve, count) = (Curve { ratio, rows }, pairs.len());

@@ -1,14 +1,14 @@
 //! The law of Walker, which at γ = 1 is that of Paris.
 
 use super::GrowthLaw;
-use super::description::{Constant, Description, GAMMA, UNSAID, rate_of};
+use super::description::{Constant, GAMMA, GrowthLawSpec, UNSAID, rate_of};
 use crate::paris::ParisLaw;
 
 /// C.
 pub(super) const LEVEL: Constant = Constant::new("paris_c_mm_per_cycle", "c", rate_of("a Paris C"));
 
 /// The law, of C, m and γ.
-pub static LAW: Description = Description {
+pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "walker",
     meaning: "da/dN = C (K_max (1-R)^γ)^m (Walker 1970)",
     constants: &[LEVEL, Constant::exponent("paris_m", "m", "a Paris exponent m"), GAMMA],

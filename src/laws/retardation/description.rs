@@ -9,7 +9,7 @@ use perilife_plate::material::Plane;
 pub type Rate = fn(&[f64], &dyn GrowthLaw, &Now, &Zone) -> f64;
 
 /// A model of retardation.
-pub struct Description {
+pub struct RetardationSpec {
     /// Name in input and result files.
     pub name: &'static str,
     pub meaning: &'static str,
@@ -77,5 +77,5 @@ impl Zone {
     }
 }
 
-pub static NONE: Description =
-    Description { name: "none", meaning: "no load interaction", constants: &[], rate: None, underload: "none" };
+pub static NONE: RetardationSpec =
+    RetardationSpec { name: "none", meaning: "no load interaction", constants: &[], rate: None, underload: "none" };

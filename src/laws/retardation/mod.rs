@@ -11,7 +11,7 @@ mod newman;
 mod wheeler;
 mod willenborg;
 
-pub use description::{Constant, Description, Now, Zone};
+pub use description::{Constant, Now, RetardationSpec, Zone};
 pub use march::{Laws, March, Marched, Underway, between};
 
 use std::f64::consts::PI;
@@ -25,11 +25,11 @@ use perilife_plate::loading::Loading;
 use perilife_plate::material::{Material, Plane};
 
 /// Every model, in the order of `perilife list`. A new one is a line here and its file.
-const MODELS: &[&Description] = &[&description::NONE, &wheeler::MODEL, &willenborg::MODEL, &closure::MODEL, &newman::MODEL];
+const MODELS: &[&RetardationSpec] = &[&description::NONE, &wheeler::MODEL, &willenborg::MODEL, &closure::MODEL, &newman::MODEL];
 
 perilife_base::kinds! {
     /// Which model of retardation a case has.
-    pub struct RetardationKind of Description in MODELS for "loading.retardation"
+    pub struct RetardationKind of RetardationSpec in MODELS for "loading.retardation"
 }
 
 const KEY: &str = "retardation";
@@ -74,9 +74,9 @@ impl Retardation {
     pub fn read(section: &toml::Value, loading: &Loading, material: &Material, threshold: Option<f64>) -> Result<Option<Self>> {
         let given = |key: &str| value_at(section, key);
         if loading.spectrum.is_none() {
-            let problem = "says how cycles of a spectrum act on later ones, and the kind of loading is another";
+            let problem = "applies only to kind = \"spectrum\"";
             let given = Given::of(section, "loading")?;
-            return given.refuse_any(&retardation_keys(), problem, "give kind = \"spectrum\", or leave it out").map(|()| None);
+            return given.refuse_any(&retardation_keys(), problem, "set kind = \"spectrum\", or remove it").map(|()| None);
         }
         let asked = given(KEY).map(|value| RetardationKind::take(&Key::new(KEY, ""), RetardationKind::KEY, value)).transpose()?;
         let kind = asked.unwrap_or(RetardationKind(&description::NONE));
@@ -86,15 +86,11 @@ impl Retardation {
         }
         let is_own = |key: &str| key == KEY || kind.0.constants.iter().any(|constant| constant.key == key);
         if let Some(key) = retardation_keys().into_iter().find(|key| given(key).is_some() && !is_own(key)) {
-            let problem = format!("is no key of retardation = \"{kind}\"");
-            return Err(input_missing(
-                &format!("loading.{key}"),
-                problem,
-                "leave it out, or choose its model by loading.retardation",
-            ));
+            let problem = format!("is not a key of retardation = \"{kind}\"");
+            return Err(input_missing(&format!("loading.{key}"), problem, "remove it, or set its model by loading.retardation"));
         }
         let strength = material.yield_strength.ok_or_else(|| {
-            let problem = "needs the plastic zone of a tip, and the material has no yield strength";
+            let problem = "needs a yield strength (plastic zone of the tip)";
             input(RetardationKind::KEY, format!("\"{kind}\""), problem, "give material.yield_strength_mpa")
         })?;
         let constant = |constant: &description::Constant| {
@@ -104,7 +100,7 @@ impl Retardation {
                 (Some(value), _) => quantity(&constant.to_key(), &path, value),
                 (None, Some(value)) => Ok(value),
                 (None, None) => {
-                    let problem = format!("is missing, and retardation is \"{kind}\"");
+                    let problem = format!("is missing (required by retardation = \"{kind}\")");
                     Err(input_missing(&path, problem, constant.remedy))
                 }
             }

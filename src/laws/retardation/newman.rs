@@ -1,6 +1,6 @@
 //! Opening load of Newman 1984 (Int. J. Fract. 24:R131), kept from the overload on.
 
-use super::description::{Constant, Description};
+use super::description::{Constant, RetardationSpec};
 use crate::growth_law::nasgro::opening;
 use perilife_base::input::{Quantity, number};
 use perilife_plate::material::Plane;
@@ -17,9 +17,9 @@ const LEAST: f64 = -2.0;
 /// that cycles of one size have the rate of the law. S_max over the flow stress is K_max/(σ_Y √(πa)) where the case gives none: the stress at which a
 /// crack in a wide plate has this K, by which closure of M(T), SE(T) and bending specimens agrees (McClung 1994, Fatigue Fract. Eng. Mater. Struct.
 /// 17:861). The yield strength in place of the flow stress is conservative: more stress opens the crack sooner.
-pub static MODEL: Description = Description {
+pub static MODEL: RetardationSpec = RetardationSpec {
     name: "newman",
-    meaning: "crack opening load of the overload, by Newman's S_open of R, kept within its zone (Newman 1984)",
+    meaning: "crack opening load of the overload, by Newman's S_open of R, within its plastic zone (Newman 1984)",
     constants: &[
         Constant {
             key: "newman_alpha",
@@ -44,7 +44,7 @@ pub static MODEL: Description = Description {
             _ => law.rate(now.k_max, ratio_of(wanted, open, now.ratio)),
         }
     }),
-    underload: "an underload within the zone lowers the opening load from then on",
+    underload: "an underload within the zone lowers the opening load",
 };
 
 /// Stress ratio above `low` at which cracks open at the share `wanted` of the maximum, which rises with the ratio: halved 40 times.

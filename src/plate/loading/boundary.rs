@@ -28,7 +28,7 @@ perilife_base::keys! {
     #[derive(Debug)]
     pub struct SupportEntry {
         depth: f64 = key("rows_mm", "Depth of the support: from the side into the plate").of(DEPTH), or "one row" 0.0;
-        fix: Vec<Component> = key("fix", "Held components");
+        fix: Vec<Component> = key("fix", "Fixed components");
     }
 }
 /// Range of a depth from a side.
@@ -62,14 +62,13 @@ fn apply_loads(given: &Given<'_>, input: &Input, supports: Option<&Value>, speci
         return apply_to_plate(given, input, supports, specimen);
     }
     let kind = specimen.kind;
-    let problem = format!("does not go with {kind}, which brings its own loads and grips");
+    let problem = format!("cannot be combined with {kind}, which has its own loads and grips");
     if input.pins.is_some() && specimen.part_through.is_some() {
-        let problem = "press beside a crack that does not go through, whose K under a pin is not known";
-        let remedy =
-            "describe a through crack as long as the larger side of it, with the pins, as kind = \"plate\": its life is shorter";
+        let problem = "are not supported for a part-through crack (no K under a pin)";
+        let remedy = "use a through crack as long as its larger axis, with the pins, in kind = \"plate\" (conservative)";
         return Err(input_missing("loading.pins", problem, remedy));
     }
-    let remedy = "leave it out, or describe the specimen as kind = \"plate\"";
+    let remedy = "remove it, or use kind = \"plate\"";
     given.refuse_any(&[&PLACES[..], &[BENT]].concat(), &problem, remedy)?;
     if supports.is_some() {
         return Err(input_missing("supports", problem, remedy));
@@ -77,8 +76,8 @@ fn apply_loads(given: &Given<'_>, input: &Input, supports: Option<&Value>, speci
     let parallel_ratio = input.parallel_ratio;
     if parallel_ratio != 0.0 {
         if specimen.load_measure == LoadMeasure::Force {
-            let problem = format!("does not go with {kind}");
-            let remedy = "give 0 if nothing loads the sides";
+            let problem = format!("cannot be combined with {kind}");
+            let remedy = "set 0 if the sides are not loaded";
             return Err(perilife_base::error::input("loading.stress_parallel_ratio", parallel_ratio, problem, remedy));
         }
         push_edge_loads(specimen, &[Edge::Left, Edge::Right], parallel_ratio);
@@ -113,16 +112,16 @@ fn apply_to_plate(given: &Given<'_>, input_: &Input, supports: Option<&Value>, s
             return Err(input_missing(key, "conflicts with edges", remedy));
         }
         Some((key, _)) if input_.edge_bending_ratio.is_some() => {
-            let problem = format!("is of loaded edges, and the load is that of {key}");
-            return Err(input_missing("loading.edge_bending_ratio", problem, "leave it out"));
+            let problem = format!("applies only to loaded edges, and the load is that of {key}");
+            return Err(input_missing("loading.edge_bending_ratio", problem, "remove it"));
         }
         Some((key, _)) if input_.direction.is_some() => {
             let problem = format!("conflicts with {key}");
             return Err(input_missing("loading.direction", problem, "give edges, or the direction of each pin or roller"));
         }
         Some((key, _)) if parallel_ratio != 0.0 => {
-            let problem = format!("does not go with {key}");
-            return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "give 0 if nothing loads the sides"));
+            let problem = format!("cannot be combined with {key}");
+            return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "set 0 if the sides are not loaded"));
         }
         Some((key, _)) => {
             specimen.load_measure = LoadMeasure::Force;
@@ -130,7 +129,7 @@ fn apply_to_plate(given: &Given<'_>, input_: &Input, supports: Option<&Value>, s
             forces::read_rollers(input_.rollers.as_deref().unwrap_or_default(), specimen)?;
             if specimen.loads.is_empty() {
                 let remedy = "give pins { hole = 0, direction = [0, 1] } or rollers { at_mm = [0, 40], contact_width_mm = 6 }";
-                return Err(input(key, "[]", "loads nothing", remedy));
+                return Err(input(key, "[]", "applies no load", remedy));
             }
             1.0
         }
@@ -147,11 +146,11 @@ fn apply_to_plate(given: &Given<'_>, input_: &Input, supports: Option<&Value>, s
 /// left, `σ_bypass = σ - Σ P·n / (L h)`.
 fn load_edges_and_pins(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut Specimen) -> Result<f64> {
     let kind = if input_.kind == LoadingKind::Displacement { &["kind"][..] } else { &[] };
-    let problem = "does not go with pins beside loaded edges, whose stress is uniform and whose cycles are of a load";
+    let problem = "cannot be combined with pins and loaded edges together (uniform stress and cycles of a load only)";
     given.refuse_any(
         &[&["rollers", "direction", BENT][..], kind].concat(),
         problem,
-        "compute it by other means: either alone is another plate",
+        "use another program; either alone is a different problem",
     )?;
     let area = load_edges(given, input_, held, specimen)?;
     let edges = specimen.loads.len();
@@ -186,11 +185,11 @@ fn pin_force(load: &Load) -> Option<(usize, Point)> {
 /// The forces that a named plate brings along, on what the case says of supports.
 fn keep_own_loads(given: &Given<'_>, supports: Option<&Value>, specimen: &mut Specimen, parallel_ratio: f64) -> Result<f64> {
     read_supports(supports, specimen)?;
-    let problem = format!("is of loaded edges, and the load is that of the forces of {}", specimen.kind);
-    given.refuse_any(&[BENT], &problem, "leave it out, or give edges")?;
+    let problem = format!("applies only to loaded edges, and the load is that of the forces of {}", specimen.kind);
+    given.refuse_any(&[BENT], &problem, "remove it, or give edges")?;
     if parallel_ratio != 0.0 {
-        let problem = format!("does not go with the forces of {}", specimen.kind);
-        return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "leave it out, or give edges"));
+        let problem = format!("cannot be combined with the forces of {}", specimen.kind);
+        return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "remove it, or give edges"));
     }
     check_balance(specimen, "supports")?;
     Ok(1.0)
@@ -206,7 +205,7 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
         let edge: Edge = name.parse().map_err(|_| input(&path, shorten(value), "is not a side of the plate", known))?;
         let SupportEntry { depth, fix } = section(value, &path)?;
         if fix.is_empty() {
-            return Err(input(&format!("{path}.fix"), "[]", "holds nothing", "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]"));
+            return Err(input(&format!("{path}.fix"), "[]", "supports nothing", "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]"));
         }
         let [low, high] = bounding_box(&specimen.outline);
         let (x, y) = (fix.contains(&Component::X), fix.contains(&Component::Y));
@@ -215,8 +214,8 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
             return Err(input(
                 &format!("{path}.rows_mm"),
                 round_mm(depth),
-                "holds half the plate or more",
-                "give a smaller depth",
+                "supports half of the plate or more",
+                "reduce the depth",
             ));
         }
         let stretches = stretches(edge, specimen, &path)?;
@@ -231,13 +230,12 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
 fn stretches(edge: Edge, specimen: &Specimen, key: &str) -> Result<Vec<(Point, Point)>> {
     let found = edge.stretches(specimen);
     if found.is_empty() {
-        let remedy = "an edge is what lies on the bounding box of the outline";
-        return Err(input(key, edge, "is no straight side of this outline", remedy));
+        let remedy = "only sides on the bounding box are edges";
+        return Err(input(key, edge, "is not a straight side of this outline", remedy));
     }
     if let Some((from, to)) = edge.step(specimen) {
-        let problem =
-            format!("has a step: {} to {} is level with it but for less than 1e-4 of the plate", place_mm(from), place_mm(to));
-        return Err(input(key, edge, problem, "draw the side in one line, or the step deeper"));
+        let problem = format!("has a step smaller than 1e-4 of the plate from {} to {}", place_mm(from), place_mm(to));
+        return Err(input(key, edge, problem, "draw the side as one line, or make the step deeper"));
     }
     Ok(found)
 }
@@ -252,11 +250,11 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
         None => [Edge::Top, Edge::Bottom].into_iter().filter(|edge| !held.contains(edge)).collect(),
         Some(asked) => {
             if let Some(edge) = asked.iter().find(|edge| held.contains(edge)) {
-                let remedy = "load another side, or do not hold this one";
-                return Err(input(KEY, edge, "is held by [supports], so it cannot be loaded", remedy));
+                let remedy = "load another side, or remove this support";
+                return Err(input(KEY, edge, "is supported by [supports] and cannot be loaded", remedy));
             }
             if let Some((i, edge)) = asked.iter().enumerate().find(|(i, edge)| asked[..*i].contains(edge)) {
-                return Err(input(&format!("{KEY}[{i}]"), edge, "stands twice", "name each side once"));
+                return Err(input(&format!("{KEY}[{i}]"), edge, "is repeated", "name each side once"));
             }
             asked.to_vec()
         }
@@ -276,9 +274,13 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
             None => push_edge_loads(specimen, &loaded, 1.0),
         },
         Some(asked) => {
-            given.refuse_any(&[BENT], "does not go with loading.direction: bending acts along the normal", "leave one out")?;
+            given.refuse_any(
+                &[BENT],
+                "cannot be combined with loading.direction: bending acts along the normal",
+                "remove one of them",
+            )?;
             if parallel_ratio != 0.0 {
-                let problem = "does not go with loading.direction";
+                let problem = "cannot be combined with loading.direction";
                 return Err(input("loading.stress_parallel_ratio", parallel_ratio, problem, "name all loaded sides in edges"));
             }
             for (edge, traction) in loaded.iter().zip(directions(asked, &loaded)?) {
@@ -291,8 +293,8 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
         let vertical = first.normal()[0] == 0.0;
         let across = if vertical { [Edge::Left, Edge::Right] } else { [Edge::Bottom, Edge::Top] };
         if loaded.iter().any(|edge| across.contains(edge)) {
-            let remedy = "leave one of them out";
-            return Err(input("loading.stress_parallel_ratio", parallel_ratio, "loads sides that edges loads already", remedy));
+            let remedy = "remove one of them";
+            return Err(input("loading.stress_parallel_ratio", parallel_ratio, "loads sides that edges already loads", remedy));
         }
         let free: Vec<Edge> = across.into_iter().filter(|edge| !held.contains(edge)).collect();
         for edge in &free {
@@ -317,7 +319,7 @@ fn directions(given: &Value, loaded: &[Edge]) -> Result<Vec<Point>> {
         (None, None) => return Err(wrong("is not a direction".into())),
     };
     if vectors.len() != loaded.len() {
-        return Err(wrong(format!("names {} directions for {} sides", vectors.len(), loaded.len())));
+        return Err(wrong(format!("has {} directions for {} sides", vectors.len(), loaded.len())));
     }
     vectors.into_iter().map(unit).collect::<Option<_>>().ok_or_else(|| wrong("has no direction".into()))
 }
@@ -328,21 +330,21 @@ fn read_edge_bending(all: &Given<'_>, input_: &Input, loaded: &[Edge]) -> Result
     const KEY: &str = "loading.edge_bending_ratio";
     let Some(given) = &input_.edge_bending_ratio else { return Ok(None) };
     if loaded.iter().any(|edge| (edge.normal()[0] == 0.0) != (loaded[0].normal()[0] == 0.0)) {
-        let problem = "bends sides that are not parallel: which of them is not said";
+        let problem = "needs one side or two opposite sides";
         return Err(input(KEY, shorten(given), problem, "name one side or two opposite ones in loading.edges"));
     }
     if input_.kind == LoadingKind::Displacement {
-        let problem = "is of a stress on edges, and these are moved by a displacement";
-        return Err(input(KEY, shorten(given), problem, "leave it out, or give cycles of a load"));
+        let problem = "applies only to a stress on edges, and these are moved by a displacement";
+        return Err(input(KEY, shorten(given), problem, "remove it, or give cycles of a load"));
     }
     if given.as_str() == Some("pure") {
         const FORCES: [&str; 4] = ["force_max_n", "force_range_n", "force_max_kn", "force_range_kn"];
-        all.refuse_any(&FORCES, "is none in pure bending", "give loading.stress_max_mpa, that at the end of the edge")?;
+        all.refuse_any(&FORCES, "is zero in pure bending", "give loading.stress_max_mpa, that at the end of the edge")?;
         return Ok(Some([-1.0, 1.0]));
     }
     let ratio = number_of(given).ok_or_else(|| {
         let remedy = "give bending stress at the end of the edge over its mean stress, or \"pure\"";
-        input(KEY, shorten(given), "is no ratio of stresses", remedy)
+        input(KEY, shorten(given), "is not a ratio of stresses", remedy)
     })?;
     let ratio = number("bending stress over mean stress", -1000.0, 1000.0).read(KEY, ratio)?;
     Ok((ratio != 0.0).then_some([1.0 - ratio, 1.0 + ratio]))
@@ -387,14 +389,14 @@ fn check_balance(specimen: &Specimen, key: &str) -> Result<()> {
     let Imbalance { force, moment } = imbalance(specimen);
     for (i, axis) in ["x", "y"].iter().enumerate() {
         if !held[i] && force[i] {
-            let problem = format!("is not in equilibrium: the loads leave a force along {axis} that no support takes up");
-            return Err(input_missing(key, problem, "load opposite sides, pins or rollers alike, or hold a side in [supports]"));
+            let problem = format!("not in equilibrium: unbalanced force along {axis}");
+            return Err(input_missing(key, problem, "load opposite sides equally, or add a support in [supports]"));
         }
     }
     // A force held along one axis only is taken up on a line somewhere: its moment is then not asked for.
     if !turned && !held[0] && !held[1] && moment {
-        let problem = "is not in equilibrium: the loads turn the plate and no support takes that up";
-        return Err(input_missing(key, problem, "let opposite forces share one line, or hold a side in [supports]"));
+        let problem = "not in equilibrium: unbalanced moment";
+        return Err(input_missing(key, problem, "align opposite forces, or add a support in [supports]"));
     }
     Ok(())
 }

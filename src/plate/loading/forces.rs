@@ -71,11 +71,11 @@ fn force_of(path: &str, pin: &PinEntry, beside_edges: bool, specimen: &Specimen)
     match (beside_edges, pin.bearing_ratio, pin.share) {
         (false, None, share) => Ok(share.unwrap_or(1.0)),
         (false, Some(given), _) => {
-            let problem = "is bearing stress over the stress of a loaded edge, and no edge is loaded";
+            let problem = "requires a loaded edge (bearing stress / edge stress)";
             Err(input(&key, given, problem, "name the loaded edges in loading.edges, or give share"))
         }
         (true, _, Some(share)) => {
-            let problem = "is a share of a force, and beside loaded edges the nominal load is their stress";
+            let problem = "is a share of a force; with loaded edges the nominal load is a stress";
             Err(input(
                 &format!("{path}.share"),
                 share,
@@ -100,11 +100,11 @@ pub(super) fn read_rollers(rollers: &[RollerEntry], specimen: &mut Specimen) -> 
         let Some([from, to]) = sides.into_iter().find(|[from, to]| distance_to_segment(at, *from, *to) < ON_OUTLINE) else {
             let remedy = "give [x, y] of the middle of the contact";
             let given = format!("[{}, {}]", round_mm(at[0]), round_mm(at[1]));
-            return Err(input(&format!("{path}.at_mm"), given, "does not lie on the outline", remedy));
+            return Err(input(&format!("{path}.at_mm"), given, "is not on the outline", remedy));
         };
         let (side, place) = (distance(from, to), distance(from, at));
         if place < width / 2.0 - ON_OUTLINE || side - place < width / 2.0 - ON_OUTLINE {
-            let problem = "reaches beyond the end of the straight side it lies on";
+            let problem = "extends past the end of its side";
             let remedy = "give a narrower contact, or place it farther from the corner";
             return Err(input(&format!("{path}.contact_width_mm"), round_mm(width), problem, remedy));
         }
@@ -113,7 +113,7 @@ pub(super) fn read_rollers(rollers: &[RollerEntry], specimen: &mut Specimen) -> 
         let (asked, direction) = (direction, direction.map_or(Ok(inward), |direction| direction_of(&path, direction))?);
         if direction[0] * inward[0] + direction[1] * inward[1] <= 0.0 {
             let given = asked.map_or(String::new(), |[x, y]| format!("[{x}, {y}]"));
-            return Err(input(&format!("{path}.direction"), given, "pulls at the plate", "a roller pushes: turn it round"));
+            return Err(input(&format!("{path}.direction"), given, "is a pull; a roller can only push", "reverse its direction"));
         }
         let stretch = [-0.5, 0.5].map(|half| along(from, to, (place + half * width) / side));
         let pressure = share / (width * specimen.thickness);

@@ -62,7 +62,7 @@ impl Formula {
     fn read(text: &str, has_names: bool) -> Result<Formula, String> {
         let mut reader = Reader { text: text.as_bytes(), at: 0, depth: 0, has_names, steps: Vec::new() };
         reader.sum()?;
-        if reader.peek().is_some() { Err(reader.wrong("is not understood")) } else { Ok(Formula(reader.steps)) }
+        if reader.peek().is_some() { Err(reader.wrong("syntax error")) } else { Ok(Formula(reader.steps)) }
     }
 
     /// Its value.
@@ -126,7 +126,7 @@ impl Reader<'_> {
     }
 
     fn expect(&mut self, wanted: u8, name: &str) -> Result<(), String> {
-        if self.take(wanted) { Ok(()) } else { Err(self.wrong(&format!("lacks {name}"))) }
+        if self.take(wanted) { Ok(()) } else { Err(self.wrong(&format!("expected {name}"))) }
     }
 
     fn sum(&mut self) -> Result<(), String> {
@@ -187,7 +187,7 @@ impl Reader<'_> {
             }
             Some(c) if c.is_ascii_digit() || c == b'.' => self.number(),
             Some(c) if c.is_ascii_alphabetic() => self.name(),
-            _ => Err(self.wrong("lacks a number, x, y or a function")),
+            _ => Err(self.wrong("expected a number, x, y or a function")),
         }
     }
 
@@ -209,7 +209,7 @@ impl Reader<'_> {
         let number = std::str::from_utf8(&text[start..self.at]).ok().and_then(|digits| digits.parse::<f64>().ok());
         let Some(number) = number else {
             self.at = start;
-            return Err(self.wrong("holds no number"));
+            return Err(self.wrong("contains no number"));
         };
         self.steps.push(Step::Number(number));
         Ok(())

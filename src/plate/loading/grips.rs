@@ -9,15 +9,15 @@ use perilife_base::keys::Given;
 /// Refuses the keys of grips where nothing is gripped.
 pub(super) fn refuse(given: &Given<'_>, input: &Input) -> Result<()> {
     if input.kind != LoadingKind::Displacement {
-        let problem = "says how a moved edge is gripped, and the cycles are of a load";
-        return given.refuse_any(&KEYS, problem, "leave it out, or give kind = \"displacement\"");
+        let problem = "applies only to a moved edge, and the cycles are of a load";
+        return given.refuse_any(&KEYS, problem, "remove it, or give kind = \"displacement\"");
     }
     if input.pins.is_some() || input.rollers.is_some() {
-        let problem = "is of moved edges; a pin or roller follows the places it presses on";
-        return given.refuse_any(&KEYS, problem, "leave it out");
+        let problem = "applies only to moved edges, not to pins or rollers";
+        return given.refuse_any(&KEYS, problem, "remove it");
     }
     let by_mean = if input.grip == Grip::Mean { &KEYS[1..] } else { &[] };
-    given.refuse_any(by_mean, "does not go with grip = \"mean\", which holds no edge", "leave it out")
+    given.refuse_any(by_mean, "cannot be combined with grip = \"mean\", which fixes no edge", "remove it")
 }
 
 const KEYS: [&str; 2] = ["grip", "transverse"];
@@ -27,7 +27,7 @@ pub(super) fn apply(given: &Given<'_>, input: &Input, specimen: &mut Specimen) -
     let mut across = input.transverse == Transverse::Held;
     match (specimen.kind, input.grip) {
         (SpecimenKind::SingleEdgeTension, _) => {
-            given.refuse_any(&KEYS, "is said by specimen.ends of a single_edge_tension", "leave it out")?;
+            given.refuse_any(&KEYS, "set by specimen.ends for single_edge_tension", "remove it")?;
             if !specimen.supports.contains(&Support::ClampedEnds) {
                 return Ok(());
             }
@@ -47,7 +47,7 @@ pub(super) fn apply(given: &Given<'_>, input: &Input, specimen: &mut Specimen) -
         [_] => 1.0,
         [a, b] if are_opposite([a, b]) => 0.5,
         _ => {
-            let problem = "moves sides that do not face each other: how far each of them goes is not said by one displacement";
+            let problem = "one displacement cannot move sides that do not face each other";
             let remedy = "move one side or two opposite ones, or give grip = \"mean\"";
             return Err(input_missing("loading.edges", problem, remedy));
         }
@@ -57,8 +57,13 @@ pub(super) fn apply(given: &Given<'_>, input: &Input, specimen: &mut Specimen) -
             let Support::Fixed { from: a, to: b, x, y, .. } = *support else { continue };
             if (a, b) == (from, to) && ((x && direction[0].abs() > ALONG) || (y && direction[1].abs() > ALONG)) {
                 let shown = format!("[{}, {}]", direction[0], direction[1]);
-                let remedy = "leave that component out of [supports]; transverse = \"held\" holds the one across";
-                return Err(error("loading.direction", shown, "moves an edge that [supports] holds along it", remedy));
+                let remedy = "remove that component from [supports]; transverse = \"held\" fixes the one across";
+                return Err(error(
+                    "loading.direction",
+                    shown,
+                    "moves an edge that [supports] fixes in the same direction",
+                    remedy,
+                ));
             }
         }
         specimen.supports.push(Support::Moved { from, to, direction, way, held: across });

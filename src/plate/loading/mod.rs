@@ -35,24 +35,24 @@ perilife_base::kinds! {
     /// Load histories.
     pub enum LoadingKind for "loading.kind" {
         ConstantAmplitude = "constant_amplitude": "sinusoidal or triangular cycles of one range and one stress ratio",
-        Spectrum = "spectrum": "cycles of unlike size from a file, in their order, again and again",
-        Displacement = "displacement": "cycles of one displacement of the loaded places: the load falls as the cracks make the plate compliant",
+        Spectrum = "spectrum": "variable-amplitude cycles from a file, in sequence, repeated",
+        Displacement = "displacement": "constant displacement range; the load drops as the crack grows",
     }
 }
 
 perilife_base::kinds! {
     /// What cycles of a displacement do with the edges that they move.
     pub enum Grip for "loading.grip" {
-        Straight = "straight": "every moved edge stays straight and does not turn, as in a stiff grip; what it bears is not uniform",
-        Mean = "mean": "the edges bear a uniform stress, bend and turn: the displacement is the mean of the edge",
+        Straight = "straight": "rigid grip: the edge stays straight and does not rotate; its stress is not uniform",
+        Mean = "mean": "uniform edge stress; the edge may bend and rotate; displacement = edge mean",
     }
 }
 
 perilife_base::kinds! {
     /// What is moved does across the direction of its motion.
     pub enum Transverse for "loading.transverse" {
-        Free = "free": "driven points and straight edges move freely across the direction of a displacement or velocity",
-        Held = "held": "they do not move across the direction of a displacement or velocity",
+        Free = "free": "driven points and straight edges move freely normal to the displacement or velocity",
+        Held = "held": "no motion normal to the displacement or velocity",
     }
 }
 

@@ -57,8 +57,8 @@ pub fn from_values(
     } else {
         let of_spectra: Vec<&str> =
             Input::KEYS.iter().filter(|key| key.only == Some(OF_SPECTRUM) && key.group.is_none()).map(|key| key.name).collect();
-        let problem = "belongs to a spectrum, and the kind of loading is another";
-        given.refuse_any(&of_spectra, problem, "give kind = \"spectrum\", or leave it out")?;
+        let problem = "applies only to kind = \"spectrum\"";
+        given.refuse_any(&of_spectra, problem, "set kind = \"spectrum\", or remove it")?;
         None
     };
     let ratio = match &spectrum {
@@ -75,8 +75,8 @@ pub fn from_values(
     let area = boundary::apply(&given, &input, supports, specimen)?;
     read_bending(&input, specimen)?;
     if let Some(flaw) = specimen.part_through.as_ref().filter(|flaw| parallel_ratio != 0.0 && flaw.radius > 0.0) {
-        let problem = format!("changes the stress at the hole, by which K of a {} is not known", flaw.kind());
-        let remedy = "leave it out only if nothing loads the sides; K of a through crack (crack_at_hole) is computed with it";
+        let problem = format!("changes the stress at the hole; K of a {} does not include it", flaw.kind());
+        let remedy = "remove it only if the sides are not loaded; crack_at_hole (through crack) supports it";
         return Err(error::input("loading.stress_parallel_ratio", parallel_ratio, problem, remedy));
     }
     // A range is maximum - minimum, hence maximum (1 - R), also where R is negative.
@@ -98,12 +98,12 @@ pub fn from_values(
         (LoadMeasure::Force, Of::Stress) => {
             let is_plate = specimen.kind.is_plate();
             let who = if is_plate { "a plate loaded by pins or rollers" } else { specimen.kind.name() };
-            let problem = format!("is a stress, but {who} takes a force");
+            let problem = format!("is a stress; {who} needs a force");
             return Err(error::input(&magnitude.key, &magnitude.given, problem, "give force_max_n or force_range_n (or _kn)"));
         }
         (measure, Of::Displacement) => {
             let beside = if parallel_ratio == 0.0 { &["crack_pressure_mpa"][..] } else { &["stress_parallel_ratio"] };
-            let problem = "does not go with cycles of a displacement, which one load follows";
+            let problem = "cannot be combined with cycles of a displacement";
             given.refuse_any(beside, problem, "give cycles of the load")?;
             let (unit, section) = match measure {
                 LoadMeasure::Stress => {
@@ -125,11 +125,11 @@ pub fn from_values(
 fn refuse_beside(key: &str, given: &Size, input: &Input, specimen: &Specimen) -> Result<()> {
     let one = "give one number";
     let (problem, remedy) = if input.crack_pressure.is_some() {
-        ("does not go with loading.crack_pressure_mpa, which is the same at every crack length", one)
+        ("cannot be combined with loading.crack_pressure_mpa, which is constant", one)
     } else if specimen.part_through.is_some() {
-        ("is by the length of a through crack, and the crack is part-through", one)
+        ("depends on the length of a through crack; this crack is part-through", one)
     } else if specimen.convention == LengthConvention::SumOfTips && specimen.crack_lines().len() > 1 {
-        ("is by the length of one crack, and the plate has several", "give one number, or a plate with one crack")
+        ("depends on the length of one crack; the plate has several", "give one number, or a plate with one crack")
     } else {
         return Ok(());
     };
@@ -144,9 +144,9 @@ fn pressure_alone(
     specimen: &mut Specimen,
     ratio: f64,
 ) -> Result<Loading> {
-    let problem = "says where a load acts, and none is given beside crack_pressure_mpa";
+    let problem = "gives where a load acts, but only crack_pressure_mpa is set";
     let beside = [&PLACES[..], &["stress_parallel_ratio", "edge_bending_ratio"]].concat();
-    given.refuse_any(&beside, problem, &format!("leave it out, or give one of {MAGNITUDES}"))?;
+    given.refuse_any(&beside, problem, &format!("remove it, or give one of {MAGNITUDES}"))?;
     boundary::read_supports(supports, specimen)?;
     let maximum = read_crack_pressure(input, specimen)?.unwrap_or_default();
     specimen.loads.clear();
@@ -161,11 +161,11 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
     let Some(pressure) = input.crack_pressure else { return Ok(None) };
     let given = pressure / MPA;
     if !specimen.kind.is_plate() {
-        let problem = format!("does not go with {}, whose handbook K knows its own load alone", specimen.kind);
-        return Err(error::input(KEY, given, problem, "describe the specimen as kind = \"plate\""));
+        let problem = format!("cannot be combined with {}, whose handbook K includes its own load only", specimen.kind);
+        return Err(error::input(KEY, given, problem, "use kind = \"plate\""));
     }
     if specimen.cracks.is_empty() {
-        return Err(error::input(KEY, given, "presses on nothing: the plate has no crack", "give specimen.cracks"));
+        return Err(error::input(KEY, given, "requires a crack", "give specimen.cracks"));
     }
     Ok(Some(pressure))
 }
@@ -173,21 +173,21 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
 /// Puts the bending that goes with the tension on a crack that does not go through.
 fn read_bending(input: &Input, specimen: &mut Specimen) -> Result<()> {
     const KEY: &str = "loading.bending_ratio";
-    const UNBENT: &str = "K under bending is known for surface_crack, corner_crack and corner_crack_at_hole";
+    const UNBENT: &str = "use a kind with K under bending: surface_crack, corner_crack or corner_crack_at_hole";
     let Some(ratio) = input.bending_ratio else { return Ok(()) };
     let (kind, all_holes) = (specimen.kind, specimen.holes.len());
     match specimen.part_through.as_mut() {
         Some(flaw) if ratio > 0.0 && all_holes > flaw.own_holes() => {
             let problem = "conflicts with specimen.holes: no K of a crack under bending includes holes";
-            return Err(error::input(KEY, ratio, problem, "compute it by other means: either alone is another plate"));
+            return Err(error::input(KEY, ratio, problem, "use another program; either alone is a different problem"));
         }
         Some(flaw) if kind.takes_bending() || ratio == 0.0 => flaw.bending_ratio = ratio,
         Some(_) => {
-            let problem = format!("does not go with {kind}, whose K is known under tension alone");
+            let problem = format!("cannot be combined with {kind}, whose K is for tension only");
             return Err(error::input(KEY, ratio, problem, UNBENT));
         }
         None => {
-            let problem = format!("is bending out of the plane of the plate, which {kind}, a through crack, does not know");
+            let problem = format!("is out-of-plane bending, not supported for {kind} (through crack)");
             return Err(error::input(KEY, ratio, problem, UNBENT));
         }
     }
@@ -203,12 +203,13 @@ pub fn mistakes(loading: &Value, beside: &[&str]) -> Vec<InputError> {
     };
     // First, since "unknown key" would not tell the user what to do.
     if let Some(key) = given.first(SEQUENCES) {
-        let remedy = "write it into a file: kind = \"spectrum\", spectrum_file = \"...\" and spectrum_scale_mpa, or give constant \
+        let remedy = "write the sequence into a file: kind = \"spectrum\", spectrum_file = \"...\" and spectrum_scale_mpa, or \
+                      give constant \
                       amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
-        return one(given.refuse(key, "is no key of a load sequence", remedy));
+        return one(given.refuse(key, "is not a key of a load sequence", remedy));
     }
     if let Some(key) = given.first(BARE) {
-        let problem = "does not say whether the maximum or the range is meant";
+        let problem = "ambiguous: maximum or range?";
         return one(given.refuse(key, problem, format!("give exactly one of {MAGNITUDES}")));
     }
     perilife_base::keys::mistakes(given, Input::KEYS, beside, None)
@@ -220,8 +221,8 @@ fn ratio_of(spectrum: &Spectrum, given: Option<f64>) -> Result<f64> {
     let largest = spectrum.cycles.iter().filter(|cycle| cycle.max == 1.0);
     let of_largest = largest.map(|cycle| cycle.min).fold(f64::INFINITY, f64::min);
     given.map_or(Ok(of_largest), |given| {
-        let problem = "conflicts with the spectrum, whose cycles have their own";
-        Err(input("loading.stress_ratio", given, problem, "leave it out"))
+        let problem = "conflicts with the spectrum, which gives R of each cycle";
+        Err(input("loading.stress_ratio", given, problem, "remove it"))
     })
 }
 
@@ -282,15 +283,16 @@ impl Magnitude {
         // A second one has been refused.
         let mut given = slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of)));
         let Some((key, given, quantity, of)) = given.next() else {
-            return Err(input_missing(example, "is missing: there is no load", remedy));
+            return Err(input_missing(example, "no load given", remedy));
         };
         let path = format!("loading.{key}");
         if !wanted.split(", ").any(|known| known == key) {
-            return Err(input(&path, given, format!("does not go with kind = \"{kind}\""), remedy));
+            return Err(input(&path, given, format!("cannot be combined with kind = \"{kind}\""), remedy));
         }
         if matches!(given, Size::One(load) if load < 0.0) {
-            let problem = "must be above zero: cracks grow by the tensile part of a cycle, and compression alone is not computed";
-            let remedy = "give the largest tension (a range: maximum - minimum), and compression by stress_ratio = minimum / maximum below 0";
+            let problem = "must be above zero: compression alone does not grow a crack";
+            let remedy = "give the maximum tension (range: maximum - minimum); for compression set stress_ratio = minimum / \
+                          maximum below 0";
             return Err(input(&path, given, problem, remedy));
         }
         let (value, course) = given.read(&path, quantity, specimen.crack_length)?;

@@ -177,9 +177,9 @@ impl ResidualStress {
             return Ok(());
         }
         let (problem, remedy) = match &self.field {
-            Field::Formulas(..) => ("is no number".to_owned(), "give a formula that has a value all along the crack"),
+            Field::Formulas(..) => ("is not a number".to_owned(), "give a formula with a value at every point of the crack path"),
             Field::Line([from, to], _) => {
-                (format!("ends at {} and {}", place_mm(*from), place_mm(*to)), "give the stress all along the path of the crack")
+                (format!("covers only {} to {}", place_mm(*from), place_mm(*to)), "give the stress along the whole crack path")
             }
             Field::Plane(triangles) => {
                 let ends = |of: fn(f64, f64) -> f64, from: f64| {
@@ -187,7 +187,7 @@ impl ResidualStress {
                     place_mm([at(0), at(1)])
                 };
                 let [low, high] = [ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY)];
-                (format!("ends within {low} to {high}"), "give the stress all along the path of the crack")
+                (format!("covers only part of {low} to {high}"), "give the stress along the whole crack path")
             }
         };
         let problem = format!("{problem}, and the crack is at {}", place_mm(at));
@@ -216,13 +216,13 @@ fn of_formulas((own, units): Key, given: &Value) -> Result<ResidualStress> {
                 let key = format!("{own}.{name}");
                 let place = ["x", "y", "xy"].iter().position(|known| known == name);
                 let (Some(place), Some(text)) = (place, value.as_str()) else {
-                    return Err(input(&key, shorten(value), "is no formula of a component", REMEDY));
+                    return Err(input(&key, shorten(value), "is not a formula of a component", REMEDY));
                 };
                 formulas[place] = Some(parse(key, text)?);
             }
             formulas
         }
-        other => return Err(input(own, shorten(other), "is no formula", REMEDY)),
+        other => return Err(input(own, shorten(other), "is not a formula", REMEDY)),
     };
     if field.iter().all(Option::is_none) {
         return Err(input_missing(own, "gives no component", REMEDY));
@@ -235,7 +235,7 @@ const WORDS: Words = Words {
     roles: &[],
     is_enough: |roles| [Role::X, Role::Y, Role::StressY].iter().all(|role| roles.contains(role)),
     columns: 3,
-    remedy: "name the columns x_mm, y_mm, stress_mpa (or x_in, y_in, stress_ksi), and stress_x_mpa, shear_xy_mpa where they are known",
+    remedy: "name the columns x_mm, y_mm, stress_mpa (or x_in, y_in, stress_ksi), and stress_x_mpa, shear_xy_mpa if available",
 };
 
 /// Rows of places and stresses below a header.
@@ -253,13 +253,13 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
         let of = |role: Role| roles.iter().position(|(own, _)| *own == role).map_or(0.0, |place| values[place] * factors[place]);
         let stress = [Role::StressX, Role::StressY, Role::ShearXy].map(of);
         if let Some(large) = stress.iter().map(|stress| stress / MPA).find(|stress| stress.abs() > MOST) {
-            return Err(fault(Some(line), "stress", &large.to_string(), "is beyond any stress in MPa", "check its unit"));
+            return Err(fault(Some(line), "stress", &large.to_string(), "is implausible in MPa", "check its unit"));
         }
         samples.push((line, Sample { at: [of(Role::X), of(Role::Y)], stress }));
     }
     let (first, last) = match samples.as_slice() {
         [(_, first), .., (_, last)] => (*first, *last),
-        _ => return Err(fault(None, "row", "", "has less than two points", "give the stress all along the path of the crack")),
+        _ => return Err(fault(None, "row", "", "has fewer than two points", "give the stress along the whole crack path")),
     };
     let farthest = |from: Point| {
         let away = |sample: &&(usize, Sample)| distance(from, sample.1.at);
@@ -269,10 +269,10 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
     let to = farthest(from);
     let length = distance(from, to);
     if length <= 0.0 {
-        return Err(fault(Some(samples[1].0), "x", "", "is the place of the point before", "give each place once"));
+        return Err(fault(Some(samples[1].0), "x", "", "repeats the previous point", "give each point once"));
     }
     let beside = |at: Point| ((to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])).abs() / length;
-    let same = |line: usize| fault(Some(line), "x", "", "is the place of another row", "give each place once");
+    let same = |line: usize| fault(Some(line), "x", "", "repeats the point of another row", "give each point once");
     if samples.iter().all(|(_, sample)| beside(sample.at) < ROUND_OFF * length) {
         let mut ways: Vec<(usize, f64, Components)> =
             samples.iter().map(|(line, sample)| (*line, distance(from, sample.at), sample.stress)).collect();
@@ -287,7 +287,7 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
         let before = triangles.num_vertices();
         triangles
             .insert(sample)
-            .map_err(|error| fault(Some(line), "x", "", &format!("is no place: {error}"), "check its unit"))?;
+            .map_err(|error| fault(Some(line), "x", "", &format!("is not a position: {error}"), "check its unit"))?;
         if triangles.num_vertices() == before {
             return Err(same(line));
         }

@@ -15,8 +15,8 @@ use perilife_base::keys::{Given, Plain, Section, energy, intensity, key, modulus
 perilife_base::kinds! {
     /// Plane state of the plate.
     pub enum Plane for "material.plane" {
-        Stress = "stress": "thin plate, no stress across the thickness",
-        Strain = "strain": "thick plate, no strain across the thickness",
+        Stress = "stress": "plane stress: thin plate",
+        Strain = "strain": "plane strain: thick plate",
     }
 }
 
@@ -78,7 +78,7 @@ impl Material {
 perilife_base::keys! {
     /// Keys of `[material]`.
     pub struct Input {
-        name: Option<String> = key("name", "Material: a name of `perilife list materials`, or the path of an own .toml file");
+        name: Option<String> = key("name", "Material: a name of `perilife list materials`, or the path of your own .toml file");
         youngs_modulus: Option<Plain> = modulus(E, "Young's modulus E");
         poisson_ratio: Option<Plain> = number(NU, "Poisson's ratio ν", "a Poisson's ratio", 0.0, 0.499);
         yield_strength: Option<Plain> = stress("yield_strength_mpa", "Yield strength σY");
@@ -104,7 +104,7 @@ pub fn from_value(value: &Value, folder: &Folder, warnings: &mut Vec<String>) ->
         if let (Some(Plain(given)), Some(listed)) = (given, listed)
             && given != listed
         {
-            warnings.push(format!("material.{key} = {given} is used instead of {listed} of {name}"));
+            warnings.push(format!("material.{key} = {given} overrides {listed} of {name}"));
         }
         let quantity = Input::KEYS.iter().find(|own| own.name == key).and_then(|own| own.quantity);
         let value = given.map(|given| given.0).or(listed);

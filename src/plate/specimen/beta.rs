@@ -73,7 +73,7 @@ impl Specimen {
         let [first, last] = [rows[0], rows[rows.len() - 1]];
         if a < first.length * (1.0 - SLACK) || a > last.length * (1.0 + SLACK) {
             let (row, end) = if a < first.length { (first, "begins") } else { (last, "ends") };
-            let problem = format!("is where the table {end}, and the crack has {} mm at the start", round_mm(a));
+            let problem = format!("is where the table {end}; the initial crack is {} mm", round_mm(a));
             return Err(row.fault(&path, &column, problem, "give a table from the initial crack length to the end"));
         }
         self.beta = Some(BetaTable {
@@ -100,18 +100,13 @@ impl Specimen {
             Some(line.length() / self.tips_of(line).max(1) as f64)
         };
         let lengths = (0..self.tips.len()).map(length).collect::<Option<Vec<f64>>>().filter(|lengths| !lengths.is_empty());
-        let lengths = lengths.ok_or_else(|| {
-            input_missing(
-                KEY,
-                "needs sharp cracks: the end of a slot has no stress intensity factor",
-                "start a crack in the slot",
-            )
-        })?;
+        let lengths = lengths
+            .ok_or_else(|| input_missing(KEY, "requires cracks, not slots (a slot has no K)", "start a crack in the slot"))?;
         let [least, most] = [f64::min, f64::max].map(|pick| lengths.iter().copied().reduce(pick).unwrap_or(f64::NAN));
         if most > least * (1.0 + ALIKE) {
             let problem =
-                format!("is one table, and the cracks have unlike lengths, a = {} and {} mm", round_mm(least), round_mm(most));
-            return Err(input_missing(KEY, problem, "leave it out: K of every crack is then found on nodes"));
+                format!("one table cannot serve cracks of different length, a = {} and {} mm", round_mm(least), round_mm(most));
+            return Err(input_missing(KEY, problem, "remove it: K of each crack is then computed on nodes"));
         }
         Ok((most, lengths.len() as f64))
     }
@@ -152,8 +147,8 @@ impl BetaTable {
             return Ok(());
         }
         let a = self.logarithms.x()[self.logarithms.x().len() - 1];
-        let row = Row { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
-        let problem = format!("is where the table ends, and growth goes on to {} mm", round_mm(self.length_at(crack_length)));
+        let row = BetaRow { line: self.last_line, length: a, beta: f64::NAN, unit: self.column.1 };
+        let problem = format!("is the end of the table; growth continues to {} mm", round_mm(self.length_at(crack_length)));
         let most = round_mm(self.bounds()[1]);
         Err(row.fault(
             self.file.as_ref(),
@@ -166,14 +161,14 @@ impl BetaTable {
 
 /// A row of the file, SI.
 #[derive(Debug, Clone, Copy)]
-struct Row {
+struct BetaRow {
     line: usize,
     length: f64,
     beta: f64,
     unit: f64,
 }
 
-impl Row {
+impl BetaRow {
     /// What is wrong with it, its length as the file has it.
     fn fault(self, file: &Path, name: &str, problem: impl Into<String>, remedy: &str) -> Error {
         let length = ((self.length / self.unit * 1e6).round() / 1e6).to_string();
@@ -190,27 +185,27 @@ const WORDS: Words = Words {
 };
 
 /// The rows of the table, and the name of the column of lengths.
-fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<Row>, String)> {
+fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<BetaRow>, String)> {
     let table = table::read(bytes, file, &WORDS)?;
     let roles = WORDS.roles(&table)?;
     let place = |wanted: Role| roles.iter().position(|(role, _)| *role == wanted).unwrap_or_default();
     let (length, beta) = (place(Role::Length), place(Role::Beta));
     let unit = in_si(&table, length, roles[length].1, None)?;
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<BetaRow> = Vec::new();
     for (row, (line, values)) in table.rows.iter().zip(numbers(&table, &[(length, false), (beta, false)])?) {
         if let Some((column, _)) = [length, beta].into_iter().zip(&values).find(|(_, value)| **value <= 0.0) {
             let remedy = "give lengths and beta = K/(σ√(πa)), above zero";
             return Err(table.cell_fault(row, column).error("is not a number above zero", remedy));
         }
-        let row = Row { line, length: values[0] * unit, beta: values[1], unit };
+        let row = BetaRow { line, length: values[0] * unit, beta: values[1], unit };
         if let Some(before) = rows.last().filter(|before| before.length >= row.length) {
-            let problem = format!("does not rise above the {} mm of line {}", round_mm(before.length), before.line);
+            let problem = format!("is not above the {} mm of line {}", round_mm(before.length), before.line);
             return Err(row.fault(file, &table.header[length], problem, "sort the rows by crack length, each length once"));
         }
         rows.push(row);
     }
     match rows[..] {
         [_, _, ..] => Ok((rows, table.header[length].clone())),
-        _ => Err(whole_file(file).error("has one row, which is no curve", "give two rows or more below crack_length_mm,beta")),
+        _ => Err(whole_file(file).error("has only one row", "give two rows or more below crack_length_mm,beta")),
     }
 }

@@ -33,7 +33,7 @@ impl Specimen {
 
     /// Least way from the tip of a crack over which that is straight, m ([`CrackLine::straight_way`]).
     #[inline]
-    pub fn least_straight_way(&self) -> f64 {
+    pub fn shortest_path(&self) -> f64 {
         let lines = self.crack_lines();
         let ends = (0..self.tips.len()).filter_map(|tip| self.line_end(tip));
         ends.map(|end| lines[end.line].straight_way(end.at_last, f64::INFINITY)).fold(f64::INFINITY, f64::min)

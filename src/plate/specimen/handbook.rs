@@ -72,7 +72,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
         SpecimenKind::MiddleTension if long => (
             "Feddersen secant",
             "Feddersen 1966, ASTM STP 410; ASTM E647 annex A2",
-            "0.3 % for 2a/W up to 0.7, 2 % low at 0.9; length/width 1.5 or more",
+            "0.3 % for 2a/W ≤ 0.7, 2 % low at 0.9; length/width ≥ 1.5",
             [0.0, 0.95],
             |x, _| (1.0 / half(x).cos()).sqrt(),
             |x| if x <= 0.7 { 0.003 } else { 0.003 + 0.085 * (x - 0.7) },
@@ -80,7 +80,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
         SpecimenKind::SingleEdgeTension if long && !specimen.has_straight_grips() => (
             "Tada single edge",
             "Tada, Paris and Irwin 2000, part II",
-            "0.5 % for any a/W; ends free to rotate, length/width 2 or more",
+            "0.5 % for any a/W; ends free to rotate, length/width ≥ 2",
             [0.0, 1.0],
             |x, _| tangent(x) * (0.752 + 2.02 * x + 0.37 * (1.0 - half(x).sin()).powi(3)) / half(x).cos(),
             |_| 0.005,
@@ -88,7 +88,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
         SpecimenKind::DoubleEdgeTension if long => (
             "Tada double edge",
             "Tada, Paris and Irwin 2000, part II",
-            "1 % for any 2a/W; length/width 1.5 or more",
+            "1 % for any 2a/W; length/width ≥ 1.5",
             [0.0, 1.0],
             |x, _| (1.0 + 0.122 * half(x).cos().powi(4)) * tangent(x),
             |_| 0.01,
@@ -96,7 +96,7 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
         SpecimenKind::CompactTension => (
             "ASTM E647 compact",
             "ASTM E647 annex A1",
-            "0.5 % for a/W 0.2 or more",
+            "0.5 % for a/W ≥ 0.2",
             [0.2, 1.0],
             |x, _| {
                 let polynomial = 0.886 + x * (4.64 + x * (-13.32 + x * (14.72 - 5.6 * x)));
@@ -127,7 +127,7 @@ fn of_table(specimen: &Specimen, table: &BetaTable) -> HandbookFormula {
     HandbookFormula {
         name: "table of β",
         source: "specimen.beta_file of the case",
-        range: "from its first to its last row",
+        range: "first to last row",
         bounds: table.bounds().map(|length| length / width),
         table: Some(table.clone()),
         ..HandbookFormula::unstated(width, thickness)
@@ -154,7 +154,7 @@ pub fn handbook_tada(specimen: &Specimen) -> Option<HandbookFormula> {
     (specimen.kind == SpecimenKind::MiddleTension).then_some(HandbookFormula {
         name: "Tada central crack",
         source: "Tada, Paris and Irwin 2000, part II",
-        range: "0.1 % for any 2a/W; length/width 1.5 or more",
+        range: "0.1 % for any 2a/W; length/width ≥ 1.5",
         bounds: [0.0, 1.0],
         error: |_| 0.001,
         of: |x, _| (1.0 - 0.025 * x.powi(2) + 0.06 * x.powi(4)) * (1.0 / half(x).cos()).sqrt(),

@@ -41,34 +41,34 @@ perilife_base::kinds! {
         DoubleEdgeTension = "double_edge_tension": "plate with two equal edge cracks; crack length = length of each",
         CompactTension = "compact_tension": "C(T) of ASTM E647, loaded by pins; crack length from the load line",
         Plate = "plate": "any outline with round holes, slots and straight through cracks at any angle",
-        SurfaceCrack = "surface_crack": "half of an ellipse on the face of a plate; crack length = half length c, by hand calculation until it is through",
-        CornerCrack = "corner_crack": "quarter of an ellipse on an edge of a plate; crack length = c from the edge, by hand calculation until it is through",
-        EmbeddedCrack = "embedded_crack": "ellipse in the middle of a plate; crack length = half length c, by hand calculation until it is through",
-        CornerCrackAtHole = "corner_crack_at_hole": "quarter of an ellipse at a round hole, on one side or both; crack length = c from the hole, by hand calculation until it is through",
-        CrackAtHole = "crack_at_hole": "plate with a round hole and a through crack on one side of it or both; crack length from the rim",
-        RowOfHoles = "row_of_holes": "plate with a row of equal holes across the load, cracked at their sides, such as a joint whose cracks link up; crack lengths from the rims",
-        Lug = "lug": "lug loaded by a pin, cracked at the sides of its hole, with a straight or round head; crack length from the rim",
-        EdgeNotch = "edge_notch": "plate with a U-shaped notch in one edge and a crack in its root; crack length from the root",
-        StopHole = "stop_hole": "plate with a central crack that was stopped by a drilled hole at each end; needs [fatigue.initiation]; crack length = half length from the centre to the tips beyond the holes",
-        SingleEdgeBend = "single_edge_bend": "SE(B) of ASTM E399 and E1820 on three rollers, or four where inner_span_mm is given; crack length from the edge",
+        SurfaceCrack = "surface_crack": "semi-elliptical surface crack; crack length = half length c; Newman-Raju K until breakthrough",
+        CornerCrack = "corner_crack": "quarter-elliptical corner crack; crack length = c along the face; Newman-Raju K until breakthrough",
+        EmbeddedCrack = "embedded_crack": "elliptical embedded crack; crack length = half length c; Newman-Raju K until breakthrough",
+        CornerCrackAtHole = "corner_crack_at_hole": "quarter-elliptical crack at a hole, one or both sides; crack length = c from the hole edge; Newman-Raju K until breakthrough",
+        CrackAtHole = "crack_at_hole": "plate with a round hole and one or two through cracks; crack length from the hole edge",
+        RowOfHoles = "row_of_holes": "row of holes with cracks (multiple-site damage, link-up); crack length from the hole edge",
+        Lug = "lug": "lug loaded by a pin, straight or round head, cracks at the hole; crack length from the hole edge",
+        EdgeNotch = "edge_notch": "plate with a U-shaped edge notch and a crack at its root; crack length from the notch root",
+        StopHole = "stop_hole": "central crack with a stop hole at each end; needs [fatigue.initiation]; crack length = half length, center to tip beyond the hole",
+        SingleEdgeBend = "single_edge_bend": "SE(B) of ASTM E399 and E1820 on three rollers, or four with inner_span_mm; crack length from the edge",
         EccentricSingleEdgeTension = "eccentric_single_edge_tension": "ESE(T) of ASTM E647 annex A3, loaded by pins; crack length from the edge",
         WedgeOpening = "wedge_opening": "modified WOL of Novak and Rolfe, half height 0.486 W, loaded by pins; crack length from the load line",
-        Cruciform = "cruciform": "cross with rounded inner corners and a central crack, pulled at two arms or four; crack length = half length",
+        Cruciform = "cruciform": "cruciform with a central crack, uniaxial or biaxial; crack length = half length",
     }
 }
 
 perilife_base::kinds! {
     /// Heads of a lug.
     pub enum Head for "specimen.head" {
-        Straight = "straight": "square end, edge_distance_mm from the centre of the hole",
-        Round = "round": "half circle about the centre of the hole",
+        Straight = "straight": "square end, edge_distance_mm from the hole center",
+        Round = "round": "half circle about the hole center",
     }
 }
 
 perilife_base::kinds! {
     /// How the ends of a single edge tension specimen are held.
     pub enum Ends for "specimen.ends" {
-        Pinned = "pinned": "rigid grips free to rotate about a pin on the centre line",
+        Pinned = "pinned": "rigid grips free to rotate about a pin on the centerline",
         Clamped = "clamped": "rigid grips that cannot rotate",
         UniformStress = "uniform_stress": "uniform stress over both ends, the condition of the handbook formula",
     }

@@ -24,7 +24,7 @@ impl Specimen {
     /// Largest crack length the specimen has room for, m, and its name.
     pub fn length_limit(&self) -> (f64, &'static str) {
         if let Some(flaw) = &self.part_through {
-            return (flaw.room(), "room beside the crack");
+            return (flaw.room(), "ligament");
         }
         if let Some(formula) = &self.own_formula {
             return (formula.length_limit(), "width");
@@ -107,6 +107,6 @@ pub(super) fn check_crack(crack_length: f64, limit: f64, limit_name: &str) -> Re
     if crack_length < limit * (1.0 - 1e-9) {
         return Ok(());
     }
-    let problem = format!("is not below {limit_name} {} mm: the crack would go through the whole plate", round_mm(limit));
+    let problem = format!("must be below {limit_name} {} mm", round_mm(limit));
     Err(input("specimen.crack_length_mm", round_mm(crack_length), problem, "give a shorter crack or a wider plate"))
 }

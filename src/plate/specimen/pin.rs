@@ -80,7 +80,7 @@ perilife_base::keys! {
 }
 
 /// What an angle of contact is.
-pub const ARC: &str = "an angle in degrees, 90 for a pin that fills its hole";
+pub const ARC: &str = "an angle in degrees, 90 for a close-fitting pin";
 /// What a Poisson's ratio is.
 pub const POISSON: &str = "a Poisson's ratio";
 
@@ -90,7 +90,7 @@ impl Bearing {
     pub fn read(given: &Given<'_>, [half_angle, friction]: [&str; 2], keys: &PinKeys, hole: f64) -> Result<Self> {
         const OF_ELASTIC: [&str; 3] = ["pin_diameter_mm", "pin_youngs_modulus_gpa", "pin_poisson_ratio"];
         if keys.friction.is_some_and(|given| given != 0.0) {
-            return Err(given.refuse(friction, "is not computed: pins press without friction", "leave it out, or give 0"));
+            return Err(given.refuse(friction, "is not supported: pins are frictionless", "remove it, or set 0"));
         }
         let of_elastic = given.first(&OF_ELASTIC);
         if let (Some(angle), other) = (keys.half_angle, of_elastic) {
@@ -107,8 +107,8 @@ impl Bearing {
         };
         let radius = diameter / 2.0;
         if radius > hole * FITS {
-            let problem = format!("is more than the hole ({} mm): a pin that is pressed in is not known", 2e3 * hole);
-            return Err(given.refuse(OF_ELASTIC[0], problem, "give a pin that goes into its hole"));
+            let problem = format!("is larger than the hole ({} mm); interference fits are not supported", 2e3 * hole);
+            return Err(given.refuse(OF_ELASTIC[0], problem, "use a pin smaller than its hole"));
         }
         let PinKeys { youngs_modulus, poisson_ratio, .. } = *keys;
         Ok(Bearing::Elastic(Pin { radius: radius.min(hole), youngs_modulus, poisson_ratio, found: None }))
@@ -125,8 +125,8 @@ impl Bearing {
     /// In words, for answers.
     pub fn words(&self) -> String {
         match self {
-            Bearing::Unknown(half_angle) => format!("nothing known of it, ±{:.0}° taken", half_angle.to_degrees()),
-            Bearing::Cosine(half_angle) => format!("bears over ±{:.1}°, given", half_angle.to_degrees()),
+            Bearing::Unknown(half_angle) => format!("contact ±{:.0}° assumed", half_angle.to_degrees()),
+            Bearing::Cosine(half_angle) => format!("contact ±{:.1}° (given)", half_angle.to_degrees()),
             Bearing::Elastic(pin) => pin.words(),
         }
     }
@@ -139,7 +139,7 @@ impl Pin {
         let Some(contact) = found else { return pin };
         let [from, to] = contact.ends.map(f64::to_degrees);
         format!(
-            "{pin}: touches from {from:.1}° to {to:+.1}° at N = 0, at most {:.0} MPa",
+            "{pin}: contact {from:.1}° to {to:+.1}° at N = 0, peak pressure {:.0} MPa",
             contact.pressure / perilife_base::units::MPA
         )
     }

@@ -26,7 +26,7 @@ pub(super) fn check_holes(specimen: &Specimen) -> Result<()> {
         let inside = point_in_polygon(hole.centre, &specimen.outline);
         if !inside || distance_to_polygon(hole.centre, &specimen.outline) < hole.radius + TOUCH {
             let problem =
-                format!("reaches beyond the outline (centre {}, radius {} mm)", given_mm(hole.centre), round_mm(hole.radius));
+                format!("extends past the outline (center {}, radius {} mm)", given_mm(hole.centre), round_mm(hole.radius));
             return Err(input_missing(
                 &format!("specimen.holes[{i}]"),
                 problem,
@@ -61,14 +61,14 @@ pub(super) fn place_slots(specimen: &mut Specimen, slots: Vec<Slot>) -> Result<V
         let walls = edges(&corners).filter(|(a, b)| edges(&specimen.outline).any(|(c, d)| segments_touch(*a, *b, c, d))).count();
         match closed {
             [false, false] => {
-                let remedy = "end it in the material: a slot across the whole plate cuts it in two";
+                let remedy = "end it in the material; a slot across the whole plate cuts it in two";
                 return Err(input_missing(&key, "has no end inside the plate", remedy));
             }
             [true, true] if walls > 0 || !corners_fit => {
                 return Err(input_missing(&key, "touches the outline", "move it inside, or let it start on an edge"));
             }
             _ if !corners_fit => {
-                return Err(input_missing(&key, "has an end face that sticks out of the plate", "shorten or narrow it"));
+                return Err(input_missing(&key, "has a notch root outside the plate", "shorten or narrow it"));
             }
             _ => {}
         }
@@ -129,13 +129,13 @@ pub(super) fn place_cracks(
             check_path(specimen, crack, &key)?;
             // Of cracks that share an end, too, which are one by now.
             if cracks[..j].iter().any(|other| is_overlap(crack, *other)) {
-                let problem = "turns back along itself, or another crack that shares its end lies along it over some length";
+                let problem = "folds back on itself or overlaps a crack that shares its end";
                 return Err(input_missing(&key, problem, "give every part of a crack once"));
             }
             if let Some(other) = specimen.cracks.iter().find(|other| is_overlap(crack, **other)) {
                 let line =
                     specimen.crack_lines().iter().position(|line| line.pieces().any(|piece| piece == [other.from, other.to]));
-                let problem = format!("lies along cracks[{}] over some length", line.unwrap_or(0));
+                let problem = format!("overlaps cracks[{}]", line.unwrap_or(0));
                 return Err(input_missing(&key, problem, "give both as one crack"));
             }
         }
@@ -172,11 +172,10 @@ pub(super) fn place_cracks(
         if specimen.tips_of(line) == 0 && (is_from_edge_to_edge() || specimen.tips.is_empty()) {
             let key = format!("specimen.cracks[{i}]");
             if is_joined() {
-                let problem = "meets another crack and has no end inside the material that could grow";
-                return Err(input_missing(&key, problem, "end one of both inside the plate"));
+                let problem = "meets another crack and has no tip inside the material";
+                return Err(input_missing(&key, problem, "end one of them inside the plate"));
             }
-            let problem =
-                "has no end inside the material that could grow: one within a hundredth of its length of a rim counts as on it";
+            let problem = "has no tip inside the material (a tip within 1 % of its length from an edge counts as on it)";
             return Err(input_missing(&key, problem, "end it inside the plate"));
         }
     }
@@ -195,8 +194,8 @@ fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
                 .fold(f64::INFINITY, f64::min);
             (gap <= MOUTH * line.length() && end > MOUTH * line.length()).then(|| {
                 format!(
-                    "specimen.cracks[{i}] passes holes[{j}] at {} mm: what is left between them is finer than nodes or points resolve, and \
-                     K may err by a large share; end the crack in the hole, and begin another beyond it",
+                    "specimen.cracks[{i}] passes holes[{j}] at {} mm: the ligament is too thin to resolve and K may be far \
+                     off; end the crack in the hole and start another beyond it",
                     round_mm(gap.max(0.0))
                 )
             })
@@ -280,12 +279,11 @@ fn check_corners(corners: &[Point], key: &str, notes: &mut Vec<String>) -> Resul
         let turn = turn_at(corner[0], corner[1], corner[2]).abs().to_degrees();
         let problem = format!("turns by {turn:.0}° at {}", given_mm(corner[1]));
         if turn > FOLDED {
-            let remedy = "end the crack at that corner, and give what lies behind it, if it is one, as a crack that does not share its end";
-            return Err(input_missing(key, format!("{problem}, where it is as sharp as a tip and would not grow"), remedy));
+            let remedy = "end the crack at that corner; give the rest as a separate crack that does not share its end";
+            return Err(input_missing(key, format!("{problem}: such a sharp corner acts like a tip but does not grow"), remedy));
         }
         if turn > SHARP {
-            notes
-                .push(format!("{key} {problem}: ahead of that corner stress is nearly that of a tip, but nothing grows from it"));
+            notes.push(format!("{key} {problem}: such a sharp corner acts like a tip but does not grow"));
         }
     }
     Ok(())
@@ -320,7 +318,7 @@ fn cut_end(specimen: &Specimen, [end, other]: [Point; 2], key: &str, notes: &mut
             return Err(input_missing(key, format!("ends outside the plate at {}", given_mm(end)), remedy));
         };
         let edge = along(end, other, share);
-        notes.push(format!("{key} ends outside the plate at {}: cut off at the edge, at {}", given_mm(end), given_mm(edge)));
+        notes.push(format!("{key} ends outside the plate at {}: shortened to the edge, at {}", given_mm(end), given_mm(edge)));
         return Ok((edge, true));
     }
     Ok((end, false))
@@ -332,7 +330,7 @@ fn at_mouth(specimen: &Specimen, [end, other]: [Point; 2], length: f64, key: &st
         return (end, false);
     };
     notes.push(format!(
-        "{key} ends {} mm from a rim, less than a hundredth of its length ({} mm): it was taken to start there, at {}",
+        "{key} ends {} mm from an edge (under 1 % of its length, {} mm): moved to the edge, at {}",
         round_mm(gap),
         round_mm(length),
         given_mm(mouth)

@@ -145,8 +145,8 @@ pub(super) fn read_holes(list: &[HoleKeys]) -> Result<Vec<Hole>> {
 /// What the drawing of a plate says, where it has one.
 fn drawn(given: &Given<'_>, own: &Keys, folder: &Folder) -> Result<Option<Shape>> {
     let Some(file) = &own.file else {
-        let problem = "belongs to a drawing, and outline_file is missing";
-        given.refuse_any(&["outline_unit", "outline_symmetry"], problem, "give outline_file, or leave it out")?;
+        let problem = "applies only to outline_file, which is missing";
+        given.refuse_any(&["outline_unit", "outline_symmetry"], problem, "give outline_file, or remove it")?;
         return Ok(None);
     };
     given.refuse_any(&["length_mm"], "conflicts with outline_file", "remove one of them")?;
@@ -203,7 +203,7 @@ fn polygon(corners: &[Point]) -> Result<Vec<Point>> {
     }
     if outline.len() > ITEMS_MAX {
         let remedy = format!("give 3 to {ITEMS_MAX} corners in order");
-        return Err(input(KEY, format!("{} points", corners.len()), "is no outline", remedy));
+        return Err(input(KEY, format!("{} points", corners.len()), "is not an outline", remedy));
     }
     simple(outline, KEY)
 }
@@ -213,10 +213,10 @@ fn polygon(corners: &[Point]) -> Result<Vec<Point>> {
 fn simple(mut outline: Vec<Point>, key: &str) -> Result<Vec<Point>> {
     let count = format!("{} points", outline.len());
     if outline.len() < 3 || outline.len() > CORNERS_MAX {
-        return Err(input(key, count, "is no outline", format!("give 3 to {CORNERS_MAX} corners in order")));
+        return Err(input(key, count, "is not an outline", format!("give 3 to {CORNERS_MAX} corners in order")));
     }
     if let Some(i) = (0..outline.len()).find(|&i| distance(outline[i], outline[(i + 1) % outline.len()]) < 1e-9) {
-        return Err(input(key, format!("corner {i}"), "stands twice in a row", "leave one of them out"));
+        return Err(input(key, format!("corner {i}"), "is repeated", "remove one of them"));
     }
     if let Some((i, j)) = self_intersection(&outline) {
         let [from, to] = [i, j].map(|corner| place_mm(outline[corner]));
@@ -259,10 +259,10 @@ fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
     };
     let key = format!("{path}.path_mm");
     if line.len() < 2 || line.len() > ITEMS_MAX {
-        return Err(input(&key, format!("{} points", line.len()), "is no path", format!("give 2 to {ITEMS_MAX} points")));
+        return Err(input(&key, format!("{} points", line.len()), "is not a path", format!("give 2 to {ITEMS_MAX} points")));
     }
     if let Some(i) = (1..line.len()).find(|&i| distance(line[i - 1], line[i]) < 1e-6) {
-        return Err(input_missing(&format!("{key}[{i}]"), "coincides with the point before it", "leave one of them out"));
+        return Err(input_missing(&format!("{key}[{i}]"), "coincides with the point before it", "remove one of them"));
     }
     let pieces: Vec<[Point; 2]> = line.windows(2).map(|piece| [piece[0], piece[1]]).collect();
     for (j, [c, d]) in pieces.iter().enumerate() {
@@ -270,7 +270,7 @@ fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
             j > 0 && turn(pieces[j - 1][0], *c, *d) == 0.0 && distance(pieces[j - 1][0], *d) < distance(pieces[j - 1][0], *c);
         if folds || pieces[..j.saturating_sub(1)].iter().any(|[a, b]| segments_touch(*a, *b, *c, *d)) {
             let problem = format!("crosses, touches or folds back on itself after point {j}");
-            return Err(input_missing(&key, problem, "give branches as cracks of their own that share a point with this one"));
+            return Err(input_missing(&key, problem, "give branches as separate cracks that share a point with this one"));
         }
     }
     Ok(line.clone())
@@ -279,7 +279,7 @@ fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
 /// Two different end points.
 fn ends(path: &str, from: Point, to: Point) -> Result<(Point, Point)> {
     if distance(from, to) < 1e-6 {
-        return Err(input_missing(path, "has no length: from_mm and to_mm coincide", "give two different points"));
+        return Err(input_missing(path, "has zero length: from_mm and to_mm coincide", "give two different points"));
     }
     Ok((from, to))
 }

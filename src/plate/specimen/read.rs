@@ -46,7 +46,7 @@ impl SpecimenKind {
             (SpecimenKind::SingleEdgeTension, _) => standard::SingleEdge::KEYS,
             (SpecimenKind::CompactTension, _) => standard::Compact::KEYS,
             (SpecimenKind::Plate, _) => plate::Keys::KEYS,
-            (kind, _) => kind.named().map_or(standard::Strip::KEYS, named::Description::keys),
+            (kind, _) => kind.named().map_or(standard::Strip::KEYS, named::SpecimenSpec::keys),
         }
     }
 
@@ -77,7 +77,7 @@ impl Specimen {
     /// Errors: [`Error::Input`] on `specimen.cracks` of a plate without crack and slot.
     pub fn check_growth(&self) -> Result<()> {
         if self.cracks.is_empty() && self.slots.is_empty() {
-            let problem = "is missing, and there is no notch either: nothing can grow";
+            let problem = "required: give a crack or a notch";
             let what = if self.kind == SpecimenKind::Plate { "cracks or notches" } else { "it" };
             let remedy = format!("give {what}; for the stress of the plate `perilife sif --method element_free_galerkin`");
             return Err(input_missing(self.crack_key(), problem, remedy));
@@ -91,7 +91,7 @@ impl Specimen {
 fn kind_of(table: &Table) -> Result<SpecimenKind> {
     let Some(kind) = table.get("kind") else { return Err(input_missing(SpecimenKind::KEY, "is missing", KIND.remedy())) };
     if let Some(kind) = kind.as_str().filter(|kind| PART_THROUGH.contains(kind)) {
-        let problem = "is not the name of a crack that does not go through";
+        let problem = "is not a part-through crack";
         return Err(input(SpecimenKind::KEY, format!("\"{kind}\""), problem, give_a_kind()));
     }
     SpecimenKind::take(&KIND, SpecimenKind::KEY, kind)
@@ -102,7 +102,7 @@ pub fn mistakes(value: &Value) -> Vec<InputError> {
     let found = Given::of(value, "specimen").and_then(|given| {
         let kind = kind_of(given.table)?;
         if let Some(key) = given.first(PART_THROUGH_KEYS).filter(|_| kind.part_through().is_none()) {
-            let problem = format!("describes a crack that does not go through, and the crack of {kind} does");
+            let problem = format!("applies only to part-through cracks; {kind} has a through crack");
             return Err(given.refuse(key, problem, give_a_kind()));
         }
         Ok(kind.mistakes(given))
@@ -122,8 +122,8 @@ pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Re
     Error::of_all(mistakes(value))?;
     if let Some(given) = table.get(BETA_FILE.name).filter(|_| !kind.takes_beta()) {
         let known: Vec<&str> = SpecimenKind::ALL.iter().filter(|kind| kind.takes_beta()).map(|kind| kind.name()).collect();
-        let problem = format!("does not go with {kind}, whose K is its own");
-        let remedy = format!("leave it out, or use one of {}", known.join(", "));
+        let problem = format!("cannot be combined with {kind}, which has its own K");
+        let remedy = format!("remove it, or use one of {}", known.join(", "));
         return Err(input(super::beta::KEY, shorten(given), problem, remedy));
     }
     if let Some(description) = kind.part_through() {
@@ -132,8 +132,8 @@ pub fn from_value(value: &Value, folder: &Folder, notes: &mut Vec<String>) -> Re
     if let Some(description) = kind.named() {
         let specimen = named::from_value(description, value, notes)?;
         if let Some(given) = table.get(BETA_FILE.name).filter(|_| specimen.convention == LengthConvention::SumOfTips) {
-            let problem = "is one table, and cracks of unlike length have each their own K";
-            return Err(input(super::beta::KEY, shorten(given), problem, "leave it out, or give crack_length_mm"));
+            let problem = "one table cannot serve cracks of different length";
+            return Err(input(super::beta::KEY, shorten(given), problem, "remove it, or give crack_length_mm"));
         }
         return Ok(specimen);
     }

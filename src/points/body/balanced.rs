@@ -98,7 +98,9 @@ pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Resu
         .collect();
     let change = Problem::new(&stencil_gains, links, missing).solve(BOUNDS.map(|bound| bound - 1.0)).ok_or_else(|| {
         Error::Mechanics(
-            "the balanced surface correction finds no bond multipliers for this outline; give a smaller spacing, or use model.surface_correction = \"volume_and_surface\"".to_owned(),
+            "the balanced surface correction found no bond multipliers for this outline; reduce the spacing, or use \
+             model.surface_correction = \"volume_and_surface\""
+                .to_owned(),
         )
     })?;
     for (bond, change) in bonds.into_iter().zip(change) {

@@ -101,7 +101,7 @@ impl Boundary {
             let at = load.facet.at;
             let nearest = sharing.nearest_point(at).ok_or_else(|| {
                 Error::Mechanics(format!(
-                    "no point of the plate lies near the load at x = {:.3} mm, y = {:.3} mm; give a smaller spacing",
+                    "no point of the plate near the load at x = {:.3} mm, y = {:.3} mm; reduce the spacing",
                     at[0] * 1e3,
                     at[1] * 1e3
                 ))
@@ -240,7 +240,7 @@ pub fn balance(seated: &mut [(Point, Point)], couples: f64) -> Result<()> {
     let lever = (inertia / count).sqrt();
     if resultant[0].hypot(resultant[1]) > 0.02 * scale || moment.abs() > 0.02 * scale * lever {
         return Err(Error::Mechanics(
-            "the loads are not in equilibrium and nothing holds the plate; give [supports] or loads that balance".to_owned(),
+            "the loads are not in equilibrium and there are no supports; add [supports] or balance the loads".to_owned(),
         ));
     }
     for (seat, f) in seated.iter_mut() {

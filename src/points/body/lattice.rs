@@ -78,7 +78,7 @@ impl Lattice {
         let across = across(specimen, spacing);
         let spacing = fitting_spacing(specimen, spacing, angle);
         if across < 4.0 {
-            let remedy = "give a smaller spacing";
+            let remedy = "reduce the spacing";
             return Err(input("model.spacing_mm", spacing * 1e3, "leaves fewer than 4 points across the plate", remedy));
         }
         let (columns, rows, origin) = if upright {
@@ -106,8 +106,8 @@ impl Lattice {
             (columns, rows, [centre[0] + s * cos - t * sin, centre[1] + s * sin + t * cos])
         };
         if columns * rows > 2e8 {
-            let problem = format!("needs {:.0} million points (limit 200 million)", columns * rows / 1e6);
-            let remedy = "give a larger spacing (200 million places at the most)";
+            let problem = format!("needs {:.0} million lattice positions", columns * rows / 1e6);
+            let remedy = "increase the spacing (at most 200 million)";
             return Err(input("model.spacing_mm", spacing * 1e3, problem, remedy));
         }
         let (columns, rows) = (columns as usize, rows as usize);

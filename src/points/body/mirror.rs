@@ -202,7 +202,7 @@ fn close(a: f64, b: f64, scale: f64) -> bool {
 
 /// The part of a symmetric plate that stands for all of it.
 #[derive(Debug)]
-pub struct Part {
+pub struct MirrorPart {
     /// The part, its lattice beginning at the lines of symmetry.
     pub body: Body,
     /// First column and row of the part in the lattice of the plate.
@@ -210,9 +210,9 @@ pub struct Part {
     reflections: Vec<Reflection>,
 }
 
-impl Part {
+impl MirrorPart {
     /// The smallest part of a plate about whose lines `mirror` it is symmetric; `None` without any.
-    pub fn of(whole: &Body, mirror: Mirror) -> Option<Part> {
+    pub fn of(whole: &Body, mirror: Mirror) -> Option<MirrorPart> {
         if mirror == Mirror::default() {
             return None;
         }
@@ -257,7 +257,7 @@ impl Part {
             }
         }
         let reflections = (0..2).filter(|&axis| mirror.lines[axis].is_some()).map(|axis| Reflection::new(whole, axis)).collect();
-        let mut part = Part { body, first, reflections };
+        let mut part = MirrorPart { body, first, reflections };
         part.body.multiplier = part.multiplier(whole, &whole.multiplier);
         part.body.bond_count = part.body.multiplier.iter().filter(|&&m| m > 0.0).count();
         let seat = |place: u32| <[usize; 2]>::from(part.body.lattice.column_row(place as usize));

@@ -90,7 +90,7 @@ impl Body {
         let places = lattice.places();
         if places.saturating_mul(stencil.bonds.len()) > u32::MAX as usize {
             return Err(Error::Mechanics(format!(
-                "{places} lattice places with {} bonds each are more than the program can number; give a larger spacing",
+                "{places} lattice positions with {} bonds each exceed the limit; increase the spacing",
                 stencil.bonds.len()
             )));
         }

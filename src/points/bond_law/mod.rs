@@ -7,10 +7,10 @@ use perilife_plate::material::Material;
 perilife_base::kinds! {
     /// Constitutive laws of a bond.
     pub enum BondLawKind for "model.bond_law" {
-        BondBased = "bond_based": "one normal spring a bond; fixes Poisson's ratio at 1/3 (plane stress) or 1/4 (plane strain)",
-        TwoParameter = "two_parameter": "normal and tangential spring a bond; Poisson's ratio up to 1/3 (plane stress) or 1/4 (plane strain)",
-        OneBondTwoParameter = "one_bond_two_parameter": "the same on stretch and shear angle of the bond (Zhu and Ni 2017)",
-        StateBased = "state_based": "normal spring a bond and dilatation of every point (linear ordinary state-based, Silling et al. 2007); any Poisson's ratio",
+        BondBased = "bond_based": "one normal spring per bond; Poisson's ratio fixed at 1/3 (plane stress) or 1/4 (plane strain)",
+        TwoParameter = "two_parameter": "normal and tangential spring per bond; Poisson's ratio up to 1/3 (plane stress) or 1/4 (plane strain)",
+        OneBondTwoParameter = "one_bond_two_parameter": "as two_parameter, on bond stretch and shear angle (Zhu and Ni 2017)",
+        StateBased = "state_based": "linear ordinary state-based (Silling et al. 2007); any Poisson's ratio",
     }
 }
 
@@ -25,8 +25,8 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// Whether the tangential spring resists rigid rotation.
     pub enum Rotation for "model.rotation" {
-        Free = "free": "each point turns freely (third unknown): rigid rotation costs no energy",
-        Resisted = "resisted": "tangential spring as printed in the literature: rigid rotation is resisted",
+        Free = "free": "points rotate freely (third unknown): no energy of rigid rotation",
+        Resisted = "resisted": "tangential spring as published: resists rigid rotation",
     }
 }
 
@@ -35,7 +35,7 @@ perilife_base::kinds! {
     pub enum SurfaceCorrection for "model.surface_correction" {
         None = "none": "no correction",
         VolumeAndSurface = "volume_and_surface": "partial volumes and energy factors of Madenci and Oterkus 2014",
-        Balanced = "balanced": "bond multipliers that keep uniform strain in equilibrium with its boundary traction",
+        Balanced = "balanced": "bond multipliers that balance uniform strain with its boundary traction",
     }
 }
 

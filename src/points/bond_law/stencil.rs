@@ -120,16 +120,16 @@ pub fn check(law: &BondLaw, material: &Material) -> Result<(), Error> {
         return Ok(());
     }
     if nu > limit + tolerance {
-        let problem = format!("is beyond what {kind} can represent, {words}");
+        let problem = format!("is out of range for {kind}: {words}");
         let remedy = format!(
-            "use model.bond_law = \"state_based\", which takes any; \"two_parameter\" goes up to {}",
+            "use model.bond_law = \"state_based\", which supports any value; \"two_parameter\" supports up to {}",
             (limit * 1e4).floor() / 1e4
         );
         return Err(input(KEY, nu, problem, remedy));
     }
     if kind == BondLawKind::BondBased && nu < limit - tolerance {
-        let problem = format!("is not what bond_based fixes, {words}");
-        return Err(input(KEY, nu, problem, "use model.bond_law = \"two_parameter\", which takes any smaller value"));
+        let problem = format!("is not the fixed value of bond_based, {words}");
+        return Err(input(KEY, nu, problem, "use model.bond_law = \"two_parameter\", which supports any smaller value"));
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use perilife_plate::specimen::Point;
 use perilife_plate::specimen::geometry::distance;
 
 /// A component that holds a rigid motion: its row `[u_x, u_y, ω]`, lengths over the size of the plate.
-type Row = [f64; 3];
+type RigidConstraint = [f64; 3];
 
 /// Unknowns to be held besides those that are, at two distant points. A law whose tangential springs resist rotation does
 /// not turn freely.
@@ -15,12 +15,12 @@ pub fn minimal_constraints(net: &Net, held: &[bool]) -> Vec<usize> {
     let Some(&first) = carrying.first() else { return Vec::new() };
     let away = |i: usize| distance(net.positions[i], net.positions[first]);
     let far = carrying.iter().copied().max_by(|&a, &b| away(a).total_cmp(&away(b))).unwrap_or(first);
-    let row = |unknown: usize| -> Row {
+    let row = |unknown: usize| -> RigidConstraint {
         let (point, component) = (unknown / net.unknowns, unknown % net.unknowns);
         let arm = [0, 1].map(|c| (net.positions[point][c] - net.positions[first][c]) / away(far).max(f64::MIN_POSITIVE));
         [[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]][component]
     };
-    let mut basis: Vec<Row> = Vec::new();
+    let mut basis: Vec<RigidConstraint> = Vec::new();
     if net.unknowns == 2 && net.bonds.iter().any(|bond| bond.k_t != 0.0) {
         basis.push([0.0, 0.0, 1.0]);
     }
@@ -35,7 +35,7 @@ pub fn minimal_constraints(net: &Net, held: &[bool]) -> Vec<usize> {
 }
 
 /// Adds what is new in a row to an orthonormal basis; whether there was something.
-fn add(basis: &mut Vec<Row>, mut row: Row) -> bool {
+fn add(basis: &mut Vec<RigidConstraint>, mut row: RigidConstraint) -> bool {
     for known in basis.iter() {
         let along: f64 = row.iter().zip(known).map(|(a, b)| a * b).sum();
         row.iter_mut().zip(known).for_each(|(a, b)| *a -= along * b);
@@ -87,7 +87,7 @@ pub fn turning_cost_of_springs(net: &Net) -> Option<f64> {
 pub fn turning_warning(cost: Option<f64>, [choice, remedy]: [&str; 2]) -> Option<String> {
     let percent = 100.0 * cost.filter(|cost| *cost > COSTS)?;
     Some(format!(
-        "{choice}: to turn this body rigidly by 1 mrad costs {percent:.3} % of the energy of stretching it by 1e-3, and should cost \
-         nothing: it is too stiff wherever material turns, in shear, in bending and beside cracks; {remedy}"
+        "{choice}: rigid rotation by 1 mrad costs {percent:.3} % of the energy of 1e-3 strain, and should cost none: too \
+         stiff in shear, in bending and near cracks; {remedy}"
     ))
 }

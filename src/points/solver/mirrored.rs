@@ -5,7 +5,7 @@
 use super::sides;
 use super::spring::GapSpring;
 use super::system::{EquilibriumBackend, Focus, SolverKind, SolverUsed};
-use crate::body::mirror::{Mirror, Part, signs};
+use crate::body::mirror::{Mirror, MirrorPart, signs};
 use crate::body::{Body, Bond};
 use crate::solver::field::Layout;
 use crate::state::Bonds;
@@ -14,14 +14,14 @@ use perilife_base::error::Result;
 perilife_base::kinds! {
     /// Use of mirror symmetry.
     pub enum Symmetry for "model.symmetry" {
-        Auto = "auto": "a plate that is its own mirror image, with its cracks and loads, is solved on its half or quarter",
+        Auto = "auto": "a symmetric plate (cracks and loads too) is solved on its half or quarter",
         Off = "off": "the whole plate is solved",
     }
 }
 
 /// The part of a plate and what it is solved by.
 pub(super) struct Mirrored {
-    part: Part,
+    part: MirrorPart,
     bonds: Bonds,
     inner: Box<dyn EquilibriumBackend>,
     displacement: Vec<f64>,
@@ -53,7 +53,7 @@ impl Mirrored {
             // A held sum may reach across a line of symmetry.
             return None;
         }
-        let part = Part::of(body, Mirror::of(body, &bonds.multiplier))?;
+        let part = MirrorPart::of(body, Mirror::of(body, &bonds.multiplier))?;
         let mut multiplier = part.multiplier(body, &bonds.multiplier);
         let scaled: Vec<Bond> = bonds.scaled(body).into_iter().map(|(bond, _)| bond).collect();
         for (name, of_part) in part.multipliers_of(body, &scaled, &bonds.multiplier) {
@@ -106,7 +106,7 @@ impl Mirrored {
 }
 
 /// Calls `take` for every unknown of the plate that stands for one of these points of its part.
-fn for_copies(part: &Part, whole: &Body, places: &[u32], mut take: impl FnMut(Copied)) {
+fn for_copies(part: &MirrorPart, whole: &Body, places: &[u32], mut take: impl FnMut(Copied)) {
     let unknowns = whole.stencil.unknowns;
     let (from, to) = (Layout::of(&part.body.lattice, unknowns), Layout::of(&whole.lattice, unknowns));
     for &place in places {
@@ -139,7 +139,7 @@ impl EquilibriumBackend for Mirrored {
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
         let cut: Vec<Bond> = broken.iter().copied().filter(|&bond| !bonds.is_intact(bond)).collect();
         if !self.is_lost && !self.part.keeps(body, &cut) {
-            tracing::info!("symmetry lost: solving the whole plate");
+            tracing::info!("the crack is no longer symmetric: the whole plate is solved from here");
             self.is_lost = true;
             self.inner = sides::balance(self.kind, body, bonds, self.load);
             if let Some(tolerance) = self.tolerance {

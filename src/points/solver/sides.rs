@@ -189,7 +189,7 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
     }
 
     fn set_contact(&mut self, _: &Body, share: f64, contact: &[GapSpring]) {
-        debug_assert!(contact.is_empty() || self.solver.window().is_none(), "a condensed window knows no contact");
+        debug_assert!(contact.is_empty() || self.solver.window().is_none(), "a condensed window does not support contact");
         if self.without_pressure.is_some() || share != 1.0 || contact.iter().any(|spring| spring.force != 0.0) {
             let without = self.without_pressure.get_or_insert_with(|| self.f.clone());
             self.f.iter_mut().zip(without).for_each(|(f, without)| *f = share * *without);

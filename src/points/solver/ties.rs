@@ -18,7 +18,7 @@ const LEAST: f64 = 0.02;
 
 /// `u_slave = value + Σ factor u_master`.
 #[derive(Debug, Clone)]
-struct Row {
+struct TieRow {
     slave: usize,
     value: f64,
     masters: Vec<(usize, f64)>,
@@ -27,7 +27,7 @@ struct Row {
 /// Held sums of a body.
 #[derive(Debug, Clone, Default)]
 pub struct Ties {
-    rows: Vec<Row>,
+    rows: Vec<TieRow>,
     /// The sums themselves, without stiffness.
     sums: Vec<GapSpring>,
 }
@@ -69,7 +69,7 @@ impl Ties {
         }
         let solved = |(slave, value, weights): (usize, f64, BTreeMap<usize, f64>)| {
             let masters = weights.into_iter().map(|(index, weight)| (index, -weight)).collect();
-            Row { slave, value, masters }
+            TieRow { slave, value, masters }
         };
         let sum = |tie: &crate::body::boundary::Tie| GapSpring { weights: tie.weights.clone(), stiffness: 0.0, force: 0.0 };
         Ties { rows: rows.into_iter().map(solved).collect(), sums: body.boundary.ties.iter().map(sum).collect() }

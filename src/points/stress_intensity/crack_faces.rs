@@ -124,7 +124,7 @@ const EQUAL: f64 = 1e-6;
 
 /// A part of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Part {
+pub struct FaceSegment {
     /// Its middle, m.
     pub at: Point,
     /// The point whose field it has.
@@ -160,7 +160,7 @@ pub fn parts(
     cracks: &[[Point; 2]],
     cells: &HashSet<usize>,
     known: impl Fn(usize) -> bool,
-) -> Vec<Part> {
+) -> Vec<FaceSegment> {
     let lattice = &body.lattice;
     let neighbours: Vec<isize> = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| lattice.step(dx, dy))).collect();
     let mut cells: Vec<usize> = cells.iter().copied().collect();
@@ -190,7 +190,7 @@ pub fn parts(
             let least = seen.iter().map(|(_, away)| *away).fold(f64::INFINITY, f64::min) + EQUAL * lattice.spacing;
             let nearest: Vec<usize> = seen.into_iter().filter(|(_, away)| *away <= least).map(|(place, _)| place).collect();
             let share = 1.0 / (PARTS * PARTS * nearest.len()) as f64;
-            parts.extend(nearest.into_iter().map(|place| Part { at, place, share }));
+            parts.extend(nearest.into_iter().map(|place| FaceSegment { at, place, share }));
         }
     }
     parts

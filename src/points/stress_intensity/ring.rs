@@ -29,7 +29,7 @@
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-use super::crack_faces::{CrackFaces, Part, cells_along, cells_at, continued, faces, parts};
+use super::crack_faces::{CrackFaces, FaceSegment, cells_along, cells_at, continued, faces, parts};
 use super::gradient::{Derivatives, TipFrame, derivatives_at};
 use crate::body::Body;
 use crate::body::pre_crack::{as_cut, places_near};
@@ -203,7 +203,7 @@ impl RingGeometry {
             let at = body.lattice.position(place);
             add(around.area(at, place, 1.0));
         }
-        for Part { at, place, share } in parts(body, &self.specimen, &cracks, &cut, is_known) {
+        for FaceSegment { at, place, share } in parts(body, &self.specimen, &cracks, &cut, is_known) {
             add(around.area(at, place, share));
         }
         self.rim.iter().filter(|(facet, _)| near(facet.at)).for_each(|(facet, free)| add(around.rim(facet, *free)));

@@ -64,13 +64,13 @@ fn of_nodes(case: &Case, ElementFreeSettings { resolution, .. }: &ElementFreeSet
 /// What a life takes, by the seconds of an increment; within a factor of three.
 fn time_words(case: &Case, seconds: f64) -> String {
     let increments = INCREMENTS[0] + INCREMENTS[1] * case.specimen.tips.len() as f64;
-    format!("; a life in some {:.1} s", increments * seconds)
+    format!("; about {:.0} s", (increments * seconds).max(1.0))
 }
 
 /// Lays the lattice and, where that is quick, builds the body.
 pub(super) fn preview(case: &Case) -> Result<Preview> {
     match &case.model {
-        Model::Handbook(_) => Ok(Preview { points: "none: hand calculation".to_owned(), warnings: Vec::new() }),
+        Model::Handbook(_) => Ok(Preview { points: "none (handbook K)".to_owned(), warnings: Vec::new() }),
         Model::Nodes(nodes) => of_nodes(case, nodes),
         Model::Points(points) => {
             let mut preview = of_points(case, points)?;
@@ -101,8 +101,7 @@ fn of_points(case: &Case, points: &PointSettings) -> Result<Preview> {
     let held = stuck(body, &bonds, &tips, &case.fatigue).into_iter().map(|tip| {
         let [x, y] = tips[tip].position.map(mm);
         format!(
-            "the crack tip at ({x}, {y}) mm stands in the zone around a load or support, where bonds do not fail: it will not \
-             grow; move it one horizon away ({} mm), or load the plate elsewhere",
+            "the crack tip at ({x}, {y}) mm is inside the no-failure zone of a load or support and will not grow; move it one horizon away ({} mm), or load the plate elsewhere",
             mm(body.horizon())
         )
     });

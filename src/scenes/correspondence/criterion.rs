@@ -43,7 +43,7 @@ impl Criterion {
             DamageLaw::PrincipalStress => {
                 let strength = scene.damage.tensile_strength.or(scene.material.tensile_strength);
                 Limit::Stress(strength.ok_or_else(|| {
-                    let problem = "is missing: damage.law = \"principal_stress\" compares with it";
+                    let problem = "is missing (required by damage.law = \"principal_stress\")";
                     input_missing("material.tensile_strength_mpa", problem, "give it, or damage.tensile_strength_mpa")
                 })?)
             }
@@ -52,13 +52,13 @@ impl Criterion {
                 let of_energy = |energy| critical_stretch(&scene.material, energy / scene.trapping(), horizon);
                 let from_energy = || scene.material.fracture_energy.map(of_energy);
                 Limit::Stretch(scene.damage.stretch.or_else(from_energy).ok_or_else(|| {
-                    let problem = "is missing: the critical stretch follows from it";
+                    let problem = "is missing (required for the critical stretch)";
                     input_missing("material.fracture_energy_j_m2", problem, "give it, or damage.critical_stretch")
                 })?)
             }
             law @ (DamageLaw::NonlinearTwoParameter | DamageLaw::CriticalEnergy) => {
-                let problem = "acts on the springs of a bond, and bond_law is \"correspondence\"";
-                let remedy = "use \"critical_stretch\", which takes the fracture energy too, \"principal_stress\" or \"none\"";
+                let problem = "requires a bond law with springs, not \"correspondence\"";
+                let remedy = "use \"critical_stretch\", which uses the fracture energy too, \"principal_stress\" or \"none\"";
                 return Err(input("damage.law", format!("\"{law}\""), problem, remedy));
             }
         };

@@ -97,7 +97,7 @@ impl Control {
     pub fn new(kind: ZeroEnergyControl, factor: f64, material: &Material, thickness: f64, net: &Net) -> Result<Control> {
         if !(factor >= 0.0 && factor.is_finite()) {
             let remedy = "give a factor H of 0 or more for \"silling\", c_I in N/m^7 of 0 or more for \"spring\"";
-            return Err(input("model.zero_energy_factor", factor, "would feed the zero-energy modes", remedy));
+            return Err(input("model.zero_energy_factor", factor, "would amplify zero-energy modes", remedy));
         }
         let horizon = net.horizons.first().copied().unwrap_or(f64::INFINITY);
         Ok(match kind {

@@ -68,7 +68,7 @@ pub struct MultiLevelSpec<'a> {
 pub fn build(ask: &MultiLevelSpec<'_>) -> Result<Net> {
     let MultiLevelSpec { specimen, law, .. } = *ask;
     if law.kind == BondLawKind::StateBased {
-        let problem = "has a dilatation of every point, and \"dual_horizon\" joins points by springs only";
+        let problem = "has a dilatation of points, which \"dual_horizon\" does not support";
         return Err(input("model.bond_law", format!("\"{}\"", law.kind), problem, "use a bond-based or two-parameter law"));
     }
     let padding = 0;
@@ -141,7 +141,8 @@ fn warnings(levels: &Levels) -> Vec<String> {
     let more = levels.splits.iter().enumerate().filter(|(_, [_, more])| *more > 0);
     more.map(|(level, [asked, more])| {
         format!(
-            "refinement: {more} points of {:.4} mm were split beside the {asked} asked for, so that levels within a horizon differ by one",
+            "refinement: {more} extra points of {:.4} mm were split ({asked} requested) so that neighboring levels differ by \
+             one",
             1e3 * levels.lattices[level].spacing
         )
     })

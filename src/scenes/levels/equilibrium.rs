@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::stiffness::{Stiffness, Strut};
+use super::stiffness::{LinearSpring, Stiffness};
 use perilife_base::error::{Error, Result};
 use perilife_points::net::Net;
 use perilife_points::net::rigid::minimal_constraints;
@@ -58,8 +58,8 @@ impl FullLoad {
             return Ok(());
         };
         Err(Error::Mechanics(format!(
-            "unsupported plate, unbalanced load: {:.3e} N along {} at ({:.3}, {:.3}) mm; give \
-             [supports] or balanced loads",
+            "no supports, and the loads do not balance: {:.3e} N along {} at ({:.3}, {:.3}) mm; add [supports] or balance the \
+             loads",
             (force[at] + self.external[at]).abs(),
             ["x", "y"][at % net.unknowns],
             net.positions[at / net.unknowns][0] * 1e3,
@@ -73,7 +73,7 @@ pub trait InternalForce {
     /// Share of its stiffness that every bond has.
     fn share(&self) -> &[f64];
     /// What the factor has to stand for beside the bonds.
-    fn struts(&self) -> &[Strut] {
+    fn struts(&self) -> &[LinearSpring] {
         &[]
     }
     /// Forces of the bonds on the points at a displacement, N, and the strain energy, J.
@@ -157,7 +157,7 @@ impl Equilibrium {
             }
             if fresh {
                 return Err(Error::Mechanics(format!(
-                    "no equilibrium after {ITERATIONS_MAX} iterations: the model is not restrained against the load; add a support"
+                    "no equilibrium within {ITERATIONS_MAX} iterations: the loaded part has no support"
                 )));
             }
             self.stale = true;

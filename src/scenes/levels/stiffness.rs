@@ -19,7 +19,7 @@ const SHIFTS: [f64; 2] = [1e-13, 1e-10];
 
 /// A spring along one direction between two points that need not have a bond.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Strut {
+pub struct LinearSpring {
     pub from: u32,
     pub to: u32,
     /// Unit vector along which it acts.
@@ -50,11 +50,11 @@ impl Stiffness {
         for bond in &net.bonds {
             entries.extend(Self::entries(net, &number, bond).map(|(row, column, _)| Triplet::new(row, column, 0.0)));
         }
-        let trouble = |e: String| Error::Mechanics(format!("the stiffness matrix could not be built: {e}"));
+        let failure = |e: String| Error::Mechanics(format!("the stiffness matrix could not be built: {e}"));
         let matrix = SparseColMat::<usize, f64>::try_new_from_triplets(free.len(), free.len(), &entries)
-            .map_err(|e| trouble(format!("{e:?}")))?;
+            .map_err(|e| failure(format!("{e:?}")))?;
         fix_parts();
-        let symbolic = SymbolicLlt::try_new(matrix.symbolic(), faer::Side::Lower).map_err(|e| trouble(format!("{e:?}")))?;
+        let symbolic = SymbolicLlt::try_new(matrix.symbolic(), faer::Side::Lower).map_err(|e| failure(format!("{e:?}")))?;
         let (columns, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());
         let slot = |row: usize, column: usize| -> u32 {
             let span = columns[column]..columns[column + 1];
@@ -69,7 +69,7 @@ impl Stiffness {
 
     /// Factorises the stiffness of the net with these shares of the bonds, and struts between points that the pattern joins.
     /// Errors: a stiffness that is not positive definite.
-    pub fn factorise(&mut self, net: &Net, share: &[f64], struts: &[Strut]) -> Result<()> {
+    pub fn factorise(&mut self, net: &Net, share: &[f64], struts: &[LinearSpring]) -> Result<()> {
         let added: Vec<(usize, f64)> = struts.iter().flat_map(|strut| self.strut_entries(net, strut)).collect();
         let values = self.matrix.val_mut();
         values.fill(0.0);
@@ -84,7 +84,7 @@ impl Stiffness {
         added.into_iter().for_each(|(slot, value)| values[slot] += value);
         let largest = self.diagonal.iter().map(|&slot| values[slot as usize]).fold(0.0, f64::max);
         let mut added = 0.0;
-        let mut trouble = None;
+        let mut failure = None;
         for shift in SHIFTS {
             let values = self.matrix.val_mut();
             self.diagonal.iter().for_each(|&slot| values[slot as usize] += (shift - added) * largest);
@@ -94,14 +94,14 @@ impl Stiffness {
                     self.factor = Some(factor);
                     return Ok(());
                 }
-                Err(e) => trouble = Some(e),
+                Err(e) => failure = Some(e),
             }
         }
-        Err(Error::Mechanics(format!("the stiffness matrix is not positive definite: {trouble:?}")))
+        Err(Error::Mechanics(format!("the stiffness matrix is not positive definite: {failure:?}")))
     }
 
     /// Places and values of a strut; none where its ends are not joined.
-    fn strut_entries(&self, net: &Net, strut: &Strut) -> Vec<(usize, f64)> {
+    fn strut_entries(&self, net: &Net, strut: &LinearSpring) -> Vec<(usize, f64)> {
         let (columns, rows) = (self.matrix.symbolic().col_ptr(), self.matrix.symbolic().row_idx());
         let unknown = |i: usize| self.number[[strut.from, strut.to][i / 2] as usize * net.unknowns + i % 2];
         let gradient = |i: usize| [-1.0, 1.0][i / 2] * strut.normal[i % 2];

@@ -24,7 +24,7 @@ impl FullLoad {
         for held in &boundary.held {
             let Motion::Displacement(value) = held.motion else {
                 let remedy = "give loading.duration_s, or kind = \"displacement\" with displacement_mm";
-                return Err(input("loading.kind", "\"velocity\"", "needs time, and the scene has none", remedy));
+                return Err(input("loading.kind", "\"velocity\"", "requires time", remedy));
             };
             let at = held.point as usize * net.unknowns + held.component;
             (full.held[at], full.motion[at]) = (true, value);

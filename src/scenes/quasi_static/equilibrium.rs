@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::bonds::BondState;
-use super::super::contact::{Contact, Touching};
+use super::super::contact::{NetContact, Touching};
 use super::super::failure::Failure;
 use super::super::interaction::{Damaging, Interaction};
 use super::super::springs::Springs;
 pub use crate::levels::equilibrium::Shape;
 use crate::levels::equilibrium::{self, FullLoad, InternalForce, Spent};
-use crate::levels::stiffness::Strut;
+use crate::levels::stiffness::LinearSpring;
 use perilife_base::error::Result;
 use perilife_plate::specimen::Crack;
 use perilife_points::net::Net;
@@ -24,7 +24,7 @@ pub struct Equilibrium<'n> {
     net: &'n Net,
     full: &'n FullLoad,
     springs: Springs<'n>,
-    contact: Contact<'n>,
+    contact: NetContact<'n>,
     inner: equilibrium::Equilibrium,
 }
 
@@ -38,7 +38,7 @@ pub struct Kept {
 /// Springs whose damage stays as it is.
 struct Frozen<'a, 'n> {
     springs: &'a mut Springs<'n>,
-    contact: &'a Contact<'n>,
+    contact: &'a NetContact<'n>,
     bonds: &'a mut BondState,
 }
 
@@ -47,7 +47,7 @@ impl InternalForce for Frozen<'_, '_> {
         &self.bonds.share
     }
 
-    fn struts(&self) -> &[Strut] {
+    fn struts(&self) -> &[LinearSpring] {
         self.contact.struts()
     }
 
@@ -64,7 +64,7 @@ impl<'n> Equilibrium<'n> {
             net,
             full,
             springs,
-            contact: Contact::new(net, cracks),
+            contact: NetContact::new(net, cracks),
             inner: equilibrium::Equilibrium::new(net, full)?,
         })
     }

@@ -65,20 +65,21 @@ pub fn run(
         }
         (SceneSolver::VelocityVerlet, _) => {
             let remedy = "give loading.duration_s, or solver = \"secant\" or \"adaptive_dynamic_relaxation\"";
-            return Err(input("model.solver", "\"velocity_verlet\"", "needs time, and the scene has none", remedy));
+            return Err(input("model.solver", "\"velocity_verlet\"", "requires time", remedy));
         }
     };
     let Walked { end, u, account, evaluations, touching } = walked;
     let mut fracture = course.log.close(end, &u, bonds, SceneFigures { evaluations, touching, ..SceneFigures::default() });
     let excess = account.excess();
     if iterations.is_some() {
-        fracture
-            .warnings
-            .push(format!("load steps not in equilibrium: {:.2} % of the work is kinetic or damped", 100.0 * excess));
+        fracture.warnings.push(format!(
+            "the plate was not at rest in its load steps: {:.2} % of the work is kinetic or damped",
+            100.0 * excess
+        ));
     } else if excess.abs() > EXCESS_TOLD {
         fracture.warnings.push(format!(
-            "{:.2} % of the work is neither strain nor fracture energy: the plate jumped, and a scene without time does not follow \
-             where that energy goes",
+            "{:.2} % of the work is neither strain nor fracture energy: unstable jump, whose energy a scene without time does \
+             not track",
             100.0 * excess
         ));
     }
@@ -97,11 +98,11 @@ fn relaxation(scene: &Scene) -> Relaxation {
 /// Whether the path of a scene's springs can be followed.
 fn check_secant(scene: &Scene) -> Result<()> {
     let problem = if !matches!(scene.model.law, SceneLaw::Bonds(_)) {
-        "needs springs in bonds, and the law has none"
+        "requires a bond law with springs"
     } else if scene.model.finite {
-        "is linear in the displacement, and kinematics is \"finite\""
+        "does not support kinematics = \"finite\""
     } else if scene.damage.law == DamageLaw::NonlinearTwoParameter && scene.damage.nonlinear.is_some_and(|law| law.printed) {
-        "needs stiffness that never comes back, and that of the printed law does"
+        "requires stiffness that never recovers; that of the published law does"
     } else {
         return Ok(());
     };

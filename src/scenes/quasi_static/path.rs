@@ -226,7 +226,7 @@ impl Walk<'_, '_> {
             }
             self.control.look(&self.at.shape.u, bonds);
         }
-        Err(Error::Mechanics("a step found no quiet damage".to_owned()))
+        Err(Error::Mechanics("damage of a step did not converge".to_owned()))
     }
 
     /// Generalised load of the driven and the pushed together.

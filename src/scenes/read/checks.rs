@@ -23,14 +23,14 @@ fn check_time(scene: &Scene) -> Result<()> {
     let acts = |test: fn(&Action) -> bool| scene.drives.iter().any(|drive| test(&drive.action));
     let Procedure::Dynamic { .. } = scene.procedure else {
         if acts(|action| matches!(action, Action::Velocity(_))) {
-            let problem = "has no meaning without time";
+            let problem = "requires time";
             return Err(input("loading.kind", "\"velocity\"", problem, "give loading.duration_s, or a displacement with steps"));
         }
         return Ok(());
     };
     if scene.material.density.is_none() {
-        let problem = "is missing: motion in time needs mass";
-        return Err(input_missing("material.density_kg_m3", problem, "give it, or leave loading.duration_s out"));
+        let problem = "is missing (required for motion)";
+        return Err(input_missing("material.density_kg_m3", problem, "give it, or remove loading.duration_s"));
     }
     Ok(())
 }
@@ -39,14 +39,14 @@ fn check_time(scene: &Scene) -> Result<()> {
 fn check_march(scene: &Scene) -> Result<()> {
     let Procedure::QuasiStatic { iterations: Some(iterations), .. } = scene.procedure else { return Ok(()) };
     let what = if scene.drives.iter().any(|drive| matches!(drive.action, Action::Platen(_))) {
-        "platens, whose contact comes and goes"
+        "platens (changing contact)"
     } else if matches!(scene.model.law, SceneLaw::Correspondence { .. }) {
-        "correspondence, whose stiffness can grow as bonds break"
+        "correspondence (stiffness can increase)"
     } else {
         return Ok(());
     };
-    let problem = format!("does not come to rest, which does not go with {what}");
-    Err(input("loading.iterations_per_step", iterations, problem, "leave it out"))
+    let problem = format!("does not come to rest; cannot be combined with {what}");
+    Err(input("loading.iterations_per_step", iterations, problem, "remove it"))
 }
 
 fn check_damage(scene: &Scene) -> Result<()> {
@@ -54,12 +54,12 @@ fn check_damage(scene: &Scene) -> Result<()> {
     let refuse = |problem: &str, remedy: &str| Err(input("damage.law", format!("\"{law}\""), problem, remedy));
     match (scene.model.law, law) {
         (SceneLaw::Bonds(_), DamageLaw::PrincipalStress) => refuse(
-            "needs the stress of a point, which laws of bonds have not",
+            "needs the stress of a point, which bond laws do not have",
             "use model.bond_law = \"correspondence\", or critical_stretch",
         ),
         (SceneLaw::Correspondence { .. }, DamageLaw::CriticalEnergy | DamageLaw::NonlinearTwoParameter) => refuse(
-            "is a law of springs in bonds, which bond_law = \"correspondence\" has not",
-            "use critical_stretch, which takes material.fracture_energy_j_m2 too, or principal_stress",
+            "requires a bond law with springs, not \"correspondence\"",
+            "use critical_stretch, which uses material.fracture_energy_j_m2 too, or principal_stress",
         ),
         _ => Ok(()),
     }
@@ -70,12 +70,12 @@ fn check_arrangement(scene: &Scene) -> Result<()> {
     let arrangement = scene.model.arrangement;
     match (arrangement, scene.model.law) {
         (Discretisation::Lattice, _) if scene.refinement.is_some() => {
-            let problem = "has one spacing everywhere, and there is a section [refinement]";
+            let problem = "conflicts with [refinement]: one spacing everywhere";
             Err(input(KEY, format!("\"{arrangement}\""), problem, "use \"dual_horizon\", or remove the section"))
         }
         (Discretisation::DualHorizon, SceneLaw::Correspondence { .. }) => {
-            let problem = "is built for laws of bonds, not for bond_law = \"correspondence\"";
-            Err(input(KEY, format!("\"{arrangement}\""), problem, "use \"lattice\", or a law of bonds"))
+            let problem = "does not support bond_law = \"correspondence\"";
+            Err(input(KEY, format!("\"{arrangement}\""), problem, "use \"lattice\", or a bond law"))
         }
         _ => Ok(()),
     }
@@ -108,11 +108,11 @@ fn check_conflicts(scene: &Scene) -> Result<()> {
             if overlap(low, high, other_low, other_high) {
                 let axis = ["x", "y"][component];
                 let problem = format!(
-                    "is told two motions along {axis} where {other_what} ({}) and {what} ({}) overlap",
+                    "has two prescribed motions along {axis} where {other_what} ({}) and {what} ({}) overlap",
                     words(other),
                     words(region)
                 );
-                let remedy = "let range_mm or a region leave the common points out, or give components to one of them only";
+                let remedy = "exclude the common points by range_mm or a region, or give components to one of them only";
                 return Err(input_missing("loading", problem, remedy));
             }
         }
@@ -147,13 +147,13 @@ pub fn settle_balance(scene: &mut Scene) -> Result<()> {
     if !timed {
         for (i, axis) in ["x", "y"].iter().enumerate() {
             if left.force[i] && !held[i] {
-                let problem = format!("floats: the loads leave a force along {axis} that no support takes up");
-                return Err(input_missing("supports", problem, "hold a side in [supports], or load opposite sides alike"));
+                let problem = format!("not in equilibrium: unbalanced force along {axis}");
+                return Err(input_missing("supports", problem, "add a support in [supports], or load opposite sides equally"));
             }
         }
         if left.moment && held == [false; 2] {
-            let problem = "floats: the loads turn the plate and no support takes that up";
-            return Err(input_missing("supports", problem, "hold a side in [supports], or let opposite forces share one line"));
+            let problem = "not in equilibrium: unbalanced moment";
+            return Err(input_missing("supports", problem, "add a support in [supports], or align opposite forces"));
         }
     }
     // Loads that rise one after another do not balance in between either.
@@ -171,15 +171,12 @@ pub fn lines(scene: &Scene) -> Vec<String> {
         let late = scene.drives.iter().find(|drive| drive.rise.end() > duration);
         lines.extend(late.map(|drive| {
             let end = drive.rise.end();
-            format!(
-                "the load on {} rises until {end} s and the scene ends at {duration} s: it is never reached in full",
-                drive.region
-            )
+            format!("the load on {} rises until {end} s; the scene ends at {duration} s, before the full load", drive.region)
         }));
     }
     let graded = scene.model.arrangement != Discretisation::Lattice;
     if graded && scene.refinement.is_none() {
-        lines.push(format!("{} without [refinement]: all points are of one level", scene.model.arrangement));
+        lines.push(format!("{} without [refinement]: all points have one level", scene.model.arrangement));
     }
     let nu = scene.material.poisson_ratio;
     if let SceneLaw::Bonds(law) = scene.model.law
@@ -187,7 +184,7 @@ pub fn lines(scene: &Scene) -> Vec<String> {
         && scene.damage.law == DamageLaw::CriticalEnergy
     {
         lines.push(format!(
-            "damage.law = \"critical_energy\" on bond_based counts normal stretch alone, as critical_stretch does (nu {nu})"
+            "damage.law = \"critical_energy\" on bond_based uses normal stretch only, as critical_stretch does (nu {nu})"
         ));
     }
     lines.extend(zero_energy_line(scene));
@@ -202,8 +199,8 @@ fn zero_energy_line(scene: &Scene) -> Option<String> {
         Some((limit.passed(factor)?, limit.bound_percent))
     };
     let (end, bound, what) =
-        passed("correspondence, silling: global").map(|(end, bound)| (end, bound, "displacements err")).or_else(|| {
-            passed("correspondence, silling: nodal").map(|(end, bound)| (end, bound, "strain differs from point to point"))
+        passed("correspondence, silling: global").map(|(end, bound)| (end, bound, "error of displacements")).or_else(|| {
+            passed("correspondence, silling: nodal").map(|(end, bound)| (end, bound, "scatter of strain between points"))
         })?;
-    Some(format!("model.zero_energy_factor {factor}: beyond {end} {what} by more than {bound} %; leave it out"))
+    Some(format!("model.zero_energy_factor {factor}: beyond {end} {what} above {bound} %; remove it"))
 }

@@ -22,14 +22,14 @@ perilife_base::keys! {
     /// Keys of `[damage]`.
     pub struct DamageKeys {
         law: DamageLaw = key("law", "Damage law"), or "none" DamageLaw::None;
-        enters: Option<DamageEntry> = key("enters", "Place of damage in point laws: default influence");
+        enters: Option<DamageEntry> = key("enters", "Where damage acts in point laws: default influence");
         calibration: Option<Calibration> = key("calibration", "Calibration: of the critical stretch; default growth");
         critical_stretch: Option<f64> = stretch("critical_stretch", "Critical stretch");
         elastic_stretch: Option<f64> = stretch("elastic_stretch", "Elastic stretch: of the nonlinear law");
         peak_stretch: Option<f64> = stretch("peak_stretch", "Stretch at the largest force: of the nonlinear law");
         final_stretch: Option<f64> = stretch("final_stretch", "Final stretch: of the nonlinear law").group(FINAL);
         final_ratio: f64 = number("final_ratio", "Final stretch over that at the largest force", "a ratio", 1e-6, 1e6).group(FINAL), or "5" FINAL_RATIO;
-        printed_law: bool = key("printed_law", "The law as it is printed"), or "false" false;
+        printed_law: bool = key("printed_law", "The law as published"), or "false" false;
     }
 }
 
@@ -41,15 +41,15 @@ pub fn from_value(value: &Value, material: &Material) -> Result<Damage> {
     let stretch = given.critical_stretch;
     let critical = matches!(law, DamageLaw::CriticalStretch | DamageLaw::CriticalEnergy);
     if let (Some(calibration), Some(_)) = (given.calibration, stretch) {
-        let problem = "says how the critical stretch follows from the fracture energy, and damage.critical_stretch gives it";
-        return Err(input("damage.calibration", format!("\"{calibration}\""), problem, "leave one of them out"));
+        let problem = "conflicts with damage.critical_stretch";
+        return Err(input("damage.calibration", format!("\"{calibration}\""), problem, "remove one of them"));
     }
     if critical && stretch.is_none() && material.fracture_energy.is_none() {
-        let problem = format!("is missing: damage.law = \"{law}\" takes the critical stretch from it");
+        let problem = format!("is missing (required for the critical stretch of damage.law = \"{law}\")");
         return Err(input_missing("material.fracture_energy_j_m2", problem, "give it, or damage.critical_stretch"));
     }
     if law == DamageLaw::PrincipalStress && material.tensile_strength.is_none() {
-        let problem = "is missing: damage.law = \"principal_stress\" compares with it";
+        let problem = "is missing (required by damage.law = \"principal_stress\")";
         return Err(input_missing("material.tensile_strength_mpa", problem, "give it"));
     }
     let nonlinear = (law == DamageLaw::NonlinearTwoParameter).then(|| softening(&given, material)).transpose()?;
@@ -65,8 +65,8 @@ pub fn from_value(value: &Value, material: &Material) -> Result<Damage> {
 
 /// `enters` says nothing where damage is only in the bonds.
 pub fn refuse_entry(value: &Value) -> Result<()> {
-    let problem = "goes with bond_law = \"correspondence\": a spring that breaks is gone from force and stiffness alike";
-    Given::of(value, "damage")?.refuse_any(&["enters"], problem, "leave it out")
+    let problem = "applies only to bond_law = \"correspondence\"";
+    Given::of(value, "damage")?.refuse_any(&["enters"], problem, "remove it")
 }
 
 fn check_keys(given: &Given<'_>, law: DamageLaw) -> Result<()> {
@@ -78,8 +78,8 @@ fn check_keys(given: &Given<'_>, law: DamageLaw) -> Result<()> {
         (SOFTENING, "nonlinear_two_parameter", law != DamageLaw::NonlinearTwoParameter),
     ];
     unused.into_iter().filter(|(.., is_unused)| *is_unused).try_for_each(|(keys, belongs, _)| {
-        let problem = format!("goes with damage.law = {belongs}, and the law is \"{law}\"");
-        given.refuse_any(keys, &problem, "leave it out, or give that law")
+        let problem = format!("applies only to damage.law = {belongs}; the law is \"{law}\"");
+        given.refuse_any(keys, &problem, "remove it, or use that law")
     })
 }
 
@@ -88,7 +88,7 @@ fn softening(given: &DamageKeys, material: &Material) -> Result<Softening> {
     let modulus = material.youngs_modulus;
     let or_from = |key: &str, value: Option<f64>, strength: Option<f64>, named: &str| {
         let key = format!("damage.{key}");
-        let problem = format!("is missing, and without material.{named} it cannot follow from it");
+        let problem = format!("is missing, and so is material.{named}");
         value
             .or(strength.map(|strength| strength / modulus))
             .ok_or_else(|| input_missing(&key, problem, format!("give it, or material.{named}")))
@@ -96,17 +96,17 @@ fn softening(given: &DamageKeys, material: &Material) -> Result<Softening> {
     let elastic = or_from("elastic_stretch", given.elastic_stretch, material.yield_strength, "yield_strength_mpa")?;
     let peak = or_from("peak_stretch", given.peak_stretch, material.tensile_strength, "tensile_strength_mpa")?;
     if elastic > peak {
-        let problem = format!("is beyond the stretch at the largest force, {peak:.6}");
-        return Err(input("damage.elastic_stretch", elastic, problem, "give a smaller one, or a larger peak_stretch"));
+        let problem = format!("is above the stretch at the largest force, {peak:.6}");
+        return Err(input("damage.elastic_stretch", elastic, problem, "use a smaller one, or a larger peak_stretch"));
     }
     let ratio = given.final_ratio;
     if ratio <= 1.0 {
-        let problem = "leaves no softening: bonds would break at their largest force";
+        let problem = "gives no softening: bonds would break at their largest force";
         return Err(input("damage.final_ratio", ratio, problem, "give more than 1"));
     }
     let last = given.final_stretch.unwrap_or(ratio * peak);
     if last <= peak {
-        let problem = format!("is not beyond the stretch at the largest force, {peak:.6}");
+        let problem = format!("must be above the stretch at the largest force, {peak:.6}");
         return Err(input("damage.final_stretch", last, problem, "give a larger one"));
     }
     Ok(Softening { elastic, peak, last, printed: given.printed_law })

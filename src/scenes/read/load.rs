@@ -19,7 +19,7 @@ perilife_base::kinds! {
         Traction = "traction": "stress_mpa on edges; fracture scenes",
         Displacement = "displacement": "displacement_mm of edges or regions, reached in the last of the steps or at the end of ramp_s; fracture scenes",
         Velocity = "velocity": "velocity_mm_s of edges or regions; fracture scenes with duration_s",
-        Platens = "platens": "rigid plates without friction that press on edges by displacement_mm; fracture scenes",
+        Platens = "platens": "rigid frictionless platens that press on edges by displacement_mm; fracture scenes",
     }
 }
 
@@ -72,7 +72,7 @@ pub fn drives(value: &Value, path: &str, clock: Option<Clock>, specimen: &mut Sp
             Region::Box { .. } => None,
         };
         let unit = direction.or(outward).ok_or_else(|| {
-            let problem = "is missing: a region has no outward side";
+            let problem = "is missing (a region has no outward normal)";
             input_missing(&format!("{path}.direction"), problem, "give direction = [x, y]")
         })?;
         let vector = unit.map(|component: f64| size * component);
@@ -101,19 +101,17 @@ fn rise(load: &LoadKeys, path: &str, clock: Option<Clock>) -> Result<LoadRamp> {
         let given = [(&ramp_key, load.ramp), (&from_key, load.from)];
         return match given.into_iter().find_map(|(key, value)| Some((key, value?))) {
             None => Ok(LoadRamp::AT_ONCE),
-            Some((key, value)) => {
-                Err(input(key, value, "has no meaning without duration_s", "give loading.duration_s, or leave it out"))
-            }
+            Some((key, value)) => Err(input(key, value, "requires duration_s", "give loading.duration_s, or remove it")),
         };
     };
     let (ramp, from) = (load.ramp.unwrap_or(clock.ramp), load.from.unwrap_or(0.0));
     if from >= clock.duration {
-        let problem = format!("is not before the end of the scene, {} s: the load would never act", clock.duration);
-        return Err(input(&from_key, from, problem, "give a smaller one, or a longer loading.duration_s"));
+        let problem = format!("must be before the end of the scene, {} s", clock.duration);
+        return Err(input(&from_key, from, problem, "use a smaller one, or a longer loading.duration_s"));
     }
     if ramp == 0.0 && matches!(load.kind, LoadKind::Displacement | LoadKind::Platens) {
-        let problem = "is missing: a displacement at once would be an infinite velocity";
-        return Err(input_missing(&ramp_key, problem, "give the time in which the displacement is reached"));
+        let problem = "is missing (a step of displacement has infinite velocity)";
+        return Err(input_missing(&ramp_key, problem, "give the time to full displacement"));
     }
     Ok(LoadRamp { from, ramp })
 }
@@ -126,17 +124,19 @@ fn size(all: &Given<'_>, load: &LoadKeys) -> Result<f64> {
         ("velocity_mm_s", load.velocity, SPEED, &[LoadKind::Velocity]),
     ];
     for (key, ..) in choices.iter().filter(|choice| !choice.3.contains(&load.kind)) {
-        let problem = format!("does not go with kind = \"{}\"", load.kind);
-        all.refuse_any(&[key], &problem, "leave it out, or give another kind")?;
+        let problem = format!("cannot be combined with kind = \"{}\"", load.kind);
+        all.refuse_any(&[key], &problem, "remove it, or use another kind")?;
     }
     // Every kind has its key above.
     let own = choices.iter().find(|choice| choice.3.contains(&load.kind));
     let Some((key, size, quantity, _)) = own else { return Ok(0.0) };
-    let size = size.ok_or_else(|| all.refuse(key, "is missing: there is no load", format!("give {}", quantity.what)))?;
+    let size = size.ok_or_else(|| all.refuse(key, "no load given", format!("give {}", quantity.what)))?;
     if size == 0.0 || (load.kind == LoadKind::Platens && size < 0.0) {
         let (problem, remedy) = match load.kind {
-            LoadKind::Platens => ("does not press: platens move against the plate", "give the way of the platen, above zero"),
-            _ => ("loads nothing", "give another value, or hold points in [supports]"),
+            LoadKind::Platens => {
+                ("must be above zero: platens press on the plate", "give the displacement of the platen, above zero")
+            }
+            _ => ("applies no load", "give another value, or add supports in [supports]"),
         };
         return Err(all.refuse(key, problem, remedy));
     }
@@ -151,8 +151,8 @@ fn direction(load: &LoadKeys, path: &str) -> Result<Option<Point>> {
         return Err(input(&key, given, "has no direction", "give [x, y], for example [0, 1]"));
     };
     if load.kind == LoadKind::Platens {
-        let problem = "does not go with platens, which move against the side that they press on";
-        return Err(input(&key, given, problem, "leave it out"));
+        let problem = "cannot be combined with platens, which move normal to their side";
+        return Err(input(&key, given, problem, "remove it"));
     }
     Ok(Some(direction))
 }
@@ -162,9 +162,9 @@ fn check_keys(all: &Given<'_>, load: &LoadKeys) -> Result<()> {
     if matches!(load.kind, LoadKind::Displacement | LoadKind::Velocity) {
         return Ok(());
     }
-    let problem = format!("does not go with kind = \"{}\"", load.kind);
-    all.refuse_any(&["transverse"], &problem, "leave it out")?;
-    all.refuse_any(&["grip_mm"], &format!("{problem}, which acts on the side itself"), "leave it out")?;
+    let problem = format!("cannot be combined with kind = \"{}\"", load.kind);
+    all.refuse_any(&["transverse"], &problem, "remove it")?;
+    all.refuse_any(&["grip_mm"], &format!("{problem}, which acts on the side itself"), "remove it")?;
     all.refuse_any(&["regions"], &format!("{problem}, which acts on sides"), "give edges")
 }
 
@@ -174,15 +174,15 @@ fn regions(all: &Given<'_>, load: &LoadKeys, path: &str, specimen: &Specimen) ->
     match (&load.edges, &load.regions) {
         (None, None) => {
             let remedy = "give edges = [\"top\", \"bottom\", \"left\", \"right\"] or some of them, or regions";
-            Err(input_missing(&edges_key, "is missing: nothing is loaded", remedy))
+            Err(input_missing(&edges_key, "is missing: no side is loaded", remedy))
         }
-        (Some(_), Some(_)) => Err(input_missing(&regions_key, "conflicts with edges", "write each as a part of its own")),
+        (Some(_), Some(_)) => Err(input_missing(&regions_key, "conflicts with edges", "give each as a separate part")),
         (Some(edges), None) => {
             if edges.is_empty() {
-                return Err(input(&edges_key, "[]", "is empty: nothing is loaded", "name the loaded sides"));
+                return Err(input(&edges_key, "[]", "is empty: no side is loaded", "name the loaded sides"));
             }
             if let Some((i, edge)) = edges.iter().enumerate().find(|(i, edge)| edges[..*i].contains(edge)) {
-                return Err(input(&format!("{edges_key}[{i}]"), edge, "stands twice", "name each side once"));
+                return Err(input(&format!("{edges_key}[{i}]"), edge, "is repeated", "name each side once"));
             }
             let (depth, range) = (format!("{path}.grip_mm"), format!("{path}.range_mm"));
             let place = if load.range.is_some() { &range } else { &edges_key };
@@ -193,10 +193,10 @@ fn regions(all: &Given<'_>, load: &LoadKeys, path: &str, specimen: &Specimen) ->
             edges.iter().map(of_edge).collect()
         }
         (None, Some(regions)) => {
-            all.refuse_any(&["grip_mm", "range_mm"], "goes with edges, not with regions", "leave it out")?;
+            all.refuse_any(&["grip_mm", "range_mm"], "applies only to edges, not to regions", "remove it")?;
             if regions.is_empty() || regions.len() > REGIONS_MAX {
                 let remedy = format!("give 1 to {REGIONS_MAX} boxes {{ from_mm = [x, y], to_mm = [x, y] }}");
-                return Err(input(&regions_key, format!("{} regions", regions.len()), "is no place of a load", remedy));
+                return Err(input(&regions_key, format!("{} regions", regions.len()), "is not a region of a load", remedy));
             }
             let of_box = |(i, given): (usize, &BoxKeys)| {
                 let key = format!("{regions_key}[{i}]");
@@ -213,7 +213,7 @@ fn push_traction(drive: &SceneLoad, path: &str, specimen: &mut Specimen) -> Resu
     let loads = drive.loads(specimen);
     if loads.is_empty() {
         let key = format!("{path}.range_mm");
-        return Err(input_missing(&key, "lies where the outline does not reach this side", "move it onto the side"));
+        return Err(input_missing(&key, "is not on this side of the outline", "move it onto the side"));
     }
     specimen.loads.extend(loads);
     Ok(())

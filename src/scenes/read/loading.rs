@@ -39,8 +39,8 @@ pub struct Loading {
 pub fn from_value(value: &Value, specimen: &mut Specimen) -> Result<Loading> {
     let table = table_of(value, "loading")?;
     if let Some((key, value)) = table.iter().find(|(key, _)| OF_CYCLES.contains(&key.as_str())) {
-        let remedy = "give kind and stress_mpa, displacement_mm or velocity_mm_s; cycles are what `perilife predict` runs";
-        let problem = "belongs to the cycles of a fatigue case, not to a fracture scene";
+        let remedy = "give kind and stress_mpa, displacement_mm or velocity_mm_s; use `perilife predict` for cycles";
+        let problem = "applies only to fatigue cases";
         return Err(input(&format!("loading.{key}"), shorten(value), problem, remedy));
     }
     let is_common = |key: &str| CommonKeys::KEYS.iter().any(|own| own.name == key);
@@ -63,11 +63,11 @@ pub fn from_value(value: &Value, specimen: &mut Specimen) -> Result<Loading> {
         Some(parts) => {
             if let Some((key, value)) = own.iter().next() {
                 let problem = "conflicts with parts";
-                return Err(input(&format!("loading.{key}"), shorten(value), problem, "move it into a part"));
+                return Err(input(&format!("loading.{key}"), shorten(value), problem, "move it to a part"));
             }
             if parts.is_empty() || parts.len() > PARTS_MAX {
                 let remedy = format!("give 1 to {PARTS_MAX} loads {{ kind = ..., edges = [...], ... }}");
-                return Err(input("loading.parts", format!("{} parts", parts.len()), "is no loading", remedy));
+                return Err(input("loading.parts", format!("{} parts", parts.len()), "is not a loading", remedy));
             }
             for (i, part) in parts.iter().enumerate() {
                 drives.extend(load::drives(part, &format!("loading.parts[{i}]"), clock, specimen)?);
@@ -83,7 +83,7 @@ const OF_CYCLES: [&str; 6] = ["stress_max_mpa", "stress_range_mpa", "stress_rati
 fn procedure(common: &CommonKeys) -> Result<Procedure> {
     let CommonKeys { duration, time_step, iterations: each, .. } = *common;
     if let (Some(each), None) = (each, common.steps) {
-        return Err(input(ITERATIONS, each, "has no meaning without load steps", "give steps, or leave it out"));
+        return Err(input(ITERATIONS, each, "requires load steps", "give steps, or remove it"));
     }
     match (common.steps, duration) {
         (Some(steps), Some(_)) => {
@@ -93,14 +93,14 @@ fn procedure(common: &CommonKeys) -> Result<Procedure> {
         (steps, None) => {
             let timed = [("loading.time_step_s", time_step), ("loading.ramp_s", common.ramp)];
             if let Some((key, value)) = timed.into_iter().find_map(|(key, value)| Some((key, value?))) {
-                return Err(input(key, value, "has no meaning without duration_s", "give duration_s, or leave it out"));
+                return Err(input(key, value, "requires duration_s", "give duration_s, or remove it"));
             }
             Ok(steps.map_or(Procedure::Static, |steps| Procedure::QuasiStatic { steps, iterations: each }))
         }
         (None, Some(duration)) => {
             if let Some(step) = time_step.filter(|step| *step > duration) {
                 let problem = format!("is longer than duration_s, {duration}");
-                return Err(input("loading.time_step_s", step, problem, "give a smaller one, or leave it out"));
+                return Err(input("loading.time_step_s", step, problem, "use a smaller one, or remove it"));
             }
             Ok(Procedure::Dynamic { duration, time_step })
         }

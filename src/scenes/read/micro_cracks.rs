@@ -54,7 +54,8 @@ pub fn put_in(value: &Value, scene: &mut Scene) -> Result<()> {
     for i in 0..count {
         let crack =
             (0..DRAWS).map(|_| field.draw(&mut random)).find(|crack| fits(*crack, scene, &kept_clear)).ok_or_else(|| {
-                let problem = format!("does not fit: after {i} of them no place was found off edges, flaws, loads and supports");
+                let problem =
+                    format!("does not fit: after {i} of them no position is clear of edges, cracks, loads and supports");
                 let remedy = "give fewer or shorter ones, or a larger region";
                 perilife_base::error::input("micro_cracks.count", count, problem, remedy)
             })?;
@@ -69,10 +70,10 @@ fn field(all: &Given<'_>, given: &MicroCrackKeys, scene: &Scene) -> Result<Field
     let pairs =
         [("length_min_mm", "length_max_mm", lengths.map(|length| length / MM)), ("angle_min_deg", "angle_max_deg", angles)];
     if let Some((key, other, values)) = pairs.into_iter().find(|(.., values)| values[0] > values[1]) {
-        return Err(all.refuse(key, format!("is above {other}, {}", values[1]), "give a smaller one"));
+        return Err(all.refuse(key, format!("is above {other}, {}", values[1]), "use a smaller one"));
     }
     if lengths[1] == 0.0 {
-        return Err(input("micro_cracks.length_max_mm", 0.0, "leaves cracks without length", "give more than zero"));
+        return Err(input("micro_cracks.length_max_mm", 0.0, "gives cracks of zero length", "give more than zero"));
     }
     let boxes = match &given.regions {
         None => {
@@ -80,7 +81,7 @@ fn field(all: &Given<'_>, given: &MicroCrackKeys, scene: &Scene) -> Result<Field
             vec![(low, high)]
         }
         Some(regions) if regions.is_empty() => {
-            return Err(input_missing("micro_cracks.regions", "is empty", "give boxes, or leave it out for the whole plate"));
+            return Err(input_missing("micro_cracks.regions", "is empty", "give boxes, or remove it for the whole plate"));
         }
         Some(regions) => {
             let one =

@@ -71,16 +71,8 @@ pub const SCENE_SECTIONS: &[&str] = &["damage", "micro_cracks"];
 
 /// Sections of other files.
 const STRANGERS: &[ForeignSections] = &[
-    (
-        &["fatigue", "stop", "fleet"],
-        "belongs to a fatigue case, not to a fracture scene, which has no cycles",
-        "remove the section, or run `perilife predict`",
-    ),
-    (
-        &["measured", "fit"],
-        "belongs to a calibration file, not to a fracture scene",
-        "run `perilife calibrate` on it, or remove the section",
-    ),
+    (&["fatigue", "stop", "fleet"], "applies only to fatigue cases", "remove the section, or run `perilife predict`"),
+    (&["measured", "fit"], "applies only to calibration files", "run `perilife calibrate` on it, or remove the section"),
 ];
 
 /// Sections that only a scene has, or that have other keys in it.
@@ -132,11 +124,11 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
     let mut warnings = Vec::new();
     let mut specimen = specimen::from_value(sections.required("specimen")?, folder, &mut warnings)?;
     if value_at(sections.required("specimen")?, "beta_file").is_some() {
-        return Err(input_missing(BETA_FILE, "gives K, and a scene without cycles asks for none", "leave it out"));
+        return Err(input_missing(BETA_FILE, "gives K, which fracture scenes do not use", "remove it"));
     }
     if !specimen.is_through() {
-        let problem = "is a crack that does not go through, which no scene in the plane of the plate knows";
-        return Err(input("specimen.kind", format!("\"{}\"", specimen.kind), problem, "give a through crack"));
+        let problem = "part-through cracks are not supported in fracture scenes";
+        return Err(input("specimen.kind", format!("\"{}\"", specimen.kind), problem, "use a through crack"));
     }
     // The standard kinds serve as geometry: their loads and grips belong to fatigue tests.
     specimen.loads.clear();
@@ -180,12 +172,7 @@ fn read(table: &Table, name: &str, folder: &Folder) -> Result<Scene> {
 fn read_output(value: &Value) -> Result<Output> {
     let output = Output::from_value(value)?;
     if output.animation {
-        return Err(input(
-            "output.animation",
-            true,
-            "is of a case: a scene has no cycles",
-            "leave it out; paraview = true shows its moments",
-        ));
+        return Err(input("output.animation", true, "applies only to fatigue cases", "remove it; use paraview = true"));
     }
     Ok(output)
 }

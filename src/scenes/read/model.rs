@@ -16,7 +16,7 @@ use perilife_points::spacing::{check_spacing, default_spacing};
 perilife_base::kinds! {
     /// Measures of deformation of a bond.
     pub enum Kinematics for "model.kinematics" {
-        Small = "small": "stretch and direction of a bond linear in the displacements; fracture scenes",
+        Small = "small": "small displacements: stretch linear in displacement; fracture scenes",
         Finite = "finite": "true stretch along the deformed bond; bond_based by velocity_verlet or adaptive_dynamic_relaxation; fracture scenes",
     }
 }
@@ -79,16 +79,16 @@ fn bonds(name: Option<&str>, (all, given): (&Given<'_>, &ModelKeys), material: &
             let quoted = format!("\"{name}\"");
             match name.parse::<BondLawKind>() {
                 Ok(BondLawKind::StateBased) => {
-                    let problem = "has no damage: its dilatation counts whole neighbourhoods; fracture scenes do not take it";
+                    let problem = "is not supported in fracture scenes (no damage)";
                     return Err(input(KEY, quoted, problem, format!("use one of {}", names())));
                 }
                 Ok(kind) => kind,
-                Err(_) => return Err(input(KEY, quoted, "is not a known kind", format!("use one of {}", names()))),
+                Err(_) => return Err(input(KEY, quoted, "unknown kind", format!("use one of {}", names()))),
             }
         }
     };
-    let problem = format!("goes with bond_law = \"correspondence\"; {kind} has no zero-energy modes");
-    all.refuse_any(&["zero_energy_control", "zero_energy_factor"], &problem, "leave it out")?;
+    let problem = format!("applies only to bond_law = \"correspondence\"; {kind} has no zero-energy modes");
+    all.refuse_any(&["zero_energy_control", "zero_energy_factor"], &problem, "remove it")?;
     let kernel = match kind {
         BondLawKind::BondBased | BondLawKind::OneBondTwoParameter => Kernel::Constant,
         BondLawKind::TwoParameter | BondLawKind::StateBased => Kernel::Conical,
@@ -108,7 +108,7 @@ fn beyond_springs(error: Error, law: &BondLaw, material: &Material) -> Error {
     match error {
         Error::Input(mut trouble) if material.poisson_ratio > stencil::poisson_limit(material.plane) => {
             let also = if law.kind == BondLawKind::BondBased { "" } else { ", or another Poisson's ratio" };
-            trouble.remedy = format!("use model.bond_law = \"correspondence\", which takes any{also}");
+            trouble.remedy = format!("use model.bond_law = \"correspondence\", which supports any{also}");
             Error::Input(trouble)
         }
         other => other,
@@ -116,14 +116,14 @@ fn beyond_springs(error: Error, law: &BondLaw, material: &Material) -> Error {
 }
 
 fn correspondence(all: &Given<'_>, given: &ModelKeys) -> Result<SceneLaw> {
-    let problem = "goes with laws of bonds, not with bond_law = \"correspondence\"";
-    all.refuse_any(&["kernel", "rotation", "surface_correction", "kinematics"], problem, "leave it out")?;
+    let problem = "applies only to bond laws, not to bond_law = \"correspondence\"";
+    all.refuse_any(&["kernel", "rotation", "surface_correction", "kinematics"], problem, "remove it")?;
     const FACTOR: &str = "model.zero_energy_factor";
     let control = given.zero_energy_control.unwrap_or(ZeroEnergyControl::Silling);
     let factor = match (control, given.zero_energy_factor) {
         (ZeroEnergyControl::None, Some(factor)) => {
-            let problem = "says how strong a control is, and zero_energy_control = \"none\"";
-            return Err(input(FACTOR, factor, problem, "leave it out, or use \"silling\" or \"spring\""));
+            let problem = "conflicts with zero_energy_control = \"none\"";
+            return Err(input(FACTOR, factor, problem, "remove it, or use \"silling\" or \"spring\""));
         }
         (ZeroEnergyControl::None, None) => 0.0,
         (ZeroEnergyControl::Silling, factor) => {
@@ -134,7 +134,7 @@ fn correspondence(all: &Given<'_>, given: &ModelKeys) -> Result<SceneLaw> {
         }
         (ZeroEnergyControl::Spring, None) => {
             let remedy = "give the spring constant c_I in N/m⁷; it raises Young's modulus by π c_I h δ⁴/8";
-            return Err(input_missing(FACTOR, "is missing: springs of which stiffness?", remedy));
+            return Err(input_missing(FACTOR, "is missing (required by \"spring\")", remedy));
         }
     };
     Ok(SceneLaw::Correspondence { control, factor })
@@ -144,7 +144,7 @@ fn check_sign(factor: f64) -> Result<f64> {
     if factor >= 0.0 || factor.is_nan() {
         return Ok(factor);
     }
-    let problem = "is negative: the control would feed the zero-energy modes instead of damping them";
+    let problem = "is negative: it would amplify zero-energy modes";
     Err(input("model.zero_energy_factor", factor, problem, "give zero or more"))
 }
 
@@ -162,21 +162,18 @@ fn solver(asked: Option<SceneSolver>, law: SceneLaw, procedure: Procedure) -> Re
     let Some(asked) = asked else { return Ok(usual) };
     let refuse = |problem: &str, remedy: &str| Err(input(KEY, format!("\"{asked}\""), problem, remedy));
     match asked {
-        SceneSolver::VelocityVerlet if !timed => {
-            refuse("follows motion in time, and the scene has no loading.duration_s", "give duration_s, or leave the solver out")
-        }
+        SceneSolver::VelocityVerlet if !timed => refuse("requires loading.duration_s", "give duration_s, or remove the solver"),
         SceneSolver::Secant | SceneSolver::AdaptiveDynamicRelaxation if timed => refuse(
-            "looks for equilibrium, and loading.duration_s asks for motion in time",
+            "finds equilibrium and conflicts with loading.duration_s (motion)",
             "use \"velocity_verlet\", or give loading.steps instead of duration_s",
         ),
         SceneSolver::Secant if marches => refuse(
-            "finds equilibrium in every step, and loading.iterations_per_step asks for steps that do not come to rest",
-            "use \"adaptive_dynamic_relaxation\", or leave iterations_per_step out",
+            "finds equilibrium in every step and conflicts with loading.iterations_per_step",
+            "use \"adaptive_dynamic_relaxation\", or remove iterations_per_step",
         ),
-        SceneSolver::Secant if by_points => refuse(
-            "works on springs in bonds, which bond_law = \"correspondence\" has not",
-            "use \"adaptive_dynamic_relaxation\"",
-        ),
+        SceneSolver::Secant if by_points => {
+            refuse("requires a bond law with springs, not \"correspondence\"", "use \"adaptive_dynamic_relaxation\"")
+        }
         _ => Ok(asked),
     }
 }
@@ -188,11 +185,11 @@ fn finite(given: &ModelKeys, law: SceneLaw, solver: SceneSolver) -> Result<bool>
     }
     let refuse = |problem: &str, remedy: &str| Err(input("model.kinematics", "\"finite\"", problem, remedy));
     if !matches!(law, SceneLaw::Bonds(BondLaw { kind: BondLawKind::BondBased, .. })) {
-        let problem = "is built for bond_law = \"bond_based\" only: a tangential spring has no true stretch";
+        let problem = "supports only bond_law = \"bond_based\"";
         return refuse(problem, "use bond_based, or kinematics = \"small\"");
     }
     if solver == SceneSolver::Secant {
-        let problem = "does not go with solver = \"secant\", whose stiffness is linear in the displacements";
+        let problem = "cannot be combined with solver = \"secant\" (linear in displacement)";
         return refuse(problem, "use solver = \"adaptive_dynamic_relaxation\"");
     }
     Ok(true)

@@ -29,25 +29,25 @@ pub fn box_in(given: &BoxKeys, path: &str, specimen: &Specimen) -> Result<(Point
 /// A side with the depth of the hold and, where it is not the whole side, the part of it.
 pub fn edge(edge: Edge, key: &str, depth: (&str, f64), range: (&str, Option<[f64; 2]>), specimen: &Specimen) -> Result<Region> {
     if edge.stretches(specimen).is_empty() {
-        let remedy = "an edge is what lies on the bounding box of the outline; take a region";
-        return Err(input(key, edge, "is no straight side of this outline", remedy));
+        let remedy = "only sides on the bounding box are edges; use a region";
+        return Err(input(key, edge, "is not a straight side of this outline", remedy));
     }
     let [low, high] = bounding_box(&specimen.outline);
     let across = usize::from(edge.normal()[0] == 0.0);
     if depth.1 >= (high[across] - low[across]) / 2.0 {
-        return Err(input(depth.0, round_mm(depth.1), "takes hold of half the plate or more", "give a smaller depth"));
+        return Err(input(depth.0, round_mm(depth.1), "covers half of the plate or more", "reduce the depth"));
     }
     let part = match range.1 {
         None => [f64::NEG_INFINITY, f64::INFINITY],
         Some([from, to]) => {
             let shown = format!("[{}, {}]", round_mm(from), round_mm(to));
             if from >= to {
-                return Err(input(range.0, shown, "does not rise", "give [from, to] along the side"));
+                return Err(input(range.0, shown, "must increase", "give [from, to] along the side"));
             }
             if to <= low[1 - across] || from >= high[1 - across] {
                 let name = if across == 1 { "x" } else { "y" };
                 let remedy = format!("give coordinates {name} between {} and {} mm", low[1 - across] / MM, high[1 - across] / MM);
-                return Err(input(range.0, shown, "lies beside the plate", remedy));
+                return Err(input(range.0, shown, "is outside the plate", remedy));
             }
             [from, to]
         }
@@ -85,7 +85,7 @@ perilife_base::keys! {
     /// A held box.
     pub struct HeldBoxKeys {
         place: BoxKeys = part();
-        fix: Vec<Component> = key("fix", "Held components");
+        fix: Vec<Component> = key("fix", "Fixed components");
     }
 }
 
@@ -113,7 +113,7 @@ pub fn supports(value: &Value, specimen: &Specimen) -> Result<Vec<SceneSupport>>
         };
         if fix.is_empty() {
             let remedy = "give fix = [\"x\", \"y\"], [\"x\"] or [\"y\"]";
-            return Err(input_missing(&format!("{path}.fix"), "holds nothing", remedy));
+            return Err(input_missing(&format!("{path}.fix"), "supports nothing", remedy));
         }
         let components = [Component::X, Component::Y].map(|component| fix.contains(&component));
         holds.push(SceneSupport { region, components, key });

@@ -176,8 +176,8 @@ export function createMeasured(onChange) {
   function warnings() {
     // Most of them begin with the file themselves.
     const named = (file, line) => (line.startsWith(`${file}:`) ? line : `${file}: ${line}`);
-    // Columns that the user ignores need no warning.
-    const isNews = (line) => !(columns.names() && line.includes("not read, since the name"));
+    // Whoever has said what the columns are knows which are not read.
+    const isNews = (line) => !(columns.names() && line.includes(": ignored columns: "));
     const list = answer.flatMap((file) => file.warnings.filter(isNews).map((line) => named(file.file, line)));
     return list.length > 0 && element("div", { class: "notice warn" }, element("ul", null, list.map((line) => element("li", null, line))));
   }

@@ -22,11 +22,11 @@ pub struct Choice {
 perilife_base::kinds! {
     /// Families of methods: a colour of the chart each.
     pub enum Family for "method of the chart" {
-        Auto = "auto": "what the program chooses for the scene: the default",
-        TipField = "tip_field": "points and bonds, cracks driven by the K of their tips",
-        ElementFree = "element_free_galerkin": "nodes without elements, cracks driven by the K of their tips",
-        Handbook = "handbook": "quadrature of the growth law with K of a handbook",
-        BondStrain = "bond_strain": "bonds that fail by their own strain: the published law",
+        Auto = "auto": "default (automatic choice)",
+        TipField = "tip_field": "points and bonds, growth driven by K",
+        ElementFree = "element_free_galerkin": "element-free Galerkin nodes, growth driven by K",
+        Handbook = "handbook": "handbook K, life by quadrature",
+        BondStrain = "bond_strain": "bond_strain (published bond law)",
         BondLaw = "bond_law": "another bond law, kernel or correction than the default",
         Solver = "solver": "another solver than the default",
     }

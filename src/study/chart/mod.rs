@@ -9,7 +9,7 @@ pub mod run;
 pub mod schedule;
 
 pub use choice::{Choice, Family};
-pub use run::Run;
+pub use run::BenchmarkRun;
 
 use std::sync::LazyLock;
 
@@ -122,10 +122,10 @@ pub fn scenes(names: &[String]) -> Result<Vec<&'static Panel>> {
 perilife_base::kinds! {
     /// What came of a point of the chart.
     pub enum Status for "status of the chart" {
-        Measured = "measured": "ran, and its time is the median of its runs",
-        Refused = "refused": "the program refuses the case",
-        Failed = "failed": "the run failed, or its cracks end elsewhere than those of the truth",
-        Stopped = "stopped": "took longer than a run may",
+        Measured = "measured": "completed; time is the median of its runs",
+        Refused = "refused": "case refused",
+        Failed = "failed": "failed, or cracks end elsewhere than in the reference",
+        Stopped = "stopped": "time limit exceeded",
     }
 }
 
@@ -135,7 +135,7 @@ pub struct Point {
     pub panel: &'static Panel,
     pub choice: Choice,
     /// What came of its last run.
-    pub outcome: Outcome<Run>,
+    pub outcome: Outcome<BenchmarkRun>,
     pub walls: Vec<f64>,
     /// The same over those of the reference run beside it.
     pub ratios: Vec<f64>,

@@ -18,7 +18,7 @@ const SHORT_S: f64 = 0.05;
 
 /// What a run took and found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Run {
+pub struct BenchmarkRun {
     /// Seconds of wall time, set-up included; the median where a short run was repeated.
     pub wall_s: f64,
     /// Peak memory of the process, MB.
@@ -50,7 +50,7 @@ pub struct Model {
 }
 
 /// Runs a scene with these keys in this process; its peak of memory is that of the process.
-pub fn once(panel: &Panel, set: &[String]) -> Result<Run> {
+pub fn once(panel: &Panel, set: &[String]) -> Result<BenchmarkRun> {
     let timed = || -> Result<(Found, f64)> {
         let started = Instant::now();
         Ok((panel.found(set, &Silent)?, started.elapsed().as_secs_f64()))
@@ -60,7 +60,7 @@ pub fn once(panel: &Panel, set: &[String]) -> Result<Run> {
     while walls.iter().sum::<f64>() < SHORT_S {
         walls.push(timed()?.1);
     }
-    Ok(Run {
+    Ok(BenchmarkRun {
         wall_s: median(&walls),
         memory_mb: machine::peak_mb(),
         error_percent: found.error_percent.abs(),

@@ -7,7 +7,7 @@ use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 
 use super::choice::{Choice, choices};
-use super::run::Run;
+use super::run::BenchmarkRun;
 use super::{Chart, Panel, Point, SCENES};
 use crate::tasks::Outcome;
 use perilife_base::error::Result;
@@ -50,18 +50,18 @@ pub struct Request {
 
 /// A run, and the reference run beside it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Record {
+pub struct BenchmarkRecord {
     pub request: Request,
-    pub outcome: Outcome<Run>,
+    pub outcome: Outcome<BenchmarkRun>,
     /// Seconds of the reference run beside it.
     pub reference_s: f64,
 }
 
 /// Runs a request in a process of its own, no longer than so many seconds.
-pub type Isolated<'a> = &'a dyn Fn(&Request, f64) -> Result<Outcome<Run>>;
+pub type Isolated<'a> = &'a dyn Fn(&Request, f64) -> Result<Outcome<BenchmarkRun>>;
 
 /// Keeps every run as it ends.
-pub type Keep<'a> = &'a mut dyn FnMut(&Record) -> Result<()>;
+pub type Keep<'a> = &'a mut dyn FnMut(&BenchmarkRecord) -> Result<()>;
 
 struct Measuring<'a> {
     isolated: Isolated<'a>,
@@ -70,7 +70,7 @@ struct Measuring<'a> {
     /// Seconds of the last reference run, and when it ended.
     reference: Option<(f64, Instant)>,
     references: Vec<f64>,
-    records: Vec<Record>,
+    records: Vec<BenchmarkRecord>,
 }
 
 impl Measuring<'_> {
@@ -92,13 +92,13 @@ impl Measuring<'_> {
     fn measure(&mut self, request: Request) -> Result<()> {
         let reference_s = self.reference()?;
         let outcome = (self.isolated)(&request, self.limit_s)?;
-        let record = Record { request, outcome, reference_s };
+        let record = BenchmarkRecord { request, outcome, reference_s };
         (self.keep)(&record)?;
         self.records.push(record);
         Ok(())
     }
 
-    fn of<'r>(&'r self, request: &'r Request) -> impl Iterator<Item = &'r Record> {
+    fn of<'r>(&'r self, request: &'r Request) -> impl Iterator<Item = &'r BenchmarkRecord> {
         self.records.iter().filter(move |record| record.request == *request)
     }
 }
@@ -107,7 +107,7 @@ impl Measuring<'_> {
 pub fn measure(
     scenes: &[&'static Panel],
     effort: Effort,
-    known: Vec<Record>,
+    known: Vec<BenchmarkRecord>,
     isolated: Isolated<'_>,
     keep: Keep<'_>,
 ) -> Result<Chart> {
@@ -142,7 +142,7 @@ pub fn measure(
     Ok(Chart::new(points, &measuring.references))
 }
 
-fn point<'r>(panel: &'static Panel, choice: Choice, records: impl Iterator<Item = &'r Record>) -> Point {
+fn point<'r>(panel: &'static Panel, choice: Choice, records: impl Iterator<Item = &'r BenchmarkRecord>) -> Point {
     let outcome = Outcome::Failed("was not run".to_owned());
     let mut point = Point { panel, choice, outcome, walls: Vec::new(), ratios: Vec::new(), is_on_front: false };
     for record in records {

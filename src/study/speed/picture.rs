@@ -43,7 +43,7 @@ pub fn svg(chart: &Chart, origin: &Origin) -> String {
     }
     let footer = origin.footer(chart).replace('`', "");
     sketch.name([16.0, size[1] - 14.0], &footer, "start", 12.0, GREY);
-    sketch.picture(size, "Time of a run against its error, a panel a scene")
+    sketch.picture(size, "Run time against error, one panel per scene")
 }
 
 /// Title, and what colours and marks mean.
@@ -99,7 +99,7 @@ fn outlined(sketch: &mut Sketch, mut corners: Vec<Pixel>, fill: &str, rim: &str)
 fn draw(panel: &Panel, points: &[&Point], most_s: f64) -> Sketch {
     let quantity = panel.quantity.split(',').next().unwrap_or_default();
     let axes = [Axis::logarithmic_between(SECONDS_LEAST, most_s), Axis::logarithmic_between(ERRORS[0], ERRORS[1])];
-    let mut frame = Frame::new(PANEL, &panel.about, axes, ["Time of a run, s", &format!("Error of {quantity}, %")], &[]);
+    let mut frame = Frame::new(PANEL, &panel.about, axes, ["Run time, s", &format!("Error of {quantity}, %")], &[]);
     let mut taken = limits(&mut frame, panel, most_s);
     let held = |[time, error]: [f64; 2]| [time.clamp(SECONDS_LEAST, most_s), error.clamp(ERRORS[0], ERRORS[1])];
     let steps = front(points, most_s, held);

@@ -82,18 +82,18 @@ pub fn never_on_front(chart: &Chart) -> Vec<Family> {
 /// When to take a method; `None` of what is a choice within one.
 fn when(family: Family) -> Option<&'static str> {
     match family {
-        Family::Auto => Some("default"),
+        Family::Auto => Some("default, except for the cases below"),
         Family::Handbook => Some("a standard specimen within the range of its formula"),
-        Family::ElementFree => Some("any other plate: curved, short and several cracks, holes, edges, flanks in contact"),
-        Family::TipField => Some("bonds and their remaining life, damage, bond laws; a second opinion"),
-        Family::BondStrain => Some("cracks that start at slots; bond_strain"),
+        Family::ElementFree => Some("any other plate: curved, short and several cracks, holes, edges, crack-face contact"),
+        Family::TipField => Some("bonds and their remaining life, damage, bond laws; cross-check"),
+        Family::BondStrain => Some("cracks from slots; the published law"),
         Family::BondLaw | Family::Solver => None,
     }
 }
 
 pub fn markdown(chart: &Chart, origin: &Origin) -> String {
     // Writing to a String cannot fail.
-    let mut text = "# What to use when\n\n".to_owned();
+    let mut text = "# Choice of method\n\n".to_owned();
     for sentence in sentences(chart) {
         let _ = writeln!(text, "- {sentence}");
     }
@@ -105,7 +105,7 @@ pub fn markdown(chart: &Chart, origin: &Origin) -> String {
     });
     let methods: String = methods.collect();
     if !methods.is_empty() {
-        text += "\n| method | when to take it | largest error of life | median time |\n|---|---|---|---|\n";
+        text += "\n| method | use for | largest error of life | median time |\n|---|---|---|---|\n";
         text += &methods;
     }
     if !growing.is_empty() {
@@ -139,10 +139,10 @@ pub fn markdown(chart: &Chart, origin: &Origin) -> String {
             );
         }
     }
-    text += "\nConditions: C and m of the growth law are given, nothing is fitted to a scene. The beam with three holes has points of \
-             0.5 mm by default. Bond-based plates have a Poisson's ratio of 1/3, which changes no K under given loads. Errors are the largest \
-             at 50, 75 and 95 % of the growth; those of a plate in tension and of a hole are static. Each run is a process of its own, set-up \
-             included, pictures not.\n";
+    text += "\nC and m of the growth law are given; nothing is fitted to a scene. The beam with three holes has points of 0.5 \
+             mm by default. Bond-based plates have a Poisson's ratio of 1/3, which changes no K under given loads. Errors are \
+             the largest at 50, 75 and 95 % of the growth; those of a plate in tension and of a hole are static. Each run is \
+             a separate process, set-up included, pictures not.\n";
     let _ = writeln!(text, "\n{}", origin.footer(chart));
     text
 }
@@ -162,7 +162,7 @@ fn sentences(chart: &Chart) -> Vec<String> {
     all.push(format!("Fastest within an error of life in every scene (median time, largest error): {}.", within.join("; ")));
     if let Some(hand) = overall(chart).into_iter().find(|choice| choice.name == Family::Handbook.name()) {
         all.push(format!(
-            "Where a handbook has K(a), quadrature takes {} and errs by {} % at most.",
+            "Where a handbook has K(a), quadrature takes {} with an error of at most {} %.",
             seconds(hand.median_s),
             digits(hand.worst_percent)
         ));

@@ -22,13 +22,13 @@ pub struct Budget {
 }
 
 /// A run under its budget: the observer of all that is predicted in it.
-pub struct Run {
+pub struct BudgetedRun {
     budget: Budget,
     watch: Arc<Watch>,
     blocks: AtomicUsize,
 }
 
-impl Run {
+impl BudgetedRun {
     /// Whether one more block may be done.
     fn may_go_on(&self) -> bool {
         let done = self.blocks.fetch_add(1, Ordering::Relaxed) + 1;
@@ -40,7 +40,7 @@ impl Run {
     }
 }
 
-impl Observer for Run {
+impl Observer for BudgetedRun {
     fn block_done(&self, _progress: &Progress) -> bool {
         self.may_go_on()
     }
@@ -50,7 +50,7 @@ impl Observer for Run {
     }
 }
 
-impl SceneObserver for Run {
+impl SceneObserver for BudgetedRun {
     fn step_done(&self, _progress: &SceneProgress) -> bool {
         self.may_go_on()
     }
@@ -61,8 +61,8 @@ impl SceneObserver for Run {
 }
 
 /// What comes of some work within a budget: an error in percent, or why there is none.
-pub fn within(budget: Budget, work: impl FnOnce(&Run) -> Result<f64>) -> Outcome<f64> {
-    let run = Run { budget, watch: Arc::default(), blocks: AtomicUsize::new(0) };
+pub fn within(budget: Budget, work: impl FnOnce(&BudgetedRun) -> Result<f64>) -> Outcome<f64> {
+    let run = BudgetedRun { budget, watch: Arc::default(), blocks: AtomicUsize::new(0) };
     let ran_out = AtomicBool::new(false);
     let (over, is_over) = mpsc::channel::<()>();
     let done = thread::scope(|scope| {
@@ -81,7 +81,7 @@ pub fn within(budget: Budget, work: impl FnOnce(&Run) -> Result<f64>) -> Outcome
     match done {
         Err(panic) => {
             let owned = panic.downcast_ref::<String>().map(String::as_str);
-            let words = owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without words");
+            let words = owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a message");
             Outcome::Failed(format!("panic: {words}"))
         }
         Ok(_) if ran_out.load(Ordering::Relaxed) => Outcome::Stopped(format!("not done within {} s", budget.seconds)),

@@ -13,7 +13,7 @@ use std::time::Instant;
 use serde::Deserialize;
 use toml::Table;
 
-pub use budget::{Budget, Run, within};
+pub use budget::{Budget, BudgetedRun, within};
 
 use super::questions::{Asker, SHARED, each, file, read};
 use super::subject::Watcher;
@@ -133,7 +133,7 @@ impl Sweep {
 
 /// A method across a parameter.
 #[derive(Clone)]
-pub struct Record {
+pub struct StabilityRecord {
     pub sweep: &'static Sweep,
     pub method: &'static str,
     /// Values, rising, those of the bisection among them, with what came of them.
@@ -179,7 +179,7 @@ pub fn sweeps(names: &[String]) -> Result<Vec<&'static Sweep>> {
 }
 
 /// Records of some sweeps in their order. `done` hears of every one as it ends.
-pub fn run(sweeps: &[&'static Sweep], effort: Effort, done: &(dyn Fn(&Record) + Sync)) -> Vec<Record> {
+pub fn run(sweeps: &[&'static Sweep], effort: Effort, done: &(dyn Fn(&StabilityRecord) + Sync)) -> Vec<StabilityRecord> {
     let all = sweeps.iter().flat_map(|sweep| sweep.methods.iter().map(|method| (*sweep, method)));
     let tasks: Vec<_> =
         all.filter(|(sweep, method)| effort.with_slow || !SLOW.contains(&(sweep.name.as_str(), method.name.as_str()))).collect();
@@ -194,7 +194,7 @@ pub fn run(sweeps: &[&'static Sweep], effort: Effort, done: &(dyn Fn(&Record) + 
 const BISECTIONS_MAX: usize = 8;
 
 /// Runs a method at every value and narrows the ends of its safe range.
-fn walk(sweep: &'static Sweep, method: &'static Method, effort: Effort) -> Record {
+fn walk(sweep: &'static Sweep, method: &'static Method, effort: Effort) -> StabilityRecord {
     let begun = Instant::now();
     let measure = |value: f64| (value, within(effort.budget, |run| sweep.error(method, value, run)));
     let mut points: Vec<(f64, Outcome<f64>)> = values(sweep, effort.stride).into_iter().map(measure).collect();
@@ -232,7 +232,7 @@ fn walk(sweep: &'static Sweep, method: &'static Method, effort: Effort) -> Recor
         }
     }
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Record { sweep, method: &method.name, points, ends, is_safe, wall_s: begun.elapsed().as_secs_f64() }
+    StabilityRecord { sweep, method: &method.name, points, ends, is_safe, wall_s: begun.elapsed().as_secs_f64() }
 }
 
 /// Every so many-th value, the first, the last and the usual one among them.

@@ -157,7 +157,7 @@ impl Set {
 
 /// The record of a fit as text.
 fn record(calibration: &Calibration) -> Result<String> {
-    let no_form = |error| Error::Mechanics(format!("{RECORD} has no form in TOML: {error}"));
+    let no_form = |error| Error::Mechanics(format!("{RECORD} cannot be written as TOML: {error}"));
     calibration.fit(&Silent)?.record_text().map_err(no_form)
 }
 

@@ -88,7 +88,8 @@ pub fn csv(rows: &[Row]) -> String {
 
 /// The validation as a document, with few digits.
 pub fn markdown(sets: &[Set], rows: &[Row]) -> String {
-    let mut page = "# Validation\n\nWritten by `perilife validate --markdown`: lives and paths of published tests beside those that the program predicts. \
+    let mut page = "# Validation\n\nWritten by `perilife validate --markdown`: predicted lives and paths against published \
+                    tests. \
          The ratio is\npredicted over measured life (below 1: conservative); the scatter factor is exp(s), s the standard deviation of ln ratio; \
          the band is\n5 % to 95 % of specimens; the CRPS (continuous ranked probability score) is in percent of the life. Sources, assumptions and uncertainties are below; inputs are in\n`data/validation`.\n\n\
          | kind of test | tests | geometric mean of the ratio | scatter factor | lives in the band |\n|---|---|---|---|---|\n"

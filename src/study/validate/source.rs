@@ -81,8 +81,8 @@ impl Test {
         let is_above_zero = |number: &f64| number.is_finite() && *number > 0.0;
         let are_lives = test.lives().iter().chain(&test.others_life).all(is_above_zero) && test.halves != Some(0);
         if !are_lives || !test.path_mm.iter().flatten().all(|x| x.is_finite()) {
-            let problem = "has a life, a count of halves or a place that is none";
-            return Err(input_missing(at, problem, "give lives and counts above zero, and finite places"));
+            let problem = "has an invalid life, count of halves or position";
+            return Err(input_missing(at, problem, "give lives and counts above zero, and finite positions"));
         }
         Ok(test)
     }
@@ -152,7 +152,7 @@ pub fn sets(wanted: &[String]) -> Result<Vec<Set>> {
         None => Err(input(
             "NAME",
             name,
-            "is no set of tests and no folder",
+            "is neither a set of tests nor a folder",
             "give a folder with source.toml, or a name of `perilife list`",
         )),
     };

@@ -68,12 +68,12 @@ pub const SOLVERS: &[Bad] = &[
         "spacing_mm = 1\nzero_energy_control = \"none\"\nzero_energy_factor = 1",
         &["model.zero_energy_factor", "none"],
     ),
-    (PRESSED, "spacing_mm = 1", "spacing_mm = 1\nkernel = \"conical\"", &["model.kernel", "laws of bonds"]),
+    (PRESSED, "spacing_mm = 1", "spacing_mm = 1\nkernel = \"conical\"", &["model.kernel", "applies only to bond laws"]),
     (
         PRESSED,
         "spacing_mm = 1",
         "spacing_mm = 1\ndiscretisation = \"dual_horizon\"",
-        &["model.discretisation", "dual_horizon", "laws of bonds"],
+        &["model.discretisation", "dual_horizon", "does not support bond_law"],
     ),
 ];
 
@@ -92,13 +92,13 @@ pub const DAMAGE: &[Bad] = &[
         THROWN,
         "law = \"critical_energy\"",
         "law = \"critical_stretch\"\ncritical_stretch = 0.1\ncalibration = \"growth\"",
-        &["damage.calibration", "growth", "damage.critical_stretch", "leave one of them out"],
+        &["damage.calibration", "growth", "damage.critical_stretch", "remove one of them"],
     ),
     (
         PULLED,
         "law = \"nonlinear_two_parameter\"",
         "law = \"nonlinear_two_parameter\"\ncalibration = \"growth\"",
-        &["damage.calibration", "critical_energy", "leave it out"],
+        &["damage.calibration", "critical_energy", "remove it"],
     ),
     (PRESSED, "tensile_strength_mpa = 3\n", "", &["material.tensile_strength_mpa", "missing", "principal_stress"]),
     (PRESSED, "bond_law = \"correspondence\"", "bond_law = \"two_parameter\"", &["material.poisson_ratio", "correspondence"]),
@@ -122,7 +122,7 @@ pub const DAMAGE: &[Bad] = &[
         PULLED,
         "law = \"nonlinear_two_parameter\"",
         "law = \"nonlinear_two_parameter\"\nfinal_stretch = 0.002",
-        &["damage.final_stretch", "not beyond"],
+        &["damage.final_stretch", "must be above"],
     ),
     (
         PULLED,

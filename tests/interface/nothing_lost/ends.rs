@@ -130,8 +130,7 @@ fn signals_fold_up() {
             send(&process, signal);
             let (ended, stderr) = ended(process);
             assert_eq!(ended, Some(code), "{call:?} {signal}: {stderr}");
-            let line =
-                format!("ended by SIG{signal}: nothing is left behind; with --checkpoint FILE a run can be taken up again");
+            let line = format!("interrupted by SIG{signal}; nothing was written; use --checkpoint FILE to resume");
             assert_eq!(stderr.lines().filter(|text| !text.starts_with("warning: ")).collect::<Vec<_>>(), [line], "{call:?}");
             assert_eq!(names(here), before);
         }
@@ -140,7 +139,7 @@ fn signals_fold_up() {
         send(&process, signal);
         let (ended, stderr) = ended(process);
         assert_eq!(ended, Some(code), "{stderr}");
-        assert!(stderr.contains("finished cases stay in out; the same command goes on from there"), "{stderr}");
+        assert!(stderr.contains("finished cases are in out; run the same command to resume"), "{stderr}");
         assert!(names(&here.join("out/cases")).is_empty(), "{:?}", names(&here.join("out/cases")));
         fs::remove_dir_all(here.join("out")).unwrap();
     }
@@ -161,7 +160,7 @@ fn a_signal_says_how_to_go_on() {
     send(&process, "INT");
     let (code, stderr) = ended(process);
     assert_eq!(code, Some(130), "{stderr}");
-    assert!(stderr.trim_end().ends_with("ended by SIGINT: the same command goes on from run.ckpt"), "{stderr}");
+    assert!(stderr.trim_end().ends_with("interrupted by SIGINT; run the same command to resume from run.ckpt"), "{stderr}");
     assert!(names(here).iter().all(|name| !name.starts_with('.')), "{:?}", names(here));
     // A process that was started to ignore a signal (nohup) goes on to its end.
     let script = format!("trap '' HUP; exec {:?} {}", cargo_bin("perilife"), call.join(" "));

@@ -73,11 +73,11 @@ fn a_checkpoint_is_nothing_that_is_read() {
         symlink(input, here.join("link")).unwrap();
         fs::write(here.join("notes"), "my notes").unwrap();
         for (file, words) in [
-            (input, "is no checkpoint"),
-            ("link", "is no checkpoint"),
-            ("notes", "is no checkpoint"),
+            (input, "is not a checkpoint"),
+            ("link", "is not a checkpoint"),
+            ("notes", "is not a checkpoint"),
             ("run", "cannot"),
-            ("out/run.ckpt", "lies below --out = out"),
+            ("out/run.ckpt", "is inside --out = out"),
         ] {
             let before = content(here);
             let output = perilife(here, &[command, input, "--out", "out", "-q", "--checkpoint", file]);
@@ -109,7 +109,7 @@ fn a_table_that_was_cut_off_is_noticed() {
         [(&table[..3000], "is cut off: 3000 of the"), (&table[..row_end], "is cut off"), (&changed[..], "is not the table")]
     {
         fs::write(here.join("run/a_n.csv"), bytes).unwrap();
-        assert_refused(&export(), 2, &["run/a_n.csv", words, "copy the folder again"]);
+        assert_refused(&export(), 2, &["run/a_n.csv", words, "copy it again"]);
         assert!(!here.join("e.csv").exists());
     }
     fs::write(here.join("run/a_n.csv"), &table).unwrap();
@@ -156,5 +156,5 @@ fn pipes_are_files() {
     let (code, (_, stderr)) = piped("panel.toml", &["rates", "-", "--specimen", "-"]);
     assert!(code == Some(2) && stderr.contains("error: "), "{stderr}");
     let (code, (_, stderr)) = piped("readings.csv", &["rates", "-", "-"]);
-    assert!(code == Some(2) && stderr.contains("is standard input, which was read already"), "{stderr}");
+    assert!(code == Some(2) && stderr.contains("standard input was already read"), "{stderr}");
 }

@@ -23,9 +23,9 @@ fn cases_that_are_too_large_are_refused_at_once() {
     let wide = "width_mm = 1000\nlength_mm = 1000\ncracks = [{ from_mm = [-40, 0], to_mm = [40, 0] }]";
     let small = "width_mm = 60\nlength_mm = 60\ncracks = [{ from_mm = [-9, -2], to_mm = [9, 2] }]";
     let cases = [
-        (plate(arms, "[model]\nspacing_mm = 0.5"), "lattice places"),
-        (plate(wide, "[model]\nspacing_mm = 0.6"), "points, more than the 1.000e6"),
-        (plate(small, "[model]\nspacing_mm = 0.1\nhorizon_ratio = 12.0"), "GB of memory, more than 4.29 GB"),
+        (plate(arms, "[model]\nspacing_mm = 0.5"), "lattice positions"),
+        (plate(wide, "[model]\nspacing_mm = 0.6"), "points; limit 1.000e6"),
+        (plate(small, "[model]\nspacing_mm = 0.1\nhorizon_ratio = 12.0"), "GB of memory; limit 4.29 GB"),
     ];
     for (text, words) in &cases {
         for path in ["/v1/check", "/v1/predictions"] {

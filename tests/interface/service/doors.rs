@@ -70,7 +70,7 @@ fn a_drawing_is_sent_along() {
     let plate = sent(json!({ "bracket.dxf": drawing })).expect(200);
     assert!(plate.text().contains("\"holes\""), "{}", plate.text());
     let missing = sent(json!({})).expect(422);
-    assert!(missing.text().contains("bracket.dxf") && missing.text().contains("was not sent along"), "{}", missing.text());
+    assert!(missing.text().contains("bracket.dxf") && missing.text().contains("was not uploaded"), "{}", missing.text());
     let broken = sent(json!({ "bracket.dxf": drawing.replace("\nholes\n", "\nbores\n") })).expect(422);
     assert!(broken.text().contains("specimen.outline_file") && broken.text().contains("bores"), "{}", broken.text());
 }
@@ -299,7 +299,11 @@ fn a_database_is_named_and_not_made_by_a_slip() {
             vec!["sweep", "sweep.toml", "--out", "out", "-q", "--engine", "service", "--data", data],
         ] {
             let output = perilife(here, &call);
-            assert_refused(&output, 2, &[&format!("--data = {data}"), "holds no database of a service", "perilife serve --data"]);
+            assert_refused(
+                &output,
+                2,
+                &[&format!("--data = {data}"), "contains no database of a service", "of `perilife serve`"],
+            );
         }
         assert!(!here.join("typo").exists() && fs::read_dir(here.join("empty")).unwrap().count() == 0);
     }

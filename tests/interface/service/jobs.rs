@@ -257,6 +257,6 @@ fn every_kind_of_job_runs() {
     for name in ["/etc/passwd", "../../etc/passwd", "case.toml"] {
         let body = json!({ "name": "sweep", "input": sweep.replace("case.toml", name) });
         let refused = service.post("/v1/sweeps", &body).expect(422);
-        assert!(refused.text().contains("was not sent along"), "{}", refused.text());
+        assert!(refused.text().contains("was not uploaded"), "{}", refused.text());
     }
 }

@@ -102,7 +102,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     page.until("document.querySelector('#measured').dataset.measured === 'problem'");
     let found = page.text("[data-problems]");
     assert!(
-        ["many", "is not a number", "is below the reading before", "is negative"].iter().all(|words| found.contains(words)),
+        ["many", "is not a number", "is below the previous reading", "is negative"].iter().all(|words| found.contains(words)),
         "{found}"
     );
     walk.look("02_problems");

@@ -34,7 +34,7 @@ fn columns_that_nobody_knows_are_chosen_on_the_page() {
     picture(&page, "unknown_columns");
     // What to do is said in the terms of the page; the first rows stand in the table of columns once.
     let told = page.text("[data-problems]");
-    assert!(told.contains("Assign columns above") && told.contains("is not a known column"), "{told}");
+    assert!(told.contains("Assign columns above") && told.contains("unknown column"), "{told}");
     assert!(!told.contains("read so far") && !told.contains("20000"), "{told}");
     let rows = page.text("[data-file='unknown.csv'] [data-table=columns]");
     assert!(["zeit", "riss", "20000", "21.4"].iter().all(|words| rows.contains(words)), "{rows}");
@@ -46,7 +46,7 @@ fn columns_that_nobody_knows_are_chosen_on_the_page() {
     };
     choose("zeit", "cycles");
     choose("riss", "length");
-    page.until("document.querySelector('[data-problems]')?.innerText.includes('does not say its unit')");
+    page.until("document.querySelector('[data-problems]')?.innerText.includes('has no unit')");
     page.run("const unit = document.querySelector('#units [data-key=\"measured.length_unit\"]'); unit.value = 'mm'; unit.dispatchEvent(new Event('input', { bubbles: true }))");
     page.until("document.querySelector('#measured').dataset.measured === 'ok'");
     let read = page.text("[data-file='unknown.csv']");
@@ -89,7 +89,7 @@ fn a_fit_of_laws_has_a_page() {
     page.open(&format!("{}/#/{}", service.url, job.trim_start_matches("/v1/")));
     page.see("[data-table=candidates]");
     let laws = page.text("[data-table=candidates]");
-    assert!(["paris", "walker", "nasgro_alpha not identified"].iter().all(|words| laws.contains(words)), "{laws}");
+    assert!(["paris", "walker", "nasgro_alpha cannot be determined"].iter().all(|words| laws.contains(words)), "{laws}");
     assert!(page.text("[data-table=constants]").contains("walker_gamma"));
     picture(&page, "laws");
     let complaints = page.complaints();

@@ -274,8 +274,8 @@ fn inputs_are_looked_at_as_by_the_command() {
     assert_eq!(a["curves"][0]["lines"], json!([2, 3, 5, 7, 8]));
     let problems: Vec<(i64, &str)> =
         a["problems"].as_array().unwrap().iter().map(|p| (p["line"].as_i64().unwrap(), p["problem"].as_str().unwrap())).collect();
-    assert_eq!(problems, [(4, "is not a number"), (6, "is below the reading before (3000)")]);
-    assert!(b["columns"].is_null() && b["curves"] == json!([]) && b["problems"][0]["problem"] == "is not a known column");
+    assert_eq!(problems, [(4, "is not a number"), (6, "is below the previous reading (3000)")]);
+    assert!(b["columns"].is_null() && b["curves"] == json!([]) && b["problems"][0]["problem"] == "unknown column");
     assert_eq!((&b["header"], &b["first_rows"]), (&json!(["what", "is"]), &json!([["1", "2"]])));
 
     // What the user says: as in [measured].
@@ -307,7 +307,7 @@ fn inputs_are_looked_at_as_by_the_command() {
         "{left}"
     );
     let open = send(form(&said[..3])).expect(200).json();
-    assert!(open["files"][0]["problems"][0]["problem"].as_str().unwrap().contains("is the decimal sign and"), "{open}");
+    assert!(open["files"][0]["problems"][0]["problem"].as_str().unwrap().contains("is ambiguous: "), "{open}");
     for (field, value, words) in [
         ("columns", "[1]", "is not a table of columns, such as { cycles = \\\"N\\\""),
         ("decimal", ";", "is not a known unit"),

@@ -11,8 +11,8 @@ use perilife_base::table::quantities::{Words, in_si, numbers};
 use perilife_base::table::units::Unit;
 use perilife_base::table::{self, Fault, Table, whole_file};
 
-const REMEDY: &str = "name the columns max, min, cycles (or two of max, min, range, amplitude, mean, stress ratio, and cycles), or give one \
-                      column of turning points";
+const REMEDY: &str = "name the columns max, min, cycles (or two of max, min, range, amplitude, mean, stress ratio, and \
+                      cycles), or give one column of peaks and valleys";
 /// Difference of a scale from the size of a unit by which both are one.
 const ALIKE: f64 = 0.02;
 
@@ -93,8 +93,8 @@ pub(super) fn read(
         let step = rows.get(1).zip(rows.first()).map_or(0.0, |(second, first)| second.1[place] - first.1[place]);
         let is_from = |from: f64| rows.iter().enumerate().all(|(row, (_, values))| values[place] == from + step * row as f64);
         if rows.len() > 2 && step > 0.0 && (is_from(0.0) || is_from(step)) {
-            let problem = "numbers the rows, or says how often their cycles come";
-            let remedy = "name it row, or set loading.spectrum_format = \"cycles\" if these are numbers of cycles";
+            let problem = "ambiguous: row numbers or numbers of cycles";
+            let remedy = "rename it row, or set loading.spectrum_format = \"cycles\" if these are numbers of cycles";
             return Err(table.header_fault(columns[place].index).error(problem, remedy));
         }
     }
@@ -137,7 +137,7 @@ fn columns_of(table: &Table, asked: Option<SpectrumFormat>, scale: (Unit, f64)) 
     let only: Vec<Role> = roles.iter().map(|(role, _)| *role).collect();
     let Some(format) = format_of(&only).filter(|format| asked.is_none_or(|asked| asked == *format)) else {
         let fault = table.header_fault(0);
-        return Err(fault.error("names columns of another format than loading.spectrum_format", "leave spectrum_format out"));
+        return Err(fault.error("conflicts with loading.spectrum_format: columns of another format", "remove spectrum_format"));
     };
     let mut columns = Vec::new();
     for (index, (role, unit)) in roles.into_iter().enumerate().filter(|(_, (role, _))| *role != Role::Other) {
@@ -162,7 +162,7 @@ fn factor(table: &Table, column: usize, named: Named, (unit, scale): (Unit, f64)
         return fault(problem, "give spectrum_scale_mpa = 1 for stresses, spectrum_scale_n = 1 for forces");
     }
     if factor != 1.0 && (scale / factor - 1.0).abs() < ALIKE {
-        let problem = format!("is converted from {} to {}, and the scale, {scale}, would do so again", own.name(), unit.name());
+        let problem = format!("is converted from {} to {}; the scale {scale} would convert it twice", own.name(), unit.name());
         return fault(problem, "set the scale to 1, or remove the unit from the name");
     }
     Ok(factor)
@@ -174,7 +174,7 @@ fn refuse_pairs(table: &Table) -> Result<()> {
         return Ok(());
     };
     Err(Fault { line: Some(first.line), value: Some(first.cell(0)), ..whole_file(&table.file) }.error(
-        "may be two columns, or one with decimal commas",
+        "ambiguous: two columns, or one with decimal commas",
         "set loading.spectrum_format = \"cycles\" (maximum, minimum) or \"turning_points\" (decimal commas), or name the columns",
     ))
 }
@@ -189,7 +189,7 @@ fn nameless(table: &Table) -> perilife_base::error::Error {
     let fault = Fault { line, key: Some("row"), value: shown.as_deref(), ..whole_file(&table.file) };
     let count = table.header.len();
     fault.error(
-        format!("has {count} {} without a name that says what it is", if count == 1 { "column" } else { "columns" }),
+        format!("has {count} {} without a known name", if count == 1 { "column" } else { "columns" }),
         format!("{REMEDY}; or set loading.spectrum_format = \"cycles\" for the columns maximum, minimum, cycles"),
     )
 }
@@ -203,7 +203,7 @@ fn check_preamble(table: &Table) -> Result<()> {
         if let Some([_, ..]) = numbers.as_deref().filter(|numbers| **numbers != [table.rows.len() as f64]) {
             let fault = Fault { line: Some(*line), value: Some(text), ..whole_file(&table.file) };
             return Err(
-                fault.error("is above the table, and not the number of its rows", "write one load a line, or one cycle a line")
+                fault.error("is above the table and is not its number of rows", "write one load a line, or one cycle a line")
             );
         }
     }

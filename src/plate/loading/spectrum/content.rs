@@ -4,10 +4,10 @@ perilife_base::kinds! {
     /// How a spectrum is written.
     pub enum SpectrumFormat for "loading.spectrum_format" {
         Cycles = "cycles": "table with the columns max, min, cycles (or range, mean, cycles), in order, each maximum before its minimum",
-        TurningPoints = "turning_points": "one column of loads, counted by rainflow as repeating (ASTM E1049, 5.4.5), each cycle at the place of its maximum",
+        TurningPoints = "turning_points": "one column of peaks and valleys, rainflow counted as repeating (ASTM E1049, 5.4.5); each cycle is applied at its peak",
         Spx = "spx": "AFGROW .spx: XML with elements B (Mx, Mn, C) in every SubSpectrum",
         Sub = "sub": "AFGROW .sub: a title with the number of rows, then rows max min cycles",
-        Fastran = "fastran": "FASTRAN: a title, points Smax Smin INVERT ICLIP, then turning points as whole numbers",
+        Fastran = "fastran": "FASTRAN: a title, points Smax Smin INVERT ICLIP, then peaks and valleys as whole numbers",
     }
 }
 

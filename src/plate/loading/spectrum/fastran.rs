@@ -7,7 +7,7 @@ use super::content::Content;
 use super::rows::{Row, cells, fault, number};
 use perilife_base::error::Result;
 
-const REMEDY: &str = "give a title, a line `points Smax Smin INVERT ICLIP`, then as many turning points";
+const REMEDY: &str = "give a title, a line `points Smax Smin INVERT ICLIP`, then that number of peaks and valleys";
 
 /// The five numbers of the second line, if it is one.
 fn header(line: &str) -> Option<[f64; 5]> {
@@ -29,8 +29,8 @@ pub(super) fn read<'a>(mut rows: impl Iterator<Item = Row<'a>>) -> Result<Conten
     };
     for (name, value) in [("INVERT", invert), ("ICLIP", clip)] {
         if value != 0.0 {
-            let remedy = "write the points as they are meant, with 0 here; truncation_percent cuts peaks";
-            return Err(fault(Some(line), name, &value.to_string(), "changes the points, and is not carried out", remedy));
+            let remedy = "write the final points, with 0 here; truncation_percent clips peaks";
+            return Err(fault(Some(line), name, &value.to_string(), "is not supported (it changes the points)", remedy));
         }
     }
     let mut found = Vec::new();

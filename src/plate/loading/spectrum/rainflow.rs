@@ -2,7 +2,7 @@
 
 /// A cycle that was counted.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Counted {
+pub struct RainflowCycle {
     /// Its maximum.
     pub max: f64,
     /// Its minimum.
@@ -29,10 +29,10 @@ fn turning_points(history: impl Iterator<Item = (usize, f64)>) -> Vec<(usize, f6
 /// The cycles of a history that comes again and again: turned so that it begins and ends with its largest peak, which leaves no half cycles.
 ///
 /// With X the range under consideration and Y the one before it: while X ≥ Y, Y is a cycle and its two points are taken out.
-pub fn rainflow(history: &[f64]) -> Vec<Counted> {
+pub fn rainflow(history: &[f64]) -> Vec<RainflowCycle> {
     let peak = (0..history.len()).max_by(|a, b| history[*a].total_cmp(&history[*b]).then(b.cmp(a))).unwrap_or(0);
     let turned = (peak..history.len()).chain(0..(peak + 1).min(history.len())).map(|place| (place, history[place]));
-    let (mut open, mut found): (Vec<(usize, f64)>, Vec<Counted>) = (Vec::new(), Vec::new());
+    let (mut open, mut found): (Vec<(usize, f64)>, Vec<RainflowCycle>) = (Vec::new(), Vec::new());
     for turn in turning_points(turned) {
         open.push(turn);
         while let [.., a, b, c] = open[..] {
@@ -40,7 +40,7 @@ pub fn rainflow(history: &[f64]) -> Vec<Counted> {
                 break;
             }
             let [high, low] = if a.1 > b.1 { [a, b] } else { [b, a] };
-            found.push(Counted { max: high.1, min: low.1, places: [high.0, low.0] });
+            found.push(RainflowCycle { max: high.1, min: low.1, places: [high.0, low.0] });
             open.drain(open.len() - 3..open.len() - 1);
         }
     }

@@ -20,8 +20,9 @@ impl Spectrum {
     /// Errors: no file, or one that cannot be read, each by file, line and value; percentages beyond reason.
     pub(in crate::loading) fn read(input: &Input, folder: &Folder) -> Result<Spectrum> {
         let file = input.spectrum_file.as_deref().ok_or_else(|| {
-            let remedy = "name a file with the columns max, min, cycles, one column of turning points, or .spx, .sub, FASTRAN";
-            input_missing("loading.spectrum_file", "is missing, and kind is \"spectrum\"", remedy)
+            let remedy = "name a file with the columns max, min, cycles, one column of peaks and valleys, or .spx, .sub, \
+                          FASTRAN";
+            input_missing("loading.spectrum_file", "is missing (required by kind = \"spectrum\")", remedy)
         })?;
         let (omission, truncation) = (input.omission_percent / 100.0, input.truncation_percent / 100.0);
         let repeats = input.repeats;
@@ -53,7 +54,7 @@ impl Spectrum {
     pub fn of(cycles: Vec<Cycle>, [omission, truncation]: [f64; 2]) -> Result<Spectrum> {
         let most = cycles.iter().map(|cycle| cycle.max).fold(f64::NEG_INFINITY, f64::max);
         if most <= 0.0 {
-            let problem = "holds no load above zero: no cycle opens a crack";
+            let problem = "contains no tensile load";
             return Err(input("max", most, problem, "give tension as positive values"));
         }
         let cut = most * truncation;
@@ -62,8 +63,8 @@ impl Spectrum {
         let mut left: Vec<Cycle> = cycles.into_iter().map(share).filter(|cycle| cycle.max > cycle.min).collect();
         let top = left.iter().map(|cycle| cycle.max).fold(0.0, f64::max);
         if top <= 0.0 {
-            let problem = "leaves no cycle that opens a crack";
-            return Err(input("loading.truncation_percent", 100.0 * truncation, problem, "give a larger share, or leave it out"));
+            let problem = "omits every tensile cycle";
+            return Err(input("loading.truncation_percent", 100.0 * truncation, problem, "change the level, or remove it"));
         }
         // The largest may be gone with the cut.
         left.iter_mut().for_each(|cycle| (cycle.max, cycle.min) = (cycle.max / top, cycle.min / top));
@@ -156,7 +157,7 @@ fn cycles_of(content: Content, notes: &mut Vec<String>) -> Result<Vec<Cycle>> {
     let mut passed_over: Vec<usize> = Vec::new();
     for RawCycle { line, max, min, count } in raw {
         if min > max {
-            let remedy = "give the maximum first; points in time order are read by spectrum_format = \"turning_points\"";
+            let remedy = "give the maximum first; for peaks and valleys in time order set spectrum_format = \"turning_points\"";
             return Err(fault(Some(line), "min", &min.to_string(), &format!("is above the maximum {max}"), remedy));
         }
         if !(0.0..=1e15).contains(&count) {
@@ -175,12 +176,12 @@ fn cycles_of(content: Content, notes: &mut Vec<String>) -> Result<Vec<Cycle>> {
         }
     }
     if cycles.is_empty() {
-        let problem = "holds no cycles: no row has a range and a count above 0";
+        let problem = "contains no cycles: no row has a range and a count above 0";
         return Err(input_missing("spectrum", problem, "give at least one row max, min, cycles with a range"));
     }
     if let Some(first) = passed_over.first() {
         let rows = if passed_over.len() == 1 { "1 row is".to_owned() } else { format!("{} rows are", passed_over.len()) };
-        notes.push(format!("{rows} not counted, having no range or a count of 0 (first: line {first})"));
+        notes.push(format!("{rows} omitted: no range or a count of 0 (first: line {first})"));
     }
     Ok(cycles)
 }

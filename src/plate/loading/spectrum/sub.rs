@@ -14,7 +14,7 @@ pub(super) fn read<'a>(mut rows: impl Iterator<Item = Row<'a>>) -> Result<Conten
         let is_title = !is_numbers(title) || cells(title).count() == 1;
         if !is_title && !has_title {
             let remedy = "give a title line first, with the number of rows that follow";
-            return Err(fault(Some(line), "row", title, "stands where a .sub file has its title", remedy));
+            return Err(fault(Some(line), "row", title, "expected the title line of a .sub file", remedy));
         }
         if !is_title {
             found.push(cycle((line, title))?);
@@ -23,8 +23,8 @@ pub(super) fn read<'a>(mut rows: impl Iterator<Item = Row<'a>>) -> Result<Conten
         has_title = true;
         for read in 0..count.unwrap_or(0) {
             let Some(row) = rows.next() else {
-                let problem = format!("names more rows than follow, {read}");
-                return Err(fault(Some(line), "rows", title, &problem, "give as many rows max min cycles as the line says"));
+                let problem = format!("gives more rows than follow, {read}");
+                return Err(fault(Some(line), "rows", title, &problem, "give that number of rows max min cycles"));
             };
             found.push(cycle(row)?);
         }

@@ -8,7 +8,7 @@ use super::{Drawing, Drawn, Fault, known_layer, place};
 use crate::specimen::Point;
 
 /// What to do with an entity that is none of these.
-const DRAW_IT: &str = "draw it as one of them; take it out only if the plate does not have it (text, dimensions)";
+const DRAW_IT: &str = "draw it as one of them; delete it only if it is not part of the plate (text, dimensions)";
 /// Entities that say nothing of a shape.
 const SILENT: [&str; 2] = ["SEQEND", "VIEWPORT"];
 /// Flags of a polyline: closed; one fitted by curves or splines; one in space or a mesh.
@@ -75,7 +75,10 @@ fn groups(text: &str) -> Result<Vec<Group<'_>>, Fault> {
     for (pair, lines) in lines.chunks(2).enumerate() {
         let [code, value] = lines else { break };
         let number = code.parse().map_err(|_| {
-            Fault::of(format!("is no DXF: line {} has \"{code}\" in place of a group code", 2 * pair + 1), "save it as ASCII DXF")
+            Fault::of(
+                format!("is not a DXF: line {} has \"{code}\" instead of a group code", 2 * pair + 1),
+                "save it as ASCII DXF",
+            )
         })?;
         groups.push((number, *value, 2 * pair + 2));
         // What follows the end is no part of it.
@@ -84,7 +87,7 @@ fn groups(text: &str) -> Result<Vec<Group<'_>>, Fault> {
         }
     }
     if !groups.iter().any(|group| (group.0, group.1) == (0, "EOF")) {
-        return Err(Fault::of("ends before its end mark EOF", "save it as ASCII DXF, and send all of it"));
+        return Err(Fault::of("ends before its end mark EOF", "save it again as ASCII DXF (the file is truncated)"));
     }
     Ok(groups)
 }
@@ -136,7 +139,7 @@ impl Entity<'_> {
 
     /// Refuses what a viewer does not show: it might be meant or not.
     fn check_shown(&self, hidden: &[(&str, &str)]) -> Result<(), Fault> {
-        const REMEDY: &str = "show it if the plate has it, else take it out of the file";
+        const REMEDY: &str = "show it if it is part of the plate, else delete it";
         if self.number(60)? == Some(1.0) {
             return Err(self.refused("is hidden (group code 60)", REMEDY));
         }
@@ -156,13 +159,13 @@ impl Entity<'_> {
             Ok::<_, Fault>(values.into_iter().find(|value| value.abs() > ROUND_OFF))
         };
         if self.number(230)?.is_some_and(|z| z < 0.0) {
-            return Err(self.refused("is drawn from behind (extrusion along -z)", REMEDY));
+            return Err(self.refused("has extrusion -z", REMEDY));
         }
         if first_not(&[210, 220])?.is_some() {
             return Err(self.refused("is drawn in a tilted plane (extrusion not along z)", REMEDY));
         }
         match first_not(&[30, 31, 38])? {
-            Some(z) => Err(self.refused(&format!("lies at z = {z}"), REMEDY)),
+            Some(z) => Err(self.refused(&format!("is at z = {z}"), REMEDY)),
             None => Ok(()),
         }
     }
@@ -175,14 +178,14 @@ impl Entity<'_> {
     fn value(&self, &(code, value, line): &Group<'_>) -> Result<f64, Fault> {
         let number = value.parse::<f64>().ok().filter(|number| number.is_finite());
         number.ok_or_else(|| {
-            let problem = format!("line {line}: \"{value}\" is no number (group code {code})");
-            Fault::at(&self.layer(), self.kind, problem, "save the drawing anew")
+            let problem = format!("line {line}: \"{value}\" is not a number (group code {code})");
+            Fault::at(&self.layer(), self.kind, problem, "save the drawing again")
         })
     }
 
     fn needed(&self, code: i64) -> Result<f64, Fault> {
         let missing = || {
-            Fault::at(&self.layer(), self.kind, format!("line {}: lacks group code {code}", self.line), "save the drawing anew")
+            Fault::at(&self.layer(), self.kind, format!("line {}: has no group code {code}", self.line), "save the drawing again")
         };
         self.number(code)?.ok_or_else(missing)
     }
@@ -234,10 +237,10 @@ impl Entity<'_> {
                 self.polyline(&vertices.iter().map(corner).collect::<Result<Vec<_>, Fault>>()?)
             }
             "SPLINE" | "ELLIPSE" | "HELIX" => {
-                Err(self.refused("is a curve that is no circular arc", "draw it as arcs or as a polyline"))
+                Err(self.refused("is a curve but not a circular arc", "draw it as arcs or as a polyline"))
             }
             "INSERT" => Err(self.refused("is a block", "explode blocks before saving")),
-            _ => Err(self.refused("is no line, arc, circle or polyline", DRAW_IT)),
+            _ => Err(self.refused("is not a line, arc, circle or polyline", DRAW_IT)),
         }
     }
 
@@ -245,7 +248,7 @@ impl Entity<'_> {
     fn polyline(&self, corners: &[(Point, f64)]) -> Result<Curve, Fault> {
         let flags = self.number(70)?.unwrap_or(0.0) as i64;
         if self.kind == "POLYLINE" && flags & (FITTED | IN_SPACE) != 0 {
-            return Err(self.refused("is fitted by curves, or lies in space", "draw it as lines and arcs in the plane"));
+            return Err(self.refused("is curve-fitted or three-dimensional", "draw it as lines and arcs in the plane"));
         }
         let mut pieces: Vec<Piece> = corners.windows(2).map(|pair| bulged(pair[0].0, pair[1].0, pair[0].1)).collect();
         if let (&[(first, _), .., (last, bulge)], true) = (corners, flags & CLOSED != 0)

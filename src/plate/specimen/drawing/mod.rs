@@ -37,8 +37,8 @@ const LINES_MAX: usize = 5000;
 perilife_base::kinds! {
     /// Units of a drawing that does not say its own.
     pub enum DrawingUnit for "specimen.outline_unit" {
-        Millimetre = "mm": "a unit of the drawing is a millimetre",
-        Inch = "inch": "a unit of the drawing is an inch",
+        Millimetre = "mm": "drawing unit: millimeter",
+        Inch = "inch": "drawing unit: inch",
     }
 }
 
@@ -111,7 +111,7 @@ pub fn read(file: &str, folder: &Folder, unit: Option<DrawingUnit>, symmetry: Op
     let text = String::from_utf8_lossy(&bytes);
     if !file.to_lowercase().ends_with(".dxf") {
         let remedy = "save it as DXF: round holes as circles on layer holes, rounded corners as arcs";
-        return Err(Fault::of("is no DXF drawing", remedy).error(file));
+        return Err(Fault::of("is not a DXF drawing", remedy).error(file));
     }
     let drawing = dxf::read(&text).map_err(|fault| fault.error(file))?;
     let scale = scale(drawing.millimetres, unit, file)?;
@@ -124,12 +124,12 @@ fn scale(millimetres: Option<f64>, unit: Option<DrawingUnit>, file: &str) -> Res
     let given = unit.map(|unit| (unit, if unit == DrawingUnit::Inch { INCH } else { MM }));
     match (millimetres, given) {
         (None, None) => {
-            let problem = format!("is missing, and {file} does not say its unit");
+            let problem = format!("is missing: {file} has no unit");
             Err(input_missing(UNIT, problem, "give \"mm\" or \"inch\""))
         }
         (Some(of_file), Some((unit, metres))) if (of_file * MM / metres - 1.0).abs() > 1e-9 => {
-            let problem = format!("is not the unit of {file}, {of_file} mm");
-            Err(input(UNIT, format!("\"{unit}\""), problem, "leave it out"))
+            let problem = format!("conflicts with the unit of {file}, {of_file} mm");
+            Err(input(UNIT, format!("\"{unit}\""), problem, "remove it"))
         }
         (Some(of_file), _) => Ok(of_file * MM),
         (None, Some((_, metres))) => Ok(metres),
@@ -138,8 +138,8 @@ fn scale(millimetres: Option<f64>, unit: Option<DrawingUnit>, file: &str) -> Res
 
 fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std::result::Result<Shape, Fault> {
     if let Some(line) = lines.iter().find(|line| !LAYERS.contains(&line.layer.as_str())) {
-        let known = format!("move it to one of {} if the plate has it, else out of the file", LAYERS.join(", "));
-        return Err(Fault::at(&format!("\"{}\"", line.layer), &line.what, "is on a layer that is not known", known));
+        let known = format!("move it to one of {} if it is part of the plate, else delete it", LAYERS.join(", "));
+        return Err(Fault::at(&format!("\"{}\"", line.layer), &line.what, "is on an unknown layer", known));
     }
     if lines.len() > LINES_MAX {
         return Err(Fault::of(format!("has {} lines", lines.len()), format!("draw at most {LINES_MAX}")));
@@ -148,7 +148,7 @@ fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std:
         lines.into_iter().map(|line| Drawn { curve: line.curve.mapped(|at| at.map(|x| scale * x), false), ..line }).collect();
     let corners: Vec<Point> = lines.iter().flat_map(|line| line.curve.points()).collect();
     if !lines.iter().any(|line| line.layer == "outline") {
-        return Err(Fault::of("has nothing on the layer outline", "draw the rim of the plate on a layer of that name"));
+        return Err(Fault::of("has nothing on the layer outline", "draw the outline of the plate on a layer of that name"));
     }
     let [low, high] = bounding_box(&corners);
     let size = (high[0] - low[0]).max(high[1] - low[1]);
@@ -181,19 +181,14 @@ fn shape(lines: Vec<Drawn>, scale: f64, symmetry: Option<SymmetryPlane>) -> std:
     let mut holes = inner;
     for curve in chains("holes", &[])? {
         let (centre, radius) = curve.as_circle(tolerance).ok_or_else(|| {
-            let problem = format!("the line from {} is no full circle", place_mm(curve.from));
-            Fault::at(
-                "holes",
-                "",
-                problem,
-                "draw round holes as circles; an opening of another shape cannot be cut out of a plate",
-            )
+            let problem = format!("the line from {} is not a full circle", place_mm(curve.from));
+            Fault::at("holes", "", problem, "draw round holes as circles; other openings are not supported")
         })?;
         holes.push(Hole { centre, radius });
     }
     if let Some(hole) = holes.iter().find(|hole| hole.radius < RADIUS_LEAST) {
         let what = format!("the circle at {}", place_mm(hole.centre));
-        return Err(Fault::at("holes", &what, "has no radius", "draw it as large as the hole is"));
+        return Err(Fault::at("holes", &what, "has no radius", "draw it with the radius of the hole"));
     }
     let crack = |curve: &Curve| match curve.is_closed(tolerance_of_cracks) {
         true => Err(Fault::at(
@@ -226,16 +221,16 @@ fn refuse_twice(lines: &[Drawn], tolerance: f64) -> std::result::Result<(), Faul
 fn outline(chains: &[Curve], tolerance: f64, flat: f64) -> std::result::Result<(Vec<Point>, Vec<Hole>), Fault> {
     if let Some(open) = chains.iter().find(|chain| !chain.is_closed(tolerance)) {
         let problem = format!("the line from {} to {} is open", place_mm(open.from), place_mm(open.end()));
-        return Err(Fault::at("outline", "", problem, "close the rim of the plate, and draw cracks on the layer cracks"));
+        return Err(Fault::at("outline", "", problem, "close the outline of the plate, and draw cracks on the layer cracks"));
     }
     let area = |chain: &&Curve| polygon_area(&chain.points()).abs();
     let Some(largest) = chains.iter().max_by(|a, b| area(a).total_cmp(&area(b))) else {
-        return Err(Fault::of("has nothing on the layer outline that encloses a plate", "draw the rim of the plate"));
+        return Err(Fault::of("layer outline has no closed line", "draw the outline of the plate"));
     };
     let hole = |chain: &Curve| {
         let (centre, radius) = chain.as_circle(tolerance).ok_or_else(|| {
             let problem = format!("has a second closed line, from {}", place_mm(chain.from));
-            Fault::at("outline", "", problem, "draw one rim, and round holes as circles on the layer holes")
+            Fault::at("outline", "", problem, "draw one outline, and round holes as circles on the layer holes")
         })?;
         Ok(Hole { centre, radius })
     };
@@ -283,8 +278,8 @@ fn mirrored(lines: Vec<Drawn>, axis: usize, tolerance: f64) -> std::result::Resu
         }
         for at in line.curve.points().into_iter().filter(|at| !is_on(*at)) {
             if side * at[axis] < 0.0 {
-                let problem = format!("lies beyond {plane}, on whose other side the half is drawn");
-                return Err(Fault::at(&line.layer, &line.what, problem, "draw one half, or leave out outline_symmetry"));
+                let problem = format!("is beyond {plane}; the half is drawn on the other side");
+                return Err(Fault::at(&line.layer, &line.what, problem, "draw one half, or remove outline_symmetry"));
             }
             side = at[axis];
         }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::shapes::{AtHole, AtHoleKeys, below};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::handbook::{HandbookFormula, half};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
@@ -11,7 +11,7 @@ use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, coordinate, part};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::CrackAtHole, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::CrackAtHole, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.
@@ -29,10 +29,10 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     let Keys { width, length, thickness, diameter, x, cracks } = Keys::read(given)?;
     let radius = diameter / 2.0;
     let cracks = AtHole::read(given, &cracks)?;
-    below("hole_diameter_mm", 2.0 * radius, width - 2.0 * x.abs(), "the width that the plate has there")?;
+    below("hole_diameter_mm", 2.0 * radius, width - 2.0 * x.abs(), "the width available there")?;
     let key = if cracks.shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
     for (length, side) in cracks.lengths.into_iter().zip([-1.0, 1.0]) {
-        below(key, length, width / 2.0 - side * x - radius, "the way from the rim to the edge")?;
+        below(key, length, width / 2.0 - side * x - radius, "the distance from the hole edge to the plate edge")?;
     }
     let drawing = Drawing {
         outline: rectangle(width, length),
@@ -52,7 +52,7 @@ fn formula(count: usize, [width, radius]: [f64; 2], thickness: f64) -> HandbookF
     let two = HandbookFormula {
         name: "Newman two cracks at a hole",
         source: "Newman 1971, NASA TN D-6376, table for uniaxial tension",
-        range: "1 % for 2(R + a)/W up to 0.3; length/width 1 or more",
+        range: "1 % for 2(R + a)/W ≤ 0.3; length/width ≥ 1",
         bounds: [0.01 * shape, 0.15 - shape],
         of: |x, shape| of_two(x / shape) * in_width(x, shape, 2.0),
         error: |_| 0.01,
@@ -66,7 +66,7 @@ fn formula(count: usize, [width, radius]: [f64; 2], thickness: f64) -> HandbookF
     HandbookFormula {
         name: "Newman and Shah, one crack at a hole",
         source: "Newman 1971, NASA TN D-6376, for two cracks, times the factor of Shah 1976, ASTM STP 590, for one",
-        range: "3.5 % low at the most for 2(R + a)/W up to 0.5; length/width 1 or more",
+        range: "up to 3.5 % low for 2(R + a)/W ≤ 0.5; length/width ≥ 1",
         bounds: [0.01 * shape, 0.25 - shape],
         of: |x, shape| {
             let a = x / shape;

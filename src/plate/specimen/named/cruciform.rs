@@ -4,14 +4,14 @@
 use std::f64::consts::PI;
 
 use super::shapes::{arc, below};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS};
 use crate::specimen::plate::{Drawing, turned};
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, length, number};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::Cruciform, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::Cruciform, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.
@@ -28,7 +28,7 @@ perilife_base::keys! {
 fn layout(given: &Given<'_>) -> Result<Layout> {
     let Keys { length, arm_width, radius, thickness, a, angle } = Keys::read(given)?;
     let (end, arm) = (length / 2.0, arm_width / 2.0);
-    below("fillet_radius_mm", radius, end - arm, "what an arm is long")?;
+    below("fillet_radius_mm", radius, end - arm, "the length of an arm")?;
     below("crack_length_mm", a, arm, "half the width of an arm")?;
     // One inner corner, turned into all four; built so that the cross is its own mirror image but for round-off.
     let quarter: Vec<Point> =

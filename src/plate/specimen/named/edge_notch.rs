@@ -3,14 +3,14 @@
 use std::f64::consts::PI;
 
 use super::shapes::{arc, below};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::Drawing;
 use crate::specimen::{Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, length};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::EdgeNotch, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::EdgeNotch, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.
@@ -28,7 +28,7 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     let Keys { width, length, thickness, depth, radius, crack_length } = Keys::read(given)?;
     below("notch_radius_mm", radius, (depth * (1.0 + 1e-9)).min(length / 2.0), "depth of the notch and half the length")?;
     below("notch_depth_mm", depth, width, "the width")?;
-    below("crack_length_mm", crack_length.unwrap_or(0.0), width - depth, "what the notch leaves of the width")?;
+    below("crack_length_mm", crack_length.unwrap_or(0.0), width - depth, "the width minus the notch depth")?;
     let (x, y) = (width / 2.0, length / 2.0);
     let centre: Point = [-x + depth - radius, 0.0];
     let mut outline: Vec<Point> = vec![[-x, -y], [x, -y], [x, y], [-x, y]];

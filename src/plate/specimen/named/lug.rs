@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 use super::shapes::{AtHole, AtHoleKeys, arc, below, pin};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::pin::PinKeys;
 use crate::specimen::plate::Drawing;
@@ -15,7 +15,7 @@ use crate::specimen::{Bearing, Head, Hole, Point, SpecimenKind, Support};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, key, length, part};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::Lug, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::Lug, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.
@@ -37,7 +37,7 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     let cracks = AtHole::read(given, &cracks)?;
     below("hole_diameter_mm", 2.0 * radius, (2.0 * half_width).min(2.0 * length), "width and twice the length")?;
     let key = if cracks.shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
-    below(key, cracks.lengths[0].max(cracks.lengths[1]), half_width - radius, "the way from the rim to the side")?;
+    below(key, cracks.lengths[0].max(cracks.lengths[1]), half_width - radius, "the distance from the hole edge to the side")?;
     let contact = Bearing::read(given, ["pin_half_angle_deg", "pin_friction"], &pin_keys, radius)?;
     let mut outline: Vec<Point> = vec![[-half_width, -length], [half_width, -length]];
     match (head, distance) {
@@ -49,7 +49,7 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
         (Head::Round, None) => outline.extend(arc([0.0, 0.0], half_width, [0.0, PI])),
         (Head::Round, Some(_)) => {
             let problem = "conflicts with head = \"round\", whose edge distance is W/2";
-            return Err(given.refuse("edge_distance_mm", problem, "leave it out, or use head = \"straight\""));
+            return Err(given.refuse("edge_distance_mm", problem, "remove it, or use head = \"straight\""));
         }
     }
     let drawing = Drawing {

@@ -28,7 +28,7 @@ use perilife_base::error::{Error, Result};
 use perilife_base::input::shorten;
 use perilife_base::keys::{Given, Key};
 
-const KINDS: &[&Description] = &[
+const KINDS: &[&SpecimenSpec] = &[
     &crack_at_hole::KIND,
     &row_of_holes::KIND,
     &lug::KIND,
@@ -41,7 +41,7 @@ const KINDS: &[&Description] = &[
 ];
 
 /// What one kind is.
-pub struct Description {
+pub struct SpecimenSpec {
     /// Its name in `specimen.kind`.
     pub kind: SpecimenKind,
     keys: &'static [Key],
@@ -49,7 +49,7 @@ pub struct Description {
     layout: fn(&Given<'_>) -> Result<Layout>,
 }
 
-impl Description {
+impl SpecimenSpec {
     pub(super) fn keys(&self) -> &'static [Key] {
         self.keys
     }
@@ -69,7 +69,7 @@ struct Layout {
 
 impl SpecimenKind {
     /// What a named plate is; `None` of all other kinds.
-    pub fn named(self) -> Option<&'static Description> {
+    pub fn named(self) -> Option<&'static SpecimenSpec> {
         KINDS.iter().copied().find(|description| description.kind == self)
     }
 
@@ -93,7 +93,7 @@ impl SpecimenKind {
 
 /// Reads `[specimen]` of a named plate.
 /// Errors: as of a `plate`, named by the keys of the kind as far as they go.
-pub(super) fn from_value(description: &Description, value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
+pub(super) fn from_value(description: &SpecimenSpec, value: &Value, notes: &mut Vec<String>) -> Result<Specimen> {
     let Layout { drawing, loads, supports, crack_length, formula } = (description.layout)(&Given::of(value, "specimen")?)?;
     let convention = if crack_length.is_some() { LengthConvention::MeanOfTips } else { LengthConvention::SumOfTips };
     let crack_key = description.kind.crack_key(convention);
@@ -118,10 +118,8 @@ const HOLES: &str = "specimen.holes[";
 fn by_own_keys(error: Error, crack_key: &'static str, value: &Value) -> Error {
     let Error::Input(mut refused) = error else { return error };
     let (own, remedy) = match refused.key.as_deref() {
-        Some(key) if key.starts_with(CRACKS) => {
-            (crack_key, "give lengths of which one at the least ends in the material, clear of rims")
-        }
-        Some(key) if key.starts_with(HOLES) => ("specimen.hole_diameter_mm", "give a smaller one, or a larger plate"),
+        Some(key) if key.starts_with(CRACKS) => (crack_key, "at least one crack must end inside the material"),
+        Some(key) if key.starts_with(HOLES) => ("specimen.hole_diameter_mm", "use a smaller one, or a larger plate"),
         _ => return Error::Input(refused),
     };
     let given = own.strip_prefix("specimen.").and_then(|key| value.get(key));

@@ -1,7 +1,7 @@
 //! A plate under tension with a row of equal holes across it, cracked at their sides, such as a riveted joint: cracks of neighbours link up.
 
 use super::shapes::{FROM_RIM, LENGTHS, SLACK, below};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
 use crate::specimen::{Hole, Point, SpecimenKind};
@@ -9,7 +9,7 @@ use perilife_base::error::{Result, input};
 use perilife_base::keys::{Given, OrNone, Section, length, number};
 use perilife_base::units::round_mm;
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::RowOfHoles, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::RowOfHoles, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.
@@ -30,12 +30,12 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     let own = Keys::read(given)?;
     let Keys { width, length, thickness, count, pitch, diameter, shared, .. } = own;
     below("hole_diameter_mm", diameter, pitch, "the pitch of the row")?;
-    below("pitch_mm", pitch, (width - diameter) / (count - 1) as f64, "what the width has room for")?;
+    below("pitch_mm", pitch, (width - diameter) / (count - 1) as f64, "what fits in the width")?;
     let lengths = lengths(given, &own)?;
     let xs: Vec<f64> = (0..count).map(|i| (i as f64 - (count - 1) as f64 / 2.0) * pitch).collect();
     let edge = (width - diameter) / 2.0 - xs[count - 1];
     let key = if shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
-    below(key, lengths[0][0].max(lengths[count - 1][1]), edge, "the way from the row to the edge")?;
+    below(key, lengths[0][0].max(lengths[count - 1][1]), edge, "the distance from the row to the edge")?;
     let radius = diameter / 2.0;
     check_ligaments(&lengths, pitch - diameter)?;
     let drawing = Drawing {
@@ -61,7 +61,7 @@ fn lengths(given: &Given<'_>, own: &Keys) -> Result<Vec<[f64; 2]>> {
             Err(given.refuse(KEY, "has no crack", REMEDY))
         }
         (None, Some(list)) if list.len() == own.count => Ok(list.iter().map(|pair| pair.map(|length| length.0)).collect()),
-        (None, Some(_)) => Err(given.refuse(KEY, format!("are not those of {} holes", own.count), REMEDY)),
+        (None, Some(_)) => Err(given.refuse(KEY, format!("do not match the number of holes, {}", own.count), REMEDY)),
         (None, None) => Err(given.refuse("crack_length_mm", "is missing", REMEDY)),
     }
 }
@@ -73,7 +73,7 @@ fn check_ligaments(lengths: &[[f64; 2]], ligament: f64) -> Result<()> {
     let mut inner = inner.filter(|&(hole, side, _)| (hole, side) != (0, 0) && (hole, side) != (last, 1));
     let Some((hole, side, length)) = inner.find(|(_, _, length)| *length > ligament * (1.0 + SLACK)) else { return Ok(()) };
     let problem = format!("is longer than the ligament to the next hole, {} mm", round_mm(ligament));
-    let remedy = "give at most the ligament: two lengths that together fill it are cracks that have linked";
+    let remedy = "give at most the ligament; two cracks that fill it are linked up";
     Err(input(&format!("specimen.crack_lengths_mm[{hole}][{side}]"), round_mm(length), problem, remedy))
 }
 

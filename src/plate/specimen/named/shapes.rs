@@ -92,6 +92,6 @@ pub(super) fn below(key: &str, size: f64, limit: f64, what: &str) -> Result<()> 
     if size < limit * (1.0 - SLACK) {
         return Ok(());
     }
-    let problem = format!("is not below {what}, {} mm", round_mm(limit));
-    Err(input(&format!("specimen.{key}"), round_mm(size), problem, "give a smaller one, or a larger plate"))
+    let problem = format!("must be below {what}, {} mm", round_mm(limit));
+    Err(input(&format!("specimen.{key}"), round_mm(size), problem, "use a smaller one, or a larger plate"))
 }

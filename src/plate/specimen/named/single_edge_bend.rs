@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use super::shapes::{below, roller};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::keys::{CRACK_LENGTH, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::Drawing;
@@ -15,7 +15,7 @@ use perilife_base::error::{Result, input as error};
 use perilife_base::keys::{Given, Section, length};
 use perilife_base::units::round_mm;
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::SingleEdgeBend, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::SingleEdgeBend, keys: Keys::KEYS, layout };
 
 /// Width of a contact over W.
 const CONTACT: f64 = 0.05;
@@ -43,11 +43,11 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     if given.first(&["span_mm"]).is_some() {
         below("span_mm", span, length - contact, "the length less a contact")?;
     } else if length <= span + contact {
-        let problem = format!("has no room for the span of {} mm and a contact", round_mm(span));
+        let problem = format!("is too short for the span of {} mm and a contact", round_mm(span));
         return Err(error("specimen.length_mm", round_mm(length), problem, "give a longer beam, or span_mm"));
     }
     if span <= 2.0 * contact {
-        let problem = format!("is not above two contacts, {} mm", round_mm(2.0 * contact));
+        let problem = format!("must be above two contacts, {} mm", round_mm(2.0 * contact));
         return Err(error("specimen.span_mm", round_mm(span), problem, "give a longer one"));
     }
     inner.map_or(Ok(()), |inner| below("inner_span_mm", inner, span - 2.0 * contact, "the span less two contacts"))?;
@@ -79,7 +79,7 @@ fn formula([w, span]: [f64; 2], inner: Option<f64>, thickness: f64) -> Option<Ha
         source: "ASTM E399 annex A3 and E1820 annex A1 (Srawley 1976)",
         // The stress opposite the middle roller is 4 to 5 % below 6 M/(B W²) (Timoshenko and Goodier, article 24), and the formula, which tends
         // to that stress, above K on nodes and of finite elements: by 4.4, 2.8, 1.1, 0.7 % at a/W = 0.02, 0.1, 0.2, 0.25.
-        range: "0.5 % for a/W of 0.25 and more, up to 4 % high for shorter cracks; span 4 W",
+        range: "0.5 % for a/W ≥ 0.25, up to 4 % high for shorter cracks; span 4 W",
         bounds: [0.25, 1.0],
         of: |x, span| {
             let f = 1.99 - x * (1.0 - x) * (2.15 - 3.93 * x + 2.7 * x * x);
@@ -94,7 +94,7 @@ fn formula([w, span]: [f64; 2], inner: Option<f64>, thickness: f64) -> Option<Ha
     (inner >= 2.0 * w).then_some(HandbookFormula {
         name: "Brown and Srawley pure bending",
         source: "Brown and Srawley 1966, ASTM STP 410",
-        range: "0.2 % for a/W up to 0.6; inner span 2 W or more",
+        range: "0.2 % for a/W ≤ 0.6; inner span ≥ 2 W",
         bounds: [0.0, 0.6],
         // σ = 6 M/(B W²) with M = P (S - S_i)/4.
         of: |x, arm| {

@@ -4,14 +4,14 @@
 //! are that form beyond the holes in phase I ([`perilife_laws::initiation`]); from there on they grow.
 
 use super::shapes::below;
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::plate::{Drawing, rectangle};
 use crate::specimen::{Hole, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, length};
 
-pub(super) const KIND: Description = Description { kind: SpecimenKind::StopHole, keys: Keys::KEYS, layout };
+pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::StopHole, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
     /// Keys of `[specimen]`.
@@ -29,7 +29,7 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     let Keys { width, length, thickness, centre, diameter, formed } = Keys::read(given)?;
     let radius = diameter / 2.0;
     below("hole_diameter_mm", 2.0 * radius, (2.0 * centre).min(length), "the length of the crack and of the plate")?;
-    below("formed_length_mm", formed, width / 2.0 - centre - radius, "the way from the rim to the edge")?;
+    below("formed_length_mm", formed, width / 2.0 - centre - radius, "the distance from the hole edge to the plate edge")?;
     let line = |from: f64, to: f64| vec![[from, 0.0], [to, 0.0]];
     let rim = centre + radius;
     let drawing = Drawing {

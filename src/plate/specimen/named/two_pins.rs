@@ -9,7 +9,7 @@
 //! wedge that holds the opening is `loading.kind = "displacement"`.
 
 use super::shapes::{below, pin};
-use super::{Description, Layout};
+use super::{Layout, SpecimenSpec};
 use crate::specimen::handbook::HandbookFormula;
 use crate::specimen::keys::{CRACK_LENGTH, THICKNESS, WIDTH};
 use crate::specimen::pin::LOOSE_PIN;
@@ -18,10 +18,10 @@ use crate::specimen::{Bearing, Hole, Point, SpecimenKind};
 use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section};
 
-pub(super) const ECCENTRIC: Description =
-    Description { kind: SpecimenKind::EccentricSingleEdgeTension, keys: Keys::KEYS, layout: |given| layout(given, &ESE) };
-pub(super) const WEDGE: Description =
-    Description { kind: SpecimenKind::WedgeOpening, keys: Keys::KEYS, layout: |given| layout(given, &WOL) };
+pub(super) const ECCENTRIC: SpecimenSpec =
+    SpecimenSpec { kind: SpecimenKind::EccentricSingleEdgeTension, keys: Keys::KEYS, layout: |given| layout(given, &ESE) };
+pub(super) const WEDGE: SpecimenSpec =
+    SpecimenSpec { kind: SpecimenKind::WedgeOpening, keys: Keys::KEYS, layout: |given| layout(given, &WOL) };
 
 /// What differs between the two.
 struct Kind {
@@ -62,7 +62,7 @@ const WOL: Kind = Kind {
     formula: |rest| HandbookFormula {
         name: "Novak and Rolfe WOL",
         source: "Novak and Rolfe 1969, J. Materials 4:701, K = P C3/(B √a)",
-        range: "2 % for a/W from 0.25 to 0.75",
+        range: "2 % for a/W = 0.25 to 0.75",
         bounds: [0.25, 0.75],
         of: |x, _| x.sqrt() * (30.96 + x * (-195.8 + x * (730.6 + x * (-1186.3 + 754.6 * x)))),
         error: |_| 0.02,

@@ -3,12 +3,12 @@
 //! Its `f_w` is the correction of an edge crack for the width of its plate, `1 - 0.2 λ + ...` with λ = c/b at a/t = 1 (Gross and Srawley's
 //! polynomial 1.12 - 0.231 λ + 10.55 λ² - ... over 1.12): b is the whole width.
 
-use super::front::Front;
-use super::{Description, Limit, PlateLetters, SHAPE};
+use super::front::CrackFront;
+use super::{Limit, PartThroughSpec, PlateLetters, SHAPE};
 use crate::specimen::SpecimenKind;
 
 /// Newman and Raju 1984, corner crack.
-pub(super) const KIND: Description = Description {
+pub(super) const KIND: PartThroughSpec = PartThroughSpec {
     kind: SpecimenKind::CornerCrack,
     letters: PlateLetters { of_thickness: 1.0, of_width: 1.0 },
     share_of_ellipse: 0.25,
@@ -19,7 +19,7 @@ pub(super) const KIND: Description = Description {
 };
 
 /// `F = [M1 + M2 (a/t)² + M3 (a/t)⁴] g1 g2 f_φ f_w`.
-fn tension(front: &Front, angle: f64) -> f64 {
+fn tension(front: &CrackFront, angle: f64) -> f64 {
     let (x, s) = (front.flatness(), front.depth());
     let (m, depth) = if front.aspect() <= 1.0 {
         ([1.08 - 0.03 * x, -0.44 + 1.06 / (0.3 + x), -0.5 + 0.25 * x + 14.8 * (1.0 - x).powi(15)], s)
@@ -34,6 +34,6 @@ fn tension(front: &Front, angle: f64) -> f64 {
 }
 
 /// `H F`.
-fn bending(front: &Front, angle: f64) -> f64 {
+fn bending(front: &CrackFront, angle: f64) -> f64 {
     front.bending_of_faces(0.64, angle) * tension(front, angle)
 }

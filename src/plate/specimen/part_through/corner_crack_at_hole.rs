@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use super::front::{Front, secant};
+use super::front::{CrackFront, secant};
 use super::surface_crack::series;
-use super::{Description, Limit, PlateLetters, SHAPE};
+use super::{Limit, PartThroughSpec, PlateLetters, SHAPE};
 use crate::specimen::SpecimenKind;
 
 /// Newman and Raju 1984, corner crack at a hole.
-pub(super) const KIND: Description = Description {
+pub(super) const KIND: PartThroughSpec = PartThroughSpec {
     kind: SpecimenKind::CornerCrackAtHole,
     letters: PlateLetters { of_thickness: 1.0, of_width: 0.5 },
     share_of_ellipse: 0.25,
@@ -27,13 +27,13 @@ pub(super) const KIND: Description = Description {
 const TURN: f64 = 0.85;
 
 /// `F` under tension.
-fn tension(front: &Front, angle: f64) -> f64 {
+fn tension(front: &CrackFront, angle: f64) -> f64 {
     shared(front, angle, TURN)
 }
 
 /// `F = [M1 + M2 (a/t)² + M3 (a/t)⁴] g1 g2 g3 g4 f_φ f_w`, with the stress of the hole at c cos(μ φ) from its edge in g2; of a single crack
 /// times the factor of Shah (1976, ASTM STP 590), `√[(4/π + a c/(2 t R))/(4/π + a c/(t R))]`.
-fn shared(front: &Front, angle: f64, turn: f64) -> f64 {
+fn shared(front: &CrackFront, angle: f64, turn: f64) -> f64 {
     let [m, g1] = series(front, angle);
     let (x, s) = (front.flatness(), front.depth());
     let l = 1.0 / (1.0 + front.c / front.r * (turn * angle).cos());
@@ -48,19 +48,19 @@ fn shared(front: &Front, angle: f64, turn: f64) -> f64 {
 }
 
 /// `f_w = √[sec(π R/(2b)) sec(π (2R + n c)/(4 (b - c) + 2 n c) √(a/t))]`.
-fn width(&Front { a, c, t, b, r, n }: &Front) -> f64 {
+fn width(&CrackFront { a, c, t, b, r, n }: &CrackFront) -> f64 {
     let crack = PI * (2.0 * r + n * c) / (4.0 * (b - c) + 2.0 * n * c) * (a / t).sqrt();
     (secant(PI * r / (2.0 * b)) * secant(crack)).sqrt()
 }
 
 /// The factor of Shah; 1 of two cracks.
-fn single(&Front { a, c, t, r, n, .. }: &Front) -> f64 {
+fn single(&CrackFront { a, c, t, r, n, .. }: &CrackFront) -> f64 {
     let area = a * c / (t * r);
     if n > 1.0 { 1.0 } else { ((4.0 / PI + 0.5 * area) / (4.0 / PI + area)).sqrt() }
 }
 
 /// `H F`, g2 of F at another angle than under tension: μ = 0.85 - 0.25 (a/t)^¼.
-fn bending(front: &Front, angle: f64) -> f64 {
+fn bending(front: &CrackFront, angle: f64) -> f64 {
     let (x, s) = (front.flatness(), front.depth());
     let (h, p) = if front.aspect() <= 1.0 {
         let first = [-0.43 - x * (0.74 + 0.84 * x), 1.25 + x * (-1.19 + 4.39 * x), -1.94 + x * (4.22 - 5.51 * x)];
@@ -72,5 +72,5 @@ fn bending(front: &Front, angle: f64) -> f64 {
         ([first, second], 0.2 + x + 0.6 * s)
     };
     let h = h.map(|[linear, square, cube]| 1.0 + s * (linear + s * (square + s * cube)));
-    Front::bent(h, p, angle) * shared(front, angle, TURN - 0.25 * s.sqrt().sqrt())
+    CrackFront::bent(h, p, angle) * shared(front, angle, TURN - 0.25 * s.sqrt().sqrt())
 }

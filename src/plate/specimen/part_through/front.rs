@@ -34,7 +34,7 @@ impl FrontTip {
 
 /// A part of an ellipse as crack front, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Front {
+pub struct CrackFront {
     /// Semi-axis through the thickness.
     pub a: f64,
     /// Semi-axis along the width.
@@ -49,7 +49,7 @@ pub struct Front {
     pub n: f64,
 }
 
-impl Front {
+impl CrackFront {
     /// Aspect ratio a/c.
     pub fn aspect(&self) -> f64 {
         self.a / self.c
@@ -107,7 +107,7 @@ impl Front {
             let second = [-2.11 + 0.77 * x, constant - 0.72 * root + 0.14 * root * root];
             [first, second].map(|[linear, square]| 1.0 + s * (linear + s * square))
         };
-        Front::bent(h, 0.2 + x + 0.6 * s, angle)
+        CrackFront::bent(h, 0.2 + x + 0.6 * s, angle)
     }
 }
 

@@ -16,14 +16,15 @@ mod read;
 mod surface_crack;
 mod through;
 
-pub use front::{Front, FrontTip};
+pub use front::{CrackFront, FrontTip};
 pub(super) use read::{from_value, keys};
 
 use std::f64::consts::PI;
 
 use super::{Specimen, SpecimenKind};
 
-const KINDS: &[&Description] = &[&surface_crack::KIND, &corner_crack::KIND, &embedded_crack::KIND, &corner_crack_at_hole::KIND];
+const KINDS: &[&PartThroughSpec] =
+    &[&surface_crack::KIND, &corner_crack::KIND, &embedded_crack::KIND, &corner_crack_at_hole::KIND];
 
 /// Relative error of K that its source states.
 pub const STATED_ERROR: f64 = 0.05;
@@ -31,14 +32,13 @@ pub const STATED_ERROR: f64 = 0.05;
 pub const SOURCE: &str = "Newman and Raju 1984, NASA TM-85793";
 
 /// When a crack is through and what it is then, in words.
-pub const BREAK_THROUGH: &str = "through where the deepest point reaches the far face, a/t = 1, up to which the equations of Newman and Raju \
-                                 (1984) are made; then a straight through crack of length c";
+pub const BREAK_THROUGH: &str = "breakthrough at a/t = 1; then a straight through crack of length c";
 
 /// How well, in words.
-pub const RANGE: &str = "5 % for a/t up to 0.8, a/c from 0.2 to 2, and a crack of less than half of the width";
+pub const RANGE: &str = "5 % for a/t ≤ 0.8, a/c = 0.2 to 2, crack < half of the width";
 
 /// What one kind is.
-pub struct Description {
+pub struct PartThroughSpec {
     /// Its name in `specimen.kind`.
     pub kind: SpecimenKind,
     letters: PlateLetters,
@@ -51,20 +51,20 @@ pub struct Description {
     limits: &'static [Limit],
 }
 
-impl PartialEq for Description {
+impl PartialEq for PartThroughSpec {
     fn eq(&self, other: &Self) -> bool {
         self.kind == other.kind
     }
 }
 
-impl std::fmt::Debug for Description {
+impl std::fmt::Debug for PartThroughSpec {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.kind.name())
     }
 }
 
 /// A factor of K over the parametric angle φ, rad.
-type Factor = fn(&Front, f64) -> f64;
+type Factor = fn(&CrackFront, f64) -> f64;
 
 /// The letters t and b of the formulas over thickness and width of the plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,7 +77,7 @@ struct PlateLetters {
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     pub name: &'static str,
-    pub of: fn(&Front) -> f64,
+    pub of: fn(&CrackFront) -> f64,
     /// Least.
     pub low: f64,
     /// Largest.
@@ -92,8 +92,10 @@ impl Limit {
 }
 
 /// Ranges of every kind.
-const SHAPE: [Limit; 2] =
-    [Limit { name: "a/t", of: Front::depth, low: 0.0, high: 0.8 }, Limit { name: "a/c", of: Front::aspect, low: 0.2, high: 2.0 }];
+const SHAPE: [Limit; 2] = [
+    Limit { name: "a/t", of: CrackFront::depth, low: 0.0, high: 0.8 },
+    Limit { name: "a/c", of: CrackFront::aspect, low: 0.2, high: 2.0 },
+];
 /// Ranges of cracks in the middle of the width.
 const CENTRAL: &[Limit] =
     &[SHAPE[0], SHAPE[1], Limit { name: "c/half width", of: |front| front.c / front.b, low: 0.0, high: 0.5 }];
@@ -103,7 +105,7 @@ const RANGE_SLACK: f64 = 1e-9;
 /// A crack that does not go through, in its plate. Lengths in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PartThrough {
-    description: &'static Description,
+    description: &'static PartThroughSpec,
     /// Semi-axis a at the start, through the thickness.
     pub depth: f64,
     /// Semi-axis c at the start, along the width.
@@ -124,7 +126,7 @@ pub struct PartThrough {
 
 impl SpecimenKind {
     /// What a kind is whose crack does not go through; `None` of through cracks.
-    pub fn part_through(self) -> Option<&'static Description> {
+    pub fn part_through(self) -> Option<&'static PartThroughSpec> {
         KINDS.iter().copied().find(|description| description.kind == self)
     }
 }
@@ -135,10 +137,10 @@ impl PartThrough {
     }
 
     /// The crack with these semi-axes [a, c], m, in the letters of the formulas.
-    pub fn front(&self, [a, c]: [f64; 2]) -> Front {
+    pub fn front(&self, [a, c]: [f64; 2]) -> CrackFront {
         let letters = self.description.letters;
         let (t, b) = (letters.of_thickness * self.thickness, letters.of_width * self.width);
-        Front { a, c, t, b, r: self.radius, n: self.cracks as f64 }
+        CrackFront { a, c, t, b, r: self.radius, n: self.cracks as f64 }
     }
 
     /// Semi-axes at the start, [a, c], m.
@@ -175,8 +177,8 @@ impl PartThrough {
     }
 
     /// F and H F_b at an angle φ, rad; no bending where the source has none.
-    pub fn factors(&self, front: &Front, angle: f64) -> [f64; 2] {
-        let Description { tension, bending, .. } = self.description;
+    pub fn factors(&self, front: &CrackFront, angle: f64) -> [f64; 2] {
+        let PartThroughSpec { tension, bending, .. } = self.description;
         [tension(front, angle), bending.map_or(0.0, |bending| bending(front, angle))]
     }
 

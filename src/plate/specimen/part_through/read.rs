@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use super::{Description, PartThrough};
+use super::{PartThrough, PartThroughSpec};
 use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::placement::check_holes;
 use crate::specimen::plate::{HoleKeys, read_holes};
@@ -36,13 +36,13 @@ perilife_base::keys! {
 }
 
 /// Keys of a kind.
-pub(in crate::specimen) fn keys(description: &Description) -> &'static [Key] {
+pub(in crate::specimen) fn keys(description: &PartThroughSpec) -> &'static [Key] {
     if description.has_hole { KeysAtHole::KEYS } else { Keys::KEYS }
 }
 
 /// The plate with its crack. That the length is the program's own goes into `notes`.
 pub(in crate::specimen) fn from_value(
-    description: &'static Description,
+    description: &'static PartThroughSpec,
     value: &Value,
     notes: &mut Vec<String>,
 ) -> Result<Specimen> {
@@ -50,8 +50,8 @@ pub(in crate::specimen) fn from_value(
     let (own, radius, cracks) = if description.has_hole {
         let KeysAtHole { own, diameter, cracks } = KeysAtHole::read(&given)?;
         if diameter >= own.width {
-            let problem = format!("is not below the width {} mm of the plate", round_mm(own.width));
-            return Err(given.refuse(HOLE_DIAMETER.name, problem, "give a smaller hole or a wider plate"));
+            let problem = format!("must be below the width {} mm", round_mm(own.width));
+            return Err(given.refuse(HOLE_DIAMETER.name, problem, "use a smaller hole or a wider plate"));
         }
         (own, diameter / 2.0, cracks)
     } else {
@@ -81,9 +81,7 @@ pub(in crate::specimen) fn from_value(
     (specimen.cracks, specimen.tips) = flaw.seen_from_front(half_length);
     specimen.crack_length = half_length;
     if length.is_none() {
-        notes.push(format!(
-            "specimen.length_mm is not given: once the crack is through, the plate is taken to be {LENGTH_OVER_WIDTH} widths long"
-        ));
+        notes.push(format!("specimen.length_mm not given: {LENGTH_OVER_WIDTH} W assumed after breakthrough"));
     }
     Ok(specimen)
 }
@@ -101,8 +99,8 @@ fn place_beside(flaw: &mut PartThrough, holes: &[Hole]) -> Result<()> {
             if way > 0.0 {
                 flaw.to_hole = flaw.to_hole.min(flaw.half_length + way);
             } else if way + 2.0 * half_chord > -flaw.half_length {
-                let (key, problem) = (format!("specimen.holes[{i}]"), "lies on the crack");
-                return Err(input_missing(&key, problem, "describe a crack that starts at a hole as corner_crack_at_hole"));
+                let (key, problem) = (format!("specimen.holes[{i}]"), "is on the crack");
+                return Err(input_missing(&key, problem, "use corner_crack_at_hole for a crack that starts at a hole"));
             }
         }
     }
@@ -114,17 +112,17 @@ fn check_sizes(flaw: &PartThrough) -> Result<()> {
     let (depth, half_length) = (round_mm(flaw.depth), round_mm(flaw.half_length));
     if flaw.depth >= flaw.through_depth() {
         let (t, half) = (round_mm(flaw.through_depth()), if flaw.through_depth() < flaw.thickness { "half " } else { "" });
-        let problem = format!("is not below {half}the thickness, {t} mm: a/t = {:.3}, the crack is through", depth / t);
+        let problem = format!("must be below {half}the thickness, {t} mm (a/t = {:.3})", depth / t);
         return Err(input(
             "specimen.crack_depth_mm",
             depth,
             problem,
-            "give a smaller depth, or a through crack in kind = \"plate\"",
+            "reduce the depth, or use a through crack in kind = \"plate\"",
         ));
     }
     if flaw.half_length >= flaw.room() {
         let room = round_mm(flaw.room());
-        let problem = format!("is not below the {room} mm that the plate has for it: the crack is wider than the plate");
+        let problem = format!("must be below {room} mm: the crack is wider than the plate");
         return Err(input("specimen.crack_half_length_mm", half_length, problem, "give a shorter crack or a wider plate"));
     }
     Ok(())

@@ -78,7 +78,7 @@ impl<'a> Problem<'a> {
     /// The same with other values of ε of the equations of force, the first of them that Newton's method manages.
     pub fn solve_to(&self, softness: &[f64], bounds: [f64; 2]) -> Option<Vec<f64>> {
         let solve = |(points, links): (Vec<u32>, Vec<u32>)| {
-            let part = Part::new(self, points, links)?;
+            let part = EquationBlock::new(self, points, links)?;
             let solved = softness.iter().find_map(|&softness| part.solve(Bounded { softness, bounds }))?;
             Some((part.links, solved))
         };
@@ -145,7 +145,7 @@ fn is_small(gradient: &[f64], tolerance: f64) -> bool {
 }
 
 /// Equations of some points, with all links that these have; multipliers of other points stay.
-struct Part<'a> {
+struct EquationBlock<'a> {
     problem: &'a Problem<'a>,
     points: Vec<u32>,
     links: Vec<u32>,
@@ -155,7 +155,7 @@ struct Part<'a> {
     structure: Structure,
 }
 
-impl<'a> Part<'a> {
+impl<'a> EquationBlock<'a> {
     /// `None` where there are too many.
     fn new(problem: &'a Problem<'a>, points: Vec<u32>, links: Vec<u32>) -> Option<Self> {
         let mut number = vec![None; problem.missing.len()];
@@ -186,7 +186,7 @@ impl<'a> Part<'a> {
         let n = points.len() * EQUATIONS;
         let symbolic = SymbolicSparseColMat::new_checked(n, n, starts, None, rows);
         let structure = Structure::of(symbolic.as_ref(), EQUATIONS)?;
-        Some(Part { problem, points, links, ends, symbolic, structure })
+        Some(EquationBlock { problem, points, links, ends, symbolic, structure })
     }
 
     /// Newton's method from rest on the equations of points that no link joins with others; the changes of the links. Its first step,
@@ -218,7 +218,7 @@ impl<'a> Part<'a> {
     /// Newton's method on the equations of some points, by parts that no link joins; where one of them fails, nothing changes.
     fn solve_near(&self, near: Vec<bool>, dual: &mut Dual, limits: Bounded, tolerance: f64) {
         let solve = |(points, links): (Vec<u32>, Vec<u32>)| {
-            let part = Part::new(self.problem, points, links)?;
+            let part = EquationBlock::new(self.problem, points, links)?;
             let mut own = Dual { lambda: dual.lambda.clone(), y: dual.y.clone() };
             part.newton(&mut own, limits, tolerance)?;
             Some((part.points, part.links, own))

@@ -196,7 +196,7 @@ impl Square {
 }
 
 /// A dense symmetric matrix over some points; the lower triangle counts.
-struct Front<const N: usize> {
+struct DenseFront<const N: usize> {
     /// Points to eliminate and then points to keep, each ascending.
     points: Vec<u32>,
     /// How many are to be eliminated, or have been.
@@ -204,7 +204,7 @@ struct Front<const N: usize> {
     matrix: Square,
 }
 
-impl<const N: usize> Front<N> {
+impl<const N: usize> DenseFront<N> {
     /// Where a point stands.
     fn at(&self, place: u32) -> usize {
         let (inner, outer) = self.points.split_at(self.inner);
@@ -214,7 +214,7 @@ impl<const N: usize> Front<N> {
     }
 
     /// Adds what is left of another matrix, over some of the same points.
-    fn add(&mut self, other: &Front<N>) {
+    fn add(&mut self, other: &DenseFront<N>) {
         let left = other.points[other.inner..].iter().map(|&place| N * self.at(place));
         let to: Vec<usize> = left.flat_map(|first| first..first + N).collect();
         let done = N * other.inner;
@@ -269,7 +269,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
 
     /// Condenses all points of a region but the window's onto their surroundings and the window; `None` also where the work was
     /// asked to end, which the next equilibrium says.
-    fn eliminate(&self, region: Rectangle) -> Option<Front<M>> {
+    fn eliminate(&self, region: Rectangle) -> Option<DenseFront<M>> {
         if self.watch.as_ref().is_some_and(|watch| watch.is_cancelled()) {
             return None;
         }
@@ -316,10 +316,10 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
     }
 
     /// A front without stiffness.
-    fn front(&self, inner: &[u32], outer: &[u32]) -> Front<M> {
+    fn front(&self, inner: &[u32], outer: &[u32]) -> DenseFront<M> {
         let points = [inner, outer].concat();
         let order = M * points.len();
-        Front { points, inner: inner.len(), matrix: Square::zeros(order, self.pool.take(order * order)) }
+        DenseFront { points, inner: inner.len(), matrix: Square::zeros(order, self.pool.take(order * order)) }
     }
 
     /// Points of a region, outside the window, that have a bond, ascending.
@@ -346,7 +346,7 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
     }
 
     /// Adds the stiffness of the bonds of `points` (ascending) to those points that `counts`; bonds among `points` once.
-    fn assemble(&self, front: &mut Front<M>, points: &[u32], counts: &dyn Fn(usize) -> bool) {
+    fn assemble(&self, front: &mut DenseFront<M>, points: &[u32], counts: &dyn Fn(usize) -> bool) {
         for &place in points {
             let a = front.at(place);
             let last = M * a + M - 1;

@@ -97,7 +97,7 @@ impl<const N: usize> WindowSolver<N> {
         let drift = (self.work / solved.work - 1.0).abs();
         tracing::debug!(drift, "whole plate solved");
         if self.window.is_some() && drift > DRIFT_MAX {
-            tracing::warn!(drift, "the window has lost its accuracy: whole solves from now on");
+            tracing::warn!(drift, "window no longer accurate: whole solves from here");
             (self.window, self.is_off) = (None, true);
         }
         self.is_whole = true;

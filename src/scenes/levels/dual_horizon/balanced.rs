@@ -61,7 +61,9 @@ pub fn balance(net: &mut Net, specimen: &Specimen, levels: &Levels, stencils: &[
     }
     let change = Problem::new(&gains, links, missing).solve(BOUNDS.map(|bound| bound - 1.0)).ok_or_else(|| {
         Error::Mechanics(
-            "the balanced surface correction finds no bond multipliers for these points; give a smaller spacing, or use model.surface_correction = \"volume_and_surface\"".to_owned(),
+            "the balanced surface correction found no bond multipliers for these points; reduce the spacing, or use \
+             model.surface_correction = \"volume_and_surface\""
+                .to_owned(),
         )
     })?;
     for (bonds, change) in changed.into_iter().zip(change) {

@@ -46,7 +46,7 @@ impl Levels {
         for level in 0..deepest {
             let next = lattices[level].halved();
             if next.columns * next.rows > PLACES_MAX {
-                let problem = format!("asks for {:.0} million places", (next.columns * next.rows) as f64 / 1e6);
+                let problem = format!("needs {:.0} million points", (next.columns * next.rows) as f64 / 1e6);
                 return Err(input("refinement.regions", format!("levels = {deepest}"), problem, "give fewer levels"));
             }
             lattices.push(next);
@@ -78,7 +78,7 @@ impl Levels {
         for area in areas {
             let asked = levels.leaves.iter().any(|&leaf| leaf.level >= area.levels && area.holds(levels.position(leaf)));
             if !asked {
-                return Err(area.refusal("holds no point of the plate", "move it onto the plate, or make it wider"));
+                return Err(area.refusal("contains no point of the plate", "move it onto the plate, or make it wider"));
             }
         }
         Ok(levels)

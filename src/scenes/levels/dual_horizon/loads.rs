@@ -88,8 +88,7 @@ pub fn forces(specimen: &Specimen, sharing: &Sharing<'_>, floating: bool) -> Res
         let shares = sharing.of(&piece.facet);
         if shares.is_empty() {
             let [x, y] = piece.facet.at.map(|x| 1e3 * x);
-            let problem =
-                format!("no point of the plate lies near the load at x = {x:.3} mm, y = {y:.3} mm; give a smaller spacing");
+            let problem = format!("no point of the plate near the load at x = {x:.3} mm, y = {y:.3} mm; reduce the spacing");
             return Err(Error::Mechanics(problem));
         }
         for (point, share) in shares {

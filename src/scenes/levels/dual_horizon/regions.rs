@@ -38,11 +38,11 @@ impl<'s> Area<'s> {
     fn check(&self, ratio: f64) -> Result<()> {
         if self.levels == 0 || self.levels > LEVELS_MAX {
             let key = format!("refinement.regions[{}].levels", self.index);
-            return Err(input(&key, self.levels, "is no number of levels", format!("give 1 to {LEVELS_MAX}")));
+            return Err(input(&key, self.levels, "is not a number of levels", format!("give 1 to {LEVELS_MAX}")));
         }
         if ratio < OVERLAP_RATIO {
             let problem = format!(
-                "is so small that the horizons of a point and of the {} parts beside it do not overlap",
+                "is too small: the horizons of a point and of its {} neighboring parts do not overlap",
                 4_usize.pow(self.levels as u32)
             );
             return Err(input("model.horizon_ratio", ratio, problem, format!("give {OVERLAP_RATIO} or more; 3.015 is usual")));
@@ -51,17 +51,17 @@ impl<'s> Area<'s> {
         match *self.region {
             RefinedRegion::Box { low: from, high: to } => {
                 if (0..2).any(|i| to[i] <= from[i]) {
-                    return Err(self.refusal("is no box: its second corner must lie above and right of its first", "swap them"));
+                    return Err(self.refusal("is not a box: its second corner must be above and right of its first", "swap them"));
                 }
                 if (0..2).any(|i| to[i] <= low[i] || from[i] >= high[i]) {
-                    return Err(self.refusal("lies outside the plate", "move it onto the plate"));
+                    return Err(self.refusal("is outside the plate", "move it onto the plate"));
                 }
             }
             RefinedRegion::Band { width, .. } if width.is_nan() || width <= 0.0 => {
                 return Err(self.refusal("is a band without width", "give width_mm above 0"));
             }
             RefinedRegion::AroundFlaws { .. } if self.specimen.cracks.is_empty() && self.specimen.slots.is_empty() => {
-                return Err(self.refusal("lies around flaws, and there are none", "give cracks or notches, or a box or band"));
+                return Err(self.refusal("requires cracks or notches", "give cracks or notches, or a box or band"));
             }
             _ => {}
         }

@@ -48,13 +48,13 @@ pub(super) fn rejected(table: &Table, read: &[usize]) -> Option<String> {
     let mut found = table.rows.iter().filter_map(of_row);
     let (line, column, cell) = found.next()?;
     Some(format!(
-        "{}:{line}: {} = \"{cell}\" may reject the reading, and {} in all: they are read like the others; leave them out by \
-         measured.leave_out, or by a column valid of yes and no",
+        "{}:{line}: {} = \"{cell}\" looks like a rejection mark ({}); these readings are used; exclude them by \
+         measured.leave_out, or by a column valid with yes or no",
         table.file.display(),
         table.header[column],
         match found.count() {
-            0 => "it is the only one".to_owned(),
-            more => format!("{} rows do so", more + 1),
+            0 => "1 row".to_owned(),
+            more => format!("{} rows", more + 1),
         }
     ))
 }
@@ -82,7 +82,7 @@ fn is_blank(cell: &str) -> bool {
 
 /// Leaves out the rows that such columns mark, with a note; a note, too, of cells that cannot be understood.
 /// Errors: no row is left.
-pub(super) fn leave_marked_out(table: &mut Table, import: &Import) -> Result<()> {
+pub(super) fn exclude_flagged(table: &mut Table, import: &Import) -> Result<()> {
     let columns = columns_of(&table.header, &table.names, import);
     for Column { index, role, .. } in columns.into_iter().filter(|column| matches!(column.role, Role::Counts | Role::CountsNot)) {
         let (name, is_out) = (table.header[index].clone(), role == Role::CountsNot);
@@ -102,8 +102,7 @@ pub(super) fn leave_marked_out(table: &mut Table, import: &Import) -> Result<()>
                 continue;
             }
             let note = format!(
-                "{}:{}: {name} = \"{}\" does not say whether the row counts, nor do {} more cells of this column: such rows are read \
-                 like the others; write yes or no",
+                "{}:{}: {name} = \"{}\" is neither yes nor no ({} more cells); these rows are used; write yes or no",
                 table.file.display(),
                 first.line,
                 first.cell(index),
@@ -111,7 +110,7 @@ pub(super) fn leave_marked_out(table: &mut Table, import: &Import) -> Result<()>
             );
             table.notes.push(note);
         }
-        table.leave_out(&format!("marked by the column {name}"), "take the column out of the table to read them", |row| {
+        table.leave_out(&format!("flagged by the column {name}"), "remove the column to use them", |row| {
             of_row(row) == Some(false)
         })?;
     }
