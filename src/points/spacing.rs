@@ -49,8 +49,8 @@ pub fn default_spacing(specimen: &Specimen) -> (f64, Option<String>) {
     // A flaw has at least a point of its own.
     let spacing = finest.min(smallest);
     let warning = format!(
-        "model.spacing_mm: {} mm were taken, since {} mm would make more than {POINTS_FOR_GAP:.0e} points; a gap of {} mm at a tip \
-         has fewer than {POINTS_ON_GAP} spacings or a flaw of {} mm fewer than {POINTS_ON_FLAW}: give model.spacing_mm if its growth decides the life",
+        "model.spacing_mm set to {} mm ({} mm would need more than {POINTS_FOR_GAP:.0e} points); a gap of {} mm at a tip \
+         has fewer than {POINTS_ON_GAP} spacings or a flaw of {} mm fewer than {POINTS_ON_FLAW}; set model.spacing_mm if its growth decides the life",
         round_mm(spacing),
         round_mm(wanted),
         round_mm(gap),

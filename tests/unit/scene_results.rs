@@ -39,7 +39,7 @@ fn histories_of_a_bad_end_are_kept() {
         let summary = quiet.keep(folder, &[], files).unwrap();
         let error = summary.counted().unwrap_err();
         assert_eq!(error.exit_code(), 3);
-        assert!(error.to_string().contains(end.name()) && error.to_string().contains("histories so far are kept"), "{error}");
+        assert!(error.to_string().contains(end.name()) && error.to_string().contains("histories are kept"), "{error}");
         let history = fs::read_to_string(out.join("history.csv")).unwrap();
         assert_eq!(history.lines().count(), rows + 1, "the row without numbers is left out");
         let result: Value = serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
