@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::format::{PLAIN, two_digits};
+use super::format::{PLAIN, short, two_digits};
 use perilife_base::units::MM;
 use perilife_growth::case::{Case, Method, Model, coarse_points, usual_nodes};
 use perilife_growth::predict::error_estimate::{ErrorEstimate, error_estimate};
@@ -56,7 +56,8 @@ impl Quality {
     pub fn words(&self) -> Vec<String> {
         let of_estimate = |estimate: &std::result::Result<ErrorEstimate, String>| match estimate {
             Ok(ErrorEstimate { life_percent, path, .. }) => {
-                let path = if *path > 0.0 { format!(", ≤ {:.2} mm in the path", path / MM) } else { String::new() };
+                let path =
+                    if *path > 0.0 { format!(", ≤ {} mm in the path", short(two_digits(path / MM))) } else { String::new() };
                 format!("  Accuracy       numerical error ≤ {life_percent:.1} % of life{path} (estimate)")
             }
             Err(why) => format!("  Accuracy       numerical error not estimated: {why}"),

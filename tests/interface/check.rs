@@ -172,7 +172,7 @@ fn a_check_of_many_bonds_is_quick() {
     let started = std::time::Instant::now();
     let sets = ["model.spacing_mm=0.135", "model.horizon_ratio=12", "model.surface_correction=volume_and_surface"];
     let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", *set]).collect();
-    let output = perilife(dir.path(), &[&["check", "small.toml"], &sets[..]].concat());
+    let output = perilife(dir.path(), &[&["check", "small.toml", "-v"], &sets[..]].concat());
     println!("{:.2} s", started.elapsed().as_secs_f64());
     assert_eq!(output.status.code(), Some(0), "{}", texts(&output).1);
     assert!(texts(&output).0.contains("about 39"), "{}", texts(&output).0);

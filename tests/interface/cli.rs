@@ -143,6 +143,9 @@ fn a_prediction_writes_what_it_promises() {
     );
     let (stdout, _) = texts(&perilife(dir.path(), &["predict", "small.toml", "--out", "out/run", "--quiet", "--paraview"]));
     assert!(stdout.starts_with("small: life ") && stdout.lines().count() == 1, "{stdout}");
+    // Without --out the folder has the name of the case.
+    assert_eq!(perilife(dir.path(), &["predict", "small.toml", "-q"]).status.code(), Some(0));
+    assert!(dir.path().join("small/result.json").is_file());
     let again = fs::read_to_string(run.join("case.toml")).unwrap();
     assert!(run.join("paraview/run.pvd").is_file() && again.contains("[output]\nparaview = true"), "{again}");
     for (key, words) in [

@@ -35,7 +35,7 @@ fn run(ending: &Ending) -> (Option<i32>, Value, String) {
          [fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n"
     );
     fs::write(dir.path().join("case.toml"), text).unwrap();
-    let output = perilife(dir.path(), &["predict", "case.toml", "--out", "run"]);
+    let output = perilife(dir.path(), &["predict", "case.toml", "--out", "run", "-v"]);
     let (stdout, stderr) = texts(&output);
     // A run that is refused before anything is written has none.
     let result =

@@ -64,8 +64,8 @@ fn a_hand_calculation_leaves_the_files_of_a_run() {
 
     // Export and check know it as well.
     assert_eq!(perilife(dir.path(), &["export", "run", "--points", "50", "--out", "e.csv"]).status.code(), Some(0));
-    let (stdout, _) = texts(&perilife(dir.path(), &["check", "panel.toml"]));
-    assert!(stdout.contains("handbook") && stdout.contains("8.95422e-8") && !stdout.contains("ageing"), "{stdout}");
+    let (stdout, _) = texts(&perilife(dir.path(), &["check", "panel.toml", "-v"]));
+    assert!(stdout.contains("Handbook K") && stdout.contains("8.95422e-8") && !stdout.contains("ageing"), "{stdout}");
     let (stdout, _) = texts(&perilife(dir.path(), &["predict", "panel.toml", "--out", "run"]));
     assert!(stdout.contains("  Method         handbook K (Feddersen secant), "), "{stdout}");
     assert!(!run.join("residual_strength.csv").exists(), "only on request");

@@ -188,11 +188,11 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
 #[test]
 fn digits_are_those_that_the_band_deserves() {
     for (quantiles, words) in [
-        ([228_123.0, 254_321.0, 283_456.0], "250 000 cycles (median; 90 % of specimens 230 000 to 280 000)"),
-        ([240_123.0, 254_321.0, 268_456.0], "254 000 cycles (median; 90 % of specimens 240 000 to 268 000)"),
-        ([254_123.0, 254_321.0, 254_456.0], "254 300 cycles (median; 90 % of specimens 254 100 to 254 500)"),
-        ([0.081, 0.1234, 0.19], "0.12 cycles (median; 90 % of specimens 0.081 to 0.19)"),
-        ([1234.0, 1300.0, 1380.0], "1300 cycles (median; 90 % of specimens 1230 to 1380)"),
+        ([228_123.0, 254_321.0, 283_456.0], "250 000 cycles (median; 90 % band 230 000 to 280 000)"),
+        ([240_123.0, 254_321.0, 268_456.0], "254 000 cycles (median; 90 % band 240 000 to 268 000)"),
+        ([254_123.0, 254_321.0, 254_456.0], "254 300 cycles (median; 90 % band 254 100 to 254 500)"),
+        ([0.081, 0.1234, 0.19], "0.12 cycles (median; 90 % band 0.081 to 0.19)"),
+        ([1234.0, 1300.0, 1380.0], "1300 cycles (median; 90 % band 1230 to 1380)"),
     ] {
         assert_eq!(band_words(&quantiles), words);
     }

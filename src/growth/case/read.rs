@@ -295,7 +295,7 @@ fn check_load(case: &Case) -> Result<()> {
         let remedy = if case.specimen.is_through() {
             "use model.method = \"peridynamics\" and fatigue.driver = \"tip_field\""
         } else {
-            "give cycles of a load: K of a crack that does not go through is known under those alone"
+            "give cycles of a load: K of a part-through crack is known under those alone"
         };
         return Err(input(key, value, problem, remedy));
     }

@@ -163,7 +163,7 @@ const CHORD: f64 = 1e-3;
 const PARTS_MOST: f64 = 8.0;
 
 impl Course {
-    /// Parts in which an increment with the share `of_all` of the cycles is written: a chord is off by `g ΔN/8`, g the slope of ln r.
+    /// Parts in which an increment with the share `of_all` of the cycles is written: chords are off by `g ΔN/8`, g = slope of ln r.
     pub(super) fn parts(&self, of_all: f64) -> usize {
         ((self.gain.abs() + self.bend.abs()) * of_all / (8.0 * CHORD)).sqrt().ceil().clamp(1.0, PARTS_MOST) as usize
     }

@@ -133,7 +133,7 @@ pub struct TipResult {
 /// Errors: [`Error::Input`] where methods are asked for by name.
 fn of_front(case: &Case, flaw: &PartThrough, methods: &[StressIntensityMethod]) -> Result<Vec<TipResult>> {
     if let Some(method) = methods.first().filter(|_| methods != StressIntensityMethod::ALL) {
-        let problem = "looks at the plate in its plane, and the crack does not go through: its K is that of the handbook";
+        let problem = "does not support part-through cracks, whose K is that of the handbook";
         return Err(input(StressIntensityMethod::KEY, method, problem, "leave it out"));
     }
     let specimen = &case.specimen;
