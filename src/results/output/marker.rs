@@ -145,6 +145,14 @@ fn walk_runs(folder: &Path, see: &mut dyn FnMut(&Path, bool) -> io::Result<()>) 
     Ok(())
 }
 
+/// Removes a folder with all in it, its marker last: if the process is killed on the way, the next run recognizes the rest.
+pub(super) fn remove_all(folder: &Path) -> io::Result<()> {
+    for path in names(folder)?.into_iter().map(|name| folder.join(name)) {
+        if fs::symlink_metadata(&path)?.is_dir() { fs::remove_dir_all(path)? } else { fs::remove_file(path)? }
+    }
+    fs::remove_dir(folder)
+}
+
 /// Names in a folder, sorted, that of the marker last: what is removed on the way stays known to the end. None of a folder that is not
 /// there.
 fn names(folder: &Path) -> io::Result<Vec<String>> {
