@@ -31,7 +31,7 @@ class SpecimenSingleEdgeTension(TypedDict, total=False):
     thickness_in: float
     crack_length_mm: float  # Initial crack length a: half of a central crack, that of each edge crack; needed
     crack_length_in: float
-    ends: Required[Literal["pinned", "clamped", "uniform_stress"]]  # Ends: how they are held, by which K differs; needed
+    ends: Required[Literal["pinned", "clamped", "uniform_stress"]]  # Ends: clamped, pinned or under uniform stress; needed
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
 
@@ -56,10 +56,10 @@ class SpecimenCompactTension(TypedDict, total=False):
     thickness_in: float
     crack_length_mm: float  # Initial crack length a: from the load line; needed
     crack_length_in: float
-    pin_half_angle_deg: float  # Half angle of contact of the pin, °: 90 for a pin that fills its hole; -
-    pin_diameter_mm: float  # Pin diameter: its clearance decides where it touches the hole; -
+    pin_half_angle_deg: float  # Half angle of the contact arc, °: 90 for a close-fitting pin; -
+    pin_diameter_mm: float  # Pin diameter: its clearance sets the contact arc; -
     pin_diameter_in: float
-    pin_friction: float  # Friction of the pin: 0, others are not computed; -
+    pin_friction: float  # Friction of the pin: 0 only; -
     pin_youngs_modulus_gpa: float  # Young's modulus of the pin; 210 (steel)
     pin_youngs_modulus_msi: float
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
@@ -67,11 +67,11 @@ class SpecimenCompactTension(TypedDict, total=False):
 
 
 class SpecimenPlateHoles(TypedDict, total=False):
-    x_mm: float  # Middle of the hole, x; needed
+    x_mm: float  # Hole center, x; needed
     x_in: float
-    y_mm: float  # Middle of the hole, y; needed
+    y_mm: float  # Hole center, y; needed
     y_in: float
-    diameter_mm: float  # Diameter: of a hole; needed
+    diameter_mm: float  # Hole diameter; needed
     diameter_in: float
 
 
@@ -80,7 +80,7 @@ class SpecimenPlateCracks(TypedDict, total=False):
     from_in: tuple[float, float]
     to_mm: tuple[float, float]  # Other end: [x, y]; -
     to_in: tuple[float, float]
-    path_mm: list[tuple[float, float]]  # Corners of a crack with bends: both ends included; -
+    path_mm: list[tuple[float, float]]  # Corners of a kinked crack: both ends included; -
     path_in: list[tuple[float, float]]
 
 
@@ -95,11 +95,11 @@ class SpecimenPlateNotches(TypedDict, total=False):
 
 class SpecimenPlate(TypedDict, total=False):
     kind: Literal["plate"]
-    outline_mm: list[tuple[float, float]]  # Outline: corners in order around the plate; one of those that say the outline
+    outline_mm: list[tuple[float, float]]  # Outline: corners in order; one of those that say the outline
     outline_in: list[tuple[float, float]]
     outline_file: str  # Drawing of the plate: DXF with layers outline, holes (full circles), cracks; one of those that say the outline
-    outline_unit: Literal["mm", "inch"]  # Unit of the drawing: where it does not say its own; -
-    outline_symmetry: Literal["x=0", "y=0"]  # Symmetry of the drawing: a half of the plate is drawn; -
+    outline_unit: Literal["mm", "inch"]  # Unit of the drawing: where the file has none; -
+    outline_symmetry: Literal["x=0", "y=0"]  # Symmetry of the drawing: half of the plate drawn; -
     width_mm: float  # Width W: of a rectangle about 0, with its length; one of those that say the outline
     width_in: float
     length_mm: float  # Length L: of a rectangle about 0, along y; -
@@ -108,18 +108,18 @@ class SpecimenPlate(TypedDict, total=False):
     diameter_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
-    holes: list[SpecimenPlateHoles]  # Holes: round ones; none
-    cracks: list[SpecimenPlateCracks]  # Cracks: straight or with bends; those that meet are joined; none
+    holes: list[SpecimenPlateHoles]  # Circular holes; none
+    cracks: list[SpecimenPlateCracks]  # Cracks: straight or kinked; none
     notches: list[SpecimenPlateNotches]  # Notches: straight slots with square ends; none
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
 
 class SpecimenSurfaceCrackHoles(TypedDict, total=False):
-    x_mm: float  # Middle of the hole, x; needed
+    x_mm: float  # Hole center, x; needed
     x_in: float
-    y_mm: float  # Middle of the hole, y; needed
+    y_mm: float  # Hole center, y; needed
     y_in: float
-    diameter_mm: float  # Diameter: of a hole; needed
+    diameter_mm: float  # Hole diameter; needed
     diameter_in: float
 
 
@@ -127,23 +127,23 @@ class SpecimenSurfaceCrack(TypedDict, total=False):
     kind: Literal["surface_crack"]
     width_mm: float  # Width W; needed
     width_in: float
-    length_mm: float  # Length L: along the load; 3 W where it is left out; -
+    length_mm: float  # Length L: along the load; default 3 W; -
     length_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
     crack_depth_mm: float  # Crack depth a: into the thickness; needed
     crack_depth_in: float
-    crack_half_length_mm: float  # Crack length c: along the face; half of it where it has two ends there; needed
+    crack_half_length_mm: float  # Surface length c: half length where both ends are on the surface; needed
     crack_half_length_in: float
     holes: list[SpecimenSurfaceCrackHoles]  # Further holes of the plate; none
 
 
 class SpecimenCornerCrackHoles(TypedDict, total=False):
-    x_mm: float  # Middle of the hole, x; needed
+    x_mm: float  # Hole center, x; needed
     x_in: float
-    y_mm: float  # Middle of the hole, y; needed
+    y_mm: float  # Hole center, y; needed
     y_in: float
-    diameter_mm: float  # Diameter: of a hole; needed
+    diameter_mm: float  # Hole diameter; needed
     diameter_in: float
 
 
@@ -151,23 +151,23 @@ class SpecimenCornerCrack(TypedDict, total=False):
     kind: Literal["corner_crack"]
     width_mm: float  # Width W; needed
     width_in: float
-    length_mm: float  # Length L: along the load; 3 W where it is left out; -
+    length_mm: float  # Length L: along the load; default 3 W; -
     length_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
     crack_depth_mm: float  # Crack depth a: into the thickness; needed
     crack_depth_in: float
-    crack_half_length_mm: float  # Crack length c: along the face; half of it where it has two ends there; needed
+    crack_half_length_mm: float  # Surface length c: half length where both ends are on the surface; needed
     crack_half_length_in: float
     holes: list[SpecimenCornerCrackHoles]  # Further holes of the plate; none
 
 
 class SpecimenEmbeddedCrackHoles(TypedDict, total=False):
-    x_mm: float  # Middle of the hole, x; needed
+    x_mm: float  # Hole center, x; needed
     x_in: float
-    y_mm: float  # Middle of the hole, y; needed
+    y_mm: float  # Hole center, y; needed
     y_in: float
-    diameter_mm: float  # Diameter: of a hole; needed
+    diameter_mm: float  # Hole diameter; needed
     diameter_in: float
 
 
@@ -175,23 +175,23 @@ class SpecimenEmbeddedCrack(TypedDict, total=False):
     kind: Literal["embedded_crack"]
     width_mm: float  # Width W; needed
     width_in: float
-    length_mm: float  # Length L: along the load; 3 W where it is left out; -
+    length_mm: float  # Length L: along the load; default 3 W; -
     length_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
     crack_depth_mm: float  # Crack depth a: into the thickness; needed
     crack_depth_in: float
-    crack_half_length_mm: float  # Crack length c: along the face; half of it where it has two ends there; needed
+    crack_half_length_mm: float  # Surface length c: half length where both ends are on the surface; needed
     crack_half_length_in: float
     holes: list[SpecimenEmbeddedCrackHoles]  # Further holes of the plate; none
 
 
 class SpecimenCornerCrackAtHoleHoles(TypedDict, total=False):
-    x_mm: float  # Middle of the hole, x; needed
+    x_mm: float  # Hole center, x; needed
     x_in: float
-    y_mm: float  # Middle of the hole, y; needed
+    y_mm: float  # Hole center, y; needed
     y_in: float
-    diameter_mm: float  # Diameter: of a hole; needed
+    diameter_mm: float  # Hole diameter; needed
     diameter_in: float
 
 
@@ -199,18 +199,18 @@ class SpecimenCornerCrackAtHole(TypedDict, total=False):
     kind: Literal["corner_crack_at_hole"]
     width_mm: float  # Width W; needed
     width_in: float
-    length_mm: float  # Length L: along the load; 3 W where it is left out; -
+    length_mm: float  # Length L: along the load; default 3 W; -
     length_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
     crack_depth_mm: float  # Crack depth a: into the thickness; needed
     crack_depth_in: float
-    crack_half_length_mm: float  # Crack length c: along the face; half of it where it has two ends there; needed
+    crack_half_length_mm: float  # Surface length c: half length where both ends are on the surface; needed
     crack_half_length_in: float
     holes: list[SpecimenCornerCrackAtHoleHoles]  # Further holes of the plate; none
     hole_diameter_mm: float  # Hole diameter; needed
     hole_diameter_in: float
-    cracks: Required[int]  # Cracks at the hole: 1, on one side of it, or 2, on both; needed
+    cracks: Required[int]  # Cracks at the hole: 1 or 2 sides; needed
 
 
 class SpecimenCrackAtHole(TypedDict, total=False):
@@ -223,12 +223,12 @@ class SpecimenCrackAtHole(TypedDict, total=False):
     thickness_in: float
     hole_diameter_mm: float  # Hole diameter; needed
     hole_diameter_in: float
-    hole_offset_mm: float  # Hole from the middle: across the load; 0
+    hole_offset_mm: float  # Hole center: distance from the midline, across the load; 0
     hole_offset_in: float
-    crack_length_mm: float  # Initial crack length a: from the rim of the hole; one of those that say the length of the cracks
+    crack_length_mm: float  # Initial crack length a: from the hole edge; one of those that say the length of the cracks
     crack_length_in: float
-    cracks: int  # Cracks at the hole: 1, at its right, or 2; 1 where it is left out; -
-    crack_lengths_mm: tuple[float, float]  # Cracks of unlike lengths: left and right from the rim, 0 without one; one of those that say the length of the cracks
+    cracks: int  # Cracks at the hole: 1 (right) or 2; default 1; -
+    crack_lengths_mm: tuple[float, float]  # Crack lengths: left and right from the hole edge, 0 for no crack; one of those that say the length of the cracks
     crack_lengths_in: tuple[float, float]
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
@@ -242,13 +242,13 @@ class SpecimenRowOfHoles(TypedDict, total=False):
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
     holes: Required[int]  # Holes: in one row across the load; needed
-    pitch_mm: float  # Pitch: between the middles of neighbours; needed
+    pitch_mm: float  # Pitch: between hole centers; needed
     pitch_in: float
     hole_diameter_mm: float  # Hole diameter; needed
     hole_diameter_in: float
-    crack_length_mm: float  # Initial crack length a: from the rim of the hole; one of those that say the length of the cracks
+    crack_length_mm: float  # Initial crack length a: from the hole edge; one of those that say the length of the cracks
     crack_length_in: float
-    crack_lengths_mm: list[tuple[float, float]]  # Cracks of unlike lengths: of every hole [left, right], 0 without one; one of those that say the length of the cracks
+    crack_lengths_mm: list[tuple[float, float]]  # Crack lengths: [left, right] of every hole, 0 for no crack; one of those that say the length of the cracks
     crack_lengths_in: list[tuple[float, float]]
 
 
@@ -256,24 +256,24 @@ class SpecimenLug(TypedDict, total=False):
     kind: Literal["lug"]
     width_mm: float  # Width W; needed
     width_in: float
-    length_mm: float  # Length L: from the middle of the hole to the held end; needed
+    length_mm: float  # Length L: from the hole center to the clamped end; needed
     length_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
     hole_diameter_mm: float  # Hole diameter; needed
     hole_diameter_in: float
     head: Required[Literal["straight", "round"]]  # Head: end beyond the hole; needed
-    edge_distance_mm: float  # Edge distance: of a straight head, from the middle of the hole; W/2 where it is left out; -
+    edge_distance_mm: float  # Edge distance: of a straight head, from the hole center; default W/2; -
     edge_distance_in: float
-    crack_length_mm: float  # Initial crack length a: from the rim of the hole; one of those that say the length of the cracks
+    crack_length_mm: float  # Initial crack length a: from the hole edge; one of those that say the length of the cracks
     crack_length_in: float
-    cracks: int  # Cracks at the hole: 1, at its right, or 2; 1 where it is left out; -
-    crack_lengths_mm: tuple[float, float]  # Cracks of unlike lengths: left and right from the rim, 0 without one; one of those that say the length of the cracks
+    cracks: int  # Cracks at the hole: 1 (right) or 2; default 1; -
+    crack_lengths_mm: tuple[float, float]  # Crack lengths: left and right from the hole edge, 0 for no crack; one of those that say the length of the cracks
     crack_lengths_in: tuple[float, float]
-    pin_half_angle_deg: float  # Half angle of contact of the pin, °: 90 for a pin that fills its hole; -
-    pin_diameter_mm: float  # Pin diameter: its clearance decides where it touches the hole; -
+    pin_half_angle_deg: float  # Half angle of the contact arc, °: 90 for a close-fitting pin; -
+    pin_diameter_mm: float  # Pin diameter: its clearance sets the contact arc; -
     pin_diameter_in: float
-    pin_friction: float  # Friction of the pin: 0, others are not computed; -
+    pin_friction: float  # Friction of the pin: 0 only; -
     pin_youngs_modulus_gpa: float  # Young's modulus of the pin; 210 (steel)
     pin_youngs_modulus_msi: float
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
@@ -292,7 +292,7 @@ class SpecimenEdgeNotch(TypedDict, total=False):
     notch_depth_in: float
     notch_radius_mm: float  # Radius of the root: half circle that ends the notch; needed
     notch_radius_in: float
-    crack_length_mm: float  # Initial crack length a: from the root of the notch; none where it is left out; -
+    crack_length_mm: float  # Initial crack length a: from the notch root; default no crack; -
     crack_length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
@@ -305,11 +305,11 @@ class SpecimenStopHole(TypedDict, total=False):
     length_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
-    stopped_crack_length_mm: float  # Stopped crack: half of its length, to the centres of the holes; needed
+    stopped_crack_length_mm: float  # Stopped crack: half length, to the hole centers; needed
     stopped_crack_length_in: float
     hole_diameter_mm: float  # Hole diameter; needed
     hole_diameter_in: float
-    formed_length_mm: float  # Formed cracks: their length from the rims of the holes at the end of phase I; needed
+    formed_length_mm: float  # Crack length after initiation: from the hole edges; needed
     formed_length_in: float
 
 
@@ -323,7 +323,7 @@ class SpecimenSingleEdgeBend(TypedDict, total=False):
     crack_length_in: float
     span_mm: float  # Span: of the outer rollers; 4 W
     span_in: float
-    inner_span_mm: float  # Inner span: between two rollers; one in the middle where it is left out; -
+    inner_span_mm: float  # Inner span: between two rollers; default one roller at midspan; -
     inner_span_in: float
     length_mm: float  # Length L: of the beam; span + W/2
     length_in: float
@@ -336,7 +336,7 @@ class SpecimenEccentricSingleEdgeTension(TypedDict, total=False):
     width_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
-    crack_length_mm: float  # Initial crack length a: from where W begins; needed
+    crack_length_mm: float  # Initial crack length a: from the same line as W; needed
     crack_length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
@@ -347,14 +347,14 @@ class SpecimenWedgeOpening(TypedDict, total=False):
     width_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
-    crack_length_mm: float  # Initial crack length a: from where W begins; needed
+    crack_length_mm: float  # Initial crack length a: from the same line as W; needed
     crack_length_in: float
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
 
 class SpecimenCruciform(TypedDict, total=False):
     kind: Literal["cruciform"]
-    length_mm: float  # Length L: from end to end of two arms; needed
+    length_mm: float  # Length L: end to end of two arms; needed
     length_in: float
     arm_width_mm: float  # Width of an arm; needed
     arm_width_in: float
@@ -362,7 +362,7 @@ class SpecimenCruciform(TypedDict, total=False):
     fillet_radius_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
-    crack_length_mm: float  # Initial crack length a: half of it; needed
+    crack_length_mm: float  # Initial crack length a: half length; needed
     crack_length_in: float
     crack_angle_deg: float  # Angle of the crack, °: against x; 0
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
@@ -375,7 +375,7 @@ class Material(TypedDict, total=False):
     poisson_ratio: float  # Poisson's ratio ν; -
     yield_strength_mpa: float  # Yield strength σY; -
     yield_strength_ksi: float
-    toughness_mpa_sqrt_m: float  # Fracture toughness Kc: at this thickness; -
+    toughness_mpa_sqrt_m: float  # Fracture toughness K_c: at this thickness; -
     toughness_ksi_sqrt_in: float
     fracture_energy_j_m2: float  # Fracture energy: of scenes; -
     fracture_energy_lbf_in: float
@@ -389,24 +389,24 @@ class Material(TypedDict, total=False):
 class LoadingPins(TypedDict, total=False):
     hole: Required[int]  # Hole: counted from 0 in specimen.holes; needed
     direction: Required[tuple[float, float]]  # Direction: [x, y] of the force on the plate; needed
-    share: float  # Share of the force: 1 where it is left out; -
-    bearing_ratio: float  # Bearing stress P/(d h) over the nominal stress: beside loaded edges; -
-    contact_half_angle_deg: float  # Half angle of contact of the pin, °: 90 for a pin that fills its hole; -
-    pin_diameter_mm: float  # Pin diameter: its clearance decides where it touches the hole; -
+    share: float  # Share of the force: default 1; -
+    bearing_ratio: float  # Bearing stress P/(d h) over the remote stress: with loaded edges; -
+    contact_half_angle_deg: float  # Half angle of the contact arc, °: 90 for a close-fitting pin; -
+    pin_diameter_mm: float  # Pin diameter: its clearance sets the contact arc; -
     pin_diameter_in: float
-    friction: float  # Friction of the pin: 0, others are not computed; -
+    friction: float  # Friction of the pin: 0 only; -
     pin_youngs_modulus_gpa: float  # Young's modulus of the pin; 210 (steel)
     pin_youngs_modulus_msi: float
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
 
 
 class LoadingRollers(TypedDict, total=False):
-    at_mm: tuple[float, float]  # Middle of the contact: [x, y] on the outline; needed
+    at_mm: tuple[float, float]  # Contact center: [x, y] on the outline; needed
     at_in: tuple[float, float]
     contact_width_mm: float  # Width of the contact; needed
     contact_width_in: float
-    direction: tuple[float, float]  # Direction: [x, y] of the force; straight into the plate where it is left out; -
-    share: float  # Share of the force: 1 where it is left out; 1
+    direction: tuple[float, float]  # Direction: [x, y] of the force; default normal to the outline; -
+    share: float  # Share of the force; 1
 
 
 class Loading(TypedDict, total=False):
@@ -423,36 +423,36 @@ class Loading(TypedDict, total=False):
     force_max_kip: object
     force_range_kn: object  # Force range ΔP: maximum − minimum; one of those that say one load
     force_range_kip: object
-    displacement_max_mm: object  # Maximum displacement δmax: of the loaded places against each other; one of those that say one load; with kind = displacement
-    displacement_max_in: object
-    displacement_range_mm: object  # Displacement range Δδ: of the loaded places against each other; one of those that say one load; with kind = displacement
-    displacement_range_in: object
-    spectrum_scale_mpa: object  # Scale of the spectrum: gross stress that a value of 1 in the file stands for; one of those that say one load; with kind = spectrum
-    spectrum_scale_ksi: object
-    spectrum_scale_n: object  # Scale of the spectrum: force that a value of 1 in the file stands for; one of those that say one load; with kind = spectrum
-    spectrum_scale_lbf: object
+    displacement_max_mm: float  # Maximum displacement δ_max: relative, of the loaded sides; one of those that say one load; with kind = displacement
+    displacement_max_in: float
+    displacement_range_mm: float  # Displacement range Δδ: relative, of the loaded sides; one of those that say one load; with kind = displacement
+    displacement_range_in: float
+    spectrum_scale_mpa: float  # Scale of the spectrum: gross stress of the value 1; one of those that say one load; with kind = spectrum
+    spectrum_scale_ksi: float
+    spectrum_scale_n: float  # Scale of the spectrum: force of the value 1; one of those that say one load; with kind = spectrum
+    spectrum_scale_lbf: float
     stress_ratio: float  # Stress ratio R: minimum / maximum, below 1; -
-    grip: Literal["straight", "mean"]  # Grip: of moved edges; straight where it is left out; with kind = displacement
-    transverse: Literal["free", "held"]  # Motion across the displacement; with kind = displacement
-    crack_pressure_mpa: float  # Pressure on the faces of the cracks: at maximum load; -
+    grip: Literal["straight", "mean"]  # Grip: of moved edges; straight; with kind = displacement
+    transverse: Literal["free", "held"]  # Motion across the displacement; free; with kind = displacement
+    crack_pressure_mpa: float  # Crack-face pressure: at maximum load; -
     crack_pressure_ksi: float
     spectrum_file: str  # File of the spectrum: CSV, workbook, .spx, .sub or FASTRAN; with kind = spectrum
-    spectrum_format: Literal["cycles", "turning_points", "spx", "sub", "fastran"]  # Format of the spectrum: told by the file where it is left out; with kind = spectrum
+    spectrum_format: Literal["cycles", "turning_points", "spx", "sub", "fastran"]  # Format of the spectrum: default by name and content; with kind = spectrum
     omission_percent: float  # Omission level, % of the largest range; 0; with kind = spectrum
     truncation_percent: float  # High-load truncation, % of the largest peak; 100; with kind = spectrum
-    repeats: float  # Passes: after which the loads end; with kind = spectrum
+    repeats: float  # Number of passes; with kind = spectrum
     residual_stress: object  # Residual stress: formula of x and y, mm, in MPa; one of those that say the residual stress
     residual_stress_mpa: object  # Residual stress: formula of x and y, mm, in MPa; one of those that say the residual stress
     residual_stress_ksi: object  # Residual stress: formula of x and y, inch, in ksi; one of those that say the residual stress
     residual_stress_file: str  # File of residual stress: columns x_mm, y_mm, stress_mpa; one of those that say the residual stress
-    stress_parallel_ratio: float  # Stress along the crack over that across it; 0
+    stress_parallel_ratio: float  # Biaxiality: stress along the crack over stress across it; 0
     bending_ratio: float  # Out-of-plane bending: bending stress over tension, of part-through cracks; -
     edge_bending_ratio: object  # In-plane bending of loaded edges: bending stress over mean stress, or "pure"; -
     edges: list[Literal["top", "bottom", "left", "right"]]  # Loaded sides; -
     direction: object  # Direction of the stress on edges: [x, y], or one for each of them; -
     pins: list[LoadingPins]  # Pins: in holes of the plate; -
     rollers: list[LoadingRollers]  # Rollers: on the outline of the plate; -
-    retardation: Literal["none", "wheeler", "willenborg", "closure", "newman"]  # Retardation: load interaction of a spectrum; none where it is left out; -
+    retardation: Literal["none", "wheeler", "willenborg", "closure", "newman"]  # Retardation: load interaction of a spectrum; default none; -
     wheeler_exponent: float  # exponent; -
     shutoff_ratio: float  # ratio of overload to cycle; -
     willenborg_k_th_mpa_sqrt_m: float  # stress intensity; -
@@ -466,12 +466,12 @@ class Model(TypedDict, total=False):
     method: Literal["auto", "peridynamics", "element_free_galerkin", "handbook"]  # Method; auto
     spacing_mm: float  # Spacing: of points, or of nodes far from cracks; -
     spacing_in: float
-    symmetry: Literal["auto", "off"]  # Symmetry: whether half or a quarter stands for the plate; with method = peridynamics, handbook
-    bond_law: Literal["bond_based", "two_parameter", "one_bond_two_parameter", "state_based"]  # Bond law: told by Poisson's ratio where it is left out; with method = peridynamics, handbook
+    symmetry: Literal["auto", "off"]  # Symmetry: model half or a quarter of the plate; with method = peridynamics, handbook
+    bond_law: Literal["bond_based", "two_parameter", "one_bond_two_parameter", "state_based"]  # Bond law: default by Poisson's ratio; with method = peridynamics, handbook
     kernel: Literal["constant", "conical"]  # Kernel: weight of bonds over their length; with method = peridynamics, handbook
-    rotation: Literal["free", "resisted"]  # Rotation: whether a rigid rotation costs energy; with method = peridynamics, handbook
+    rotation: Literal["free", "resisted"]  # Rotation: free or resisted rigid rotation of bonds; with method = peridynamics, handbook
     surface_correction: Literal["none", "volume_and_surface", "balanced"]  # Surface correction: at the boundary; with method = peridynamics, handbook
-    horizon_ratio: float  # Horizon ratio: horizon over spacing; 3.015 where it is left out; with method = peridynamics, handbook
+    horizon_ratio: float  # Horizon ratio: horizon over spacing; default 3.015; with method = peridynamics, handbook
     lattice_angle_deg: float  # Lattice angle, °: of rows of points against x; with method = peridynamics, handbook
     solver: Literal["window", "multigrid"]  # Solver; with method = peridynamics, handbook
     nodes: float  # Number of nodes: far from cracks; with method = element_free_galerkin
@@ -482,29 +482,29 @@ class Model(TypedDict, total=False):
 
 
 class FatigueInitiation(TypedDict, total=False):
-    range_mpa: float  # Range ΔσD: of the local stress at one point of the S-N line; needed
+    range_mpa: float  # Range Δσ_D: local stress range at one point of the S-N line; needed
     range_ksi: float
-    cycles: Required[float]  # Cycles ND: of that point; needed
+    cycles: Required[float]  # Cycles N_D: at the same point; needed
     slope: Required[float]  # Slope k: of log N over −log Δσ; needed
-    limit_mpa: float  # Fatigue limit: range up to which no crack forms; none
+    limit_mpa: float  # Fatigue limit: local stress range without initiation; none
     limit_ksi: float
 
 
 class Fatigue(TypedDict, total=False):
-    driver: Literal["tip_field", "bond_strain"]  # Driver: what moves cracks; -
+    driver: Literal["tip_field", "bond_strain"]  # Driver: of crack growth; -
     ageing: Literal["crack_tip", "everywhere"]  # Ageing: bonds that lose life; with driver = bond_strain
     zone_radius_horizons: float  # Zone of ageing bonds, horizons; with driver = bond_strain
     step_error_percent: float  # Error of an increment, %; -
     critical_stretch: float  # Critical stretch: beyond which a bond breaks at once; with driver = bond_strain
     walker_gamma: float  # Walker exponent γ: effect of the stress ratio; -
-    delta_k_threshold_mpa_sqrt_m: float  # Threshold ΔKth: below which nothing grows; 0 for none; -
+    delta_k_threshold_mpa_sqrt_m: float  # Threshold ΔK_th: no growth below; 0 for none; -
     delta_k_threshold_ksi_sqrt_in: float
-    allow_extrapolation: bool  # Extrapolation: whether a fitted law may be used outside its range; false
+    allow_extrapolation: bool  # Extrapolation: of a fitted law outside its range; false
     lot: Literal["same", "other"]  # Lot of material: against that of the tests; same
     initiation: FatigueInitiation  # Initiation life: S-N law of the local stress, phase I; -
-    failure: Literal["stretch"]  # Failure: what breaks a bond; -
+    failure: Literal["stretch"]  # Failure: criterion of bonds; -
     fitted: str  # Fitted law: file that `perilife calibrate` wrote; -
-    growth_law: Literal["bond_law", "paris", "walker", "forman", "nasgro", "table"]  # Growth law: told by its constants where it is left out; -
+    growth_law: Literal["bond_law", "paris", "walker", "forman", "nasgro", "table"]  # Growth law: default by the constants given; -
     a: float  # constant in 1/cycle; -
     p: float  # exponent; -
     horizon_mm: float  # length; -
@@ -525,8 +525,8 @@ class Fatigue(TypedDict, total=False):
     nasgro_delta_k_0_ksi_sqrt_in: float
     nasgro_c_th: float  # slope of the threshold over R; -
     nasgro_c_th_negative: float  # slope of the threshold over R; -
-    growth_table: object  # Table of the law; -
-    growth_table_ends: object  # Table of the law; -
+    growth_table: str  # Table of rates: its file; -
+    growth_table_ends: Literal["refused", "held"]  # Ends of the table: beyond its rows; default refused; -
 
 
 class Stop(TypedDict, total=False):
@@ -535,8 +535,8 @@ class Stop(TypedDict, total=False):
     crack_depth_mm: float  # Final crack depth: of a part-through crack; -
     crack_depth_in: float
     at_break_through: bool  # Stop at breakthrough: of a part-through crack; -
-    cycles_max: float  # Most cycles: run-out; 1e9
-    required_strength_mpa: float  # Required strength: gross stress that the plate has to carry; one of those that say the load
+    cycles_max: float  # Maximum cycles: run-out; 1e9
+    required_strength_mpa: float  # Required strength: gross stress; one of those that say the load
     required_strength_ksi: float
     limit_load_factor: float  # Required load: over the maximum load of the cycles; one of those that say the load
     toughness: bool  # Fracture ends the life; true
@@ -553,54 +553,55 @@ class FleetInitialLengthMm(TypedDict, total=False):
 class Fleet(TypedDict, total=False):
     plates: int  # Plates: how many; 1000
     seed: int  # Seed of all draws; 0
-    initial_length_mm: FleetInitialLengthMm  # Initial crack length: its distribution; that of the case where it is left out; -
+    initial_length_mm: FleetInitialLengthMm  # Initial crack length: distribution; default that of the case; -
     initial_length_in: FleetInitialLengthMm
     load_scatter: float  # Scatter of the load: standard deviation over the load; 0
 
 
 class Output(TypedDict, total=False):
-    paraview: bool  # ParaView: also the fields of some moments; false
-    animation: bool  # Animation: also growth.svg, the cracks as they grow; false
+    paraview: bool  # ParaView files: fields at several stages; false
+    animation: bool  # Animation: growth.svg of the growing cracks; false
+    tables_only: bool  # Tables only: no pictures; false
 
 
 class SupportsTop(TypedDict, total=False):
-    rows_mm: float  # Depth of the hold: from the side into the plate; one row
+    rows_mm: float  # Depth of the support: from the side into the plate; one row
     rows_in: float
     fix: Required[list[Literal["x", "y"]]]  # Held components; needed
 
 
 class SupportsBottom(TypedDict, total=False):
-    rows_mm: float  # Depth of the hold: from the side into the plate; one row
+    rows_mm: float  # Depth of the support: from the side into the plate; one row
     rows_in: float
     fix: Required[list[Literal["x", "y"]]]  # Held components; needed
 
 
 class SupportsLeft(TypedDict, total=False):
-    rows_mm: float  # Depth of the hold: from the side into the plate; one row
+    rows_mm: float  # Depth of the support: from the side into the plate; one row
     rows_in: float
     fix: Required[list[Literal["x", "y"]]]  # Held components; needed
 
 
 class SupportsRight(TypedDict, total=False):
-    rows_mm: float  # Depth of the hold: from the side into the plate; one row
+    rows_mm: float  # Depth of the support: from the side into the plate; one row
     rows_in: float
     fix: Required[list[Literal["x", "y"]]]  # Held components; needed
 
 
 class Supports(TypedDict, total=False):
-    top: SupportsTop  # Side that is held; -
-    bottom: SupportsBottom  # Side that is held; -
-    left: SupportsLeft  # Side that is held; -
-    right: SupportsRight  # Side that is held; -
+    top: SupportsTop  # Support of this side; -
+    bottom: SupportsBottom  # Support of this side; -
+    left: SupportsLeft  # Support of this side; -
+    right: SupportsRight  # Support of this side; -
 
 
 class MeasuredLeaveOut(TypedDict, total=False):
-    specimen: str  # Specimen: may be left out where there is one; -
+    specimen: str  # Specimen: optional with a single specimen; -
     from_cycles: float  # First cycles: as the file counts them; -
     to_cycles: float  # Last cycles; -
-    file: str  # File of the row: may be left out where there is one; -
+    file: str  # File of the row: optional with a single file; -
     line: int  # Line of the row; -
-    value: str  # A cell of the row: shows that the line is the one that is meant; -
+    value: str  # A cell of the row: confirms the line; -
     reason: Required[str]  # Reason; needed
 
 
@@ -633,6 +634,6 @@ class Fit(TypedDict, total=False):
     parameters: list[Literal["a", "p"]]  # Fitted constants; a, p
     p: float  # Exponent p: given, not fitted; -
     record: str  # Record of the exponent: fitted.toml of another calibration; -
-    criterion: Literal["both_ends", "first_reading"]  # Criterion: which lives count; both_ends
-    law: Literal["paris", "walker", "forman", "nasgro", "best"]  # Growth law to fit: paris where it is left out; -
-    given: dict[str, object]  # Constants that are given, not fitted: by their keys in [fatigue]; none
+    criterion: Literal["both_ends", "first_reading"]  # Criterion: lives to be fitted; both_ends
+    law: Literal["paris", "walker", "forman", "nasgro", "best"]  # Growth law to fit: default paris; -
+    given: dict[str, object]  # Given constants: by their keys of [fatigue]; none
