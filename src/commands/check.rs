@@ -43,6 +43,5 @@ pub fn run(args: &Args) -> Result<()> {
         args.console.say(&format!("{:<12} {}", line.what, line.value));
     }
     args.console.say(&format!("{:<12} no errors", "check"));
-    // Text and figures have a form in JSON.
-    args.console.object(&serde_json::to_value(&checked).unwrap_or_default())
+    args.console.object(&checked.json())
 }

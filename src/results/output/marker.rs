@@ -98,8 +98,12 @@ impl Marker {
     /// Removes the files of this run from a folder, and the folders that are empty then.
     pub fn remove_from(&self, folder: &Path) -> io::Result<()> {
         self.walk(folder, "", &mut |path, is_own| match fs::symlink_metadata(path) {
-            Ok(there) if is_own && there.is_dir() => Ok(drop(fs::remove_dir(path))),
-            Ok(_) if is_own => fs::remove_file(path),
+            Ok(there) if is_own && !there.is_dir() => fs::remove_file(path),
+            Ok(_) if is_own => {
+                // One that something else is in stays.
+                let _ = fs::remove_dir(path);
+                Ok(())
+            }
             _ => Ok(()),
         })
     }
