@@ -7,13 +7,10 @@ use perilife_base::table::names::Role;
 use perilife_base::units::{MM, round_off};
 use perilife_measured::{Import, SAME_LOAD, Survey, survey};
 
-/// Endings of the names of tables.
-const TABLES: [&str; 3] = ["csv", "tsv", "xlsx"];
-
 /// Refuses a table of readings that is given in place of a calibration file.
 /// Errors: its remedy is the file to write.
 pub fn refuse_table(path: &Path) -> Result<()> {
-    if !path.extension().is_some_and(|end| TABLES.iter().any(|known| end.eq_ignore_ascii_case(known))) {
+    if !path.extension().is_some_and(|end| ["csv", "tsv", "xlsx"].iter().any(|table| end.eq_ignore_ascii_case(table))) {
         return Ok(());
     }
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, "cannot read", error))?;
@@ -50,22 +47,13 @@ fn lines(name: &str, found: &Survey) -> String {
     let load = found.measured.load();
     let of_load = |key: &str| format!("{key} = {}", number(load.get(key).copied()));
     let maximum = load.keys().find(|key| **key != "stress_ratio").unwrap_or(&"force_max_kn");
-    let (width, thickness) = (number(stated(Role::Width)), number(stated(Role::Thickness)));
-    [
-        "[measured]".to_owned(),
-        format!("files = [{name:?}]"),
-        columns,
-        "[specimen]".to_owned(),
-        format!("kind = {kind}"),
-        format!("width_mm = {width}"),
-        "length_mm = <...> # of tension specimens".to_owned(),
-        format!("thickness_mm = {thickness}"),
-        format!("crack_length_mm = {} # first reading", number(first.map(|length| length / MM))),
-        "[material]".to_owned(),
-        "name = <...> # perilife list material.name".to_owned(),
-        "[loading]".to_owned(),
+    format!(
+        "[measured]\nfiles = [{name:?}]\n{columns}\n[specimen]\nkind = {kind}\nwidth_mm = {}\nlength_mm = <...> # of tension specimens\n\
+         thickness_mm = {}\ncrack_length_mm = {} # first reading\n[material]\nname = <...> # perilife list material.name\n[loading]\n{}\n{}",
+        number(stated(Role::Width)),
+        number(stated(Role::Thickness)),
+        number(first.map(|length| length / MM)),
         of_load(maximum),
         of_load("stress_ratio"),
-    ]
-    .join("\n")
+    )
 }

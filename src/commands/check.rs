@@ -49,8 +49,7 @@ pub fn run(args: &Args) -> Result<()> {
     lines.extend(messages(&checked.checks, &[]).iter().map(|open| labeled(open.kind, &open.text)));
     args.console.print(Summary::of_words(lines, details, Vec::new()))?;
     checked.warnings.iter().for_each(|warning| args.console.warn(warning));
-    // Text and figures have a form in JSON.
-    args.console.object(&serde_json::to_value(&checked).unwrap_or_default())
+    args.console.object(&checked.json())
 }
 
 /// A line of a summary.

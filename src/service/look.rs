@@ -64,7 +64,7 @@ impl Look {
                     return Ok(task.room().all.to_string());
                 }
                 let checked = check::check(&document, &task)?;
-                let mut object = serde_json::to_value(&checked).unwrap_or_default();
+                let mut object = checked.json();
                 object["drawing"] = checked.drawing.into();
                 Ok(object.to_string())
             }

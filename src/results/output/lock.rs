@@ -6,7 +6,7 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write as _};
 use std::path::Path;
 
-use super::marker::{MARKER, Marker};
+use super::marker::{MARKER, Marker, remove_all};
 use super::staging::{Staging, lock_of, name_of, parent_of, stem_of};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::input::FileId;
@@ -115,7 +115,7 @@ fn remove(path: &Path, place: Option<&Path>) {
         (Some(place), Some(_)) if fs::symlink_metadata(place).is_err() => fs::rename(path, place),
         // What is not of that run stays.
         (Some(_), Some(marker)) => marker.remove_from(path).and_then(|()| fs::remove_dir(path)),
-        (None, _) if path.join(MARKER).is_file() => fs::remove_dir_all(path),
+        (None, _) if path.join(MARKER).is_file() => remove_all(path),
         // Begun and no more, or not ours.
         _ if path.is_dir() => fs::remove_dir(path),
         _ => fs::remove_file(path),

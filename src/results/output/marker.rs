@@ -98,8 +98,12 @@ impl Marker {
     /// Removes the files of this run from a folder, and the folders that are empty then.
     pub fn remove_from(&self, folder: &Path) -> io::Result<()> {
         self.walk(folder, "", &mut |path, is_own| match fs::symlink_metadata(path) {
-            Ok(there) if is_own && there.is_dir() => Ok(drop(fs::remove_dir(path))),
-            Ok(_) if is_own => fs::remove_file(path),
+            Ok(there) if is_own && !there.is_dir() => fs::remove_file(path),
+            Ok(_) if is_own => {
+                // One that something else is in stays.
+                let _ = fs::remove_dir(path);
+                Ok(())
+            }
             _ => Ok(()),
         })
     }
@@ -143,6 +147,14 @@ fn walk_runs(folder: &Path, see: &mut dyn FnMut(&Path, bool) -> io::Result<()>) 
         see(&path, is_folder)?;
     }
     Ok(())
+}
+
+/// Removes a folder with all in it, its marker last: if the process is killed on the way, the next run recognizes the rest.
+pub(super) fn remove_all(folder: &Path) -> io::Result<()> {
+    for path in names(folder)?.into_iter().map(|name| folder.join(name)) {
+        if fs::symlink_metadata(&path)?.is_dir() { fs::remove_dir_all(path)? } else { fs::remove_file(path)? }
+    }
+    fs::remove_dir(folder)
 }
 
 /// Names in a folder, sorted, that of the marker last: what is removed on the way stays known to the end. None of a folder that is not

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use super::marker::remove_all;
+
 /// How a thing is removed: a file, a tree, or a folder if it is empty.
 type Remove = fn(&Path) -> io::Result<()>;
 
@@ -23,7 +25,7 @@ impl Staging {
     /// A folder in the making beside `target`.
     pub fn beside(target: &Path) -> io::Result<Self> {
         let path = temporary_beside(target, PARTIAL);
-        Ok(Self::made(&path, |path| fs::remove_dir_all(path), || fs::create_dir(&path))?.0)
+        Ok(Self::made(&path, remove_all, || fs::create_dir(&path))?.0)
     }
 
     /// A file in the making beside `target`.

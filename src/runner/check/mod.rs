@@ -61,6 +61,13 @@ pub struct Checked {
     pub provenance: Provenance,
 }
 
+impl Checked {
+    pub fn json(&self) -> Value {
+        // Text and figures have a form in JSON.
+        serde_json::to_value(self).unwrap_or_default()
+    }
+}
+
 /// Lines by what they are of.
 fn understood<S: Serializer>(lines: &[Line], serializer: S) -> std::result::Result<S::Ok, S::Error> {
     let mut understood: Map<String, Value> = Map::new();
