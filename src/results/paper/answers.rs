@@ -35,7 +35,7 @@ fn inspections(found: &InspectionsRecord) -> String {
         }
         _ => String::new(),
     };
-    let head = ["Cycles", "Crack length, mm", "POD", "Cumulative miss probability"].map(number);
+    let head = ["Cycles", "Crack length, mm", "POD", "Cumulative miss probability"].map(text);
     let table = table("", &head, found.rows.iter().take(INSPECTIONS_MOST).map(row));
     format!(
         "{}<p>Probability that all inspections miss: {} (independence of inspections assumed).</p>\n{table}{more}",
@@ -90,7 +90,7 @@ fn fleet(fleet: &FleetRecord, per_pass: Option<f64>, drawings: &Drawings) -> Str
         if !looks.missed_after.is_empty() {
             let row = |(place, missed): (usize, &f64)| vec![(place + 1).to_string(), probability(*missed)];
             let head = ["Inspection No. (same cycles for all plates)", "Probability of missing the crack (fleet mean)"];
-            missed = table("", &head.map(number), looks.missed_after.iter().enumerate().map(row));
+            missed = table("", &head.map(text), looks.missed_after.iter().enumerate().map(row));
         }
     }
     let title = title("Fleet");

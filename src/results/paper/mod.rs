@@ -130,9 +130,8 @@ fn software(version: &str, commit: Option<&str>) -> String {
     let commit =
         commit.map_or_else(String::new, |commit| format!(", commit {}", quoted(&commit.chars().take(12).collect::<String>())));
     format!(
-        "<p class=\"small quiet\">Software: perilife {}{commit}. Validation (predicted against measured lives of published tests): \
-         tests/VALIDATION.md of this version, repeated by `perilife validate`. Verification: tests/ACCURACY.md, `perilife verify`. \
-         Units: mm, MPa, MPa√m, mm/cycle. Inputs (SHA-256):</p>\n",
+        "<p class=\"small quiet\">Software: perilife {}{commit}. Validation against published tests: tests/VALIDATION.md of this version \
+         (perilife validate); verification: tests/ACCURACY.md (perilife verify). Units: mm, MPa, MPa√m, mm/cycle. Inputs (SHA-256):</p>\n",
         recorded(Some(version))
     )
 }

@@ -259,7 +259,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let here = page.run("return location.href").as_str().unwrap().to_owned();
     page.open(&format!("file://{}", file.display()));
     fs::write(walk.pictures.join("15_report.png"), page.picture()).unwrap();
-    assert!(page.text("main").contains("Is it valid?"));
+    assert!(page.text("main").contains("Validity"));
     page.open(&here);
 
     // A second run, and both side by side.
