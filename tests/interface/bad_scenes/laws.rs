@@ -1,6 +1,6 @@
 //! Do law, solver and damage go together?
 
-use super::files::{Bad, PRESSED, PULLED, REFINED, THROWN};
+use super::files::{Bad, PRESSED, PULLED, THROWN};
 
 /// Solvers and laws.
 pub const SOLVERS: &[Bad] = &[
