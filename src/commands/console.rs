@@ -32,7 +32,7 @@ pub struct Console {
     /// Print the first line of the result alone
     #[arg(long, short, global = true)]
     pub quiet: bool,
-    /// Print all messages and details; twice for the log (the variable RUST_LOG overrides)
+    /// Print all messages and details; -vv for debug (RUST_LOG overrides)
     #[arg(long, short, action = clap::ArgAction::Count, global = true)]
     pub verbose: u8,
 }

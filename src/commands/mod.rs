@@ -182,7 +182,7 @@ fn help_template() -> String {
                   Help on a command: perilife <COMMAND> --help"
 )]
 pub struct CommandLine {
-    /// Print all messages and details; twice for the log (the variable RUST_LOG overrides)
+    /// Print all messages and details; -vv for debug (RUST_LOG overrides)
     #[arg(long, short, action = clap::ArgAction::Count, global = true, help_heading = "Output options")]
     pub verbose: u8,
     /// Output units: si (mm, MPa, MPa√m) or us (in, ksi, ksi√in)

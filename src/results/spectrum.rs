@@ -51,7 +51,7 @@ pub struct SpectrumRecord {
 pub fn thinned(spectrum: &Spectrum, most: usize) -> Vec<(f64, f64)> {
     let levels = spectrum.exceedances();
     let each = levels.len().div_ceil(most);
-    let kept = |place: &usize| place % each == 0 || place + 1 == levels.len();
+    let kept = |place: &usize| place.is_multiple_of(each) || place + 1 == levels.len();
     (0..levels.len()).filter(kept).map(|place| levels[place]).collect()
 }
 

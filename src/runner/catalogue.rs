@@ -174,7 +174,7 @@ pub fn json(lines: Vec<(String, String, String)>) -> Value {
     json!({
         "kinds": kinds.collect::<Vec<_>>(),
         "specimens": SpecimenKind::ALL.iter().map(traits).collect::<Vec<_>>(),
-        "beside": beside,
+        "others": beside,
         "laws": GrowthLawKind::all().map(|law| told(law.name(), law.0.constants.iter().map(of_law).collect())).collect::<Vec<_>>(),
         "form": schema(),
         "retardations": RetardationKind::all().map(retardation).collect::<Vec<_>>(),

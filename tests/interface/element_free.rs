@@ -191,7 +191,7 @@ fn a_plate_without_cracks_has_the_stress_of_its_holes() {
     fs::write(dir.path().join("slot.toml"), slot).unwrap();
     let (stdout, stderr) = texts(&perilife(dir.path(), &["sif", "slot.toml", "--method", "element_free_galerkin"]));
     assert!(
-        stdout.contains("notches[0]") && stdout.contains("outline") && stderr.contains("sharp re-entrant corner"),
+        stdout.contains("notches[0]") && stdout.contains("outline") && stderr.contains("sharp corner is singular"),
         "{stdout}{stderr}"
     );
 }

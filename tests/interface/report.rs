@@ -102,7 +102,7 @@ fn a_run_has_a_page_with_life_validity_and_hashes() {
         "scatter band not available",
         "valid with reservations",
         "Fracture: not checked (no toughness given)",
-        "Numerical error ≤ 0.9 % of life (estimate)",
+        "Numerical error ≤ 0.86 % of life (estimate)",
         "stress 12.07 to 60.35 MPa, R = 0.2",
         "al2024-t3",
         hash,

@@ -267,7 +267,7 @@ fn wrong_laws_are_refused() {
         (RATES, FORMAN, &["fatigue.forman_m=0.1"], &["fatigue.forman_m", "0.1"]),
         (RATES, "forman_m = 3\n", &[], &["fatigue.forman_c_mm_per_cycle", "missing"]),
         (RATES, "forman_m = 3\nforman_c_mm_per_cycle = 1e-5\n", &[], &["fatigue.k_c_mpa_sqrt_m", "missing", "toughness"]),
-        (RATES, NASGRO, &["fatigue.nasgro_alpha=4"], &["fatigue.nasgro_alpha", "1 to 3"]),
+        (RATES, NASGRO, &["fatigue.nasgro_alpha=4"], &["fatigue.nasgro_alpha", "between 1 and 3"]),
         (RATES, NASGRO, &["loading.stress_ratio=-3"], &["loading.stress_ratio", "-2"]),
         (RATES, NASGRO, &["fatigue.delta_k_threshold_mpa_sqrt_m=2"], &["fatigue.delta_k_threshold_mpa_sqrt_m", "own threshold"]),
         (RATES, "growth_law = \"table\"\n", &[], &["fatigue.growth_table", "missing", "delta_k_mpa_sqrt_m"]),

@@ -32,6 +32,9 @@ fn texts_use_the_words_of_the_field() {
         }
     }
     let grown = left.iter().filter(|(_, most, found)| found.len() > *most);
-    grown.for_each(|(place, most, found)| panic!("{} of at most {most} in `{place}`:\n{}", found.len(), found.join("\n")));
+    let grown: Vec<_> = grown
+        .map(|(place, most, found)| format!("{} of at most {most} in `{place}`:\n{}", found.len(), found.join("\n")))
+        .collect();
+    assert!(grown.is_empty(), "{}", grown.join("\n"));
     assert_eq!(literals("x(\"It Stands \\\n by\");\n  // \"rim\"\nlet c = '\"'; \"a_rim\""), [" it stands by ", " a_rim "]);
 }

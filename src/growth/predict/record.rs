@@ -152,7 +152,7 @@ impl<'a> Record<'a> {
                 break reason;
             }
             if !goes_on {
-                return Err(Error::Mechanics(format!("{}: the run was cancelled", case.name)));
+                return Err(Error::Mechanics(format!("{}: the run was canceled", case.name)));
             }
         };
         let stop = growth.close(stop).or_else(|error| end_of_mechanics(error, &mut failure).map(|end| end.unwrap_or(stop)))?;

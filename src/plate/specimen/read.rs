@@ -77,7 +77,7 @@ impl Specimen {
     /// Errors: [`Error::Input`] on `specimen.cracks` of a plate without crack and slot.
     pub fn check_growth(&self) -> Result<()> {
         if self.cracks.is_empty() && self.slots.is_empty() {
-            let problem = "required: give a crack or a notch";
+            let problem = "is missing: nothing can grow without a crack or a notch";
             let what = if self.kind == SpecimenKind::Plate { "cracks or notches" } else { "it" };
             let remedy = format!("give {what}; for the stress of the plate `perilife sif --method element_free_galerkin`");
             return Err(input_missing(self.crack_key(), problem, remedy));

@@ -4,9 +4,8 @@ use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::folder::resolved;
 use super::lock::{Lock, Share};
-use super::staging::{Staging, visible_beside};
+use super::staging::{Staging, resolved, visible_beside};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::input::{FileId, Provenance, STREAM};
 use perilife_base::units::us::{System, renamed};

@@ -5,8 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::lock::{Lock, Share};
-use super::marker::{InputOf, MARKER, Marker, RunKind, files_in};
-use super::staging::{OLD, Staging, all, parent_of, temporary_beside, visible_beside};
+use super::marker::{InputOf, Marker, RunKind, files_in};
+use super::staging::{MARKER, OLD, Staging, all, parent_of, resolved, temporary_beside, visible_beside};
 use super::{said, write_file};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::input::{Provenance, STREAM};
@@ -221,21 +221,6 @@ pub struct Room {
     /// Its tables and figures, without which there is no result.
     pub tables: u64,
     pub all: u64,
-}
-
-/// A path with its links followed, also through one that points to nothing yet; of what is not there the part that is made absolute.
-pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
-    let parent = parent_of(path);
-    match fs::canonicalize(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => match (fs::read_link(path), path.file_name()) {
-            // The system has followed it, so that links end.
-            (Ok(to), _) => resolved(&parent.join(to)),
-            (Err(_), Some(name)) if parent != path => Ok(resolved(&parent)?.join(name)),
-            // `a/..` below a folder that is to be made: as the system takes it.
-            _ => Ok(path.to_path_buf()),
-        },
-        found => found,
-    }
 }
 
 /// The folder behind `path`, if a run of this kind may have it: new, empty, or that of an earlier run and nothing else in it.

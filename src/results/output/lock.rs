@@ -6,8 +6,8 @@ use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write as _};
 use std::path::Path;
 
-use super::marker::{MARKER, Marker, remove_all};
-use super::staging::{Staging, lock_of, name_of, parent_of, stem_of};
+use super::marker::Marker;
+use super::staging::{MARKER, Staging, lock_of, name_of, parent_of, remove_all, stem_of};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::input::FileId;
 

@@ -7,11 +7,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::staging::is_temporary;
+use super::staging::{MARKER, is_temporary, names};
 use perilife_base::input::Provenance;
-
-/// File that marks a folder as made by this program.
-pub const MARKER: &str = ".perilife";
 
 perilife_base::kinds! {
     /// What made a folder.
@@ -147,27 +144,6 @@ fn walk_runs(folder: &Path, see: &mut dyn FnMut(&Path, bool) -> io::Result<()>) 
         see(&path, is_folder)?;
     }
     Ok(())
-}
-
-/// Removes a folder with all in it, its marker last: if the process is killed on the way, the next run recognizes the rest.
-pub(super) fn remove_all(folder: &Path) -> io::Result<()> {
-    for path in names(folder)?.into_iter().map(|name| folder.join(name)) {
-        if fs::symlink_metadata(&path)?.is_dir() { fs::remove_dir_all(path)? } else { fs::remove_file(path)? }
-    }
-    fs::remove_dir(folder)
-}
-
-/// Names in a folder, sorted, that of the marker last: what is removed on the way stays known to the end. None of a folder that is not
-/// there.
-fn names(folder: &Path) -> io::Result<Vec<String>> {
-    let entries = match fs::read_dir(folder) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        entries => entries?,
-    };
-    let mut names: Vec<String> =
-        entries.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned())).collect::<io::Result<_>>()?;
-    names.sort_by(|a, b| (a == MARKER, a).cmp(&(b == MARKER, b)));
-    Ok(names)
 }
 
 /// Files of a folder by their path in it, all but its marker.

@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::marker::remove_all;
-
 /// How a thing is removed: a file, a tree, or a folder if it is empty.
 type Remove = fn(&Path) -> io::Result<()>;
+
+/// File that marks a folder as made by this program.
+pub const MARKER: &str = ".perilife";
 
 static ALL: Mutex<Vec<(PathBuf, Remove)>> = Mutex::new(Vec::new());
 
@@ -145,4 +146,40 @@ pub(super) fn name_of(path: &Path) -> String {
 /// The folder that a path is in; the current one for a bare name.
 pub(super) fn parent_of(path: &Path) -> PathBuf {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
+}
+
+/// Removes a folder with all in it, its marker last: if the process is killed on the way, the next run recognizes the rest.
+pub(super) fn remove_all(folder: &Path) -> io::Result<()> {
+    for path in names(folder)?.into_iter().map(|name| folder.join(name)) {
+        if fs::symlink_metadata(&path)?.is_dir() { fs::remove_dir_all(path)? } else { fs::remove_file(path)? }
+    }
+    fs::remove_dir(folder)
+}
+
+/// Names in a folder, sorted, that of the marker last: what is removed on the way stays known to the end. None of a folder that is not
+/// there.
+pub(super) fn names(folder: &Path) -> io::Result<Vec<String>> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries?,
+    };
+    let mut names: Vec<String> =
+        entries.map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned())).collect::<io::Result<_>>()?;
+    names.sort_by(|a, b| (a == MARKER, a).cmp(&(b == MARKER, b)));
+    Ok(names)
+}
+
+/// A path with its links followed, also through one that points to nothing yet; of what is not there the part that is made absolute.
+pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
+    let parent = parent_of(path);
+    match fs::canonicalize(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => match (fs::read_link(path), path.file_name()) {
+            // The system has followed it, so that links end.
+            (Ok(to), _) => resolved(&parent.join(to)),
+            (Err(_), Some(name)) if parent != path => Ok(resolved(&parent)?.join(name)),
+            // `a/..` below a folder that is to be made: as the system takes it.
+            _ => Ok(path.to_path_buf()),
+        },
+        found => found,
+    }
 }

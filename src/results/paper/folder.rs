@@ -34,7 +34,7 @@ pub enum Source {
         /// `fit.json`.
         fit: Box<LivesRecord>,
         /// Its specimen.
-        plate: Option<Plate>,
+        plate: Option<Box<Plate>>,
         tables: FitTables,
     },
     /// Of `perilife calibrate`, to rates.
@@ -100,7 +100,7 @@ impl Files<'_> {
             return Err(self.bad(FIT_FILE, key, &value.into(), "is not a number above 0"));
         }
         let tables = FitTables::of(&record, [&table(CURVES_FILE)?, &table(BAND_FILE)?, &table(READINGS_FILE)?])?;
-        let plate = fit.get("plate").map(|plate| self.typed(plate, FIT_FILE)).transpose()?;
+        let plate = fit.get("plate").map(|plate| self.typed(plate, FIT_FILE).map(Box::new)).transpose()?;
         Ok(Source::Lives { fit: record, plate, tables })
     }
 

@@ -37,7 +37,7 @@ const CHART: Size = Size { width: 330.0, height: 215.0, text: 10.5 };
 pub fn html(source: &Source, signed: &Signed) -> String {
     let (title, body, version) = match source {
         Source::Run { run, tables, drawings } => prediction::body(run, tables, drawings, signed),
-        Source::Lives { fit, plate, tables } => fit::of_lives(fit, plate.as_ref(), tables, signed),
+        Source::Lives { fit, plate, tables } => fit::of_lives(fit, plate.as_deref(), tables, signed),
         Source::Laws { fit, rates } => fit::of_laws(fit, rates, signed),
     };
     // The page footer is text within the style sheet: no character may end it.

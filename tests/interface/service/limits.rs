@@ -32,7 +32,7 @@ fn wait_for(service: &Server, job: &str, what: &str, is_so: impl Fn(&Value) -> b
 fn a_job_ends_alone_at_its_limits() {
     with_store("limits", |place| {
         for (limit, text, title, words) in [
-            (["--job-memory", "256"], spaced(0.12), "Too large", "more than the 268 MB of memory"),
+            (["--job-memory", "256"], spaced(0.12), "Too large", "memory limit exceeded (268 MB"),
             (["--job-hours", "0.001"], spaced(0.12), "Too slow", "--job-hours"),
         ] {
             // What is accepted may be more than a worker of a smaller machine has.
