@@ -15,8 +15,8 @@ mod staging;
 pub use file::{OutputFile, Sort, write_file};
 pub use folder::{LockedFolder, OutputFolder, Room};
 pub use lock::Share;
-pub use marker::{MARKER, Marker, RunKind};
-pub use staging::{fold_up, is_temporary};
+pub use marker::{Marker, RunKind};
+pub use staging::{MARKER, fold_up, is_temporary};
 
 use std::path::Path;
 

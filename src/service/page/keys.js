@@ -13,7 +13,7 @@ export async function loadKeys() {
 
 /** Keys of a section of a case or calibration (of one kind of it), or of a section of a sweep. */
 export function keysOf(section, kind) {
-  const own = known.form.properties[section] ?? known.beside[section];
+  const own = known.form.properties[section] ?? known.others[section];
   return keysIn((own.oneOf?.find((one) => one.title === `${section}.${kind}`) ?? own).properties);
 }
 
