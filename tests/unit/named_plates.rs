@@ -230,7 +230,7 @@ fn what_does_not_fit_is_said_by_its_keys() {
         ),
         (bent("span_mm = 1.5"), FORCE, "specimen.span_mm = 1.5: must be above two contacts, 2 mm"),
         (bent("inner_span_mm = 90"), FORCE, "specimen.inner_span_mm = 90: must be below the span less two contacts, 78 mm"),
-        (bent("length_mm = 70"), FORCE, "specimen.length_mm = 70: has no room for the span of 80 mm"),
+        (bent("length_mm = 70"), FORCE, "specimen.length_mm = 70: is too short for the span of 80 mm"),
         (bent("length_mm = 70\nspan_mm = 72"), FORCE, "specimen.span_mm = 72: must be below the length less a contact, 69 mm"),
         (lug("head = \"round\"\nedge_distance_mm = 30\ncrack_length_mm = 3"), FORCE, "specimen.edge_distance_mm = 30"),
         (lug("head = \"square\"\ncrack_length_mm = 3"), FORCE, "use one of: straight, round"),

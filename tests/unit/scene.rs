@@ -205,7 +205,7 @@ fn a_scene_needs_no_crack() {
     assert!((scene.model.spacing - 0.4e-3).abs() < 1e-12);
     let fatigue = text.replace(STEPS, "[loading]\nstress_max_mpa = 1\nstress_ratio = 0\n[fatigue]\na = 1\np = 2\nhorizon_mm = 3");
     let error = Case::from_toml(&fatigue, "case", Path::new(""), &[]).unwrap_err().to_string();
-    assert!(error.contains("specimen.cracks") && error.contains("required: give a crack or a notch"), "{error}");
+    assert!(error.contains("specimen.cracks") && error.contains("nothing can grow without a crack or a notch"), "{error}");
 }
 
 /// A disc is round, counter-clockwise and its own mirror image to the last bit.

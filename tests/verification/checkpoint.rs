@@ -266,7 +266,7 @@ fn damaged_and_foreign_checkpoints_are_refused() {
     let mut older = bytes.clone();
     let at = older.windows(5).position(|window| window == env!("CARGO_PKG_VERSION").as_bytes()).unwrap();
     older[at] = b'9';
-    refused(Checkpoint::from_bytes(&older), "another version");
+    refused(Checkpoint::from_bytes(&older), "written by perilife 9.1.0; this is ");
 
     // Whatever says something else about the run makes it another case; the name of a case does not.
     let others = [
