@@ -18,9 +18,6 @@ use crate::state::Bonds;
 use perilife_base::error::{Error, Result};
 use perilife_base::watch::{self, Stage};
 
-/// Stiffness of a held sum over the largest of the matrix.
-const TIE: f64 = 1e7;
-
 /// Factorises anew for every solve.
 #[derive(Debug, Clone, Default)]
 pub struct DirectSolver {}
@@ -64,9 +61,6 @@ fn factorise_and_solve<const N: usize, const M: usize>(
     let definite = (0..M).all(|c| assembly.pivot_sign(c) > 0.0);
     let mut entries = entries(body, bonds, assembly, &number);
     add_contact(product.contact(), &number, &mut entries);
-    let largest = entries.iter().map(|entry| entry.val).fold(0.0, f64::max);
-    let tie = |sum: &GapSpring| GapSpring { stiffness: TIE * largest, ..sum.clone() };
-    add_contact(&product.ties().sums().iter().map(tie).collect::<Vec<_>>(), &number, &mut entries);
     if definite {
         entries.retain(|entry| entry.col <= entry.row);
     }

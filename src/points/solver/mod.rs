@@ -39,7 +39,7 @@ pub struct Equilibrium {
 
 impl Equilibrium {
     /// Equilibrium of a body under `load` times its unit load (Pa or N, as the specimen measures load).
-    /// Without a kind every solve factorises the whole plate, the reference of tests.
+    /// Without a kind every solve factorizes the whole plate (without held sums): the reference of tests.
     pub fn new(kind: impl Into<Option<SolverKind>>, symmetry: Symmetry, body: &Body, bonds: &Bonds, load: f64) -> Self {
         let kind = kind.into();
         let inner = in_pool(|| -> Box<dyn EquilibriumBackend> {

@@ -97,8 +97,8 @@ impl<const N: usize> ConstrainedSystem<N> {
         let mut product = Product::<N>::new(body, fixed);
         product.ties = ties;
         let solver: Box<dyn LinearSolver<N>> = match kind {
-            // A window is condensed bond by bond, and knows no held sums.
-            Some(SolverKind::Window) if is_tied => Box::new(MultigridSolver::for_few_solves(body, bonds, &product)),
+            // Neither a window, which is condensed bond by bond, nor a factorization has held sums.
+            None | Some(SolverKind::Window) if is_tied => Box::new(MultigridSolver::for_few_solves(body, bonds, &product)),
             Some(SolverKind::Window) => Box::new(WindowSolver::new(body, bonds, &product)),
             Some(SolverKind::Multigrid) => Box::new(MultigridSolver::new(body, bonds, &product)),
             None => Box::new(DirectSolver::default()),

@@ -8,7 +8,6 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::field::Layout;
-use super::spring::GapSpring;
 use crate::body::Body;
 
 /// Weight over the largest of a sum below which it is round-off.
@@ -28,8 +27,6 @@ struct TieRow {
 #[derive(Debug, Clone, Default)]
 pub struct Ties {
     rows: Vec<TieRow>,
-    /// The sums themselves, without stiffness.
-    sums: Vec<GapSpring>,
 }
 
 impl Ties {
@@ -71,17 +68,12 @@ impl Ties {
             let masters = weights.into_iter().map(|(index, weight)| (index, -weight)).collect();
             TieRow { slave, value, masters }
         };
-        let sum = |tie: &crate::body::boundary::Tie| GapSpring { weights: tie.weights.clone(), stiffness: 0.0, force: 0.0 };
-        Ties { rows: rows.into_iter().map(solved).collect(), sums: body.boundary.ties.iter().map(sum).collect() }
+        Ties { rows: rows.into_iter().map(solved).collect() }
     }
 
     /// Unknowns that the others determine.
     pub(super) fn slaves(&self) -> impl Iterator<Item = usize> + '_ {
         self.rows.iter().map(|row| row.slave)
-    }
-
-    pub(super) fn sums(&self) -> &[GapSpring] {
-        &self.sums
     }
 
     /// The held values at the slaves, zero elsewhere: g.

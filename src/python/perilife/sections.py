@@ -59,7 +59,6 @@ class SpecimenCompactTension(TypedDict, total=False):
     pin_half_angle_deg: float  # Half angle of the contact arc, °: 90 for a close-fitting pin; -
     pin_diameter_mm: float  # Pin diameter: its clearance sets the contact arc; -
     pin_diameter_in: float
-    pin_friction: float  # Friction of the pin: 0 only; -
     pin_youngs_modulus_gpa: float  # Young's modulus of the pin; 210 (steel)
     pin_youngs_modulus_msi: float
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
@@ -273,7 +272,6 @@ class SpecimenLug(TypedDict, total=False):
     pin_half_angle_deg: float  # Half angle of the contact arc, °: 90 for a close-fitting pin; -
     pin_diameter_mm: float  # Pin diameter: its clearance sets the contact arc; -
     pin_diameter_in: float
-    pin_friction: float  # Friction of the pin: 0 only; -
     pin_youngs_modulus_gpa: float  # Young's modulus of the pin; 210 (steel)
     pin_youngs_modulus_msi: float
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
@@ -394,7 +392,6 @@ class LoadingPins(TypedDict, total=False):
     contact_half_angle_deg: float  # Half angle of the contact arc, °: 90 for a close-fitting pin; -
     pin_diameter_mm: float  # Pin diameter: its clearance sets the contact arc; -
     pin_diameter_in: float
-    friction: float  # Friction of the pin: 0 only; -
     pin_youngs_modulus_gpa: float  # Young's modulus of the pin; 210 (steel)
     pin_youngs_modulus_msi: float
     pin_poisson_ratio: float  # Poisson's ratio of the pin; 0.3 (steel)
