@@ -6,17 +6,19 @@ use serde_json::{Map, Value, json};
 
 use super::case::CalibrationCase;
 use super::criterion::Criterion;
-use super::fit::Fit;
+use super::fit::{Bonds, Fit};
 use super::lack_of_fit::MisfitAtEnds;
 use super::laws::case::LawCase;
 use super::laws::fit::LawFit;
 use super::laws::{FitLaw, LawFits};
 use super::population::Population;
 use super::results::{record, tidy};
-use super::search::FittedCurve;
-use perilife_base::units::MM;
+use super::search::{Constants, FittedCurve};
+use perilife_base::units::{MM, MM_PER_CYCLE};
 use perilife_growth::case::record::{CurveRecord, FittedLaw, SourceFile};
+use perilife_laws::FatigueLaw;
 use perilife_laws::growth_law::GrowthLawKind;
+use perilife_laws::paris::ParisLaw;
 use perilife_measured::LeaveOut;
 
 type Figure = Option<f64>;
@@ -89,6 +91,11 @@ pub struct SpecimenRecord {
     pub a: f64,
     /// p, or m.
     pub p: f64,
+    /// C and m that these are; 0 in records of earlier versions.
+    #[serde(default)]
+    pub paris_c_mm_per_cycle: f64,
+    #[serde(default)]
+    pub paris_m: f64,
     pub life_measured: Figure,
     pub life_fitted: Figure,
     pub rms_life_error: Figure,
@@ -165,8 +172,10 @@ impl LivesRecord {
     pub fn of(calibration: &CalibrationCase, fit: &Fit, wall_s: f64) -> Self {
         let law = record(calibration, fit);
         let lengths = || fit.record.crack_length.iter().map(|length| tidy(length / MM));
-        let specimens = fit.specimens.iter().map(SpecimenRecord::of).collect();
-        let whole = SpecimenRecord::of(&fit.record);
+        let modulus = calibration.case.material.plane_modulus();
+        let of_curve = |curve| SpecimenRecord::of(curve, fit.bonds, modulus);
+        let specimens = fit.specimens.iter().map(of_curve).collect();
+        let whole = of_curve(&fit.record);
         LivesRecord {
             a: known(law.a),
             p: law.p,
@@ -269,11 +278,16 @@ impl LivesRecord {
 }
 
 impl SpecimenRecord {
-    fn of(curve: &FittedCurve) -> Self {
+    fn of(curve: &FittedCurve, bonds: Option<Bonds>, modulus: f64) -> Self {
+        let Constants { a, p } = curve.constants;
+        let of_bonds =
+            |Bonds { rate_constant, horizon, .. }| ParisLaw::of_bonds(&FatigueLaw { a, p, horizon }, rate_constant, modulus).c;
         SpecimenRecord {
             name: curve.name.clone(),
-            a: curve.constants.a,
-            p: curve.constants.p,
+            a,
+            p,
+            paris_c_mm_per_cycle: bonds.map_or(a, of_bonds) / MM_PER_CYCLE,
+            paris_m: p,
             life_measured: known(curve.life_measured()),
             life_fitted: known(curve.life_fitted()),
             rms_life_error: known(curve.rms_life_error()),

@@ -86,7 +86,8 @@ pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.case, &set)?;
     let mut task = Task::read(Kind::Prediction, &document, &[])?;
     if let Some(file) = &args.measured {
-        task.read_plate(&document, file).map_err(|error| document.locate(error))?;
+        let bytes = document.folder.opened().read(file, &file.display().to_string())?;
+        task.read_plate(&document, file, &bytes).map_err(|error| document.locate(error))?;
     }
     if let Task::Prediction { wanted, .. } = &mut task {
         (wanted.strength, wanted.asked.sensitivities) = (args.residual_strength, args.sensitivities);

@@ -83,7 +83,8 @@ mod _perilife {
             let mut task = Task::read(kind, &document, &methods)?;
             task.budgets(1)?.iter().try_for_each(|budget| budget.within_machine())?;
             if let Some(file) = wishes.as_ref().and_then(|wishes| wishes.measured.as_ref()) {
-                task.read_plate(&document, file)?;
+                let bytes = document.folder.opened().read(file, &file.display().to_string())?;
+                task.read_plate(&document, file, &bytes)?;
             }
             if let (Task::Prediction { wanted, .. }, Some(wishes)) = (&mut task, &wishes) {
                 (wanted.no_estimate, wanted.cross_check) = (!wishes.error_estimate, wishes.cross_check);

@@ -59,7 +59,11 @@ impl Kind {
 
     /// Options of its command that a job of it may have.
     pub fn options(self) -> &'static [&'static str] {
-        if self == Kind::Sif { &["method"] } else { &[] }
+        match self {
+            Kind::Sif => &["method"],
+            Kind::Prediction => &["sensitivities", "residual_strength", "inspect_from_mm", "factor", "tip", "pod", "measured"],
+            _ => &[],
+        }
     }
 }
 
@@ -135,14 +139,14 @@ impl Task {
         })
     }
 
-    /// Adds readings of the plate of a case, of any table that [`perilife_measured`] reads.
+    /// Adds readings of the plate of a case, the bytes of any table that [`perilife_measured`] reads.
     /// Errors: a file of no readings or of several specimens, readings that are not of this plate, a case whose life has no band.
-    pub fn read_plate(&mut self, document: &Document, file: &Path) -> Result<()> {
+    pub fn read_plate(&mut self, document: &Document, file: &Path, bytes: &[u8]) -> Result<()> {
         let Task::Prediction { case, wanted } = self else {
             return Err(input("--measured", file.display(), "applies only to fatigue cases", "remove it"));
         };
         let import = Import { of_plate: true, ..Import::default() };
-        let mut measured = perilife_measured::read_into(document.folder.opened(), &[file.to_path_buf()], &import)?;
+        let mut measured = perilife_measured::parse(bytes, file, &import)?;
         measured.compare_with(&case.specimen, &case.material, &case.loading)?;
         case.warnings.append(&mut measured.warnings);
         case.warnings.extend(ratio_warnings(&measured.curves, &case.loading));

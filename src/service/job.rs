@@ -1,5 +1,7 @@
 //! A job: what was asked for, how far it is, what came of it.
 
+use std::path::Path;
+use std::str::FromStr;
 use std::time::{Duration, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
@@ -7,10 +9,12 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::problem::Problem;
-use perilife_base::error::Result;
+use perilife_base::error::{Error, Result, input};
 use perilife_base::input::{Document, Folder};
+use perilife_calibration::inspection::{FACTOR, InspectFrom};
 use perilife_growth::case::remove_law;
 pub use perilife_runner::Kind as JobKind;
+use perilife_runner::Task;
 
 perilife_base::kinds! {
     /// Where a job stands.
@@ -61,6 +65,8 @@ pub struct Job {
     pub name: String,
     /// What somebody has noted of it; empty where nobody has.
     pub note: String,
+    /// Report data, as section `[report]` of `report --data`.
+    pub report: Option<Value>,
     /// Whether it was put away: lists leave it out unless asked.
     pub archived: bool,
     /// Where it stands.
@@ -116,9 +122,34 @@ pub struct Submission {
 pub const FITTED: &str = "fitted.toml";
 
 impl Submission {
-    /// Methods that its options name.
-    pub fn methods(&self) -> Vec<String> {
-        self.options.iter().filter_map(|option| Some(option.strip_prefix("method=")?.to_owned())).collect()
+    /// Values of an option.
+    fn option(&self, name: &str) -> Vec<String> {
+        let value = |option: &String| Some(option.strip_prefix(name)?.strip_prefix('=')?.to_owned());
+        self.options.iter().filter_map(value).collect()
+    }
+
+    /// The first value of an option.
+    fn parsed<T: FromStr>(&self, name: &str) -> Result<Option<T>> {
+        let wrong = |text: &String| input(&format!("options.{name}"), text, "cannot be read", "see JobRequest in /openapi.json");
+        self.option(name).first().map(|text| text.parse().map_err(|_| wrong(text))).transpose()
+    }
+
+    /// What is to be run as this kind, with its options.
+    pub fn task(&self, kind: JobKind, document: &Document) -> Result<Task> {
+        let mut task = Task::read(kind, document, &self.option("method"))?;
+        if let Some(name) = self.option("measured").first() {
+            task.read_plate(document, Path::new(name), &document.folder.read(name)?)?;
+        }
+        if let Task::Prediction { wanted, .. } = &mut task {
+            let is_set = |name| Ok::<_, Error>(self.parsed(name)?.unwrap_or(false));
+            (wanted.strength, wanted.asked.sensitivities) = (is_set("residual_strength")?, is_set("sensitivities")?);
+            wanted.asked.detection = self.option("pod").first().map(|text| text.parse()).transpose()?;
+            let (tip, factor) = (self.parsed("tip")?, self.parsed("factor")?.unwrap_or(FACTOR));
+            let names = ["options.inspect_from_mm", "options.factor", "options.tip"];
+            let from = |crack_length_mm| InspectFrom { crack_length_mm, tip, factor, names };
+            wanted.inspection = self.parsed("inspect_from_mm")?.map(from);
+        }
+        Ok(task)
     }
 
     /// The text as a parsed document.

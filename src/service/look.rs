@@ -16,7 +16,7 @@ use perilife_base::table::units::{CycleUnit, LengthUnit, LoadUnit};
 use perilife_base::table::{Decimal, Sheet};
 use perilife_base::units::MM;
 use perilife_measured::{Column, Import, Layout, MeasuredCurve, Named, Shape, Survey, survey};
-use perilife_runner::{Task, check};
+use perilife_runner::check;
 
 /// Cases of a sweep that are looked at before it is accepted.
 const LOOKED_AT: usize = 100;
@@ -53,7 +53,7 @@ impl Look {
             }
             Look::Check { kind, submission, limits: [points, case_bytes] } => {
                 let document = submission.document()?;
-                let task = Task::read(kind.unwrap_or_else(|| JobKind::of(&document.table)), &document, &submission.methods())?;
+                let task = submission.task(kind.unwrap_or_else(|| JobKind::of(&document.table)), &document)?;
                 // As far as it shows without building the plate, and of very many cases a few: each runs within the memory of the job
                 // all the same.
                 for budget in task.budgets(LOOKED_AT)? {

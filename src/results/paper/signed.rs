@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use toml::Table;
+
 use perilife_base::error::Result;
 use perilife_base::input::{Document, Folder, Sections};
 use perilife_base::keys::{Section, key, section};
@@ -46,6 +48,12 @@ impl Signed {
         };
         let read = || section(Sections::of(&document.table, &[SECTION], &[])?.optional(SECTION), SECTION);
         read().map_err(|error| document.locate(error))
+    }
+
+    /// From the keys of section `[report]`.
+    /// Errors: an unknown key; a value that is not text.
+    pub fn of(keys: Table) -> Result<Self> {
+        section(&keys.into(), SECTION)
     }
 
     /// Report number with its revision.

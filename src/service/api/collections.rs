@@ -20,6 +20,7 @@ use crate::job::{Job, JobKind, State, is_id};
 use crate::problem::{Answer, Problem};
 use crate::store::{Change, FileEntry, NewJob, Origin, Role, Room, Submitted, Wanted};
 use perilife_base::error::input;
+use perilife_results::paper::Signed;
 
 /// Most jobs of one part of a list.
 const LIST_MAX: u32 = 200;
@@ -29,6 +30,8 @@ const LIST: u32 = 20;
 const KEY_MAX: usize = 200;
 /// Longest note of a job, bytes.
 const NOTE_MAX: usize = 2000;
+/// Longest report data of a job, bytes.
+const REPORT_MAX: usize = 20_000;
 /// Seconds after which there may be room in the queue.
 const QUEUE_MOVES_S: u32 = 10;
 
@@ -258,11 +261,14 @@ pub struct ChangeRequest {
     name: Option<String>,
     /// A note, up to 2000 bytes; empty for none.
     note: Option<String>,
+    /// Report data, as section `[report]` of `report --data`, instead of those it had.
+    #[schema(value_type = Option<std::collections::BTreeMap<String, String>>)]
+    report: Option<toml::Table>,
     /// Whether it is put away: lists leave it out unless asked.
     archived: Option<bool>,
 }
 
-/// Renames a job, notes something of it, or puts it away; its input, its result and its report stay as they are.
+/// Changes name, note or report data of a job, or puts it away; its input and its result stay as they are.
 #[utoipa::path(patch, path = "/v1/{collection}/{id}", tag = "jobs",
     params(("collection" = String, Path), ("id" = String, Path)), request_body = ChangeRequest,
     responses((status = 200, body = JobView), (status = 403, body = Problem), (status = 404, body = Problem),
@@ -275,10 +281,10 @@ pub async fn change(
 ) -> Answer<Json<JobView>> {
     let job = job_of(&app, &collection, &id).await?;
     caller.must_own(&job.owner)?;
-    let asked: ChangeRequest = documents::object(&app, &caller, request, "known are name, note, archived").await?;
-    let ChangeRequest { name, note, archived } = asked;
-    if name.is_none() && note.is_none() && archived.is_none() {
-        return Err(Problem::bad_request("nothing to change: give name, note or archived"));
+    let asked: ChangeRequest = documents::object(&app, &caller, request, "known are name, note, report, archived").await?;
+    let ChangeRequest { name, note, report, archived } = asked;
+    if name.is_none() && note.is_none() && report.is_none() && archived.is_none() {
+        return Err(Problem::bad_request("nothing to change: give name, note, report or archived"));
     }
     name.as_deref().map_or(Ok(()), |name| documents::check_name("name", name))?;
     if let Some(note) =
@@ -287,7 +293,12 @@ pub async fn change(
         let remedy = format!("give up to {NOTE_MAX} bytes of plain text");
         return Err(input("note", format!("{} bytes", note.len()), "is no note", remedy).into());
     }
-    if !app.store.change(&id, &Change { name, note, archived }).await? {
+    report.clone().map(Signed::of).transpose()?;
+    let report = report.map(|report| serde_json::to_string(&report).unwrap_or_default());
+    if report.as_ref().is_some_and(|report| report.len() > REPORT_MAX) {
+        return Err(Problem::too_large(format!("the report data are longer than {REPORT_MAX} bytes")));
+    }
+    if !app.store.change(&id, &Change { name, note, report, archived }).await? {
         return Err(Problem::not_found(job.kind.name()));
     }
     let job = job_of(&app, &collection, &id).await?;

@@ -49,7 +49,8 @@ pub struct JobRequest {
     pub files: BTreeMap<String, FileText>,
     /// Calibration whose law is to be used, whatever `[fatigue]` says.
     pub calibration: Option<String>,
-    /// Options of the command: `method` (a list) for stress intensity factors.
+    /// Options of the command: `method` (a list) for stress intensity factors; `sensitivities`, `residual_strength`, `inspect_from_mm`,
+    /// `factor`, `tip`, `pod` (a50,a90) and `measured` (name of a file of the request) for predictions.
     #[serde(default)]
     #[schema(value_type = Value)]
     pub options: BTreeMap<String, Value>,
@@ -314,7 +315,8 @@ fn options(kind: Option<JobKind>, given: &BTreeMap<String, Value>) -> Answer<Vec
         for value in values {
             match value {
                 Value::String(text) if text.len() <= NAME_MAX => options.push(format!("{name}={text}")),
-                _ => return refused("must be a string or a list of strings", "give one of these".to_owned()),
+                Value::Bool(_) | Value::Number(_) => options.push(format!("{name}={value}")),
+                _ => return refused("must be a string, number, boolean or a list of these", "give one of these".to_owned()),
             }
         }
     }

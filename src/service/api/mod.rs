@@ -82,6 +82,7 @@ pub fn router(app: App) -> Router {
         .routes(routes!(results::input_file))
         .routes(routes!(results::picture))
         .routes(routes!(results::remaining))
+        .routes(routes!(results::report))
         .split_for_parts();
     let limits = app.limits.clone();
     let docs = SwaggerUi::new("/docs").external_url_unchecked("/openapi.json", description::complete(&description));

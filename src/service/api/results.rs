@@ -5,7 +5,7 @@ use std::path::Path as FilePath;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Path, Query, State as Shared};
 use axum::http::{HeaderMap, header};
-use axum::response::{IntoResponse, Response};
+use axum::response::{Html, IntoResponse, Response};
 use axum::{Extension, Json};
 use serde::Deserialize;
 use tokio::sync::OwnedSemaphorePermit;
@@ -18,10 +18,14 @@ use super::sending::Stored;
 use crate::job::{Job, State, is_id};
 use crate::problem::{Answer, Problem};
 use crate::store::{Origin, media_type};
+use crate::worker::child::REPORT_FILE;
 use perilife_base::columns::Table;
-use perilife_base::error::input;
+use perilife_base::error::{Error, input};
+use perilife_base::input::Opened;
 use perilife_calibration::inspection::{self, InspectFrom, Inspection};
 use perilife_results::curve::{self, A_N_FILE, Row};
+use perilife_results::output::write_file;
+use perilife_results::paper::{self, Signed, Source};
 use perilife_results::record::TipEnds;
 use perilife_results::resample::Sampling;
 
@@ -177,7 +181,8 @@ pub async fn picture(Shared(app): Shared<App>, Path((collection, id)): Path<(Str
 #[serde(deny_unknown_fields)]
 #[into_params(parameter_in = Query)]
 pub struct From {
-    crack_length_mm: f64,
+    /// Crack length today; required for a remaining life.
+    crack_length_mm: Option<f64>,
     /// What the remaining life is divided by for the inspection interval; 3 if left out.
     factor: Option<f64>,
     /// Tip of a plate whose crack has that length; the one that ends the life if left out.
@@ -194,17 +199,23 @@ pub async fn remaining(
     Path(id): Path<String>,
     from: Result<Query<From>, QueryRejection>,
 ) -> Answer<Json<Inspection>> {
+    inspection_of(&app, &id, from).await.map(Json)
+}
+
+async fn inspection_of(app: &App, id: &str, from: Result<Query<From>, QueryRejection>) -> Answer<Inspection> {
     let Query(from) = from.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
     let names = ["crack_length_mm", "factor", "tip"];
     let factor = from.factor.unwrap_or(inspection::FACTOR);
-    let from = InspectFrom { crack_length_mm: from.crack_length_mm, tip: from.tip, factor, names };
+    let missing = || Problem::bad_request("missing field `crack_length_mm`");
+    let crack_length_mm = from.crack_length_mm.ok_or_else(missing)?;
+    let from = InspectFrom { crack_length_mm, tip: from.tip, factor, names };
     from.check()?;
-    let Some((table, _room)) = table(&app, &id).await? else {
-        must_have_result(&job_of(&app, "predictions", &id).await?)?;
+    let Some((table, _room)) = table(app, id).await? else {
+        must_have_result(&job_of(app, "predictions", id).await?)?;
         return Err(Problem::not_found("curve"));
     };
     let (rows, left) = (Row::of_table(&table)?, curve::left_of_table(&table)?);
-    let summary = job_of(&app, "predictions", &id).await?.summary;
+    let summary = job_of(app, "predictions", id).await?.summary;
     if summary.as_ref().is_some_and(|summary| summary["life_cycles"].is_null()) {
         return Err(Problem::conflict("unlimited life: no crack grows under these loads"));
     }
@@ -219,5 +230,42 @@ pub async fn remaining(
     };
     let tips = TipEnds::lengths(&tips, &table)?;
     let is_lower_bound = summary.is_some_and(|summary| summary["life_is_lower_bound"] == true);
-    Ok(Json(Inspection::of(&curve::curve(&rows), tips.as_ref(), left.as_deref(), from, is_lower_bound)?))
+    Ok(Inspection::of(&curve::curve(&rows), tips.as_ref(), left.as_deref(), from, is_lower_bound)?)
+}
+
+/// The report of a prediction or calibration with the report data of its job; with `crack_length_mm` also an inspection interval.
+#[utoipa::path(get, path = "/v1/{collection}/{id}/report", tag = "results",
+    params(("collection" = String, Path), ("id" = String, Path), From),
+    responses((status = 200, description = "A page to be printed", body = String, content_type = "text/html"),
+        (status = 400, body = Problem), (status = 404, body = Problem), (status = 409, body = Problem), (status = 422, body = Problem)))]
+pub async fn report(
+    Shared(app): Shared<App>,
+    Path((collection, id)): Path<(String, String)>,
+    from: Result<Query<From>, QueryRejection>,
+) -> Answer<Html<String>> {
+    let job = job_of(&app, &collection, &id).await?;
+    must_have_result(&job)?;
+    app.store.open_file(&id, Origin::Result, REPORT_FILE).await?.ok_or_else(|| Problem::not_found("report of this job"))?;
+    let is_plain = from.as_ref().is_ok_and(|from| from.crack_length_mm.is_none());
+    let inspection = if is_plain { None } else { Some(inspection_of(&app, &id, from).await?) };
+    let signed = Signed::of(job.report.and_then(|report| serde_json::from_value(report).ok()).unwrap_or_default())?;
+    // Never closed.
+    let _room = app.curves.clone().acquire_owned().await.map_err(|_| Problem::internal())?;
+    let mut files = Vec::new();
+    for entry in app.store.file_entries(&id, Origin::Result).await? {
+        if ["application/json", "text/csv", "image/svg+xml"].contains(&&*entry.media_type) {
+            files.extend(app.store.whole_file(&id, Origin::Result, &entry.name).await?.map(|content| (entry.name, content)));
+        }
+    }
+    let work = move || -> perilife_base::error::Result<Html<String>> {
+        let folder =
+            tempfile::tempdir().map_err(|error| Error::file(&std::env::temp_dir(), "cannot create a folder in", error))?;
+        files.iter().try_for_each(|(name, content)| write_file(&folder.path().join(name), content))?;
+        let mut source = paper::read(folder.path(), &Opened::default())?;
+        if let (Source::Run { run, .. }, Some(_)) = (&mut source, &inspection) {
+            run.inspection = inspection;
+        }
+        Ok(Html(paper::html(&source, &signed)))
+    };
+    Ok(tokio::task::spawn_blocking(work).await.map_err(|_| Problem::internal())??)
 }

@@ -39,7 +39,7 @@ let lastPlace = null;
 function address() {
   const [path, query = ""] = location.hash.replace(/^#\/?/, "").split("?");
   const [name = "", rest = ""] = path.split("/");
-  return { name: name in TITLES ? name : "measure", rest, query: new URLSearchParams(query) };
+  return { name: name in TITLES ? name : "new", rest, query: new URLSearchParams(query) };
 }
 
 async function route() {

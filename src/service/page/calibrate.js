@@ -150,8 +150,9 @@ export function createCalibrateView(materials) {
 
   editor.check.now();
   return {
-    /** `from`: a calibration to start from, as collection/id. */
+    /** `from`: a calibration to start from, as collection/id; `example`: example data. */
     async open(query) {
+      if (query.has("example")) byId("example").click();
       if (!query.get("from")) return;
       try {
         await openFrom(query.get("from"));

@@ -1,16 +1,17 @@
 // Page of one calibration: readings and fit, constants with their errors, files.
 
 import { mark } from "./answer.js";
-import { getBlob, getJson, getText } from "./api.js";
+import { getJson, getText } from "./api.js";
 import { createChart } from "./chart.js";
 import { element, readCsv, section, show, showPage, table, terms } from "./dom.js";
 import { cycles, deviation, fixed, percent, plain, scientific, significant, words } from "./format.js";
-import { createJobHead, describe, downloadList, inputText, pathOf, reportButton, showAtEnd } from "./job.js";
+import { createJobHead, describe, downloadList, inputText, pathOf, showAtEnd } from "./job.js";
 import { warningList } from "./check.js";
 import { placeOf } from "./left_out.js";
 import { lawSections } from "./law_page.js";
 import { loadInto } from "./notices.js";
-import { createPicture, showBlob } from "./picture.js";
+import { filePicture } from "./picture.js";
+import { reportButton } from "./report.js";
 import { inShown, levelShown, unitShown } from "./units.js";
 
 const STRESS_INTENSITY = "MPa√m";
@@ -36,14 +37,8 @@ export async function openCalibration(root, id, signal) {
     const warnings = whole.summary.warnings ?? [];
     // Laws over K, which were fitted to rates: there is no curve.
     if (whole.summary.candidates) {
-      const { node, image } = createPicture("Growth rate against range of stress intensity, readings and fitted law, logarithmic axes");
+      if (has("da_dn.svg")) show(rates, filePicture(whole, "da_dn.svg", "Growth rate against range of stress intensity, readings and fitted law, logarithmic axes", signal));
       show(body, warnings.length > 0 && warningList(warnings), section("rates", "Growth rates", rates), lawSections(whole.summary), downloadList(whole), inputText(whole));
-      if (has("da_dn.svg")) {
-        loadInto(rates, async () => {
-          await showBlob(image, await getBlob(`${pathOf(whole)}/files/da_dn.svg`, signal));
-          show(rates, node);
-        });
-      }
       return;
     }
     show(body, lawCard(whole.summary),
@@ -182,14 +177,15 @@ function constants(s) {
   const isFitted = (s.p_source ?? "fitted") === "fitted";
   const error = (value) => (isFitted && Number.isFinite(value) ? `± ${significant(value, 2)}` : words(isFitted ? "" : s.p_source));
   const name = (text, unit) => [text, element("span", { class: "row-unit" }, unit)];
-  const horizon = Number.isFinite(s.horizon_mm) ? `, at a horizon of ${plain(s.horizon_mm, 5)} mm` : "";
   const atPivot = `mm/cycle, at ΔK = ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
   const rows = [
     [name("Rate at reference ΔK", atPivot), scientific(inShown(s.rate_at_pivot_mm_per_cycle, "mm/cycle"), 4), `± ${percent(s.rate_at_pivot_relative_error, 2)}`],
     [name("Paris exponent m", "da/dN = C ΔKᵐ"), fixed(s.paris_m, 4), error(s.paris_m_error)],
     [name("Paris C", `${unitShown("mm/cycle")}, at ΔK = 1 ${unitShown(STRESS_INTENSITY)}`), scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 4), ""],
+  ];
+  const ofBonds = Number.isFinite(s.horizon_mm) && [
     [name("Bond exponent p", "dλ/dN = −A εᵖ"), fixed(s.p, 4), error(s.p_error)],
-    [name("Bond constant A", `1/cycle${horizon}`), scientific(s.a, 4), ""],
+    [name("Bond constant A", `1/cycle, at a horizon of ${plain(s.horizon_mm, 5)} mm`), scientific(s.a, 4), ""],
   ];
   const columns = [{ title: "Constant" }, { title: "Value", numeric: true }, { title: "Std. error", numeric: true }];
   return element("div", { class: "stack tight" },
@@ -202,7 +198,8 @@ function constants(s) {
       ["Life fitted", `${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
       ["rms life error", `${percent(s.rms_life_error, 2)} over all readings`],
       ...misfit(s.misfit_at_ends),
-    ], "fit"));
+    ], "fit"),
+    ofBonds && element("details", null, element("summary", null, "Constants of bonds"), table("Constants of bonds", columns, ofBonds, { hidden: true })));
 }
 
 /** What the law misses at the first and last readings, and what a life that is spent there is off by. */
@@ -220,9 +217,9 @@ function misfit({ low = null, high = null } = {}) {
 function specimens({ specimens: list = [] }) {
   if (list.length < 2) return null;
   const number = (title, unit) => ({ title, unit, numeric: true });
-  const columns = [{ title: "Specimen" }, number("A", "1/cycle"), number("p"), number("Measured", "cycles"), number("Fitted", "cycles"), number("rms error")];
+  const columns = [{ title: "Specimen" }, number(`C, ${unitShown("mm/cycle")}`), number("m"), number("Measured", "cycles"), number("Fitted", "cycles"), number("rms error")];
   const rows = list.map((one) => [
-    one.name, scientific(one.a, 4), fixed(one.p, 4), cycles(one.life_measured), cycles(Math.round(one.life_fitted)),
+    one.name, scientific(levelShown(one.paris_c_mm_per_cycle, one.paris_m), 4), fixed(one.paris_m, 4), cycles(one.life_measured), cycles(Math.round(one.life_fitted)),
     percent(one.rms_life_error, 2),
   ]);
   return section("specimens", "Specimens", table("Fit of every specimen", columns, rows, { hidden: true, name: "specimens" }));

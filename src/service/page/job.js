@@ -230,12 +230,6 @@ export function failureOf(job) {
   return element("div", null, problemBox(problem), ofInput && excerpt(job.input, [line], "Input"));
 }
 
-/** The report of a run, to be printed and signed; nothing of runs of before. */
-export function reportButton(job, name = nameOf(job)) {
-  const report = job.files?.find((file) => file.name === "report.html");
-  return report && button("Report", () => download(report.href, `${name}.html`), { class: "button primary", "data-action": "report" });
-}
-
 /** Everything to take away; `special`: {name: node} where a file has choices of its own. */
 export function downloadList(job, special = {}) {
   const trouble = element("div");

@@ -1,12 +1,11 @@
 // Page of a run that is one of a command as a whole (scene, sweep, stress intensity factors): its answer, its pictures and files.
 
-import { getBlob, getJson } from "./api.js";
+import { getJson } from "./api.js";
 import { warningList } from "./check.js";
 import { element, section, show, showPage, table, terms } from "./dom.js";
 import { count, cycles, significant, words } from "./format.js";
-import { createJobHead, downloadList, inputText, pathOf, showAtEnd } from "./job.js";
-import { problemBox } from "./notices.js";
-import { createPicture, showBlob } from "./picture.js";
+import { createJobHead, downloadList, inputText, showAtEnd } from "./job.js";
+import { filePicture } from "./picture.js";
 
 const PICTURES_MAX = 12;
 
@@ -18,12 +17,7 @@ export const openOther = (collection) => async (root, id, signal) => {
 
   function finish(whole) {
     const names = (whole.files ?? []).map((file) => file.name).filter((name) => /\.(png|svg)$/i.test(name)).slice(0, PICTURES_MAX);
-    const pictures = names.map((name) => {
-      const { node, image } = createPicture(name);
-      getBlob(`${pathOf(whole)}/files/${encodeURIComponent(name)}`, signal).then((blob) => showBlob(image, blob))
-        .catch((error) => error.name === "AbortError" || node.after(problemBox(error)));
-      return node;
-    });
+    const pictures = names.map((name) => filePicture(whole, name, name, signal));
     const warnings = (whole.summary?.warnings ?? []).filter((warning) => typeof warning === "string");
     show(body, whole.kind === "sif" && factorsOf(whole.summary), whole.kind === "sweep" && livesOf(whole.summary), warnings.length > 0 && warningList(warnings), pictures.length > 0 && section("pictures", "Pictures", ...pictures),
       downloadList(whole), inputText(whole));

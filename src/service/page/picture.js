@@ -1,6 +1,9 @@
 // Pictures of the program: shown without flicker, and large on request, since their small print is made for a page.
 
+import { getBlob } from "./api.js";
 import { button, byId, element } from "./dom.js";
+import { pathOf } from "./job.js";
+import { problemBox } from "./notices.js";
 
 /** An image on paper with a button that shows it as large as the window allows. Gives {node, image}. */
 export function createPicture(alt) {
@@ -12,6 +15,14 @@ export function createPicture(alt) {
     byId("picture-dialog").showModal();
   }, { class: "button small", "aria-label": `Enlarge: ${alt}` });
   return { image, node: element("div", { class: "picture" }, element("div", { class: "paper" }, image), enlarge) };
+}
+
+/** A picture among the files of a run. */
+export function filePicture(job, file, alt, signal) {
+  const { node, image } = createPicture(alt);
+  getBlob(`${pathOf(job)}/files/${encodeURIComponent(file)}`, signal).then((blob) => showBlob(image, blob))
+    .catch((error) => error.name === "AbortError" || node.after(problemBox(error)));
+  return node;
 }
 
 /** Shows a blob in an image. The old picture stays until the new one is decoded. */

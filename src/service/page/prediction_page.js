@@ -6,13 +6,15 @@ import { createChart } from "./chart.js";
 import { warningList } from "./check.js";
 import { button, element, readCsv, show, showPage, terms } from "./dom.js";
 import { follow } from "./events.js";
+import { foundFurther, furtherCards } from "./further.js";
 import { count, cycles, deserved, duration, fixed, scientific, sentence, significant, whole, words } from "./format.js";
-import { createJobHead, describe, downloadList, failureOf, filesOf, inputText, isFinal, pathOf, reportButton } from "./job.js";
+import { createJobHead, describe, downloadList, failureOf, filesOf, inputText, isFinal, pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
-import { createPicture, showBlob } from "./picture.js";
+import { createPicture, filePicture, showBlob } from "./picture.js";
 import { createPlatePath } from "./plate_path.js";
 import { partThroughTerms, spectrumCard, spectrumTerms } from "./prediction_more.js";
 import { createRemaining } from "./remaining.js";
+import { reportButton } from "./report.js";
 import { curveChoices } from "./resample.js";
 import { levelShown, unitShown } from "./units.js";
 
@@ -34,16 +36,13 @@ export async function openPrediction(root, id, signal) {
   const { node: field, image } = createPicture("Stress or damage over the plate, with the crack path");
   const fieldNote = element("figcaption");
   const fieldFigure = element("figure", { class: "card figure", "data-part": "damage", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Field")), field, fieldNote);
-  const { node: section, image: sectionImage } = createPicture("Section through the crack with its front at quarters of the cycles");
-  const sectionFigure = element("figure", { class: "card figure", "data-part": "section", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Section through the crack")), section,
-    element("figcaption", null, "Front at quarters of the cycles to breakthrough, or to the end; gray: at the start."));
   const curveFigure = element("div", { class: "card figure" }, curvePlace);
   const factors = element("div", { class: "card figure", hidden: true }, factorPlace);
   const plateFigure = element("figure", { class: "card figure", "data-part": "path" },
     element("div", { class: "chart-head" }, element("h2", null, "Crack path")), platePlace,
     element("figcaption", null, "Color: share of life; marks at 25, 50, 75, 90 %. Dotted: future growth."));
   const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, fieldFigure),
-    element("div", { class: "stack" }, curveFigure, factors, sectionFigure));
+    element("div", { class: "stack" }, curveFigure, factors));
   showPage(root, head.node, outcome, element("div", { class: "job-body" }, pictures), below);
 
   const lengthAxis = { label: "Crack length a", unit: "mm", format: (value) => fixed(value, 2) };
@@ -122,13 +121,13 @@ export async function openPrediction(root, id, signal) {
 
   const has = (done, name) => done.files?.some((file) => file.name === name);
   const pathTo = (done, name) => `${pathOf(done)}/files/${name}`;
-  let result = null;
+  let [result, remaining] = [null, null];
 
   async function showResult(done) {
     result = has(done, "result.json") ? JSON.parse(await getText(pathTo(done, "result.json"), signal)) : done.summary;
     drawn = result.plate ?? drawn;
     show(outcome, answerCard({ ...done.summary, ...result }, [...partThroughTerms(result), ...spectrumTerms(result)]));
-    head.offer(reportButton(done));
+    head.offer(reportButton(done, () => remaining?.wanted()));
     head.describe(describe(result));
     below.prepend(element("div", { class: "two" }, howComputed(done, result),
       result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "Messages"))));
@@ -154,8 +153,9 @@ export async function openPrediction(root, id, signal) {
       fieldNote.textContent = FIELDS[picture];
     }
     if (has(done, SECTION)) {
-      sectionFigure.hidden = false;
-      await showBlob(sectionImage, await getBlob(pathTo(done, SECTION), signal));
+      factors.after(element("figure", { class: "card figure", "data-part": "section" }, element("div", { class: "chart-head" }, element("h2", null, "Section through the crack")),
+        filePicture(done, SECTION, "Section through the crack with its front at quarters of the cycles", signal),
+        element("figcaption", null, "Front at quarters of the cycles to breakthrough, or to the end; gray: at the start.")));
     }
     // Of a crack that is not through both lengths: its depth ends where it is.
     const depths = columns.crack_depth_mm;
@@ -169,9 +169,9 @@ export async function openPrediction(root, id, signal) {
     if (done.state === "succeeded" && !result.refused && columns.cycles.at(-1) > 0) {
       const place = createPlace({ columns, lengths, lead: lead ?? 0, band: quantilesOf(result), chart, factorChart, plate });
       outcome.append(place.node);
-      const remaining = createRemaining(done, { columns, lengths, lead }, place.go, signal);
+      remaining = createRemaining(done, { columns, lengths, lead }, place.go, signal);
       place.onLength(remaining.setLength);
-      below.prepend(remaining.node);
+      below.prepend(remaining.node, ...foundFurther(done, result, signal), ...await furtherCards(done, result, remaining.wanted));
     }
   }
 

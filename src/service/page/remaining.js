@@ -38,13 +38,12 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
     element("div", { class: "control" }, input, unit && element("span", { class: "unit" }, unit)), hint);
 
   async function ask() {
-    const [a, f] = [parseNumber(length.value), parseNumber(factor.value)];
-    if (!(a > 0) || !(f >= 1)) {
+    if (!wanted()) {
       show(answer, element("p", { class: "field-problem" }, `Give a crack length in ${unitShown("mm")} and a factor of at least 1.`));
       return;
     }
     try {
-      const got = await getJson(`${pathOf(job)}/remaining?crack_length_mm=${a / per}&factor=${f}${choice ? `&tip=${choice.value}` : ""}`, signal);
+      const got = await getJson(`${pathOf(job)}/remaining${wanted().query}`, signal);
       if (document.activeElement === length) go(got.cycles_at);
       // Under a spectrum an interval is planned in passes.
       const { passes, life_cycles: life } = job.summary ?? {};
@@ -64,7 +63,18 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
     }
   }
 
+  let isChosen = false;
+  /** The inspection as it was entered, null where it is none. */
+  function wanted() {
+    const [a, f] = [parseNumber(length.value), parseNumber(factor.value)];
+    if (!(a > 0) || !(f >= 1)) return null;
+    const options = { inspect_from_mm: a / per, factor: f, ...(choice ? { tip: Number(choice.value) } : {}) };
+    const { inspect_from_mm: from, ...others } = options;
+    return { options, isChosen, query: `?${new URLSearchParams({ crack_length_mm: from, ...others })}`, words: `Inspection interval from ${length.value} ${unitShown("mm")}, factor ${factor.value}` };
+  }
+
   const soon = debounce(ask, WAIT_MS);
+  for (const input of [length, factor]) input.addEventListener("input", () => { isChosen = true; });
   length.addEventListener("input", soon);
   factor.addEventListener("input", soon);
   const hint = element("p", { class: "hint", id: "today-hint" });
@@ -87,7 +97,7 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
         field("Inspection factor", "", factor, element("p", { class: "hint" }, "interval = 5 % remaining life / factor (median if no band)"))),
       answer));
   return {
-    node,
+    node, wanted,
     /** The slider has moved: of the tip that ends the life. */
     setLength(value) {
       if (choice && choice.value !== String(lead)) return;

@@ -73,12 +73,14 @@ pub struct Wanted<'a> {
 pub struct Change {
     pub name: Option<String>,
     pub note: Option<String>,
+    /// Report data, JSON.
+    pub report: Option<String>,
     /// Whether it is put away.
     pub archived: Option<bool>,
 }
 
 /// Columns of a [`Job`].
-const COLUMNS: &str = "id, kind, name, note, archived, owner, state, calibration, created_ms, started_ms, finished_ms, cancel_asked, \
+const COLUMNS: &str = "id, kind, name, note, report, archived, owner, state, calibration, created_ms, started_ms, finished_ms, cancel_asked, \
                        revision, fence, failures, reason, not_before_ms, progress, problem, summary";
 
 /// Jobs removed at a time because their time is over: a mistake in a clock shows before all is gone.
@@ -248,9 +250,9 @@ impl Store {
     pub async fn change(&self, id: &str, change: &Change) -> Result<bool> {
         let changed = bound!(sqlx::query(
             "UPDATE jobs SET name = COALESCE($2, name), note = COALESCE($3, note), archived = COALESCE($4, archived),
-                revision = revision + 1
+                report = COALESCE($5, report), revision = revision + 1
              WHERE id = $1",
-        ); id, &change.name, &change.note, change.archived.map(i64::from))
+        ); id, &change.name, &change.note, change.archived.map(i64::from), &change.report)
         .execute(&self.pool)
         .await?;
         Ok(changed.rows_affected() > 0)
@@ -332,6 +334,7 @@ fn job_of(row: &AnyRow) -> Result<Job> {
         kind: name("kind")?.parse().map_err(|_| unknown("kind"))?,
         name: name("name")?,
         note: name("note")?,
+        report: object(row, "report")?,
         archived: row.try_get::<i64, _>("archived")? != 0,
         state,
         owner: name("owner")?,

@@ -3,7 +3,7 @@
 use super::{Dialect, Result, Store};
 
 /// Version of the tables; one higher with every change of them.
-pub(super) const VERSION: i64 = 5;
+pub(super) const VERSION: i64 = 6;
 
 /// Version of [`TABLES`], to which [`UPGRADES`] lead on.
 const FIRST: i64 = 2;
@@ -71,6 +71,7 @@ const UPGRADES: &[(i64, &[&str])] = &[
                 FOR EACH ROW EXECUTE FUNCTION count_stored()",
         ],
     ),
+    (6, &["ALTER TABLE jobs ADD COLUMN report TEXT"]),
 ];
 
 const TABLES: &[&str] = &[

@@ -27,7 +27,7 @@ use perilife_results::record::RESULT_FILE;
 use perilife_runner::{Task, TaskCheckpoint};
 
 /// The report of a run or a fit among its files.
-const REPORT_FILE: &str = "report.html";
+pub const REPORT_FILE: &str = "report.html";
 /// Time between two tellings.
 const TELL_EVERY: Duration = Duration::from_millis(400);
 
@@ -79,7 +79,7 @@ fn end_with_worker(mut socket: UnixStream, folder: Option<PathBuf>) {
 }
 
 fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync)) -> Result<Value> {
-    let task = Task::read(order.kind, &order.submission.document()?, &order.submission.methods())?;
+    let task = order.submission.task(order.kind, &order.submission.document()?)?;
     *room = if matches!(task, Task::Prediction { .. } | Task::Scene(_)) { task.room() } else { Room::default() };
     // Asked before the run, which would be for nothing.
     if free_bytes(&order.folder).is_some_and(|free| free < room.all) {

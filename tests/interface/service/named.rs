@@ -56,10 +56,11 @@ fn a_run_is_renamed_noted_and_put_away() {
         let long = "x".repeat(2001);
         for (body, status, words) in [
             (json!({}), 400, "nothing to change"),
-            (json!({ "state": "succeeded" }), 400, "known are name, note, archived"),
+            (json!({ "state": "succeeded" }), 400, "known are name, note, report, archived"),
             (json!({ "name": "" }), 422, "is no name"),
             (json!({ "note": long }), 422, "up to 2000 bytes"),
             (json!({ "note": "bell \u{7}" }), 422, "is no note"),
+            (json!({ "report": { "laborator": "x" } }), 422, "did you mean laboratory"),
         ] {
             let refused = change(&service, &life, &body).expect(status);
             assert!(refused.text().contains(words), "{body}: {}", refused.text());

@@ -91,8 +91,9 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let page = &walk.browser;
     page.look(1280, 900, "light");
     page.open(&service.url);
-    page.see("#measured-input, #example");
+    page.see("#new-kinds a[href*=example]");
     walk.look("01_start");
+    page.click("#new-kinds a[href='#/measure']");
 
     // Readings with mistakes are shown where they are wrong.
     let broken = dir.path().join("broken.csv");
@@ -242,25 +243,25 @@ fn the_page_leads_from_readings_to_remaining_life() {
         assert!(fs::read(&file).unwrap() == service.file(&format!("/v1/predictions/{first}"), name), "{name} differs");
     }
 
-    // The report is a page of its own, which needs no service.
+    // The report data are kept with the run, those of the laboratory proposed for the next; further analyses are runs of their own.
     page.click("[data-action=report]");
-    let report = || {
-        let files = fs::read_dir(downloads.path()).unwrap().map(|entry| entry.unwrap().path());
-        files.into_iter().find(|path| path.extension().is_some_and(|end| end == "html"))
-    };
-    let begun = Instant::now();
-    let file = loop {
-        if let Some(file) = report().filter(|file| fs::read(file).is_ok_and(|bytes| bytes.ends_with(b"</html>\n"))) {
-            break file;
-        }
-        assert!(begun.elapsed() < crate::support::server::PATIENCE, "the report does not come");
-        std::thread::sleep(Duration::from_millis(50));
-    };
-    let here = page.run("return location.href").as_str().unwrap().to_owned();
-    page.open(&format!("file://{}", file.display()));
+    page.see("#report-dialog[open] #report-interval:checked");
+    page.fill("#report-dialog [data-key='report.laboratory']", "Lab North");
+    page.fill("#report-dialog [data-key='report.number']", "R-7");
+    walk.look("15_report_dialog");
+    page.click("[data-action=open-report]");
+    page.until("!document.querySelector('#report-dialog')");
+    assert_eq!(service.get(&format!("/v1/predictions/{first}")).json()["report"]["laboratory"], "Lab North");
+    walk.start("[data-part=further] [data-action=sensitivities]");
+    page.see("[data-part=sensitivities] img:not([hidden])");
+    page.click("[data-action=report]");
+    let proposed =
+        |key: &str| page.run(&format!("return document.querySelector(\"#report-dialog [data-key='report.{key}']\").value"));
+    assert_eq!((proposed("laboratory"), proposed("number")), ("Lab North".into(), "".into()));
+    page.open(&format!("{}/v1/predictions/{first}/report?crack_length_mm={today}", service.url));
     fs::write(walk.pictures.join("15_report.png"), page.picture()).unwrap();
-    assert!(page.text("main").contains("Validity"));
-    page.open(&here);
+    assert!(["Validity", "Lab North", "R-7", "Inspection interval"].iter().all(|words| page.text("main").contains(words)));
+    page.open(&format!("{}/#/predictions/{first}", service.url));
 
     // A second run, and both side by side.
     page.click("[data-action=again]");

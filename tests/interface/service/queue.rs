@@ -228,12 +228,14 @@ fn a_store_of_another_version_is_refused() {
     with_each_store("other", |place| {
         let dir = tempdir().unwrap();
         Server::start(place, &["--jobs", "0"]).stop();
-        for (version, remedy) in [(1, "or a new database"), (2, LED_ON), (3, LED_ON), (4, LED_ON), (6, "or a new database")] {
+        for (version, remedy) in
+            [(1, "or a new database"), (2, LED_ON), (3, LED_ON), (4, LED_ON), (5, LED_ON), (7, "or a new database")]
+        {
             on_store(place, &format!("UPDATE perilife_schema SET version = {version}"));
             let refused = perilife(dir.path(), &[&["token"], place, &["list"]].concat());
             assert_refused(&refused, 4, &[&format!("are of version {version}"), remedy]);
         }
-        on_store(place, "UPDATE perilife_schema SET version = 5");
+        on_store(place, "UPDATE perilife_schema SET version = 6");
         assert!(perilife(dir.path(), &[&["token"], place, &["list"]].concat()).status.success());
     });
 }
@@ -245,7 +247,7 @@ const SUMS: [&[&str]; 2] = [
 ];
 
 /// What the tables have beyond version 2.
-const BEYOND_2: [&str; 14] = [
+const BEYOND_2: [&str; 15] = [
     "DROP TABLE stored",
     "ALTER TABLE jobs DROP COLUMN bytes",
     "ALTER TABLE jobs DROP COLUMN room",
@@ -258,6 +260,7 @@ const BEYOND_2: [&str; 14] = [
     "ALTER TABLE jobs DROP COLUMN lease_ms",
     "ALTER TABLE jobs DROP COLUMN spent_ms",
     "ALTER TABLE jobs DROP COLUMN finished_count_ms",
+    "ALTER TABLE jobs DROP COLUMN report",
     "ALTER TABLE submissions DROP COLUMN options",
     "DROP TABLE clock",
 ];
@@ -311,13 +314,13 @@ fn a_job_of_a_former_kind_is_refused() {
 fn a_worker_older_than_the_tables_takes_no_jobs() {
     with_each_store("older", |place| {
         let service = Server::start(place, &["--jobs", "1"]);
-        on_store(place, "UPDATE perilife_schema SET version = 6");
+        on_store(place, "UPDATE perilife_schema SET version = 7");
         let job = service.submit("predictions", &of("quick", QUICK));
         std::thread::sleep(std::time::Duration::from_secs(2));
         assert_eq!(service.get(&job).json()["state"], "queued");
         service.get("/readyz").expect(503);
         service.get("/healthz").expect(200);
-        on_store(place, "UPDATE perilife_schema SET version = 5");
+        on_store(place, "UPDATE perilife_schema SET version = 6");
         service.succeeded(&job);
         service.get("/readyz").expect(200);
     });

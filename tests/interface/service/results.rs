@@ -130,6 +130,36 @@ fn remaining_life(service: &Server, job: &str, done: &Value) {
     }
     let less = service.get(&format!("{job}/remaining?crack_length_mm={middle}&factor=0.5")).expect(422);
     assert!(less.text().contains("is not 1 or more"));
+    // The report has the data of the job, and an interval if asked for.
+    let data = json!({ "report": { "laboratory": "Lab <North>", "number": "R-7" } }).to_string();
+    service.send("PATCH", job, &[("content-type", "application/json")], data.as_bytes()).expect(200);
+    let report = |query: &str| service.get(&format!("{job}/report{query}")).expect(200).text();
+    assert!(report("").contains("Lab &lt;North&gt;") && !report("").contains("Inspection interval"), "{}", report(""));
+    assert!(report(&format!("?crack_length_mm={middle}")).contains("Inspection interval"));
+    service.get(&format!("{job}/report?factor=3")).expect(200);
+}
+
+/// Further analyses are runs with options, refused before they are run.
+#[test]
+fn further_analyses_are_options() {
+    let dir = tempdir().unwrap();
+    let service = server(dir.path());
+    let body = |options: Value| json!({ "input": QUICK, "options": options });
+    let asked = json!({ "sensitivities": true, "residual_strength": true, "inspect_from_mm": 10, "pod": "9.5,10" });
+    let job = service.submit("predictions", &body(asked));
+    service.succeeded(&job);
+    let result: Value = serde_json::from_slice(&service.file(&job, "result.json")).unwrap();
+    assert!(result["sensitivities"].is_array() && result["inspections"]["a90_mm"] == json!(10.0), "{result:#}");
+    service.file(&job, "residual_strength.svg");
+    for (options, words) in [
+        (json!({ "pod": "9,8" }), "two increasing crack lengths"),
+        (json!({ "factor": "x" }), "options.factor = x"),
+        (json!({ "measured": "plate.csv" }), "was not uploaded"),
+        (json!({ "fleet": 9 }), "is no option of this job"),
+    ] {
+        let refused = service.post("/v1/predictions", &body(options)).expect(422);
+        assert!(refused.text().contains(words), "{}", refused.text());
+    }
 }
 
 const TEST: &str = "[measured]\nfiles = [\"curve.csv\"]\n[specimen]\nkind = \"middle_tension\"\nwidth_mm = 60\nlength_mm = 120\n\

@@ -1,0 +1,65 @@
+// Further analyses of a prediction. A result never changes: each is a run of the same input with an option of its own.
+
+import { button, element, section, show, terms } from "./dom.js";
+import { createForm, grid, numberIn } from "./form.js";
+import { significant, whole } from "./format.js";
+import { filesOf, nameOf } from "./job.js";
+import { keyOf, loadKeys } from "./keys.js";
+import { problemBox } from "./notices.js";
+import { filePicture } from "./picture.js";
+import { startRun } from "./submit.js";
+import { inShown, unitShown } from "./units.js";
+
+const PICTURES = { "fleet.svg": "Fleet", "sensitivities.svg": "Sensitivity of the life", "residual_strength.svg": "Residual strength" };
+
+const hasFile = (job, file) => job.files.some(({ name }) => name === file);
+const card = (name, title, content) => element("section", { class: "card", "data-part": name }, element("h2", null, title), content);
+
+/** What further analyses found: their pictures and figures. */
+export const foundFurther = (job, { inspections: found }, signal) => [
+  ...Object.entries(PICTURES).filter(([file]) => hasFile(job, file)).map(([file, title]) => card(file.replace(".svg", ""), title, filePicture(job, file, title, signal))),
+  ...(found ? [card("detection", "Detection", terms([
+    ["All inspections miss", `probability ${found.missed < 1e-3 ? "< 0.001" : significant(found.missed, 2)} (independence assumed)`],
+    ["POD", `a50 ${significant(found.a50_mm, 3)} mm, a90 ${significant(found.a90_mm, 3)} mm`],
+    ["Inspections", `${found.rows.length}, every ${whole(found.interval_cycles)} cycles`]], "detection"))] : []),
+];
+
+/** The cards of analyses that the run has not; `inspection()` is that of the page. */
+export async function furtherCards(job, result, inspection) {
+  await loadKeys();
+  const form = createForm(() => {});
+  const { label, hint } = keyOf("fleet", "plates");
+  const plates = form.number("fleet.plates", { label, hint, value: "1000" });
+  const [half, most] = ["50", "90"].map((share) => form.number(`a${share}`, { label: `a${share}, found with ${share} %`, unit: unitShown("mm") }));
+  const readings = form.file("measured", { label: "Readings" });
+
+  /** `wish()` gives {options, input, files}, or null where a field is missing. */
+  function offer(name, text, fields, wish) {
+    const [status, trouble] = [element("p", { class: "quiet", role: "status" }), element("div")];
+    const refuse = (error) => show(trouble, problemBox(error));
+    const start = button(`Compute ${name}`, async () => {
+      const wanted = wish();
+      show(trouble, !wanted && element("p", { class: "field-problem" }, `Required: ${fields.map((field) => field.name.textContent).join(", ")}.`));
+      if (!wanted) return;
+      const { options = {}, input = job.input, files = [] } = wanted;
+      const all = await filesOf(job).catch(refuse);
+      const body = { name: `${nameOf(job)}, ${name}`, input, calibration: job.calibration ?? undefined, options, files: all?.length + files.length > 0 ? [...all, ...files] : undefined };
+      if (all) await startRun("/v1/predictions", body, { button: start, status, refuse });
+    }, { class: "button small", "data-action": name.replace(" ", "-") });
+    return element("div", { class: "card" }, element("p", null, text), fields.length > 0 && grid(...fields.map(({ node }) => node)), start, status, trouble);
+  }
+
+  const cards = [
+    !result.sensitivities && offer("sensitivities", "Effect of load, initial crack and growth law on the life.", [], () => ({ options: { sensitivities: true } })),
+    !hasFile(job, "residual_strength.svg") && offer("residual strength", "Load the cracked plate can carry, over crack length.", [], () => ({ options: { residual_strength: true } })),
+    !result.fleet && offer("fleet", "Life distribution: scatter of law, initial crack and load.", [plates],
+      () => numberIn(plates) > 0 && { input: `${job.input}\n[fleet]\nplates = ${numberIn(plates)}\n` }),
+    !result.inspections && offer("detection", "Probability that all inspections miss the crack; interval as in Inspection.", [half, most], () => {
+      const [from, lengths] = [inspection()?.options, [half, most].map((field) => numberIn(field) / inShown(1, "mm"))];
+      return from && lengths.every((one) => one > 0) && { options: { ...from, pod: lengths.join(",") } };
+    }),
+    result.band && !result.measured && offer("remaining life", "Inspection readings of this plate narrow its band.", [readings],
+      () => readings.given && { options: { measured: readings.given.name }, files: [readings.given] }),
+  ].filter(Boolean);
+  return cards.length > 0 ? [section("further", "Further analyses", element("p", { class: "hint" }, "Each is a new run of the same input."), element("div", { class: "choices" }, cards))] : [];
+}
