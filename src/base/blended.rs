@@ -53,7 +53,6 @@ impl Blended {
         }
     }
 
-    /// The polynomial through some points.
     fn through(&self, points: RangeInclusive<usize>, x: f64) -> f64 {
         let weight = |i: usize| {
             let others = points.clone().filter(|&j| j != i);

@@ -26,18 +26,15 @@ enum Digits {
     Few,
     /// So that they read back bit for bit.
     All,
-    /// Whole.
     None,
 }
 
-/// Cells of a column.
 #[derive(Debug, Clone, PartialEq)]
 enum Cells {
     Numbers(Vec<f64>, Digits),
     Words(Vec<String>),
 }
 
-/// A column.
 #[derive(Debug, Clone, PartialEq)]
 struct Column {
     name: Cow<'static, str>,

@@ -9,7 +9,6 @@ use crate::error::{Error, InputError, Result};
 /// Program by which a checkpoint can be taken up.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// What a checkpoint is of.
 #[derive(Debug, Clone, Copy)]
 pub struct Seal {
     /// What a file that does not begin with `magic` is no checkpoint of, in words.

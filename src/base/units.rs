@@ -7,7 +7,6 @@ pub mod words;
 
 /// Metres in a millimetre.
 pub const MM: f64 = 1e-3;
-/// Metres in an inch.
 pub const INCH: f64 = 25.4e-3;
 /// Pascals in a megapascal.
 pub const MPA: f64 = 1e6;

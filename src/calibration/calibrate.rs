@@ -39,7 +39,6 @@ pub enum Calibration {
     Rates(Box<LawCase>),
 }
 
-/// A calibration with its fit.
 pub enum Fitted<'c> {
     Lives(&'c CalibrationCase, Box<Fit>),
     Rates(&'c LawCase, LawFits),

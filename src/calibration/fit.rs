@@ -26,7 +26,6 @@ use perilife_measured::{LeaveOut, MeasuredCurve, first_of};
 /// Most remarks on readings that a fit repeats.
 const DOUBTS_SHOWN: usize = 6;
 
-/// What is fitted to what.
 #[derive(Clone, Copy)]
 pub struct FitTask<'a> {
     /// Curves inside the fit window ([`perilife_measured::Measured::window`]).
@@ -67,7 +66,6 @@ pub struct Fit {
     pub warnings: Vec<String>,
 }
 
-/// Bonds that A belongs to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bonds {
     /// β of the record's exponent ([`perilife_growth::rate_constant`]).

@@ -24,7 +24,6 @@ pub struct Inspection {
     pub crack_length_governing_mm: f64,
     /// Cycles at which the curve reaches that length.
     pub cycles_at: f64,
-    /// Cycles at its end.
     pub life_cycles: f64,
     /// From there to the end.
     pub remaining_cycles: f64,

@@ -27,7 +27,6 @@ type Figure = Option<f64>;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, try_from = "Value")]
 pub enum FitRecord {
-    /// To lives of readings.
     Lives(Box<LivesRecord>),
     Rates(Box<RatesRecord>),
 }
@@ -83,7 +82,6 @@ pub struct LivesRecord {
     pub beside: Value,
 }
 
-/// A specimen's own fit.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SpecimenRecord {
     pub name: String,

@@ -19,7 +19,6 @@ use perilife_results::output::{LockedFolder, OutputFolder, RunKind};
 use perilife_results::{fit, run};
 use perilife_runner::{Message, Summary, Task, Wanted, of_prediction};
 
-/// Arguments of `perilife calibrate`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "DIR contains the law (fitted.toml, for fatigue.fitted), fit.json, tables of curve, band and specimens, and charts.\n\
@@ -41,7 +40,6 @@ pub struct Args {
     /// Set a key (repeatable), e.g. --set model.spacing_mm=2
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

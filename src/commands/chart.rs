@@ -19,7 +19,6 @@ use perilife_study::chart::{BenchmarkRun, Machine, run, scenes};
 use perilife_study::speed::{self, Origin, digits, seconds};
 use perilife_study::tasks::Outcome;
 
-/// Arguments of `perilife chart`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Scenes to run [default: all; see `perilife list`]
@@ -37,7 +36,6 @@ pub struct Args {
     /// Set a key for --once (repeatable), e.g. --set model.spacing_mm=2
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", requires = "once")]
     pub set: Vec<String>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
@@ -47,7 +45,6 @@ const RUNS_FILE: &str = "runs.jsonl";
 /// Seconds between two looks at a process.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// Runs `perilife chart`.
 pub fn run(args: &Args) -> Result<()> {
     if args.once {
         return once(args);

@@ -10,7 +10,6 @@ use perilife_results::specimen_picture::SIGN;
 use perilife_runner::Summary;
 use perilife_runner::check::check_file;
 
-/// Arguments of `perilife check`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// Case, calibration file, fracture scene or sweep
@@ -22,7 +21,6 @@ pub struct Args {
     /// Set a key (repeatable), e.g. --set model.spacing_mm=2
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

@@ -155,7 +155,6 @@ struct Keeper {
     last: Mutex<Last>,
 }
 
-/// The last writing.
 struct Last {
     at: Instant,
     cost: Duration,

@@ -8,18 +8,15 @@ use super::sweep::finish;
 use perilife_base::error::Result;
 use perilife_runner::sweep_folder::SweepFolder;
 
-/// Arguments of `perilife collect`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Folder of the sweep
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
 
-/// Runs `perilife collect`.
 pub fn run(args: &Args) -> Result<()> {
     finish(&SweepFolder::existing(&args.dir)?, Instant::now(), &args.console)
 }

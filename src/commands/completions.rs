@@ -27,7 +27,6 @@ pub enum Form {
     Man,
 }
 
-/// Arguments of `perilife completions`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Shell, or `man`

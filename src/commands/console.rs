@@ -53,7 +53,6 @@ impl Console {
         }
     }
 
-    /// A warning on stderr.
     pub fn warn(&self, text: &str) {
         let _ = writeln!(io::stderr(), "warning: {}", told(text));
     }
@@ -275,7 +274,6 @@ impl RunProgress {
         RunProgress { bar, shared, looker }
     }
 
-    /// The bar.
     pub fn bar(&self) -> &ProgressBar {
         &self.bar
     }

@@ -17,7 +17,6 @@ use perilife_results::resample::{ROWS_MAX, Sampling};
 /// First line of an export, which a run's own table has not.
 const HEADER: &str = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n";
 
-/// Arguments of `perilife export`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Folder of a finished run
@@ -32,12 +31,10 @@ pub struct Args {
     /// CSV file to write
     #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     pub out: PathBuf,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
 
-/// Runs `perilife export`.
 pub fn run(args: &Args) -> Result<()> {
     let opened = Opened::default();
     let (curve, units) = curve_of(&args.run, &opened)?;

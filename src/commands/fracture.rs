@@ -9,7 +9,6 @@ use perilife_base::input::Document;
 use perilife_results::output::OutputFile;
 use perilife_runner::{Kind, Task};
 
-/// Arguments of `perilife fracture`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "Loads: traction, displacement, velocity or platens. [damage]: critical stretch, critical energy, softening or principal stress.\n\
@@ -34,7 +33,6 @@ pub struct Args {
     /// Keeping the run for later.
     #[command(flatten)]
     pub keeping: checkpoint::Args,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

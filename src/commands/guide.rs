@@ -7,13 +7,11 @@ use super::console::Console;
 use perilife_base::error::Result;
 use perilife_runner::guide::{PAGES, page};
 
-/// Arguments of `perilife guide`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Page to print; the index lists all
     #[arg(value_name = "PAGE", default_value = "index", hide_possible_values = true, value_parser = PossibleValuesParser::new(PAGES.iter().map(|(name, _)| *name)))]
     pub page: String,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

@@ -7,7 +7,6 @@ use perilife_service::worker::child;
 #[derive(Debug, clap::Args)]
 pub struct Args {}
 
-/// Runs `perilife job`.
 pub fn run(_: &Args) -> Result<()> {
     child::take()
 }

@@ -5,7 +5,6 @@ use perilife_base::error::{Result, input};
 use perilife_base::keys::nearest;
 use perilife_runner::catalogue;
 
-/// Arguments of `perilife list`.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// `keys` for all keys and ranges, or part of a name, e.g. `materials`
@@ -17,7 +16,6 @@ pub struct Args {
     /// Print the JSON Schema of input files (for editors)
     #[arg(long)]
     pub schema: bool,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

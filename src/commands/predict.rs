@@ -11,7 +11,6 @@ use perilife_calibration::inspection::{FACTOR, InspectFrom};
 use perilife_results::output::OutputFile;
 use perilife_runner::{Kind, Task};
 
-/// Arguments of `perilife predict`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "DIR contains the curve (a_n.csv), crack paths (crack_path.csv), K and β of each tip (factors.csv; beta.txt for AFGROW),\n\
@@ -73,12 +72,10 @@ pub struct Args {
     /// Keeping the run for later.
     #[command(flatten)]
     pub keeping: checkpoint::Args,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
 
-/// Runs `perilife predict`.
 pub fn run(args: &Args) -> Result<()> {
     let mut set = super::with_output(&args.set, [("paraview", args.paraview), ("animation", args.animate)]);
     let fleet = [("plates", args.fleet), ("seed", args.seed)];

@@ -25,7 +25,6 @@ use perilife_results::output::{OutputFile, Sort};
 /// Thickness of plates where no case says it, mm: K_c of records depends on it.
 const THICKNESS_MM: f64 = 2.5;
 
-/// Arguments of `perilife rates`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Files of a-N readings
@@ -73,12 +72,10 @@ pub struct Args {
     /// CSV file to write [default: stdout]
     #[arg(long, value_name = "FILE.csv", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
 
-/// Rates of one specimen.
 struct SpecimenRates {
     name: String,
     points: Vec<RatePoint>,
@@ -103,7 +100,6 @@ impl Args {
     }
 }
 
-/// Runs `perilife rates`.
 pub fn run(args: &Args) -> Result<()> {
     let method: RateMethod = args.method.parse()?;
     let opened = Opened::default();

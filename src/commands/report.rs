@@ -8,7 +8,6 @@ use super::console::Console;
 use perilife_base::error::Result;
 use perilife_results::paper::{Signed, write};
 
-/// Arguments of `perilife report`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "A browser prints the page to A4 or letter, or saves it as PDF. Missing data are printed as \"not recorded\".\n\
@@ -21,7 +20,7 @@ pub struct Args {
     /// HTML file to write
     #[arg(long, value_name = "FILE.html", help_heading = "Output")]
     pub out: PathBuf,
-    /// Report data (TOML, section [report]): number, customer, machine, ...
+    /// Report data (TOML, section report): number, customer, machine, ...
     #[arg(long, value_name = "FILE.toml", help_heading = "Report data")]
     pub data: Option<PathBuf>,
     /// Set one item of the report data
@@ -39,7 +38,6 @@ pub struct Args {
     /// Date of issue, in any format
     #[arg(long, value_name = "DATE", help_heading = "Report data")]
     pub date: Option<String>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

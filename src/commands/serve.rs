@@ -10,7 +10,6 @@ use perilife_base::error::Result;
 use perilife_service::api::{Limits, Security};
 use perilife_service::{Settings, serve};
 
-/// Arguments of `perilife serve`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "Web page: /. API: /docs, for programs /openapi.json. Submit a case by\n  curl -H \"content-type: application/toml\" --data-binary @case.toml localhost:8080/v1/predictions\n\
@@ -29,7 +28,7 @@ pub struct Args {
     /// Trust X-Forwarded-For, and accept proxied requests without a token
     #[arg(long, help_heading = "Service")]
     pub trust_proxy: bool,
-    /// Public URL of the service, e.g. https://life.example.org
+    /// Public URL of the service, as browsers see it
     #[arg(long, value_name = "URL", value_parser = public_url, help_heading = "Service")]
     pub public_url: Option<String>,
     /// Append a JSON line per change and refusal
@@ -59,7 +58,6 @@ pub struct Args {
     /// Where jobs and results are kept, and who runs them.
     #[command(flatten)]
     pub work: worker::Work,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

@@ -16,7 +16,6 @@ use perilife_results::factor_sweep as tables;
 use perilife_results::output::{OutputFile, OutputFolder, Sort};
 use perilife_runner::{Kind, Message, Task};
 
-/// Arguments of `perilife sif`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "With --method element_free_galerkin a crack is optional: prints max and min stress along each boundary, their position\n\
@@ -47,12 +46,10 @@ pub struct Args {
     /// Set a key (repeatable), e.g. --set specimen.crack_length_mm=20
     #[arg(long = "set", value_name = "SECTION.KEY=VALUE", help_heading = "Input")]
     pub set: Vec<String>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
 
-/// Runs `perilife sif`.
 pub fn run(args: &Args) -> Result<()> {
     let console = &args.console;
     if let Some(asked) = &args.sweep {

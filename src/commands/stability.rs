@@ -9,7 +9,6 @@ use perilife_study::stability::{self, Effort, SLOW, sweeps};
 use perilife_study::stability_picture;
 use perilife_study::stability_table as tables;
 
-/// Arguments of `perilife stability`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Sweeps to run [default: all; see `perilife list`]
@@ -21,12 +20,10 @@ pub struct Args {
     /// Results folder
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
 
-/// Runs `perilife stability`.
 pub fn run(args: &Args) -> Result<()> {
     let sweeps = sweeps(&args.names)?;
     // Who names a sweep wants all of it.

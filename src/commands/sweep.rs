@@ -22,7 +22,6 @@ use perilife_runner::Task;
 use perilife_runner::sweep::{collect, run as run_here};
 use perilife_runner::sweep_folder::SweepFolder;
 
-/// Arguments of `perilife sweep`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "Designs: a grid over any keys, latin_hypercube over distributions, or fitted_scatter: laws sampled from the scatter of the\n\
@@ -61,7 +60,6 @@ pub struct Args {
     #[cfg(feature = "service")]
     #[command(flatten)]
     pub place: Place,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
@@ -83,7 +81,6 @@ pub enum Engine {
 pub struct Shard {
     /// Number, from 1.
     pub number: usize,
-    /// Of so many.
     pub of: usize,
 }
 
@@ -104,7 +101,6 @@ impl Shard {
     }
 }
 
-/// Runs `perilife sweep`.
 pub fn run(args: &Args) -> Result<()> {
     let begun = Instant::now();
     let Task::Sweep { sweep, cases } = Task::sweep(Document::read(&args.sweep, &[])?, &args.set, args.most)? else {

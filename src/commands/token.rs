@@ -9,7 +9,6 @@ use perilife_service::job::time;
 use perilife_service::store::Role;
 use perilife_service::{with_store, without_password};
 
-/// Arguments of `perilife token`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// What to do.
@@ -18,7 +17,6 @@ pub struct Args {
     /// Where the service keeps its jobs.
     #[command(flatten)]
     pub place: Place,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }
@@ -28,7 +26,6 @@ pub struct Args {
 pub enum Task {
     /// Create a token; it is shown only once
     Add {
-        /// Name of the owner
         name: String,
         /// Role: read, run (own jobs) or admin (all jobs)
         #[arg(long, value_enum)]
@@ -40,13 +37,9 @@ pub enum Task {
     /// List names, roles and expiry
     List,
     /// Remove a token
-    Remove {
-        /// Name of the owner
-        name: String,
-    },
+    Remove { name: String },
 }
 
-/// Runs `perilife token`.
 pub fn run(args: &Args) -> Result<()> {
     let may_make = matches!(args.task, Task::Add { .. });
     let (url, console) = (if may_make { args.place.made()? } else { args.place.url()? }, &args.console);

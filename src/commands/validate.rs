@@ -8,7 +8,6 @@ use perilife_base::input::Provenance;
 use perilife_results::output::{OutputFile, OutputFolder, RunKind, Sort};
 use perilife_study::validate::{page, picture, rows, sets};
 
-/// Arguments of `perilife validate`.
 #[derive(Debug, clap::Args)]
 #[command(
     after_long_help = "A folder of your own tests contains source.toml ([source] and one [[test]] per prediction), the cases of the tests,\n\
@@ -24,7 +23,6 @@ pub struct Args {
     /// Markdown file of the page
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub markdown: Option<PathBuf>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

@@ -11,7 +11,6 @@ use perilife_results::output::{OutputFile, OutputFolder, RunKind, Sort};
 use perilife_study::topics;
 use perilife_study::verification;
 
-/// Arguments of `perilife verify`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Topics to verify [default: all; see `perilife list`]
@@ -23,7 +22,6 @@ pub struct Args {
     /// Markdown file of all tables, without run times
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub markdown: Option<PathBuf>,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

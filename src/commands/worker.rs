@@ -153,7 +153,6 @@ fn days(text: &str) -> std::result::Result<f64, String> {
 }
 
 impl Work {
-    /// How workers work.
     pub fn settings(&self) -> worker::Settings {
         let default = worker::Settings::default();
         worker::Settings {
@@ -170,13 +169,11 @@ impl Work {
     }
 }
 
-/// Arguments of `perilife worker`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Where jobs and results are kept, and who runs them.
     #[command(flatten)]
     pub work: Work,
-    /// What is printed.
     #[command(flatten)]
     pub console: Console,
 }

@@ -202,7 +202,7 @@ impl<'a> BondStrain<'a> {
         let run = &mut self.run;
         retire_tips(&mut run.tips, body, &case.specimen, &self.near, settings.zone_radius_horizons);
         let focus = focus(&run.tips, body, settings);
-        run.iterations += self.equilibrium.reach(body, &run.bonds, &self.watched, &focus, &mut self.displacement)?;
+        run.iterations += self.equilibrium.reach(body, &run.bonds, (&self.watched, &focus), &mut self.displacement)?;
         run.had_window |= self.equilibrium.used() == SolverUsed::Window;
         let ageing = fatigue_bonds(body, &self.near, &self.displacement, self.range);
         if let Some(reason) = stop::before_block(case, self.end, &run.track, &run.tips, &ageing) {

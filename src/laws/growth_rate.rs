@@ -19,7 +19,6 @@ pub struct Sample {
     pub work: f64,
 }
 
-/// Rates at a sample.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rate {
     /// da/dN, m/cycle.

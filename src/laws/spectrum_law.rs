@@ -21,7 +21,6 @@ const STEEP: f64 = 30.0;
 /// Share of the mean rate that a class beyond what the law knows may have without a word.
 const BEYOND: f64 = 0.01;
 
-/// A law with a spectrum.
 #[derive(Debug)]
 pub struct SpectrumLaw {
     law: Box<dyn GrowthLaw>,

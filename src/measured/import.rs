@@ -35,19 +35,12 @@ perilife_base::keys! {
     #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct LeaveOut {
-        /// Name of the specimen; may be left out where there is one.
         specimen: Option<String> = key("specimen", "Specimen: optional with a single specimen");
-        /// First cycles, as the file counts them.
         from_cycles: Option<f64> = key("from_cycles", "First cycles: as the file counts them");
-        /// Last cycles.
         to_cycles: Option<f64> = key("to_cycles", "Last cycles");
-        /// File of the row; may be missing where there is one.
         file: Option<String> = key("file", "File of the row: optional with a single file");
-        /// Line of the row in it.
         line: Option<usize> = key("line", "Line of the row");
-        /// A cell of the row, which shows that the line is the one that is meant.
         value: Option<String> = key("value", "A cell of the row: confirms the line");
-        /// Why.
         reason: String = key("reason", "Reason");
     }
 }

@@ -37,7 +37,6 @@ perilife_base::kinds! {
 /// A flag of `perilife rates` that speaks against nothing.
 const HARMLESS: &str = "load_changes";
 
-/// One rate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RateRow {
     /// Test it belongs to: its file, and the specimen where the file names one. Rows of a test follow each other.
@@ -87,7 +86,6 @@ pub struct RateTable {
 #[derive(Debug, Clone)]
 pub enum RateFile {
     Name(String),
-    /// With more.
     Keys(Box<RateFileKeys>),
 }
 
@@ -106,21 +104,13 @@ perilife_base::keys! {
     /// What a user says of a table of rates.
     #[derive(Debug, Clone, Default)]
     pub struct RateFileKeys {
-        /// Name of the file.
         file: String = key("file", "File of rates");
-        /// R of all rows.
         stress_ratio: Option<f64> = key("stress_ratio", "Stress ratio R: of all rows");
-        /// Unit of ΔK.
         intensity_unit: Option<IntensityUnit> = key("intensity_unit", "Unit of ΔK");
-        /// Unit of da/dN.
         rate_unit: Option<RateUnit> = key("rate_unit", "Unit of da/dN");
-        /// Which range ΔK is at negative R.
         delta_k: Option<RangeKind> = key("delta_k", "ΔK at negative R");
-        /// Columns by name.
         columns: ColumnNames = COLUMNS, or "found by their names" ColumnNames::default();
-        /// The decimal sign.
         decimal: Option<Decimal> = DECIMAL;
-        /// Sheet of a workbook.
         sheet: Option<Sheet> = SHEET;
     }
 }
@@ -130,7 +120,6 @@ pub const DECIMAL: Key = key("decimal", "Decimal sign");
 pub const SHEET: Key = key("sheet", "Sheet of a workbook: its name or number");
 
 impl RateFile {
-    /// All that is said.
     pub fn keys(&self) -> RateFileKeys {
         match self {
             RateFile::Name(file) => RateFileKeys { file: file.clone(), ..RateFileKeys::default() },

@@ -59,7 +59,6 @@ fn spline(s: f64) -> (f64, f64) {
     }
 }
 
-/// A weighted node.
 #[derive(Clone, Copy)]
 struct Weighted<const M: usize> {
     node: u32,
@@ -217,7 +216,6 @@ fn times<const M: usize>(a: &[[f64; M]; M], x: &[f64; M]) -> [f64; M] {
     product
 }
 
-/// The basis of a plate.
 #[derive(Debug, Clone)]
 pub struct AnyBasis {
     kind: BasisKind,

@@ -46,7 +46,6 @@ const AT_TIP: f64 = 1e-6;
 /// a thousandth of a spacing beyond a side leaves K 2 % wrong by 3 × 3 points.
 const BESIDE_TIP: f64 = 0.3;
 
-/// A point of integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuadraturePoint {
     /// Position, m.
@@ -90,7 +89,6 @@ impl Dividers {
         Dividers { sides: plate.sides.clone(), cracks, sides_near, cracks_near, tips }
     }
 
-    /// Those of a cell.
     pub fn of_cell(&self, leaf: usize) -> OfCell {
         let beside = |near: &HashMap<usize, Vec<u32>>, all: &[[Point; 2]]| -> Vec<[Point; 2]> {
             near.get(&leaf).into_iter().flatten().map(|&index| all[index as usize]).collect()

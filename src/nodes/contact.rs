@@ -62,7 +62,6 @@ impl Pressed {
     }
 }
 
-/// A segment of crack.
 struct Segment {
     ends: [Point; 2],
     /// Area of a flank, m².
@@ -108,7 +107,6 @@ impl Segment {
     }
 }
 
-/// Flanks in contact.
 pub struct Contact {
     /// Segments in contact.
     pub pressed: Vec<Pressed>,

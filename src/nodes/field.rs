@@ -161,7 +161,6 @@ impl Discretisation {
         });
     }
 
-    /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
         self.first[self.first.len() - 1] as usize
     }
@@ -181,7 +180,6 @@ impl Discretisation {
         self.dilatation.get_or_init(means);
     }
 
-    /// Elastic constants.
     pub fn elasticity(&self) -> Elasticity {
         self.elasticity
     }

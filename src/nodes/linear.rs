@@ -106,7 +106,6 @@ fn inverse(&[a11, a21, a31, a22, a32, a33]: &[f64; 6]) -> Option<[f64; 6]> {
     })
 }
 
-/// Straight ways.
 struct Ways<'a> {
     room: &'a mut Workspace,
     at: Point,

@@ -25,7 +25,6 @@ const ON_ARC: f64 = 0.5;
 /// Pieces of a hole between nodes at the least.
 const PIECES_LEAST: usize = 12;
 
-/// Nodes of a plate.
 #[derive(Debug, Clone, Default)]
 pub struct Nodes {
     /// Positions, m.

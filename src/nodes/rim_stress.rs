@@ -30,7 +30,6 @@ const OFF: f64 = 1e-9;
 /// Step from a rim into the material, in local spacings, where the plate is read on the rim itself.
 const INWARD: f64 = 1e-6;
 
-/// Which rim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rim {
     /// A hole, by its place in `Specimen::holes`.
@@ -41,7 +40,6 @@ pub enum Rim {
     Outline,
 }
 
-/// A stress and where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressAt {
     /// Place, m.
@@ -50,7 +48,6 @@ pub struct StressAt {
     pub stress: f64,
 }
 
-/// Stress along a rim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RimStress {
     pub rim: Rim,

@@ -102,7 +102,6 @@ impl Shapes {
         DMatrix::from_columns(&columns)
     }
 
-    /// All of them at angles.
     pub fn at(&self, angles: &[f64]) -> DMatrix<f64> {
         self.raw(angles) * &self.weights
     }

@@ -94,7 +94,6 @@ impl Stretch {
     }
 }
 
-/// All stretches of rim.
 pub fn stretches(specimen: &Specimen) -> Vec<Stretch> {
     let outline = edges(&specimen.outline).map(|(a, b)| Stretch::Straight([a, b]));
     let holes = specimen.holes.iter().map(|hole| Stretch::Circle(*hole));

@@ -19,7 +19,6 @@ const INWARDS: f64 = 1e-3;
 /// Distance from a rim or crack, over the spacing, within which a side of a piece lies on it.
 const ON_RIM: f64 = 1e-2;
 
-/// A corner of a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// Where it is, m.

@@ -131,7 +131,6 @@ impl PointPlate<'_> {
         areas.sum::<f64>().min(self.specimen.area())
     }
 
-    /// Points of all levels.
     pub fn points(&self) -> f64 {
         let density = |level: usize| self.spacing_of(level).powi(-2);
         let finer = (1..=self.deepest()).map(|level| self.area_of(level) * (density(level) - density(level - 1)));

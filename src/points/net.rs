@@ -16,7 +16,6 @@ use perilife_plate::specimen::Point;
 /// Points that one task gathers forces of.
 const TASK: usize = 4096;
 
-/// A bond of a net.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NetBond {
     pub from: u32,

@@ -58,7 +58,6 @@ impl Refinement {
         self.regions.iter().map(|(_, levels)| *levels).max().unwrap_or(0)
     }
 
-    /// The same in words.
     pub fn words(&self) -> String {
         format!("{} regions, up to {} levels", self.regions.len(), self.deepest())
     }

@@ -83,7 +83,6 @@ impl Bonds {
         self.inhabited[row].clone()
     }
 
-    /// Chunks of a row.
     #[inline]
     pub fn chunks(&self) -> usize {
         self.chunks

@@ -11,7 +11,6 @@ use pyo3::prelude::*;
 use crate::errors::raised;
 use crate::watcher::Told;
 
-/// A run that counts.
 #[pyclass(frozen, module = "perilife._perilife")]
 pub struct Run {
     task: Task,

@@ -27,7 +27,6 @@ pub const COLOURS: [&str; 6] = [COMPUTED, SECOND, "#1b8a6b", "#8a4fa3", NOTE, "#
 /// Size of a chart in a file of its own, px, and of its numbers.
 pub const LARGE: Size = Size { width: 900.0, height: 560.0, text: 14.0 };
 
-/// Size of a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Size {
     pub width: f64,

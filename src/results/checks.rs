@@ -62,7 +62,6 @@ pub enum Side {
     Conservative,
 }
 
-/// One check.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     pub name: Cow<'static, str>,
@@ -206,7 +205,6 @@ pub fn validity(checks: &[Check]) -> Validity {
     }
 }
 
-/// The verdict in words.
 pub fn verdict(checks: &[Check]) -> String {
     let count = |verdict: Verdict| checks.iter().filter(|check| check.verdict == verdict).count();
     let cautions = count(Verdict::Caution);

@@ -26,7 +26,6 @@ const TEXT: f64 = 14.0;
 const INK: &str = "#282828";
 const PATH: &str = "#0096ff";
 
-/// What the picture shows.
 #[derive(Debug, Clone, Copy)]
 pub struct DamagePicture<'a> {
     pub grid: &'a PointGrid,
@@ -43,7 +42,6 @@ pub fn cycles_and_length(snapshot: &Snapshot) -> [String; 2] {
 }
 
 impl DamagePicture<'_> {
-    /// Writes the picture.
     pub fn write(&self, path: &Path) -> Result<()> {
         let svg = self.svg().map_err(|e| Error::file(path, "cannot draw", std::io::Error::other(e)))?;
         write_file(path, svg.as_bytes())

@@ -22,7 +22,6 @@ pub struct Format {
     minus: &'static str,
 }
 
-/// In lines of a console.
 pub const PLAIN: Format = Format { thousands: " ", minus: "-" };
 /// In a document: narrow spaces at which no line breaks, a true minus.
 pub const PRINT: Format = Format { thousands: "\u{202f}", minus: "−" };
@@ -47,7 +46,6 @@ impl Format {
         self.digits(&format!("{value:.0}"))
     }
 
-    /// With so many decimals.
     pub fn fixed(self, value: f64, decimals: usize) -> String {
         let text = format!("{value:.decimals$}");
         let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
@@ -150,7 +148,6 @@ pub fn chance(probability: f64) -> String {
     if probability < 1e-3 { "below 1e-3".to_owned() } else { format!("{probability:.2e}") }
 }
 
-/// Two significant digits.
 pub fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }

@@ -31,7 +31,6 @@ pub struct InspectionsRecord {
     pub rows: Vec<InspectionRow>,
 }
 
-/// One inspection.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct InspectionRow {
     pub cycles: f64,

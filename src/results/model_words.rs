@@ -18,7 +18,6 @@ use perilife_points::solver::SolverUsed;
 pub const OF_BONDS: [&str; 7] =
     ["bond_law", "kernel", "rotation", "surface_correction", "kinematics", "zero_energy_control", "zero_energy_factor"];
 
-/// One choice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     /// Its key in the input file or of the result.

@@ -40,7 +40,6 @@ pub struct InputEntry {
     pub kept_as: String,
 }
 
-/// What made a result.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct MadeBy {
     #[serde(default)]

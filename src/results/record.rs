@@ -31,10 +31,8 @@ use perilife_growth::predict::{CurvePoint, GoverningCrack, Prediction, StopReaso
 use perilife_growth::record::TipRecord;
 use perilife_plate::specimen::part_through::{BREAK_THROUGH, Limit, STATED_ERROR};
 
-/// Name of the file.
 pub const RESULT_FILE: &str = "result.json";
 
-/// A run of cycles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunRecord {
     pub name: String,

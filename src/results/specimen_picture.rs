@@ -99,7 +99,6 @@ fn draw_cracks(sketch: &mut Sketch, specimen: &Specimen) {
     }
 }
 
-/// Supports in words.
 fn support_words(specimen: &Specimen) -> Vec<String> {
     let at = |from: &Point, to: &Point| {
         let [[a, b], [c, d]] = [from, to].map(|point| point.map(mm));

@@ -36,7 +36,6 @@ pub struct Plan {
     pub cases: Vec<PlannedCase>,
 }
 
-/// A case of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PlannedCase {
     pub input: String,
@@ -55,7 +54,6 @@ pub struct Outcome {
     pub stop_reason: Option<String>,
     /// Whether that is less than what the plate lives, all that could end it sooner being checked.
     pub life_is_lower_bound: Option<bool>,
-    /// Crack length at the end.
     pub crack_length_final_mm: Option<f64>,
     pub wall_s: f64,
     /// Why there is no result.
@@ -249,7 +247,6 @@ pub struct LifeQuantiles {
     pub most: Option<f64>,
 }
 
-/// The same in words.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct QuantileWords {
     pub p05: Option<String>,

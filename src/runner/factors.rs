@@ -34,7 +34,6 @@ pub struct SifRecord {
     pub stresses: Option<StressesRecord>,
 }
 
-/// K of a tip.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TipRecord {
     pub x_mm: f64,
@@ -48,7 +47,6 @@ pub struct TipRecord {
     pub end: Option<String>,
 }
 
-/// K by one method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodRecord {
     pub k_i_mpa_sqrt_m: Option<f64>,

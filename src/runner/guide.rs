@@ -1,5 +1,5 @@
 //! The guide: Markdown of `src/guide` and of two documents that other places need too, in the order of the index.
-#![allow(rustdoc::broken_intra_doc_links, reason = "brackets of TOML in tables are no links")]
+#![allow(rustdoc::broken_intra_doc_links, rustdoc::bare_urls, reason = "brackets of TOML and addresses in tables are not links")]
 
 /// Declares the pages: a module documented by the text, and a row of the list.
 macro_rules! pages {
@@ -45,7 +45,6 @@ pages! {
     glossary = "../guide/glossary.md",
 }
 
-/// Markdown of a page.
 pub fn page(name: &str) -> Option<&'static str> {
     PAGES.iter().find(|(page, _)| *page == name).map(|(_, text)| *text)
 }

@@ -92,7 +92,6 @@ enum Done {
 }
 
 impl Summary {
-    /// Words alone.
     pub fn of_words(lines: Vec<String>, details: Vec<String>, messages: Vec<Message>) -> Self {
         Summary { lines, details, messages, ..Summary::default() }
     }
@@ -144,7 +143,6 @@ impl Summary {
 /// Where an earlier run of a task stood.
 #[derive(Debug)]
 pub enum TaskCheckpoint {
-    /// Of a run of cycles.
     Cycles(Box<Checkpoint>),
     Scene(Box<SceneCheckpoint>),
 }

@@ -59,7 +59,6 @@ fn crack_path(file: &'static str, path: &[PathPoint]) -> Table {
         .numbers("speed_m_s", column(|point| point.speed))
 }
 
-/// Its tables with their texts.
 pub fn tables(fracture: &Fracture) -> [(Table, String); 3] {
     [history(fracture), crack_path("crack_path.csv", &fracture.path), crack_path("cracking.csv", &fracture.cracking)]
         .map(Table::with_text)

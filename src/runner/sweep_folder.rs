@@ -21,7 +21,6 @@ pub const LOGS: &str = "logs";
 /// Cases that a message names at most.
 pub(super) const NAMED: usize = 5;
 
-/// The folder of a sweep.
 #[derive(Debug)]
 pub struct SweepFolder {
     /// As the user named it.

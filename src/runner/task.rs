@@ -72,12 +72,10 @@ impl Kind {
 pub enum Task {
     /// A case.
     Prediction {
-        /// The case.
         case: Box<Case>,
         /// What is wanted beside the run.
         wanted: Box<Wanted>,
     },
-    /// A fracture scene.
     Scene(Box<Scene>),
     /// A fit to a-N curves, or of laws over K to rates.
     Fit(Calibration),
@@ -92,9 +90,7 @@ pub enum Task {
     },
     /// A sweep with all its cases.
     Sweep {
-        /// The sweep.
         sweep: Box<Sweep>,
-        /// Its cases.
         cases: Vec<DrawnCase>,
     },
 }
@@ -168,7 +164,6 @@ impl Task {
         Ok(Task::Sweep { sweep, cases })
     }
 
-    /// Its name.
     pub fn name(&self) -> &str {
         match self {
             Task::Prediction { case, .. } | Task::Factors { case, .. } => &case.name,

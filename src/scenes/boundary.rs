@@ -29,7 +29,6 @@ impl Held {
     }
 }
 
-/// A prescribed motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Motion {
     /// This displacement at full load, m.

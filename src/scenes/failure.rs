@@ -12,7 +12,6 @@ use perilife_points::net::Net;
 /// side of a crack counts as compressed, and would hang on to it for ever.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measures {
-    /// Stretch s.
     pub stretch: f64,
     /// True length over that at rest, squared, less 1: `|ξ + η|²/|ξ|² - 1`.
     pub elongation: f64,
@@ -40,7 +39,6 @@ pub enum Failure {
     /// kernel this is `(c_n s² + c_t γ²)/2 ≥ w_c0` (Huang, Li, Jin, He and Wang, equation 24, after Zhu and Ni 2017), in tension only;
     /// also where the true length is beyond s_c.
     Energy(Vec<f64>),
-    /// Exponential softening.
     Softening(Softening),
 }
 

@@ -25,7 +25,6 @@ pub struct PlatenContact {
     pub stiffness: f64,
 }
 
-/// A rigid plate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Platen {
     /// Unit vector of its motion, into the body.

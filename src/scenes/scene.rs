@@ -160,7 +160,6 @@ impl LoadRamp {
     }
 }
 
-/// A load of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneLoad {
     pub region: Region,
@@ -171,7 +170,6 @@ pub struct SceneLoad {
     pub key: String,
 }
 
-/// A support of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneSupport {
     pub region: Region,
@@ -201,7 +199,6 @@ pub enum Procedure {
     },
 }
 
-/// Damage of the bonds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damage {
     pub law: DamageLaw,

@@ -41,7 +41,6 @@ impl State {
 pub struct JobProgress {
     /// Cycles since N = 0.
     pub cycles: f64,
-    /// Crack length.
     pub crack_length_mm: f64,
     /// Share of the way to the end, 0 to 1.
     pub share: f64,

@@ -8,14 +8,12 @@ use perilife_base::input::Document;
 use perilife_growth::case::Case;
 use perilife_growth::case::remove_law;
 
-/// The key of nodes.
 pub const NODES: &str = "model.method=element_free_galerkin";
 /// Override for the choice of the program.
 pub const AUTO: &str = "model.method=auto";
 /// Override for points and bonds.
 pub const POINTS: &str = "model.method=peridynamics";
 
-/// Overrides from their text.
 pub fn overrides(keys: &str) -> Vec<String> {
     keys.split_whitespace().map(str::to_owned).collect()
 }

@@ -35,7 +35,6 @@ pub const SPACING: f64 = DIAMETER / 101.0;
 pub const CONTROL: (ZeroEnergyControl, f64) = (ZeroEnergyControl::Silling, 0.5);
 /// Way of each platen, m: short of failure.
 pub const TRAVEL: f64 = 0.12 * MM;
-/// Corners of the outline.
 const CORNERS: usize = 360;
 
 /// The disc between platens that each move by `travel`, m.

@@ -4,10 +4,8 @@ use std::str::FromStr;
 
 use perilife_base::error::{Error, Result};
 
-/// Figures by name.
 pub type Figures = Vec<(&'static str, f64)>;
 
-/// Keys of a computation.
 pub struct Keys<'a>(pub &'a [String]);
 
 impl Keys<'_> {

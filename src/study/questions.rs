@@ -19,7 +19,6 @@ use super::subject::{Source, Subject, Watcher, once};
 use super::values::{Values, combinations, wrong};
 use perilife_base::error::{Error, Result};
 
-/// A question.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Question {
@@ -66,7 +65,6 @@ pub struct Miss {
     pub reason: String,
 }
 
-/// Shared values of all studies.
 pub const SHARED: &str = include_str!("../../data/studies/shared.toml");
 
 /// The table of a file of studies. Errors: the name of the file with what is wrong.

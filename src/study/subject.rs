@@ -48,7 +48,6 @@ const BEGUN: f64 = 0.05;
 /// Where the text of a case comes from.
 #[derive(Debug, Clone)]
 pub enum Source {
-    /// Written out.
     Text(String),
     /// A plate alone: it need not have a crack, and its law is not read.
     Alone(String),

@@ -221,7 +221,7 @@ fn a_first_reading_is_at_the_start_within_its_rounding() {
     // Rounded in a report by up to 0.05 mm, as long as one reading alone is put at the start.
     let started = |short: f64, step: f64| {
         let of = |n: f64, a: f64| format!("{n};{}", 5.0 - short + step * (a - 5.0));
-        case(MIDDLE, &table("N;a (mm)", |n, a| of(n, a)))
+        case(MIDDLE, &table("N;a (mm)", of))
     };
     assert!(started(0.04, 1.0).is_ok());
     for (short, step, first) in [(0.06, 1.0, "4.94"), (0.04, 0.01, "4.96")] {

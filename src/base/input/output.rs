@@ -9,11 +9,8 @@ crate::keys! {
     /// Keys of `[output]`.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
     pub struct Output {
-        /// Whether the fields of some moments are written for ParaView, which takes most of the room of a run.
         paraview: bool = key("paraview", "ParaView files: fields at several stages"), or "false" false;
-        /// Whether a run draws its cracks as they grow.
         animation: bool = key("animation", "Animation: growth.svg of the growing cracks"), or "false" false;
-        /// Whether a run leaves out its pictures.
         tables_only: bool = key("tables_only", "Tables only: no pictures"), or "false" false;
     }
 }

@@ -61,7 +61,6 @@ pub enum Shape {
     Text,
     /// One of these names.
     Choice(fn() -> Vec<KindLine>),
-    /// So many numbers.
     Numbers(usize),
     /// What its reader takes, in words: "a number or \"pure\"".
     Other(&'static str),

@@ -24,7 +24,6 @@ pub enum Separator {
     Tab,
     Semicolon,
     Comma,
-    /// A vertical bar.
     Bar,
     /// Two blanks or more, so that names may have blanks.
     Gap,
@@ -81,7 +80,6 @@ pub struct Table {
     pub notes: Vec<String>,
 }
 
-/// One row of cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Line in the file, counted from 1.

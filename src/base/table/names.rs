@@ -90,7 +90,6 @@ pub enum Role {
     StressX,
     /// Stress component τ_xy.
     ShearXy,
-    /// β.
     Beta,
     /// Another quantity of a test.
     Other,
@@ -106,7 +105,6 @@ pub enum Role {
 enum Measure {
     /// Whatever stands in brackets.
     Text,
-    /// Nothing.
     Number,
     Length,
     /// A unit, without which the name is not a form.
@@ -162,15 +160,12 @@ static PARTS: LazyLock<HashMap<Kind, Part>> = LazyLock::new(|| {
 /// The unit that a name says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Named {
-    /// None.
     No,
-    /// This one.
     Is(Unit),
     /// In brackets stands something else.
     Strange,
 }
 
-/// A column of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Column {
     /// Place in the header, from 0.

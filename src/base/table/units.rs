@@ -58,7 +58,6 @@ crate::kinds! {
     }
 }
 
-/// A unit of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
     Length(LengthUnit),

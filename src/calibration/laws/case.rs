@@ -26,7 +26,6 @@ pub struct LawCase {
     /// Rates of the tables that are left out since they are flagged.
     pub flagged: usize,
     pub material: String,
-    /// Files with their hashes.
     pub sources: Vec<SourceFile>,
     /// The test, where rates are taken from readings.
     pub test: Option<Box<CalibrationCase>>,

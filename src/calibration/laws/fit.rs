@@ -31,7 +31,6 @@ pub struct Constant {
     pub error: Option<f64>,
 }
 
-/// A law fitted to rates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawFit {
     pub kind: GrowthLawKind,

@@ -44,7 +44,6 @@ impl FitLaw {
         self.0.map_or("best", GrowthLawKind::name)
     }
 
-    /// Meaning in one line.
     pub fn meaning(self) -> &'static str {
         self.0.and_then(|kind| kind.0.fit).unwrap_or("the best of them by Akaike's criterion (AICc)")
     }

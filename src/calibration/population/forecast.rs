@@ -23,7 +23,6 @@ pub const CELLS: usize = 24;
 const SLOPE_DEVIATION_MIN: f64 = 0.5;
 /// Factor of ΔK beyond the calibrated range up to which the chord is continued.
 pub(super) const BEYOND_MAX: f64 = 2.0;
-/// Confidence of a basis value.
 const BASIS_CONFIDENCE: f64 = 0.95;
 /// Fewest specimens of a basis value.
 const BASIS_SPECIMENS_MIN: usize = 3;
@@ -31,9 +30,7 @@ const BASIS_SPECIMENS_MIN: usize = 3;
 /// Lower bound of lives with a confidence of 95 %.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Basis {
-    /// Reached by 99 of 100.
     A,
-    /// Reached by 90 of 100.
     B,
 }
 
@@ -53,7 +50,6 @@ pub struct Forecast {
     pub share_outside: f64,
 }
 
-/// A life and its scatter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Life {
     pub median: f64,

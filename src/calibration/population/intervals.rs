@@ -34,7 +34,6 @@ pub type RangeOfK<'a> = &'a dyn Fn(f64) -> f64;
 /// The same of all tips whose growth adds up to the length.
 pub type RangesOfTips<'a> = &'a dyn Fn(f64) -> Vec<f64>;
 
-/// One reading of a specimen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntervalReading {
     /// Crack length, m.

@@ -20,7 +20,6 @@ pub const CASES_MAX: usize = 10_000;
 /// Seed where the file gives none.
 const SEED: u64 = 1;
 
-/// What is to be run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Design {
     /// How cases are chosen.

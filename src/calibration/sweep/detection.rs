@@ -15,7 +15,6 @@ const ROUND_OFF: f64 = 1e-9;
 /// Inspections of a plate that are counted at most: what is not found by then never is.
 const INSPECTIONS_MAX: usize = 10_000;
 
-/// A curve of detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Detection {
     /// Crack length that is found with a probability of 50 %, m.

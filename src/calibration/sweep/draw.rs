@@ -17,7 +17,6 @@ use perilife_growth::case::{Case, LawSource, Method, fitted_record};
 /// Name of a drawn record among the files of its case.
 const FITTED: &str = "fitted.toml";
 
-/// A case of a sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnCase {
     /// Number, from 1.

@@ -25,7 +25,6 @@ const SHORTEST: f64 = 0.05;
 /// Inspections up to which it is told with what probability a crack has been missed.
 const TOLD: usize = 30;
 
-/// A plate of a fleet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FleetPlate {
     /// Initial crack length, m.
@@ -72,7 +71,6 @@ pub struct Looked {
     pub missed: f64,
 }
 
-/// Lives of a fleet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FleetLives {
     /// Every plate, in the order in which they are drawn.
@@ -163,7 +161,6 @@ struct Drawing<'f> {
 enum Laws {
     /// That of the case, at its stress ratio.
     One(Box<dyn GrowthLaw>, f64),
-    /// Drawn.
     Lot(Box<LotRates>, Box<Forecast>),
 }
 

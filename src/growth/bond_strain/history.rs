@@ -108,7 +108,6 @@ impl GrowthHistory {
         self.past.cycles += cycles;
     }
 
-    /// Cycles so far.
     pub(super) fn cycles(&self) -> f64 {
         self.past.cycles
     }
@@ -274,7 +273,6 @@ fn end_at(rows: &mut Vec<Row>, end: &End, specimen: &Specimen) {
     }
 }
 
-/// Where a run stands.
 pub(super) struct RunState {
     pub bonds: Bonds,
     pub life: BondLife,

@@ -135,7 +135,6 @@ fn ratio_line(case: &Case, method: &str) -> Option<String> {
     Some(format!("model.horizon_ratio {ratio}: beyond {end} the life error exceeds {} %; use 3.015", limit.bound_percent))
 }
 
-/// Poisson's ratio.
 fn poisson_line(case: &Case, method: Option<&str>) -> Option<String> {
     let nu = case.material.poisson_ratio;
     let (sweep, plane) = match case.material.plane {

@@ -114,7 +114,6 @@ fn read_step_error(slice: &FatigueKeys, has_tips: bool) -> Result<f64> {
     Ok(error.unwrap_or(STEP_ERROR_PERCENT))
 }
 
-/// What loads to bear are.
 const REQUIRED: &str = "the load";
 
 perilife_base::keys! {

@@ -114,7 +114,6 @@ pub struct CurveRecord {
     pub da_dn_relative_error: [f64; ROWS],
     /// Local exponents d ln(da/dN)/d ln ΔK.
     pub m: [f64; ROWS],
-    /// Their standard errors.
     pub m_error: [f64; ROWS],
 }
 
@@ -173,7 +172,6 @@ pub struct LawRecord {
     pub fatigue: Table,
     /// Standard errors of the constants that were fitted, by the same keys.
     pub errors: BTreeMap<String, f64>,
-    /// Files with their hashes.
     pub sources: Vec<SourceFile>,
 }
 

@@ -16,7 +16,6 @@ use perilife_base::quadrature::integrate;
 /// K of a short kink at the least, over that of none.
 const SHARE_LEAST: f64 = 0.5;
 
-/// A kink of a tip.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Kink {
     /// K_I of the infinitesimal kink, Pa√m.

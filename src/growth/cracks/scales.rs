@@ -28,7 +28,6 @@ pub struct Scales {
     pub rows_per_checkpoint: usize,
 }
 
-/// Scales of steps.
 #[derive(Debug, Clone, Copy)]
 pub struct StepScales {
     /// What the parabola may add to the cycles of an increment, as share.
@@ -66,7 +65,6 @@ pub struct StepScales {
     pub slack_most: f64,
 }
 
-/// Scales of directions.
 #[derive(Debug, Clone, Copy)]
 pub struct SteeringScales {
     /// Growth, in steps, whose aims show where the crack is heading.

@@ -38,7 +38,6 @@ pub(super) struct Overloads<'a> {
     share: f64,
 }
 
-/// The end of a step.
 struct Stepped {
     to: Grown,
     at: [Underway; 2],

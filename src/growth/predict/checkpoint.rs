@@ -34,7 +34,6 @@ pub struct Checkpoint {
     growth: State,
 }
 
-/// Pictures so far.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Pictures {
     step: f64,

@@ -68,7 +68,6 @@ pub struct SweepRow {
     pub back_face_strain: Option<f64>,
 }
 
-/// A sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FactorSweep {
     /// Length by length, tip by tip.

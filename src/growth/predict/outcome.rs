@@ -144,7 +144,6 @@ pub struct GoverningCrack<'a> {
 }
 
 impl<'a> GoverningCrack<'a> {
-    /// Of a run.
     pub fn of(specimen: &'a Specimen, curve: &[CurvePoint]) -> Self {
         let line = |tip: usize| specimen.line_end(tip).map(|end| end.line);
         let governing = governing_tip(specimen, curve).and_then(line).filter(|_| specimen.has_several_cracks());

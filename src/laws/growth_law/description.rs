@@ -76,7 +76,6 @@ pub enum Role {
     Threshold,
 }
 
-/// A constant of a law.
 #[derive(Debug, Clone, Copy)]
 pub struct Constant {
     /// Key in `[fatigue]`.
@@ -197,7 +196,6 @@ pub struct Rates {
     pub rows: Vec<RatedRow>,
 }
 
-/// A row of rates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatedRow {
     pub line: usize,

@@ -8,7 +8,6 @@ use perilife_plate::material::Plane;
 /// da/dN, m/cycle, by the constants of a model, the law of a cycle alone, the cycle, and the zone that it lies in.
 pub type Rate = fn(&[f64], &dyn GrowthLaw, &Now, &Zone) -> f64;
 
-/// A model of retardation.
 pub struct RetardationSpec {
     /// Name in input and result files.
     pub name: &'static str,
@@ -21,7 +20,6 @@ pub struct RetardationSpec {
     pub underload: &'static str,
 }
 
-/// A constant of a model.
 #[derive(Clone, Copy)]
 pub struct Constant {
     /// Key in `[loading]`.

@@ -22,7 +22,6 @@ const WORTH: f64 = 3.0;
 /// Change of what is left of a zone in a pass, over its size, up to which passes are alike.
 const ALIKE: f64 = 1e-3;
 
-/// What ends a march.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Marched {
     /// The way that was asked for.

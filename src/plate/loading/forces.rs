@@ -10,7 +10,6 @@ use perilife_base::input::{Quantity, number as plain};
 use perilife_base::keys::{Given, coordinate, key, length, modulus, number};
 use perilife_base::units::round_mm;
 
-/// Their keys.
 pub(super) const KEYS: [&str; 2] = ["loading.pins", "loading.rollers"];
 
 /// Distance from the outline below which a place lies on it, m.

@@ -10,7 +10,6 @@ enum Function {
     Two(fn(f64, f64) -> f64),
 }
 
-/// Functions by their names.
 const FUNCTIONS: &[(&str, Function)] = &[
     ("sin", Function::One(f64::sin)),
     ("cos", Function::One(f64::cos)),
@@ -65,7 +64,6 @@ impl Formula {
         if reader.peek().is_some() { Err(reader.wrong("syntax error")) } else { Ok(Formula(reader.steps)) }
     }
 
-    /// Its value.
     pub fn at(&self, place: [f64; 2]) -> f64 {
         self.value::<()>(place, |_, _| Err(())).unwrap_or(f64::NAN)
     }

@@ -251,7 +251,6 @@ impl Input {
     }
 }
 
-/// What a magnitude is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Of {
     Stress,

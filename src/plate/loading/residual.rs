@@ -114,7 +114,6 @@ impl ResidualStress {
         }
     }
 
-    /// The key that gave it.
     pub fn key(&self) -> &'static str {
         self.key
     }

@@ -57,7 +57,6 @@ pub fn record(name: &str) -> Option<GrowthRecord> {
 }
 
 impl GrowthRecord {
-    /// In words.
     pub fn title(&self) -> String {
         format!("{}, {}, {}, {}", self.alloy, self.form, self.orientation, self.environment)
     }

@@ -25,11 +25,8 @@ perilife_base::keys! {
     /// One number of a material file.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Property {
-        /// Value in the unit of its key.
         value: f64 = key("value", "Value: in the unit of its key");
-        /// Where it comes from.
         source: String = key("source", "Source");
-        /// Thickness, orientation, heat treatment it holds for.
         note: Option<String> = key("note", "Note: thickness, orientation, heat treatment");
     }
 }
@@ -37,23 +34,14 @@ perilife_base::keys! {
     /// A material file.
     #[derive(Debug, Clone, PartialEq)]
     pub struct MaterialFile {
-        /// What it is, in words.
         title: String = key("title", "Title");
-        /// E, GPa.
         youngs_modulus_gpa: Property = key("youngs_modulus_gpa", "Young's modulus E");
-        /// ν.
         poisson_ratio: Property = key("poisson_ratio", "Poisson's ratio ν");
-        /// Yield strength (0.2 % offset), MPa.
         yield_strength_mpa: Option<Property> = key("yield_strength_mpa", "Yield strength σY: 0.2 % offset");
-        /// Fracture toughness, MPa√m.
         toughness_mpa_sqrt_m: Option<Property> = key("toughness_mpa_sqrt_m", "Fracture toughness Kc");
-        /// Fracture energy, J/m².
         fracture_energy_j_m2: Option<Property> = key("fracture_energy_j_m2", "Fracture energy");
-        /// Density, kg/m³.
         density_kg_m3: Option<Property> = key("density_kg_m3", "Density");
-        /// Tensile strength, MPa.
         tensile_strength_mpa: Option<Property> = key("tensile_strength_mpa", "Tensile strength");
-        /// Its growth law: keys of `[fatigue]`, files in them as seen from the folder of the case.
         growth: Option<toml::Table> = key("growth", "Growth law: keys of [fatigue]");
     }
 }

@@ -32,7 +32,6 @@ impl CrackLine {
         piece.map_or(0.0, |piece| distance(piece[0], piece[1]))
     }
 
-    /// A straight crack.
     #[inline]
     pub fn straight(from: Point, to: Point) -> Self {
         CrackLine { points: vec![from, to] }
@@ -44,7 +43,6 @@ impl CrackLine {
         self.points.windows(2).map(|piece| distance(piece[0], piece[1])).sum()
     }
 
-    /// One of its ends.
     #[inline]
     pub fn end(&self, at_last: bool) -> Point {
         // A line has two points at the least.

@@ -14,5 +14,4 @@ pub const BETA_FILE: Key = Key {
     check: <String as Field>::check,
     ..key("beta_file", "Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one")
 };
-/// Key that names the kind.
 pub const KIND: Key = Key { shape: <SpecimenKind as Field>::SHAPE, ..key("kind", "Kind of specimen") };

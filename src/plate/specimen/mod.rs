@@ -106,7 +106,6 @@ pub struct Crack {
 }
 
 impl Crack {
-    /// A straight crack.
     #[inline]
     pub fn straight(from: Point, to: Point) -> Self {
         Crack { from, to, continues: false }
@@ -195,7 +194,6 @@ impl Load {
     }
 }
 
-/// What is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Support {
     /// Points within `depth` of the straight outline stretch `from`-`to` (at least one row) keep the named components at zero.

@@ -37,13 +37,11 @@ pub struct Pin {
     pub radius: f64,
     /// Young's modulus, Pa.
     pub youngs_modulus: f64,
-    /// Poisson's ratio.
     pub poisson_ratio: f64,
     /// Forces of contact at maximum load on the plate with its initial cracks, once they are found.
     pub found: Option<Arc<Contact>>,
 }
 
-/// A pin in contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// Where contact ends on both sides of the direction of the force, rad.

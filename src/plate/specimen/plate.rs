@@ -36,7 +36,6 @@ const CORNERS_MAX: usize = 4000;
 const OUTLINE: &str = "the outline";
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     pub(super) struct Keys {
         outline: Option<Vec<Point>> = coordinate("outline_mm", "Outline: corners in order").group(OUTLINE);
         file: Option<String> = key("outline_file", "Drawing of the plate: DXF with layers outline, holes (full circles), cracks").group(OUTLINE);
@@ -52,7 +51,6 @@ perilife_base::keys! {
     }
 }
 perilife_base::keys! {
-    /// A hole.
     pub(super) struct HoleKeys {
         x: f64 = coordinate("x_mm", "Hole center, x");
         y: f64 = coordinate("y_mm", "Hole center, y");
@@ -60,7 +58,6 @@ perilife_base::keys! {
     }
 }
 perilife_base::keys! {
-    /// A crack.
     struct CrackKeys {
         from: Option<Point> = coordinate("from_mm", "One end: [x, y]");
         to: Option<Point> = coordinate("to_mm", "Other end: [x, y]");
@@ -68,7 +65,6 @@ perilife_base::keys! {
     }
 }
 perilife_base::keys! {
-    /// A slot.
     struct NotchKeys {
         from: Point = coordinate("from_mm", "One end: [x, y]");
         to: Point = coordinate("to_mm", "Other end: [x, y]");
@@ -137,7 +133,6 @@ pub(super) fn rectangle(width: f64, length: f64) -> Vec<Point> {
     vec![[-x, -y], [x, -y], [x, y], [-x, y]]
 }
 
-/// Round holes.
 pub(super) fn read_holes(list: &[HoleKeys]) -> Result<Vec<Hole>> {
     items("specimen.holes", list, |item, _| Ok(Hole { centre: [item.x, item.y], radius: item.diameter / 2.0 }))
 }

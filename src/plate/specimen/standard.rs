@@ -35,7 +35,6 @@ use perilife_base::error::Result;
 use perilife_base::keys::{Given, Section, key, part};
 
 perilife_base::keys! {
-    /// Keys of `[specimen]` of M(T) and DE(T).
     pub(super) struct Strip {
         width: f64 = WIDTH;
         length: f64 = LENGTH;
@@ -44,7 +43,6 @@ perilife_base::keys! {
     }
 }
 perilife_base::keys! {
-    /// Keys of `[specimen]` for a single edge crack.
     pub(super) struct SingleEdge {
         strip: Strip = part();
         ends: Ends = key("ends", "Ends: clamped, pinned or under uniform stress");
@@ -65,7 +63,6 @@ pub(super) fn from_value(kind: SpecimenKind, value: &Value) -> Result<Specimen> 
     Ok(Specimen { cracks, tips: vec![tip(-1.0), tip(1.0)], crack_length: a, ..strip })
 }
 
-/// One edge crack.
 pub(super) fn single_edge_from_value(value: &Value) -> Result<Specimen> {
     let SingleEdge { strip: Strip { width, length, thickness, a }, ends } = SingleEdge::read(&Given::of(value, "specimen")?)?;
     let strip = Specimen::strip(SpecimenKind::SingleEdgeTension, width, length, thickness);
@@ -86,7 +83,6 @@ fn edge_crack(width: f64, a: f64, side: f64) -> (Crack, TipSeed) {
 }
 
 perilife_base::keys! {
-    /// Keys of `[specimen]` of C(T).
     pub(super) struct Compact {
         w: f64 = WIDTH.said("Width W: from the load line to the back face");
         thickness: f64 = THICKNESS;

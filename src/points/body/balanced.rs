@@ -37,7 +37,6 @@ use perilife_plate::specimen::facets::Facet;
 pub const ROWS_MORE: usize = 1;
 /// Rows whose bonds change at least; short horizons have fewer bonds than equations otherwise.
 pub const ROWS_LEAST: usize = 3;
-/// Bounds of a multiplier.
 pub const BOUNDS: [f64; 2] = [0.2, 5.0];
 
 /// Rows of points that a consistent load reaches: the fewer, the more the last row takes. Stencils with no more bonds than a

@@ -127,7 +127,6 @@ impl Reflection {
         Reflection { axis, ends, stride: lattice.stride, places: body.places(), bonds }
     }
 
-    /// Image of a place.
     pub fn place(&self, place: usize) -> usize {
         self.seat([place % self.stride, place / self.stride])
     }
@@ -137,7 +136,6 @@ impl Reflection {
         if self.axis == 0 { row * self.stride + self.ends - column } else { (self.ends - row) * self.stride + column }
     }
 
-    /// Image of a bond.
     pub fn bond(&self, body: &Body, bond: Bond) -> Bond {
         let (k, from, to) = body.ends(bond);
         let (image, swaps) = self.bonds[k];

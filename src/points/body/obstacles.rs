@@ -24,7 +24,6 @@ pub struct Obstacles<'a> {
 }
 
 impl<'a> Obstacles<'a> {
-    /// Obstacles of a specimen.
     pub fn of(specimen: &'a Specimen, spacing: f64, horizon: f64) -> Self {
         let (corners, count) = (&specimen.outline, specimen.outline.len());
         let is_convex = (0..count).all(|i| turn(corners[i], corners[(i + 1) % count], corners[(i + 2) % count]) >= 0.0);

@@ -29,7 +29,6 @@ pub struct Sharing<'a> {
 }
 
 impl<'a> Sharing<'a> {
-    /// Everything to the nearest point.
     pub fn nearest(lattice: &'a Lattice, is_point: &'a [bool]) -> Self {
         Sharing { lattice, is_point, consistent: None }
     }

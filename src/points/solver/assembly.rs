@@ -66,7 +66,6 @@ pub fn for_joints<const M: usize>(
     }
 }
 
-/// Springs alone.
 pub struct Springs<'a, const N: usize> {
     product: &'a Product<N>,
     held: Vec<bool>,

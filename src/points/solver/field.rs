@@ -40,7 +40,6 @@ impl Layout {
         }
     }
 
-    /// Length of a vector.
     #[inline]
     pub fn len(&self) -> usize {
         self.rows * self.row_len() + LANES
@@ -70,7 +69,6 @@ impl Layout {
         dy as isize * self.row_len() as isize + dx as isize
     }
 
-    /// A zero vector.
     #[inline]
     pub fn zeros(&self) -> Vec<f64> {
         vec![0.0; self.len()]

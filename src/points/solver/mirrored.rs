@@ -174,20 +174,13 @@ impl EquilibriumBackend for Mirrored {
         self.inner.set_contact(&self.part.body, share_of_load, &contact.iter().map(of_part).collect::<Vec<_>>());
     }
 
-    fn reach(
-        &mut self,
-        body: &Body,
-        bonds: &Bonds,
-        watched: &[Bond],
-        tips: &[Focus],
-        displacement: &mut Vec<f64>,
-    ) -> Result<usize> {
+    fn reach(&mut self, body: &Body, bonds: &Bonds, ahead: (&[Bond], &[Focus]), displacement: &mut Vec<f64>) -> Result<usize> {
         if self.is_lost {
-            return self.inner.reach(body, bonds, watched, tips, displacement);
+            return self.inner.reach(body, bonds, ahead, displacement);
         }
-        let watched = self.part.bonds(body, watched);
+        let watched = self.part.bonds(body, ahead.0);
         let was_whole = self.inner.is_whole();
-        let iterations = self.inner.reach(&self.part.body, &self.bonds, &watched, tips, &mut self.displacement)?;
+        let iterations = self.inner.reach(&self.part.body, &self.bonds, (&watched, ahead.1), &mut self.displacement)?;
         let is_solved = iterations > 0 || was_whole != self.inner.is_whole();
         let has_moved = self.inner.window().unwrap_or_default() != self.window_of_part;
         if is_solved || has_moved || displacement.is_empty() {

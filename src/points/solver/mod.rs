@@ -90,17 +90,15 @@ impl Equilibrium {
         self.inner.set_contact(body, share, contact);
     }
 
-    /// Makes the displacement right at the ends of `watched` bonds, and gets ready for breaks around the tips; returns the
-    /// iterations.
+    /// Makes the displacement right at the ends of watched bonds and gets ready for breaks around tips, both of `ahead`; returns iterations.
     pub fn reach(
         &mut self,
         body: &Body,
         bonds: &Bonds,
-        watched: &[Bond],
-        tips: &[Focus],
+        ahead: (&[Bond], &[Focus]),
         displacement: &mut Vec<f64>,
     ) -> Result<usize> {
-        in_pool(|| self.inner.reach(body, bonds, watched, tips, displacement))
+        in_pool(|| self.inner.reach(body, bonds, ahead, displacement))
     }
 
     /// Whether this is a good moment to put a new one in its place, which knows nothing but the bonds: the window would have to be

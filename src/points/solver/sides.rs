@@ -200,16 +200,9 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
         self.product.set_contact(contact.iter().filter(|spring| spring.stiffness > 0.0).cloned().collect());
     }
 
-    fn reach(
-        &mut self,
-        body: &Body,
-        bonds: &Bonds,
-        watched: &[Bond],
-        tips: &[Focus],
-        displacement: &mut Vec<f64>,
-    ) -> Result<usize> {
+    fn reach(&mut self, body: &Body, bonds: &Bonds, ahead: (&[Bond], &[Focus]), displacement: &mut Vec<f64>) -> Result<usize> {
         let (solver, system, u) = self.parts(body, bonds);
-        let Some(solved) = solver.reach(system, u, watched, tips)? else { return Ok(0) };
+        let Some(solved) = solver.reach(system, u, ahead.0, ahead.1)? else { return Ok(0) };
         self.give(body, bonds, solved.work, displacement);
         Ok(solved.iterations)
     }

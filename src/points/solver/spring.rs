@@ -9,7 +9,6 @@ use super::field::Layout;
 /// Block of a point with itself and with the other end of a bond.
 pub type Blocks<const M: usize> = ([[f64; M]; M], [[f64; M]; M]);
 
-/// A spring in the plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spring {
     /// Normal stiffness, N/m.
@@ -78,7 +77,6 @@ pub struct Term {
     pub vector: Vec<(usize, f64)>,
 }
 
-/// A spring on a gap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GapSpring {
     /// Places with their weights on both displacements (lattice axes).

@@ -112,14 +112,7 @@ pub(super) trait EquilibriumBackend: Send {
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]);
     fn work(&self) -> f64;
     fn set_contact(&mut self, body: &Body, share: f64, contact: &[GapSpring]);
-    fn reach(
-        &mut self,
-        body: &Body,
-        bonds: &Bonds,
-        watched: &[Bond],
-        tips: &[Focus],
-        displacement: &mut Vec<f64>,
-    ) -> Result<usize>;
+    fn reach(&mut self, body: &Body, bonds: &Bonds, ahead: (&[Bond], &[Focus]), displacement: &mut Vec<f64>) -> Result<usize>;
     fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool;
     fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize>;
     fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)>;

@@ -44,7 +44,6 @@ impl InputOf {
     }
 }
 
-/// Content of the marker.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Marker {
     /// What made the folder.

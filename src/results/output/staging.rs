@@ -53,7 +53,6 @@ impl Staging {
         &self.path
     }
 
-    /// Puts it in its place.
     pub fn publish(&self, place: &Path) -> io::Result<()> {
         let _held = all();
         fs::rename(&self.path, place)

@@ -6,12 +6,10 @@ use std::path::Path;
 use perilife_base::error::Result;
 use perilife_base::input::Opened;
 
-/// Their names.
 const NAMES: [&str; 4] = ["spectrum.svg", "section.svg", "fleet.svg", "sensitivities.svg"];
 /// Elements of the drawings of this program.
 const ELEMENTS: [&str; 10] = ["svg", "g", "rect", "path", "line", "circle", "polygon", "polyline", "text", "tspan"];
 
-/// Drawings by their names.
 #[derive(Debug, Default)]
 pub struct Drawings(BTreeMap<&'static str, String>);
 
@@ -33,7 +31,6 @@ impl Drawings {
         Ok(Drawings(found))
     }
 
-    /// One of them.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
         self.0.get(name).map(String::as_str)
     }

@@ -33,7 +33,6 @@ pub enum Source {
     Lives {
         /// `fit.json`.
         fit: Box<LivesRecord>,
-        /// Its specimen.
         plate: Option<Box<Plate>>,
         tables: FitTables,
     },

@@ -320,7 +320,6 @@ fn title_of(check: &Check) -> String {
     }
 }
 
-/// Every message of the run.
 fn messages(warnings: &[String]) -> String {
     let lines: String = warnings.iter().map(|line| format!("<li>{}</li>\n", prose(line))).collect();
     if lines.is_empty() { lines } else { format!("<h2>Messages</h2>\n<ul class=\"small\">\n{lines}</ul>\n") }

@@ -42,7 +42,6 @@ pub struct Lives {
     pub name: String,
     /// `[cycles, length]` as measured.
     pub measured: Vec<Point>,
-    /// The same of the fit.
     pub fitted: Vec<Point>,
 }
 

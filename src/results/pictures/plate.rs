@@ -32,12 +32,10 @@ pub struct Plate {
     /// The specimen in words: kind and sizes.
     #[serde(default)]
     pub specimen: String,
-    /// The material in words.
     #[serde(default)]
     pub material: String,
 }
 
-/// A hole.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HoleDrawn {
     /// Middle, mm.

@@ -7,7 +7,6 @@ use perilife_base::units::shown::told;
 use perilife_plate::specimen::Point;
 
 pub const PLATE: &str = "#e4e7eb";
-/// Colour of its edges.
 pub const EDGE: &str = "#2f3b48";
 pub const CRACK: &str = "#d0021b";
 pub const LOAD: &str = "#1257a8";
@@ -25,7 +24,6 @@ pub struct Sketch {
 }
 
 impl Sketch {
-    /// An empty one.
     pub fn new(scale: f64, origin: Point) -> Self {
         Sketch { body: String::new(), scale, origin }
     }

@@ -163,7 +163,6 @@ pub(super) fn case_lines(case: &Case, points: String) -> Vec<Line> {
     lines
 }
 
-/// Its size.
 fn crack_words(specimen: &Specimen) -> String {
     let depth = specimen.part_through.map(|flaw| format!(", depth {} mm of {} mm", mm(flaw.depth), mm(flaw.through_depth())));
     format!("; length {} mm{}", mm(specimen.crack_length), depth.unwrap_or_default())

@@ -15,7 +15,6 @@ use perilife_points::net::Net;
 /// like that of a disc, would break at once, the more the longer the load step.
 const TOGETHER: f64 = 0.9995;
 
-/// Limit of a bond.
 #[derive(Debug, Clone, PartialEq)]
 enum Limit {
     Never,

@@ -38,7 +38,6 @@ impl Neighbours {
         Neighbours { list: (0..net.len()).flat_map(seen).collect(), starts: net.starts.clone() }
     }
 
-    /// Bonds of a point.
     #[inline(always)]
     pub fn of_point(&self, point: usize) -> &[Neighbour] {
         &self.list[self.starts[point] as usize..self.starts[point + 1] as usize]

@@ -53,7 +53,6 @@ impl FullLoad {
     }
 }
 
-/// A state of equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct State {
     /// Share of the full load.

@@ -29,7 +29,6 @@ pub struct Control<'n> {
     measure: Vec<f64>,
 }
 
-/// The next damage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Next {
     /// Share of the full load.

@@ -53,7 +53,6 @@ pub struct Loads<'a> {
     pub external: &'a [f64],
 }
 
-/// Settings of a relaxation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relaxation {
     /// Residual over load at rest, both as root of the sum of squares; load = external forces and forces on held unknowns.
@@ -186,7 +185,6 @@ pub(super) fn mobility(interaction: &dyn Interaction, bonds: &BondState, held: &
     bounds.iter().flat_map(of_point).zip(held).map(|(mobility, &held)| if held { 0.0 } else { mobility }).collect()
 }
 
-/// The motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Swing {
     /// u̇(n-½), m.

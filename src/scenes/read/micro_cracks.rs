@@ -149,7 +149,6 @@ fn fits(crack: Crack, scene: &Scene, kept_clear: &[(Point, Point)]) -> bool {
 pub struct SplitMix64(pub u64);
 
 impl SplitMix64 {
-    /// The next of its numbers.
     #[expect(clippy::should_implement_trait, reason = "it never ends")]
     pub fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);

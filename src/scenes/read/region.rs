@@ -14,7 +14,6 @@ use perilife_plate::specimen::{Component, Edge, Point, Specimen};
 pub use perilife_points::refinement::{corners, overlap};
 
 perilife_base::keys! {
-    /// An upright box.
     pub struct BoxKeys {
         from: Point = coordinate("from_mm", "One corner: [x, y]");
         to: Point = coordinate("to_mm", "Opposite corner: [x, y]");
@@ -75,14 +74,12 @@ pub fn around(region: &Region, row: f64, specimen: &Specimen) -> (Point, Point) 
 }
 
 perilife_base::keys! {
-    /// A held side.
     pub struct SideKeys {
         hold: SupportEntry = part();
         range: Option<Point> = coordinate("range_mm", "Part of the side: [from, to]");
     }
 }
 perilife_base::keys! {
-    /// A held box.
     pub struct HeldBoxKeys {
         place: BoxKeys = part();
         fix: Vec<Component> = key("fix", "Fixed components");

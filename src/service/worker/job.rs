@@ -33,7 +33,6 @@ enum End {
     Failed(String),
     /// The disk of this machine does not take its files.
     NoRoom(String),
-    /// Its process died.
     Died(Death),
     /// It took longer than a job may.
     OutOfTime,

@@ -157,7 +157,6 @@ fn host() -> String {
     if name.trim().is_empty() { "host".to_owned() } else { name.trim().to_owned() }
 }
 
-/// One worker.
 fn take_jobs(shared: &Arc<Shared>) {
     let lease_ms = milliseconds(shared.settings.lease);
     while !shared.is_stopping() {

@@ -31,7 +31,6 @@ const WAITING: usize = 4;
 /// Bytes of what the process said last that are kept.
 const TAIL: usize = 4096;
 
-/// A running job.
 #[derive(Debug)]
 pub struct JobProcess {
     child: Child,
@@ -202,11 +201,9 @@ fn tail(mut from: impl io::Read) -> Vec<u8> {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Order {
     Run(Box<Run>),
-    /// To look at input.
     Look(Look),
 }
 
-/// What is to be run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Run {
     pub kind: JobKind,

@@ -9,7 +9,6 @@ use crate::values::Values;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
 
-/// A choice of keys.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
     pub family: Family,

@@ -40,7 +40,6 @@ pub struct Panel {
     /// Formula of the distance of the path from that of the truth, rms, mm.
     path_mm: Option<String>,
     ask: Question,
-    /// Its values.
     #[serde(default)]
     set: Table,
 }
@@ -89,7 +88,6 @@ impl Panel {
     }
 }
 
-/// What the chart measures.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Measured {
@@ -144,7 +142,6 @@ pub struct Point {
 }
 
 impl Point {
-    /// What came of it.
     pub fn status(&self) -> Status {
         match self.outcome {
             Outcome::Done(_) => Status::Measured,
@@ -191,7 +188,6 @@ impl Point {
     }
 }
 
-/// A finished chart.
 #[derive(Debug, Clone)]
 pub struct Chart {
     pub points: Vec<Point>,

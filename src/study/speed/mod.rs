@@ -37,7 +37,6 @@ impl Origin {
     }
 }
 
-/// Writes all files.
 pub fn write(folder: &Path, chart: &Chart, origin: &Origin) -> Result<()> {
     let texts = [csv(chart), svg(chart, origin), markdown(chart, origin)];
     FILES.iter().zip(texts).try_for_each(|(file, text)| write_file(&folder.join(file), text.as_bytes()))

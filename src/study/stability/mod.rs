@@ -20,12 +20,10 @@ use super::subject::Watcher;
 use super::tasks::{Outcome, chosen, side_by_side};
 use perilife_base::error::Result;
 
-/// A method in a sweep.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Method {
     pub name: String,
-    /// Values of its own.
     #[serde(default)]
     set: Table,
     /// What it asks otherwise than the others.
@@ -63,7 +61,6 @@ pub struct Sweep {
     shared: Table,
 }
 
-/// What is swept.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Swept {
@@ -92,7 +89,6 @@ pub enum Status {
 }
 
 impl Status {
-    /// As the table names it.
     pub fn name(self) -> &'static str {
         match self {
             Status::Stable => "stable",

@@ -88,7 +88,6 @@ impl Test {
     }
 }
 
-/// A set of tests.
 #[derive(Debug)]
 pub struct Set {
     pub(super) name: String,

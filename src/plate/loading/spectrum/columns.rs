@@ -107,7 +107,6 @@ pub(super) fn read(
     Ok((format, Content::Cycles(rows.iter().filter_map(cycle).collect()), notes))
 }
 
-/// A column that is read.
 struct Read {
     index: usize,
     role: Role,

@@ -3,9 +3,7 @@
 /// A cycle that was counted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RainflowCycle {
-    /// Its maximum.
     pub max: f64,
-    /// Its minimum.
     pub min: f64,
     /// Places of its maximum and its minimum in the history.
     pub places: [usize; 2],

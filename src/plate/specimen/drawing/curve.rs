@@ -9,7 +9,6 @@ use crate::specimen::geometry::{along, circle_shares, distance, meeting_share};
 /// r (1 - cos 1.25°) = 2.4e-4 radii of it.
 pub const TURN: f64 = TAU / 144.0;
 
-/// A circular arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
     /// m.
@@ -43,7 +42,6 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A whole circle.
     pub fn circle(centre: Point, radius: f64) -> Self {
         let from = [centre[0] + radius, centre[1]];
         Curve { from, pieces: vec![Piece { to: from, arc: Some(Arc { centre, sweep: TAU }) }] }

@@ -132,7 +132,6 @@ impl Entity<'_> {
         known_layer(name).unwrap_or(name).to_owned()
     }
 
-    /// As the file has it.
     fn layer_name(&self) -> &str {
         self.groups.iter().find(|group| group.0 == 8).map_or("0", |group| group.1)
     }

@@ -14,7 +14,6 @@ use perilife_base::keys::{Given, Section, coordinate, part};
 pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::CrackAtHole, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     struct Keys {
         width: f64 = WIDTH;
         length: f64 = LENGTH;

@@ -14,7 +14,6 @@ use perilife_base::keys::{Given, Section, length, number};
 pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::Cruciform, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     struct Keys {
         length: f64 = LENGTH.said("Length L: end to end of two arms");
         arm_width: f64 = length("arm_width_mm", "Width of an arm");

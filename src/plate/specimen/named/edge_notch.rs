@@ -13,7 +13,6 @@ use perilife_base::keys::{Given, Section, length};
 pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::EdgeNotch, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     struct Keys {
         width: f64 = WIDTH;
         length: f64 = LENGTH;

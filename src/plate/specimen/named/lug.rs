@@ -18,7 +18,6 @@ use perilife_base::keys::{Given, Section, key, length, part};
 pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::Lug, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     struct Keys {
         width: f64 = WIDTH;
         length: f64 = LENGTH.said("Length L: from the hole center to the clamped end");

@@ -40,7 +40,6 @@ const KINDS: &[&SpecimenSpec] = &[
     &cruciform::KIND,
 ];
 
-/// What one kind is.
 pub struct SpecimenSpec {
     /// Its name in `specimen.kind`.
     pub kind: SpecimenKind,

@@ -12,7 +12,6 @@ use perilife_base::units::round_mm;
 pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::RowOfHoles, keys: Keys::KEYS, layout };
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     struct Keys {
         width: f64 = WIDTH;
         length: f64 = LENGTH;

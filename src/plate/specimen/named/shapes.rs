@@ -36,7 +36,6 @@ pub(super) const LENGTHS: &str = "the length of the cracks";
 pub(super) const FROM_RIM: Key = length("crack_length_mm", "Initial crack length a: from the hole edge").group(LENGTHS);
 
 perilife_base::keys! {
-    /// Keys of the cracks at the sides of a hole.
     pub(super) struct AtHoleKeys {
         length: Option<f64> = FROM_RIM;
         count: Option<usize> = number("cracks", "Cracks at the hole: 1 (right) or 2; default 1", "a number of cracks", 1.0, 2.0)

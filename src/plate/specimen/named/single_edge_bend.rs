@@ -25,7 +25,6 @@ const SPAN: f64 = 4.0;
 const OVERHANG: f64 = 0.5;
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     struct Keys {
         w: f64 = WIDTH;
         thickness: f64 = THICKNESS;

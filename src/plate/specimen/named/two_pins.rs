@@ -74,7 +74,6 @@ const WOL: Kind = Kind {
 const DIAMETER: f64 = 0.2;
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     struct Keys {
         w: f64 = WIDTH.said("Width W: from the edge (ESE(T)) or the load line (WOL)");
         thickness: f64 = THICKNESS;

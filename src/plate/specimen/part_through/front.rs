@@ -12,7 +12,6 @@ pub enum FrontTip {
 }
 
 impl FrontTip {
-    /// Both.
     pub const ALL: [FrontTip; 2] = [FrontTip::Depth, FrontTip::Surface];
 
     /// Parametric angle φ of the ellipse, rad.
@@ -23,7 +22,6 @@ impl FrontTip {
         }
     }
 
-    /// Name in results.
     pub fn name(self) -> &'static str {
         match self {
             FrontTip::Depth => "depth",

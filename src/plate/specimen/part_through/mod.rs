@@ -37,7 +37,6 @@ pub const BREAK_THROUGH: &str = "breakthrough at a/t = 1; then a straight throug
 /// How well, in words.
 pub const RANGE: &str = "5 % for a/t ≤ 0.8, a/c = 0.2 to 2, crack < half of the width";
 
-/// What one kind is.
 pub struct PartThroughSpec {
     /// Its name in `specimen.kind`.
     pub kind: SpecimenKind,
@@ -78,9 +77,7 @@ struct PlateLetters {
 pub struct Limit {
     pub name: &'static str,
     pub of: fn(&CrackFront) -> f64,
-    /// Least.
     pub low: f64,
-    /// Largest.
     pub high: f64,
 }
 

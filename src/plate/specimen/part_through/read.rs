@@ -15,7 +15,6 @@ use perilife_base::units::round_mm;
 const LENGTH_OVER_WIDTH: f64 = 3.0;
 
 perilife_base::keys! {
-    /// Keys of `[specimen]`.
     pub(super) struct Keys {
         width: f64 = WIDTH;
         length: Option<f64> = LENGTH.said("Length L: along the load; default 3 W");
@@ -35,7 +34,6 @@ perilife_base::keys! {
     }
 }
 
-/// Keys of a kind.
 pub(in crate::specimen) fn keys(description: &PartThroughSpec) -> &'static [Key] {
     if description.has_hole { KeysAtHole::KEYS } else { Keys::KEYS }
 }

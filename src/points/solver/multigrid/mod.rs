@@ -41,7 +41,6 @@ const PART: usize = 1 << 14;
 /// Coarsening factor of the levels after the first.
 const COARSENING: usize = 2;
 
-/// One coarse level.
 struct Level<const N: usize> {
     transfer: Transfer<N>,
     operator: CoarseOperator<N>,
@@ -51,7 +50,6 @@ struct Level<const N: usize> {
 
 /// Dense pseudo-inverse of the coarsest operator.
 struct Coarsest {
-    /// Vector index of each unknown.
     unknowns: Vec<usize>,
     inverse: Vec<f64>,
 }

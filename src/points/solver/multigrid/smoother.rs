@@ -26,7 +26,6 @@ const PAIRS: usize = 6;
 
 /// What is smoothed: the stiffness of a level.
 pub trait Operator: Sync {
-    /// Layout of its vectors.
     fn layout(&self) -> &Layout;
     /// Makes a vector ready for products.
     fn prepare(&self, _x: &mut [f32]) {}

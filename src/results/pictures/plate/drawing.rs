@@ -149,7 +149,6 @@ pub(crate) struct Drawing<'a> {
 }
 
 impl<'a> Drawing<'a> {
-    /// Of a plate alone.
     pub(crate) fn of(plate: &'a Plate, text: f64) -> Self {
         Drawing { plate, ways: &[], life: 0.0, text, width: f64::INFINITY }
     }

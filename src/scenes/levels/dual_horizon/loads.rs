@@ -25,7 +25,6 @@ pub struct Sharing<'a> {
 }
 
 impl<'a> Sharing<'a> {
-    /// A rule.
     pub fn new(levels: &'a Levels, positions: &'a [Point], consistent: Option<(Obstacles<'a>, usize)>) -> Self {
         Sharing { levels, positions, consistent }
     }
