@@ -171,7 +171,7 @@ pub struct SweepRecord {
     pub unlimited: usize,
     pub lower_bounds: usize,
     pub life_cycles: LifeQuantiles,
-    /// The first [`FAILURES_MAX`].
+    /// The first `FAILURES_MAX`.
     pub failures: Vec<Failure>,
     pub missing_cases: Vec<String>,
     pub warnings: Vec<SharedWarning>,

@@ -235,7 +235,7 @@ impl<'a> Given<'a> {
 /// perilife_base::keys! { #[derive(Debug)] pub struct Strip { width: f64 = length("width_mm", "Width W"); name: Option<String> = key("name", "Name"); } }
 /// let read = |text: &str| section::<Strip>(&text.parse::<toml::Table>().unwrap().into(), "strip");
 /// assert_eq!(read("width_mm = 50").unwrap().width, 0.05);
-/// assert_eq!(read("widht_mm = 50").unwrap_err().to_string(), "strip.widht_mm = 50: is not a known key; did you mean width_mm?");
+/// assert_eq!(read("widht_mm = 50").unwrap_err().to_string(), "strip.widht_mm = 50: unknown key; did you mean width_mm?");
 /// ```
 pub fn section<S: Section>(value: &Value, path: &str) -> Result<S> {
     section_beside(value, path, &[])
