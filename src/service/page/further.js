@@ -2,7 +2,7 @@
 
 import { button, element, section, show, terms } from "./dom.js";
 import { createForm, grid, numberIn } from "./form.js";
-import { significant, whole } from "./format.js";
+import { bandOf, deserved, significant, whole } from "./format.js";
 import { filesOf, nameOf } from "./job.js";
 import { keyOf, loadKeys } from "./keys.js";
 import { problemBox } from "./notices.js";
@@ -15,13 +15,20 @@ const PICTURES = { "fleet.svg": "Fleet", "sensitivities.svg": "Sensitivity of th
 const hasFile = (job, file) => job.files.some(({ name }) => name === file);
 const card = (name, title, content) => element("section", { class: "card", "data-part": name }, element("h2", null, title), content);
 
+/** Quantiles of a remaining life. */
+function leftWords({ remaining_cycles_p05: low, remaining_cycles_p50: middle, remaining_cycles_p95: high }) {
+  return `${deserved(middle, [low, middle, high])} cycles; ${bandOf([low, middle, high])}`;
+}
+
 /** What further analyses found: their pictures and figures. */
-export const foundFurther = (job, { inspections: found }, signal) => [
+export const foundFurther = (job, { inspections: found, measured: own }, signal) => [
   ...Object.entries(PICTURES).filter(([file]) => hasFile(job, file)).map(([file, title]) => card(file.replace(".svg", ""), title, filePicture(job, file, title, signal))),
   ...(found ? [card("detection", "Detection", terms([
     ["All inspections miss", `probability ${found.missed < 1e-3 ? "< 0.001" : significant(found.missed, 2)} (independence assumed)`],
     ["POD", `a50 ${significant(found.a50_mm, 3)} mm, a90 ${significant(found.a90_mm, 3)} mm`],
     ["Inspections", `${found.rows.length}, every ${whole(found.interval_cycles)} cycles`]], "detection"))] : []),
+  ...(own ? [card("readings", "Remaining life by readings of this plate", terms([
+    [`From ${significant(own.crack_length_mm, 4)} mm at ${whole(own.cycles)} cycles`, leftWords(own)], ["Without readings", leftWords(own.of_lot)]], "readings"))] : []),
 ];
 
 /** The cards of analyses that the run has not; `inspection()` is that of the page. */
