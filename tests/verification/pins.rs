@@ -11,7 +11,7 @@ use perilife_plate::specimen::{Bearing, Load};
 /// C(T) of 50 x 10 mm under 10 kN with pins of 0.998 of its holes.
 fn compact() -> Case {
     let text = "[specimen]\nkind = \"compact_tension\"\nwidth_mm = 50\nthickness_mm = 10\ncrack_length_mm = 15\npin_diameter_mm = 12.475\n\
-                [loading]\nforce_max_kn = 10\nstress_ratio = 0\n[material]\nyoungs_modulus_gpa = 70\n\
+                pin_friction = 0\n[loading]\nforce_max_kn = 10\nstress_ratio = 0\n[material]\nyoungs_modulus_gpa = 70\n\
                 poisson_ratio = 0.3\nplane = \"stress\"\n[fatigue]\nparis_c_mm_per_cycle = 1e-8\nparis_m = 3\n";
     Case::from_toml(text, "compact", Path::new(""), &[]).unwrap()
 }

@@ -47,8 +47,7 @@ pub(super) fn stranger(
         return (told(problem, format!("remove it, or use {tag} = \"{first}\"")), None);
     }
     let near = nearest(name, names());
-    let removed = name.ends_with("friction").then(|| "remove it: pins are frictionless".to_owned());
-    (told("unknown key".into(), removed.unwrap_or_else(|| meant(near.as_deref(), names()))), near)
+    (told("unknown key".into(), meant(near.as_deref(), names())), near)
 }
 
 /// A name without its unit, if it has one.
@@ -68,8 +67,9 @@ pub fn meant<'n>(near: Option<&str>, known: impl Iterator<Item = &'n str>) -> St
 /// The name that was meant, if one is near: a quarter of its letters may be wrong, three at most; names of one or two letters are too short.
 pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<String> {
     let most = (name.chars().count() / 4).clamp(1, 3);
-    let far = known.filter(|_| name.chars().count() > 2).map(|other| (distance(name, other), other));
-    far.filter(|(far, _)| *far <= most).min_by_key(|(far, _)| *far).map(|(_, other)| other.to_owned())
+    let long = known.filter(|_| name.chars().count() > 2);
+    let far = long.map(|other| (distance(name, other), other)).filter(|(far, _)| *far <= most);
+    far.min_by_key(|(far, _)| *far).map(|(_, other)| other.to_owned())
 }
 
 /// Letters to be put in, left out, changed, or swapped with the next one.

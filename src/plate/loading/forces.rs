@@ -25,6 +25,7 @@ perilife_base::keys! {
         bearing_ratio: Option<f64> = number("bearing_ratio", "Bearing stress P/(d h) over the remote stress: with loaded edges", "a ratio of stresses", 1e-6, 1e4);
         half_angle: Option<f64> = number("contact_half_angle_deg", "Half angle of the contact arc, °: 90 for a close-fitting pin", ARC, 1.0, 90.0);
         diameter: Option<f64> = length("pin_diameter_mm", "Pin diameter: its clearance sets the contact arc");
+        friction: Option<f64> = number("friction", "Friction of the pin: 0 only", "a coefficient of friction", 0.0, 10.0);
         youngs_modulus: f64 = modulus("pin_youngs_modulus_gpa", "Young's modulus of the pin"), or "210 (steel)" YOUNGS_MODULUS;
         poisson_ratio: f64 = number("pin_poisson_ratio", "Poisson's ratio of the pin", POISSON, 0.0, 0.499), or "0.3 (steel)" POISSON_RATIO;
     }
@@ -55,9 +56,9 @@ pub(super) fn read_pins(given: &Given<'_>, pins: &[PinEntry], beside_edges: bool
         }
         let force = force_of(&path, pin, beside_edges, specimen)?;
         let direction = direction_of(&path, pin.direction)?;
-        let &PinEntry { half_angle, diameter, youngs_modulus, poisson_ratio, .. } = pin;
-        let keys = PinKeys { half_angle, diameter, youngs_modulus, poisson_ratio };
-        let contact = Bearing::read(&entry, "contact_half_angle_deg", &keys, specimen.holes[pin.hole].radius)?;
+        let &PinEntry { half_angle, diameter, friction, youngs_modulus, poisson_ratio, .. } = pin;
+        let keys = PinKeys { half_angle, diameter, friction, youngs_modulus, poisson_ratio };
+        let contact = Bearing::read(&entry, ["contact_half_angle_deg", "friction"], &keys, specimen.holes[pin.hole].radius)?;
         specimen.loads.push(Load::Pin { hole: pin.hole, direction, force, contact });
     }
     Ok(())

@@ -71,6 +71,7 @@ perilife_base::keys! {
     pub struct PinKeys {
         half_angle: Option<f64> = number("pin_half_angle_deg", "Half angle of the contact arc, °: 90 for a close-fitting pin", ARC, 1.0, 90.0);
         diameter: Option<f64> = length("pin_diameter_mm", "Pin diameter: its clearance sets the contact arc");
+        friction: Option<f64> = number("pin_friction", "Friction of the pin: 0 only", "a coefficient of friction", 0.0, 10.0);
         youngs_modulus: f64 = modulus("pin_youngs_modulus_gpa", "Young's modulus of the pin"), or "210 (steel)" YOUNGS_MODULUS;
         poisson_ratio: f64 = number("pin_poisson_ratio", "Poisson's ratio of the pin", POISSON, 0.0, 0.499), or "0.3 (steel)" POISSON_RATIO;
     }
@@ -82,10 +83,13 @@ pub const ARC: &str = "an angle in degrees, 90 for a close-fitting pin";
 pub const POISSON: &str = "a Poisson's ratio";
 
 impl Bearing {
-    /// What the keys of a section say of the pin in a hole of radius `hole`, m; the half angle has another name in some.
-    /// Errors: [`perilife_base::error::Error::Input`]: an arc beside a pin, a pin without diameter or one larger than its hole.
-    pub fn read(given: &Given<'_>, half_angle: &str, keys: &PinKeys, hole: f64) -> Result<Self> {
+    /// What the keys of a section say of the pin in a hole of radius `hole`, m; half angle and friction have other names in some.
+    /// Errors: [`perilife_base::error::Error::Input`]: an arc beside a pin, friction, a pin without diameter or one larger than its hole.
+    pub fn read(given: &Given<'_>, [half_angle, friction]: [&str; 2], keys: &PinKeys, hole: f64) -> Result<Self> {
         const OF_ELASTIC: [&str; 3] = ["pin_diameter_mm", "pin_youngs_modulus_gpa", "pin_poisson_ratio"];
+        if keys.friction.is_some_and(|given| given != 0.0) {
+            return Err(given.refuse(friction, "is not supported: pins are frictionless", "remove it, or set 0"));
+        }
         let of_elastic = given.first(&OF_ELASTIC);
         if let (Some(angle), other) = (keys.half_angle, of_elastic) {
             let twice =

@@ -97,7 +97,7 @@ pub(super) fn compact_from_value(value: &Value) -> Result<Specimen> {
     let Compact { w, thickness, a, pin: pin_keys } = Compact::read(&given)?;
     check_crack(a, w, "the width W from the load line")?;
     let hole = |sign: f64| Hole { centre: [0.0, sign * 0.275 * w], radius: 0.125 * w };
-    let contact = Bearing::read(&given, "pin_half_angle_deg", &pin_keys, 0.125 * w)?;
+    let contact = Bearing::read(&given, ["pin_half_angle_deg", "pin_friction"], &pin_keys, 0.125 * w)?;
     let pin = |hole: usize, sign: f64| Load::Pin { hole, direction: [0.0, sign], force: 1.0, contact: contact.clone() };
     let (front, half_height) = (-0.25 * w, 0.6 * w);
     Ok(Specimen {

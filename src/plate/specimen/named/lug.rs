@@ -37,7 +37,7 @@ fn layout(given: &Given<'_>) -> Result<Layout> {
     below("hole_diameter_mm", 2.0 * radius, (2.0 * half_width).min(2.0 * length), "width and twice the length")?;
     let key = if cracks.shared.is_some() { "crack_length_mm" } else { "crack_lengths_mm" };
     below(key, cracks.lengths[0].max(cracks.lengths[1]), half_width - radius, "the distance from the hole edge to the side")?;
-    let contact = Bearing::read(given, "pin_half_angle_deg", &pin_keys, radius)?;
+    let contact = Bearing::read(given, ["pin_half_angle_deg", "pin_friction"], &pin_keys, radius)?;
     let mut outline: Vec<Point> = vec![[-half_width, -length], [half_width, -length]];
     match (head, distance) {
         (Head::Straight, distance) => {
