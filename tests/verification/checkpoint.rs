@@ -282,7 +282,7 @@ fn damaged_and_foreign_checkpoints_are_refused() {
         assert!(!read(&bytes).belongs_to(&other_case), "{other}");
         let error = resume(&other_case, read(&bytes), &Silent).expect_err(other);
         assert_eq!(error.exit_code(), 2, "{other}: {error}");
-        assert!(error.to_string().contains("another case"), "{other}: {error}");
+        assert!(error.to_string().contains("for a different case"), "{other}: {error}");
     }
     let mut renamed = own.clone();
     renamed.name = "renamed".to_owned();

@@ -95,16 +95,16 @@ class SpecimenPlateNotches(TypedDict, total=False):
 
 class SpecimenPlate(TypedDict, total=False):
     kind: Literal["plate"]
-    outline_mm: list[tuple[float, float]]  # Outline: corners in order; one of those that say the outline
+    outline_mm: list[tuple[float, float]]  # Outline: corners in order; one key of the outline
     outline_in: list[tuple[float, float]]
-    outline_file: str  # Drawing of the plate: DXF with layers outline, holes (full circles), cracks; one of those that say the outline
+    outline_file: str  # Drawing of the plate: DXF with layers outline, holes (full circles), cracks; one key of the outline
     outline_unit: Literal["mm", "inch"]  # Unit of the drawing: where the file has none; -
     outline_symmetry: Literal["x=0", "y=0"]  # Symmetry of the drawing: half of the plate drawn; -
-    width_mm: float  # Width W: of a rectangle about 0, with its length; one of those that say the outline
+    width_mm: float  # Width W: of a rectangle about 0, with its length; one key of the outline
     width_in: float
     length_mm: float  # Length L: of a rectangle about 0, along y; -
     length_in: float
-    diameter_mm: float  # Diameter: of a disc about 0; one of those that say the outline
+    diameter_mm: float  # Diameter: of a disc about 0; one key of the outline
     diameter_in: float
     thickness_mm: float  # Thickness B; needed
     thickness_in: float
@@ -225,10 +225,10 @@ class SpecimenCrackAtHole(TypedDict, total=False):
     hole_diameter_in: float
     hole_offset_mm: float  # Hole center: distance from the midline, across the load; 0
     hole_offset_in: float
-    crack_length_mm: float  # Initial crack length a: from the hole edge; one of those that say the length of the cracks
+    crack_length_mm: float  # Initial crack length a: from the hole edge; one key of the length of the cracks
     crack_length_in: float
     cracks: int  # Cracks at the hole: 1 (right) or 2; default 1; -
-    crack_lengths_mm: tuple[float, float]  # Crack lengths: left and right from the hole edge, 0 for no crack; one of those that say the length of the cracks
+    crack_lengths_mm: tuple[float, float]  # Crack lengths: left and right from the hole edge, 0 for no crack; one key of the length of the cracks
     crack_lengths_in: tuple[float, float]
     beta_file: str  # Table of β: K = β σ √(πa), CSV of crack_length_mm and beta; `perilife sif --sweep` writes one; -
 
@@ -246,9 +246,9 @@ class SpecimenRowOfHoles(TypedDict, total=False):
     pitch_in: float
     hole_diameter_mm: float  # Hole diameter; needed
     hole_diameter_in: float
-    crack_length_mm: float  # Initial crack length a: from the hole edge; one of those that say the length of the cracks
+    crack_length_mm: float  # Initial crack length a: from the hole edge; one key of the length of the cracks
     crack_length_in: float
-    crack_lengths_mm: list[tuple[float, float]]  # Crack lengths: [left, right] of every hole, 0 for no crack; one of those that say the length of the cracks
+    crack_lengths_mm: list[tuple[float, float]]  # Crack lengths: [left, right] of every hole, 0 for no crack; one key of the length of the cracks
     crack_lengths_in: list[tuple[float, float]]
 
 
@@ -265,10 +265,10 @@ class SpecimenLug(TypedDict, total=False):
     head: Required[Literal["straight", "round"]]  # Head: end beyond the hole; needed
     edge_distance_mm: float  # Edge distance: of a straight head, from the hole center; default W/2; -
     edge_distance_in: float
-    crack_length_mm: float  # Initial crack length a: from the hole edge; one of those that say the length of the cracks
+    crack_length_mm: float  # Initial crack length a: from the hole edge; one key of the length of the cracks
     crack_length_in: float
     cracks: int  # Cracks at the hole: 1 (right) or 2; default 1; -
-    crack_lengths_mm: tuple[float, float]  # Crack lengths: left and right from the hole edge, 0 for no crack; one of those that say the length of the cracks
+    crack_lengths_mm: tuple[float, float]  # Crack lengths: left and right from the hole edge, 0 for no crack; one key of the length of the cracks
     crack_lengths_in: tuple[float, float]
     pin_half_angle_deg: float  # Half angle of the contact arc, °: 90 for a close-fitting pin; -
     pin_diameter_mm: float  # Pin diameter: its clearance sets the contact arc; -
@@ -369,7 +369,7 @@ class SpecimenCruciform(TypedDict, total=False):
 
 
 class Material(TypedDict, total=False):
-    name: str  # Material: a name of `perilife list materials`, or the path of an own .toml file; -
+    name: str  # Material: a name of `perilife list materials`, or the path of your own .toml file; -
     youngs_modulus_gpa: float  # Young's modulus E; -
     youngs_modulus_msi: float
     poisson_ratio: float  # Poisson's ratio ν; -
@@ -411,25 +411,25 @@ class LoadingRollers(TypedDict, total=False):
 
 class Loading(TypedDict, total=False):
     kind: Literal["constant_amplitude", "spectrum", "displacement"]  # Kind of cycles; constant_amplitude
-    stress_max_mpa: object  # Maximum stress σmax: gross section; one of those that say one load
+    stress_max_mpa: object  # Maximum stress σmax: gross section; one key of one load
     stress_max_ksi: object
-    stress_range_mpa: object  # Stress range Δσ: gross section, maximum − minimum; one of those that say one load
+    stress_range_mpa: object  # Stress range Δσ: gross section, maximum − minimum; one key of one load
     stress_range_ksi: object
-    force_max_n: object  # Maximum force Pmax; one of those that say one load
+    force_max_n: object  # Maximum force Pmax; one key of one load
     force_max_lbf: object
-    force_range_n: object  # Force range ΔP: maximum − minimum; one of those that say one load
+    force_range_n: object  # Force range ΔP: maximum − minimum; one key of one load
     force_range_lbf: object
-    force_max_kn: object  # Maximum force Pmax; one of those that say one load
+    force_max_kn: object  # Maximum force Pmax; one key of one load
     force_max_kip: object
-    force_range_kn: object  # Force range ΔP: maximum − minimum; one of those that say one load
+    force_range_kn: object  # Force range ΔP: maximum − minimum; one key of one load
     force_range_kip: object
-    displacement_max_mm: float  # Maximum displacement δ_max: relative, of the loaded sides; one of those that say one load; with kind = displacement
+    displacement_max_mm: float  # Maximum displacement δ_max: relative, of the loaded sides; one key of one load; with kind = displacement
     displacement_max_in: float
-    displacement_range_mm: float  # Displacement range Δδ: relative, of the loaded sides; one of those that say one load; with kind = displacement
+    displacement_range_mm: float  # Displacement range Δδ: relative, of the loaded sides; one key of one load; with kind = displacement
     displacement_range_in: float
-    spectrum_scale_mpa: float  # Scale of the spectrum: gross stress of the value 1; one of those that say one load; with kind = spectrum
+    spectrum_scale_mpa: float  # Scale of the spectrum: gross stress of the value 1; one key of one load; with kind = spectrum
     spectrum_scale_ksi: float
-    spectrum_scale_n: float  # Scale of the spectrum: force of the value 1; one of those that say one load; with kind = spectrum
+    spectrum_scale_n: float  # Scale of the spectrum: force of the value 1; one key of one load; with kind = spectrum
     spectrum_scale_lbf: float
     stress_ratio: float  # Stress ratio R: minimum / maximum, below 1; -
     grip: Literal["straight", "mean"]  # Grip: of moved edges; straight; with kind = displacement
@@ -441,10 +441,10 @@ class Loading(TypedDict, total=False):
     omission_percent: float  # Omission level, % of the largest range; 0; with kind = spectrum
     truncation_percent: float  # High-load truncation, % of the largest peak; 100; with kind = spectrum
     repeats: float  # Number of passes; with kind = spectrum
-    residual_stress: object  # Residual stress: formula of x and y, mm, in MPa; one of those that say the residual stress
-    residual_stress_mpa: object  # Residual stress: formula of x and y, mm, in MPa; one of those that say the residual stress
-    residual_stress_ksi: object  # Residual stress: formula of x and y, inch, in ksi; one of those that say the residual stress
-    residual_stress_file: str  # File of residual stress: columns x_mm, y_mm, stress_mpa; one of those that say the residual stress
+    residual_stress: object  # Residual stress: formula of x and y, mm, in MPa; one key of the residual stress
+    residual_stress_mpa: object  # Residual stress: formula of x and y, mm, in MPa; one key of the residual stress
+    residual_stress_ksi: object  # Residual stress: formula of x and y, inch, in ksi; one key of the residual stress
+    residual_stress_file: str  # File of residual stress: columns x_mm, y_mm, stress_mpa; one key of the residual stress
     stress_parallel_ratio: float  # Biaxiality: stress along the crack over stress across it; 0
     bending_ratio: float  # Out-of-plane bending: bending stress over tension, of part-through cracks; -
     edge_bending_ratio: object  # In-plane bending of loaded edges: bending stress over mean stress, or "pure"; -
@@ -453,13 +453,13 @@ class Loading(TypedDict, total=False):
     pins: list[LoadingPins]  # Pins: in holes of the plate; -
     rollers: list[LoadingRollers]  # Rollers: on the outline of the plate; -
     retardation: Literal["none", "wheeler", "willenborg", "closure", "newman"]  # Retardation: load interaction of a spectrum; default none; -
-    wheeler_exponent: float  # exponent; -
-    shutoff_ratio: float  # ratio of overload to cycle; -
-    willenborg_k_th_mpa_sqrt_m: float  # stress intensity; -
+    wheeler_exponent: float  # Wheeler exponent m; -
+    shutoff_ratio: float  # shut-off ratio S; -
+    willenborg_k_th_mpa_sqrt_m: float  # threshold K_max at R = 0; -
     willenborg_k_th_ksi_sqrt_in: float
-    closure_cf0: float  # closure factor at R = 0; -
-    newman_alpha: float  # constraint factor, 1 to 3; -
-    newman_smax_over_flow: float  # share of the flow stress; -
+    closure_cf0: float  # closure factor Cf0; -
+    newman_alpha: float  # constraint factor α; -
+    newman_smax_over_flow: float  # ratio Smax/flow stress; -
 
 
 class Model(TypedDict, total=False):
@@ -505,26 +505,29 @@ class Fatigue(TypedDict, total=False):
     failure: Literal["stretch"]  # Failure: criterion of bonds; -
     fitted: str  # Fitted law: file that `perilife calibrate` wrote; -
     growth_law: Literal["bond_law", "paris", "walker", "forman", "nasgro", "table"]  # Growth law: default by the constants given; -
-    a: float  # constant in 1/cycle; -
-    p: float  # exponent; -
-    horizon_mm: float  # length; -
+    a: float  # bond constant A; -
+    p: float  # bond exponent p; -
+    horizon_mm: float  # horizon of A; -
     horizon_in: float
-    paris_c_mm_per_cycle: float  # rate in mm/cycle at ΔK = 1 MPa√m; -
-    paris_m: float  # exponent; -
-    forman_c_mm_per_cycle: float  # rate in mm/cycle; -
-    forman_m: float  # exponent; -
-    k_c_mpa_sqrt_m: float  # stress intensity; -
+    paris_c_mm_per_cycle: float  # Paris C; -
+    paris_c_in_per_cycle: float
+    paris_m: float  # Paris exponent m; -
+    forman_c_mm_per_cycle: float  # Forman C; -
+    forman_c_in_per_cycle: float
+    forman_m: float  # Forman exponent m; -
+    k_c_mpa_sqrt_m: float  # fracture toughness Kc; -
     k_c_ksi_sqrt_in: float
-    nasgro_c_mm_per_cycle: float  # rate in mm/cycle; -
-    nasgro_n: float  # exponent; -
-    nasgro_p: float  # exponent; -
-    nasgro_q: float  # exponent; -
-    nasgro_alpha: float  # constraint factor, 1 to 3; -
-    nasgro_smax_over_flow: float  # share of the flow stress; -
-    nasgro_delta_k_0_mpa_sqrt_m: float  # stress intensity; -
+    nasgro_c_mm_per_cycle: float  # NASGRO C; -
+    nasgro_c_in_per_cycle: float
+    nasgro_n: float  # NASGRO exponent n; -
+    nasgro_p: float  # threshold exponent p; -
+    nasgro_q: float  # fracture exponent q; -
+    nasgro_alpha: float  # constraint factor α; -
+    nasgro_smax_over_flow: float  # ratio Smax/σ0; -
+    nasgro_delta_k_0_mpa_sqrt_m: float  # threshold ΔK0 at R = 0; -
     nasgro_delta_k_0_ksi_sqrt_in: float
-    nasgro_c_th: float  # slope of the threshold over R; -
-    nasgro_c_th_negative: float  # slope of the threshold over R; -
+    nasgro_c_th: float  # threshold slope Cth over R; -
+    nasgro_c_th_negative: float  # threshold slope Cth over R; -
     growth_table: str  # Table of rates: its file; -
     growth_table_ends: Literal["refused", "held"]  # Ends of the table: beyond its rows; default refused; -
 
@@ -536,18 +539,18 @@ class Stop(TypedDict, total=False):
     crack_depth_in: float
     at_break_through: bool  # Stop at breakthrough: of a part-through crack; -
     cycles_max: float  # Maximum cycles: run-out; 1e9
-    required_strength_mpa: float  # Required strength: gross stress; one of those that say the load
+    required_strength_mpa: float  # Required strength: gross stress; one key of the load
     required_strength_ksi: float
-    limit_load_factor: float  # Required load: over the maximum load of the cycles; one of those that say the load
+    limit_load_factor: float  # Required load: over the maximum load of the cycles; one key of the load
     toughness: bool  # Fracture ends the life; true
     net_section: bool  # Net-section yield ends the life; true
 
 
 class FleetInitialLengthMm(TypedDict, total=False):
-    median: float  # Median, mm: of a normal logarithm; -
+    median: float  # Median: of a normal logarithm; -
     standard_deviation_ln: float  # Standard deviation of ln; -
-    mean: float  # Mean, mm: of a normal distribution above zero; -
-    standard_deviation: float  # Standard deviation, mm; -
+    mean: float  # Mean: of a normal distribution above zero; -
+    standard_deviation: float  # Standard deviation; -
 
 
 class Fleet(TypedDict, total=False):
@@ -567,25 +570,25 @@ class Output(TypedDict, total=False):
 class SupportsTop(TypedDict, total=False):
     rows_mm: float  # Depth of the support: from the side into the plate; one row
     rows_in: float
-    fix: Required[list[Literal["x", "y"]]]  # Held components; needed
+    fix: Required[list[Literal["x", "y"]]]  # Fixed components; needed
 
 
 class SupportsBottom(TypedDict, total=False):
     rows_mm: float  # Depth of the support: from the side into the plate; one row
     rows_in: float
-    fix: Required[list[Literal["x", "y"]]]  # Held components; needed
+    fix: Required[list[Literal["x", "y"]]]  # Fixed components; needed
 
 
 class SupportsLeft(TypedDict, total=False):
     rows_mm: float  # Depth of the support: from the side into the plate; one row
     rows_in: float
-    fix: Required[list[Literal["x", "y"]]]  # Held components; needed
+    fix: Required[list[Literal["x", "y"]]]  # Fixed components; needed
 
 
 class SupportsRight(TypedDict, total=False):
     rows_mm: float  # Depth of the support: from the side into the plate; one row
     rows_in: float
-    fix: Required[list[Literal["x", "y"]]]  # Held components; needed
+    fix: Required[list[Literal["x", "y"]]]  # Fixed components; needed
 
 
 class Supports(TypedDict, total=False):
@@ -607,9 +610,9 @@ class MeasuredLeaveOut(TypedDict, total=False):
 
 class Measured(TypedDict, total=False):
     files: list[str]  # Files of readings: CSV or workbooks, one or more specimens each; -
-    from_crack_length_mm: float  # Fit window: from this crack length; -
+    from_crack_length_mm: float  # From crack length: start of the fit window; -
     from_crack_length_in: float
-    to_crack_length_mm: float  # Fit window: to this crack length; -
+    to_crack_length_mm: float  # To crack length: end of the fit window; -
     to_crack_length_in: float
     length_unit: Literal["mm", "inch", "m"]  # Unit of crack length: where the header has none; -
     cycle_unit: Literal["cycles", "kilocycles", "megacycles"]  # Unit of cycles: where the header has none; -
@@ -619,7 +622,7 @@ class Measured(TypedDict, total=False):
     columns: object  # Columns: by their names or numbers; -
     decimal: Literal[".", ","]  # Decimal sign; -
     sheet: object  # Sheet of a workbook: its name or number; -
-    leave_out: list[MeasuredLeaveOut]  # Readings left out: with the reason; -
+    leave_out: list[MeasuredLeaveOut]  # Excluded readings: with the reason; -
     rates: list[object]  # Tables of rates: da/dN over ΔK; -
     intensity_unit: Literal["MPa sqrt(m)", "ksi sqrt(in)", "N/mm^1.5", "kgf/mm^1.5"]  # Unit of ΔK: of all tables; -
     rate_unit: Literal["mm/cycle", "m/cycle", "in/cycle", "um/cycle", "nm/cycle"]  # Unit of da/dN: of all tables; -

@@ -25,7 +25,7 @@ fn columns_that_nobody_knows_are_chosen_on_the_page() {
     let place = in_folder(dir.path());
     let service = Server::start(&[&place[0], &place[1]], &["--jobs", "1"]);
     page.look(1280, 900, "light");
-    page.open(&service.url);
+    page.open(&format!("{}/#/measure", service.url));
     page.see("#measured-input, #example");
     let file = dir.path().join("unknown.csv");
     fs::write(&file, UNKNOWN).unwrap();
