@@ -293,13 +293,14 @@ impl Frame {
         }
     }
 
-    /// A dashed limit across the plot, named at its left.
+    /// A dashed limit across the plot, named at its left: below it unless it is low, since a curve that passes it ends above.
     pub fn limit(&mut self, y: f64, name: &str) {
         let ([left, _, right, _], text) = (self.room, self.size.text);
         let height = self.at([self.axes[0].ends()[0], y])[1];
         if self.contains(y) {
             self.sketch.path(&[[left, height], [right, height]], NOTE, 1.0, "3 3");
-            self.sketch.name([left + 6.0, height - 4.0], name, "start", text, NOTE);
+            let away = if self.axes[1].share(y) > 0.3 { text } else { -4.0 };
+            self.sketch.name([left + 6.0, height + away], name, "start", text, NOTE);
         }
     }
 

@@ -80,7 +80,7 @@ fn a_prediction_has_the_files_of_the_command() {
 
 /// Whether a line of a report has a moment or a hash in it.
 fn is_of_this_run(line: &str) -> bool {
-    ["Computed</dt>", "SHA-256"].iter().any(|words| line.contains(words))
+    ["Analyzed</dt>", "SHA-256"].iter().any(|words| line.contains(words))
 }
 
 /// `points` and `every_cycles` are those of `perilife export`.
