@@ -279,7 +279,7 @@ impl CrackGrowth for BondStrain<'_> {
     }
 
     fn rebuild_solver(&mut self) -> Result<()> {
-        tracing::debug!(solves = self.run.solves, "the solver begins anew from the bonds");
+        tracing::debug!(solves = self.run.solves, "the solver restarts from the bonds");
         let (body, run) = (&self.body, &mut self.run);
         self.equilibrium = solver(self.case, body, run);
         let before = std::mem::take(&mut self.displacement);

@@ -178,7 +178,7 @@ impl<'a, P: CrackedPlate> Cracks<'a, P> {
         let tips = (0..specimen.tips.len()).map(tip).collect::<Result<Vec<_>>>()?;
         if tips.is_empty() {
             let remedy = "give a crack with an end in the material";
-            return Err(input_missing(specimen.crack_key(), "holds no crack that could grow", remedy));
+            return Err(input_missing(specimen.crack_key(), "contains no crack that can grow", remedy));
         }
         let state = CracksState { lines: specimen.crack_lines(), tips, step: 0.0, balance: EnergyBalance::default() };
         let plate = P::build(case, &state)?;

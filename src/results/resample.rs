@@ -45,7 +45,7 @@ fn every(first: f64, last: f64, step: f64, option: &str) -> Result<Vec<f64>> {
     }
     let count = ((last - first) / step).floor();
     if count > ROWS_MAX as f64 {
-        let problem = format!("asks for {count:.0} rows, more than {ROWS_MAX}");
+        let problem = format!("gives {count:.0} rows, more than {ROWS_MAX}");
         return Err(input(option, step, problem, format!("give at least {:.3e}", (last - first) / ROWS_MAX as f64)));
     }
     let mut cycles: Vec<f64> = (0..=count as u64).map(|i| first + step * i as f64).filter(|n| *n < last).collect();

@@ -214,7 +214,7 @@ impl Judged {
             Ok(Some(field)) => put("stress.svg", &stress_svg(&field, &case.material, &case.specimen.holes))?,
             Ok(None) => {}
             // The answer counts without this picture.
-            Err(error) => tracing::warn!("stress.svg is left out: {error}"),
+            Err(error) => tracing::warn!("stress.svg is omitted: {error}"),
         }
         if matches!(case.model, Model::Nodes(_)) {
             put("nodes.svg", &nodes_svg(case, &paths)?)?;

@@ -133,7 +133,7 @@ pub fn warnings(stressed: &Stressed) -> Vec<String> {
     }
     if let (false, Some(change)) = (stressed.is_settled(), stressed.change) {
         warnings.push(format!(
-            "the largest stress of a rim still changed by {:.2} % in the last refinement ({} % was asked for); give more \
+            "the largest stress of an edge still changed by {:.2} % in the last refinement (target {} %); give more \
              model.nodes",
             100.0 * change,
             100.0 * SETTLED

@@ -73,7 +73,7 @@ pub fn serve(settings: &Settings, ready: impl FnOnce(SocketAddr)) -> Result<()> 
         let audit = settings.audit_log.as_deref().map(Audit::open).transpose()?;
         if needs_token && store.tokens().await.map_err(|error| database(&settings.database, error))?.is_empty() {
             let remedy = "make one first: perilife token add NAME --role admin";
-            let problem = "asks for tokens, of which there is none";
+            let problem = "requires tokens, and there are none";
             return Err(input("--listen", settings.listen, problem, remedy));
         }
         let cannot = |error| Error::file(Path::new(&settings.listen.to_string()), "cannot listen", error);

@@ -235,7 +235,7 @@ fn directions_pressures_and_displacements_that_are_refused() {
             ),
             "moves an edge that [supports] fixes in the same direction",
         ),
-        (PLATE, "kind = \"displacement\"\ndisplacement_mm = 0.1".into(), "belongs to fracture scenes"),
+        (PLATE, "kind = \"displacement\"\ndisplacement_mm = 0.1".into(), "is for fracture scenes"),
         (PANEL, by_crack("[[12, 50], [30, 40]]"), "does not include the initial crack length 10 mm"),
         (PANEL, by_crack("[[5, 50], [10, 40]]"), "does not include the initial crack length 10 mm"),
         (PANEL, by_crack("[]"), "does not include the initial crack length 10 mm"),

@@ -203,7 +203,7 @@ fn required_load(stop: &StopKeys, specimen: &Specimen, material: &Material, load
     }
     if loading.displacement().is_some() {
         let problem = "is a load, and the cycles are of a displacement";
-        return Err(input(key, given, problem, "leave it out, or give the load of the cycles"));
+        return Err(input(key, given, problem, "remove it, or give the load of the cycles"));
     }
     if !(factor.is_finite() && factor >= 1.0) {
         let problem = "is below the maximum load of the cycle";

@@ -34,7 +34,7 @@ pub(super) fn check_record(record: &FittedRecord) -> Result<()> {
     number("a radius in horizons", 0.05, 10.0).read("zone_radius_horizons", record.zone_radius_horizons)?;
     Plane::from_str(&record.plane)?;
     if record.curve.is_some() != (record.law == FittedLaw::Curve) {
-        return Err(input("law", record.law, "does not go with the section [curve] of the record", "fit again"));
+        return Err(input("law", record.law, "conflicts with section [curve] of the fitted law", "fit again"));
     }
     record.curve.as_ref().map_or(Ok(()), check_curve)
 }

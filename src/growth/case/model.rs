@@ -156,7 +156,7 @@ fn check_formula(specimen: &Specimen) -> Result<()> {
     });
     if let Some(angle) = angle.filter(|_| specimen.beta.is_none()) {
         let problem = "is not known to the handbook, whose K is that of its own pins";
-        return Err(input("specimen.pin_half_angle_deg", angle, problem, "leave it out, or use another model.method"));
+        return Err(input("specimen.pin_half_angle_deg", angle, problem, "remove it, or use another model.method"));
     }
     if handbook(specimen).is_some() || !specimen.is_through() {
         return Ok(());

@@ -33,15 +33,15 @@ pub const SECTIONS: &[&str] = &["specimen", "material", "loading", "supports", "
 
 /// Sections of other files.
 const STRANGERS: &[ForeignSections] = &[
-    (&["refinement"], "belongs to a fracture scene: a fatigue case has points of one spacing", LEVELS_OF_SCENES),
+    (&["refinement"], "is a section of fracture scenes: a fatigue case has points of one spacing", LEVELS_OF_SCENES),
     (
         &["measured", "fit"],
-        "belongs to a calibration file, not to a case",
+        "is a section of calibration files, not of cases",
         "run `perilife calibrate` on it, or remove the section",
     ),
     (
         &["damage", "micro_cracks"],
-        "belongs to a fracture scene, not to a fatigue case",
+        "is a section of fracture scenes, not of fatigue cases",
         "run `perilife fracture` on it, or remove the section",
     ),
 ];
@@ -270,7 +270,7 @@ fn refuse_scene(table: &Table) -> Result<()> {
     let of_scenes = |kind: &&str| is_of_one_size || OF_SCENES.iter().any(|(key, names)| *key == KIND && names.contains(kind));
     let Some(kind) = kind.filter(of_scenes) else { return Ok(()) };
     let known = LoadingKind::ALL.iter().map(|kind| kind.name()).collect::<Vec<_>>().join(", ");
-    let problem = "belongs to fracture scenes, not to a fatigue case";
+    let problem = "is for fracture scenes, not for fatigue cases";
     Err(input(KIND, format!("\"{kind}\""), problem, format!("run `perilife fracture`, or use one of {known}")))
 }
 

@@ -58,10 +58,9 @@ pub fn start<'a>(
     [law, law_of_tips]: [Box<dyn GrowthLaw>; 2],
     order: Option<Order>,
 ) -> Result<Relay<BreakThrough<'a>>> {
-    let flaw = case
-        .specimen
-        .part_through
-        .ok_or_else(|| input_missing("specimen.kind", "is one of a through crack", "give one whose crack does not go through"))?;
+    let flaw = case.specimen.part_through.ok_or_else(|| {
+        input_missing("specimen.kind", "is one of a through crack", "give a specimen with a part-through crack")
+    })?;
     let fronts = Fronts { case, flaw, neighbours: Neighbours::of(case, &flaw)?, law };
     let spectrum = case.loading.spectrum.as_deref();
     let overloads = spectrum.zip(order).map(|(spectrum, order)| Overloads::start(&fronts, spectrum, order));

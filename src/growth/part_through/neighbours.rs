@@ -61,6 +61,6 @@ fn factor(case: &Case, flaw: &PartThrough, c: f64) -> Result<f64> {
     let [with, without] = [with?.tips, without?.tips];
     let over = with.iter().zip(&without).filter_map(|(with, without)| Some(with.factors?[0] / without.factors?[0]));
     let most = over.fold(0.0, f64::max);
-    let unknown = || Error::Mechanics(format!("{}: K of the through crack beside the other holes is not found", case.name));
+    let unknown = || Error::Mechanics(format!("{}: K of the through crack near the other holes cannot be computed", case.name));
     if most > 0.0 && most.is_finite() { Ok(most) } else { Err(unknown()) }
 }

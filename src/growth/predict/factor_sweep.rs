@@ -125,14 +125,14 @@ fn ready(case: &Case, lengths: &[f64]) -> Result<Case> {
     };
     if !specimen.is_through() || !specimen.has_sharp_tips() {
         let problem = "needs sharp cracks through the thickness, and tips of every one of them";
-        return Err(input_missing(KEY, problem, format!("leave it out, or give {}", specimen.crack_key())));
+        return Err(input_missing(KEY, problem, format!("remove it, or give {}", specimen.crack_key())));
     }
     if specimen.crack_pressure > 0.0 {
         let problem = "goes with --sweep no more than cycles of a displacement: β is K over the stress of a load";
         return Err(input_missing("loading.crack_pressure_mpa", problem, "leave --sweep out: K under pressure is that of `sif`"));
     }
     if case.loading.control != LoadControl::Load {
-        let problem = "needs one load on rims or holes: β is K over its stress";
+        let problem = "needs one load on edges or holes: β is K over its stress";
         return Err(input_missing(KEY, problem, "give loading.stress_max_mpa or force_max_n"));
     }
     let start = specimen.shortest_crack();
@@ -160,7 +160,7 @@ struct Stand {
 }
 
 fn by_formula(case: &Case, lengths: &[f64], warnings: &mut Vec<String>) -> Result<Vec<Stand>> {
-    let none = || input_missing("model.method", "has no K(a) for this specimen", "leave it out");
+    let none = || input_missing("model.method", "has no K(a) for this specimen", "remove it");
     let formula = handbook(&case.specimen).ok_or_else(none)?;
     case.specimen.beta.as_ref().map_or(Ok(()), |table| table.check_end(lengths[lengths.len() - 1]))?;
     let outside = lengths.iter().filter(|length| !formula.holds_at(**length)).count();
@@ -193,7 +193,7 @@ fn by_run(case: &Case, lengths: &[f64], observer: &dyn Observer, warnings: &mut 
     let reached = rows.last().map_or(0.0, |row| row.crack_length);
     if rows.len() < 2 || reached < last * (1.0 - SAME) {
         return Err(Error::Mechanics(format!(
-            "{}: a tip has met a rim, a hole or a crack at a length of {:.3} mm, before {:.3} mm: end --sweep there",
+            "{}: a tip has met an edge, a hole or a crack at a length of {:.3} mm, before {:.3} mm: end --sweep there",
             case.name,
             reached / MM,
             last / MM

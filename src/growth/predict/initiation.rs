@@ -78,8 +78,8 @@ fn mouths(specimen: &Specimen) -> Result<Vec<(usize, Point)>> {
             specimen.holes.iter().enumerate().find(is_at).map(|(hole, _)| (hole, end))
         };
         rim(line.end(false)).or_else(|| rim(line.end(true))).ok_or_else(|| {
-            let problem = format!("asks for the stress of the rim at which a crack forms, and crack {i} starts at no hole");
-            input_missing(KEY, problem, "leave it out, or let every crack that grows start at a hole")
+            let problem = format!("needs the stress at the hole edge where a crack forms, and crack {i} starts at no hole");
+            input_missing(KEY, problem, "remove it, or let every crack that grows start at a hole")
         })
     };
     growing.map(start).collect()

@@ -73,11 +73,11 @@ pub fn residual_strength(case: &Case, curve: &[CurvePoint]) -> Result<Vec<Streng
 /// Errors: it has none, or only a yield strength, and the loads determine what no section bears.
 pub fn check_strength(case: &Case) -> Result<()> {
     if case.loading.displacement().is_some() {
-        let problem = "does not go with cycles of a displacement, whose load is not that of a strength";
+        let problem = "conflicts with cycles of a displacement, whose load is not that of a strength";
         return Err(input_missing("--residual-strength", problem, "give a case with cycles of a load"));
     }
     if let Some(residual) = &case.loading.residual {
-        let problem = "does not go with residual stress, which K does not lose in proportion to the load";
+        let problem = "conflicts with residual stress, which K does not lose in proportion to the load";
         return Err(input_missing("--residual-strength", problem, format!("leave the option out, not {}", residual.key())));
     }
     let limit = case.limit_load(case.specimen.crack_length, &case.specimen.crack_lines());

@@ -47,7 +47,7 @@ impl Snapshots {
     /// Takes the plate as it stands. A picture that takes an equilibrium which is not found is left out: the curve counts more.
     fn take(&mut self, growth: &mut dyn CrackGrowth) -> Option<&Snapshot> {
         let fields = growth.fields().unwrap_or_else(|error| {
-            tracing::warn!("a snapshot is left out: {error}");
+            tracing::warn!("a snapshot is omitted: {error}");
             None
         });
         let Fields { displacement, damage, remaining_life, stress } = fields?;

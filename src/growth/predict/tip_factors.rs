@@ -134,7 +134,7 @@ pub struct TipResult {
 fn of_front(case: &Case, flaw: &PartThrough, methods: &[StressIntensityMethod]) -> Result<Vec<TipResult>> {
     if let Some(method) = methods.first().filter(|_| methods != StressIntensityMethod::ALL) {
         let problem = "does not support part-through cracks, whose K is that of the handbook";
-        return Err(input(StressIntensityMethod::KEY, method, problem, "leave it out"));
+        return Err(input(StressIntensityMethod::KEY, method, problem, "remove it"));
     }
     let specimen = &case.specimen;
     let compounded = Neighbours::of(case, flaw)?.map_or(1.0, |neighbours| neighbours.factor(flaw.half_length));

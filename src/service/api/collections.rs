@@ -183,7 +183,7 @@ pub async fn submit(
         }
         Submitted::Again(id) => (id, StatusCode::OK),
         Submitted::KeyTaken => {
-            let detail = "this Idempotency-Key belongs to another request; use a new one for every new job";
+            let detail = "this Idempotency-Key was used for another request; use a new one for every new job";
             return Err(Problem::conflict(detail));
         }
         Submitted::QueueFull => {

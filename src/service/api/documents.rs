@@ -308,7 +308,7 @@ fn options(kind: Option<JobKind>, given: &BTreeMap<String, Value>) -> Answer<Vec
     for (name, value) in given {
         let refused = |problem: &str, remedy: String| Err(input(&format!("options.{name}"), value, problem, remedy).into());
         if !known.contains(&name.as_str()) {
-            let remedy = if known.is_empty() { "leave it out".to_owned() } else { format!("known are {}", known.join(", ")) };
+            let remedy = if known.is_empty() { "remove it".to_owned() } else { format!("known are {}", known.join(", ")) };
             return refused("is no option of this job", remedy);
         }
         let values = value.as_array().cloned().unwrap_or_else(|| vec![value.clone()]);
