@@ -222,7 +222,7 @@ fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> peri
     let Some(kind) = given.get("kind").and_then(|kind| SpecimenKind::find(kind.as_str()?)) else { return Ok(notes) };
     let is_one_length =
         all(kind.keys()).iter().any(|key| key.name == LENGTH && key.group.is_none() && key.need == Need::Required);
-    let is_half = kind == SpecimenKind::MiddleTension;
+    let is_half = kind.has_half_length();
     if is_one_length && (!is_half || measured.curves.iter().all(|curve| curve.source.is_tip_to_tip)) {
         let mut counted = measured.clone();
         counted.leave_standing_out()?;

@@ -89,10 +89,8 @@ pub struct SpecimenRecord {
     pub a: f64,
     /// p, or m.
     pub p: f64,
-    /// C and m that these are; 0 in records of earlier versions.
-    #[serde(default)]
+    /// C and m that these are.
     pub paris_c_mm_per_cycle: f64,
-    #[serde(default)]
     pub paris_m: f64,
     pub life_measured: Figure,
     pub life_fitted: Figure,

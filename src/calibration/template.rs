@@ -10,12 +10,19 @@ use perilife_measured::{Import, SAME_LOAD, Survey, survey};
 /// Refuses a table of readings that is given in place of a calibration file.
 /// Errors: its remedy is the file to write.
 pub fn refuse_table(path: &Path) -> Result<()> {
-    if !path.extension().is_some_and(|end| ["csv", "tsv", "xlsx"].iter().any(|table| end.eq_ignore_ascii_case(table))) {
+    if !path
+        .extension()
+        .is_some_and(|end| ["csv", "tsv", "txt", "dat", "xlsx"].iter().any(|table| end.eq_ignore_ascii_case(table)))
+    {
         return Ok(());
     }
     let bytes = std::fs::read(path).map_err(|error| Error::file(path, "cannot read", error))?;
     let [name, stem] = [path.file_name(), path.file_stem()].map(|name| name.unwrap_or_default().to_string_lossy());
-    let lines = lines(&name, &survey(&bytes, path, &Import::default()));
+    let mut found = survey(&bytes, path, &Import::default());
+    if found.header.is_empty() && !found.problems.is_empty() {
+        return Err(Error::Input(Box::new(found.problems.swap_remove(0))));
+    }
+    let lines = lines(&name, &found);
     Err(Error::Input(Box::new(InputError {
         file: Some(path.to_path_buf()),
         problem: "is a table of readings, not a calibration file".to_owned(),

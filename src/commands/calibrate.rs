@@ -65,7 +65,8 @@ pub fn run(args: &Args) -> Result<()> {
     let mut folder = OutputFolder::claim(out, RunKind::Calibrate, &read, fit::ROOM, args.force)?;
     folder.warning().into_iter().for_each(|warning| console.warn(warning));
     let started = Instant::now();
-    let fitted = calibration.fit(&console.progress(calibration.name()))?;
+    let fitted =
+        calibration.fit(&console.progress(calibration.name())).inspect_err(|_| console.warn_all(calibration.warnings()))?;
     let wall_s = started.elapsed().as_secs_f64();
     let record = fitted.record(wall_s);
     folder.fill(|path| fit::write(path, &fitted, &fit::Kept::of(&fitted, record.clone())?))?;
@@ -119,7 +120,7 @@ fn predict_each(cases: Vec<Case>, mut report: Value, (args, out): (&Args, &Path)
     let mut predictions = serde_json::Map::new();
     for ((case, folder), run) in cases.iter().zip(folders).zip(runs) {
         place.adopt(&case.name)?;
-        let prediction = run.inspect_err(|_| case.warnings.iter().for_each(|warning| console.warn(warning)))?;
+        let prediction = run.inspect_err(|_| console.warn_all(&case.warnings))?;
         let task = Task::Prediction { case: Box::new(case.clone()), wanted: Box::default() };
         let files = |path: &Path| {
             let summary = of_prediction(case, prediction, &Wanted::default(), console)?;

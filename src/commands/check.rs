@@ -52,6 +52,7 @@ pub fn run(args: &Args) -> Result<()> {
 
 /// A line of a summary.
 fn labeled(label: &str, value: &str) -> String {
-    let (first, rest) = label.split_at(1);
-    format!("  {:<14} {value}", first.to_uppercase() + rest)
+    let mut rest = label.chars();
+    let first: String = rest.next().into_iter().flat_map(char::to_uppercase).collect();
+    format!("  {:<14} {value}", first + rest.as_str())
 }

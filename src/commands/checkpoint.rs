@@ -55,9 +55,10 @@ impl Args {
         let read = document.folder.opened().so_far();
         let folder = OutputFolder::claim(out, task.run_kind(), &read, task.room(), self.force)?;
         let mut checkpoint = None;
-        let unrun = |_: &Error| task.case().iter().flat_map(|case| &case.warnings).for_each(|warning| console.warn(warning));
         let summary = console.keep(folder, task.warnings(), |folder| {
-            let run = self.run_kept(task, &read, folder, console).inspect_err(unrun);
+            let run = self
+                .run_kept(task, &read, folder, console)
+                .inspect_err(|_| task.case().iter().for_each(|case| console.warn_all(&case.warnings)));
             let (summary, kept) = run.map_err(|error| document.locate(error))?;
             checkpoint = kept;
             Ok(summary)

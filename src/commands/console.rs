@@ -57,6 +57,11 @@ impl Console {
         let _ = writeln!(io::stderr(), "warning: {}", told(text));
     }
 
+    /// Prints the warnings of an input whose run has no result.
+    pub fn warn_all(&self, lines: &[String]) {
+        lines.iter().for_each(|line| self.warn(line));
+    }
+
     /// A result that was asked for on stdout and stands in no file, in the units that are shown, unless `--json` replaces it.
     pub fn result(&self, text: &str) -> Result<()> {
         if self.json { Ok(()) } else { to_stdout(text) }
@@ -95,7 +100,7 @@ impl Console {
                 self.note(&format!("{:<10} {}{}", message.kind, message.text, fix(message, "\n           fix: ")));
             }),
             [one] => self.note(&format!("1 message: {}{}", one.text, fix(one, "; "))),
-            [first, ..] => self.note(&format!("{} messages, largest: {}. -v lists all.", messages.len(), first.text)),
+            [first, ..] => self.note(&format!("{} messages, first: {}. -v lists all.", messages.len(), first.text)),
         }
     }
 

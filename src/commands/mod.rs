@@ -231,7 +231,7 @@ impl CommandLine {
 
     /// Sends the log to stderr, filtered by RUST_LOG or else by `--verbose`.
     pub fn start_log(&self) {
-        let level = ["warn", "warn", "perilife=info", "perilife=debug"][usize::from(self.verbose.min(3))];
+        let level = ["warn", "perilife=info", "perilife=debug"][usize::from(self.verbose.min(2))];
         let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
         // A second start (several calls in one test process) leaves the first log in place.
         let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().try_init();

@@ -58,7 +58,11 @@ pub fn run(args: &Args) -> Result<()> {
     let document = Document::read(&args.case, &super::with_output(&args.set, [("paraview", args.paraview)]))?;
     let task = Task::read(Kind::Sif, &document, &args.method)?;
     super::within_machine(&task, &document)?;
-    let work = |folder: Option<&Path>| perilife_runner::run(&task, None, folder, console).map_err(|error| document.locate(error));
+    let unrun = || task.case().iter().for_each(|case| console.warn_all(&case.warnings));
+    let work = |folder: Option<&Path>| {
+        let run = perilife_runner::run(&task, None, folder, console).inspect_err(|_| unrun());
+        run.map_err(|error| document.locate(error))
+    };
     let summary = match &args.out {
         None => console.print(work(None)?)?,
         Some(out) => {
@@ -89,7 +93,8 @@ fn sweep(args: &Args, asked: &str) -> Result<()> {
     // Claimed first: a file that cannot be written should not cost a run.
     let file = claim("--out", out, tables::SIGN)?;
     let beta = args.beta.as_deref().map(|path| claim("--beta", path, HEADER)).transpose()?;
-    let found = factor_sweep(&case, &lengths, true, console).map_err(|error| document.locate(error))?;
+    let found = factor_sweep(&case, &lengths, true, console).inspect_err(|_| console.warn_all(&case.warnings));
+    let found = found.map_err(|error| document.locate(error))?;
     file.write(tables::table(&found).csv().as_bytes())?;
     beta.map_or(Ok(()), |file| file.write(tables::beta_table(&found).csv().as_bytes()))?;
     let [from, to] = [lengths[0], lengths[lengths.len() - 1]].map(|length| length / MM);

@@ -26,6 +26,7 @@ pub struct Args {
 pub enum Task {
     /// Create a token; it is shown only once
     Add {
+        /// Name of the user
         name: String,
         /// Role: read, run (own jobs) or admin (all jobs)
         #[arg(long, value_enum)]
@@ -37,7 +38,10 @@ pub enum Task {
     /// List names, roles and expiry
     List,
     /// Remove a token
-    Remove { name: String },
+    Remove {
+        /// Name of the user
+        name: String,
+    },
 }
 
 pub fn run(args: &Args) -> Result<()> {

@@ -15,7 +15,7 @@ use perilife_base::units::{KN, MM, MPA, MPA_SQRT_M};
 use perilife_plate::loading::{Loading, SAME_RATIO};
 use perilife_plate::material::Material;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
-use perilife_plate::specimen::{LengthConvention, LoadMeasure, Specimen, SpecimenKind};
+use perilife_plate::specimen::{LengthConvention, LoadMeasure, Specimen};
 
 /// Loads within this share of each other are equal: machines hold theirs to one percent.
 pub const SAME_LOAD: f64 = 0.01;
@@ -90,7 +90,7 @@ impl Measured {
     fn check_half_lengths(&self, specimen: &Specimen) -> Result<()> {
         let is_double =
             |curve: &&MeasuredCurve| (curve.crack_length[0] / specimen.crack_length - 2.0).abs() < STATED_DIFFERENCE / 4.0;
-        let double = self.curves.iter().filter(|_| specimen.kind == SpecimenKind::MiddleTension).find(is_double);
+        let double = self.curves.iter().filter(|_| specimen.kind.has_half_length()).find(is_double);
         double.map_or(Ok(()), |curve| {
             let value = round_off(curve.crack_length[0] / curve.source.length_unit).to_string();
             let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(0) };

@@ -7,6 +7,7 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use super::format::{PLAIN, short};
+use super::spectrum::retarded;
 use perilife_base::error::{Error, Result};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_growth::case::record::FittedRecord;
@@ -246,8 +247,9 @@ fn toughness(case: &Case, prediction: &Prediction) -> Check {
             Check::not_checked("toughness", "Fracture: not checked (K not computed)", "use a method that computes K")
         }
         Some(toughness) => {
-            let words = format!("Fracture: K_max up to {:.0} % of K_c (100 % ends the life)", 100.0 * most / toughness);
             let required = case.stop.required.unwrap_or(1.0);
+            let [most_percent, end] = [100.0 * most / toughness, 100.0 / required];
+            let words = format!("Fracture: K_max up to {most_percent:.0} % of K_c ({end:.0} % ends the life)");
             Check { words, verdict: of_first_load(prediction, required * most / toughness), ..given }
         }
         None => Check {
@@ -271,7 +273,9 @@ fn ligament(case: &Case, prediction: &Prediction) -> Check {
         return Check::not_checked(NAME, words, "give the loads at both ends instead of a support");
     }
     let required = case.stop.required.unwrap_or(1.0);
-    let words = format!("Net-section yield: load up to {:.0} % of the plastic collapse load (100 % ends the life)", 100.0 * most);
+    let [most_percent, end] = [100.0 * most, 100.0 / required];
+    let words =
+        format!("Net-section yield: load up to {most_percent:.0} % of the plastic collapse load ({end:.0} % ends the life)");
     Check { words, verdict: of_first_load(prediction, required * most), ..given }
 }
 
@@ -400,14 +404,11 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
 fn retardation(case: &Case, prediction: &Prediction) -> Option<Check> {
     const NAME: &str = "retardation";
     const REMEDY: &str = "fit its constant to a spectrum test, or compare with loading.retardation = \"none\"";
-    let (model, is_cut_off) = (case.retardation.as_ref()?.kind, prediction.stop == StopReason::RunOut);
-    let factor = prediction.life().unwrap_or(f64::INFINITY) / prediction.unretarded_cycles.unwrap_or(f64::NAN);
-    // Both runs may have ended at the same limit of cycles.
-    if factor.is_nan() || is_cut_off && factor <= 1.0 {
+    let model = case.retardation.as_ref()?.kind;
+    let Some((factor, least)) = retarded(prediction) else {
         let words = format!("Retardation: not checked (effect of {model} unknown; its constants are given, not fitted)");
         return Some(Check::not_checked(NAME, &words, REMEDY));
-    }
-    let least = if is_cut_off { "≥ " } else { "" };
+    };
     let times =
         if factor.is_finite() { format!("{least}{factor:.2} × the life without it") } else { "unlimited life".to_owned() };
     let words = format!("Retardation: {times} ({model}; constants given, not fitted)");

@@ -234,7 +234,10 @@ impl FleetReport {
 /// 5 %, median and 95 % in words.
 fn words_of(lives: &Lives) -> [String; 3] {
     let words = lives.figures().words;
-    [words.p05, words.p50, words.p95].map(|words| words.unwrap_or_else(|| "unknown".to_owned()))
+    [words.p05, words.p50, words.p95].map(|words| {
+        let words = words.unwrap_or_else(|| "unknown".to_owned());
+        words.parse::<f64>().map_or(words, |life| PLAIN.significant(life, 4, f64::round))
+    })
 }
 
 /// Length of the crack that ends the life when the one that is inspected has its length, m: the way is that of the run.

@@ -259,7 +259,9 @@ impl Judged {
             Some(life) => format!("life {life}"),
             None => "unlimited life (no crack grows under this load)".to_owned(),
         };
-        let passes = record.passes.map_or_else(String::new, |passes| format!(" ({passes:.0} passes)"));
+        // Those of a median life are others than those of the run.
+        let passes = record.passes.filter(|passes| *passes > 0.0 && record.band.is_none());
+        let passes = passes.map_or_else(String::new, |passes| format!(" ({} passes)", PLAIN.significant(passes, 4, f64::round)));
         let (name, run) = (&case.name, run + &passes);
         let mut lines = match self.answers.headline().filter(|_| self.judgement.refusal.is_none()) {
             // The run is one plate, and its life may exceed all of a fleet.
@@ -384,7 +386,10 @@ fn method_words(case: &Case, prediction: &Prediction) -> String {
     let why = case.chosen.as_ref().map_or_else(String::new, |why| format!(" ({why})"));
     let of_front = case.specimen.part_through.map(|_| SOURCE);
     let method = match handbook(&case.specimen).map(|formula| formula.name).or(of_front) {
-        Some(formula) if matches!(case.model, Model::Handbook(_)) => format!("handbook K ({formula})"),
+        Some(formula) if matches!(case.model, Model::Handbook(_)) => {
+            let later = if prediction.figures.solves > 0 { ", then nodes" } else { "" };
+            format!("handbook K ({formula}){later}")
+        }
         _ => format!("{}{why}", case.model.method()),
     };
     let wall_s = prediction.figures.wall_s;

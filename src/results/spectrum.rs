@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 use super::format::{clean, short};
 use perilife_growth::case::Case;
-use perilife_growth::predict::Prediction;
+use perilife_growth::predict::{Prediction, StopReason};
 use perilife_plate::loading::spectrum::Spectrum;
 
 /// Shares of the largest load whose exceedances are told.
@@ -86,11 +86,20 @@ pub fn more_words(case: &Case, spectrum: &Spectrum) -> String {
     )
 }
 
+/// Life over that without load interaction, infinite if nothing grows, with `≥ ` before a bound; `None` where it is not known: both runs may
+/// have ended at the same limit of cycles, or in the first.
+pub fn retarded(prediction: &Prediction) -> Option<(f64, &'static str)> {
+    let is_cut_off = prediction.stop == StopReason::RunOut;
+    let factor = prediction.life().unwrap_or(f64::INFINITY) / prediction.unretarded_cycles?;
+    let is_known = !factor.is_nan() && (!is_cut_off || factor > 1.0);
+    is_known.then_some((factor, if is_cut_off { "≥ " } else { "" }))
+}
+
 /// A pass, and the effect of load interaction on the life.
 pub fn words(case: &Case, prediction: &Prediction) -> Option<String> {
     let spectrum = case.loading.spectrum.as_ref()?;
-    let ratio = prediction.life().zip(prediction.unretarded_cycles).map(|(life, without)| life / without);
-    let ratio = ratio.map_or_else(String::new, |ratio| format!(": {ratio:.1} × the life without retardation"));
+    let ratio = retarded(prediction).filter(|(ratio, _)| ratio.is_finite());
+    let ratio = ratio.map_or_else(String::new, |(ratio, least)| format!(": {least}{ratio:.1} × the life without retardation"));
     let model = |kind| format!("{kind}{ratio}");
     let model = case.retardation.as_ref().map_or_else(|| "no load interaction".to_owned(), |found| model(found.kind));
     Some(format!("{} cycles per pass; {model}", short(spectrum.per_pass)))

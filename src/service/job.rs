@@ -9,7 +9,7 @@ use serde_json::Value;
 use utoipa::ToSchema;
 
 use super::problem::Problem;
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::{Document, Folder};
 use perilife_calibration::inspection::{FACTOR, InspectFrom};
 use perilife_growth::case::remove_law;
@@ -129,7 +129,14 @@ impl Submission {
 
     /// The first value of an option.
     fn parsed<T: FromStr>(&self, name: &str) -> Result<Option<T>> {
-        let wrong = |text: &String| input(&format!("options.{name}"), text, "cannot be read", "see JobRequest in /openapi.json");
+        let wrong = |text: &String| {
+            input(
+                &format!("options.{name}"),
+                text,
+                "is not a value of this option",
+                "give a number, or true or false; see JobRequest in /openapi.json",
+            )
+        };
         self.option(name).first().map(|text| text.parse().map_err(|_| wrong(text))).transpose()
     }
 
@@ -147,6 +154,11 @@ impl Submission {
             let names = ["options.inspect_from_mm", "options.factor", "options.tip"];
             let from = |crack_length_mm| InspectFrom { crack_length_mm, tip, factor, names };
             wanted.inspection = self.parsed("inspect_from_mm")?.map(from);
+            let needs = ["pod", "tip", "factor"].into_iter().find(|name| !self.option(name).is_empty());
+            if let (None, Some(name)) = (&wanted.inspection, needs) {
+                let problem = format!("is missing: options.{name} needs it");
+                return Err(input_missing("options.inspect_from_mm", problem, "give a crack length, mm"));
+            }
         }
         Ok(task)
     }

@@ -102,6 +102,8 @@ fn run(page: &str, text: &str, dir: &Path) -> (String, usize) {
             "sh" => block.iter().filter_map(|line| words_of(line)).for_each(|words| {
                 let parsed = CommandLine::try_parse_from([&["perilife"], &words[..]].concat());
                 assert!(parsed.is_ok(), "{page}: {words:?}: {}", parsed.unwrap_err());
+                let is_of_clone = |word: &&&str| word.starts_with("data/") || word.starts_with("calibration/");
+                words.iter().filter(is_of_clone).for_each(|file| assert!(Path::new(file).exists(), "{page}: {file}"));
                 count += 1;
             }),
             "text" if block[0].starts_with("$ ") => {

@@ -289,8 +289,10 @@ fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
         );
     }
     // Half of the length or all of it: nothing says.
-    let error = read(&open, "crack_length_mm", "60.35").unwrap_err().to_string();
-    assert!(error.contains("specimen.crack_length_mm: is missing"), "{error}");
+    for kind in ["middle_tension", "cruciform"] {
+        let error = read(&open.replace("middle_tension", kind), "crack_length_mm", "60.35").unwrap_err().to_string();
+        assert!(error.contains("specimen.crack_length_mm: is missing"), "{kind}: {error}");
+    }
     let error = read(&edge, "crack_length_mm", "50").unwrap_err().to_string();
     assert!(error.contains("loading: is missing"), "{error}");
 }

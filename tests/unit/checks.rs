@@ -41,6 +41,13 @@ fn strengths_that_are_not_given_are_not_checked() {
         "Net-section yield: load up to 100 % of the plastic collapse load (100 % ends the life)"
     );
     assert_eq!(named(&case, &run, "toughness").verdict, Verdict::Passed);
+    // With a required strength the life ends before.
+    let required = [STRENGTHS[0], STRENGTHS[1], "stop.limit_load_factor=1.5"];
+    let (case, run) = (hand_case(PANEL, &required), hand_run(PANEL, &required));
+    for name in ["ligament", "toughness"] {
+        let words = named(&case, &run, name).words;
+        assert!(words.ends_with("(67 % ends the life)"), "{words}");
+    }
     // Turned off, they are not checked either.
     let off = [STRENGTHS[0], STRENGTHS[1], "stop.toughness=false", "stop.net_section=false"];
     let (case, run) = (hand_case(PANEL, &off), hand_run(PANEL, &off));

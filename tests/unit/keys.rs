@@ -205,6 +205,7 @@ fn every_key_is_told_everywhere_with_its_twin() {
                 key.name
             );
             assert!(schema.contains(&format!("\"{}\"", key.name)));
+            assert!(told.lines().iter().any(|line| line[0] == format!("{}.{}", told.section, key.name)), "{}", key.name);
             if let Some(twin) = twin_of(&key) {
                 assert!(own["properties"].get(&twin).is_some() && stub.contains(&format!("    {twin}: ")), "{twin}");
             }

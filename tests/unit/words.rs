@@ -8,7 +8,7 @@ const NOT_USED: &str = "stands|bears|anew|rim|rims|flanks|unlike|lies|tells|know
     leave it out|goes on|asks for|asked for|does not go with|belongs to|hand calculation|not go through|holds no|as printed|\
     second opinion|twice in a row|takes hold|colour|centre|aluminium|neighbour|neighbouring|millimetre|trouble";
 /// How many are left, by folder or file: these numbers only shrink.
-const LEFT: [(&str, usize); 3] = [("results/", 6), ("runner/check/", 2), ("", 0)];
+const LEFT: [(&str, usize); 3] = [("results/", 4), ("runner/check/", 2), ("", 0)];
 
 /// String literals of a source as words in lower case, a blank before and after each.
 fn literals(source: &str) -> Vec<String> {

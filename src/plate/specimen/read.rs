@@ -60,6 +60,11 @@ impl SpecimenKind {
         self.part_through().is_some_and(|description| description.bending.is_some())
     }
 
+    /// Whether its crack length is the half of a central crack.
+    pub fn has_half_length(self) -> bool {
+        matches!(self, SpecimenKind::MiddleTension | SpecimenKind::Cruciform)
+    }
+
     /// What is wrong with the keys of its section by themselves.
     fn mistakes(self, given: Given<'_>) -> Vec<InputError> {
         let all: Vec<_> = SpecimenKind::ALL.iter().map(|kind| (kind.name(), kind.keys())).collect();

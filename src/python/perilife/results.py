@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import tempfile
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _perilife
 from .errors import FileError
+from .inputs import overrides
 from .table import Table, write_text
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ class _Reported(_Run):
         path: StrPath,
         *,
         data: StrPath | None = None,
-        **items: str,
+        **items: str | None,
     ) -> Path:
         """Write one self-contained HTML page, to be printed and signed.
 
@@ -110,8 +110,8 @@ class _Reported(_Run):
             # A name may hold what a path means something by.
             folder = Path(scratch) / (re.sub(r"[^\w.-]+", "_", self.name).strip(".") or "run")
             self._run.save(folder)
-            overrides = [f"report.{key}={json.dumps(value, ensure_ascii=False)}" for key, value in items.items()]
-            _perilife.report(folder, Path(path), None if data is None else Path(data), overrides)
+            given = overrides({f"report.{key}": value for key, value in items.items() if value is not None})
+            _perilife.report(folder, Path(path), None if data is None else Path(data), given)
         return Path(path)
 
 

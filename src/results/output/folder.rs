@@ -152,7 +152,7 @@ impl OutputFolder {
                 return error;
             }
             let place = self.show().map(|visible| format!("partial results are in {}", visible.display()));
-            said(error, &place.unwrap_or_else(|trouble| format!("partial results could not be saved: {trouble}")))
+            said(error, &place.unwrap_or_else(|reason| format!("partial results could not be saved: {reason}")))
         })
     }
 
@@ -163,7 +163,7 @@ impl OutputFolder {
         let put = self.list().map_err(|error| error.to_string()).and_then(|()| self.put());
         if let Err(why) = put {
             let place = self.show().map(|visible| format!("results are in {}", visible.display()));
-            let place = place.unwrap_or_else(|trouble| format!("the results are lost: {trouble}"));
+            let place = place.unwrap_or_else(|reason| format!("the results are lost: {reason}"));
             return Err(Error::file(&self.name, "cannot put the results in place", io::Error::other(format!("{why}; {place}"))));
         }
         Ok(self.place)

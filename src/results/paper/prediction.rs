@@ -90,23 +90,30 @@ fn answer(run: &RunRecord, tables: &RunTables) -> String {
 fn interval(run: &RunRecord) -> String {
     let Some(inspection) = &run.inspection else { return String::new() };
     let per_pass = run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass);
-    let of_fleet = run.fleet.as_ref().and_then(|fleet| fleet.inspections.as_ref()?.interval_cycles);
+    let looks = run.fleet.as_ref().and_then(|fleet| fleet.inspections.as_ref());
+    let of_fleet = looks.and_then(|looks| {
+        looks.interval_cycles.or_else(|| looks.detectable_to_critical_cycles.p05.map(|left| left / looks.factor))
+    });
     let every = of_fleet.map_or_else(|| interval_words(inspection, per_pass), |every| every_words(every, None, per_pass));
     let rule = if inspection.has_band || of_fleet.is_some() { "5 % remaining life" } else { "remaining life" };
     let [from, factor] = [inspection.crack_length_mm, inspection.factor].map(|value| PRINT.short(value));
     let pod = run.inspections.as_ref().map_or_else(String::new, |found| {
         format!("POD: a50 = {} mm, a90 = {} mm", PRINT.short(found.a50_mm), PRINT.short(found.a90_mm))
     });
-    let (left, band) = match inspection.quantiles() {
-        Some(all) => {
+    let (left, band) = match (looks, inspection.quantiles()) {
+        (Some(looks), _) => {
+            let [low, middle, high] = quantile_words(&looks.detectable_to_critical_cycles);
+            (middle, format!("median; 5 % to 95 % of plates: {low} to {high} cycles"))
+        }
+        (None, Some(all)) => {
             let [low, middle, high] = all.map(|cycles| PRINT.by_band(cycles, &all));
             (middle, format!("median; 90 % band: {low} to {high} cycles"))
         }
-        None => {
+        (None, None) => {
             (PRINT.by_error(inspection.remaining_cycles, run.error_estimate_percent), "scatter band not available".to_owned())
         }
     };
-    let least = if inspection.life_is_lower_bound { "≥ " } else { "" };
+    let least = if inspection.life_is_lower_bound && looks.is_none() { "≥ " } else { "" };
     cards(
         "interval",
         [

@@ -3,6 +3,7 @@
 use super::{Drawings, PRINT, picture, quoted, recorded, terms, title};
 use crate::record::RunRecord;
 use crate::spectrum::SpectrumRecord;
+use perilife_growth::predict::StopReason;
 
 /// The section; empty for other loads.
 pub fn section(run: &RunRecord, drawings: &Drawings) -> String {
@@ -70,7 +71,9 @@ fn counted(run: &RunRecord, spectrum: &SpectrumRecord) -> Vec<(&'static str, Str
         rows.push(("Constant", format!("{} {value}", quoted(key))));
     }
     rows.push(("Life", run.life_cycles.map_or_else(|| "unlimited".to_owned(), cycles)));
-    if let Some(mean) = spectrum.life_cycles_without_retardation.filter(|mean| *mean > 0.0) {
+    if let Some(mean) =
+        spectrum.life_cycles_without_retardation.filter(|mean| *mean > 0.0 && run.stop_reason != StopReason::RunOut)
+    {
         let ratio = run
             .life_cycles
             .map_or_else(String::new, |life| format!("; life with retardation = {} × this", PRINT.fixed(life / mean, 2)));

@@ -220,7 +220,7 @@ pub fn k_svg(run: &RunRecord, tables: &RunTables, size: Size) -> Option<String> 
         Axis::linear_in(all.iter().map(|point| point[0]), parts(size.width, 95.0)),
         // A K_II of rounding errors does not extend the axis below zero.
         Axis::linear_in(
-            all.iter().map(|point| point[1]).filter(|k| k.abs() > 0.05 * most).chain([0.0]),
+            all.iter().map(|point| point[1]).filter(|k| k.abs() > 0.005 * most).chain([0.0]),
             parts(size.height, 45.0),
         ),
     ];

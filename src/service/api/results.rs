@@ -246,9 +246,10 @@ pub async fn report(
     let job = job_of(&app, &collection, &id).await?;
     must_have_result(&job)?;
     app.store.open_file(&id, Origin::Result, REPORT_FILE).await?.ok_or_else(|| Problem::not_found("report of this job"))?;
-    let is_plain = from.as_ref().is_ok_and(|from| from.crack_length_mm.is_none());
+    let is_plain = from.as_ref().is_ok_and(|from| from.crack_length_mm.is_none() && from.factor.is_none() && from.tip.is_none());
     let inspection = if is_plain { None } else { Some(inspection_of(&app, &id, from).await?) };
-    let signed = Signed::of(job.report.and_then(|report| serde_json::from_value(report).ok()).unwrap_or_default())?;
+    let signed =
+        Signed::of(job.report.map(serde_json::from_value).transpose().map_err(|_| Problem::internal())?.unwrap_or_default())?;
     // Never closed.
     let _room = app.curves.clone().acquire_owned().await.map_err(|_| Problem::internal())?;
     let mut files = Vec::new();

@@ -111,7 +111,7 @@ function why(s, more) {
     element("p", { class: "why", "data-value": "stop" }, s.stop_meaning ?? words(s.stop_reason)), terms(facts, "result")];
 }
 
-const line = (check) => element("li", { "data-check": check.name, "data-verdict": check.verdict },
+export const line = (check) => element("li", { "data-check": check.name, "data-verdict": check.verdict },
   mark(OF_VERDICT[check.verdict] ?? "note")[0],
   element("span", null, mark(OF_VERDICT[check.verdict] ?? "note")[1], sentence(check.words), check.remedy && element("span", { class: "quiet" }, ` – ${check.remedy}`)));
 
@@ -119,7 +119,7 @@ const line = (check) => element("li", { "data-check": check.name, "data-verdict"
 export const kindOfVerdict = (kind) => ({ valid: "ok", not_valid: "bad" })[kind] ?? "note";
 
 function valid({ verdict, verdict_kind: validity, checks = [] }) {
-  if (!verdict) return element("p", { class: "quiet" }, "Result of an earlier version.");
+  if (!validity) return element("p", { class: "quiet" }, "Result of an earlier version.");
   const kind = kindOfVerdict(validity);
   const [shown, rest] = [checks.slice(0, CHECKS_SHOWN), checks.slice(CHECKS_SHOWN)];
   return [element("h2", null, "Validity"), element("p", { class: `verdict is-${kind}`, "data-value": "verdict" }, sentence(verdict)),

@@ -115,7 +115,7 @@ export function createCalibrateView(materials) {
     fill: () => false,
     context: () => {
       const files = measured.files();
-      return files ? { files } : "Add measured data first.";
+      return files ? { files: [...files, ...form.files(fields.hidden)] } : "Add measured data first.";
     },
     onResult: (ok) => {
       start.disabled = !ok;
@@ -142,8 +142,10 @@ export function createCalibrateView(materials) {
       const file = await getBlob(href);
       return { name: own, file, text: /\.(xlsx|xlsm)$/i.test(own) ? null : await file.text() };
     }));
+    const isMeasured = ({ name: own }) => job.case.measured.files.includes(own);
+    form.offer(files.filter((one) => !isMeasured(one)));
     const isShown = fillAll(job.case);
-    await measured.load(files, job.case.measured);
+    await measured.load(files.filter(isMeasured), job.case.measured);
     fillIn(name, job.name);
     if (!isShown) editor.start(job.input);
   }

@@ -1,6 +1,6 @@
 // Checks the input while the user types: draws the plate, says what was understood, and puts a problem where it belongs.
 
-import { mark } from "./answer.js";
+import { line } from "./answer.js";
 import { Problem, postInput } from "./api.js";
 import { debounce, element, show, terms } from "./dom.js";
 import { excerpt } from "./excerpt.js";
@@ -113,7 +113,7 @@ function understood(lines, checks = []) {
   const pairs = (wanted) => Object.entries(lines).filter(([key]) => FIRST.includes(key) === wanted).map(([key, value]) => [sentence(words(key)), String(value)]);
   const [first, others] = [pairs(true), pairs(false)];
   return [terms(first.length > 0 ? first : others, "understood"),
-    checks.length > 0 && element("ul", { class: "checks" }, checks.filter((check) => check.verdict !== "passed").map(({ words: text }) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], text)))),
+    checks.length > 0 && element("ul", { class: "checks" }, checks.filter((check) => check.verdict !== "passed").map(line)),
     first.length > 0 && others.length > 0 && element("details", { class: "quiet" }, element("summary", null, "All inputs"), terms(others, "understood-all"))];
 }
 

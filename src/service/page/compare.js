@@ -97,7 +97,7 @@ function tableOf(jobs) {
     const s = job.summary;
     const beside = index > 0 && lives[index] && lives[0] ? [significant(lives[index] / lives[0], 3), inScatter(lives[index]) && element("span", { class: "row-unit" }, "in scatter")] : "–";
     return [[element("b", null, letterOf(index)), " ", element("a", { href: hrefOf(job) }, nameOf(job))], bands[index] ? deserved(bands[index][1], bands[index]) : lifeOf(s), beside,
-      bands[index] ? bar(bands[index], ends) : "no band", words(s.stop_reason), s.verdict ? [mark(kindOfVerdict(s.verdict_kind)), " ", s.verdict.split(":")[0]].flat() : ""];
+      bands[index] ? bar(bands[index], ends) : "no band", words(s.stop_reason), s.verdict_kind ? [mark(kindOfVerdict(s.verdict_kind)), " ", s.verdict.split(":")[0]].flat() : ""];
   });
   return table("Lives of the compared predictions", columns, rows, { hidden: true, name: "compare" });
 }

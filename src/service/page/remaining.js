@@ -80,6 +80,7 @@ export function createRemaining(job, { columns, lengths: ofLead, lead }, go, sig
   const hint = element("p", { class: "hint", id: "today-hint" });
   const tell = () => { hint.textContent = `${fixed(shortest * per, digits)} to ${fixed(longest * per, digits)} ${unitShown("mm")} on this curve`; };
   choice?.addEventListener("change", () => {
+    isChosen = true;
     follow(lengthsOf(tips.findIndex((tip) => String(tip.index) === choice.value)));
     length.value = rounded(shortest).toFixed(digits);
     tell();

@@ -32,7 +32,9 @@ async function openDialog(job, inspection) {
 
   async function print(event) {
     event.preventDefault();
-    const report = fields.collect();
+    // Items that the dialog does not show stay.
+    const hidden = Object.entries(job.report ?? {}).filter(([metric]) => !keys.some((key) => key.metric === metric));
+    const report = { ...Object.fromEntries(hidden), ...fields.collect() };
     const address = `${pathOf(job)}/report${interval?.checked ? inspection.query : ""}`;
     show(trouble);
     try {

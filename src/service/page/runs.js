@@ -218,7 +218,7 @@ function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
     const life = s.refused ? "not computed" : s.life_cycles === null ? "no growth"
       : `${lifeShown(s)} cycles`;
     return [two(life, s.refused || s.life_cycles === null ? "" : band ? bandOf(band) : "no band"),
-      sentence(words(s.stop_reason)), s.verdict && sign(kindOfVerdict(s.verdict_kind), s.verdict.split(":")[0])];
+      sentence(words(s.stop_reason)), s.verdict_kind && sign(kindOfVerdict(s.verdict_kind), s.verdict.split(":")[0])];
   }
   if (kind === "calibration" && s.paris_m) {
     const range = `ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)}`;

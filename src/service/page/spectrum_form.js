@@ -79,7 +79,7 @@ export function createSpectrum(form, onChange) {
     missing: () => (used && !file ? "Choose or paste the file of the spectrum." : null),
     /** The file of another run, among all that it named: {name, file}. */
     async load(files, text) {
-      const found = files.find(({ name }) => text.includes(JSON.stringify(name)) && name !== "fitted.toml");
+      const found = files.find(({ name }) => text.split("\n").some((line) => line.includes(FILE) && line.includes(JSON.stringify(name))));
       if (found) take({ name: found.name, text: await found.file.text() });
     },
     collect: () => compact({ [FILE]: file?.name, ...ofFile.collect(), ...ofModel.collect() }),

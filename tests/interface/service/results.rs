@@ -136,7 +136,7 @@ fn remaining_life(service: &Server, job: &str, done: &Value) {
     let report = |query: &str| service.get(&format!("{job}/report{query}")).expect(200).text();
     assert!(report("").contains("Lab &lt;North&gt;") && !report("").contains("Inspection interval"), "{}", report(""));
     assert!(report(&format!("?crack_length_mm={middle}")).contains("Inspection interval"));
-    service.get(&format!("{job}/report?factor=3")).expect(200);
+    service.get(&format!("{job}/report?factor=3")).expect(400);
 }
 
 /// Further analyses are runs with options, refused before they are run.
@@ -153,6 +153,7 @@ fn further_analyses_are_options() {
     service.file(&job, "residual_strength.svg");
     for (options, words) in [
         (json!({ "pod": "9,8" }), "two increasing crack lengths"),
+        (json!({ "pod": "8,9" }), "options.inspect_from_mm: is missing"),
         (json!({ "factor": "x" }), "options.factor = x"),
         (json!({ "measured": "plate.csv" }), "was not uploaded"),
         (json!({ "fleet": 9 }), "is no option of this job"),
