@@ -25,11 +25,7 @@ pub fn remove_fragments(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Conn
     let mut suspects: Vec<usize> = broken.iter().flat_map(|&b| [body.ends(b).1, body.ends(b).2]).collect();
     while let Some(place) = suspects.pop() {
         if bonds.intact_at(body, place) < least {
-            for (bond, other) in intact_bonds(body, bonds, place) {
-                bonds.cut(body, bond);
-                aside.push(bond);
-                suspects.push(other);
-            }
+            suspects.extend(set_aside(body, bonds, place, &mut aside));
         }
     }
     // Where points come loose one by one no cut-off piece is found between them, however wide the gap.
@@ -55,14 +51,19 @@ pub fn remove_fragments(body: &Body, bonds: &mut Bonds, broken: &[Bond]) -> Conn
             let mut members: Vec<usize> = piece.into_iter().filter(|&node| node < body.places()).collect();
             members.sort_unstable();
             for place in members {
-                for (bond, _) in intact_bonds(body, bonds, place) {
-                    bonds.cut(body, bond);
-                    aside.push(bond);
-                }
+                set_aside(body, bonds, place, &mut aside);
             }
         }
     }
     Connectivity::Connected(aside)
+}
+
+/// Cuts all bonds of a point; their other ends.
+fn set_aside(body: &Body, bonds: &mut Bonds, place: usize, aside: &mut Vec<Bond>) -> Vec<usize> {
+    let (cut, ends): (Vec<Bond>, Vec<usize>) = bonds.at(body, place).map(|(.., bond, other)| (bond as Bond, other)).unzip();
+    cut.iter().for_each(|&bond| bonds.cut(body, bond));
+    aside.extend(cut);
+    ends
 }
 
 /// Whether all loaded points that still have bonds hang together.
@@ -73,11 +74,8 @@ fn loads_are_connected(body: &Body, bonds: &Bonds) -> bool {
     let mut front = vec![first];
     seen[first] = true;
     while let Some(node) = front.pop() {
-        for_neighbours(body, bonds, node, |other| {
-            if !std::mem::replace(&mut seen[other], true) {
-                front.push(other);
-            }
-        });
+        let new = bonds.at(body, node).map(|(.., other)| other).filter(|&other| !std::mem::replace(&mut seen[other], true));
+        front.extend(new);
     }
     loaded.into_iter().all(|node| seen[node])
 }
@@ -97,27 +95,6 @@ fn is_loaded(body: &Body, node: usize) -> bool {
         || boundary.clamped.iter().any(|c| c.0 == place)
 }
 
-/// Calls `take` with all nodes that hang on one by intact bonds.
-fn for_neighbours(body: &Body, bonds: &Bonds, node: usize, mut take: impl FnMut(usize)) {
-    intact_bonds(body, bonds, node).into_iter().for_each(|(_, other)| take(other));
-}
-
-/// Intact bonds of a point with the other end.
-fn intact_bonds(body: &Body, bonds: &Bonds, place: usize) -> Vec<(Bond, usize)> {
-    let places = body.places();
-    let mut found = Vec::new();
-    for (k, &step) in body.steps.iter().enumerate() {
-        let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
-        for (owner, other) in [(place, ahead), (behind, behind)] {
-            let bond = (k * places + owner) as Bond;
-            if bonds.is_intact(bond) {
-                found.push((bond, other));
-            }
-        }
-    }
-    found
-}
-
 /// The piece around `a` or `b` that has lost contact with the other, if any; pieces without bonds do not count. Points found to
 /// hang `together` are remembered: along a crack one way around its tip will do for all its bonds.
 fn cut_off(body: &Body, bonds: &Bonds, a: usize, b: usize, together: &mut HashSet<usize>) -> Option<HashSet<usize>> {
@@ -133,13 +110,13 @@ fn cut_off(body: &Body, bonds: &Bonds, a: usize, b: usize, together: &mut HashSe
         let mut next = Vec::new();
         for place in std::mem::take(&mut front[side]) {
             let mut meets = false;
-            for_neighbours(body, bonds, place, |other| {
+            for (.., other) in bonds.at(body, place) {
                 meets |= seen[1 - side].contains(&other);
                 if seen[side].insert(other) {
                     is_known[side] |= together.contains(&other);
                     next.push(other);
                 }
-            });
+            }
             if meets {
                 if is_known == [false, false] {
                     together.clear();

@@ -133,11 +133,7 @@ fn band([from, to]: [Point; 2], width: Option<f64>, path: &str, specimen: &Speci
     let half = width / 2.0;
     let low = [from[0].min(to[0]) - half, from[1].min(to[1]) - half];
     let high = [from[0].max(to[0]) + half, from[1].max(to[1]) + half];
-    let [plate_low, plate_high] = bounding_box(&specimen.outline);
-    if !overlap(low, high, plate_low, plate_high) {
-        let problem = format!("is outside the plate, {} to {}", given_mm(plate_low), given_mm(plate_high));
-        return Err(input_missing(&key, problem, "move it onto the plate"));
-    }
+    on_plate(&key, low, high, specimen)?;
     Ok(RefinedRegion::Band { from, to, width })
 }
 
@@ -148,12 +144,17 @@ pub fn corners(path: &str, [from, to]: [Point; 2], specimen: &Specimen) -> Resul
     if low[0] == high[0] || low[1] == high[1] {
         return Err(input_missing(path, "encloses no area", "give two opposite corners of a box"));
     }
-    let [plate_low, plate_high] = bounding_box(&specimen.outline);
-    if !overlap(low, high, plate_low, plate_high) {
-        let problem = format!("is outside the plate, {} to {}", given_mm(plate_low), given_mm(plate_high));
-        return Err(input_missing(path, problem, "move it onto the plate"));
-    }
+    on_plate(path, low, high, specimen)?;
     Ok((low, high))
+}
+
+fn on_plate(path: &str, low: Point, high: Point, specimen: &Specimen) -> Result<()> {
+    let [plate_low, plate_high] = bounding_box(&specimen.outline);
+    if overlap(low, high, plate_low, plate_high) {
+        return Ok(());
+    }
+    let problem = format!("is outside the plate, {} to {}", given_mm(plate_low), given_mm(plate_high));
+    Err(input_missing(path, problem, "move it onto the plate"))
 }
 
 /// Whether two boxes share an area.

@@ -62,13 +62,7 @@ impl Bonds {
     }
 
     fn is_regular(&self, body: &Body, first: usize) -> bool {
-        let places = body.places();
-        (first..first + LANES).all(|place| {
-            body.steps.iter().enumerate().all(|(k, &step)| {
-                self.multiplier[k * places + place] == 1.0
-                    && self.multiplier[k * places + place.wrapping_add_signed(-step)] == 1.0
-            })
-        })
+        (first..first + LANES).all(|place| body.around(place).all(|(.., bond, _)| self.multiplier[bond] == 1.0))
     }
 
     /// Whether the chunk that starts at column `chunk x LANES` of a row is regular.
@@ -81,11 +75,6 @@ impl Bonds {
     #[inline]
     pub fn inhabited(&self, row: usize) -> Range<usize> {
         self.inhabited[row].clone()
-    }
-
-    #[inline]
-    pub fn chunks(&self) -> usize {
-        self.chunks
     }
 
     /// Whether a bond carries.
@@ -112,16 +101,14 @@ impl Bonds {
         }
     }
 
-    /// Intact bonds of a point.
+    /// Intact bonds of a point, as [`Body::around`] has them.
+    #[inline]
+    pub fn at<'a>(&'a self, body: &'a Body, place: usize) -> impl Iterator<Item = (usize, f64, usize, usize)> + 'a {
+        body.around(place).filter(move |(.., bond, _)| self.multiplier[*bond] > 0.0)
+    }
+
+    /// Number of intact bonds of a point.
     pub fn intact_at(&self, body: &Body, place: usize) -> usize {
-        let places = body.places();
-        let own = body.steps.iter().enumerate().filter(|(k, _)| self.multiplier[k * places + place] > 0.0).count();
-        let of_others = body
-            .steps
-            .iter()
-            .enumerate()
-            .filter(|&(k, &step)| self.multiplier[k * places + place.wrapping_add_signed(-step)] > 0.0)
-            .count();
-        own + of_others
+        self.at(body, place).count()
     }
 }

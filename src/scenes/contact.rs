@@ -33,7 +33,7 @@ use perilife_base::units::{MM, place_mm};
 use perilife_plate::specimen::geometry::{Places, segments_touch};
 use perilife_plate::specimen::{Crack, Point};
 use perilife_points::body::pre_crack::cutting_line;
-use perilife_points::body::sharing::{WIDEN, WIDENINGS, linear_shares};
+use perilife_points::body::sharing::linear_shares;
 use perilife_points::net::Net;
 
 /// Approach over the largest change of length of all columns from which one becomes pressed: below, mirror images and round-off decide.
@@ -320,11 +320,8 @@ impl<'n> NetContact<'n> {
         if let Some(point) = there {
             return Some(vec![(point, 1.0)]);
         }
-        (0..WIDENINGS).find_map(|i| {
-            let wide = WIDEN.powi(i as i32);
-            let candidates = self.seats.near(place, 1.5 * wide * spacing).map(|point| (point, away(point), 1.0));
-            linear_shares(plane.normal, wide, wide, candidates, sees)
-        })
+        let candidates = |reach: f64| self.seats.near(place, reach * spacing).map(|point| (point, away(point), 1.0));
+        linear_shares(plane.normal, [1.0; 2], candidates, sees)
     }
 
     /// Plane of the crack that a broken bond crosses.

@@ -24,6 +24,8 @@
 pub mod flanks;
 pub mod least_squares;
 
+use std::collections::HashMap;
+
 use super::Body;
 use super::sharing::Sharing;
 use super::surface_correction::settled;
@@ -48,64 +50,102 @@ pub fn load_rows(stencil: &Stencil) -> usize {
 /// Sets the multipliers of the bonds near the rim of the uncracked body.
 /// Errors: no multipliers within the bounds come near equilibrium.
 pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Result<()> {
-    let places = body.places();
-    let near_rim = near_rim(body);
-    let stencil_gains = gains(body);
-    let areas = areas(body, rim, sharing);
-
-    let mut involved: Vec<bool> = areas.iter().map(|a| a[0] != 0.0 || a[1] != 0.0).collect();
-    let changed = |owner: usize, k: usize| {
-        let other = owner.wrapping_add_signed(body.steps[k]);
-        (body.multiplier[k * places + owner] > 0.0 && (near_rim[owner] || near_rim[other])).then_some(other)
+    let (near_rim, gains) = (near_rim(body), gains(body));
+    let areas = areas(body, rim.iter().map(|facet| (facet, sharing.of(facet))));
+    let is_asked = |place: &usize| {
+        let changes = |bond: usize, other: usize| body.multiplier[bond] > 0.0 && (near_rim[*place] || near_rim[other]);
+        areas.contains_key(place) || body.around(*place).any(|(.., bond, other)| changes(bond, other))
     };
-    for &point in &body.points {
-        for k in 0..body.steps.len() {
-            if let Some(other) = changed(point as usize, k) {
-                involved[point as usize] = true;
-                involved[other] = true;
-            }
-        }
-    }
-    let mut number = vec![u32::MAX; places];
-    let members: Vec<usize> = body.points.iter().map(|&p| p as usize).filter(|&p| involved[p]).collect();
-    members.iter().enumerate().for_each(|(i, &place)| number[place] = i as u32);
-
-    let (mut links, mut bonds) = (Vec::new(), Vec::new());
-    for &owner in &members {
-        for k in 0..body.steps.len() {
-            if let Some(other) = changed(owner, k) {
-                links.push(Link { from: number[owner], to: number[other], k });
-                bonds.push(k * places + owner);
-            }
-        }
-    }
-    // What all bonds leave over at multiplier 1.
-    let missing: Vec<Gain> = members
-        .iter()
-        .map(|&place| {
-            let mut left = asked(areas[place]);
-            for (k, gain) in stencil_gains.iter().enumerate() {
-                let behind = place.wrapping_add_signed(-body.steps[k]);
-                for (owner, own) in [(place, gain.at_owner), (behind, gain.at_other)] {
-                    if body.multiplier[k * places + owner] > 0.0 {
-                        left.iter_mut().zip(own).for_each(|(l, g)| *l -= g);
-                    }
-                }
-            }
-            left
-        })
-        .collect();
-    let change = Problem::new(&stencil_gains, links, missing).solve(BOUNDS.map(|bound| bound - 1.0)).ok_or_else(|| {
+    let members = body.points.iter().map(|&point| point as usize).filter(is_asked).collect();
+    let equations = Equations::new(members, &areas, |_| 1.0, |place| near_rim[place]);
+    let (links, sought) = equations.sought(body, &body.multiplier);
+    // Inside the plate all bonds are there with multiplier 1.
+    let missing = equations.missing(body, &gains, |_| 1.0, |bond| body.multiplier[bond]);
+    let change = Problem::new(&gains, links, missing).solve(BOUNDS.map(|bound| bound - 1.0)).ok_or_else(|| {
         Error::Mechanics(
             "the balanced surface correction found no bond multipliers for this outline; reduce the spacing, or use \
              model.surface_correction = \"volume_and_surface\""
                 .to_owned(),
         )
     })?;
-    for (bond, change) in bonds.into_iter().zip(change) {
+    for (bond, change) in sought.into_iter().zip(change) {
         body.multiplier[bond] = settled(1.0 + change);
     }
     Ok(())
+}
+
+/// Points that the equations are asked of.
+struct Equations {
+    /// Places, ascending.
+    members: Vec<usize>,
+    /// Which of the members a place is.
+    number: HashMap<usize, u32>,
+    /// Share of its equations that is asked of every member.
+    share: Vec<f64>,
+    /// Whether the bonds of a member change: it, or one near it, misses a bond.
+    changes: Vec<bool>,
+    /// Rim that every member stands for.
+    areas: Vec<[f64; 2]>,
+}
+
+impl Equations {
+    fn new(
+        members: Vec<usize>,
+        areas: &HashMap<usize, [f64; 2]>,
+        share: impl Fn(usize) -> f64,
+        changes: impl Fn(usize) -> bool,
+    ) -> Self {
+        Equations {
+            number: members.iter().enumerate().map(|(i, &place)| (place, i as u32)).collect(),
+            share: members.iter().map(|&place| share(place)).collect(),
+            changes: members.iter().map(|&place| changes(place)).collect(),
+            areas: members.iter().map(|place| areas.get(place).copied().unwrap_or_default()).collect(),
+            members,
+        }
+    }
+
+    /// Bonds that carry between two members: the numbers of these, which entry of the stencil, which bond.
+    fn bonds<'a>(&'a self, body: &'a Body, now: &'a [f32]) -> impl Iterator<Item = (Link, usize)> + 'a {
+        let of_owner = move |(i, &owner): (usize, &usize)| {
+            body.steps.iter().enumerate().filter_map(move |(k, &step)| {
+                let (other, bond) = (self.number.get(&owner.wrapping_add_signed(step))?, k * body.places() + owner);
+                (now[bond] > 0.0).then_some((Link { from: i as u32, to: *other, k }, bond))
+            })
+        };
+        self.members.iter().enumerate().flat_map(of_owner)
+    }
+
+    fn is_of_core(&self, link: &Link) -> bool {
+        [link.from, link.to].into_iter().any(|end| self.share[end as usize] == 0.0)
+    }
+
+    /// Bonds whose multipliers are sought.
+    fn sought(&self, body: &Body, now: &[f32]) -> (Vec<Link>, Vec<usize>) {
+        let changes = |link: &Link| [link.from, link.to].into_iter().any(|end| self.changes[end as usize]);
+        self.bonds(body, now).filter(|(link, _)| !self.is_of_core(link) && changes(link)).unzip()
+    }
+
+    /// What is asked of the members, and what bonds leave over that carry by another multiplier than that of the `whole`.
+    fn missing(
+        &self,
+        body: &Body,
+        gains: &[BondGain],
+        whole: impl Fn(usize) -> f32,
+        multiplier: impl Fn(usize) -> f32,
+    ) -> Vec<Gain> {
+        let of_member = |(i, &place): (usize, &usize)| {
+            let (mut left, mut kept): (Gain, Gain) = (asked(self.areas[i]), asked([0.0; 2]));
+            for (k, sign, bond, _) in body.around(place) {
+                let [whole, carried] = [whole(bond), multiplier(bond)].map(f64::from);
+                let (sum, change) = if carried == 0.0 { (&mut left, whole) } else { (&mut kept, carried - whole) };
+                if change != 0.0 {
+                    sum.iter_mut().zip(gains[k].at(sign)).for_each(|(l, g)| *l += change * g);
+                }
+            }
+            std::array::from_fn(|c| self.share[i] * left[c] - kept[c])
+        };
+        self.members.iter().enumerate().map(of_member).collect()
+    }
 }
 
 /// Share of every bond of the stencil in the equations of its two ends, spacing 1 and S₂₂ = 1.
@@ -134,13 +174,13 @@ pub fn asked(area: [f64; 2]) -> Gain {
     [-3.0 * ax, -ay, -ax, -3.0 * ay, 0.0, 0.0]
 }
 
-/// Rim that every place stands for: Σ share × length × normal, in lattice axes and spacings.
-fn areas(body: &Body, rim: &[Facet], sharing: &Sharing) -> Vec<[f64; 2]> {
-    let mut areas = vec![[0.0; 2]; body.places()];
-    for facet in rim {
+/// Rim that places stand for: Σ share × length × normal, in lattice axes and spacings.
+fn areas<'a>(body: &Body, shared: impl Iterator<Item = (&'a Facet, Vec<(u32, f64)>)>) -> HashMap<usize, [f64; 2]> {
+    let mut areas: HashMap<usize, [f64; 2]> = HashMap::new();
+    for (facet, shares) in shared {
         let whole = body.lattice.to_axes(facet.normal.map(|n| n * facet.length / body.lattice.spacing));
-        for (place, share) in sharing.of(facet) {
-            let sum = &mut areas[place as usize];
+        for (place, share) in shares {
+            let sum = areas.entry(place as usize).or_default();
             *sum = [sum[0] + share * whole[0], sum[1] + share * whole[1]];
         }
     }
@@ -149,13 +189,9 @@ fn areas(body: &Body, rim: &[Facet], sharing: &Sharing) -> Vec<[f64; 2]> {
 
 /// Points that miss a neighbour and the rows behind them.
 fn near_rim(body: &Body) -> Vec<bool> {
-    let places = body.places();
-    let mut near = vec![false; places];
-    for &point in &body.points {
-        let place = point as usize;
-        near[place] = body.steps.iter().enumerate().any(|(k, &step)| {
-            body.multiplier[k * places + place] == 0.0 || body.multiplier[k * places + place.wrapping_add_signed(-step)] == 0.0
-        });
+    let mut near = vec![false; body.places()];
+    for place in body.points.iter().map(|&point| point as usize) {
+        near[place] = body.around(place).any(|(.., bond, _)| body.multiplier[bond] == 0.0);
     }
     for _ in body.stencil.reach..ROWS_LEAST.max(body.stencil.reach + ROWS_MORE) {
         let before = near.clone();

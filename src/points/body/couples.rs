@@ -53,18 +53,12 @@ pub(super) fn couples(body: &Body, material: &Material, rim: &[Facet], loads: &[
 
 /// a and b of a point times 2G, N·m/m: couple that keeps its rotation zero under unit deviatoric strains.
 fn turning(body: &Body, place: usize) -> [f64; 2] {
-    let places = body.places();
-    let mut sum = [0.0; 2];
-    for (k, bond) in body.stencil.bonds.iter().enumerate() {
-        let [x, y] = bond.normal;
-        let both: f64 = [place, place.wrapping_add_signed(-body.steps[k])]
-            .iter()
-            .map(|&owner| f64::from(body.multiplier[k * places + owner]))
-            .sum();
-        let turn = both * bond.k_t * bond.lever * bond.length;
-        sum = [sum[0] + turn * x * y, sum[1] - 0.5 * turn * (x * x - y * y)];
-    }
-    sum
+    body.around(place).fold([0.0; 2], |sum, (k, _, named, _)| {
+        let bond = &body.stencil.bonds[k];
+        let ([x, y], multiplier) = (bond.normal, f64::from(body.multiplier[named]));
+        let turn = multiplier * bond.k_t * bond.lever * bond.length;
+        [sum[0] + turn * x * y, sum[1] - 0.5 * turn * (x * x - y * y)]
+    })
 }
 
 /// The smallest B with `½ (B S + S Bᵀ) = [[a, b], [b, -a]]` for the symmetric S = [s_xx, s_xy, s_yy]; where S is of rank one

@@ -176,6 +176,17 @@ impl Body {
         (k, place, place.wrapping_add_signed(self.steps[k]))
     }
 
+    /// Both bonds of a place along every entry of the stencil, whether they carry or not: which entry, +1 of the owner and -1 of the other
+    /// end, the bond, the opposite end.
+    #[inline]
+    pub fn around(&self, place: usize) -> impl Iterator<Item = (usize, f64, usize, usize)> + '_ {
+        let places = self.places();
+        self.steps.iter().enumerate().flat_map(move |(k, &step)| {
+            let behind = place.wrapping_add_signed(-step);
+            [(k, 1.0, k * places + place, place.wrapping_add_signed(step)), (k, -1.0, k * places + behind, behind)]
+        })
+    }
+
     /// The point behind a place: itself, or that whose mirror image it is, and how it is mirrored.
     #[inline]
     pub fn behind(&self, place: usize) -> (usize, Flips) {

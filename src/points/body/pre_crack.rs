@@ -1,7 +1,8 @@
 //! Initial cracks as cut bonds: no point is removed, every bond that crosses the crack line is.
 
 use super::{Body, Bond};
-use perilife_plate::specimen::geometry::{direction, distance, distance_to_segment, segments_touch};
+use perilife_plate::specimen::facets::Facet;
+use perilife_plate::specimen::geometry::{along, direction, distance, distance_to_segment, segments_touch};
 use perilife_plate::specimen::{Crack, Point, Specimen};
 
 /// Share of the spacing by which a crack is shifted sideways, so that a crack along a row of points has that row on one side.
@@ -39,6 +40,17 @@ pub fn through_mouths(specimen: &Specimen, spacing: f64) -> Vec<Crack> {
 pub fn as_cut(body: &Body, [a, b]: [Point; 2]) -> [Point; 2] {
     let shift = aside(body.lattice.spacing, a, b);
     [a, b].map(|p| [p[0] + shift[0], p[1] + shift[1]])
+}
+
+/// Both faces of a straight piece of crack in facets of about a length, m.
+pub fn faces([a, b]: [Point; 2], length: f64) -> impl Iterator<Item = Facet> {
+    let count = (distance(a, b) / length).ceil().max(1.0);
+    let (length, [x, y]) = (distance(a, b) / count, direction(a, b));
+    (0..count as usize).flat_map(move |i| {
+        let at = along(a, b, (i as f64 + 0.5) / count);
+        // Outward from the material on the left of the line is to its right, and the other way round.
+        [[y, -x], [-y, x]].map(|normal| Facet { at, normal, length })
+    })
 }
 
 /// How far a crack from `a` to `b` is shifted, to its left, before bonds are cut, m.

@@ -12,9 +12,9 @@ use perilife_plate::specimen::Point;
 use perilife_plate::specimen::facets::{Facet, behind};
 
 /// Factor by which the region is widened while its points do not determine a linear field.
-pub const WIDEN: f64 = 1.15;
+const WIDEN: f64 = 1.15;
 /// Widenings after which the nearest point has to do: the material there is a single row or point.
-pub const WIDENINGS: usize = 8;
+const WIDENINGS: usize = 8;
 /// Least determinant of the moment matrix over the product of its diagonal: below, the points lie almost on a line.
 const LEAST_DETERMINANT: f64 = 1e-3;
 /// Spacings within which a nearest point is searched.
@@ -40,9 +40,7 @@ impl<'a> Sharing<'a> {
 
     /// Shares of a force on a piece of the rim; empty where no point lies near.
     pub fn of(&self, facet: &Facet) -> Vec<(u32, f64)> {
-        let linear = self.consistent.as_ref().and_then(|(obstacles, rows)| {
-            (0..WIDENINGS).find_map(|i| self.linear(facet, obstacles, *rows as f64, WIDEN.powi(i as i32)))
-        });
+        let linear = self.consistent.as_ref().and_then(|(obstacles, rows)| self.linear(facet, obstacles, *rows as f64));
         linear.unwrap_or_else(|| self.nearest_point(facet.at).map(|place| (place, 1.0)).into_iter().collect())
     }
 
@@ -73,26 +71,37 @@ impl<'a> Sharing<'a> {
             .filter(|&(.., place)| self.is_point[place])
     }
 
-    /// Moving least squares over a region widened by a factor; `None` if its points do not determine a linear field.
-    fn linear(&self, facet: &Facet, obstacles: &Obstacles, rows: f64, widen: f64) -> Option<Vec<(u32, f64)>> {
+    /// Moving least squares; `None` where no points determine a linear field.
+    fn linear(&self, facet: &Facet, obstacles: &Obstacles, rows: f64) -> Option<Vec<(u32, f64)>> {
         let lattice = self.lattice;
-        let n = lattice.to_axes(facet.normal);
         let [column, row] = lattice.locate(facet.at);
-        let (deep, wide) = (widen * (rows + 0.5), widen);
         let from = behind(facet, lattice.spacing);
         let near = obstacles.near(from);
-        let candidates = self
-            .points_within(facet.at, deep.hypot(wide))
-            .map(|(c, r, place)| (place as u32, [c as f64 - column, r as f64 - row], 1.0));
+        let candidates = |reach: f64| {
+            let seated = move |(c, r, place): (usize, usize, usize)| (place as u32, [c as f64 - column, r as f64 - row], 1.0);
+            self.points_within(facet.at, reach).map(seated)
+        };
         let sees = |place: u32| !(near && obstacles.block(from, lattice.position(place as usize)));
-        linear_shares(n, deep, wide, candidates, sees)
+        linear_shares(lattice.to_axes(facet.normal), [rows + 0.5, 1.0], candidates, sees)
     }
 }
 
-/// Shares of a force by moving least squares of first order over candidates (point, way to it from the force, weight): those that
-/// the force sees within a box behind the rim, `deep` against the normal and `wide` to either side, lengths in any one unit.
-/// `None` if they do not determine a linear field.
-pub fn linear_shares(
+/// Shares of a force by moving least squares of first order over candidates within a reach (point, way to it from the force, weight): those
+/// that the force sees within a box behind the rim, so deep against the normal and so wide to either side, lengths in any one unit. The box is
+/// widened until they determine a linear field; `None` where they never do.
+pub fn linear_shares<C: Iterator<Item = (u32, Point, f64)>>(
+    normal: Point,
+    sides: [f64; 2],
+    candidates: impl Fn(f64) -> C,
+    sees: impl Fn(u32) -> bool,
+) -> Option<Vec<(u32, f64)>> {
+    (0..WIDENINGS).find_map(|i| {
+        let [deep, wide] = sides.map(|side| WIDEN.powi(i as i32) * side);
+        shares_of(normal, deep, wide, candidates(deep.hypot(wide)), &sees)
+    })
+}
+
+fn shares_of(
     normal: Point,
     deep: f64,
     wide: f64,

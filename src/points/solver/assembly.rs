@@ -40,51 +40,34 @@ pub fn for_joints<const M: usize>(
     place: usize,
     mut take: impl FnMut(Joint<M>, bool),
 ) {
-    let places = body.places();
-    for (k, &step) in body.steps.iter().enumerate() {
-        let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
-        for (sign, owner, end) in [(1.0, place, ahead), (-1.0, behind, behind)] {
-            let share = f64::from(bonds.multiplier[k * places + owner]);
-            if share == 0.0 {
-                continue;
-            }
-            let (other, flips) = body.behind(end);
-            let (mut here, mut there) = (assembly.bond(k, sign, share), assembly.bond(k, -sign, share));
-            let is_image = flips != [false; 2];
-            if is_image {
-                let signs = assembly.signs(flips);
-                for c in 0..M {
-                    for d in 0..M {
-                        here.1[c][d] *= signs[d];
-                        there.0[c][d] *= signs[c] * signs[d];
-                        there.1[c][d] *= signs[c];
-                    }
+    for (k, sign, bond, end) in body.around(place) {
+        let share = f64::from(bonds.multiplier[bond]);
+        if share == 0.0 {
+            continue;
+        }
+        let (other, flips) = body.behind(end);
+        let (mut here, mut there) = (assembly.bond(k, sign, share), assembly.bond(k, -sign, share));
+        let is_image = flips != [false; 2];
+        if is_image {
+            let signs = assembly.signs(flips);
+            for c in 0..M {
+                for d in 0..M {
+                    here.1[c][d] *= signs[d];
+                    there.0[c][d] *= signs[c] * signs[d];
+                    there.1[c][d] *= signs[c];
                 }
             }
-            take(Joint { other, is_image, here, there }, sign > 0.0);
         }
+        take(Joint { other, is_image, here, there }, sign > 0.0);
     }
 }
 
-pub struct Springs<'a, const N: usize> {
-    product: &'a Product<N>,
-    held: Vec<bool>,
-}
-
-impl<'a, const N: usize> Springs<'a, N> {
-    /// The springs of a body and its held components.
-    pub fn new(product: &'a Product<N>) -> Self {
-        let mut held = vec![false; product.layout().len()];
-        product.fixed().iter().for_each(|&index| held[index] = true);
-        // Held sums are none of the components.
-        product.ties().slaves().for_each(|index| held[index] = false);
-        Springs { product, held }
-    }
-}
+/// The springs of a body.
+pub struct Springs<'a, const N: usize>(pub &'a Product<N>);
 
 impl<const N: usize> Assembly<N> for Springs<'_, N> {
     fn bond(&self, k: usize, sign: f64, multiplier: f64) -> Blocks<N> {
-        self.product.bond_blocks(k, sign, multiplier)
+        self.0.bond_blocks(k, sign, multiplier)
     }
 
     fn point(&self, _: usize) -> f64 {
@@ -92,8 +75,7 @@ impl<const N: usize> Assembly<N> for Springs<'_, N> {
     }
 
     fn is_held(&self, place: usize, component: usize) -> bool {
-        let layout = self.product.layout();
-        self.held[layout.index(place) + component * layout.stride]
+        self.0.is_held(place, component)
     }
 
     fn pivot_sign(&self, _: usize) -> f64 {
@@ -107,24 +89,18 @@ impl<const N: usize> Assembly<N> for Springs<'_, N> {
 
 /// Springs and dilatation, the stress P of a point being its third unknown ([`super::dilatation`]).
 pub struct Mixed<'a, const N: usize> {
-    springs: Springs<'a, N>,
-    dilatation: &'a Dilatation,
-    bonds: &'a Bonds,
+    pub product: &'a Product<N>,
+    pub dilatation: &'a Dilatation,
+    pub body: &'a Body,
+    pub bonds: &'a Bonds,
 }
 
 /// Unknowns of a point with its stress.
 pub const MIXED: usize = 3;
 
-impl<'a, const N: usize> Mixed<'a, N> {
-    /// A state-based body with its present bonds.
-    pub fn new(product: &'a Product<N>, dilatation: &'a Dilatation, bonds: &'a Bonds) -> Self {
-        Mixed { springs: Springs::new(product), dilatation, bonds }
-    }
-}
-
 impl<const N: usize> Assembly<MIXED> for Mixed<'_, N> {
     fn bond(&self, k: usize, sign: f64, multiplier: f64) -> Blocks<MIXED> {
-        let springs = self.springs.bond(k, sign, multiplier);
+        let springs = self.product.bond_blocks(k, sign, multiplier);
         let (mut own, mut off) = ([[0.0; MIXED]; MIXED], [[0.0; MIXED]; MIXED]);
         let force = self.dilatation.force(k);
         for i in 0..2 {
@@ -143,11 +119,11 @@ impl<const N: usize> Assembly<MIXED> for Mixed<'_, N> {
     }
 
     fn point(&self, place: usize) -> f64 {
-        -self.dilatation.compliance(self.bonds, place)
+        -self.dilatation.compliance(self.body, self.bonds, place)
     }
 
     fn is_held(&self, place: usize, component: usize) -> bool {
-        component < N && self.springs.is_held(place, component)
+        component < N && self.product.is_held(place, component)
     }
 
     fn pivot_sign(&self, component: usize) -> f64 {

@@ -28,17 +28,14 @@
 //! For κ > 0 it is quasi-definite: every symmetric permutation has a factorisation L D Lᵀ (Vanderbei 1995, SIAM J. Optim. 5:100).
 
 use nalgebra::Matrix2;
-use rayon::prelude::*;
 
 use super::field::{Ghosts, Layout};
-use super::kernel::{self, Into};
+use super::kernel::{Into, load};
 use super::spring::{End, Term};
 use crate::body::Body;
 use crate::body::lattice::LANES;
+use crate::bond_law::stencil::StencilBond;
 use crate::state::Bonds;
-
-/// Rows that one task takes.
-const ROWS_PER_TASK: usize = 8;
 
 /// A value for each of [`LANES`] neighbouring places.
 type Lanes = [f64; LANES];
@@ -64,29 +61,11 @@ struct Arm {
 pub struct Dilatation {
     layout: Layout,
     arms: Vec<Arm>,
-    lattice_rows: usize,
     /// c Q = 4 κ V / (Δ² Q₀) of every place, dimensionless; 0 where there is no bond.
     gain: Vec<f64>,
     /// Q of an interior point, N/m.
     whole: f64,
     ghosts: Ghosts,
-}
-
-/// A kernel over chunks of a row, compiled for every vector width and run with the widest the processor has.
-struct Chunks<F: FnMut(usize)> {
-    count: usize,
-    take: F,
-}
-
-impl<F: FnMut(usize)> pulp::WithSimd for Chunks<F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(mut self, _: S) {
-        for chunk in 0..self.count {
-            (self.take)(chunk);
-        }
-    }
 }
 
 impl Dilatation {
@@ -96,78 +75,59 @@ impl Dilatation {
             return None;
         }
         let spacing = body.stencil.spacing;
-        let arms: Vec<Arm> = body
-            .stencil
-            .bonds
-            .iter()
-            .zip(&body.steps)
-            .map(|(bond, &place_step)| {
-                let length = bond.length / spacing;
-                Arm {
-                    step: layout.step(bond.dx, bond.dy),
-                    place_step,
-                    k_n: bond.k_n,
-                    normal: bond.normal,
-                    length,
-                    force: bond.normal.map(|n| bond.k_n * length * n),
-                    weight: bond.k_n * length * length,
-                }
-            })
-            .collect();
-        let places = body.places();
-        let mut family = vec![0.0; places];
-        for (k, arm) in arms.iter().enumerate() {
-            for place in (0..places).filter(|&place| body.multiplier[k * places + place] > 0.0) {
-                let weight = f64::from(body.multiplier[k * places + place]) * arm.weight;
-                family[place] += weight;
-                family[place.wrapping_add_signed(arm.place_step)] += weight;
-            }
-        }
+        let arm = |(bond, &place_step): (&StencilBond, &isize)| {
+            let length = bond.length / spacing;
+            let (step, force) = (layout.step(bond.dx, bond.dy), bond.normal.map(|n| bond.k_n * length * n));
+            Arm { step, place_step, k_n: bond.k_n, normal: bond.normal, length, force, weight: bond.k_n * length * length }
+        };
+        let arms: Vec<Arm> = body.stencil.bonds.iter().zip(&body.steps).map(arm).collect();
         let modulus = 4.0 * body.stencil.dilatation / (spacing * spacing);
-        let gain = family.iter().map(|&q| if q > 0.0 { modulus / q } else { 0.0 }).collect();
+        let mut gain = vec![0.0; body.places()];
+        for place in body.points.iter().map(|&place| place as usize) {
+            let family: f64 = body.around(place).map(|(k, _, bond, _)| arms[k].weight * f64::from(body.multiplier[bond])).sum();
+            gain[place] = if family > 0.0 { modulus / family } else { 0.0 };
+        }
         let whole = 2.0 * arms.iter().map(|arm| arm.weight).sum::<f64>();
-        Some(Dilatation { layout, arms, lattice_rows: body.lattice.rows, gain, whole, ghosts: Ghosts::of_scalar(body, layout) })
+        Some(Dilatation { layout, arms, gain, whole, ghosts: Ghosts::of_scalar(body, layout) })
     }
 
     /// y += or -= the forces of the dilatation of a displacement x.
     pub fn apply(&self, bonds: &Bonds, x: &[f64], y: &mut [f64], into: Into) {
-        let stress = self.stress(bonds, x);
-        let (row_len, padding, stride) = (self.layout.row_len(), self.layout.padding, self.layout.stride);
+        let (stress, Layout { padding, stride, .. }) = (self.stress(bonds, x), self.layout);
         let sign = if into == Into::Set { 1.0 } else { -1.0 };
-        let arch = pulp::Arch::new();
-        let body_rows = &mut y[padding * row_len..(padding + self.lattice_rows) * row_len];
-        body_rows.par_chunks_mut(row_len * ROWS_PER_TASK).enumerate().for_each(|(task, rows)| {
-            for (i, out) in rows.chunks_exact_mut(row_len).enumerate() {
-                let row = task * ROWS_PER_TASK + i;
-                let take = |chunk: usize| {
-                    let place = (row + padding) * stride + padding + chunk * LANES;
+        self.layout.for_rows(
+            self.layout.rows_per_task(),
+            [y],
+            #[inline(always)]
+            |row, [out]: [&mut [f64]; 1]| {
+                for chunk in 0..bonds.chunks {
+                    let first = padding + chunk * LANES;
+                    let place = (row + padding) * stride + first;
                     let force = if bonds.chunk_is_regular(row, chunk) {
                         self.regular_force(&stress, place)
                     } else {
                         self.masked_force(&bonds.multiplier, &stress, place)
                     };
                     for (c, force) in force.iter().enumerate() {
-                        let start = c * stride + padding + chunk * LANES;
-                        for (target, value) in out[start..start + LANES].iter_mut().zip(force) {
-                            *target += sign * value;
-                        }
+                        let target = &mut out[c * stride + first..][..LANES];
+                        target.iter_mut().zip(force).for_each(|(target, value)| *target += sign * value);
                     }
-                };
-                arch.dispatch(Chunks { count: bonds.chunks(), take });
-            }
-        });
+                }
+            },
+        );
     }
 
     /// Stress P of every place under a displacement, m, mirror images included.
     pub fn stress(&self, bonds: &Bonds, x: &[f64]) -> Vec<f64> {
-        let (padding, stride) = (self.layout.padding, self.layout.stride);
+        let Layout { padding, stride, .. } = self.layout;
         let mut stress = vec![0.0; self.gain.len() + LANES];
-        let arch = pulp::Arch::new();
-        let body_rows = &mut stress[padding * stride..(padding + self.lattice_rows) * stride];
-        body_rows.par_chunks_mut(stride * ROWS_PER_TASK).enumerate().for_each(|(task, rows)| {
-            for (i, out) in rows.chunks_exact_mut(stride).enumerate() {
-                let row = task * ROWS_PER_TASK + i;
-                let take = |chunk: usize| {
+        let of_place = Layout { unknowns: 1, ..self.layout };
+        of_place.for_rows(
+            self.layout.rows_per_task(),
+            [&mut stress[..]],
+            #[inline(always)]
+            |row, [out]: [&mut [f64]; 1]| {
+                for chunk in 0..bonds.chunks {
                     let first = padding + chunk * LANES;
                     let (at, place) = ((row + padding) * self.layout.row_len() + first, (row + padding) * stride + first);
                     let (extension, family) = if bonds.chunk_is_regular(row, chunk) {
@@ -175,14 +135,13 @@ impl Dilatation {
                     } else {
                         self.masked_extension(&bonds.multiplier, x, at, place)
                     };
-                    let gain = load(&self.gain, place);
+                    let gain = load::<f64, LANES>(&self.gain, place);
                     for lane in 0..LANES {
                         out[first + lane] = if family[lane] > 0.0 { gain[lane] * extension[lane] / family[lane] } else { 0.0 };
                     }
-                };
-                arch.dispatch(Chunks { count: bonds.chunks(), take });
-            }
-        });
+                }
+            },
+        );
         self.ghosts.fill(&mut stress[..self.gain.len()]);
         stress
     }
@@ -193,7 +152,12 @@ impl Dilatation {
         let mut extension = [0.0; LANES];
         for arm in &self.arms {
             let (plus, minus) = (at.wrapping_add_signed(arm.step), at.wrapping_add_signed(-arm.step));
-            let (u_p, u_m, v_p, v_m) = (load(x, plus), load(x, minus), load(x, plus + stride), load(x, minus + stride));
+            let (u_p, u_m, v_p, v_m) = (
+                load::<f64, LANES>(x, plus),
+                load::<f64, LANES>(x, minus),
+                load::<f64, LANES>(x, plus + stride),
+                load::<f64, LANES>(x, minus + stride),
+            );
             for lane in 0..LANES {
                 extension[lane] += arm.force[0].mul_add(u_p[lane] - u_m[lane], arm.force[1] * (v_p[lane] - v_m[lane]));
             }
@@ -206,10 +170,10 @@ impl Dilatation {
     fn masked_extension(&self, multiplier: &[f32], x: &[f64], at: usize, place: usize) -> (Lanes, Lanes) {
         let stride = self.layout.stride;
         let (mut extension, mut family) = ([0.0; LANES], [0.0; LANES]);
-        let (u, v) = (load(x, at), load(x, at + stride));
+        let (u, v) = (load::<f64, LANES>(x, at), load::<f64, LANES>(x, at + stride));
         self.for_directions(multiplier, place, |arm, sign, step, share| {
             let other = at.wrapping_add_signed(step);
-            let (u_o, v_o) = (load(x, other), load(x, other + stride));
+            let (u_o, v_o) = (load::<f64, LANES>(x, other), load::<f64, LANES>(x, other + stride));
             for lane in 0..LANES {
                 let along = sign * (arm.force[0] * (u_o[lane] - u[lane]) + arm.force[1] * (v_o[lane] - v[lane]));
                 extension[lane] += share[lane] * along;
@@ -223,8 +187,8 @@ impl Dilatation {
     fn regular_force(&self, stress: &[f64], place: usize) -> [Lanes; 2] {
         let mut force = [[0.0; LANES]; 2];
         for arm in &self.arms {
-            let plus = load(stress, place.wrapping_add_signed(arm.place_step));
-            let minus = load(stress, place.wrapping_add_signed(-arm.place_step));
+            let plus = load::<f64, LANES>(stress, place.wrapping_add_signed(arm.place_step));
+            let minus = load::<f64, LANES>(stress, place.wrapping_add_signed(-arm.place_step));
             for (force, along) in force.iter_mut().zip(arm.force) {
                 for lane in 0..LANES {
                     force[lane] += along * (minus[lane] - plus[lane]);
@@ -237,10 +201,10 @@ impl Dilatation {
     #[inline(always)]
     fn masked_force(&self, multiplier: &[f32], stress: &[f64], place: usize) -> [Lanes; 2] {
         let mut force = [[0.0; LANES]; 2];
-        let here = load(stress, place);
+        let here = load::<f64, LANES>(stress, place);
         self.for_directions(multiplier, place, |arm, sign, _, share| {
             let step = if sign > 0.0 { arm.place_step } else { -arm.place_step };
-            let other = load(stress, place.wrapping_add_signed(step));
+            let other = load::<f64, LANES>(stress, place.wrapping_add_signed(step));
             for (force, along) in force.iter_mut().zip(arm.force) {
                 for lane in 0..LANES {
                     force[lane] -= sign * share[lane] * along * (here[lane] + other[lane]);
@@ -256,26 +220,15 @@ impl Dilatation {
         let places = self.gain.len();
         for (k, arm) in self.arms.iter().enumerate() {
             for (sign, step, owner) in [(1.0, arm.step, place), (-1.0, -arm.step, place.wrapping_add_signed(-arm.place_step))] {
-                take(arm, sign, step, kernel::load::<f32, LANES>(multiplier, k * places + owner).map(f64::from));
+                take(arm, sign, step, load::<f32, LANES>(multiplier, k * places + owner).map(f64::from));
             }
         }
     }
 
-    /// Q of a place, N/m.
-    fn family(&self, bonds: &Bonds, place: usize) -> f64 {
-        let places = self.gain.len();
-        let share = |k: usize, owner: usize| f64::from(bonds.multiplier[k * places + owner]);
-        let both = self
-            .arms
-            .iter()
-            .enumerate()
-            .map(|(k, arm)| arm.weight * (share(k, place) + share(k, place.wrapping_add_signed(-arm.place_step))));
-        both.sum()
-    }
-
     /// 1/c of a place, N/m.
-    pub(super) fn compliance(&self, bonds: &Bonds, place: usize) -> f64 {
-        self.family(bonds, place) / self.gain[place]
+    pub(super) fn compliance(&self, body: &Body, bonds: &Bonds, place: usize) -> f64 {
+        let share = |(k, _, bond, _): (usize, f64, usize, usize)| self.arms[k].weight * f64::from(bonds.multiplier[bond]);
+        body.around(place).map(share).sum::<f64>() / self.gain[place]
     }
 
     pub(super) fn sign(&self) -> f64 {
@@ -308,9 +261,4 @@ impl Dilatation {
         }
         terms
     }
-}
-
-#[inline(always)]
-fn load(x: &[f64], at: usize) -> Lanes {
-    kernel::load(x, at)
 }

@@ -1,4 +1,4 @@
-//! Sparse factorisation by faer, the reference of tests and what a window falls back on: Cholesky, and LU for a state-based law,
+//! Sparse factorisation by faer, the reference of tests and what an iteration falls back on: Cholesky, and LU for a state-based law,
 //! whose matrix with the stresses as unknowns is not positive definite.
 
 use std::collections::HashSet;
@@ -9,36 +9,24 @@ use faer::sparse::{SparseColMat, Triplet};
 
 use super::assembly::{Assembly, MIXED, Mixed, Springs, for_joints};
 use super::field::dot;
-use super::product::Product;
 use super::rigid_motion::RigidMotion;
 use super::spring::GapSpring;
-use super::system::{LinearSolver, Solved, SolverUsed, System};
-use crate::body::{Body, Bond};
+use super::system::{Solved, System};
+use crate::body::Body;
 use crate::state::Bonds;
 use perilife_base::error::{Error, Result};
 use perilife_base::watch::{self, Stage};
 
-/// Factorises anew for every solve.
-#[derive(Debug, Clone, Default)]
-pub struct DirectSolver {}
-
-impl<const N: usize> LinearSolver<N> for DirectSolver {
-    fn used(&self) -> SolverUsed {
-        SolverUsed::Direct
+/// Factorises the system and solves it.
+pub(super) fn factorised<const N: usize>(system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+    // Nothing looks while it factorises, which takes seconds; iterations that were asked to end must not lead here.
+    watch::at(Stage::Equilibrium, 0.0)?;
+    let System { body, bonds, product, f, .. } = system;
+    match product.dilatation.as_ref() {
+        None => factorise_and_solve::<N, N>(system, &Springs(product), u)?,
+        Some(dilatation) => factorise_and_solve::<N, MIXED>(system, &Mixed { product, dilatation, body, bonds }, u)?,
     }
-
-    fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        // Nothing looks while it factorises, which takes seconds; iterations that were asked to end must not lead here.
-        watch::at(Stage::Equilibrium, 0.0)?;
-        let System { bonds, product, f, .. } = system;
-        match product.dilatation() {
-            None => factorise_and_solve::<N, N>(system, &Springs::new(product), u)?,
-            Some(dilatation) => factorise_and_solve::<N, MIXED>(system, &Mixed::new(product, dilatation, bonds), u)?,
-        }
-        Ok(Solved { iterations: 0, work: dot(product.layout(), f, u) })
-    }
-
-    fn broke(&mut self, _: &Body, _: &Bonds, _: &Product<N>, _: &[Bond]) {}
+    Ok(Solved { iterations: 0, work: dot(product.layout(), f, u) })
 }
 
 /// Solves with M unknowns a point, of which the first N go into `u`.
@@ -47,7 +35,7 @@ fn factorise_and_solve<const N: usize, const M: usize>(
     assembly: &impl Assembly<M>,
     u: &mut [f64],
 ) -> Result<()> {
-    let System { body, bonds, product, f } = system;
+    let System { body, bonds, product, f, .. } = system;
     let layout = product.layout();
     let pinned: HashSet<(usize, usize)> = pins(body, bonds).into_iter().collect();
     let mut number = vec![[usize::MAX; M]; body.places()];
@@ -60,7 +48,7 @@ fn factorise_and_solve<const N: usize, const M: usize>(
     }
     let definite = (0..M).all(|c| assembly.pivot_sign(c) > 0.0);
     let mut entries = entries(body, bonds, assembly, &number);
-    add_contact(product.contact(), &number, &mut entries);
+    add_contact(&product.contact, &number, &mut entries);
     if definite {
         entries.retain(|entry| entry.col <= entry.row);
     }

@@ -4,15 +4,14 @@
 //! its components is one slice (rows are what threads share out) and a component along a row is contiguous (what
 //! vector units read).
 
-use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+use nalgebra::{RealField, convert};
 
 use crate::body::Body;
 use crate::body::lattice::{LANES, Lattice};
 use crate::body::mirror::{Line, signs};
 
-/// Places of a task, about.
-const PLACES_PER_TASK: usize = 1 << 12;
+/// Places of a task, about: on fewer than some thousands a second thread costs what it gains.
+const PLACES_PER_TASK: usize = 1 << 14;
 
 /// Layout of a vector with `unknowns` components a place over a padded lattice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,10 +73,53 @@ impl Layout {
         vec![0.0; self.len()]
     }
 
-    /// Padded rows that one task takes: enough work that handing it out does not count, the same for any number of threads.
+    /// Rows that one task takes: enough work that handing it out does not count, the same for any number of threads.
     #[inline]
     pub fn rows_per_task(&self) -> usize {
         PLACES_PER_TASK.div_ceil(self.stride)
+    }
+
+    /// Columns and rows that hold points.
+    #[inline]
+    pub fn size(&self) -> [usize; 2] {
+        [self.columns, self.rows - 2 * self.padding]
+    }
+
+    /// A row with its padding.
+    #[inline(always)]
+    pub fn padded_row<'a, T>(&self, row: usize, field: &'a [T]) -> &'a [T] {
+        &field[(row + self.padding) * self.row_len()..][..self.row_len()]
+    }
+
+    /// Does work on every row of some fields that holds points, in tasks of so many rows, compiled for every vector width and run with the
+    /// widest the processor has: `work` is inlined.
+    #[inline]
+    pub fn for_rows<T: Send, const K: usize>(
+        &self,
+        rows_per_task: usize,
+        fields: [&mut [T]; K],
+        work: impl Fn(usize, [&mut [T]; K]) + Sync,
+    ) {
+        use rayon::prelude::*;
+        let (row_len, [_, rows]) = (self.row_len(), self.size());
+        let body = self.padding * row_len..(self.padding + rows) * row_len;
+        let mut tasks = fields.map(|field| field[body.clone()].chunks_mut(rows_per_task * row_len));
+        let tasks: Vec<[&mut [T]; K]> =
+            (0..rows.div_ceil(rows_per_task)).map(|_| tasks.each_mut().map(|task| task.next().unwrap_or_default())).collect();
+        let (arch, work) = (pulp::Arch::new(), &work);
+        tasks.into_par_iter().enumerate().for_each(|(task, fields)| {
+            let first = task * rows_per_task;
+            let last = (first + rows_per_task).min(rows);
+            arch.dispatch(
+                #[inline(always)]
+                move || {
+                    let mut parts = fields.map(|field| field.chunks_exact_mut(row_len));
+                    for row in first..last {
+                        work(row, parts.each_mut().map(|part| part.next().unwrap_or_default()));
+                    }
+                },
+            );
+        });
     }
 
     /// Values of a vector that one task takes.
@@ -129,56 +171,8 @@ pub(super) fn lane_sum<T: Copy + Into<f64>>(a: &[f64], b: &[T]) -> f64 {
 }
 
 /// Precision of the values of a vector: double for a solution, single for what preconditions.
-pub trait Real:
-    Copy
-    + Debug
-    + Default
-    + Send
-    + Sync
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Neg<Output = Self>
-    + AddAssign
-    + SubAssign
-{
-    /// Rounded from double precision.
-    fn of(value: f64) -> Self;
-    /// From the multiplier of a bond, exactly.
-    fn of_share(value: f32) -> Self;
-    /// self a + b, rounded once.
-    fn mul_add(self, a: Self, b: Self) -> Self;
-}
-
-impl Real for f64 {
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn of_share(value: f32) -> Self {
-        f64::from(value)
-    }
-    #[inline(always)]
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        self.mul_add(a, b)
-    }
-}
-
-impl Real for f32 {
-    #[inline(always)]
-    fn of(value: f64) -> Self {
-        value as f32
-    }
-    #[inline(always)]
-    fn of_share(value: f32) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        self.mul_add(a, b)
-    }
-}
+pub trait Real: RealField + Copy {}
+impl<T: RealField + Copy> Real for T {}
 
 /// Where images stand in vectors of a layout, and what they are images of.
 #[derive(Debug, Clone, Copy)]
@@ -206,7 +200,7 @@ impl Ghosts {
         let row_len = self.layout.row_len();
         if let Some(line) = self.lines[0] {
             for (component, values) in x[..rows * row_len].chunks_exact_mut(stride).enumerate() {
-                let sign = T::of(self.signs[0][component % unknowns]);
+                let sign = convert::<f64, T>(self.signs[0][component % unknowns]);
                 for steps in 1..=padding {
                     values[padding - steps] = sign * values[padding + line.source(steps)];
                 }
@@ -218,7 +212,7 @@ impl Ghosts {
                 let target = &mut before[(padding - steps) * row_len..][..row_len];
                 let source = &after[line.source(steps) * row_len..][..row_len];
                 for (component, (target, source)) in target.chunks_mut(stride).zip(source.chunks(stride)).enumerate() {
-                    let sign = T::of(self.signs[1][component]);
+                    let sign = convert::<f64, T>(self.signs[1][component]);
                     target.iter_mut().zip(source).for_each(|(target, source)| *target = sign * *source);
                 }
             }

@@ -8,6 +8,8 @@
 //! force   -A (u' - u) + c (θ + θ')        couple   -c·(u' - u) + k_t r² (θ + θ')
 //! ```
 
+use nalgebra::{convert, zero};
+
 use super::field::{Layout, Real};
 use crate::body::Body;
 use crate::body::lattice::LANES;
@@ -52,15 +54,15 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
         let bonds = || body.stencil.bonds.iter();
         let spring = |(bond, &place_step): (&crate::bond_law::stencil::StencilBond, &isize)| {
             let (n, t, lever) = (bond.normal, bond.tangent(), bond.lever);
-            let a = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| T::of(bond.k_n * n[i] * n[j] + bond.k_t * t[i] * t[j]));
-            let c = [t[0], t[1], lever].map(|along| T::of(bond.k_t * lever * along));
+            let a = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| convert(bond.k_n * n[i] * n[j] + bond.k_t * t[i] * t[j]));
+            let c = [t[0], t[1], lever].map(|along| convert(bond.k_t * lever * along));
             Spring { step: layout.step(bond.dx, bond.dy), place_step, a, c }
         };
         let springs = bonds().zip(&body.steps).map(spring).collect();
         // xx and yy of an interior point are equal by the symmetry of the square; each is half the trace, twice for both bond directions.
         let stretch: f64 = bonds().map(|bond| bond.k_n + bond.k_t).sum();
         let turn: f64 = bonds().map(|bond| 2.0 * bond.k_t * bond.lever * bond.lever).sum();
-        Kernel { layout, springs, diagonal: [T::of(stretch), T::of(turn)] }
+        Kernel { layout, springs, diagonal: [convert(stretch), convert(turn)] }
     }
 
     /// Body row `row` of K x into the padded row `out`.
@@ -75,8 +77,8 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
         if into == Into::Set {
             for c in 0..N {
                 let out = &mut out[c * stride..(c + 1) * stride];
-                out[..padding + inhabited.start * LANES].fill(T::default());
-                out[(padding + inhabited.end * LANES).min(stride)..].fill(T::default());
+                out[..padding + inhabited.start * LANES].fill(zero());
+                out[(padding + inhabited.end * LANES).min(stride)..].fill(zero());
             }
         }
         let mut chunk = inhabited.start;
@@ -105,7 +107,7 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
     #[inline(always)]
     fn regular<const P: usize, const W: usize>(&self, x: &[T], at: usize) -> Sums<T, N, P, W> {
         let stride = self.layout.stride;
-        let mut y = [[[T::default(); W]; P]; N];
+        let mut y = [[[zero(); W]; P]; N];
         for (c, y) in y.iter_mut().enumerate() {
             for (block, y) in y.iter_mut().enumerate() {
                 let here = load::<T, W>(x, at + block * W + c * stride);
@@ -147,8 +149,8 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
     #[inline(always)]
     fn masked<const W: usize>(&self, shares: &Shares, x: &[T], at: usize, place: usize) -> Sums<T, N, 1, W> {
         let stride = self.layout.stride;
-        let mut y = [[[T::default(); W]; 1]; N];
-        let mut here = [[T::default(); W]; N];
+        let mut y = [[[zero(); W]; 1]; N];
+        let mut here = [[zero(); W]; N];
         for (c, here) in here.iter_mut().enumerate() {
             *here = load::<T, W>(x, at + c * stride);
         }
@@ -165,10 +167,10 @@ impl<T: Real, const N: usize, const B: usize, const L: usize> Kernel<T, N, B, L>
             let (w_p, w_m) = if N == 3 {
                 (load::<T, W>(x, plus + 2 * stride), load::<T, W>(x, minus + 2 * stride))
             } else {
-                ([T::default(); W], [T::default(); W])
+                ([zero(); W], [zero(); W])
             };
             for lane in 0..W {
-                let (s_p, s_m) = (T::of_share(s_p[lane]), T::of_share(s_m[lane]));
+                let (s_p, s_m) = (convert::<f32, T>(s_p[lane]), convert::<f32, T>(s_m[lane]));
                 let (du_p, du_m) = (s_p * (here[0][lane] - u_p[lane]), here[0][lane] - u_m[lane]);
                 let (dv_p, dv_m) = (s_p * (here[1][lane] - v_p[lane]), here[1][lane] - v_m[lane]);
                 let (u, v) = (s_m.mul_add(du_m, du_p), s_m.mul_add(dv_m, dv_p));
@@ -217,7 +219,7 @@ fn give<T: Real, const N: usize, const B: usize, const L: usize>(
 /// Values of L places in a row.
 #[inline(always)]
 pub fn load<T: Real, const L: usize>(x: &[T], at: usize) -> [T; L] {
-    let mut lanes = [T::default(); L];
+    let mut lanes = [zero(); L];
     lanes.copy_from_slice(&x[at..at + L]);
     lanes
 }

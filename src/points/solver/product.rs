@@ -4,13 +4,11 @@
 //! with multiplier m and lever r = |ξ|/(2Δ); θ = φ Δ is the point's rotation in units of length. Its gradient, summed
 //! over the bonds of a point, is one row of K x. Without free rotation the θ terms are absent.
 
-use rayon::prelude::*;
-
 use super::dilatation::Dilatation;
 use super::field::{Ghosts, Layout, Real};
 pub use super::kernel::Into;
 use super::kernel::Kernel;
-use super::spring::{Blocks, End, GapSpring, Spring, Term};
+use super::spring::{Blocks, End, GapSpring, Term};
 use super::ties::Ties;
 use crate::body::Body;
 use crate::bond_law::stencil::StencilBond;
@@ -21,43 +19,22 @@ type Double<const N: usize> = Kernel<f64, N, 1, 8>;
 /// The same in single precision, for preconditioners.
 type Single<const N: usize> = Kernel<f32, N, 2, 16>;
 
-/// Some rows of a product, compiled for every vector width and run with the widest the processor has.
-struct Rows<'a, T, const N: usize, const B: usize, const L: usize> {
-    kernel: &'a Kernel<T, N, B, L>,
-    row_len: usize,
-    bonds: &'a Bonds,
-    x: &'a [T],
-    first: usize,
-    out: &'a mut [T],
-    into: Into,
-}
-
-impl<T: Real, const N: usize, const B: usize, const L: usize> pulp::WithSimd for Rows<'_, T, N, B, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        for (i, out) in self.out.chunks_exact_mut(self.row_len).enumerate() {
-            self.kernel.row(self.bonds, self.first + i, self.x, out, self.into);
-        }
-    }
-}
-
 /// Stiffness product of a body for N unknowns a point.
 #[derive(Debug, Clone)]
 pub struct Product<const N: usize> {
     layout: Layout,
-    springs: Vec<Spring>,
+    springs: Vec<StencilBond>,
     double: Double<N>,
     single: Single<N>,
-    lattice_rows: usize,
-    /// Vector indices of held components.
+    /// Vector indices of held components, ascending, and for every index whether it is one of them.
     fixed: Vec<usize>,
+    held: Vec<bool>,
     /// What a state-based law stores beside its springs.
-    dilatation: Option<Dilatation>,
+    pub(super) dilatation: Option<Dilatation>,
     ghosts: Ghosts,
-    contact: Vec<GapSpring>,
-    /// Held sums of displacements.
+    /// Springs between flanks in contact.
+    pub(super) contact: Vec<GapSpring>,
+    /// Held sums of displacements, whose slaves are among the held components.
     pub(super) ties: Ties,
 }
 
@@ -65,24 +42,12 @@ impl<const N: usize> Product<N> {
     /// Product for a body; N must be the number of unknowns of its law.
     pub fn new(body: &Body, fixed: Vec<usize>) -> Self {
         let layout = Layout::of(&body.lattice, N);
-        let spring =
-            |bond: &StencilBond| Spring { n: bond.normal, t: bond.tangent(), k_n: bond.k_n, k_t: bond.k_t, lever: bond.lever };
-        let springs = body.stencil.bonds.iter().map(spring).collect();
         let (double, single) = (Kernel::new(body, layout), Kernel::new(body, layout));
         let dilatation = Dilatation::of(body, layout);
-        let ghosts = Ghosts::of_motion(body, layout);
-        Product {
-            layout,
-            springs,
-            double,
-            single,
-            lattice_rows: body.lattice.rows,
-            fixed,
-            dilatation,
-            ghosts,
-            contact: Vec::new(),
-            ties: Ties::default(),
-        }
+        let (ghosts, contact, ties) = (Ghosts::of_motion(body, layout), Vec::new(), Ties::default());
+        let mut held = vec![false; layout.len()];
+        fixed.iter().for_each(|&index| held[index] = true);
+        Product { layout, springs: body.stencil.bonds.clone(), double, single, fixed, held, dilatation, ghosts, contact, ties }
     }
 
     pub fn layout(&self) -> &Layout {
@@ -94,24 +59,9 @@ impl<const N: usize> Product<N> {
         &self.fixed
     }
 
-    /// What a state-based law stores beside its springs.
-    pub fn dilatation(&self) -> Option<&Dilatation> {
-        self.dilatation.as_ref()
-    }
-
-    /// Springs between flanks in contact.
-    pub fn contact(&self) -> &[GapSpring] {
-        &self.contact
-    }
-
-    /// Puts other springs between flanks.
-    pub(super) fn set_contact(&mut self, contact: Vec<GapSpring>) {
-        self.contact = contact;
-    }
-
-    /// Held sums of displacements, whose slaves are among the held components.
-    pub(super) fn ties(&self) -> &Ties {
-        &self.ties
+    /// Whether a component of a place is held.
+    pub fn is_held(&self, place: usize, component: usize) -> bool {
+        self.held[self.layout.index(place) + component * self.layout.stride]
     }
 
     /// Puts the mirror images of a field into its padding.
@@ -128,7 +78,17 @@ impl<const N: usize> Product<N> {
 
     /// [`Product::apply`] to a field whose slaves are where they are.
     pub(super) fn apply_to_field(&self, bonds: &Bonds, x: &mut [f64], y: &mut [f64], into: Into) {
-        self.apply_springs(bonds, x, y, into);
+        self.mirror(x);
+        let x = &*x;
+        let rows_per_task = self.layout.rows_per_task();
+        self.layout.for_rows(
+            rows_per_task,
+            [&mut *y],
+            #[inline(always)]
+            |row, [out]: [&mut [f64]; 1]| {
+                self.double.row(bonds, row, x, out, into);
+            },
+        );
         if let Some(dilatation) = &self.dilatation {
             dilatation.apply(bonds, x, y, into);
         }
@@ -136,19 +96,6 @@ impl<const N: usize> Product<N> {
         self.contact.iter().for_each(|spring| spring.add(&self.layout, sign * spring.stiffness * spring.gap(&self.layout, x), y));
         self.ties.fold(y);
         self.fixed.iter().for_each(|&index| y[index] = 0.0);
-    }
-
-    /// The springs alone, held components as well.
-    fn apply_springs(&self, bonds: &Bonds, x: &mut [f64], y: &mut [f64], into: Into) {
-        self.mirror(x);
-        let x = &*x;
-        let (row_len, padding) = (self.layout.row_len(), self.layout.padding);
-        let body_rows = &mut y[padding * row_len..(padding + self.lattice_rows) * row_len];
-        let arch = pulp::Arch::new();
-        let rows_per_task = self.layout.rows_per_task();
-        body_rows.par_chunks_mut(row_len * rows_per_task).enumerate().for_each(|(task, out)| {
-            arch.dispatch(Rows { kernel: &self.double, row_len, bonds, x, first: task * rows_per_task, out, into });
-        });
     }
 
     /// r -= K x of the springs in single precision on one body row of a field that has its mirror images; held
@@ -177,7 +124,7 @@ impl<const N: usize> Product<N> {
             }
             Term { sign: -1.0, vector }
         };
-        [across(spring.k_n, spring.n, 0.0), across(spring.k_t, spring.t, if N == 3 { spring.lever } else { 0.0 })]
+        [across(spring.k_n, spring.normal, 0.0), across(spring.k_t, spring.tangent(), if N == 3 { spring.lever } else { 0.0 })]
     }
 
     /// Block K_ij of a point with itself (`None`) or with the other end of its stencil bond k in direction ±1, zero rows and

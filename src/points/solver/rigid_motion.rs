@@ -4,11 +4,12 @@
 //! it grow until it drowns the curvature of the search direction. A factorisation holds the plate at two points instead, and its
 //! solution is turned back: K off a ring, a sum over points, feels a rigid turn by some 1e-5.
 
+use nalgebra::convert;
 use rayon::prelude::*;
 
-use super::field::Layout;
-use super::field::Real;
+use super::field::{Layout, Real};
 use crate::body::Body;
+use crate::body::lattice::LANES;
 use crate::state::Bonds;
 
 /// Places that are summed side by side.
@@ -36,11 +37,12 @@ impl RigidMotion {
             return None;
         }
         let mut carries = vec![0.0; layout.rows * layout.stride];
-        carries.par_iter_mut().enumerate().for_each(|(place, carries)| {
+        let rows = layout.rows_per_task();
+        carries.par_iter_mut().with_min_len(rows * layout.stride).enumerate().for_each(|(place, carries)| {
             // Away from cracks and the rim there is no need to count bonds.
             let is_inside = |place: usize| {
                 let (column, row) = body.lattice.column_row(place);
-                bonds.chunk_is_regular(row, column / crate::body::lattice::LANES)
+                bonds.chunk_is_regular(row, column / LANES)
             };
             if body.is_point[place] && (is_inside(place) || bonds.intact_at(body, place) > 0) {
                 *carries = 1.0;
@@ -60,25 +62,25 @@ impl RigidMotion {
     /// Takes its rigid motion off a field.
     pub fn take_off<T: Real + Into<f64>>(&self, field: &mut [T]) {
         let (stride, has_turns) = (self.layout.stride, self.layout.unknowns == 3);
-        let rows = field.par_chunks_exact(self.layout.row_len()).zip(self.carries.par_chunks_exact(stride)).enumerate();
+        let (row_len, least) = (self.layout.row_len(), self.layout.rows_per_task());
+        let rows = field.par_chunks_exact(row_len).zip(self.carries.par_chunks_exact(stride)).with_min_len(least).enumerate();
         let of_row = |(row, (values, carries)): (usize, (&[T], &[f32]))| {
             let y = row as f64 - self.centre[1];
             let [u, v, arm, own] = self.row_sums(values, carries);
             [u, v, arm - y * u + own]
         };
-        let sums: Vec<[f64; 3]> = rows.map(of_row).collect();
-        let [u, v, turn] = sums.iter().fold([0.0; 3], |sum, add| [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2]]);
+        let [u, v, turn] = total(rows.map(of_row).collect());
         let shift = [self.shifts[0] * u / self.count, self.shifts[1] * v / self.count];
         let turn = turn / self.inertia;
-        field.par_chunks_exact_mut(self.layout.row_len()).zip(self.carries.par_chunks(stride)).enumerate().for_each(
+        field.par_chunks_exact_mut(row_len).zip(self.carries.par_chunks(stride)).with_min_len(least).enumerate().for_each(
             |(row, (values, carries))| {
                 let y = row as f64 - self.centre[1];
                 for (column, &carries) in carries.iter().enumerate() {
                     let (carries, x) = (f64::from(carries), column as f64 - self.centre[0]);
-                    values[column] -= T::of(carries * (shift[0] - turn * y));
-                    values[column + stride] -= T::of(carries * (shift[1] + turn * x));
+                    values[column] -= convert::<f64, T>(carries * (shift[0] - turn * y));
+                    values[column + stride] -= convert::<f64, T>(carries * (shift[1] + turn * x));
                     if has_turns {
-                        values[column + 2 * stride] -= T::of(carries * turn);
+                        values[column + 2 * stride] -= convert::<f64, T>(carries * turn);
                     }
                 }
             },
@@ -116,12 +118,14 @@ impl RigidMotion {
     fn sum(&self, of: impl Fn([f64; 2]) -> [f64; 3] + Sync) -> [f64; 3] {
         let row_sum = |(row, carries): (usize, &[f32])| {
             let y = row as f64 - self.centre[1];
-            carries.iter().enumerate().filter(|(_, carries)| **carries > 0.0).fold([0.0; 3], |sum, (column, _)| {
-                let add = of([column as f64 - self.centre[0], y]);
-                [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2]]
-            })
+            let carrying = carries.iter().enumerate().filter(|(_, carries)| **carries > 0.0);
+            total(carrying.map(|(column, _)| of([column as f64 - self.centre[0], y])).collect())
         };
-        let rows: Vec<[f64; 3]> = self.carries.par_chunks(self.layout.stride).enumerate().map(row_sum).collect();
-        rows.iter().fold([0.0; 3], |sum, add| [sum[0] + add[0], sum[1] + add[1], sum[2] + add[2]])
+        let rows = self.carries.par_chunks(self.layout.stride).with_min_len(self.layout.rows_per_task());
+        total(rows.enumerate().map(row_sum).collect())
     }
+}
+
+fn total(all: Vec<[f64; 3]>) -> [f64; 3] {
+    all.iter().fold([0.0; 3], |sum, add| [0, 1, 2].map(|i| sum[i] + add[i]))
 }

@@ -1,31 +1,41 @@
-//! Both sides of K u = f for a body: load, held components, grips, and the linear solver that keeps them equal.
+//! Both sides of K u = f for a body: load, held components, grips, and the solver that keeps them equal.
 
-use super::conjugate_gradient::MultigridSolver;
-use super::direct::DirectSolver;
 use super::field::{self, Layout};
 use super::product::{Into, Product};
 use super::spring::GapSpring;
-use super::system::{EquilibriumBackend, Focus, LinearSolver, SolverKind, SolverUsed, System};
+use super::system::{SolverKind, SolverUsed, Sought, Standing, System};
 use super::ties::Ties;
-use super::window::WindowSolver;
+use super::window::Solver;
 use crate::body::{Body, Bond};
 use crate::state::Bonds;
 use perilife_base::error::Result;
 
-/// Load, held components and the linear solver of a body with N unknowns a point.
+/// Load, supports and solver of a body, the number of its unknowns hidden.
+pub(super) trait Sides: Send {
+    fn seek(&mut self, sought: Sought<'_>, plate: Standing<'_>, displacement: &mut Vec<f64>) -> Result<usize>;
+    fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]);
+    fn set_contact(&mut self, share: f64, contact: &[GapSpring]);
+    fn picture(&mut self, plate: Standing<'_>) -> Result<(Vec<f64>, usize)>;
+    fn work(&self) -> f64;
+    fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool;
+    fn is_whole(&self) -> bool;
+    fn window(&self) -> Option<&[u32]>;
+    fn used(&self) -> SolverUsed;
+}
+
+/// Load, held components and solver of a body with N unknowns a point.
 struct ConstrainedSystem<const N: usize> {
     product: Product<N>,
-    solver: Box<dyn LinearSolver<N>>,
+    solver: Solver<N>,
     f: Vec<f64>,
     /// The load without pressure on flanks, where there is some.
     without_pressure: Option<Vec<f64>>,
-    /// Prescribed field of clamped grips, per unit of half their relative displacement.
     grips: Option<Grips>,
     u: Vec<f64>,
     work: f64,
-    points: usize,
 }
 
+/// Prescribed field of clamped grips.
 struct Grips {
     /// Relative motion of the grips, held components only: clamped ends by two spacings, or sides that are moved straight by one.
     field: Vec<f64>,
@@ -42,7 +52,7 @@ struct Grips {
 }
 
 /// Load, supports and linear solver of a body under `load` times its unit load; without a kind by factorisation.
-pub(super) fn balance(kind: Option<SolverKind>, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn EquilibriumBackend> {
+pub(super) fn balance(kind: Option<SolverKind>, body: &Body, bonds: &Bonds, load: f64) -> Box<dyn Sides> {
     match body.stencil.unknowns {
         3 => Box::new(ConstrainedSystem::<3>::new(kind, body, bonds, load)),
         _ => Box::new(ConstrainedSystem::<2>::new(kind, body, bonds, load)),
@@ -96,25 +106,17 @@ impl<const N: usize> ConstrainedSystem<N> {
         }
         let mut product = Product::<N>::new(body, fixed);
         product.ties = ties;
-        let solver: Box<dyn LinearSolver<N>> = match kind {
-            // Neither a window, which is condensed bond by bond, nor a factorization has held sums.
-            None | Some(SolverKind::Window) if is_tied => Box::new(MultigridSolver::for_few_solves(body, bonds, &product)),
-            Some(SolverKind::Window) => Box::new(WindowSolver::new(body, bonds, &product)),
-            Some(SolverKind::Multigrid) => Box::new(MultigridSolver::new(body, bonds, &product)),
-            None => Box::new(DirectSolver::default()),
-        };
-        let (u, points) = (layout.zeros(), body.points.len());
-        ConstrainedSystem { product, solver, f, without_pressure: None, grips, u, work: 0.0, points }
+        // Neither a window, which is condensed bond by bond, nor a factorization has held sums.
+        let kind = if is_tied { Some(SolverKind::Multigrid) } else { kind };
+        let solver = Solver::new(kind, body, bonds, &product);
+        ConstrainedSystem { product, solver, f, without_pressure: None, grips, u: layout.zeros(), work: 0.0 }
     }
 
     /// The solver and the system it works on, with its unknown.
-    fn parts<'a>(
-        &'a mut self,
-        body: &'a Body,
-        bonds: &'a Bonds,
-    ) -> (&'a mut Box<dyn LinearSolver<N>>, System<'a, N>, &'a mut [f64]) {
+    fn parts<'a>(&'a mut self, plate: Standing<'a>) -> (&'a mut Solver<N>, System<'a, N>, &'a mut [f64]) {
         let f = self.grips.as_ref().map_or(&self.f, |grips| &grips.drag);
-        (&mut self.solver, System { body, bonds, product: &self.product, f }, &mut self.u)
+        let Standing { body, bonds, tolerance } = plate;
+        (&mut self.solver, System { body, bonds, tolerance, product: &self.product, f }, &mut self.u)
     }
 
     /// Free components follow the grips: K u = -K g. The stiffness at clamped ends never changes, so -K g does not either.
@@ -141,13 +143,13 @@ impl<const N: usize> ConstrainedSystem<N> {
             }
             return;
         };
-        self.product.ties().spread(&mut self.u);
+        self.product.ties.spread(&mut self.u);
         displacement.clone_from(&grips.field);
         displacement.iter_mut().zip(&self.u).for_each(|(d, u)| *d += u);
         // (g + u)ᵀK(g + u) = gᵀKg - f·u with f = -Kg.
         if grips.constant.is_nan() {
             let mut free = Product::<N>::new(body, Vec::new());
-            free.set_contact(self.product.contact().to_vec());
+            free.contact = self.product.contact.clone();
             let mut forces = self.product.layout().zeros();
             free.apply(bonds, displacement, &mut forces, Into::Set);
             grips.constant = field::dot(self.product.layout(), displacement, &forces) + work;
@@ -162,21 +164,17 @@ impl<const N: usize> ConstrainedSystem<N> {
     }
 }
 
-impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
-    fn set_tolerance(&mut self, tolerance: f64) {
-        self.solver.set_tolerance(tolerance);
-    }
-
-    fn solve(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
-        self.drag_grips(bonds);
-        let (solver, system, u) = self.parts(body, bonds);
-        let solved = solver.solve(system, u)?;
-        self.give(body, bonds, solved.work, displacement);
+impl<const N: usize> Sides for ConstrainedSystem<N> {
+    fn seek(&mut self, sought: Sought<'_>, plate: Standing<'_>, displacement: &mut Vec<f64>) -> Result<usize> {
+        self.drag_grips(plate.bonds);
+        let (solver, system, u) = self.parts(plate);
+        let Some(solved) = solver.seek(sought, system, u)? else { return Ok(0) };
+        self.give(plate.body, plate.bonds, solved.work, displacement);
         Ok(solved.iterations)
     }
 
     fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
-        self.solver.broke(body, bonds, &self.product, broken);
+        self.solver.broke(body, bonds, broken);
         // A crack may run up to an edge that is moved straight.
         if let Some(grips) = self.grips.as_mut().filter(|grips| !body.boundary.ties.is_empty() && !grips.drag.is_empty()) {
             (grips.drag, grips.constant) = (Vec::new(), f64::NAN);
@@ -184,11 +182,7 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
         }
     }
 
-    fn work(&self) -> f64 {
-        self.work
-    }
-
-    fn set_contact(&mut self, _: &Body, share: f64, contact: &[GapSpring]) {
+    fn set_contact(&mut self, share: f64, contact: &[GapSpring]) {
         debug_assert!(contact.is_empty() || self.solver.window().is_none(), "a condensed window does not support contact");
         if self.without_pressure.is_some() || share != 1.0 || contact.iter().any(|spring| spring.force != 0.0) {
             let without = self.without_pressure.get_or_insert_with(|| self.f.clone());
@@ -197,43 +191,25 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
             contact.iter().filter(|spring| spring.force != 0.0).for_each(|spring| spring.add(layout, spring.force, &mut self.f));
             self.product.fixed().iter().for_each(|&index| self.f[index] = 0.0);
         }
-        self.product.set_contact(contact.iter().filter(|spring| spring.stiffness > 0.0).cloned().collect());
+        self.product.contact = contact.iter().filter(|spring| spring.stiffness > 0.0).cloned().collect();
     }
 
-    fn reach(&mut self, body: &Body, bonds: &Bonds, ahead: (&[Bond], &[Focus]), displacement: &mut Vec<f64>) -> Result<usize> {
-        let (solver, system, u) = self.parts(body, bonds);
-        let Some(solved) = solver.reach(system, u, ahead.0, ahead.1)? else { return Ok(0) };
-        self.give(body, bonds, solved.work, displacement);
-        Ok(solved.iterations)
-    }
-
-    fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool {
-        self.solver.is_due(body, watched, solves)
-    }
-
-    fn complete(&mut self, body: &Body, bonds: &Bonds, displacement: &mut Vec<f64>) -> Result<usize> {
-        let (solver, system, u) = self.parts(body, bonds);
-        let Some(solved) = solver.complete(system, u)? else { return Ok(0) };
-        self.give(body, bonds, solved.work, displacement);
-        Ok(solved.iterations)
-    }
-
-    fn picture(&mut self, body: &Body, bonds: &Bonds) -> Result<(Vec<f64>, usize)> {
-        let (solver, system, u) = self.parts(body, bonds);
-        let (mut picture, iterations) = solver.picture(system, u)?.unwrap_or_else(|| (u.to_vec(), 0));
-        self.product.ties().spread(&mut picture);
+    fn picture(&mut self, plate: Standing<'_>) -> Result<(Vec<f64>, usize)> {
+        let (solver, system, u) = self.parts(plate);
+        let (mut picture, iterations) = solver.picture(system, u)?;
+        self.product.ties.spread(&mut picture);
         if let Some(Grips { field, scale, .. }) = &self.grips {
             picture.iter_mut().zip(field).for_each(|(u, g)| *u = scale * (g + *u));
         }
         Ok((picture, iterations))
     }
 
-    fn points(&self, _: &Body) -> usize {
-        self.points
+    fn work(&self) -> f64 {
+        self.work
     }
 
-    fn used(&self) -> SolverUsed {
-        self.solver.used()
+    fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool {
+        self.solver.is_due(body, watched, solves)
     }
 
     fn is_whole(&self) -> bool {
@@ -242,5 +218,9 @@ impl<const N: usize> EquilibriumBackend for ConstrainedSystem<N> {
 
     fn window(&self) -> Option<&[u32]> {
         self.solver.window()
+    }
+
+    fn used(&self) -> SolverUsed {
+        self.solver.used()
     }
 }

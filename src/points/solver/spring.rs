@@ -5,32 +5,20 @@
 //! `½ k g² - F g`: a penalty without friction, since w is normal to the crack, and a force that opens.
 
 use super::field::Layout;
+use crate::bond_law::stencil::StencilBond;
 
 /// Block of a point with itself and with the other end of a bond.
 pub type Blocks<const M: usize> = ([[f64; M]; M], [[f64; M]; M]);
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spring {
-    /// Normal stiffness, N/m.
-    pub k_n: f64,
-    /// Tangential stiffness, N/m.
-    pub k_t: f64,
-    /// Unit vector from owner to other end.
-    pub n: [f64; 2],
-    /// The same turned by +90°.
-    pub t: [f64; 2],
-    /// Lever of the rotation unknowns on the shear.
-    pub lever: f64,
-}
-
-impl Spring {
+impl StencilBond {
     /// Blocks of its stiffness, `share` of it, with N unknowns a point: of the owner (`sign` +1) or the other end (-1) with itself
     /// and with the opposite end.
-    pub fn blocks<const N: usize>(&self, sign: f64, share: f64) -> Blocks<N> {
+    pub(super) fn blocks<const N: usize>(&self, sign: f64, share: f64) -> Blocks<N> {
+        let (n, t) = (self.normal, self.tangent());
         let (mut own, mut off) = ([[0.0; N]; N], [[0.0; N]; N]);
         for i in 0..2 {
             for j in 0..2 {
-                let a = share * (self.k_n * self.n[i] * self.n[j] + self.k_t * self.t[i] * self.t[j]);
+                let a = share * (self.k_n * n[i] * n[j] + self.k_t * t[i] * t[j]);
                 own[i][j] = a;
                 off[i][j] = -a;
             }
@@ -38,7 +26,7 @@ impl Spring {
         if N == 3 {
             let couple = share * self.k_t * self.lever;
             for i in 0..2 {
-                let c = sign * couple * self.t[i];
+                let c = sign * couple * t[i];
                 // ∂²/∂u_i∂θ_i = ∂²/∂u_i∂θ_j = +c at the owner, -c at the other end.
                 own[i][2] = c;
                 own[2][i] = c;

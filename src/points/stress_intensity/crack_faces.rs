@@ -11,12 +11,8 @@ use std::f64::consts::{PI, TAU};
 use super::gradient::TipFrame;
 use crate::body::Body;
 use crate::body::pre_crack::as_cut;
-use perilife_plate::specimen::facets::Facet;
 use perilife_plate::specimen::geometry::{along, circle_shares, direction, distance, distance_to_segment, segments_touch};
 use perilife_plate::specimen::{CrackLine, LineEnd, Point, Specimen};
-
-/// Pieces of a crack face per spacing.
-const PIECES_PER_SPACING: f64 = 2.0;
 
 /// The crack of a tip with one that its other end lies on, within `slack`, m: behind the place where both are joined the auxiliary field
 /// is cut along that one, not through the material.
@@ -51,19 +47,6 @@ pub(super) fn continued(lines: &[CrackLine], end: LineEnd, slack: f64) -> CrackL
         points.reverse();
     }
     CrackLine { points }
-}
-
-/// Both faces of a straight piece of crack, as the bonds see it: a trifle aside of the line that was asked for.
-pub(super) fn faces(body: &Body, piece: [Point; 2]) -> impl Iterator<Item = Facet> {
-    let [a, b] = as_cut(body, piece);
-    let length = distance(a, b);
-    let count = (PIECES_PER_SPACING * length / body.lattice.spacing).ceil().max(1.0);
-    let [x, y] = [0, 1].map(|i| (b[i] - a[i]) / length.max(f64::MIN_POSITIVE));
-    (0..count as usize).flat_map(move |i| {
-        let at = along(a, b, (i as f64 + 0.5) / count);
-        // Outward from the material on the left of the line is to its right, and the other way round.
-        [[y, -x], [-y, x]].map(|normal| Facet { at, normal, length: length / count })
-    })
 }
 
 /// The crack behind a tip in its frame.

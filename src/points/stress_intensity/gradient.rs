@@ -6,7 +6,7 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use crate::body::{Body, Bond};
+use crate::body::Body;
 use crate::solver::field::Layout;
 use crate::state::Bonds;
 use perilife_plate::specimen::Point;
@@ -73,26 +73,20 @@ pub fn derivatives_at(
     frame: &TipFrame,
     place: usize,
 ) -> Option<Derivatives> {
-    let (places, spacing) = (body.places(), body.lattice.spacing);
+    let (spacing, over_a_spacing) = (body.lattice.spacing, (-REACH_SPACINGS.powi(-2)).exp());
     let here = displacement_at(body, layout, displacement, frame, place);
     let mut normal = SMatrix::<f64, TERMS, TERMS>::zeros();
     let mut right = SMatrix::<f64, TERMS, 2>::zeros();
-    for (k, bond) in body.stencil.bonds.iter().enumerate() {
-        let step = body.steps[k];
-        let behind = place.wrapping_add_signed(-step);
-        for (sign, owner, other) in [(1.0, place, place.wrapping_add_signed(step)), (-1.0, behind, behind)] {
-            if !bonds.is_intact((k * places + owner) as Bond) {
-                continue;
-            }
-            // In spacings, so that the five columns are of one size.
-            let [x, y] = frame.vector(body.lattice.from_axes([sign * f64::from(bond.dx), sign * f64::from(bond.dy)]));
-            let weight = (-(bond.length / (REACH_SPACINGS * spacing)).powi(2)).exp();
-            let there = displacement_at(body, layout, displacement, frame, other);
-            let basis = SVector::from([x, y, 0.5 * x * x, x * y, 0.5 * y * y]);
-            let difference = SMatrix::<f64, 1, 2>::from([[there[0] - here[0]], [there[1] - here[1]]]);
-            normal += weight * basis * basis.transpose();
-            right += weight * basis * difference;
-        }
+    for (k, sign, _, other) in bonds.at(body, place) {
+        let bond = &body.stencil.bonds[k];
+        // In spacings, so that the five columns are of one size.
+        let [x, y] = frame.vector(body.lattice.from_axes([sign * f64::from(bond.dx), sign * f64::from(bond.dy)]));
+        let weight = over_a_spacing.powi(bond.dx * bond.dx + bond.dy * bond.dy);
+        let there = displacement_at(body, layout, displacement, frame, other);
+        let basis = SVector::from([x, y, 0.5 * x * x, x * y, 0.5 * y * y]);
+        let difference = SMatrix::<f64, 1, 2>::from([[there[0] - here[0]], [there[1] - here[1]]]);
+        normal += weight * basis * basis.transpose();
+        right += weight * basis * difference;
     }
     let fit = normal.cholesky()?.solve(&right) / spacing;
     let of = |row: usize| [fit[(row, 0)], fit[(row, 1)]];

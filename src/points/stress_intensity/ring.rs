@@ -29,10 +29,10 @@
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-use super::crack_faces::{CrackFaces, FaceSegment, cells_along, cells_at, continued, faces, parts};
+use super::crack_faces::{CrackFaces, FaceSegment, cells_along, cells_at, continued, parts};
 use super::gradient::{Derivatives, TipFrame, derivatives_at};
 use crate::body::Body;
-use crate::body::pre_crack::{as_cut, places_near};
+use crate::body::pre_crack::{as_cut, faces, places_near};
 use crate::solver::field::Layout;
 use crate::state::Bonds;
 use perilife_plate::loading::pieces::{LoadPiece, load_pieces};
@@ -57,6 +57,8 @@ const JOINED_SPACINGS: f64 = 1e-3;
 const JOINT_HORIZONS: f64 = 2.0;
 /// Relative difference of distances that are equal.
 const EQUAL: f64 = 1e-3;
+/// Pieces of a crack face per spacing.
+const PIECES_PER_SPACING: f64 = 2.0;
 /// Room left, in horizons, between a ring and what it cannot take in: another tip, a support.
 const ROOM_HORIZONS: f64 = 0.2;
 
@@ -211,7 +213,7 @@ impl RingGeometry {
         for (index, line) in lines.iter().enumerate() {
             // The way back from the tip in the sense of its own line.
             for piece in line.pieces().filter(|[a, b]| distance_to_segment(frame.origin, *a, *b) < outer) {
-                faces(body, piece).filter(|facet| near(facet.at)).for_each(|facet| {
+                faces(as_cut(body, piece), spacing / PIECES_PER_SPACING).filter(|facet| near(facet.at)).for_each(|facet| {
                     if index != end.line || distance(facet.at, frame.origin) > CORE_HORIZONS * body.horizon() {
                         let is_pressed = |place: &FlankPressure| distance(place.facet.at, facet.at) < 0.5 * place.facet.length;
                         add(around.rim(&facet, !plate.pressures.iter().any(is_pressed)));

@@ -10,17 +10,17 @@
 //! horizon. They are asked for less sharply than on the rim, whose multipliers are found once: so no multiplier comes to its bounds,
 //! which would cost tens of factorisations a block.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use rayon::prelude::*;
 
-use super::least_squares::{BondGain, Gain, Link, Problem};
-use super::{BOUNDS, asked, gains, load_rows};
-use crate::body::pre_crack::{as_cut, places_near};
-use crate::body::sharing::{WIDEN, WIDENINGS, linear_shares};
+use super::least_squares::Problem;
+use super::{BOUNDS, Equations, areas, gains, load_rows};
+use crate::body::pre_crack::{as_cut, faces, places_near};
+use crate::body::sharing::linear_shares;
 use crate::body::{Body, Bond};
 use perilife_plate::specimen::facets::{Facet, behind};
-use perilife_plate::specimen::geometry::{along, direction, distance, distance_to_segment, segments_touch};
+use perilife_plate::specimen::geometry::{distance, distance_to_segment, segments_touch};
 use perilife_plate::specimen::{CrackLine, Point};
 
 /// ε of the equations of force. At 1e-4 and 1e-2 K of central cracks differs by 0.03 and 0.1 to 0.2 %.
@@ -53,7 +53,7 @@ pub fn multipliers(
     ends: &[Point],
     range: FlankRange,
 ) -> Vec<(Bond, f32)> {
-    let beside = Beside::new(body, now, lines, tips, ends, range);
+    let beside = beside(body, now, lines, tips, ends, range);
     // What is sought counts as a change of the body's own multiplier.
     let (links, sought) = beside.sought(body, now);
     let own = |bond: usize| (bond, body.multiplier[bond]);
@@ -61,7 +61,7 @@ pub fn multipliers(
     let cores = beside.bonds(body, now).filter(|(link, _)| beside.is_of_core(link)).map(|(_, bond)| bond);
     let mut new: HashMap<usize, f32> = sought.iter().copied().chain(cores).map(own).collect();
     let gains = gains(body);
-    let missing = beside.missing(body, &gains, |bond| new.get(&bond).copied().unwrap_or(now[bond]));
+    let missing = beside.missing(body, &gains, |bond| body.multiplier[bond], |bond| new.get(&bond).copied().unwrap_or(now[bond]));
     let bounds = BOUNDS.map(|bound| bound - 1.0);
     let changes = Problem::new(&gains, links, missing).solve_to(&SOFTNESS, bounds).unwrap_or_else(|| vec![0.0; sought.len()]);
     for (bond, change) in sought.into_iter().zip(changes) {
@@ -76,105 +76,36 @@ pub fn multipliers(
     changed
 }
 
-/// Points beside cracks, whose equations may change.
-struct Beside {
-    /// Places, ascending: of points with cut bonds, the rows behind them and the other ends of their bonds.
-    members: Vec<usize>,
-    /// Which of the members a place is.
-    number: HashMap<usize, u32>,
-    /// Share of its equations that is asked of every member.
-    share: Vec<f64>,
-    /// Whether the bonds of a member change: it, or one next to it, misses a bond.
-    changes: Vec<bool>,
-    /// Flank that every member stands for.
-    areas: Vec<[f64; 2]>,
-}
-
-impl Beside {
-    fn new(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &[Point], range: FlankRange) -> Self {
-        let (spacing, horizon) = (body.lattice.spacing, body.horizon());
-        let followed = FOLLOWED_HORIZONS * horizon;
-        let nearest = |of: &[Point], at: Point| of.iter().map(|end| distance(*end, at)).fold(f64::INFINITY, f64::min);
-        let is_open = |place: usize| range == FlankRange::All || nearest(ends, body.lattice.position(place)) < followed;
-        let is_near = |[a, b]: &[Point; 2]| {
-            let reach = followed + 3.0 * horizon;
-            range == FlankRange::All || ends.iter().any(|end| distance_to_segment(*end, *a, *b) < reach)
-        };
-        // As the bonds see them.
-        let near_pieces = lines.iter().flat_map(CrackLine::pieces).filter(is_near);
-        let pieces: Vec<[Point; 2]> = near_pieces.map(|piece| as_cut(body, piece)).collect();
-        let reach = horizon + 1.5 * spacing;
-        let near = pieces.iter().flat_map(|&[a, b]| places_near(body, a, b, reach));
-        let mut members: Vec<usize> = near.filter(|&place| is_open(place)).collect();
-        members.sort_unstable();
-        members.dedup();
-        let number: HashMap<usize, u32> = members.iter().enumerate().map(|(i, &place)| (place, i as u32)).collect();
-        let share = |&place: &usize| {
-            let t = (nearest(tips, body.lattice.position(place)) / (FADE_HORIZONS * horizon)).min(1.0);
-            t * t * (3.0 - 2.0 * t)
-        };
-        let misses = |&place: &usize| {
-            (0..body.steps.len())
-                .any(|k| bonds_at(body, k, place).into_iter().any(|bond| body.multiplier[bond] > 0.0 && now[bond] == 0.0))
-        };
-        let misses: Vec<bool> = members.iter().map(misses).collect();
-        let sides = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].map(|(dx, dy)| body.lattice.step(dx, dy));
-        let changes = |&place: &usize| {
-            sides.iter().any(|&step| number.get(&place.wrapping_add_signed(step)).is_some_and(|&i| misses[i as usize]))
-        };
-        Beside {
-            share: members.iter().map(share).collect(),
-            changes: members.iter().map(changes).collect(),
-            areas: areas(body, &pieces, &number),
-            members,
-            number,
-        }
-    }
-
-    /// Bonds that carry between two members: the numbers of these, which entry of the stencil, which bond.
-    fn bonds<'a>(&'a self, body: &'a Body, now: &'a [f32]) -> impl Iterator<Item = (Link, usize)> + 'a {
-        let of_owner = move |(i, &owner): (usize, &usize)| {
-            body.steps.iter().enumerate().filter_map(move |(k, &step)| {
-                let (other, bond) = (self.number.get(&owner.wrapping_add_signed(step))?, k * body.places() + owner);
-                (now[bond] > 0.0).then_some((Link { from: i as u32, to: *other, k }, bond))
-            })
-        };
-        self.members.iter().enumerate().flat_map(of_owner)
-    }
-
-    fn is_of_core(&self, link: &Link) -> bool {
-        [link.from, link.to].into_iter().any(|end| self.share[end as usize] == 0.0)
-    }
-
-    /// Bonds whose multipliers are sought.
-    fn sought(&self, body: &Body, now: &[f32]) -> (Vec<Link>, Vec<usize>) {
-        let changes = |link: &Link| [link.from, link.to].into_iter().any(|end| self.changes[end as usize]);
-        self.bonds(body, now).filter(|(link, _)| !self.is_of_core(link) && changes(link)).unzip()
-    }
-
-    /// What is asked of the members, less what bonds carry whose multiplier is another one than the body's.
-    fn missing(&self, body: &Body, gains: &[BondGain], multiplier: impl Fn(usize) -> f32) -> Vec<Gain> {
-        let of_member = |(i, &place): (usize, &usize)| {
-            let (mut left, mut kept): (Gain, Gain) = (asked(self.areas[i]), asked([0.0; 2]));
-            for (k, gain) in gains.iter().enumerate() {
-                for (bond, own) in bonds_at(body, k, place).into_iter().zip([gain.at_owner, gain.at_other]) {
-                    let [whole, carried] = [body.multiplier[bond], multiplier(bond)].map(f64::from);
-                    if carried == 0.0 {
-                        left.iter_mut().zip(own).for_each(|(l, g)| *l += whole * g);
-                    } else if carried != whole {
-                        kept.iter_mut().zip(own).for_each(|(l, g)| *l += (carried - whole) * g);
-                    }
-                }
-            }
-            std::array::from_fn(|c| self.share[i] * left[c] - kept[c])
-        };
-        self.members.iter().enumerate().map(of_member).collect()
-    }
-}
-
-/// The two bonds of a place along one entry of the stencil: that which it owns, that of which it is the other end.
-fn bonds_at(body: &Body, k: usize, place: usize) -> [usize; 2] {
-    [place, place.wrapping_add_signed(-body.steps[k])].map(|owner| k * body.places() + owner)
+/// The equations of points beside cracks: those with cut bonds, the rows behind them and the other ends of their bonds.
+fn beside(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &[Point], range: FlankRange) -> Equations {
+    let (spacing, horizon) = (body.lattice.spacing, body.horizon());
+    let followed = FOLLOWED_HORIZONS * horizon;
+    let nearest = |of: &[Point], at: Point| of.iter().map(|end| distance(*end, at)).fold(f64::INFINITY, f64::min);
+    let is_open = |place: usize| range == FlankRange::All || nearest(ends, body.lattice.position(place)) < followed;
+    let is_near = |[a, b]: &[Point; 2]| {
+        let reach = followed + 3.0 * horizon;
+        range == FlankRange::All || ends.iter().any(|end| distance_to_segment(*end, *a, *b) < reach)
+    };
+    // As the bonds see them.
+    let near_pieces = lines.iter().flat_map(CrackLine::pieces).filter(is_near);
+    let pieces: Vec<[Point; 2]> = near_pieces.map(|piece| as_cut(body, piece)).collect();
+    let reach = horizon + 1.5 * spacing;
+    let near = pieces.iter().flat_map(|&[a, b]| places_near(body, a, b, reach));
+    let mut members: Vec<usize> = near.filter(|&place| is_open(place)).collect();
+    members.sort_unstable();
+    members.dedup();
+    let share = |place: usize| {
+        let t = (nearest(tips, body.lattice.position(place)) / (FADE_HORIZONS * horizon)).min(1.0);
+        t * t * (3.0 - 2.0 * t)
+    };
+    let misses = |place: &usize| body.around(*place).any(|(.., bond, _)| body.multiplier[bond] > 0.0 && now[bond] == 0.0);
+    let misses: HashSet<usize> = members.iter().copied().filter(misses).collect();
+    let sides = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].map(|(dx, dy)| body.lattice.step(dx, dy));
+    let changes = |place: usize| sides.iter().any(|&step| misses.contains(&place.wrapping_add_signed(step)));
+    let facets: Vec<Facet> = pieces.iter().flat_map(|&piece| faces(piece, spacing / PIECES_PER_SPACING)).collect();
+    let shares: Vec<_> =
+        facets.par_iter().with_min_len(16).map(|facet| shares(body, facet, &pieces).unwrap_or_default()).collect();
+    Equations::new(members, &areas(body, facets.iter().zip(shares)), share, changes)
 }
 
 /// Shares of points in the field at a piece of flank, on the side that it faces away from, past the cracks of which `pieces` are some or
@@ -189,48 +120,16 @@ pub fn shares(body: &Body, facet: &Facet, pieces: &[[Point; 2]]) -> Option<Vec<(
         !beside.iter().any(|[p, q]| segments_touch(from, to, *p, *q))
     };
     let [column, row] = lattice.locate(facet.at);
-    (0..WIDENINGS).find_map(|i| {
-        let widen = WIDEN.powi(i as i32);
-        let (deep, wide) = (widen * (load_rows(&body.stencil) as f64 + 0.5), widen);
-        let candidates = places_near(body, facet.at, facet.at, deep.hypot(wide) * spacing).map(|place| {
+    let candidates = |reach: f64| {
+        places_near(body, facet.at, facet.at, reach * spacing).map(move |place| {
             let (c, r) = lattice.column_row(place);
             (place as u32, [c as f64 - column, r as f64 - row], 1.0)
-        });
-        linear_shares(lattice.to_axes(facet.normal), deep, wide, candidates, sees)
-    })
+        })
+    };
+    linear_shares(lattice.to_axes(facet.normal), [load_rows(&body.stencil) as f64 + 0.5, 1.0], candidates, sees)
 }
 
 /// Distance of a crack from a piece of flank within which it may change the [`shares`], m.
 pub fn reach_of_shares(body: &Body) -> f64 {
     2.0 * (load_rows(&body.stencil) as f64 + 1.0) * body.lattice.spacing
-}
-
-/// Flank that every member stands for, as [`super`] has it of the rim.
-fn areas(body: &Body, pieces: &[[Point; 2]], number: &HashMap<usize, u32>) -> Vec<[f64; 2]> {
-    let (lattice, spacing) = (&body.lattice, body.lattice.spacing);
-    let mut areas = vec![[0.0; 2]; number.len()];
-    let facets: Vec<Facet> = pieces
-        .iter()
-        .flat_map(|&[a, b]| {
-            let (length, [x, y]) = (distance(a, b), direction(a, b));
-            let count = (PIECES_PER_SPACING * length / spacing).ceil().max(1.0);
-            let facet = move |i: usize, normal: [f64; 2]| Facet {
-                at: along(a, b, (i as f64 + 0.5) / count),
-                normal,
-                length: length / count,
-            };
-            (0..count as usize).flat_map(move |i| [[y, -x], [-y, x]].map(|normal| facet(i, normal)))
-        })
-        .collect();
-    let shares: Vec<_> = facets.par_iter().map(|facet| shares(body, facet, pieces).unwrap_or_default()).collect();
-    for (facet, shares) in facets.iter().zip(shares) {
-        let whole = lattice.to_axes(facet.normal.map(|n| n * facet.length / spacing));
-        for (place, share) in shares {
-            if let Some(&i) = number.get(&(place as usize)) {
-                let sum = &mut areas[i as usize];
-                *sum = [sum[0] + share * whole[0], sum[1] + share * whole[1]];
-            }
-        }
-    }
-    areas
 }

@@ -39,6 +39,13 @@ pub struct BondGain {
     pub at_other: Gain,
 }
 
+impl BondGain {
+    /// At the end that a sign of [`crate::body::Body::around`] names.
+    pub(super) fn at(&self, sign: f64) -> &Gain {
+        if sign > 0.0 { &self.at_owner } else { &self.at_other }
+    }
+}
+
 /// An unknown: a bond between two points.
 #[derive(Debug, Clone, Copy)]
 pub struct Link {

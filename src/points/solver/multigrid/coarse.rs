@@ -2,190 +2,166 @@
 //!
 //! Away from the rim and from cracks all places have the same stencil, which is kept once; the others keep their own.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::super::field::Layout;
 use super::super::kernel::load;
-use super::smoother::Operator;
-use super::transfer::{Transfer, times_interpolation};
+use super::chunked::{Chunked, Slot};
+use super::transfer::{Link, Parents, Transfer, times_interpolation};
+use super::{Block, Stiffness};
 use crate::body::lattice::LANES;
 
 /// Stencil half width of a coarse operator.
-pub(super) const REACH: isize = 2;
+const REACH: isize = 2;
 /// Blocks of a coarse stencil.
-pub const BLOCKS: usize = 25;
-/// Slot of a chunk that has the common stencil.
-const COMMON: u32 = u32::MAX;
-/// Slot of a chunk whose places have no stiffness.
-const EMPTY: u32 = u32::MAX - 1;
-
-/// Block index of a neighbour within reach.
-pub fn block_of(dx: isize, dy: isize) -> usize {
-    ((dy + REACH) * (2 * REACH + 1) + dx + REACH) as usize
-}
+const BLOCKS: usize = 25;
+/// Stiffness between two coarse places below which, relative to the diagonal, they count as severed.
+const SEVERED: f64 = 1e-7;
 
 /// Blocks of one coarse place.
-type CoarseRow<const N: usize> = [[[f64; N]; N]; BLOCKS];
+type CoarseRow<const N: usize> = [Block<N>; BLOCKS];
+
+/// Stencils of the places of a chunk, by block, row, column and place. Products read them in single precision: they are bound by memory, and only
+/// smoothing uses them; coarser operators, in which rigid motion must stay free of force, come from the exact ones.
+#[derive(Debug, Clone)]
+struct OwnRows<const N: usize> {
+    exact: [[[[f64; LANES]; N]; N]; BLOCKS],
+    single: [[[[f32; LANES]; N]; N]; BLOCKS],
+}
+
+impl<const N: usize> OwnRows<N> {
+    const ZERO: Self = OwnRows { exact: [[[[0.0; LANES]; N]; N]; BLOCKS], single: [[[[0.0; LANES]; N]; N]; BLOCKS] };
+
+    fn set(&mut self, lane: usize, row: &CoarseRow<N>) {
+        for (block, values) in row.iter().enumerate() {
+            for (c, values) in values.iter().enumerate() {
+                for (d, &value) in values.iter().enumerate() {
+                    self.exact[block][c][d][lane] = value;
+                    self.single[block][c][d][lane] = value as f32;
+                }
+            }
+        }
+    }
+}
 
 /// Operator of a coarse level.
 #[derive(Debug, Clone)]
 pub struct CoarseOperator<const N: usize> {
     layout: Layout,
-    rows: usize,
-    chunks: usize,
-    /// For every chunk of a row where its stencils stand, [`COMMON`] if they are the common one.
-    slots: Vec<u32>,
-    pub(super) common: Option<CoarseRow<N>>,
-    /// For each chunk with its own stencils, block, component pair: the values along the row.
-    values: Vec<f64>,
-    /// Both in single precision: what products read. They are bound by memory, and only smoothing uses them; coarser operators, in
-    /// which rigid motion must stay free of force, come from `values` alone.
-    single: Vec<f32>,
-    common_single: Vec<f32>,
+    common: Option<CoarseRow<N>>,
+    common_single: [[[f32; N]; N]; BLOCKS],
+    rows: Chunked<OwnRows<N>>,
 }
 
-/// An operator that is coarsened, given row by row of blocks.
-pub trait BlockRows<const N: usize>: Sync {
-    /// Shows every block of a place that is not zero: the way to the neighbour, the block.
-    fn visit_row(&self, column: usize, row: usize, visit: impl FnMut([isize; 2], &[[f64; N]; N]));
+/// Block index of a neighbour within reach.
+fn block_of([dx, dy]: [isize; 2]) -> usize {
+    ((dy + REACH) * (2 * REACH + 1) + dx + REACH) as usize
 }
 
 impl<const N: usize> CoarseOperator<N> {
-    /// Values of a chunk.
-    const CHUNK: usize = BLOCKS * N * N * LANES;
-
-    /// Layout of its vectors.
-    pub fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
-    /// Whether all places of a chunk of a row have the common stencil.
-    pub fn is_common(&self, row: usize, chunk: usize) -> bool {
-        self.slots[row * self.chunks + chunk] == COMMON
-    }
-
-    /// Block between a place and its neighbour.
-    pub fn block(&self, column: usize, row: usize, dx: isize, dy: isize) -> [[f64; N]; N] {
-        let index = block_of(dx, dy);
-        match (self.slots[row * self.chunks + column / LANES], &self.common) {
-            (COMMON, Some(common)) => common[index],
-            (EMPTY, _) => [[0.0; N]; N],
-            (slot, _) => {
-                let first = slot as usize * Self::CHUNK + index * N * N * LANES + column % LANES;
-                std::array::from_fn(|c| std::array::from_fn(|d| self.values[first + (c * N + d) * LANES]))
-            }
+    /// Block between a place and its neighbour at a step.
+    fn block(&self, [column, row]: [usize; 2], step: [isize; 2]) -> Block<N> {
+        let index = block_of(step);
+        match (self.rows.at(row, column / LANES), &self.common) {
+            (Slot::Common, Some(common)) => common[index],
+            (Slot::Own(own), _) => own.exact[index].map(|row| row.map(|lanes| lanes[column % LANES])),
+            _ => [[0.0; N]; N],
         }
     }
 
-    /// Pᵀ A P of a fine operator. `regular(column, row)` names coarse places whose whole
-    /// surroundings are interior and uncut: they all share the row of the first of them.
-    pub fn galerkin(
-        transfer: &Transfer<N>,
-        size: [usize; 2],
-        fine: &impl BlockRows<N>,
-        regular: impl Fn(usize, usize) -> bool + Sync,
-    ) -> Self {
-        let (layout, [columns, rows]) = (*transfer.coarse(), transfer.coarse_size());
-        let chunks = columns.div_ceil(LANES);
-        let template = (0..rows)
-            .flat_map(|row| (0..columns).map(move |column| [column, row]))
-            .find(|&[column, row]| regular(column, row))
-            .map(|place| coarse_row(transfer, size, fine, place));
-        let mut own = Vec::new();
-        let mut slots = vec![COMMON; rows * chunks];
-        for (index, slot) in slots.iter_mut().enumerate() {
-            let (row, first) = (index / chunks, index % chunks * LANES);
-            if !(first..first + LANES).all(|column| column < columns && regular(column, row)) {
-                *slot = own.len() as u32;
-                own.push((row, first));
+    /// Pᵀ A P of a finer operator. Coarse places whose whole surroundings are interior and uncut all share the row of the first of them.
+    pub fn galerkin(transfer: &Transfer<N>, finer: &impl Stiffness<N>) -> Self {
+        let layout = transfer.coarse;
+        let [columns, rows] = layout.size();
+        let regular = transfer.regular(finer);
+        let regular = |column: usize, row: usize| regular[row * columns + column];
+        let all = (0..rows * columns).map(|index| [index % columns, index / columns]);
+        let (inside, odd): (Vec<_>, Vec<[usize; 2]>) = all.partition(|&[column, row]| regular(column, row));
+        let common = inside.first().map(|&place| coarse_rows(transfer, finer, &[place])[0]);
+        let of_odd = coarse_rows(transfer, finer, &odd);
+        let is_common = |row: usize, chunk: usize| {
+            (chunk * LANES..(chunk + 1) * LANES).all(|column| column < columns && regular(column, row))
+        };
+        let find = |row: usize, chunk: usize| {
+            let (mut own, mut is_empty) = (OwnRows::ZERO, true);
+            for column in chunk * LANES..((chunk + 1) * LANES).min(columns) {
+                let own_row = odd.binary_search_by_key(&[row, column], |&[column, row]| [row, column]).ok().map(|i| of_odd[i]);
+                let blocks = own_row.or(common).unwrap_or([[[0.0; N]; N]; BLOCKS]);
+                is_empty &= blocks.as_flattened().as_flattened().iter().all(|value| *value == 0.0);
+                own.set(column % LANES, &blocks);
             }
-        }
-        let mut values = vec![0.0; own.len() * Self::CHUNK];
-        values.par_chunks_mut(Self::CHUNK).zip(&own).for_each(|(values, &(row, first))| {
-            for column in first..(first + LANES).min(columns) {
-                let blocks = match &template {
-                    Some(template) if regular(column, row) => *template,
-                    _ => coarse_row(transfer, size, fine, [column, row]),
-                };
-                for (entry, value) in blocks.as_flattened().as_flattened().iter().enumerate() {
-                    values[entry * LANES + column - first] = *value;
-                }
-            }
-        });
-        let mut kept = 0;
-        for (index, &(row, first)) in own.iter().enumerate() {
-            let chunk = index * Self::CHUNK..(index + 1) * Self::CHUNK;
-            let slot = &mut slots[row * chunks + first / LANES];
-            if values[chunk.clone()].iter().all(|&v| v == 0.0) {
-                *slot = EMPTY;
-            } else {
-                *slot = kept as u32;
-                values.copy_within(chunk, kept * Self::CHUNK);
-                kept += 1;
-            }
-        }
-        values.truncate(kept * Self::CHUNK);
-        let single = values.iter().map(|&v| v as f32).collect();
-        let common_single = template.iter().flatten().flatten().flatten().map(|&v| v as f32).collect();
-        CoarseOperator { layout, rows, chunks, slots, common: template, values, single, common_single }
+            if is_empty { Slot::Empty } else { Slot::Own(own) }
+        };
+        let rows = Chunked::new([columns.div_ceil(LANES), rows], is_common, find);
+        let common_single = common.map_or([[[0.0; N]; N]; BLOCKS], |common| common.map(|b| b.map(|row| row.map(|v| v as f32))));
+        CoarseOperator { layout, common, common_single, rows }
     }
 
-    /// Sets the rows of some places anew, with what [`CoarseOperator::galerkin`] was given.
-    pub fn refresh(&mut self, transfer: &Transfer<N>, size: [usize; 2], fine: &impl BlockRows<N>, places: &[[usize; 2]]) {
-        let rows: Vec<CoarseRow<N>> = places.par_iter().map(|&place| coarse_row(transfer, size, fine, place)).collect();
-        for (&[column, row], blocks) in places.iter().zip(&rows) {
-            let first = self.own_slot(row, column / LANES) * Self::CHUNK + column % LANES;
-            for (entry, &value) in blocks.as_flattened().as_flattened().iter().enumerate() {
-                self.values[first + entry * LANES] = value;
-                self.single[first + entry * LANES] = value as f32;
-            }
-        }
-    }
-
-    /// Slot of a chunk that has stencils of its own, from now on at the latest.
-    fn own_slot(&mut self, row: usize, chunk: usize) -> usize {
-        let slot = &mut self.slots[row * self.chunks + chunk];
-        if *slot == COMMON || *slot == EMPTY {
-            let common = self.common.as_ref().filter(|_| *slot == COMMON);
-            *slot = (self.values.len() / Self::CHUNK) as u32;
-            let entry = |index: usize| common.map_or(0.0, |common| common.as_flattened().as_flattened()[index / LANES]);
-            let before = self.values.len();
-            self.values.extend((0..Self::CHUNK).map(entry));
-            let single: Vec<f32> = self.values[before..].iter().map(|&v| v as f32).collect();
-            self.single.extend(single);
-        }
-        *slot as usize
-    }
-}
-
-impl<const N: usize> BlockRows<N> for CoarseOperator<N> {
-    fn visit_row(&self, column: usize, row: usize, mut visit: impl FnMut([isize; 2], &[[f64; N]; N])) {
-        for dy in -REACH..=REACH {
-            for dx in -REACH..=REACH {
-                let block = self.block(column, row, dx, dy);
-                if block.as_flattened().iter().any(|&v| v != 0.0) {
-                    visit([dx, dy], &block);
-                }
-            }
+    /// Sets the rows of some places anew.
+    pub fn refresh(&mut self, transfer: &Transfer<N>, finer: &impl Stiffness<N>, places: &[[usize; 2]]) {
+        let common = self.common;
+        for (&[column, row], blocks) in places.iter().zip(&coarse_rows(transfer, finer, places)) {
+            let begin = |is_common: bool| {
+                let mut own = OwnRows::ZERO;
+                common.iter().filter(|_| is_common).for_each(|common| (0..LANES).for_each(|lane| own.set(lane, common)));
+                own
+            };
+            self.rows.own_mut(row, column / LANES, begin).set(column % LANES, blocks);
         }
     }
 }
 
-impl<const N: usize> Operator for CoarseOperator<N> {
+impl<const N: usize> Stiffness<N> for CoarseOperator<N> {
     fn layout(&self) -> &Layout {
         &self.layout
+    }
+
+    fn reach(&self) -> usize {
+        REACH as usize
+    }
+
+    fn is_common(&self, row: usize, chunk: usize) -> bool {
+        self.rows.is_common(row, chunk)
+    }
+
+    fn inside(&self) -> Option<Block<N>> {
+        self.common.map(|common| common[block_of([0, 0])])
+    }
+
+    fn diagonal(&self, place: [usize; 2]) -> Block<N> {
+        self.block(place, [0, 0])
+    }
+
+    fn is_point(&self, place: [usize; 2]) -> bool {
+        scale(&self.diagonal(place)) > 0.0
+    }
+
+    fn visit_row(&self, place: [usize; 2], mut visit: impl FnMut([isize; 2], &Block<N>)) {
+        for step in (0..BLOCKS as isize).map(|index| [index % 5 - REACH, index / 5 - REACH]) {
+            let block = self.block(place, step);
+            if block.as_flattened().iter().any(|&value| value != 0.0) {
+                visit(step, &block);
+            }
+        }
+    }
+
+    fn link(&self, a: [usize; 2], b: [usize; 2]) -> Link {
+        let step = [0, 1].map(|i| b[i] as isize - a[i] as isize);
+        let norm = self.block(a, step).as_flattened().iter().map(|v| v.abs()).fold(0.0, f64::max);
+        if norm > SEVERED * scale(&self.diagonal(a)) || step == [0, 0] { Link::Joined } else { Link::Severed }
     }
 
     #[inline(always)]
     fn subtract_row(&self, row: usize, x: &[f32], r: &mut [f32]) {
         let (row_len, padding, stride) = (self.layout.row_len(), self.layout.padding, self.layout.stride);
-        debug_assert!(row < self.rows);
-        for chunk in 0..self.chunks {
-            let slot = self.slots[row * self.chunks + chunk];
-            if slot == EMPTY {
-                continue;
-            }
-            let own = if slot == COMMON { None } else { self.single.chunks_exact(Self::CHUNK).nth(slot as usize) };
+        for chunk in 0..self.rows.chunks {
+            let own = match self.rows.at(row, chunk) {
+                Slot::Empty => continue,
+                Slot::Common => None,
+                Slot::Own(own) => Some(&own.single),
+            };
             let mut sums = [[0.0_f32; LANES]; N];
             for block in 0..BLOCKS {
                 let (dx, dy) = ((block % 5) as isize - REACH, (block / 5) as isize - REACH);
@@ -193,14 +169,13 @@ impl<const N: usize> Operator for CoarseOperator<N> {
                 for d in 0..N {
                     let x = load::<f32, LANES>(x, from + d * stride);
                     for (c, sum) in sums.iter_mut().enumerate() {
-                        let entry = block * N * N + c * N + d;
                         if let Some(own) = own {
-                            let a = load::<f32, LANES>(own, entry * LANES);
+                            let a = &own[block][c][d];
                             for lane in 0..LANES {
                                 sum[lane] = a[lane].mul_add(x[lane], sum[lane]);
                             }
                         } else {
-                            let a = self.common_single[entry];
+                            let a = self.common_single[block][c][d];
                             for lane in 0..LANES {
                                 sum[lane] = a.mul_add(x[lane], sum[lane]);
                             }
@@ -210,54 +185,84 @@ impl<const N: usize> Operator for CoarseOperator<N> {
             }
             for (c, sum) in sums.iter().enumerate() {
                 let start = c * stride + padding + chunk * LANES;
-                let target = &mut r[start..start + LANES];
-                for lane in 0..LANES {
-                    target[lane] -= sum[lane];
-                }
+                r[start..start + LANES].iter_mut().zip(sum).for_each(|(r, sum)| *r -= sum);
             }
         }
     }
 }
 
-/// Row of Pᵀ A P at one coarse place.
-fn coarse_row<const N: usize>(
-    transfer: &Transfer<N>,
-    size: [usize; 2],
-    fine: &impl BlockRows<N>,
-    place: [usize; 2],
-) -> CoarseRow<N> {
-    let mut result = [[[0.0; N]; N]; BLOCKS];
-    let seat = transfer.seat(place);
+/// Stiffness of a place with itself.
+fn scale<const N: usize>(diagonal: &Block<N>) -> f64 {
+    (0..N).map(|c| diagonal[c][c]).sum()
+}
+
+/// Rows of Pᵀ A P at some coarse places, best in the order of the level: a fine place serves up to four of them, and in parts of a few
+/// hundred its row of A P is found once.
+fn coarse_rows<const N: usize>(transfer: &Transfer<N>, finer: &impl Stiffness<N>, places: &[[usize; 2]]) -> Vec<CoarseRow<N>> {
+    const TOGETHER: usize = 256;
+    let size = finer.layout().size();
     let half = transfer.factor as isize - 1;
-    let inside = |low: isize, high: isize, count: usize| (low.max(0) as usize)..((high + 1).clamp(0, count as isize) as usize);
-    for row in inside(seat[1] - half, seat[1] + half, size[1]) {
-        for column in inside(seat[0] - half, seat[0] + half, size[0]) {
-            let Some(&(_, weight, arm)) =
-                transfer.parents(column, row).iter().find(|(parent, weight, _)| *parent == place && *weight != 0.0)
-            else {
-                continue;
-            };
-            let mut t = [[[0.0; N]; N]; BLOCKS];
-            fine.visit_row(column, row, |[dx, dy], block| {
-                let other = [column.wrapping_add_signed(dx), row.wrapping_add_signed(dy)];
-                for (parent, weight, arm) in transfer.parents(other[0], other[1]) {
-                    if weight != 0.0 {
-                        let index = block_of(parent[0] as isize - place[0] as isize, parent[1] as isize - place[1] as isize);
-                        times_interpolation(block, weight, arm, &mut t[index]);
-                    }
+    // Fine columns (axis 0) or rows that use a coarse one.
+    let users = |at: isize, axis: usize| {
+        (at - half).clamp(0, size[axis] as isize) as usize..(at + half + 1).clamp(0, size[axis] as isize) as usize
+    };
+    let of_part = |places: &[[usize; 2]]| {
+        let around: Vec<[Range<usize>; 2]> =
+            places.iter().map(|&place| [0, 1].map(|axis| users(transfer.seat(place)[axis], axis))).collect();
+        let low = [0, 1].map(|axis| around.iter().map(|ranges| ranges[axis].start).min().unwrap_or(0));
+        let high = [0, 1].map(|axis| around.iter().map(|ranges| ranges[axis].end).max().unwrap_or(0));
+        // Where the rows of A P stand, by fine place.
+        let width = high[0] - low[0];
+        let mut slots = vec![u32::MAX; width * (high[1] - low[1])];
+        let mut known: Vec<(Parents, CoarseRow<N>)> = Vec::new();
+        let mut row_of = |(place, [columns, rows]): (&[usize; 2], &[Range<usize>; 2])| {
+            let mut sum = [[[0.0; N]; N]; BLOCKS];
+            for [column, row] in rows.clone().flat_map(|row| columns.clone().map(move |column| [column, row])) {
+                let slot = &mut slots[(row - low[1]) * width + column - low[0]];
+                if *slot == u32::MAX {
+                    *slot = known.len() as u32;
+                    known.push((transfer.parents([column, row]), interpolated(transfer, finer, [column, row])));
                 }
-            });
-            for (sum, t) in result.iter_mut().zip(&t) {
-                for d in 0..N {
-                    for c in 0..N {
-                        sum[c][d] += weight * t[c][d];
-                    }
-                    if N == 3 {
-                        sum[2][d] += weight * (t[1][d] * arm[0] - t[0][d] * arm[1]);
-                    }
+                let (parents, of_fine) = &known[*slot as usize];
+                if let Some(&(_, weight, arm)) = parents.iter().find(|(parent, weight, _)| parent == place && *weight != 0.0) {
+                    let shift = block_of([0, 1].map(|i| parents[0].0[i] as isize - place[i] as isize)) as isize
+                        - block_of([0, 0]) as isize;
+                    add_restricted(of_fine, weight, arm, shift, &mut sum);
                 }
+            }
+            sum
+        };
+        places.iter().zip(&around).map(&mut row_of).collect::<Vec<CoarseRow<N>>>()
+    };
+    places.par_chunks(TOGETHER).flat_map_iter(of_part).collect()
+}
+
+/// Row of A P at a fine place: blocks by coarse places around the first of its parents.
+fn interpolated<const N: usize>(transfer: &Transfer<N>, finer: &impl Stiffness<N>, place: [usize; 2]) -> CoarseRow<N> {
+    let mut t = [[[0.0; N]; N]; BLOCKS];
+    let (first, ..) = transfer.parents(place)[0];
+    finer.visit_row(place, |step, block| {
+        for (parent, weight, arm) in transfer.parents([0, 1].map(|i| place[i].wrapping_add_signed(step[i]))) {
+            if weight != 0.0 {
+                let index = block_of([0, 1].map(|i| parent[i] as isize - first[i] as isize));
+                times_interpolation(block, weight, arm, &mut t[index]);
+            }
+        }
+    });
+    t
+}
+
+/// Adds Pᵀ of one parent times a row of A P, whose blocks stand `shift` away in the sum.
+fn add_restricted<const N: usize>(of_fine: &CoarseRow<N>, weight: f64, arm: [f64; 2], shift: isize, sum: &mut CoarseRow<N>) {
+    for (index, t) in of_fine.iter().enumerate().filter(|(_, t)| t.as_flattened().iter().any(|value| *value != 0.0)) {
+        let sum = &mut sum[index.wrapping_add_signed(shift)];
+        for d in 0..N {
+            for c in 0..N {
+                sum[c][d] += weight * t[c][d];
+            }
+            if N == 3 {
+                sum[2][d] += weight * (t[1][d] * arm[0] - t[0][d] * arm[1]);
             }
         }
     }
-    result
 }

@@ -7,8 +7,9 @@
 //! It stands for the springs. The dilatation of a state-based law is left to the iteration: it changes no eigenvalue by more than
 //! the ratio of bulk moduli, `(C₁₁ + C₁₂) / 4 G`, 1.25 at ν = 0.3 in plane strain.
 
+mod chunked;
 pub mod coarse;
-mod fine;
+pub mod fine;
 pub mod smoother;
 pub mod transfer;
 
@@ -16,30 +17,45 @@ use faer::linalg::solvers::DenseSolveCore;
 use rayon::prelude::*;
 
 use super::field::Layout;
-use super::product::Product;
-use crate::body::Body;
-use crate::body::lattice::LANES;
-use crate::state::Bonds;
-use coarse::{BlockRows, CoarseOperator};
+use coarse::CoarseOperator;
 use fine::Fine;
 use perilife_base::watch::{self, Stage};
-use smoother::{Operator, Smoother, Step, Work};
+use smoother::{Smoother, Step, Work};
 use transfer::{Link, Transfer};
 
 /// Smoothing steps before and after each coarse correction: with two an iteration is a fifth cheaper and there are a fifth more.
 const DEGREE: usize = 3;
 /// Unknowns below which a level is solved by a dense pseudo-inverse.
 const COARSEST: usize = 300;
-/// Stiffness between two coarse places below which, relative to the diagonal, they count as severed.
-const SEVERED: f64 = 1e-7;
-
 /// Shift of the coarsest operator over its largest diagonal entry.
 const SHIFT: f64 = 1e-7;
-
-/// Values that one task rounds.
-const PART: usize = 1 << 14;
 /// Coarsening factor of the levels after the first.
 const COARSENING: usize = 2;
+
+/// Stiffness between two places.
+pub type Block<const N: usize> = [[f64; N]; N];
+
+/// The stiffness of a level: block rows for the next coarser one, products for smoothing. Places are column and row.
+pub trait Stiffness<const N: usize>: Sync {
+    fn layout(&self) -> &Layout;
+    /// Places that a row reaches to either side.
+    fn reach(&self) -> usize;
+    /// Whether all places of a chunk of a row have the block row of the inside.
+    fn is_common(&self, row: usize, chunk: usize) -> bool;
+    /// Diagonal block of the inside.
+    fn inside(&self) -> Option<Block<N>>;
+    /// Diagonal block of a place, bonds to its own images included; zero where there is no point.
+    fn diagonal(&self, place: [usize; 2]) -> Block<N>;
+    fn is_point(&self, place: [usize; 2]) -> bool;
+    /// Shows every block of a place that is not zero: the way to the neighbour, the block.
+    fn visit_row(&self, place: [usize; 2], visit: impl FnMut([isize; 2], &Block<N>));
+    /// Whether a place may use a coarser one that stands at another place, a point.
+    fn link(&self, a: [usize; 2], b: [usize; 2]) -> Link;
+    /// Makes a vector ready for products.
+    fn prepare(&self, _x: &mut [f32]) {}
+    /// r -= A x on one row of the level, `r` being that padded row. Compiled into the loops that call it.
+    fn subtract_row(&self, row: usize, x: &[f32], r: &mut [f32]);
+}
 
 struct Level<const N: usize> {
     transfer: Transfer<N>,
@@ -76,111 +92,63 @@ fn first_factor(reach: usize, horizon_ratio: f64) -> usize {
 
 impl<const N: usize> Multigrid<N> {
     /// Builds the hierarchy for the present bonds.
-    pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
+    pub fn new(fine: &Fine<'_, N>) -> Self {
         // Who asked it to end is heard by the first equilibrium.
         let _ = watch::at(Stage::Solver, 0.0);
-        let fine = Fine::new(body, bonds, product);
-        let layout = *product.layout();
-        let (columns, rows) = (body.lattice.columns, body.lattice.rows);
-        let mut work = Work::new(&layout);
-        let mut smoother = Smoother::new(
-            layout,
-            fine.interior_diagonal(),
-            |row, chunk| fine.is_whole(row, chunk),
-            |column, row| fine.is_point(column, row).then(|| fine.diagonal(column, row)),
-        );
-        smoother.estimate_top(&Springs { product, bonds }, &mut work);
-        let factor = first_factor(body.stencil.reach, body.stencil.horizon / body.stencil.spacing);
-        let regular = |row, chunk| bonds.chunk_is_regular(row, chunk);
-        let transfer = Transfer::<N>::new(layout, rows, factor, 1.0, regular, |c, r| fine.is_point(c, r), |a, b| fine.link(a, b));
-        let reach = factor as isize - 1 + body.stencil.reach as isize;
-        let odd = |row, chunk| !(fine.is_whole(row, chunk) && transfer.is_plain(row, chunk));
-        let surroundings = regular_surroundings(&transfer, [columns, rows], reach, odd);
-        let operator =
-            CoarseOperator::galerkin(&transfer, [columns, rows], &fine, |c, r| surroundings[r * transfer.coarse_size()[0] + c]);
-        let mut levels = vec![Level::new(transfer, operator)];
-        let mut unit = factor as f64;
-        while let Some(level) = levels[levels.len() - 1].coarsened(unit) {
+        let (smoother, work) = Smoother::new(fine);
+        let stencil = &fine.body.stencil;
+        let factor = first_factor(stencil.reach, stencil.horizon / stencil.spacing);
+        let (mut levels, mut unit) = (vec![Level::over(fine, factor, 1.0)], factor as f64);
+        loop {
+            let finer = &levels[levels.len() - 1].operator;
+            let [columns, rows] = finer.layout().size();
+            if columns * rows * N <= COARSEST || columns.min(rows) < 4 {
+                let coarsest = Coarsest::new(finer);
+                return Multigrid { smoother, levels, coarsest, work, depth: Depth::First };
+            }
+            let level = Level::over(finer, COARSENING, unit);
             unit *= COARSENING as f64;
             levels.push(level);
         }
-        let coarsest = Coarsest::new(&levels[levels.len() - 1]);
-        Multigrid { smoother, levels, coarsest, work, depth: Depth::First }
     }
 
-    /// Takes over the changed diagonal of a few points without rebuilding coarse levels.
-    pub fn refresh_points(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, places: &[usize]) {
-        let fine = Fine::new(body, bonds, product);
-        for &place in places {
-            let (column, row) = body.lattice.column_row(place);
-            self.smoother.set_block(column, row, &fine.diagonal(column, row));
+    /// Takes in that bonds of some points have changed: their diagonals, the coarse levels around those whose bonds are `cut`, and the
+    /// coarsest anew.
+    pub fn refresh(&mut self, fine: &Fine<'_, N>, changed: &[usize], cut: &[usize]) {
+        let seat = |&place: &usize| <[usize; 2]>::from(fine.body.lattice.column_row(place));
+        for place in changed.iter().map(seat) {
+            self.smoother.set_block(place, &fine.diagonal(place));
         }
-    }
-
-    /// The same, coarse levels around these points included, and the coarsest anew.
-    pub fn refresh_levels(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, places: &[usize]) {
-        self.refresh_points(body, bonds, product, places);
-        let fine = Fine::new(body, bonds, product);
-        let mut changed: Vec<[usize; 2]> = places.iter().map(|&place| body.lattice.column_row(place).into()).collect();
-        let mut size = [body.lattice.columns, body.lattice.rows];
+        let mut changed: Vec<[usize; 2]> = cut.iter().map(seat).collect();
         for index in 0..self.levels.len() {
             let (finer, coarser) = self.levels.split_at_mut(index);
-            let level = &mut coarser[0];
             changed = match finer.last() {
-                None => {
-                    let (is_point, link) = (|c, r| fine.is_point(c, r), |a, b| fine.link(a, b));
-                    level.refresh(&changed, size, body.stencil.reach, is_point, link, &fine)
-                }
-                Some(Level { operator, .. }) => {
-                    let is_point = |c: usize, r: usize| scale(operator, [c, r]) > 0.0;
-                    let link = |a, b| link(operator, a, b);
-                    level.refresh(&changed, size, coarse::REACH as usize, is_point, link, operator)
-                }
+                None => coarser[0].refresh(fine, &changed),
+                Some(finer) => coarser[0].refresh(&finer.operator, &changed),
             };
-            size = level.transfer.coarse_size();
         }
-        self.coarsest = Coarsest::new(&self.levels[self.levels.len() - 1]);
+        self.coarsest = Coarsest::new(&self.levels[self.levels.len() - 1].operator);
     }
 
     /// M r, one V-cycle from zero in single precision.
-    pub fn precondition(&mut self, bonds: &Bonds, product: &Product<N>, r: &[f64]) -> &mut [f32] {
+    pub fn precondition(&mut self, fine: &Fine<'_, N>, r: &[f64]) -> &mut [f32] {
         let Multigrid { smoother, levels, coarsest, work, depth } = self;
-        work.r.par_chunks_mut(PART).zip(r.par_chunks(PART)).for_each(|(single, r)| {
+        let part = fine.layout().part();
+        work.r.par_chunks_mut(part).zip(r.par_chunks(part)).for_each(|(single, r)| {
             single.iter_mut().zip(r).for_each(|(single, r)| *single = *r as f32);
         });
-        cycle(&Springs { product, bonds }, smoother, work, |residual, correction| {
+        cycle(fine, smoother, work, |residual, correction| {
             descend(levels, coarsest, residual, correction, *depth);
-            product.fixed().iter().for_each(|&index| correction[index] = 0.0);
+            fine.product.fixed().iter().for_each(|&index| correction[index] = 0.0);
         });
         &mut work.x
-    }
-}
-
-/// The springs of the body as the smoother takes them.
-struct Springs<'a, const N: usize> {
-    product: &'a Product<N>,
-    bonds: &'a Bonds,
-}
-
-impl<const N: usize> Operator for Springs<'_, N> {
-    fn layout(&self) -> &Layout {
-        self.product.layout()
-    }
-
-    fn prepare(&self, x: &mut [f32]) {
-        self.product.mirror(x);
-    }
-
-    #[inline(always)]
-    fn subtract_row(&self, row: usize, x: &[f32], r: &mut [f32]) {
-        self.product.subtract_row(self.bonds, row, x, r);
     }
 }
 
 /// One V-cycle from rest for the residual in `work.r`; its solution stands in `work.x`. `correct` sets the correction of the
 /// coarser levels for a residual.
 fn cycle<const N: usize>(
-    operator: &impl Operator,
+    operator: &impl Stiffness<N>,
     smoother: &Smoother<N>,
     work: &mut Work,
     correct: impl FnOnce(&[f32], &mut [f32]),
@@ -238,131 +206,43 @@ fn descend<const N: usize>(levels: &mut [Level<N>], coarsest: &Coarsest, residua
 }
 
 impl<const N: usize> Level<N> {
-    fn new(transfer: Transfer<N>, operator: CoarseOperator<N>) -> Self {
-        let layout = *operator.layout();
-        let mut work = Work::new(&layout);
-        let mut smoother = Smoother::new(
-            layout,
-            operator.common.as_ref().map(|common| common[coarse::block_of(0, 0)]),
-            |row, chunk| operator.is_common(row, chunk),
-            |column, row| Some(operator.block(column, row, 0, 0)),
-        );
-        smoother.estimate_top(&operator, &mut work);
+    /// The level over a finer one, whose spacing is `unit` in lattice spacings.
+    fn over(finer: &impl Stiffness<N>, factor: usize, unit: f64) -> Self {
+        let transfer = Transfer::new(finer, factor, unit);
+        let operator = CoarseOperator::galerkin(&transfer, finer);
+        let (smoother, work) = Smoother::new(&operator);
         Level { transfer, operator, smoother, work }
     }
 
-    /// Takes in that the finer operator of a size, whose rows reach so many places, has changed at some of its places; the places of
-    /// this level that change with them.
-    fn refresh(
-        &mut self,
-        changed: &[[usize; 2]],
-        size: [usize; 2],
-        reach: usize,
-        is_point: impl Fn(usize, usize) -> bool + Sync,
-        link: impl Fn([usize; 2], [usize; 2]) -> Link + Sync,
-        finer: &impl BlockRows<N>,
-    ) -> Vec<[usize; 2]> {
+    /// Takes in that the finer operator has changed at some of its places; the places of this level that change with them.
+    fn refresh(&mut self, finer: &impl Stiffness<N>, changed: &[[usize; 2]]) -> Vec<[usize; 2]> {
         let Level { transfer, operator, smoother, .. } = self;
-        let mut sources = transfer.refresh(changed, is_point, link);
+        let mut sources = transfer.refresh(changed, finer);
         sources.extend(changed);
-        let places = transfer.coarse_around(&sources, reach);
-        operator.refresh(transfer, size, finer, &places);
-        for &[column, row] in &places {
-            smoother.set_block(column, row, &operator.block(column, row, 0, 0));
+        let places = transfer.coarse_around(&sources, finer.reach());
+        operator.refresh(transfer, finer, &places);
+        for &place in &places {
+            smoother.set_block(place, &operator.diagonal(place));
         }
         places
     }
-
-    /// The next coarser level; `None` if this one is small enough for a dense inverse. `unit` is the spacing of this one.
-    fn coarsened(&self, unit: f64) -> Option<Self> {
-        let (operator, size) = (&self.operator, self.transfer.coarse_size());
-        if size[0] * size[1] * N <= COARSEST || size[0].min(size[1]) < 4 {
-            return None;
-        }
-        let common = |row: usize, chunk: usize| operator.is_common(row, chunk);
-        let is_point = |c: usize, r: usize| scale(operator, [c, r]) > 0.0;
-        let link = |a, b| link(operator, a, b);
-        let transfer = Transfer::<N>::new(*operator.layout(), size[1], COARSENING, unit, common, is_point, link);
-        let odd = |row, chunk| !(common(row, chunk) && transfer.is_plain(row, chunk));
-        let reach = COARSENING as isize - 1 + coarse::REACH;
-        let surroundings = regular_surroundings(&transfer, size, reach, odd);
-        let regular = |c: usize, r: usize| surroundings[r * transfer.coarse_size()[0] + c];
-        let next = CoarseOperator::galerkin(&transfer, size, operator, regular);
-        Some(Level::new(transfer, next))
-    }
-}
-
-/// Stiffness of a place of a level with itself.
-fn scale<const N: usize>(operator: &CoarseOperator<N>, [column, row]: [usize; 2]) -> f64 {
-    trace(&operator.block(column, row, 0, 0))
-}
-
-/// Whether a place of a level may use a coarser one that stands at another.
-fn link<const N: usize>(operator: &CoarseOperator<N>, a: [usize; 2], b: [usize; 2]) -> Link {
-    let [dx, dy] = [0, 1].map(|i| b[i] as isize - a[i] as isize);
-    let norm = operator.block(a[0], a[1], dx, dy).iter().flatten().map(|v| v.abs()).fold(0.0, f64::max);
-    if norm > SEVERED * scale(operator, a) || (dx, dy) == (0, 0) { Link::Joined } else { Link::Severed }
-}
-
-/// For each coarse place, whether all chunks of fine places (of `columns` x `rows`) that come within `reach` of it are there,
-/// and none of them is odd.
-fn regular_surroundings<const N: usize>(
-    transfer: &Transfer<N>,
-    [columns, rows]: [usize; 2],
-    reach: isize,
-    odd: impl Fn(usize, usize) -> bool,
-) -> Vec<bool> {
-    let chunks = columns.div_ceil(LANES);
-    // Sums over rectangles of odd chunks: prefix[r][c] counts those left of c and below r.
-    let width = chunks + 1;
-    let mut prefix = vec![0_u32; width * (rows + 1)];
-    for row in 0..rows {
-        for chunk in 0..chunks {
-            prefix[(row + 1) * width + chunk + 1] =
-                u32::from(odd(row, chunk)) + prefix[row * width + chunk + 1] + prefix[(row + 1) * width + chunk]
-                    - prefix[row * width + chunk];
-        }
-    }
-    let size = transfer.coarse_size();
-    let mut regular = vec![false; size[0] * size[1]];
-    for row in 0..size[1] {
-        for column in 0..size[0] {
-            let [c, r] = transfer.seat([column, row]);
-            let (left, right, below, above) = (c - reach, c + reach, r - reach, r + reach);
-            if left >= 0 && below >= 0 && right < columns as isize && above < rows as isize {
-                let (left, right) = (left as usize / LANES, right as usize / LANES + 1);
-                let sum = |row: usize, chunk: usize| i64::from(prefix[row * width + chunk]);
-                let (below, above) = (below as usize, above as usize + 1);
-                regular[row * size[0] + column] =
-                    sum(above, right) - sum(below, right) - sum(above, left) + sum(below, left) == 0;
-            }
-        }
-    }
-    regular
 }
 
 impl Coarsest {
-    fn new<const N: usize>(level: &Level<N>) -> Self {
-        let (operator, layout) = (&level.operator, level.operator.layout());
-        let size = level.transfer.coarse_size();
-        let mut number = vec![usize::MAX; size[0] * size[1]];
-        let mut unknowns = Vec::new();
-        let mut places = Vec::new();
-        for row in 0..size[1] {
-            for column in 0..size[0] {
-                if trace(&operator.block(column, row, 0, 0)) > 0.0 {
-                    number[row * size[0] + column] = places.len();
-                    places.push((column, row));
-                    let at = (row + layout.padding) * layout.row_len() + column + layout.padding;
-                    unknowns.extend((0..N).map(|c| at + c * layout.stride));
-                }
-            }
-        }
+    fn new<const N: usize>(operator: &CoarseOperator<N>) -> Self {
+        let layout = operator.layout();
+        let [columns, rows] = layout.size();
+        let all = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
+        let places: Vec<[usize; 2]> = all.filter(|&place| operator.is_point(place)).collect();
+        let mut number = vec![usize::MAX; columns * rows];
+        places.iter().enumerate().for_each(|(i, [column, row])| number[row * columns + column] = i);
+        let at = |&[column, row]: &[usize; 2]| (row + layout.padding) * layout.row_len() + column + layout.padding;
+        let unknowns: Vec<usize> = places.iter().map(at).flat_map(|at| (0..N).map(move |c| at + c * layout.stride)).collect();
         let n = unknowns.len();
         let mut matrix = faer::Mat::<f64>::zeros(n, n);
-        for (i, &(column, row)) in places.iter().enumerate() {
-            operator.visit_row(column, row, |[dx, dy], block| {
-                let j = number[row.wrapping_add_signed(dy) * size[0] + column.wrapping_add_signed(dx)];
+        for (i, &[column, row]) in places.iter().enumerate() {
+            operator.visit_row([column, row], |[dx, dy], block| {
+                let j = number[row.wrapping_add_signed(dy) * columns + column.wrapping_add_signed(dx)];
                 for (c, row) in block.iter().enumerate() {
                     for (d, &value) in row.iter().enumerate() {
                         matrix[(i * N + c, j * N + d)] = value;
@@ -391,8 +271,4 @@ impl Coarsest {
         }
         self.unknowns.iter().zip(sums).for_each(|(&index, sum)| x[index] = sum as f32);
     }
-}
-
-fn trace<const N: usize>(block: &[[f64; N]; N]) -> f64 {
-    (0..N).map(|c| block[c][c]).sum()
 }

@@ -11,12 +11,9 @@ mod apply;
 use rayon::prelude::*;
 
 use super::super::field::Layout;
+use super::chunked::{Chunked, Slot};
+use super::{Block, Stiffness};
 use crate::body::lattice::LANES;
-
-/// Slot of a chunk of fine places with plain bilinear weights.
-const PLAIN: u32 = u32::MAX;
-/// Slot of a chunk without places in use.
-const EMPTY: u32 = u32::MAX - 1;
 
 /// How a fine place may use a coarse one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,16 +35,15 @@ pub struct Transfer<const N: usize> {
     /// Fine columns and rows by which coarse place (0, 0) stands before fine place (0, 0).
     offset: [usize; 2],
     fine: Layout,
-    fine_rows: usize,
-    coarse: Layout,
+    pub coarse: Layout,
     /// Lower coarse column of every fine column, and the share of the way to the next.
     lower: Vec<(u32, f32)>,
-    /// Chunks of a fine row.
-    chunks: usize,
-    /// For every chunk of a fine row where its weights stand, [`PLAIN`] if they are bilinear, [`EMPTY`] if there are none.
-    slots: Vec<u32>,
-    own: Vec<[Weights; LANES]>,
+    /// Weights of the chunks of a fine row; common are bilinear ones.
+    own: Chunked<[Weights; LANES]>,
 }
+
+/// Coarse places around a fine place, the lower left first, with weight and arm.
+pub type Parents = [([usize; 2], f64, [f64; 2]); 4];
 
 /// Weights of the four coarse places around a fine place: in double precision, so that the coarse operator is free of force in
 /// rigid motion.
@@ -59,103 +55,52 @@ struct Weights {
 }
 
 impl<const N: usize> Transfer<N> {
-    /// Lays a coarse lattice over a fine one of `columns` x `rows` places. `link(place, coarse place)` in (column, row)
-    /// says whether a fine place may use a coarse one; `is_point` whether a fine place is in use, `is_regular` whether
-    /// all bonds of a chunk (row, chunk) are whole; `unit` is the spacing of the fine level in lattice spacings.
-    pub fn new(
-        fine: Layout,
-        rows: usize,
-        factor: usize,
-        unit: f64,
-        is_regular: impl Fn(usize, usize) -> bool,
-        is_point: impl Fn(usize, usize) -> bool + Sync,
-        link: impl Fn([usize; 2], [usize; 2]) -> Link + Sync,
-    ) -> Self {
-        let columns = fine.columns;
+    /// Lays a coarse lattice over a finer level, whose spacing is `unit` in lattice spacings.
+    pub fn new(finer: &impl Stiffness<N>, factor: usize, unit: f64) -> Self {
+        let fine = *finer.layout();
         // Coarse places lie symmetrically where that is possible. Where fine ones lie before the first of them, a further one stands outside.
         let is_symmetric = |first: usize, count: usize| 2 * first < count && (count - 1 - 2 * first).is_multiple_of(factor);
-        let offset = [columns, rows].map(|count| match (0..factor).find(|&first| is_symmetric(first, count)) {
+        let offset = fine.size().map(|count| match (0..factor).find(|&first| is_symmetric(first, count)) {
             None | Some(0) => 0,
             Some(first) => factor - first,
         });
-        let count = |fine: usize, offset: usize| (fine - 1 + offset).div_ceil(factor) + 1;
-        let (coarse_columns, coarse_rows) = (count(columns, offset[0]), count(rows, offset[1]));
+        let [columns, rows] = [0, 1].map(|axis| (fine.size()[axis] - 1 + offset[axis]).div_ceil(factor) + 1);
         let padding = 2;
-        let coarse = Layout {
-            unknowns: N,
-            stride: coarse_columns.next_multiple_of(crate::body::lattice::LANES) + 2 * padding,
-            rows: coarse_rows + 2 * padding,
-            padding,
-            columns: coarse_columns,
-        };
-        let chunks = columns.div_ceil(LANES);
+        let stride = columns.next_multiple_of(LANES) + 2 * padding;
+        let coarse = Layout { unknowns: N, stride, rows: rows + 2 * padding, padding, columns };
         let place = |column: usize| column + offset[0];
-        let lower = (0..columns).map(|c| ((place(c) / factor) as u32, (place(c) % factor) as f32 / factor as f32)).collect();
-        let slots = vec![PLAIN; rows * chunks];
-        let mut transfer =
-            Transfer { factor, unit, offset, fine, fine_rows: rows, coarse, lower, chunks, slots, own: Vec::new() };
-        let irregular: Vec<usize> = (0..rows * chunks).filter(|&index| !is_regular(index / chunks, index % chunks)).collect();
-        let weights = |&index: &usize| transfer.weights_of_chunk(index / chunks, index % chunks, &is_point, &link);
-        let found: Vec<Option<[Weights; LANES]>> = irregular.par_iter().map(weights).collect();
-        for (index, weights) in irregular.into_iter().zip(found) {
-            let Some(weights) = weights else { continue };
-            if weights.iter().all(|weights| weights.share == [0.0; 4]) {
-                transfer.slots[index] = EMPTY;
-            } else {
-                transfer.slots[index] = transfer.own.len() as u32;
-                transfer.own.push(weights);
-            }
-        }
+        let lower = (0..fine.columns).map(|c| ((place(c) / factor) as u32, (place(c) % factor) as f32 / factor as f32)).collect();
+        let [columns, rows] = fine.size();
+        let own = Chunked::new([columns.div_ceil(LANES), rows], |_, _| true, |_, _| Slot::Empty);
+        let mut transfer = Transfer { factor, unit, offset, fine, coarse, lower, own };
+        let find = |row: usize, chunk: usize| transfer.weights_of_chunk(row, chunk, finer);
+        transfer.own = Chunked::new([columns.div_ceil(LANES), rows], |row, chunk| finer.is_common(row, chunk), find);
         transfer
     }
 
-    /// Weighs the places in and around `changed` ones anew, with what [`Transfer::new`] was given; those whose weights are others now.
-    pub fn refresh(
-        &mut self,
-        changed: &[[usize; 2]],
-        is_point: impl Fn(usize, usize) -> bool + Sync,
-        link: impl Fn([usize; 2], [usize; 2]) -> Link + Sync,
-    ) -> Vec<[usize; 2]> {
+    /// Weighs the places in and around `changed` ones anew; those whose weights are others now.
+    pub fn refresh(&mut self, changed: &[[usize; 2]], finer: &impl Stiffness<N>) -> Vec<[usize; 2]> {
         // A place uses coarse ones that are less than the factor away.
-        let reach = self.factor - 1;
-        let mut affected = vec![false; self.slots.len()];
+        let (reach, [columns, rows], chunks) = (self.factor - 1, self.fine.size(), self.own.chunks);
+        let mut affected = vec![false; rows * chunks];
         for &[column, row] in changed {
-            let chunks = column.saturating_sub(reach) / LANES..=(column + reach).min(self.fine.columns - 1) / LANES;
-            for row in row.saturating_sub(reach)..=(row + reach).min(self.fine_rows - 1) {
-                affected[row * self.chunks..][chunks.clone()].fill(true);
+            let range = column.saturating_sub(reach) / LANES..=(column + reach).min(columns - 1) / LANES;
+            for row in row.saturating_sub(reach)..=(row + reach).min(rows - 1) {
+                affected[row * chunks..][range.clone()].fill(true);
             }
         }
         let affected: Vec<usize> = (0..affected.len()).filter(|&index| affected[index]).collect();
-        let weights = |&index: &usize| self.weights_of_chunk(index / self.chunks, index % self.chunks, &is_point, &link);
-        let found: Vec<Option<[Weights; LANES]>> = affected.par_iter().map(weights).collect();
+        let weights = |&index: &usize| self.weights_of_chunk(index / chunks, index % chunks, finer);
+        let found: Vec<Slot<[Weights; LANES]>> = affected.par_iter().map(weights).collect();
         let mut others = Vec::new();
-        for (index, weights) in affected.into_iter().zip(found) {
-            let (row, first) = (index / self.chunks, index % self.chunks * LANES);
-            let slot = self.slots[index];
-            if weights.is_none() && slot == PLAIN {
-                continue;
-            }
-            let plain = |lane: usize| match first + lane {
-                column if column < self.fine.columns => Weights { share: self.bilinear([column, row]), rigid: false },
-                _ => Weights::default(),
-            };
-            let new = weights.unwrap_or_else(|| std::array::from_fn(plain));
-            let old = match slot {
-                PLAIN => std::array::from_fn(plain),
-                EMPTY => [Weights::default(); LANES],
-                slot => self.own[slot as usize],
-            };
-            let differs = |lane: &usize| old[*lane] != new[*lane];
-            let before = others.len();
-            others.extend((0..LANES).filter(differs).map(|lane| [first + lane, row]));
-            if others.len() == before {
-                continue;
-            }
-            if slot == PLAIN || slot == EMPTY {
-                self.slots[index] = self.own.len() as u32;
-                self.own.push(new);
-            } else {
-                self.own[slot as usize] = new;
+        for (index, found) in affected.into_iter().zip(found) {
+            let (row, chunk) = (index / chunks, index % chunks);
+            let plain = std::array::from_fn(|lane| self.plain([chunk * LANES + lane, row]));
+            let old = *self.own.at(row, chunk).or(&plain, &[Weights::default(); LANES]);
+            let new = found.or(plain, [Weights::default(); LANES]);
+            if new != old {
+                others.extend((0..LANES).filter(|&lane| old[lane] != new[lane]).map(|lane| [chunk * LANES + lane, row]));
+                *self.own.own_mut(row, chunk, |_| new) = new;
             }
         }
         others
@@ -163,7 +108,7 @@ impl<const N: usize> Transfer<N> {
 
     /// Coarse places whose rows of the coarse operator take in one of some fine places, the fine operator reaching so many places.
     pub fn coarse_around(&self, fine: &[[usize; 2]], reach: usize) -> Vec<[usize; 2]> {
-        let [columns, rows] = self.coarse_size();
+        let [columns, rows] = self.coarse.size();
         let reach = self.factor - 1 + reach;
         let mut taken = vec![false; columns * rows];
         let range = |at: usize, axis: usize, count: usize| {
@@ -178,44 +123,58 @@ impl<const N: usize> Transfer<N> {
         (0..taken.len()).filter(|&index| taken[index]).map(|index| [index % columns, index / columns]).collect()
     }
 
-    /// Weights of the places of a chunk; `None` if all are in use and plain.
-    fn weights_of_chunk(
-        &self,
-        row: usize,
-        chunk: usize,
-        is_point: &impl Fn(usize, usize) -> bool,
-        link: &impl Fn([usize; 2], [usize; 2]) -> Link,
-    ) -> Option<[Weights; LANES]> {
-        let mut weights = [Weights::default(); LANES];
-        let mut plain = true;
-        for (lane, weights) in weights.iter_mut().enumerate() {
-            let column = chunk * LANES + lane;
-            if column < self.fine.columns && is_point(column, row) {
-                *weights = self.weigh([column, row], is_point, link);
-                let bilinear = self.bilinear([column, row]);
-                plain &= !weights.rigid && (0..4).all(|i| (weights.share[i] - bilinear[i]).abs() < 1e-12);
-            } else {
-                plain = false;
-            }
+    /// For each coarse place, row by row, whether all fine places that its row of the coarse operator takes in are there, with common rows
+    /// and bilinear weights.
+    pub fn regular(&self, finer: &impl Stiffness<N>) -> Vec<bool> {
+        let ([columns, rows], chunks, reach) = (self.fine.size(), self.own.chunks, (self.factor - 1 + finer.reach()) as isize);
+        // Sums over rectangles of odd chunks: those left of c and below r.
+        let width = chunks + 1;
+        let mut sums = vec![0_i64; width * (rows + 1)];
+        for (row, chunk) in (0..rows).flat_map(|row| (0..chunks).map(move |chunk| (row, chunk))) {
+            let is_odd = !(finer.is_common(row, chunk) && self.own.is_common(row, chunk));
+            let [here, below] = [row + 1, row].map(|row| row * width + chunk);
+            sums[here + 1] = i64::from(is_odd) + sums[below + 1] + sums[here] - sums[below];
         }
-        (!plain).then_some(weights)
+        let [coarse_columns, coarse_rows] = self.coarse.size();
+        let is_regular = |index: usize| {
+            let [c, r] = self.seat([index % coarse_columns, index / coarse_columns]);
+            let (left, right, below, above) = (c - reach, c + reach, r - reach, r + reach);
+            left >= 0 && below >= 0 && right < columns as isize && above < rows as isize && {
+                let (left, right) = (left as usize / LANES, right as usize / LANES + 1);
+                let (below, above) = (below as usize * width, (above as usize + 1) * width);
+                sums[above + right] - sums[below + right] - sums[above + left] + sums[below + left] == 0
+            }
+        };
+        (0..coarse_columns * coarse_rows).map(is_regular).collect()
     }
 
-    fn weigh(
-        &self,
-        place: [usize; 2],
-        is_point: &impl Fn(usize, usize) -> bool,
-        link: &impl Fn([usize; 2], [usize; 2]) -> Link,
-    ) -> Weights {
+    /// Weights of the places of a chunk.
+    fn weights_of_chunk(&self, row: usize, chunk: usize, finer: &impl Stiffness<N>) -> Slot<[Weights; LANES]> {
+        let places: [[usize; 2]; LANES] = std::array::from_fn(|lane| [chunk * LANES + lane, row]);
+        let is_point = |place: [usize; 2]| place[0] < self.fine.columns && finer.is_point(place);
+        let weights = places.map(|place| if is_point(place) { self.weigh(place, finer) } else { Weights::default() });
+        let is_plain = |(weights, place): (&Weights, &[usize; 2])| {
+            let plain = self.plain(*place).share;
+            is_point(*place) && !weights.rigid && (0..4).all(|i| (weights.share[i] - plain[i]).abs() < 1e-12)
+        };
+        if weights.iter().zip(&places).all(is_plain) {
+            Slot::Common
+        } else if weights.iter().all(|weights| weights.share == [0.0; 4]) {
+            Slot::Empty
+        } else {
+            Slot::Own(weights)
+        }
+    }
+
+    fn weigh(&self, place: [usize; 2], finer: &impl Stiffness<N>) -> Weights {
         let (corners, _) = self.corners(place);
         let mut share = [0.0; 4];
         let (mut severed, mut ghosts) = (false, [false; 4]);
-        for (corner, bilinear) in self.bilinear(place).into_iter().enumerate().filter(|(_, bilinear)| *bilinear > 0.0) {
-            let seat = [self.fine_seat(corners[0] + (corner & 1), 0), self.fine_seat(corners[1] + (corner >> 1), 1)];
-            let found = match seat {
-                [Some(c), Some(r)] if is_point(c, r) => link(place, [c, r]),
-                _ => Link::Ghost,
-            };
+        for (corner, bilinear) in self.plain(place).share.into_iter().enumerate().filter(|(_, bilinear)| *bilinear > 0.0) {
+            let seat = self.seat([corners[0] + (corner & 1), corners[1] + (corner >> 1)]);
+            let is_there = (0..2).all(|axis| (0..self.fine.size()[axis] as isize).contains(&seat[axis]));
+            let seat = seat.map(|at| at as usize);
+            let found = if is_there && finer.is_point(seat) { finer.link(place, seat) } else { Link::Ghost };
             severed |= found == Link::Severed;
             ghosts[corner] = found == Link::Ghost;
             share[corner] = if found == Link::Severed { 0.0 } else { bilinear };
@@ -231,11 +190,14 @@ impl<const N: usize> Transfer<N> {
         Weights { share, rigid: severed && N == 3 }
     }
 
-    /// Bilinear weights of the four coarse places around a fine one.
-    fn bilinear(&self, place: [usize; 2]) -> [f64; 4] {
+    /// Bilinear weights of the four coarse places around a fine one; none beside the lattice.
+    fn plain(&self, place: [usize; 2]) -> Weights {
+        if place[0] >= self.fine.columns {
+            return Weights::default();
+        }
         let (_, fraction) = self.corners(place);
         let share = |axis: usize, upper: usize| if upper == 1 { fraction[axis] } else { 1.0 - fraction[axis] };
-        std::array::from_fn(|corner| share(0, corner & 1) * share(1, corner >> 1))
+        Weights { share: std::array::from_fn(|corner| share(0, corner & 1) * share(1, corner >> 1)), rigid: false }
     }
 
     /// Lower left coarse place of a fine place, and the fraction of the way to the next.
@@ -244,76 +206,37 @@ impl<const N: usize> Transfer<N> {
         (at.map(|p| p / self.factor), at.map(|p| (p % self.factor) as f64 / self.factor as f64))
     }
 
-    /// Fine column (axis 0) or row (axis 1) of a coarse one, where the fine lattice has it.
-    fn fine_seat(&self, coarse: usize, axis: usize) -> Option<usize> {
-        let count = if axis == 0 { self.fine.columns } else { self.fine_rows };
-        (coarse * self.factor).checked_sub(self.offset[axis]).filter(|&seat| seat < count)
-    }
-
-    pub fn coarse(&self) -> &Layout {
-        &self.coarse
-    }
-
-    /// Rows and columns of the coarse level.
-    pub fn coarse_size(&self) -> [usize; 2] {
-        [self.coarse.columns, self.coarse.rows - 2 * self.coarse.padding]
-    }
-
     /// Fine column and row (which may lie outside) of a coarse place.
     pub fn seat(&self, coarse: [usize; 2]) -> [isize; 2] {
         [0, 1].map(|axis| (coarse[axis] * self.factor) as isize - self.offset[axis] as isize)
     }
 
-    /// Coarse places (column, row) of a fine place with their interpolation blocks; empty entries have weight 0.
-    pub fn parents(&self, column: usize, row: usize) -> [([usize; 2], f64, [f64; 2]); 4] {
-        let (lower, _) = self.corners([column, row]);
-        let seat = |corner: usize| [lower[0] + (corner & 1), lower[1] + (corner >> 1)];
-        let slot = self.slots[row * self.chunks + column / LANES];
-        if slot == PLAIN {
-            let weights = self.bilinear([column, row]);
-            return std::array::from_fn(|corner| (seat(corner), weights[corner], [0.0; 2]));
-        }
-        if slot == EMPTY {
-            return std::array::from_fn(|corner| (seat(corner), 0.0, [0.0; 2]));
-        }
-        let weights = &self.own[slot as usize][column % LANES];
-        let arm = self.arm(weights, column, row);
+    /// Coarse places (column, row) of a fine place with their weights and the arms from them to a fine place that moves rigidly, in lattice
+    /// spacings; empty entries have weight 0.
+    pub fn parents(&self, place: [usize; 2]) -> Parents {
+        let (lower, _) = self.corners(place);
+        let own = self.own.at(place[1], place[0] / LANES).map(|own| own[place[0] % LANES]);
+        let weights = own.or(self.plain(place), Weights::default());
         std::array::from_fn(|corner| {
-            (seat(corner), weights.share[corner], arm.map_or([0.0; 2], |arm| self.arm_of_corner(arm, corner)))
+            let seat = [lower[0] + (corner & 1), lower[1] + (corner >> 1)];
+            (seat, weights.share[corner], self.arm(&weights, place, corner))
         })
     }
 
-    /// Whether all fine places of a chunk of a row use plain bilinear weights.
-    pub fn is_plain(&self, row: usize, chunk: usize) -> bool {
-        self.slots[row * self.chunks + chunk] == PLAIN
-    }
-
-    /// Coarse row below a fine one, and the share of the way to the next.
-    fn rows_around(&self, row: usize) -> (usize, f32) {
-        let at = row + self.offset[1];
-        (at / self.factor, (at % self.factor) as f32 / self.factor as f32)
-    }
-
-    /// Vector index of the lower left coarse place of a fine place.
-    fn coarse_index(&self, column: usize, row: usize) -> usize {
-        let (corner, _) = self.corners([column, row]);
-        (corner[1] + self.coarse.padding) * self.coarse.row_len() + corner[0] + self.coarse.padding
-    }
-
-    /// Arm from the lower left coarse place to a fine place that moves rigidly, in lattice spacings.
-    fn arm(&self, weights: &Weights, column: usize, row: usize) -> Option<[f64; 2]> {
-        weights.rigid.then(|| [column + self.offset[0], row + self.offset[1]].map(|at| (at % self.factor) as f64 * self.unit))
-    }
-
-    /// The same arm from another of the four coarse places.
-    fn arm_of_corner(&self, arm: [f64; 2], corner: usize) -> [f64; 2] {
+    /// Arm from one of the four coarse places around it to a fine place, in lattice spacings; none where that does not move rigidly.
+    #[inline]
+    fn arm(&self, weights: &Weights, place: [usize; 2], corner: usize) -> [f64; 2] {
+        if !weights.rigid {
+            return [0.0; 2];
+        }
+        let (_, fraction) = self.corners(place);
         let step = self.factor as f64 * self.unit;
-        [arm[0] - (corner & 1) as f64 * step, arm[1] - (corner >> 1) as f64 * step]
+        [fraction[0] - (corner & 1) as f64, fraction[1] - (corner >> 1) as f64].map(|share| share * step)
     }
 }
 
 /// Adds Pᵀ-transformed columns: `t += block P` for one parent, P = w [1, φ × arm].
-pub fn times_interpolation<const N: usize>(block: &[[f64; N]; N], weight: f64, arm: [f64; 2], t: &mut [[f64; N]; N]) {
+pub fn times_interpolation<const N: usize>(block: &Block<N>, weight: f64, arm: [f64; 2], t: &mut Block<N>) {
     for c in 0..N {
         for d in 0..N {
             t[c][d] += weight * block[c][d];

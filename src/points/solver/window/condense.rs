@@ -292,11 +292,8 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
         };
         let mut outer: Vec<u32> = below.iter().flat_map(|front| &front.points[front.inner..]).copied().collect();
         for &place in &inner {
-            self.for_neighbours(place as usize, |other| {
-                if !done(other) && !self.ground[other] {
-                    outer.push(other as u32);
-                }
-            });
+            let ends = self.bonds.at(self.body, place as usize).map(|(.., end)| self.body.behind(end).0);
+            outer.extend(ends.filter(|&other| !done(other) && !self.ground[other]).map(|other| other as u32));
         }
         outer.sort_unstable();
         outer.dedup();
@@ -329,20 +326,6 @@ impl<const M: usize, A: Assembly<M>> Condenser<'_, M, A> {
             .flat_map(|row| (region.columns.0..region.columns.1).map(move |column| lattice.place(column, row)));
         let carries = |&p: &usize| self.body.is_point[p] && self.bonds.intact_at(self.body, p) > 0;
         places.filter(|p| carries(p) && !self.kept[*p] && !self.ground[*p]).map(|place| place as u32).collect()
-    }
-
-    /// Calls `take` with the point at, or behind, the other end of every intact bond of a point.
-    fn for_neighbours(&self, place: usize, mut take: impl FnMut(usize)) {
-        let places = self.body.places();
-        for (k, &step) in self.body.steps.iter().enumerate() {
-            let (ahead, behind) = (place.wrapping_add_signed(step), place.wrapping_add_signed(-step));
-            if self.bonds.multiplier[k * places + place] > 0.0 {
-                take(self.body.behind(ahead).0);
-            }
-            if self.bonds.multiplier[k * places + behind] > 0.0 {
-                take(self.body.behind(behind).0);
-            }
-        }
     }
 
     /// Adds the stiffness of the bonds of `points` (ascending) to those points that `counts`; bonds among `points` once.

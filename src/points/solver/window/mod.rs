@@ -10,10 +10,10 @@ pub mod update;
 
 use super::assembly::{MIXED, Mixed, Springs};
 use super::conjugate_gradient::MultigridSolver;
-use super::direct::{DirectSolver, pinned_components};
+use super::direct::{factorised, pinned_components};
 use super::product::Product;
 use super::spring::{End, Term};
-use super::system::{Focus, LinearSolver, SOLVES_MOST, Solved, SolverUsed, System};
+use super::system::{Focus, Solved, SolverKind, SolverUsed, Sought, System};
 use crate::body::mirror::signs;
 use crate::body::pre_crack::places_near;
 use crate::body::{Body, Bond};
@@ -35,6 +35,9 @@ const DRIFT_MAX: f64 = 1e-7;
 const RANK_MAX: usize = 512;
 /// Springs after which they are put into the inverse.
 const RANK_FOLD: usize = 128;
+/// Solves of the whole plate after which a solver begins anew. That takes three to four of them: a solve from rest, and where
+/// there is one a new hierarchy.
+const SOLVES_MOST: usize = 128;
 /// Solves within the window before which its next move is no new beginning: bonds that come near the critical stretch may move it
 /// after every break.
 const UPDATES_LEAST: usize = 64;
@@ -44,16 +47,16 @@ const UPDATES_MOST: usize = 4096;
 /// Residual over load of a displacement for a picture.
 const PICTURE_TOLERANCE: f64 = 1e-4;
 
-/// Solves of the whole plate, a condensed window between them.
-pub(in crate::solver) struct WindowSolver<const N: usize> {
-    /// Solves the whole plate.
-    whole: MultigridSolver<N>,
+/// Solves of the whole plate, where breaks are asked to come one by one a condensed window between them.
+pub(in crate::solver) struct Solver<const N: usize> {
+    /// Solves the whole plate; without it every solve is a factorisation.
+    multigrid: Option<MultigridSolver<N>>,
     window: Option<Window>,
     had_window: bool,
     broken: Vec<Bond>,
     /// Whether the displacement is right everywhere, not in the window only.
     is_whole: bool,
-    /// Whether condensing failed: then every solve is a whole one.
+    /// Whether no window is condensed: none is asked for, or condensing failed.
     is_off: bool,
     /// Work f·u at the last solve.
     work: f64,
@@ -73,25 +76,55 @@ struct Window {
     springs: usize,
 }
 
-impl<const N: usize> WindowSolver<N> {
+impl<const N: usize> Solver<N> {
     /// Starts without a window.
-    pub fn new(body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
-        WindowSolver {
-            whole: MultigridSolver::for_few_solves(body, bonds, product),
+    pub fn new(kind: Option<SolverKind>, body: &Body, bonds: &Bonds, product: &Product<N>) -> Self {
+        Solver {
+            multigrid: kind.map(|_| MultigridSolver::new(body, bonds, product)),
             window: None,
             had_window: false,
             broken: Vec::new(),
             is_whole: false,
-            is_off: false,
+            is_off: kind != Some(SolverKind::Window),
             work: 0.0,
             picture: None,
         }
     }
 
+    /// Improves `u` until it is right for what is sought; what that took and gave if it took a solve.
+    pub fn seek(&mut self, sought: Sought<'_>, system: System<'_, N>, u: &mut [f64]) -> Result<Option<Solved>> {
+        match sought {
+            Sought::Equilibrium => self.solve(system, u).map(Some),
+            Sought::Everywhere if self.is_whole => Ok(None),
+            Sought::Everywhere => self.solve_whole(system, u).map(Some),
+            Sought::Ahead(watched, _)
+                if self.window.as_ref().is_some_and(|window| hold(system.body, &window.condensed.places, watched)) =>
+            {
+                Ok(None)
+            }
+            Sought::Ahead(watched, tips) => {
+                let solved = self.seek(Sought::Everywhere, system, u)?;
+                self.window = self.condense(system, u, watched, tips);
+                self.had_window |= self.window.is_some();
+                Ok(solved)
+            }
+        }
+    }
+
+    /// By iteration or, where that does not manage or is not asked for, by factorisation: of a part that hangs on a few bonds and is nearly
+    /// a mechanism iteration breaks down. A plate that loses its stiffness is beyond both, and held sums beyond factorisation.
+    fn solve_to(&mut self, tolerance: f64, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
+        let Some(multigrid) = &mut self.multigrid else { return factorised(system, u) };
+        let is_tied = system.product.ties.slaves().next().is_some();
+        multigrid.solve(tolerance, system, u).or_else(|error| match error {
+            Error::Mechanics(_) if !is_tied => factorised(system, u),
+            error => Err(error),
+        })
+    }
+
     /// Solves the whole plate; a window that is up to date takes its new base from it.
     fn solve_whole(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-        // A part that hangs on a few bonds is nearly a mechanism, on which the iteration breaks down; a factorisation does not.
-        let solved = self.whole.solve(system, u).or_else(|error| factorised(error, system, u))?;
+        let solved = self.solve_to(system.tolerance, system, u)?;
         self.picture = None;
         // The work of the loads by the window's account against that by the whole system: the error of the window in energy.
         let drift = (self.work / solved.work - 1.0).abs();
@@ -134,9 +167,9 @@ impl<const N: usize> WindowSolver<N> {
             places = farther;
         }
         let pins = pins(body, bonds, &places, width);
-        let condensed = match product.dilatation() {
-            None => condense::<N, _>(body, bonds, &Springs::new(product), &places, &pins),
-            Some(dilatation) => condense::<MIXED, _>(body, bonds, &Mixed::new(product, dilatation, bonds), &places, &pins),
+        let condensed = match product.dilatation.as_ref() {
+            None => condense::<N, _>(body, bonds, &Springs(product), &places, &pins),
+            Some(dilatation) => condense::<MIXED, _>(body, bonds, &Mixed { product, dilatation, body, bonds }, &places, &pins),
         };
         let Some(condensed) = condensed else {
             self.is_off = true;
@@ -145,9 +178,7 @@ impl<const N: usize> WindowSolver<N> {
         tracing::debug!(points = places.len(), "window condensed");
         Some(Window::new(condensed, system, u, self.work))
     }
-}
 
-impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
     fn solve(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
         // A block may have thousands of breaks, each a solve within the window.
         watch::at(Stage::Equilibrium, 1.0)?;
@@ -172,42 +203,37 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
         self.solve_whole(system, u)
     }
 
-    fn broke(&mut self, body: &Body, bonds: &Bonds, product: &Product<N>, broken: &[Bond]) {
-        self.whole.broke(body, bonds, product, broken);
+    /// Told which bonds changed since the last solve.
+    pub fn broke(&mut self, body: &Body, bonds: &Bonds, broken: &[Bond]) {
+        if let Some(multigrid) = &mut self.multigrid {
+            multigrid.broke(body, bonds, broken);
+        }
         self.broken.extend(broken);
     }
 
-    fn used(&self) -> SolverUsed {
-        if self.had_window { SolverUsed::Window } else { SolverUsed::Multigrid }
-    }
-
-    fn set_tolerance(&mut self, tolerance: f64) {
-        self.whole.set_tolerance(tolerance);
-    }
-
-    fn reach(&mut self, system: System<'_, N>, u: &mut [f64], watched: &[Bond], tips: &[Focus]) -> Result<Option<Solved>> {
-        if self.window.as_ref().is_some_and(|window| hold(system.body, &window.condensed.places, watched)) {
-            return Ok(None);
+    /// What has solved since it was built.
+    pub fn used(&self) -> SolverUsed {
+        match &self.multigrid {
+            None => SolverUsed::Direct,
+            Some(_) if self.had_window => SolverUsed::Window,
+            Some(_) => SolverUsed::Multigrid,
         }
-        let solved = self.complete(system, u)?;
-        self.window = self.condense(system, u, watched, tips);
-        self.had_window |= self.window.is_some();
-        Ok(solved)
     }
 
-    fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool {
-        let Some(window) = &self.window else { return solves >= SOLVES_MOST };
-        let moves = !hold(body, &window.condensed.places, watched);
-        solves >= if moves { UPDATES_LEAST } else { UPDATES_MOST }
+    /// Whether to begin anew costs little now, `solves` solves after the last beginning.
+    pub fn is_due(&self, body: &Body, watched: &[Bond], solves: usize) -> bool {
+        let least = match &self.window {
+            None => SOLVES_MOST,
+            Some(window) if hold(body, &window.condensed.places, watched) => UPDATES_MOST,
+            Some(_) => UPDATES_LEAST,
+        };
+        solves >= least
     }
 
-    fn complete(&mut self, system: System<'_, N>, u: &mut [f64]) -> Result<Option<Solved>> {
-        if self.is_whole { Ok(None) } else { self.solve_whole(system, u).map(Some) }
-    }
-
-    fn picture(&mut self, system: System<'_, N>, u: &[f64]) -> Result<Option<(Vec<f64>, usize)>> {
+    /// `u` everywhere, as right as pictures need it, and the iterations. Nothing else changes.
+    pub fn picture(&mut self, system: System<'_, N>, u: &[f64]) -> Result<(Vec<f64>, usize)> {
         if self.is_whole {
-            return Ok(None);
+            return Ok((u.to_vec(), 0));
         }
         let mut picture = self.picture.take().unwrap_or_else(|| u.to_vec());
         if let Some(window) = &self.window {
@@ -216,19 +242,18 @@ impl<const N: usize> LinearSolver<N> for WindowSolver<N> {
                 (0..N).map(|c| first + c * layout.stride).for_each(|index| picture[index] = u[index]);
             }
         }
-        let solved = self
-            .whole
-            .solve_to(PICTURE_TOLERANCE, system, &mut picture)
-            .or_else(|error| factorised(error, system, &mut picture))?;
+        let solved = self.solve_to(PICTURE_TOLERANCE, system, &mut picture)?;
         self.picture = Some(picture.clone());
-        Ok(Some((picture, solved.iterations)))
+        Ok((picture, solved.iterations))
     }
 
-    fn is_whole(&self) -> bool {
+    /// Whether the displacement is right everywhere.
+    pub fn is_whole(&self) -> bool {
         self.is_whole
     }
 
-    fn window(&self) -> Option<&[u32]> {
+    /// Points, ascending, on which the displacement is always right; `None` if that is all of them.
+    pub fn window(&self) -> Option<&[u32]> {
         self.window.as_ref().map(|window| &*window.condensed.places)
     }
 }
@@ -256,7 +281,7 @@ impl Window {
             let ends = [from, to].map(|end| self.end(body, end, width));
             let [Some(a), Some(b)] = ends else { return false };
             let share = f64::from(body.multiplier[bond as usize]);
-            let mut terms: Vec<Term> = match product.dilatation() {
+            let mut terms: Vec<Term> = match product.dilatation.as_ref() {
                 None => product.springs_of(k, share, [a, b]).into(),
                 Some(dilatation) => dilatation.terms_of(k, share, [a, b]),
             };
@@ -281,11 +306,6 @@ impl Window {
     }
 }
 
-/// By factorisation what iteration did not manage for an error; a plate that loses its stiffness is beyond both.
-fn factorised<const N: usize>(error: Error, system: System<'_, N>, u: &mut [f64]) -> Result<Solved> {
-    if matches!(error, Error::LossOfStiffness) { Err(error) } else { DirectSolver::default().solve(system, u) }
-}
-
 /// Whether both ends of all these bonds are among some points (ascending).
 fn hold(body: &Body, places: &[u32], bonds: &[Bond]) -> bool {
     let has = |place: usize| places.binary_search(&(body.behind(place).0 as u32)).is_ok();
@@ -297,14 +317,14 @@ fn hold(body: &Body, places: &[u32], bonds: &[Bond]) -> bool {
 
 /// Unknowns of a window point: those of the body, and the stress of a state-based law.
 fn width<const N: usize>(product: &Product<N>) -> usize {
-    if product.dilatation().is_some() { MIXED } else { N }
+    if product.dilatation.as_ref().is_some() { MIXED } else { N }
 }
 
 /// Unknowns of some points in the order of the window's vector, from a displacement that is right everywhere.
 fn unknowns<const N: usize>(system: System<'_, N>, u: &[f64], places: &[u32]) -> Vec<f64> {
     let System { bonds, product, .. } = system;
     let layout = product.layout();
-    let stress = product.dilatation().map(|dilatation| dilatation.stress(bonds, u));
+    let stress = product.dilatation.as_ref().map(|dilatation| dilatation.stress(bonds, u));
     let of_place = |place: usize| {
         let first = layout.index(place);
         (0..N).map(move |c| u[first + c * layout.stride]).chain(stress.as_ref().map(|stress| stress[place]))

@@ -9,7 +9,7 @@ use perilife_plate::specimen::facets::{Facet, behind};
 use perilife_plate::specimen::{Point, Specimen};
 use perilife_points::body::boundary::balance;
 use perilife_points::body::obstacles::Obstacles;
-use perilife_points::body::sharing::{WIDEN, WIDENINGS, linear_shares};
+use perilife_points::body::sharing::linear_shares;
 
 /// Places of the finest level within which the point nearest to a force is searched, if it lies in no point's cell.
 const SEARCH: i64 = 12;
@@ -32,9 +32,7 @@ impl<'a> Sharing<'a> {
     /// Shares of a force on a piece of the rim; empty where no point lies near.
     pub fn of(&self, facet: &Facet) -> Vec<(u32, f64)> {
         let Some(seat) = self.seat(facet) else { return Vec::new() };
-        let linear = self.consistent.as_ref().and_then(|(obstacles, rows)| {
-            (0..WIDENINGS).find_map(|i| self.linear(facet, seat, obstacles, *rows as f64, WIDEN.powi(i as i32)))
-        });
+        let linear = self.consistent.as_ref().and_then(|(obstacles, rows)| self.linear(facet, seat, obstacles, *rows as f64));
         linear.unwrap_or_else(|| vec![(seat as u32, 1.0)])
     }
 
@@ -52,29 +50,24 @@ impl<'a> Sharing<'a> {
         })
     }
 
-    /// Moving least squares over a region widened by a factor, in spacings of the seat.
-    fn linear(&self, facet: &Facet, seat: usize, obstacles: &Obstacles<'_>, rows: f64, widen: f64) -> Option<Vec<(u32, f64)>> {
+    /// Moving least squares, in spacings of the seat.
+    fn linear(&self, facet: &Facet, seat: usize, obstacles: &Obstacles<'_>, rows: f64) -> Option<Vec<(u32, f64)>> {
         let own = &self.levels.lattices[self.levels.leaves[seat].level];
-        let (deep, wide) = (widen * (rows + 0.5), widen);
-        let reach = deep.hypot(wide) * own.spacing;
         let from = behind(facet, own.spacing);
         let near = obstacles.near(from);
-        let candidates = (0..self.levels.lattices.len()).flat_map(|level| {
+        let of_level = |level: usize, reach: f64| {
             let lattice = &self.levels.lattices[level];
             let at = lattice.locate(facet.at);
-            let range = at.map(|i| {
-                let steps = reach / lattice.spacing;
-                (i - steps).ceil() as i64..=(i + steps).floor() as i64
-            });
             let scale = lattice.spacing / own.spacing;
-            let [columns, rows] = range;
+            let [columns, rows] = at.map(|i| (i - reach / scale).ceil() as i64..=(i + reach / scale).floor() as i64);
             rows.flat_map(move |row| columns.clone().map(move |column| (column, row))).filter_map(move |(column, row)| {
                 let point = self.levels.point_at(level, column, row)?;
                 Some((point as u32, [column as f64 - at[0], row as f64 - at[1]].map(|i| i * scale), scale * scale))
             })
-        });
+        };
+        let candidates = |reach: f64| (0..self.levels.lattices.len()).flat_map(move |level| of_level(level, reach));
         let sees = |point: u32| !(near && obstacles.block(from, self.positions[point as usize]));
-        linear_shares(own.to_axes(facet.normal), deep, wide, candidates, sees)
+        linear_shares(own.to_axes(facet.normal), [rows + 0.5, 1.0], candidates, sees)
     }
 }
 
