@@ -12,6 +12,7 @@ use perilife_points::body::Body;
 use perilife_points::net::Net;
 use perilife_points::solver::field::{Layout, dot};
 use perilife_points::solver::multigrid::Multigrid;
+use perilife_points::solver::multigrid::fine::Fine;
 use perilife_points::solver::product::{Into, Product};
 use perilife_points::state::Bonds;
 use perilife_scenes::bonds::BondState;
@@ -62,6 +63,10 @@ impl<const N: usize> Scene<N> {
         Scene { body, bonds, cracked, product, x, y }
     }
 
+    fn fine(&self) -> Fine<'_, N> {
+        Fine { body: &self.body, bonds: &self.bonds, product: &self.product }
+    }
+
     fn directed_bonds(&self) -> ItemsCount {
         ItemsCount::new(2 * self.body.stencil.bonds.len() * self.body.points.len())
     }
@@ -100,14 +105,12 @@ fn product<const N: usize>(bencher: Bencher, scene: &Scene<N>, bonds: &Bonds) {
 }
 
 fn v_cycle<const N: usize>(bencher: Bencher, scene: &Scene<N>) {
-    let mut multigrid = Multigrid::new(&scene.body, &scene.bonds, &scene.product);
-    bencher
-        .counter(scene.directed_bonds())
-        .bench_local(|| multigrid.precondition(&scene.bonds, &scene.product, black_box(&scene.x)).len());
+    let mut multigrid = Multigrid::new(&scene.fine());
+    bencher.counter(scene.directed_bonds()).bench_local(|| multigrid.precondition(&scene.fine(), black_box(&scene.x)).len());
 }
 
 fn set_up<const N: usize>(bencher: Bencher, scene: &Scene<N>) {
-    bencher.counter(scene.directed_bonds()).bench_local(|| Multigrid::new(&scene.body, &scene.bonds, &scene.product));
+    bencher.counter(scene.directed_bonds()).bench_local(|| Multigrid::new(&scene.fine()));
 }
 
 fn scalar_product<const N: usize>(bencher: Bencher, scene: &Scene<N>) {

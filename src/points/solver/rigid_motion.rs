@@ -7,19 +7,17 @@
 use nalgebra::convert;
 use rayon::prelude::*;
 
-use super::field::{Layout, Real};
+use super::field::{Layout, Real, lane_sum};
 use crate::body::Body;
 use crate::body::lattice::LANES;
 use crate::state::Bonds;
 
-/// Places that are summed side by side.
-const SIDE: usize = 8;
-
 /// The rigid motions of the points that carry.
 pub struct RigidMotion {
     layout: Layout,
-    /// 1 where a place holds a point that carries, else 0.
-    carries: Vec<f32>,
+    /// 1 where a place holds a point that carries, else 0, and that times its way from the centre in columns.
+    carries: Vec<f64>,
+    arms: Vec<f64>,
     count: f64,
     /// Mean column and row.
     centre: [f64; 2],
@@ -49,9 +47,12 @@ impl RigidMotion {
             }
         });
         let shifts = [0, 1].map(|axis| if free[axis] { 1.0 } else { 0.0 });
-        let mut motion = RigidMotion { layout, carries, count: 0.0, centre: [0.0; 2], inertia: f64::INFINITY, shifts };
+        let arms = Vec::new();
+        let mut motion = RigidMotion { layout, carries, arms, count: 0.0, centre: [0.0; 2], inertia: f64::INFINITY, shifts };
         let [count, x, y] = motion.sum(|seat| [1.0, seat[0], seat[1]]);
         (motion.count, motion.centre) = (count, [x / count, y / count]);
+        let away = |(place, carries): (usize, &f64)| carries * ((place % layout.stride) as f64 - motion.centre[0]);
+        motion.arms = motion.carries.iter().enumerate().map(away).collect();
         if free[2] {
             let own = if layout.unknowns == 3 { 1.0 } else { 0.0 };
             [motion.inertia, ..] = motion.sum(|[x, y]| [x * x + y * y + own, 0.0, 0.0]);
@@ -64,10 +65,11 @@ impl RigidMotion {
         let (stride, has_turns) = (self.layout.stride, self.layout.unknowns == 3);
         let (row_len, least) = (self.layout.row_len(), self.layout.rows_per_task());
         let rows = field.par_chunks_exact(row_len).zip(self.carries.par_chunks_exact(stride)).with_min_len(least).enumerate();
-        let of_row = |(row, (values, carries)): (usize, (&[T], &[f32]))| {
-            let y = row as f64 - self.centre[1];
-            let [u, v, arm, own] = self.row_sums(values, carries);
-            [u, v, arm - y * u + own]
+        let of_row = |(row, (values, carries)): (usize, (&[T], &[f64]))| {
+            let [u, v] = [0, 1].map(|c| lane_sum(carries, &values[c * stride..(c + 1) * stride]));
+            let own = if has_turns { lane_sum(carries, &values[2 * stride..]) } else { 0.0 };
+            let arm = lane_sum(&self.arms[row * stride..(row + 1) * stride], &values[stride..2 * stride]);
+            [u, v, arm - (row as f64 - self.centre[1]) * u + own]
         };
         let [u, v, turn] = total(rows.map(of_row).collect());
         let shift = [self.shifts[0] * u / self.count, self.shifts[1] * v / self.count];
@@ -76,7 +78,7 @@ impl RigidMotion {
             |(row, (values, carries))| {
                 let y = row as f64 - self.centre[1];
                 for (column, &carries) in carries.iter().enumerate() {
-                    let (carries, x) = (f64::from(carries), column as f64 - self.centre[0]);
+                    let x = column as f64 - self.centre[0];
                     values[column] -= convert::<f64, T>(carries * (shift[0] - turn * y));
                     values[column + stride] -= convert::<f64, T>(carries * (shift[1] + turn * x));
                     if has_turns {
@@ -87,36 +89,9 @@ impl RigidMotion {
         );
     }
 
-    /// Σ u, Σ v, Σ x v and the sum of the own turns over the points of a row that carry, x from the centre in columns.
-    fn row_sums<T: Real + Into<f64>>(&self, values: &[T], carries: &[f32]) -> [f64; 4] {
-        let stride = self.layout.stride;
-        // Without turns the first component stands in for them and counts nothing.
-        let (turns, counts) = if self.layout.unknowns == 3 { (&values[2 * stride..], 1.0) } else { (values, 0.0) };
-        let (u, v) = (&values[..stride], &values[stride..2 * stride]);
-        let mut sums = [[0.0; SIDE]; 4];
-        for start in (0..stride).step_by(SIDE) {
-            let here = start..(start + SIDE).min(stride);
-            let mut lanes = [[0.0; SIDE]; 4];
-            let [us, vs, own, carry] = &mut lanes;
-            us.iter_mut().zip(&u[here.clone()]).for_each(|(lane, &value)| *lane = value.into());
-            vs.iter_mut().zip(&v[here.clone()]).for_each(|(lane, &value)| *lane = value.into());
-            own.iter_mut().zip(&turns[here.clone()]).for_each(|(lane, &value)| *lane = value.into());
-            carry.iter_mut().zip(&carries[here]).for_each(|(lane, &value)| *lane = value.into());
-            let x = start as f64 - self.centre[0];
-            for lane in 0..SIDE {
-                let v = carry[lane] * vs[lane];
-                sums[0][lane] += carry[lane] * us[lane];
-                sums[1][lane] += v;
-                sums[2][lane] += (x + lane as f64) * v;
-                sums[3][lane] += counts * carry[lane] * own[lane];
-            }
-        }
-        sums.map(|lanes| lanes.iter().sum())
-    }
-
     /// Sum over the points that carry, row by row in a fixed order, of a function of the way from the centre in columns and rows.
     fn sum(&self, of: impl Fn([f64; 2]) -> [f64; 3] + Sync) -> [f64; 3] {
-        let row_sum = |(row, carries): (usize, &[f32])| {
+        let row_sum = |(row, carries): (usize, &[f64])| {
             let y = row as f64 - self.centre[1];
             let carrying = carries.iter().enumerate().filter(|(_, carries)| **carries > 0.0);
             total(carrying.map(|(column, _)| of([column as f64 - self.centre[0], y])).collect())
