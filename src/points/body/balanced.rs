@@ -57,7 +57,7 @@ pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Resu
         areas.contains_key(place) || body.around(*place).any(|(.., bond, other)| changes(bond, other))
     };
     let members = body.points.iter().map(|&point| point as usize).filter(is_asked).collect();
-    let equations = Equations::new(members, &areas, |_| 1.0, |place| near_rim[place]);
+    let equations = Equations::new(body, members, &areas, |_| 1.0, |place| near_rim[place]);
     let (links, sought) = equations.sought(body, &body.multiplier);
     // Inside the plate all bonds are there with multiplier 1.
     let missing = equations.missing(body, &gains, |_| 1.0, |bond| body.multiplier[bond]);
@@ -78,8 +78,8 @@ pub(super) fn balance(body: &mut Body, rim: &[Facet], sharing: &Sharing) -> Resu
 struct Equations {
     /// Places, ascending.
     members: Vec<usize>,
-    /// Which of the members a place is.
-    number: HashMap<usize, u32>,
+    /// Which of the members every place is, [`u32::MAX`] none.
+    number: Vec<u32>,
     /// Share of its equations that is asked of every member.
     share: Vec<f64>,
     /// Whether the bonds of a member change: it, or one near it, misses a bond.
@@ -90,13 +90,16 @@ struct Equations {
 
 impl Equations {
     fn new(
+        body: &Body,
         members: Vec<usize>,
         areas: &HashMap<usize, [f64; 2]>,
         share: impl Fn(usize) -> f64,
         changes: impl Fn(usize) -> bool,
     ) -> Self {
+        let mut number = vec![u32::MAX; body.places()];
+        members.iter().enumerate().for_each(|(i, &place)| number[place] = i as u32);
         Equations {
-            number: members.iter().enumerate().map(|(i, &place)| (place, i as u32)).collect(),
+            number,
             share: members.iter().map(|&place| share(place)).collect(),
             changes: members.iter().map(|&place| changes(place)).collect(),
             areas: members.iter().map(|place| areas.get(place).copied().unwrap_or_default()).collect(),
@@ -108,8 +111,8 @@ impl Equations {
     fn bonds<'a>(&'a self, body: &'a Body, now: &'a [f32]) -> impl Iterator<Item = (Link, usize)> + 'a {
         let of_owner = move |(i, &owner): (usize, &usize)| {
             body.steps.iter().enumerate().filter_map(move |(k, &step)| {
-                let (other, bond) = (self.number.get(&owner.wrapping_add_signed(step))?, k * body.places() + owner);
-                (now[bond] > 0.0).then_some((Link { from: i as u32, to: *other, k }, bond))
+                let (to, bond) = (self.number[owner.wrapping_add_signed(step)], k * body.places() + owner);
+                (to != u32::MAX && now[bond] > 0.0).then_some((Link { from: i as u32, to, k }, bond))
             })
         };
         self.members.iter().enumerate().flat_map(of_owner)

@@ -24,6 +24,8 @@ type Single<const N: usize> = Kernel<f32, N, 2, 16>;
 pub struct Product<const N: usize> {
     layout: Layout,
     springs: Vec<StencilBond>,
+    /// Blocks of a bond of multiplier 1, of the owner and of the other end.
+    blocks: Vec<[Blocks<N>; 2]>,
     double: Double<N>,
     single: Single<N>,
     /// Vector indices of held components, ascending, and for every index whether it is one of them.
@@ -47,7 +49,9 @@ impl<const N: usize> Product<N> {
         let (ghosts, contact, ties) = (Ghosts::of_motion(body, layout), Vec::new(), Ties::default());
         let mut held = vec![false; layout.len()];
         fixed.iter().for_each(|&index| held[index] = true);
-        Product { layout, springs: body.stencil.bonds.clone(), double, single, fixed, held, dilatation, ghosts, contact, ties }
+        let springs = body.stencil.bonds.clone();
+        let blocks = springs.iter().map(|spring| [1.0, -1.0].map(|sign| spring.blocks(sign))).collect();
+        Product { layout, springs, blocks, double, single, fixed, held, dilatation, ghosts, contact, ties }
     }
 
     pub fn layout(&self) -> &Layout {
@@ -130,6 +134,7 @@ impl<const N: usize> Product<N> {
     /// Block K_ij of a point with itself (`None`) or with the other end of its stencil bond k in direction ±1, zero rows and
     /// columns for held components not applied.
     pub(super) fn bond_blocks(&self, k: usize, sign: f64, share: f64) -> Blocks<N> {
-        self.springs[k].blocks(sign, share)
+        let (own, off) = &self.blocks[k][usize::from(sign < 0.0)];
+        [own, off].map(|block| block.map(|row| row.map(|value| share * value))).into()
     }
 }

@@ -11,20 +11,20 @@ use crate::bond_law::stencil::StencilBond;
 pub type Blocks<const M: usize> = ([[f64; M]; M], [[f64; M]; M]);
 
 impl StencilBond {
-    /// Blocks of its stiffness, `share` of it, with N unknowns a point: of the owner (`sign` +1) or the other end (-1) with itself
-    /// and with the opposite end.
-    pub(super) fn blocks<const N: usize>(&self, sign: f64, share: f64) -> Blocks<N> {
+    /// Blocks of its stiffness with N unknowns a point: of the owner (`sign` +1) or the other end (-1) with itself and with the opposite
+    /// end.
+    pub(super) fn blocks<const N: usize>(&self, sign: f64) -> Blocks<N> {
         let (n, t) = (self.normal, self.tangent());
         let (mut own, mut off) = ([[0.0; N]; N], [[0.0; N]; N]);
         for i in 0..2 {
             for j in 0..2 {
-                let a = share * (self.k_n * n[i] * n[j] + self.k_t * t[i] * t[j]);
+                let a = self.k_n * n[i] * n[j] + self.k_t * t[i] * t[j];
                 own[i][j] = a;
                 off[i][j] = -a;
             }
         }
         if N == 3 {
-            let couple = share * self.k_t * self.lever;
+            let couple = self.k_t * self.lever;
             for i in 0..2 {
                 let c = sign * couple * t[i];
                 // ∂²/∂u_i∂θ_i = ∂²/∂u_i∂θ_j = +c at the owner, -c at the other end.

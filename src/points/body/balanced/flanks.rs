@@ -10,8 +10,6 @@
 //! horizon. They are asked for less sharply than on the rim, whose multipliers are found once: so no multiplier comes to its bounds,
 //! which would cost tens of factorisations a block.
 
-use std::collections::{HashMap, HashSet};
-
 use rayon::prelude::*;
 
 use super::least_squares::Problem;
@@ -56,22 +54,23 @@ pub fn multipliers(
     let beside = beside(body, now, lines, tips, ends, range);
     // What is sought counts as a change of the body's own multiplier.
     let (links, sought) = beside.sought(body, now);
-    let own = |bond: usize| (bond, body.multiplier[bond]);
     // Those at a tip may not have been there when the crack was shorter.
     let cores = beside.bonds(body, now).filter(|(link, _)| beside.is_of_core(link)).map(|(_, bond)| bond);
-    let mut new: HashMap<usize, f32> = sought.iter().copied().chain(cores).map(own).collect();
+    let all: Vec<usize> = sought.iter().copied().chain(cores).collect();
+    let mut new = now.to_vec();
+    all.iter().for_each(|&bond| new[bond] = body.multiplier[bond]);
     let gains = gains(body);
-    let missing = beside.missing(body, &gains, |bond| body.multiplier[bond], |bond| new.get(&bond).copied().unwrap_or(now[bond]));
+    let missing = beside.missing(body, &gains, |bond| body.multiplier[bond], |bond| new[bond]);
     let bounds = BOUNDS.map(|bound| bound - 1.0);
     let changes = Problem::new(&gains, links, missing).solve_to(&SOFTNESS, bounds).unwrap_or_else(|| vec![0.0; sought.len()]);
     for (bond, change) in sought.into_iter().zip(changes) {
         let whole = f64::from(body.multiplier[bond]);
         if change.abs() >= ROUND_OFF {
-            new.insert(bond, (whole + change).max(BOUNDS[0] * whole) as f32);
+            new[bond] = (whole + change).max(BOUNDS[0] * whole) as f32;
         }
     }
-    let differs = |&(bond, multiplier): &(usize, f32)| multiplier != now[bond];
-    let mut changed: Vec<(Bond, f32)> = new.into_iter().filter(differs).map(|(bond, m)| (bond as Bond, m)).collect();
+    let differing = all.into_iter().filter(|&bond| new[bond] != now[bond]);
+    let mut changed: Vec<(Bond, f32)> = differing.map(|bond| (bond as Bond, new[bond])).collect();
     changed.sort_unstable_by_key(|(bond, _)| *bond);
     changed
 }
@@ -99,13 +98,14 @@ fn beside(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &
         t * t * (3.0 - 2.0 * t)
     };
     let misses = |place: &usize| body.around(*place).any(|(.., bond, _)| body.multiplier[bond] > 0.0 && now[bond] == 0.0);
-    let misses: HashSet<usize> = members.iter().copied().filter(misses).collect();
+    let mut missing = vec![false; body.places()];
+    members.iter().filter(|place| misses(place)).for_each(|&place| missing[place] = true);
     let sides = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].map(|(dx, dy)| body.lattice.step(dx, dy));
-    let changes = |place: usize| sides.iter().any(|&step| misses.contains(&place.wrapping_add_signed(step)));
+    let changes = |place: usize| sides.iter().any(|&step| missing[place.wrapping_add_signed(step)]);
     let facets: Vec<Facet> = pieces.iter().flat_map(|&piece| faces(piece, spacing / PIECES_PER_SPACING)).collect();
     let shares: Vec<_> =
         facets.par_iter().with_min_len(16).map(|facet| shares(body, facet, &pieces).unwrap_or_default()).collect();
-    Equations::new(members, &areas(body, facets.iter().zip(shares)), share, changes)
+    Equations::new(body, members, &areas(body, facets.iter().zip(shares)), share, changes)
 }
 
 /// Shares of points in the field at a piece of flank, on the side that it faces away from, past the cracks of which `pieces` are some or

@@ -6,7 +6,7 @@ use super::transfer::Link;
 use super::{Block, Stiffness};
 use crate::body::Body;
 use crate::body::lattice::LANES;
-use crate::body::mirror::signs;
+use crate::body::mirror::{Flips, signs};
 use crate::state::Bonds;
 
 /// Common neighbours that join two points whose own bond is broken: around a tip fewer reach across the crack.
@@ -70,12 +70,17 @@ impl<const N: usize> Stiffness<N> for Fine<'_, N> {
     }
 
     fn diagonal(&self, place: [usize; 2]) -> Block<N> {
+        let place = self.body.lattice.place(place[0], place[1]);
         let mut sum = [[0.0; N]; N];
-        self.visit_row(place, |step, block| {
-            if step == [0, 0] {
-                add(&mut sum, block);
+        for (k, sign, bond, other) in self.bonds.at(self.body, place) {
+            let (own, off) = self.product.bond_blocks(k, sign, f64::from(self.bonds.multiplier[bond]));
+            add(&mut sum, &own);
+            let (behind, flips) = self.body.behind(other);
+            if behind == place {
+                add(&mut sum, &mirrored(off, flips));
             }
-        });
+        }
+        self.clear(&mut sum, place, place);
         sum
     }
 
@@ -88,20 +93,13 @@ impl<const N: usize> Stiffness<N> for Fine<'_, N> {
         let body = self.body;
         let place = body.lattice.place(column, row);
         let mut diagonal = [[0.0; N]; N];
-        for (k, sign, bond, other) in body.around(place) {
-            let share = self.bonds.multiplier[bond];
-            if share > 0.0 {
-                let (own, mut off) = self.product.bond_blocks(k, sign, f64::from(share));
-                let (other, flips) = body.behind(other);
-                let seat = body.lattice.column_row(other);
-                if flips != [false; 2] {
-                    let signs = signs(flips);
-                    off.iter_mut().flatten().enumerate().for_each(|(i, value)| *value *= signs[i % N]);
-                }
-                self.clear(&mut off, place, other);
-                add(&mut diagonal, &own);
-                visit([seat.0 as isize - column as isize, seat.1 as isize - row as isize], &off);
-            }
+        for (k, sign, bond, other) in self.bonds.at(body, place) {
+            let (own, off) = self.product.bond_blocks(k, sign, f64::from(self.bonds.multiplier[bond]));
+            let (other, flips) = body.behind(other);
+            let (seat, mut off) = (body.lattice.column_row(other), mirrored(off, flips));
+            self.clear(&mut off, place, other);
+            add(&mut diagonal, &own);
+            visit([seat.0 as isize - column as isize, seat.1 as isize - row as isize], &off);
         }
         self.clear(&mut diagonal, place, place);
         visit([0, 0], &diagonal);
@@ -131,6 +129,12 @@ impl<const N: usize> Stiffness<N> for Fine<'_, N> {
     fn subtract_row(&self, row: usize, x: &[f32], r: &mut [f32]) {
         self.product.subtract_row(self.bonds, row, x, r);
     }
+}
+
+/// The block of a bond to an image as one of the point behind that.
+fn mirrored<const N: usize>(block: Block<N>, flips: Flips) -> Block<N> {
+    let signs = signs(flips);
+    block.map(|row| std::array::from_fn(|d| signs[d] * row[d]))
 }
 
 fn add<const N: usize>(sum: &mut Block<N>, block: &Block<N>) {
