@@ -99,7 +99,7 @@ fn beside(body: &Body, now: &[f32], lines: &[CrackLine], tips: &[Point], ends: &
     };
     let misses = |place: &usize| body.around(*place).any(|(.., bond, _)| body.multiplier[bond] > 0.0 && now[bond] == 0.0);
     let mut missing = vec![false; body.places()];
-    members.iter().filter(|place| misses(place)).for_each(|&place| missing[place] = true);
+    members.iter().filter(|&place| misses(place)).for_each(|&place| missing[place] = true);
     let sides = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)].map(|(dx, dy)| body.lattice.step(dx, dy));
     let changes = |place: usize| sides.iter().any(|&step| missing[place.wrapping_add_signed(step)]);
     let facets: Vec<Facet> = pieces.iter().flat_map(|&piece| faces(piece, spacing / PIECES_PER_SPACING)).collect();
