@@ -320,7 +320,7 @@ impl<'n> NetContact<'n> {
         if let Some(point) = there {
             return Some(vec![(point, 1.0)]);
         }
-        let candidates = |reach: f64| self.seats.near(place, reach * spacing).map(|point| (point, away(point), 1.0));
+        let candidates = |reach: f64| self.seats.near(place, reach * spacing).map(move |point| (point, away(point), 1.0));
         linear_shares(plane.normal, [1.0; 2], candidates, sees)
     }
 
