@@ -54,6 +54,13 @@ pub struct FleetInspections {
     pub missed_after: Vec<f64>,
 }
 
+impl FleetInspections {
+    /// Interval, cycles: as planned with a POD, else that of the plate at 5 %.
+    pub fn interval(&self) -> Option<f64> {
+        self.interval_cycles.or_else(|| self.detectable_to_critical_cycles.p05.map(|left| left / self.factor))
+    }
+}
+
 /// Lives of a fleet with what they were drawn by.
 #[derive(Debug, Clone)]
 pub struct FleetReport {
@@ -191,6 +198,11 @@ impl FleetReport {
     pub fn headline(&self) -> String {
         let [low, middle, _] = words_of(&self.ranked());
         format!("life 5 % {low}, median {middle} cycles ({} plates)", self.lives.plates.len())
+    }
+
+    /// Interval between its inspections, cycles; `None` where none are asked for or it is not known.
+    pub fn interval(&self) -> Option<f64> {
+        self.inspections(self.looks?).interval()
     }
 
     /// Lines of a summary.

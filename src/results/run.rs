@@ -275,7 +275,7 @@ impl Judged {
         lines.extend(through_words(case, prediction).map(|words| format!("  Breakthrough   {words}")));
         lines.extend(phase_words(prediction).map(|words| format!("  Initiation     {words}")));
         lines.extend(spectrum::words(case, prediction).map(|words| format!("  Load history   {words}")));
-        lines.extend(self.lives.words());
+        lines.extend(self.lives.words(self.answers.fleet_interval()));
         lines.extend(self.answers.words());
         lines.push(format!("  Validity       {}", record.verdict));
         lines.extend(self.quality.words());
