@@ -111,7 +111,8 @@ fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync), is
         Task::Fit(Calibration::Lives(calibration)) => (calibration.case.specimen.cracks.clone(), None),
         _ => (Vec::new(), None),
     };
-    let teller = Teller { is_enough, ..Teller::new(&cracks, &shown.unwrap_or_default(), keep, order.checkpoint_every) };
+    let mut teller = Teller::new(&cracks, &shown.unwrap_or_default(), keep, order.checkpoint_every);
+    teller.is_enough = is_enough;
     let (done, end) = channel();
     std::thread::scope(|scope| {
         scope.spawn(|| {

@@ -65,10 +65,7 @@ fn pages(service: &Server, folder: &Path) -> Vec<Page> {
         run("predictions", of("plate", &case("slant_crack_nodes.toml"))),
         run(
             "predictions",
-            of(
-                "refused",
-                &TEST.replace("80", "900").replace("[loading]", "[fatigue]\nparis_c_mm_per_cycle = 1e-7\nparis_m = 3\n[loading]"),
-            ),
+            of("refused", &case("crack_beside_hole.toml").replace("stress_max_mpa = 45.0", "stress_max_mpa = 900.0")),
         ),
         run("sif", of("K", &case("hand_calculation.toml"))),
     ];
