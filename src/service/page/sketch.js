@@ -15,6 +15,7 @@ const HINTS = {
   hole: "Click to place the hole center.",
 };
 const WAIT_MS = 60;
+const REACH = 16; // of a handle, pixels
 /** What a plate is drawn with whose form is not filled: none of it shows. */
 const REST = {
   material: { youngs_modulus_gpa: 70, poisson_ratio: 0.3 }, loading: { kind: "constant_amplitude", stress_max_mpa: 1, stress_ratio: 0 },
@@ -30,6 +31,7 @@ export function createSketch(container, { plate, collect, edits }) {
   let drag = null; // {view, move(point), end()}
   let focused = null; // selector of the handle that has the focus, to give it back after a redraw
   let asked = ""; // what the drawing is of
+  let handles = []; // {view, name, point, move}
 
   const canvas = element("div", { class: "plate-holder", role: "group", "aria-label": "Sketch of the plate. The tables below have the same numbers." });
   const buttons = TOOLS.map(([name, title]) => button(title, () => choose(name), {
@@ -68,6 +70,7 @@ export function createSketch(container, { plate, collect, edits }) {
       } else return;
       event.preventDefault();
     };
+    handles.push({ view, name, point, move });
     return shape("g", {
       class: "handle", tabindex: "0", role: "button", "data-handle": name,
       "aria-label": `${name}, ${inWords(point)}. Arrow keys move it, Delete removes it.`,
@@ -75,14 +78,7 @@ export function createSketch(container, { plate, collect, edits }) {
       onfocus: () => {
         focused = selectorOf(view, name);
       },
-      onpointerdown: (event) => {
-        if (tool !== "move") return;
-        event.preventDefault();
-        canvas.setPointerCapture(event.pointerId);
-        focused = selectorOf(view, name);
-        drag = { view, move, end: () => {} };
-      },
-    }, shape("circle", { class: "handle-reach", cx, cy, r: 16 }), name.startsWith("Hole")
+    }, shape("circle", { class: "handle-reach", cx, cy, r: REACH }), name.startsWith("Hole")
       ? shape("path", { class: "handle-mark", d: `M${cx - 5} ${cy}h10m-5 -5v10` })
       : shape("circle", { class: "handle-mark", cx, cy, r: 3.5 }));
   }
@@ -90,6 +86,7 @@ export function createSketch(container, { plate, collect, edits }) {
   function drawHandles() {
     const { holes = [], cracks = [] } = plate();
     const finite = (point) => point.every(Number.isFinite);
+    handles = [];
     for (const view of drawing.views) {
       show(view.over,
         holes.map((hole, index) => finite([hole.x_mm, hole.y_mm]) && handle(view, `Hole ${index + 1}`, [hole.x_mm, hole.y_mm],
@@ -129,8 +126,19 @@ export function createSketch(container, { plate, collect, edits }) {
 
   canvas.addEventListener("pointerdown", (event) => {
     const view = drawing.views.find(({ svg }) => svg.contains(event.target));
-    if (tool === "move" || !view) return;
+    if (!view) return;
     event.preventDefault();
+    if (tool === "move") {
+      // Handles may lie over each other: the nearest one is meant.
+      const [x, y] = view.toPixels(view.toPlate(event));
+      const off = ({ point }) => Math.hypot(view.toPixels(point)[0] - x, view.toPixels(point)[1] - y);
+      const [nearest] = handles.filter((one) => one.view === view && off(one) < REACH).sort((one, other) => off(one) - off(other));
+      if (!nearest) return;
+      canvas.setPointerCapture(event.pointerId);
+      focused = selectorOf(view, nearest.name);
+      drag = { view, move: nearest.move, end: () => {} };
+      return;
+    }
     const from = snap(view.toPlate(event));
     if (tool === "hole") {
       edits.addHole(from);
