@@ -69,11 +69,6 @@ impl Answers {
         self.fleet.as_ref().map(FleetReport::headline)
     }
 
-    /// Interval between inspections of a fleet, cycles.
-    pub fn fleet_interval(&self) -> Option<f64> {
-        self.fleet.as_ref().and_then(FleetReport::interval)
-    }
-
     /// Lines of a summary.
     pub fn words(&self) -> Vec<String> {
         let inspections = self.inspections.iter().map(InspectionsRecord::words);

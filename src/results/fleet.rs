@@ -200,11 +200,6 @@ impl FleetReport {
         format!("life 5 % {low}, median {middle} cycles ({} plates)", self.lives.plates.len())
     }
 
-    /// Interval between its inspections, cycles; `None` where none are asked for or it is not known.
-    pub fn interval(&self) -> Option<f64> {
-        self.inspections(self.looks?).interval()
-    }
-
     /// Lines of a summary.
     pub fn words(&self) -> Vec<String> {
         let ranked = self.ranked();

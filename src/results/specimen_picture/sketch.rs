@@ -33,11 +33,6 @@ impl Sketch {
         [self.origin[0] + p[0] * self.scale, self.origin[1] - p[1] * self.scale]
     }
 
-    /// Point of the plate at a pixel.
-    pub fn plate_point(&self, [x, y]: Point) -> Point {
-        [(x - self.origin[0]) / self.scale, (self.origin[1] - y) / self.scale]
-    }
-
     /// Draws what has its coordinates in millimetres into a drawing in metres.
     pub fn in_mm(&mut self, draw: impl FnOnce(&mut Sketch)) {
         self.scale *= MM;

@@ -96,27 +96,24 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     // Beside the plate there is room for loads only where some act there.
     let beside = if plate.loads.iter().any(|load| load.direction[0].abs() > 0.5) { AROUND } else { 14.0 };
     let room = [width - 2.0 * beside, size.height - 2.0 * AROUND - BELOW];
-    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
-    let middle = along(low, high, 0.5);
-    let origin = [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale];
-    let mut sketch = Sketch::new(scale, origin);
+    let mut sketch = middled([low, high], room, [0.5 * width, AROUND + 0.5 * room[1]]);
     let drawing = Drawing { plate, ways: &ways, life: tables.life(), text: size.text, width: size.width };
     let detail = of_cracks.map(|own| drawing.detail(own, size));
-    sketch.group(&view([0.0; 2], [width, size.height], scale, origin), |sketch| {
+    let bar = [sketch.scale, high[0] - low[0]];
+    sketch.group(&view([0.0; 2], [width, size.height], sketch.scale, sketch.origin), |sketch| {
         drawing.body(sketch);
         drawing.loads(sketch);
         drawing.cracks(sketch, detail.is_none());
-        scale_bar(sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
-        if let Some(detail) = &detail {
-            let corners = [[0.0; 2], detail.size].map(|[x, y]| sketch.place(detail.inner.plate_point([x, y])));
+        scale_bar(sketch, [14.0, size.height - 8.0], bar, size.text);
+        if let Some((_, size, Sketch { scale, origin, .. })) = &detail {
+            let corners = [[0.0; 2], *size].map(|[x, y]| sketch.place([(x - origin[0]) / scale, (origin[1] - y) / scale]));
             sketch.group(r#"class="frame""#, |sketch| sketch.frame(corners, "3 3"));
         }
     });
-    if let Some(Detail { place, size: [width, height], inner }) = detail {
-        let origin = [0, 1].map(|i| place[i] + inner.origin[i]);
+    if let Some((place, [width, height], inner)) = detail {
+        let (origin, bar) = ([0, 1].map(|i| place[i] + inner.origin[i]), [inner.scale, width / inner.scale]);
         let (corner, whole) = (place.map(|x| x - 1.0), [width + 2.0, height + 2.0 * size.text]);
         sketch.group(&view(corner, whole, inner.scale, origin), |sketch| {
-            let bar = [inner.scale, width / inner.scale];
             sketch.within(place, [width, height], inner);
             scale_bar(sketch, [place[0] + 1.0, place[1] + height + 1.5 * size.text], bar, size.text);
             sketch.group(r#"class="frame""#, |sketch| sketch.frame([place, [place[0] + width, place[1] + height]], ""));
@@ -127,6 +124,13 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     }
     let sentence = format!("Plate, {}; paths of {} crack tips, colored by cycles", plate.load, ways.len());
     sketch.picture([size.width, size.height], &sentence)
+}
+
+/// A sketch to scale in which a box of the plate fills the room about a pixel.
+fn middled([low, high]: [Point; 2], room: Point, [x, y]: Point) -> Sketch {
+    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
+    let middle = along(low, high, 0.5);
+    Sketch::new(scale, [x - middle[0] * scale, y + middle[1] * scale])
 }
 
 /// Attributes of a part of the picture that a page may show by itself: its corner and size, px, and its pixels to a mm with the pixel of (0, 0).
@@ -140,9 +144,7 @@ pub fn growth_svg(plate: &Plate, run: &RunRecord, tables: &RunTables, size: Size
     let [low, high] = bounding_box(&plate.outline_mm);
     let (width, life) = (0.5 * size.width, tables.life());
     let room = [width - 2.0 * AROUND, size.height - 2.0 * AROUND - BELOW];
-    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
-    let middle = along(low, high, 0.5);
-    let mut sketch = Sketch::new(scale, [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale]);
+    let mut sketch = middled([low, high], room, [0.5 * width, AROUND + 0.5 * room[1]]);
     let drawing = Drawing { plate, ways: &[], life, text: size.text, width: size.width };
     drawing.body(&mut sketch);
     drawing.loads(&mut sketch);
@@ -153,7 +155,8 @@ pub fn growth_svg(plate: &Plate, run: &RunRecord, tables: &RunTables, size: Size
         let times: Vec<f64> = lengths().map(|length| way.cycles.at(length) / life).collect();
         sketch.growing(&places, &times, COMPUTED, 3.5);
     }
-    scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
+    let bar = [sketch.scale, high[0] - low[0]];
+    scale_bar(&mut sketch, [14.0, size.height - 8.0], bar, size.text);
     sketch.within([width, 0.0], [width, size.height], a_n_moving(run, tables, Size { width, ..size }));
     sketch.picture([size.width, size.height], &format!("Cracks as they grow over {life:.0} cycles, {}", plate.load))
 }
@@ -165,13 +168,6 @@ pub(crate) struct Drawing<'a> {
     life: f64,
     text: f64,
     width: f64,
-}
-
-/// An enlarged part of the plate: its corner and size in the picture, px.
-struct Detail {
-    place: Point,
-    size: Point,
-    inner: Sketch,
 }
 
 impl<'a> Drawing<'a> {
@@ -363,18 +359,17 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// The cracks and their ways, enlarged.
-    fn detail(&self, [low, high]: [Point; 2], size: Size) -> Detail {
+    /// The cracks and their ways, enlarged: the corner and size of the part in the picture, px, and the part.
+    fn detail(&self, [low, high]: [Point; 2], size: Size) -> (Point, Point, Sketch) {
         let whole = [0.53 * size.width - 8.0, size.height - 24.0 - 2.0 * BELOW];
         let room = 0.22 * (high[0] - low[0]).max(high[1] - low[1]).max(1e-6);
-        let spans = [high[0] - low[0] + 2.0 * room, high[1] - low[1] + 2.0 * room];
-        let scale = (whole[0] / spans[0]).min(whole[1] / spans[1]);
-        let frame = [whole[0], (spans[1] * scale).max(0.55 * whole[0]).min(whole[1])];
-        let middle = along(low, high, 0.5);
-        let mut inner = Sketch::new(scale, [0.5 * frame[0] - middle[0] * scale, 0.5 * frame[1] + middle[1] * scale]);
+        let part = [low.map(|x| x - room), high.map(|x| x + room)];
+        let mut inner = middled(part, whole, [0.0; 2]);
+        let frame = [whole[0], ((part[1][1] - part[0][1]) * inner.scale).max(0.55 * whole[0]).min(whole[1])];
+        inner.origin = [0, 1].map(|i| inner.origin[i] + 0.5 * frame[i]);
         self.body(&mut inner);
         self.cracks(&mut inner, true);
-        Detail { place: [0.47 * size.width, 24.0 + 0.5 * (whole[1] - frame[1])], size: frame, inner }
+        ([0.47 * size.width, 24.0 + 0.5 * (whole[1] - frame[1])], frame, inner)
     }
 }
 
