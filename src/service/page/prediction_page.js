@@ -188,7 +188,7 @@ export async function openPrediction(root, id, signal) {
     const share = Number.isFinite(ratio) && ratio <= 1.001 ? ratio : 1;
     made.set([
       least && { id: "below", kind: "outside", name: "below the tested ΔK", y2: [least / share] },
-      most && { id: "above", kind: "outside", name: "above the measured ΔK", y: [most / share] },
+      most && { id: "above", kind: "outside", name: "above the tested ΔK", y: [most / share] },
       { id: "k1", name: "K_I", kind: "line", smooth: "x", tone: 0, x: lengths, y: k },
       columns.depth_k_i_mpa_sqrt_m && { id: "depth", name: "K_a", kind: "line", smooth: "x", tone: 2, dashed: true, x: lengths, y: columns.depth_k_i_mpa_sqrt_m },
       kk && { id: "k2", name: "K_II", kind: "line", smooth: "x", tone: 1, dashed: true, x: lengths, y: kk },

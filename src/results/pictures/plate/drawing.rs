@@ -122,8 +122,9 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     if !ways.is_empty() {
         ramp(&mut sketch, size);
     }
-    let sentence = format!("Plate, {}; paths of {} crack tips, colored by cycles", plate.load, ways.len());
-    sketch.picture([size.width, size.height], &sentence)
+    let of_paths = |count| format!("; paths of {count} crack tips, colored by cycles");
+    let paths = Some(ways.len()).filter(|count| *count > 0).map_or_else(String::new, of_paths);
+    sketch.picture([size.width, size.height], &format!("Plate, {}{paths}", plate.load))
 }
 
 /// A sketch to scale in which a box of the plate fills the room about a pixel.
