@@ -30,7 +30,7 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// How the values of a grid lie between two.
     pub enum Scale for "vary.scale" {
-        Linear = "linear": "equal differences, from to to",
+        Linear = "linear": "equal differences",
         Log = "log": "equal ratios, from to to",
     }
 }
