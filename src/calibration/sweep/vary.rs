@@ -31,7 +31,7 @@ perilife_base::kinds! {
     /// How the values of a grid lie between two.
     pub enum Scale for "vary.scale" {
         Linear = "linear": "equal differences",
-        Log = "log": "equal ratios, from to to",
+        Log = "log": "equal ratios",
     }
 }
 
