@@ -308,6 +308,9 @@ fn the_page_leads_from_readings_to_remaining_life() {
     // Stopped where it is, a run keeps its curve.
     page.open(&format!("{}/#/predict?from={first}", service.url));
     page.see("#predict:not([disabled])");
+    // Finer, so that it has not ended when the wish comes to its worker.
+    page.fill("#view-predict [data-key='model.spacing_mm']", "0.5");
+    page.see("#predict:not([disabled])");
     let stopped = walk.start("#predict");
     page.click("[data-action=stop]");
     page.see("#job[data-job-state=succeeded]");
