@@ -27,14 +27,15 @@ perilife_base::kinds! {
         RequiredStrength = "required_strength": "residual strength fell below the required strength (stop.required_strength_mpa or limit_load_factor)",
         RunOut = "run_out": "run-out: cycle limit reached (stop.cycles_max)",
         NoConvergence = "no_convergence": "the solver did not converge",
+        Stopped = "stopped": "stopped by a user; the curve so far",
     }
 }
 
 impl StopReason {
     /// Whether the analysis ended before the life: growth beyond a hole, a link-up, a breakthrough or the cycle limit is not computed.
     pub fn is_lower_bound(self) -> bool {
-        use StopReason::{BrokenThrough, CracksJoined, EnteredHole, LigamentUnresolved, RunOut};
-        matches!(self, BrokenThrough | EnteredHole | CracksJoined | LigamentUnresolved | RunOut)
+        use StopReason::{BrokenThrough, CracksJoined, EnteredHole, LigamentUnresolved, RunOut, Stopped};
+        matches!(self, BrokenThrough | EnteredHole | CracksJoined | LigamentUnresolved | RunOut | Stopped)
     }
 
     /// Whether the load reached a strength of the plate.

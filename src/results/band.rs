@@ -166,8 +166,8 @@ impl Lives {
         self.life().map(|quantiles| band_words(&quantiles))
     }
 
-    /// What the band rests on, and what was asked, in lines of a summary.
-    pub fn words(&self) -> Vec<String> {
+    /// What the band rests on, and what was asked, in lines of a summary; a fleet has an interval of its own, cycles.
+    pub fn words(&self, of_fleet: Option<f64>) -> Vec<String> {
         let mut lines = Vec::new();
         match &self.band {
             Ok((plate, band)) => {
@@ -193,21 +193,19 @@ impl Lives {
                 band_words(&own.of_lot.quantiles)
             ));
         }
-        lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, self.per_pass)));
+        lines.extend(self.inspection.iter().flat_map(|inspection| inspection_words(inspection, self.per_pass, of_fleet)));
         lines
     }
 }
 
 /// What an inspection says, in lines of a summary.
-fn inspection_words(inspection: &Inspection, per_pass: Option<f64>) -> Vec<String> {
+fn inspection_words(inspection: &Inspection, per_pass: Option<f64>, of_fleet: Option<f64>) -> Vec<String> {
     let (length, factor, quantiles) = (short(inspection.crack_length_mm), inspection.factor, inspection.quantiles());
-    let every = interval_words(inspection, per_pass);
-    let [left, every] = match quantiles {
-        Some(quantiles) => [band_words(&quantiles), format!("{every} (5 % remaining life / {factor})")],
-        None => [
-            format!("{} cycles", PLAIN.whole(inspection.remaining_cycles)),
-            format!("{every} (remaining life / {factor}; no scatter band)"),
-        ],
+    let left = quantiles.map_or_else(|| format!("{} cycles", PLAIN.whole(inspection.remaining_cycles)), |all| band_words(&all));
+    let every = match (of_fleet, quantiles) {
+        (Some(every), _) => format!("{} (5 % remaining life of the fleet / {factor})", every_words(every, None, per_pass)),
+        (None, Some(_)) => format!("{} (5 % remaining life / {factor})", interval_words(inspection, per_pass)),
+        (None, None) => format!("{} (remaining life / {factor}; no scatter band)", interval_words(inspection, per_pass)),
     };
     let least = if inspection.life_is_lower_bound { "≥ " } else { "" };
     let of_tip = inspection.tip.map_or_else(String::new, |tip| format!(" (crack of tip {tip})"));

@@ -54,6 +54,13 @@ pub struct FleetInspections {
     pub missed_after: Vec<f64>,
 }
 
+impl FleetInspections {
+    /// Interval, cycles: as planned with a POD, else that of the plate at 5 %.
+    pub fn interval(&self) -> Option<f64> {
+        self.interval_cycles.or_else(|| self.detectable_to_critical_cycles.p05.map(|left| left / self.factor))
+    }
+}
+
 /// Lives of a fleet with what they were drawn by.
 #[derive(Debug, Clone)]
 pub struct FleetReport {

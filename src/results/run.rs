@@ -275,7 +275,8 @@ impl Judged {
         lines.extend(through_words(case, prediction).map(|words| format!("  Breakthrough   {words}")));
         lines.extend(phase_words(prediction).map(|words| format!("  Initiation     {words}")));
         lines.extend(spectrum::words(case, prediction).map(|words| format!("  Load history   {words}")));
-        lines.extend(self.lives.words());
+        let of_fleet = record.fleet.as_ref().and_then(|fleet| fleet.inspections.as_ref()?.interval());
+        lines.extend(self.lives.words(of_fleet));
         lines.extend(self.answers.words());
         lines.push(format!("  Validity       {}", record.verdict));
         lines.extend(self.quality.words());

@@ -119,7 +119,7 @@ impl Sensitivities {
 
     /// A bar for each change from the life of the run on, the widest on top.
     fn picture(&self, name: &str) -> String {
-        let [width, text, left, right, top, row] = [900.0, 14.0, 190.0, 30.0, 60.0, 46.0];
+        let [width, text, left, right, top, row] = [900.0, 14.0, 230.0, 70.0, 60.0, 46.0];
         let pairs = self.widest();
         let percent = |entry: &Sensitivity| 100.0 * entry.change_of_life;
         let known = self.0.iter().map(percent).filter(|value| value.is_finite());
@@ -131,16 +131,16 @@ impl Sensitivities {
         sketch.name([8.0, 26.0], &title, "start", 1.15 * text, INK);
         for (place, pair) in pairs.iter().enumerate() {
             let middle = top + (place as f64 + 0.5) * row;
-            sketch.name([left - 10.0, middle + 5.0], pair[0].input, "end", text, INK);
+            sketch.name([left - 60.0, middle + 5.0], pair[0].input, "end", text, INK);
             for (entry, colour) in pair.iter().zip([COMPUTED, SECOND]).filter(|(entry, _)| entry.change_of_life.is_finite()) {
                 let (from, to, half) = (at(0.0), at(percent(entry)), 0.3 * row);
                 let corners = [[from, middle - half], [to, middle - half], [to, middle + half], [from, middle + half]];
                 sketch.area(&corners, colour, 0.8);
                 let short = entry.change.split(' ').take(2).collect::<Vec<_>>().join(" ");
                 let short = if entry.change.contains("error") { format!("{} s.e.", &entry.change[..2]) } else { short };
-                let side = if to < from { ("start", 6.0) } else { ("end", -6.0) };
-                // Words of a bar that is too short for them would stand on the other one.
-                if (to - from).abs() > 60.0 {
+                let side = if to < from { ("end", -6.0) } else { ("start", 6.0) };
+                // Words of bars without a length would stand on each other.
+                if (to - from).abs() > 3.0 {
                     sketch.name([to + side.1, middle + 5.0], &short, side.0, 13.0, INK);
                 }
             }

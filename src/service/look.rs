@@ -16,10 +16,15 @@ use perilife_base::table::units::{CycleUnit, LengthUnit, LoadUnit};
 use perilife_base::table::{Decimal, Sheet};
 use perilife_base::units::MM;
 use perilife_measured::{Column, Import, Layout, MeasuredCurve, Named, Shape, Survey, survey};
+use perilife_results::chart::Size;
+use perilife_results::curve::RunTables;
+use perilife_results::pictures::plate::plate_svg;
 use perilife_runner::check;
 
 /// Cases of a sweep that are looked at before it is accepted.
 const LOOKED_AT: usize = 100;
+/// Size of the drawing of a plate beside its form.
+const DRAWING: Size = Size { width: 620.0, height: 330.0, text: 12.0 };
 
 /// What is to be looked at.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -65,7 +70,8 @@ impl Look {
                 }
                 let checked = check::check(&document, &task)?;
                 let mut object = checked.json();
-                object["drawing"] = checked.drawing.into();
+                let of_plate = |plate| plate_svg(plate, &RunTables::default(), DRAWING);
+                object["drawing"] = checked.plate.as_ref().map_or(checked.drawing, of_plate).into();
                 Ok(object.to_string())
             }
         }

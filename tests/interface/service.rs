@@ -12,6 +12,7 @@ mod limits;
 mod long_use;
 mod named;
 mod page;
+mod page_axe;
 mod page_forms;
 mod queue;
 mod reader;

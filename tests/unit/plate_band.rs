@@ -95,7 +95,7 @@ fn quantiles_of_rows_rise_and_end_at_those_of_the_life() {
             );
         }
         assert!((life[1] / run.life_cycles() - 1.0).abs() < 0.15, "{life:?} {}", run.life_cycles());
-        assert!(lives.words()[0].contains("scatter assumed"), "{:?}", lives.words());
+        assert!(lives.words(None)[0].contains("scatter assumed"), "{:?}", lives.words(None));
     }
 }
 
@@ -105,7 +105,7 @@ fn another_lot_scatters_more() {
     let other = Case { lot: Lot::Other, ..case.clone() };
     let [[low, _, high], [lower, _, higher]] = [&case, &other].map(|case| lives(case).1.life().unwrap());
     assert!(lower < 0.8 * low && higher > 1.2 * high);
-    assert!(lives(&other).1.words()[0].contains("other lot"));
+    assert!(lives(&other).1.words(None)[0].contains("other lot"));
     assert_eq!(hand_case(PANEL, &["fatigue.lot=\"other\""]).lot, Lot::Other);
 }
 
@@ -179,7 +179,7 @@ fn an_inspection_interval_comes_from_the_five_percent_life() {
     assert!(rows.len() == 4 && share < 0.9, "{inspections:?}");
     let third = run.cycles_at(rows[2].crack_length_mm * MM).unwrap() - with_band.cycles_at;
     assert!((third / (0.5 * with_band.remaining_cycles) - 1.0).abs() < 5e-3, "half of either life: {inspections:?}");
-    let words = lives.words().join("\n");
+    let words = lives.words(None).join("\n");
     assert!(words.contains("Inspect every  ") && words.contains("(5 % remaining life / 4)"), "{words}");
     let record = RunRecord::of(&case, &run, &Judgement::default(), &lives, &Quality::default());
     assert!(record.inspection.unwrap().has_band && record.band.unwrap().lot == Lot::Same);

@@ -1,5 +1,7 @@
-//! The units in which this process writes and prints, said once at its start, as its log is. Inside, everything stays as it is.
+//! The units in which this process writes and prints, said once at its start, as its log is, or for one piece of work. Inside, everything
+//! stays as it is.
 
+use std::cell::Cell;
 use std::sync::OnceLock;
 
 use super::us::{System, Unit, renamed};
@@ -13,8 +15,24 @@ pub fn show(system: System) {
     let _ = SHOWN.set(system);
 }
 
+thread_local! {
+    static HERE: Cell<Option<System>> = const { Cell::new(None) };
+}
+
+/// Has `work` write and print in these units on this thread, whatever the process does.
+pub fn within<T>(system: System, work: impl FnOnce() -> T) -> T {
+    struct Back(Option<System>);
+    impl Drop for Back {
+        fn drop(&mut self) {
+            HERE.set(self.0);
+        }
+    }
+    let _back = Back(HERE.replace(Some(system)));
+    work()
+}
+
 pub fn asked() -> Option<System> {
-    SHOWN.get().copied()
+    HERE.get().or_else(|| SHOWN.get().copied())
 }
 
 pub fn shown() -> System {

@@ -30,8 +30,8 @@ perilife_base::kinds! {
 perilife_base::kinds! {
     /// How the values of a grid lie between two.
     pub enum Scale for "vary.scale" {
-        Linear = "linear": "equal differences, from to to",
-        Log = "log": "equal ratios, from to to",
+        Linear = "linear": "equal differences",
+        Log = "log": "equal ratios",
     }
 }
 

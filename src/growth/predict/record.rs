@@ -31,6 +31,10 @@ pub const BLOCKS_WITHOUT_GROWTH: usize = 4096;
 pub trait Observer: Sync {
     /// Called after every cycle block.
     fn block_done(&self, progress: &Progress) -> bool;
+    /// Whether the run may end after this block with the curve so far.
+    fn is_enough(&self) -> bool {
+        false
+    }
     /// Where the run marks what it does before it has a first row to show, and where it looks whether it may go on; by default nowhere.
     fn watch(&self) -> Option<Arc<Watch>> {
         None
@@ -148,7 +152,7 @@ impl<'a> Record<'a> {
             let reason = reason.or(guard.check(before, &now)?);
             observer.grown(now.tips);
             let goes_on = observer.block_done(&way.progress(case, growth));
-            if let Some(reason) = reason {
+            if let Some(reason) = reason.or_else(|| observer.is_enough().then_some(StopReason::Stopped)) {
                 break reason;
             }
             if !goes_on {

@@ -157,7 +157,7 @@ fn table(class: &str, head: &[Column], rows: impl Iterator<Item = Vec<String>>) 
     };
     let rows: String = rows.map(row).collect();
     format!(
-        "<div class=\"scroll\"><table class=\"{class}\"><thead><tr>{names}</tr></thead><tbody>\n{rows}</tbody></table></div>\n"
+        "<div class=\"scroll\" tabindex=\"0\"><table class=\"{class}\"><thead><tr>{names}</tr></thead><tbody>\n{rows}</tbody></table></div>\n"
     )
 }
 

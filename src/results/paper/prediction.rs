@@ -11,6 +11,7 @@ use crate::band::{every_words, interval_words};
 use crate::chart::Size;
 use crate::checks::{Check, Side, Validity, Verdict};
 use crate::curve::RunTables;
+use crate::fleet::FleetInspections;
 use crate::pictures::curves::{a_n_svg, end_words, k_svg};
 use crate::pictures::plate::{Plate, plate_svg};
 use crate::record::RunRecord;
@@ -91,9 +92,7 @@ fn interval(run: &RunRecord) -> String {
     let Some(inspection) = &run.inspection else { return String::new() };
     let per_pass = run.spectrum.as_ref().map(|spectrum| spectrum.cycles_per_pass);
     let looks = run.fleet.as_ref().and_then(|fleet| fleet.inspections.as_ref());
-    let of_fleet = looks.and_then(|looks| {
-        looks.interval_cycles.or_else(|| looks.detectable_to_critical_cycles.p05.map(|left| left / looks.factor))
-    });
+    let of_fleet = looks.and_then(FleetInspections::interval);
     let every = of_fleet.map_or_else(|| interval_words(inspection, per_pass), |every| every_words(every, None, per_pass));
     let rule = if inspection.has_band || of_fleet.is_some() { "5 % remaining life" } else { "remaining life" };
     let [from, factor] = [inspection.crack_length_mm, inspection.factor].map(|value| PRINT.short(value));
@@ -144,7 +143,7 @@ fn life(run: &RunRecord) -> String {
         StopReason::CrackDepthReached => "Cycles to the crack depth limit",
         StopReason::RunOut => "Cycles to the cycle limit (run-out)",
         // The model stopped, not the plate.
-        StopReason::LigamentUnresolved | StopReason::NoGrowth | StopReason::NoConvergence => {
+        StopReason::LigamentUnresolved | StopReason::NoGrowth | StopReason::NoConvergence | StopReason::Stopped => {
             "Cycles computed (analysis stopped early)"
         }
         _ if run.life_is_lower_bound => "Life (lower bound)",

@@ -41,6 +41,7 @@ pub fn end_words(reason: StopReason) -> [&'static str; 2] {
         StopReason::LigamentUnresolved => ["ligament not resolved", "ligament smaller than the point spacing"],
         StopReason::NoGrowth => ["no growth", "bonds broke without crack growth"],
         StopReason::NoConvergence => ["no convergence", "the solver did not converge"],
+        StopReason::Stopped => ["stopped", "stopped by a user"],
     }
 }
 

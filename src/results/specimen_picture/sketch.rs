@@ -40,6 +40,13 @@ impl Sketch {
         self.scale /= MM;
     }
 
+    /// What is drawn as a group with these attributes: its class, by which a page colors it, and data that a page needs of it.
+    pub fn group(&mut self, attributes: &str, draw: impl FnOnce(&mut Sketch)) {
+        self.push(format_args!("<g {attributes}>"));
+        draw(self);
+        self.push(format_args!("</g>"));
+    }
+
     fn push(&mut self, element: std::fmt::Arguments<'_>) {
         // Writing to a String cannot fail.
         let _ = writeln!(self.body, "  {element}");
@@ -99,6 +106,12 @@ impl Sketch {
         ));
     }
 
+    /// A piece of a line through two pixels whose width its group has, and the cycles at its end.
+    pub fn step(&mut self, [from, to]: [Point; 2], stroke: &str, cycles: f64) {
+        let way = corners(&[from, to]);
+        self.push(format_args!(r#"<path d="M{way}" stroke="{stroke}" data-cycles="{cycles:.1}"/>"#));
+    }
+
     /// Line through pixels; `dash` as in SVG, empty for a full line.
     pub fn path(&mut self, places: &[Point], stroke: &str, width: f64, dash: &str) {
         let points = pixels(places);
@@ -106,6 +119,11 @@ impl Sketch {
         self.push(format_args!(
             r#"<polyline points="{points}" fill="none" stroke="{stroke}" stroke-width="{width}" stroke-linejoin="round"{dash}/>"#
         ));
+    }
+
+    /// Sides of an upright rectangle between two corners, pixels.
+    pub fn frame(&mut self, [[x0, y0], [x1, y1]]: [Point; 2], dash: &str) {
+        self.path(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]], EDGE, 1.0, dash);
     }
 
     /// Filled polygon of pixels without an edge, that lets what is below shine through.

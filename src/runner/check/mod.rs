@@ -50,7 +50,8 @@ pub struct Checked {
     /// Specimen, cracks, loads and supports as SVG.
     #[serde(skip)]
     pub drawing: String,
-    /// The same for others to draw; none of scenes.
+    /// The specimen of a page, which draws no sizes; none of scenes.
+    #[serde(skip)]
     pub plate: Option<Plate>,
     /// Exceedances and ranges of a pass of a spectrum, for others to draw; none of other loads.
     pub spectrum: Option<SpectrumCurves>,

@@ -48,7 +48,10 @@ pub struct JobView {
     /// TOML as submitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     input: Option<String>,
-    /// The same as an object.
+    /// Options as submitted, `NAME=VALUE`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    options: Option<Vec<String>>,
+    /// The input as an object.
     #[serde(skip_serializing_if = "Option::is_none")]
     case: Option<Value>,
 }
@@ -131,7 +134,8 @@ pub async fn view(app: &App, job: Job, with_input: bool) -> Answer<JobView> {
         (None, None)
     };
     let case = submission.as_ref().and_then(|submission| serde_json::to_value(submission.text.parse::<toml::Table>().ok()?).ok());
-    Ok(JobView { job, files, inputs, input: submission.map(|submission| submission.text), case })
+    let (input, options) = submission.map(|submission| (submission.text, submission.options)).unzip();
+    Ok(JobView { job, files, inputs, input, options, case })
 }
 
 /// Submits a job. With the header `Idempotency-Key` a repeated request gives the same job.
@@ -347,19 +351,34 @@ pub async fn show(
     Ok(Json(view(&app, job, true).await?))
 }
 
+/// How a job is to end.
+#[derive(Deserialize, IntoParams)]
+#[serde(deny_unknown_fields)]
+#[into_params(parameter_in = Query)]
+pub struct Ending {
+    /// Only for predictions: whether one that runs ends after the next cycle block with the curve so far as its result.
+    #[serde(default)]
+    keep: bool,
+}
+
 /// Asks for the end of a job. One that runs ends with the next sign of life of its worker, one whose worker is silent at once.
 #[utoipa::path(post, path = "/v1/{collection}/{id}/cancel", tag = "jobs",
-    params(("collection" = String, Path), ("id" = String, Path)),
+    params(("collection" = String, Path), ("id" = String, Path), Ending),
     responses((status = 202, body = JobView), (status = 403, body = Problem), (status = 404, body = Problem),
         (status = 409, body = Problem, description = "It has ended already")))]
 pub async fn cancel(
     Shared(app): Shared<App>,
     Path((collection, id)): Path<(String, String)>,
     Extension(caller): Extension<Caller>,
+    ending: Result<Query<Ending>, QueryRejection>,
 ) -> Answer<(StatusCode, Json<JobView>)> {
+    let Query(Ending { keep }) = ending.map_err(|rejection| Problem::bad_request(rejection.body_text()))?;
     let job = job_of(&app, &collection, &id).await?;
     caller.must_own(&job.owner)?;
-    if !app.store.cancel(&id).await? {
+    if keep && job.kind != JobKind::Prediction {
+        return Err(Problem::bad_request("keep is for predictions only"));
+    }
+    if !app.store.cancel(&id, keep).await? {
         return Err(Problem::conflict(format!("the job already finished: {}", job.state)));
     }
     let job = job_of(&app, &collection, &id).await?;

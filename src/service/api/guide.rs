@@ -23,6 +23,8 @@ fn html(name: &str, root: &str, guide: &str) -> Answer<Html<String>> {
     let title = text.lines().next().unwrap_or_default().trim_start_matches("# ");
     let mut body = String::new();
     push_html(&mut body, Parser::new_ext(text, Options::ENABLE_TABLES).map(|event| served(event, guide)));
+    // What scrolls by itself on a narrow window must be reachable by keyboard.
+    let body = body.replace("<pre>", "<pre tabindex=\"0\">").replace("<table>", "<table tabindex=\"0\">");
     Ok(Html(format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
          <title>{title} · perilife</title><link rel=\"icon\" href=\"{root}icon.svg\" type=\"image/svg+xml\"><link rel=\"stylesheet\" href=\"{root}style.css\">\

@@ -22,6 +22,8 @@ use crate::worker::child::REPORT_FILE;
 use perilife_base::columns::Table;
 use perilife_base::error::{Error, input};
 use perilife_base::input::Opened;
+use perilife_base::units::shown::within;
+use perilife_base::units::us::System;
 use perilife_calibration::inspection::{self, InspectFrom, Inspection};
 use perilife_results::curve::{self, A_N_FILE, Row};
 use perilife_results::output::write_file;
@@ -187,6 +189,9 @@ pub struct From {
     factor: Option<f64>,
     /// Tip of a plate whose crack has that length; the one that ends the life if left out.
     tip: Option<usize>,
+    /// Units of the report: si or us.
+    #[param(value_type = Option<String>)]
+    units: Option<System>,
 }
 
 /// Remaining life from a crack length on, and an inspection interval.
@@ -247,6 +252,7 @@ pub async fn report(
     must_have_result(&job)?;
     app.store.open_file(&id, Origin::Result, REPORT_FILE).await?.ok_or_else(|| Problem::not_found("report of this job"))?;
     let is_plain = from.as_ref().is_ok_and(|from| from.crack_length_mm.is_none() && from.factor.is_none() && from.tip.is_none());
+    let units = from.as_ref().ok().and_then(|from| from.units).unwrap_or(System::Si);
     let inspection = if is_plain { None } else { Some(inspection_of(&app, &id, from).await?) };
     let signed =
         Signed::of(job.report.map(serde_json::from_value).transpose().map_err(|_| Problem::internal())?.unwrap_or_default())?;
@@ -266,7 +272,7 @@ pub async fn report(
         if let (Source::Run { run, .. }, Some(_)) = (&mut source, &inspection) {
             run.inspection = inspection;
         }
-        Ok(Html(paper::html(&source, &signed)))
+        Ok(Html(within(units, || paper::html(&source, &signed))))
     };
     Ok(tokio::task::spawn_blocking(work).await.map_err(|_| Problem::internal())??)
 }

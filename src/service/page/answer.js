@@ -1,12 +1,12 @@
 // The answer of a prediction in one card: the life with its band, what ends it, validity.
 
 import { element, shape, terms } from "./dom.js";
-import { bandOf, count, cycles, deserved, fixed, sentence, words } from "./format.js";
+import { bandOf, count, cycles, deserved, fixed, sentence, significant, words } from "./format.js";
 
 const CHECKS_SHOWN = 5;
 /** What the number is, by the reason of the end. */
 const TO_THE_END = { entered_hole: "to the hole", crack_length_reached: "to the set crack length", run_out: "reached (run-out)" };
-const BROKEN_OFF = ["ligament_unresolved", "no_growth", "no_convergence"];
+const BROKEN_OFF = ["ligament_unresolved", "no_growth", "no_convergence", "stopped"];
 
 const MARKS = {
   ok: ["Passed: ", "M9 1a8 8 0 1 0 0.01 0z", "M5.2 9.2l2.6 2.7 5-5.6"],
@@ -62,7 +62,7 @@ function large(s) {
   if (s.refused) return said("Life", "Not computed", element("span", { "data-value": "refused" }, whyRefused(s)));
   if (s.life_cycles === null) return said("Life", "No growth", "ΔK of every tip is below the threshold: unlimited life.");
   const [band, run] = [quantilesOf(s), lifeShown(s)];
-  if (s.fleet) return ofFleet(s.fleet, run);
+  if (s.fleet) return ofFleet(s, run);
   const start = `from a crack of ${fixed(from, 2)} mm`;
   const end = TO_THE_END[s.stop_reason];
   const title = BROKEN_OFF.includes(s.stop_reason) ? `Stopped early at ${fixed(to, 1)} mm` : end ? `Cycles ${start} ${end}` : `Life ${start}`;
@@ -71,11 +71,16 @@ function large(s) {
     element("p", { class: "quiet" }, errorWords(s) && `Numerical error: ${errorWords(s)}`)];
 }
 
+/** Lives of a fleet at 5, 50 and 95 % of its plates, in words. */
+export const fleetOf = ({ fleet: { life_cycles: { words: said } } }) => [said.p05, said.p50, said.p95].map((text) => (Number.isFinite(Number(text)) ? cycles(Math.round(Number(Number(text).toPrecision(4)))) : text));
+
 /** A fleet is its 5 % and median life; the run is one plate. */
-function ofFleet({ plates, life_cycles: { words: said } }, run) {
-  const [low, middle, high] = [said.p05, said.p50, said.p95].map((text) => (Number.isFinite(Number(text)) ? cycles(Math.round(Number(text))) : text));
+function ofFleet(s, run) {
+  const [low, middle, high] = fleetOf(s);
+  const looks = s.fleet.inspections;
   return [element("h2", null, "Life of the fleet, 5 % of plates"), element("p", { class: "life", "data-value": "fleet_p05" }, low, " ", element("small", null, "cycles")),
-    element("p", { class: "beside" }, `Median ${middle}, 95 % ${high} cycles (${count(plates, "plate")})`),
+    element("p", { class: "beside" }, `Median ${middle}, 95 % ${high} cycles (${count(s.fleet.plates, "plate")})`),
+    looks && element("p", { class: "quiet" }, `Inspect from ${significant(looks.detectable_mm, 4)} mm every ${cycles(Math.floor(looks.interval_cycles ?? looks.detectable_to_critical_cycles.p05 / looks.factor))} cycles`),
     element("p", { class: "quiet" }, `This run, the plate of the case alone: ${run} cycles`)];
 }
 

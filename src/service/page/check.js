@@ -7,11 +7,10 @@ import { excerpt } from "./excerpt.js";
 import { sentence, words } from "./format.js";
 import { problemBox } from "./notices.js";
 import { createPicture, showBlob } from "./picture.js";
-import { createPlatePath } from "./plate_path.js";
+import { createPlate } from "./plate.js";
 import { createSpectrumPicture } from "./spectrum_picture.js";
 
 const WAIT_MS = 350;
-const SKETCH_HEIGHT = 200;
 /** What is shown first of the input; all else is folded. */
 const FIRST = ["specimen", "crack", "material", "loading", "spectrum", "model", "points", "stop", "computing"];
 
@@ -21,10 +20,9 @@ const FIRST = ["specimen", "crack", "material", "loading", "spectrum", "model", 
  */
 export function createCheck(panel, { form, collect, onResult = () => {} }) {
   const state = element("p", { class: "check-state", role: "status" });
-  // A scene is drawn by the service; of a specimen its shape is known.
   const { node: figure, image } = createPicture("Drawing of the scene with cracks, loads and supports");
-  const place = element("div");
-  const plate = createPlatePath(place, "Drawing of the specimen with cracks, loads and supports", SKETCH_HEIGHT);
+  const place = element("div", { class: "plate-parts" });
+  const plate = createPlate(place);
   const ofSpectrum = element("div", { class: "stack tight", hidden: true });
   const spectrum = createSpectrumPicture(ofSpectrum);
   const details = element("div");
@@ -73,10 +71,10 @@ export function createCheck(panel, { form, collect, onResult = () => {} }) {
     try {
       const result = await postInput("/v1/check", body, { signal: own.signal });
       if (own.signal.aborted) return false;
-      // Tables of rates have no plate.
-      place.hidden = !result.plate;
-      if (result.plate) plate.set(result.plate, [], 1);
-      image.hidden = Boolean(result.plate) || !result.drawing;
+      // Tables of rates have no plate; that of a scene is drawn for paper.
+      image.hidden = result.kind !== "fracture";
+      place.hidden = !image.hidden || !result.drawing;
+      if (!place.hidden) plate.set(result.drawing);
       if (!image.hidden) await showBlob(image, new Blob([result.drawing], { type: "image/svg+xml" }));
       spectrum.set(result.spectrum ?? null);
       show(details, result.warnings.length > 0 && warningList(result.warnings), understood(result.understood, result.checks));
@@ -129,5 +127,5 @@ function sourceOf(body, input) {
 /** Warnings of the program, word for word: they are part of the answer. */
 export function warningList(warnings, title = "Warnings") {
   return element("div", { class: "notice warn", "data-warnings": warnings.length },
-    element("h3", null, `${title} (${warnings.length})`), element("ul", null, warnings.map((line) => element("li", null, sentence(line)))));
+    element("p", null, element("strong", null, `${title} (${warnings.length})`)), element("ul", null, warnings.map((line) => element("li", null, sentence(line)))));
 }

@@ -6,6 +6,7 @@ import { follow } from "./events.js";
 import { excerpt } from "./excerpt.js";
 import { bytes, count, cycles, duration, fixed, moment, percent, sentence } from "./format.js";
 import { problemBox } from "./notices.js";
+import { isUs } from "./units.js";
 
 export const FINAL = ["succeeded", "failed", "cancelled"];
 
@@ -36,6 +37,13 @@ export function jobToStartFrom(from) {
 
 /** The files that a run was given, as they go along with its input again. */
 export const filesOf = (job) => Promise.all((job.inputs ?? []).map(async ({ name, href }) => ({ name, text: null, file: await getBlob(href) })));
+
+/** The report of a run with its report data, in the units that are shown; `inspection`: query of an interval. */
+export function reportOf(job, inspection = "") {
+  const query = new URLSearchParams(inspection);
+  if (isUs) query.set("units", "us");
+  return `${pathOf(job)}/report${query.size > 0 ? `?${query}` : ""}`;
+}
 
 /** Renames a run, notes something of it, or puts it away. */
 export const changeJob = (job, change) => patchJson(pathOf(job), change);
@@ -79,9 +87,8 @@ export async function confirmDelete(job) {
   return true;
 }
 
-export async function cancelJob(job) {
-  return postJson(`${pathOf(job)}/cancel`);
-}
+/** Ends a run; with `?keep=true` a prediction with the curve so far. */
+export const cancelJob = (job, how = "") => postJson(`${pathOf(job)}/cancel${how}`);
 
 /** Shows a run in `body`: what is `announced` until it ends, then why it has no result, or what `finish` makes of it. */
 export async function showAtEnd(job, { head, body, announced, finish, signal }) {
@@ -132,6 +139,10 @@ export function createJobHead(first, { actions = [] } = {}) {
   const cancel = button("Cancel", guarded(async () => {
     update({ ...(await cancelJob(job)), cancel_asked: true });
   }), { "data-action": "cancel" });
+  const enough = job.kind === "prediction" && button("Stop here and keep the curve", guarded(async () => {
+    enough.disabled = true;
+    await cancelJob(job, "?keep=true");
+  }), { "data-action": "stop" });
   const discard = button("Delete", guarded(async () => {
     if (await confirmDelete(job)) location.hash = `#/runs?kind=${collectionOf(job)}`;
   }), { "data-action": "delete" });
@@ -145,7 +156,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     element("div", { class: "title-row" }, element("h1", { tabindex: "-1" }, title), badge,
       button("Rename", edit("name", title, "Name"), { class: "button bare", "data-action": "rename" }),
       button("Note", edit("note", note, "Note"), { class: "button bare", "data-action": "note" }),
-      element("div", { class: "tool-row end" }, actions, element("a", { class: "button", href: openForm(job), "data-action": "again" }, "Duplicate"), cancel, discard)),
+      element("div", { class: "tool-row end" }, actions, element("a", { class: "button", href: openForm(job), "data-action": "again" }, "Duplicate"), enough, cancel, discard)),
     what, note, facts, progress, aloud, trouble);
 
   function update(next) {
@@ -158,6 +169,7 @@ export function createJobHead(first, { actions = [] } = {}) {
     cancel.disabled = job.cancel_asked === true;
     cancel.textContent = job.cancel_asked ? "Cancelling …" : "Cancel";
     discard.hidden = !ended;
+    if (enough) enough.hidden = job.state !== "running" || !(job.progress?.cycles > 0);
     const took = job.started && job.finished ? `, took ${duration((new Date(job.finished) - new Date(job.started)) / 1000)}` : "";
     const again = job.attempts > 1 ? `, attempt ${job.attempts}` : "";
     facts.textContent = `${kindOf(job)} of ${moment(job.created)}${job.owner ? `, by ${job.owner}` : ""}${took}${again}`;
@@ -242,7 +254,7 @@ export function downloadList(job, special = {}) {
     }
   };
   const items = (job.files ?? []).map((file) => element("li", { "data-file": file.name },
-    button(file.name, () => fetchFile(file.href, file.name), { class: "link" }),
+    button(file.name, () => fetchFile(file.name === "report.html" ? reportOf(job) : file.href, file.name), { class: "link" }),
     element("span", { class: "quiet" }, ` ${bytes(file.bytes)}`), special[file.name]?.(file, fetchFile)));
   return element("section", { "aria-labelledby": "downloads-title" }, element("h2", { id: "downloads-title" }, "Downloads"),
     items.length > 0 ? element("ul", { class: "downloads" }, items) : element("p", { class: "quiet" }, "No files."), trouble);

@@ -19,7 +19,7 @@ export const openOther = (collection) => async (root, id, signal) => {
     const names = (whole.files ?? []).map((file) => file.name).filter((name) => /\.(png|svg)$/i.test(name)).slice(0, PICTURES_MAX);
     const pictures = names.map((name) => filePicture(whole, name, name, signal));
     const warnings = (whole.summary?.warnings ?? []).filter((warning) => typeof warning === "string");
-    show(body, whole.kind === "sif" && factorsOf(whole.summary), whole.kind === "sweep" && livesOf(whole.summary), warnings.length > 0 && warningList(warnings), pictures.length > 0 && section("pictures", "Pictures", ...pictures),
+    show(body, whole.kind === "sif" && factorsOf(whole.summary), whole.kind === "sweep" && livesOf(whole.summary), warnings.length > 0 && warningList(warnings), pictures.length > 0 && section("pictures", "Pictures", element("div", { class: "pictures" }, pictures)),
       downloadList(whole), inputText(whole));
   }
 
@@ -28,7 +28,9 @@ export const openOther = (collection) => async (root, id, signal) => {
 
 /** K of every tip by every method, the largest first. */
 function factorsOf({ tips = [] }) {
-  const rows = tips.flatMap((tip, number) => Object.entries(tip.methods).map(([method, read]) => ({ number, tip, method, ...read })));
+  // K II of a crack in pure mode I is what rounding leaves.
+  const mode = ({ k_i_mpa_sqrt_m: one, k_ii_mpa_sqrt_m: two }) => (Math.abs(two) < 1e-6 * Math.abs(one) ? 0 : two);
+  const rows = tips.flatMap((tip, number) => Object.entries(tip.methods).map(([method, read]) => ({ number, tip, method, ...read, k_ii_mpa_sqrt_m: mode(read) })));
   const known = rows.filter((row) => typeof row.k_i_mpa_sqrt_m === "number");
   if (known.length === 0) return null;
   const [first] = known.filter((row) => row.method === known[0].method).sort((one, other) => other.k_i_mpa_sqrt_m - one.k_i_mpa_sqrt_m);

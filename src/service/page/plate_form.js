@@ -3,14 +3,13 @@
 import { element } from "./dom.js";
 import { createRows } from "./key_fields.js";
 import { keyOf, keysOf } from "./keys.js";
-import { straightCracks } from "./plate_drawing.js";
 import { createSketch } from "./sketch.js";
 
 /** Lists that the tables show. */
 export const LISTS = ["cracks", "holes", "notches"];
 
-/** `size()` gives the other keys of the plate; `onChange` is called when something else than typing changed a number. */
-export function createPlate(form, { size, onChange }) {
+/** `size()` gives the other values of the plate, `whole()` all its keys for the input; `onChange` is called when something else than typing changed a number. */
+export function createPlateForm(form, { size, whole, onChange }) {
   const changed = () => {
     sketch.draw();
     onChange();
@@ -36,12 +35,13 @@ export function createPlate(form, { size, onChange }) {
   const point = (pair) => pair ?? [NaN, NaN];
   const straight = (list) => list.map((one) => ({ ...one, from_mm: point(one.from_mm), to_mm: point(one.to_mm) }));
   const drawn = () => ({ ...size(), holes: rows.holes.values(), cracks: straight(rows.cracks.values()), notches: straight(rows.notches.values()) });
-  const sketch = createSketch(canvas, { plate: drawn, edits });
+  const sketch = createSketch(canvas, { plate: drawn, collect: () => ({ ...whole(), files: files() }), edits });
   const folded = element("details", null, element("summary", null, "Notches, pins, rollers"), rows.notches.element, pins.element, rollers.element);
   const node = element("div", { class: "plate-form" }, canvas,
     element("p", { class: "hint" }, "Origin at the plate center; x across, y along the load. A crack may start outside the material; the part outside is trimmed."),
     rows.cracks.element, rows.holes.element, folded);
   node.addEventListener("input", () => sketch.draw());
+  const files = () => (form.files().length > 0 ? form.files() : undefined);
   const orNone = (list) => (list.length > 0 ? list : undefined);
 
   return {
@@ -60,5 +60,10 @@ export function createPlate(form, { size, onChange }) {
   };
 }
 
-/** Kinked cracks are straight ones that share their corners. */
+/** Cracks with bends as straight ones that share their corners, which are joined. */
+function straightCracks(cracks) {
+  return cracks.flatMap((crack) => crack.path_mm?.slice(1).map((to_mm, index) => ({ from_mm: crack.path_mm[index], to_mm })) ?? [crack]);
+}
+
+/** The keys of cracks without bends. */
 const withoutPaths = (key) => ({ ...key, keys: key.keys.filter(({ metric }) => metric !== "path_mm") });

@@ -1,14 +1,14 @@
 // Prediction: the form of a plate, the law to use, and the start of a run.
 
 import { getJson } from "./api.js";
-import { byId, element, show } from "./dom.js";
+import { button, byId, element, show } from "./dom.js";
 import { createEditor } from "./editor.js";
 import { compact, createForm, grid, group, need } from "./form.js";
 import { percent, plain, scientific, sentence, significant, words } from "./format.js";
 import { filesOf, jobToStartFrom } from "./job.js";
 import { createFields } from "./key_fields.js";
 import { choicesOf, hasOnly, keyOf, keysOf, known, toShown } from "./keys.js";
-import { createPlate } from "./plate_form.js";
+import { createPlateForm } from "./plate_form.js";
 import { problemBox } from "./notices.js";
 import { createLoading, createMaterial, createSpecimen, isThrough } from "./specimen_form.js";
 import { createSides } from "./sides_form.js";
@@ -46,7 +46,7 @@ export function createPredictView(materials) {
     arrange();
     editor.check.soon();
   });
-  const plate = createPlate(form, { size: () => specimen.values(), onChange: () => editor.check.soon() });
+  const plate = createPlateForm(form, { size: () => specimen.values(), whole: () => specimen.collect(), onChange: () => editor.check.soon() });
   const specimen = createSpecimen(form, { plate });
   const material = createMaterial(form, materials);
   const sides = createSides(form, () => editor.check.soon());
@@ -137,7 +137,15 @@ export function createPredictView(materials) {
 
   // While another run's input is on its way, what is in the form is not what the user means to start.
   let opening = false;
-  const files = () => Object.values(Object.fromEntries([...form.files(fields.hidden), ...spectrum.files(fields.hidden)].map((one) => [one.name, one])));
+  let further = {}; // options of the run it starts from: a further analysis
+  const furtherNote = element("p", { class: "quiet" });
+  name.node.after(furtherNote);
+  function takeFurther(job) {
+    further = Object.fromEntries((job?.options ?? []).map((one) => one.split(/=(.*)/s)));
+    show(furtherNote, Object.keys(further).length > 0 && [`Further analysis: ${Object.entries(further).map(([key, value]) => (value === "true" ? words(key) : `${words(key)} ${value}`)).join(", ")} `,
+      button("Remove", () => takeFurther(), { class: "button small" })]);
+  }
+  const files = () => Object.values(Object.fromEntries([...form.files(fields.hidden), ...spectrum.files(fields.hidden), ...form.files(true).filter((one) => one.name === further.measured)].map((one) => [one.name, one])));
   const editor = createEditor({
     host: byId("plate-editor"), fields, panel: byId("plate-check"), form, collect, fill,
     context: () => (!fields.hidden && spectrum.missing()) || { ...(isFitted() ? { calibration: law.input.value } : {}), files: files().length > 0 ? files() : undefined },
@@ -190,14 +198,14 @@ export function createPredictView(materials) {
   }
 
   law.input.addEventListener("input", () => proposeOf(calibrations.find((one) => one.id === law.input.value)));
-  const starts = (own, path, what) => own.addEventListener("click", async () => {
+  const starts = (own, path, what, options = () => undefined) => own.addEventListener("click", async () => {
     if (!(await editor.check.now())) return;
     kept("kind", specimen.kind());
-    startRun(path, { ...editor.body(), name: name.input.value.trim() || `${what}${defaultName()}` }, {
+    startRun(path, { ...editor.body(), name: name.input.value.trim() || `${what}${defaultName()}`, options: options() }, {
       button: own, status: byId("predict-status"), refuse: editor.check.refuse,
     });
   });
-  starts(start, "/v1/predictions", "");
+  starts(start, "/v1/predictions", "", () => further);
   starts(factors, "/v1/sif", "K of ");
   byId("plate-example").addEventListener("click", () => editor.startFrom({ ...EXAMPLE, fatigue: isFitted() ? {} : EXAMPLE_LAW }));
   specimen.choose(kept("kind")); // the one that was predicted last
@@ -221,6 +229,7 @@ export function createPredictView(materials) {
       if (!from) return;
       try {
         const job = await jobToStartFrom(from);
+        takeFurther(job);
         if (job.calibration) await loadLaws(job.calibration);
         else law.input.value = BY_HAND;
         const own = (await filesOf(job)).filter(({ name: one }) => !job.calibration || !["fitted.toml", "fit.json"].includes(one));

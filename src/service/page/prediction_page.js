@@ -11,7 +11,7 @@ import { count, cycles, deserved, duration, fixed, scientific, sentence, signifi
 import { createJobHead, describe, downloadList, failureOf, filesOf, inputText, isFinal, pathOf } from "./job.js";
 import { problemBox } from "./notices.js";
 import { createPicture, filePicture, showBlob } from "./picture.js";
-import { createPlatePath } from "./plate_path.js";
+import { createPlate } from "./plate.js";
 import { partThroughTerms, spectrumCard, spectrumTerms } from "./prediction_more.js";
 import { createRemaining } from "./remaining.js";
 import { reportButton } from "./report.js";
@@ -22,9 +22,10 @@ const STEPS = 1000;
 const PLAY_MS = 5000;
 /** Share of the life that is shown first: most of the path has its colours there. */
 const START = 0.9;
-/** Pictures of the end of a run, by the model that has them. */
+const PLATE = "plate.svg";
 /** The section of a crack that is not through, with its fronts. */
 const SECTION = "section.svg";
+/** Pictures of the end of a run, by the model that has them. */
 const FIELDS = { "stress.svg": "Stress at maximum load near the end of life (deformed).", "damage.svg": "Fraction of broken bonds at the end of the run." };
 
 export async function openPrediction(root, id, signal) {
@@ -32,7 +33,8 @@ export async function openPrediction(root, id, signal) {
   const head = createJobHead(job);
   const outcome = element("div", { class: "job-body" });
   const below = element("div", { class: "job-body" });
-  const [platePlace, curvePlace, factorPlace] = [0, 1, 2].map(() => element("div"));
+  const [curvePlace, factorPlace] = [0, 1].map(() => element("div"));
+  const platePlace = element("div", { class: "plate-parts" });
   const { node: field, image } = createPicture("Stress or damage over the plate, with the crack path");
   const fieldNote = element("figcaption");
   const fieldFigure = element("figure", { class: "card figure", "data-part": "damage", hidden: true }, element("div", { class: "chart-head" }, element("h2", null, "Field")), field, fieldNote);
@@ -40,7 +42,7 @@ export async function openPrediction(root, id, signal) {
   const factors = element("div", { class: "card figure", hidden: true }, factorPlace);
   const plateFigure = element("figure", { class: "card figure", "data-part": "path" },
     element("div", { class: "chart-head" }, element("h2", null, "Crack path")), platePlace,
-    element("figcaption", null, "Color: share of life; marks at 25, 50, 75, 90 %. Dotted: future growth."));
+    element("figcaption", null, "Color: share of life; marks at 25, 50, 75, 90 %. Thin: future growth."));
   const pictures = element("div", { class: "pictures" }, element("div", { class: "stack" }, plateFigure, fieldFigure),
     element("div", { class: "stack" }, curveFigure, factors));
   showPage(root, head.node, outcome, element("div", { class: "job-body" }, pictures), below);
@@ -51,28 +53,23 @@ export async function openPrediction(root, id, signal) {
     x: { label: "Cycles N", format: (value) => cycles(Math.round(value)), from: 0 },
     y: lengthAxis,
   });
-  const plate = createPlatePath(platePlace, "Plate with crack paths");
-  signal.addEventListener("abort", () => {
-    chart.destroy();
-    plate.destroy();
-  });
+  const plate = createPlate(platePlace);
+  signal.addEventListener("abort", () => chart.destroy());
   const curve = { id: "curve", name: "computed", kind: "line", tone: 0, x: [], y: [] };
-  let drawn = null; // the plate, as the service says it
-  let paths = [];
+  let paths = []; // of every tip, as it grows
   chart.set([curve]);
 
-  async function drawPlate() {
-    if (!drawn) {
-      try {
-        const files = await filesOf(job);
-        const body = { input: job.input, ...(job.calibration ? { calibration: job.calibration } : {}), files: files.length > 0 ? files : undefined };
-        drawn = (await postInput("/v1/check", body, { signal })).plate;
-      } catch (error) {
-        if (error.name === "AbortError") return;
-      }
+  /** The plate of the finished run with its paths, or as it was before the first cycle. */
+  async function drawPlate(file) {
+    try {
+      const files = await filesOf(job);
+      const body = { input: job.input, ...(job.calibration ? { calibration: job.calibration } : {}), files: files.length > 0 ? files : undefined };
+      const svg = file ? await getText(file, signal) : (await postInput("/v1/check", body, { signal })).drawing;
+      plateFigure.hidden = !svg;
+      if (svg) plate.set(svg);
+    } catch (error) {
+      plateFigure.hidden = error.name !== "AbortError";
     }
-    plateFigure.hidden = !drawn;
-    plate.set(drawn, paths, curve.x.at(-1) ?? 1);
   }
 
   function grow({ from, cycles: steps, crack_length_mm: lengths, tips }) {
@@ -84,9 +81,9 @@ export async function openPrediction(root, id, signal) {
     chart.extend("curve", steps, lengths);
     (tips ?? []).forEach((entry, row) => entry.forEach(([x, y], tip) => {
       paths[tip] ??= [];
-      paths[tip].push([steps[row], x, y]);
+      paths[tip].push(`${x} ${y}`);
     }));
-    plate.set(drawn, paths, steps.at(-1) || 1);
+    plate.grow(paths);
   }
 
   let revision = -1;
@@ -125,12 +122,13 @@ export async function openPrediction(root, id, signal) {
 
   async function showResult(done) {
     result = has(done, "result.json") ? JSON.parse(await getText(pathTo(done, "result.json"), signal)) : done.summary;
-    drawn = result.plate ?? drawn;
     show(outcome, answerCard({ ...done.summary, ...result }, [...partThroughTerms(result), ...spectrumTerms(result)]));
     head.offer(reportButton(done, () => remaining?.wanted()));
     head.describe(describe(result));
+    // The refusal stands in the answer.
+    const messages = (result.warnings ?? []).filter((line) => !result.refused?.includes(line));
     below.prepend(element("div", { class: "two" }, howComputed(done, result),
-      result.warnings?.length > 0 && element("div", { class: "card" }, warningList(result.warnings, "Messages"))));
+      messages.length > 0 && element("div", { class: "card" }, warningList(messages, "Messages"))));
     const spectrum = spectrumCard(result);
     if (!spectrum) return;
     below.prepend(spectrum.node);
@@ -143,8 +141,7 @@ export async function openPrediction(root, id, signal) {
     const lead = result ? leadOf(result) : null;
     const lengths = lead === null ? columns.crack_length_mm : lengthsOfTip(columns, result.tips, lead);
     Object.assign(curve, { x: columns.cycles, y: lengths, smooth: "y" });
-    if (has(done, "crack_path.csv")) paths = pathsOf(readCsv(await getText(pathTo(done, "crack_path.csv"), signal)));
-    await drawPlate();
+    await drawPlate(has(done, PLATE) && pathTo(done, PLATE));
     const picture = Object.keys(FIELDS).find((name) => has(done, name));
     fieldFigure.hidden = !picture;
     if (picture) {
@@ -191,7 +188,7 @@ export async function openPrediction(root, id, signal) {
     const share = Number.isFinite(ratio) && ratio <= 1.001 ? ratio : 1;
     made.set([
       least && { id: "below", kind: "outside", name: "below the tested ΔK", y2: [least / share] },
-      most && { id: "above", kind: "outside", name: "above the measured ΔK", y: [most / share] },
+      most && { id: "above", kind: "outside", name: "above the tested ΔK", y: [most / share] },
       { id: "k1", name: "K_I", kind: "line", smooth: "x", tone: 0, x: lengths, y: k },
       columns.depth_k_i_mpa_sqrt_m && { id: "depth", name: "K_a", kind: "line", smooth: "x", tone: 2, dashed: true, x: lengths, y: columns.depth_k_i_mpa_sqrt_m },
       kk && { id: "k2", name: "K_II", kind: "line", smooth: "x", tone: 1, dashed: true, x: lengths, y: kk },
@@ -222,15 +219,6 @@ export async function openPrediction(root, id, signal) {
 function lengthsOfTip(columns, tips, lead) {
   const same = tips.map((_, tip) => tip).filter((tip) => tips[tip].crack === tips[lead].crack);
   return columns.cycles.map((_, row) => same.reduce((sum, tip) => sum + columns[`tip${tip}_growth_mm`][row], tips[lead].crack_length_initial_mm));
-}
-
-function pathsOf({ tip, cycles: steps, x_mm: xs, y_mm: ys }) {
-  const byTip = new Map();
-  tip.forEach((name, index) => {
-    if (!byTip.has(name)) byTip.set(name, []);
-    byTip.get(name).push([steps[index], xs[index], ys[index]]);
-  });
-  return [...byTip.values()];
 }
 
 const bandOf = ({ cycles_p05: low, cycles_p95: high }, lengths) => (low ? [{ id: "band", name: "Scatter band (90 %)", kind: "band", tone: 0, x: low, x2: high, y: lengths }] : []);

@@ -3,7 +3,7 @@
 import { download } from "./api.js";
 import { button, element, show } from "./dom.js";
 import { createForm, grid } from "./form.js";
-import { changeJob, nameOf, pathOf } from "./job.js";
+import { changeJob, nameOf, reportOf } from "./job.js";
 import { createFields } from "./key_fields.js";
 import { keysOf, loadKeys } from "./keys.js";
 import { problemBox } from "./notices.js";
@@ -35,7 +35,7 @@ async function openDialog(job, inspection) {
     // Items that the dialog does not show stay.
     const hidden = Object.entries(job.report ?? {}).filter(([metric]) => !keys.some((key) => key.metric === metric));
     const report = { ...Object.fromEntries(hidden), ...fields.collect() };
-    const address = `${pathOf(job)}/report${interval?.checked ? inspection.query : ""}`;
+    const address = reportOf(job, interval?.checked ? inspection.query : "");
     show(trouble);
     try {
       if (all.some(({ metric }) => report[metric] !== job.report?.[metric])) await changeJob(job, { report });

@@ -1,6 +1,6 @@
 // List of all runs with their answers: opened, renamed, noted, duplicated, archived, cancelled, deleted; lives are ticked to compare them.
 
-import { kindOfVerdict, lifeShown, mark, quantilesOf } from "./answer.js";
+import { fleetOf, kindOfVerdict, lifeShown, mark, quantilesOf } from "./answer.js";
 import { getJson } from "./api.js";
 import { button, byId, debounce, element, show } from "./dom.js";
 import { bandOf, count, cycles, duration, fixed, moment, percent, scientific, sentence, significant, words } from "./format.js";
@@ -215,9 +215,9 @@ function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
   }
   if (kind === "prediction") {
     const band = quantilesOf(s);
-    const life = s.refused ? "not computed" : s.life_cycles === null ? "no growth"
-      : `${lifeShown(s)} cycles`;
-    return [two(life, s.refused || s.life_cycles === null ? "" : band ? bandOf(band) : "no band"),
+    const life = s.refused ? "not computed" : s.life_cycles === null ? "no growth" : `${s.fleet ? fleetOf(s)[0] : lifeShown(s)} cycles`;
+    const beside = s.fleet ? `5 % of ${s.fleet.plates} plates; median ${fleetOf(s)[1]}` : band ? bandOf(band) : "no band";
+    return [two(life, s.refused || s.life_cycles === null ? "" : beside),
       sentence(words(s.stop_reason)), s.verdict_kind && sign(kindOfVerdict(s.verdict_kind), s.verdict.split(":")[0])];
   }
   if (kind === "calibration" && s.paris_m) {
@@ -227,7 +227,7 @@ function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
   const factors = (s.tips ?? []).flatMap((tip) => Object.values(tip.methods ?? {})).filter((read) => Number.isFinite(read.k_i_mpa_sqrt_m));
   if (kind === "sif" && factors.length > 0) {
     const most = factors.reduce((one, other) => (other.k_i_mpa_sqrt_m > one.k_i_mpa_sqrt_m ? other : one));
-    return [two(`${significant(most.k_i_mpa_sqrt_m, 4)} MPa√m`, `K II ${significant(most.k_ii_mpa_sqrt_m, 3)} MPa√m`), ""];
+    return [two(`${significant(most.k_i_mpa_sqrt_m, 4)} MPa√m`, `K II ${significant(Math.abs(most.k_ii_mpa_sqrt_m) < 1e-6 * most.k_i_mpa_sqrt_m ? 0 : most.k_ii_mpa_sqrt_m, 3)} MPa√m`), ""];
   }
   if (kind === "sweep" && s.life_cycles?.p50) {
     const figure = (value) => cycles(Math.round(value));
@@ -235,5 +235,5 @@ function answerOf({ kind, state, progress, problem, summary: s, ...job }) {
     return [two(`${figure(s.life_cycles.p50)} cycles`, `${figure(s.life_cycles.p05)} to ${figure(s.life_cycles.p95)}, ${count(s.cases, "case")}`), "",
       sign(open === 0 ? "ok" : "note", open === 0 ? "whole" : `${open} without a life`)];
   }
-  return [stateBadge({ ...job, state, summary: s }), words(s.stop_reason ?? s.law ?? "")];
+  return [stateBadge({ ...job, state, summary: s }), words(s.stop_reason === "done" ? "" : s.stop_reason ?? s.law ?? "")];
 }

@@ -98,12 +98,12 @@ export function createSweep({ host, fields, panel, start, status, base, checked 
 
   /** The case and the law it names, as files of the sweep. */
   function context() {
+    if (!checked()) return "Complete the case on Predict first.";
     const given = base();
     if (typeof given === "string") return given;
     const fitted = given.calibration && ["fitted.toml", "fit.json"].map((file) => [file, fileOf(given.calibration, file)]);
     if (fitted?.some(([, text]) => text === undefined)) return "The law is being fetched.";
     const input = fitted && typeof given.input === "string" ? checked() : given.input;
-    if (!input) return "The case on Predict has errors.";
     const text = typeof input === "string" ? input : writeToml({ ...input, ...(fitted ? { fatigue: { ...input.fatigue, fitted: "fitted.toml" } } : {}) });
     const sent = [[CASE, text], ...(fitted ?? [])].filter(([, content]) => content !== null);
     return { files: [...sent.map(([file, content]) => ({ name: file, text: content, file: new Blob([content]) })), ...(given.files ?? [])] };

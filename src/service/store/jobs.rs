@@ -3,6 +3,7 @@
 use sqlx::Row;
 use sqlx::any::AnyRow;
 
+use super::queue::{CANCEL, KEEP};
 use super::{Dialect, Origin, Result, Store, files};
 use crate::job::{Job, JobKind, State, Submission, time};
 
@@ -208,25 +209,27 @@ impl Store {
         Ok(Listing { jobs, next })
     }
 
-    /// Asks for the end of a job: one that waits, or whose worker is silent, ends at once, one that runs with the next sign of life.
-    /// Whether there was one to end.
-    pub async fn cancel(&self, id: &str) -> Result<bool> {
-        match self.cancel_once(id).await {
-            Err(error) if self.has_given_reserve_up(&error) => self.cancel_once(id).await,
+    /// Asks for the end of a job: one that waits, or whose worker is silent, ends at once, one that runs with the next sign of life,
+    /// with the curve so far where it is to be kept. Whether there was one to end.
+    pub async fn cancel(&self, id: &str, is_kept: bool) -> Result<bool> {
+        let wish = if is_kept { KEEP } else { CANCEL };
+        match self.cancel_once(id, wish).await {
+            Err(error) if self.has_given_reserve_up(&error) => self.cancel_once(id, wish).await,
             done => done,
         }
     }
 
-    async fn cancel_once(&self, id: &str) -> Result<bool> {
+    async fn cancel_once(&self, id: &str, wish: i64) -> Result<bool> {
         let mut transaction = self.begin().await?;
         let state: Option<String> = sqlx::query_scalar(self.sql(
-            "UPDATE jobs SET cancel_asked = 1, revision = revision + 1,
+            "UPDATE jobs SET cancel_asked = CASE WHEN cancel_asked = 1 THEN 1 ELSE $2 END, revision = revision + 1,
                 finished_ms = CASE WHEN state = 'queued' OR {orphaned} THEN {now} END,
                 finished_count_ms = CASE WHEN state = 'queued' OR {orphaned} THEN {counted} END,
                 state = CASE WHEN state = 'queued' OR {orphaned} THEN 'cancelled' ELSE state END
              WHERE id = $1 AND state IN ('queued', 'running') RETURNING state",
         ))
         .bind(id)
+        .bind(wish)
         .fetch_optional(&mut *transaction)
         .await?;
         if state.as_deref() == Some(State::Cancelled.name()) {
@@ -345,7 +348,7 @@ fn job_of(row: &AnyRow) -> Result<Job> {
         failures: row.try_get("failures")?,
         last_failure: row.try_get("reason")?,
         next_try: if state == State::Queued { moment("not_before_ms")? } else { None },
-        cancel_asked: row.try_get::<i64, _>("cancel_asked")? != 0,
+        cancel_asked: row.try_get::<i64, _>("cancel_asked")? == CANCEL,
         position: None,
         progress: object(row, "progress")?,
         problem: object(row, "problem")?,

@@ -42,6 +42,10 @@ const HELD: Duration = Duration::from_secs(120);
 /// Computing time that counts as a turn where a run has given way.
 const TURN: Duration = Duration::from_secs(10);
 
+/// Wishes for the end of a job: without a result, and with the curve so far.
+pub(super) const CANCEL: i64 = 1;
+pub(super) const KEEP: i64 = 2;
+
 /// What a sign of life brings back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Heartbeat {
@@ -49,6 +53,8 @@ pub enum Heartbeat {
     Held,
     /// Somebody asks for the end of the job.
     Cancel,
+    /// Somebody asks for its end with the curve so far.
+    Keep,
     /// The job is another worker's now, or gone.
     Lost,
 }
@@ -155,7 +161,7 @@ impl Store {
             kind,
             fence: row.try_get("fence")?,
             attempts: row.try_get("attempts")?,
-            cancel_asked: row.try_get::<i64, _>("cancel_asked")? != 0,
+            cancel_asked: row.try_get::<i64, _>("cancel_asked")? == CANCEL,
             failures: row.try_get("failures")?,
             spent_ms: row.try_get("spent_ms")?,
             waited_ms: row.try_get("waited_ms")?,
@@ -199,7 +205,11 @@ impl Store {
                         &claim.id, about, &picture[..])?;
         }
         transaction.commit().await?;
-        Ok(if asked == 0 { Heartbeat::Held } else { Heartbeat::Cancel })
+        Ok(match asked {
+            0 => Heartbeat::Held,
+            KEEP => Heartbeat::Keep,
+            _ => Heartbeat::Cancel,
+        })
     }
 
     /// Stores the state of a job, from which any worker can go on. Whether the claim still holds.

@@ -6,8 +6,9 @@ use std::os::fd::AsFd;
 use std::os::unix::net::UnixStream;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use rustix::process::{Signal, kill_current_process_group};
@@ -42,7 +43,8 @@ pub fn take() -> Result<()> {
         Order::Run(run) => run.folder.parent().map(Path::to_path_buf),
         Order::Look(_) => None,
     };
-    end_with_worker(socket.try_clone().map_err(cannot)?, folder);
+    let is_enough = Arc::new(AtomicBool::new(false));
+    end_with_worker(socket.try_clone().map_err(cannot)?, folder, is_enough.clone());
     let order = match order {
         Order::Run(run) => run,
         Order::Look(look) => {
@@ -59,7 +61,7 @@ pub fn take() -> Result<()> {
         write_frame(&*socket, news).is_ok()
     };
     let mut room = Room::default();
-    let end = match ended(&order, &mut room, &tell) {
+    let end = match ended(&order, &mut room, &tell, is_enough) {
         Ok(summary) => News::Done(summary.to_string()),
         Err(error @ Error::File { .. }) => News::NoRoom(error.to_string(), room.all.max(bytes(&order.folder))),
         Err(error) => failed(&error.into()),
@@ -69,16 +71,18 @@ pub fn take() -> Result<()> {
 }
 
 /// Ends this process, all that it started and what it wrote when its worker is gone.
-fn end_with_worker(mut socket: UnixStream, folder: Option<PathBuf>) {
+fn end_with_worker(mut socket: UnixStream, folder: Option<PathBuf>, is_enough: Arc<AtomicBool>) {
     std::thread::spawn(move || {
-        // A worker says nothing more after its order.
-        let _ = socket.read(&mut [0]);
+        // A worker says nothing more after its order but that the curve so far is enough.
+        while matches!(socket.read(&mut [0]), Ok(1)) {
+            is_enough.store(true, Ordering::Relaxed);
+        }
         let _ = folder.map(fs::remove_dir_all);
         let _ = kill_current_process_group(Signal::KILL);
     });
 }
 
-fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync)) -> Result<Value> {
+fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync), is_enough: Arc<AtomicBool>) -> Result<Value> {
     let task = order.submission.task(order.kind, &order.submission.document()?)?;
     *room = if matches!(task, Task::Prediction { .. } | Task::Scene(_)) { task.room() } else { Room::default() };
     // Asked before the run, which would be for nothing.
@@ -107,7 +111,8 @@ fn ended(order: &Run, room: &mut Room, tell: &(dyn Fn(&News) -> bool + Sync)) ->
         Task::Fit(Calibration::Lives(calibration)) => (calibration.case.specimen.cracks.clone(), None),
         _ => (Vec::new(), None),
     };
-    let teller = Teller::new(&cracks, &shown.unwrap_or_default(), keep, order.checkpoint_every);
+    let mut teller = Teller::new(&cracks, &shown.unwrap_or_default(), keep, order.checkpoint_every);
+    teller.is_enough = is_enough;
     let (done, end) = channel();
     std::thread::scope(|scope| {
         scope.spawn(|| {

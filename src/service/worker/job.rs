@@ -149,7 +149,7 @@ fn relay(shared: &Shared, claim: &Claim, process: &JobProcess, begun: Instant) -
             if process.touched().is_some_and(|touched| touched > shared.settings.memory) {
                 break Some(End::Died(Death::OutOfMemory));
             }
-            if let Some(end) = beat(shared, claim, &mut untold, begun.elapsed()) {
+            if let Some(end) = beat(shared, claim, process, &mut untold, begun.elapsed()) {
                 break Some(end);
             }
             if kept.is_some_and(|kept| kept.elapsed() < RUN_AGAIN) && gives_way(shared, claim, begun.elapsed()) {
@@ -194,7 +194,7 @@ fn gives_way(shared: &Shared, claim: &Claim, held: Duration) -> bool {
 }
 
 /// A sign of life; why the run is to end, if it is.
-fn beat(shared: &Shared, claim: &Claim, untold: &mut Told, elapsed: Duration) -> Option<End> {
+fn beat(shared: &Shared, claim: &Claim, process: &JobProcess, untold: &mut Told, elapsed: Duration) -> Option<End> {
     if shared.is_stopping() {
         return Some(End::Shutdown);
     }
@@ -204,8 +204,11 @@ fn beat(shared: &Shared, claim: &Claim, untold: &mut Told, elapsed: Duration) ->
     }
     let lease_ms = milliseconds(shared.settings.lease);
     match shared.handle.block_on(shared.store.beat(claim, lease_ms, elapsed, untold)) {
-        Ok(Heartbeat::Held) => {
+        Ok(heard @ (Heartbeat::Held | Heartbeat::Keep)) => {
             *untold = Told::default();
+            if heard == Heartbeat::Keep {
+                process.is_enough();
+            }
             None
         }
         Ok(Heartbeat::Cancel) => Some(End::Cancelled),

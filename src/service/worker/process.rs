@@ -37,6 +37,7 @@ pub struct JobProcess {
     /// What it tells; none will come any more where its end is disconnected.
     pub news: Receiver<News>,
     said: Option<JoinHandle<Vec<u8>>>,
+    socket: UnixStream,
 }
 
 /// How a process ended without having said so.
@@ -63,7 +64,7 @@ impl JobProcess {
             .process_group(0)
             .spawn()?;
         let stderr = child.stderr.take();
-        let mut process = JobProcess { child, news: sync_channel(0).1, said: None };
+        let mut process = JobProcess { child, news: sync_channel(0).1, said: None, socket: ours.try_clone()? };
         let begin = || -> io::Result<()> {
             let most = Some(memory + reserved(threads));
             let limit = Rlimit { current: most, maximum: most };
@@ -88,6 +89,11 @@ impl JobProcess {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error),
             _ => Ok(process),
         }
+    }
+
+    /// Has it end after its next cycle block with the curve so far; one that is past these ends as it would.
+    pub fn is_enough(&self) {
+        let _ = (&self.socket).write_all(&[1]);
     }
 
     fn group(&self) -> Pid {

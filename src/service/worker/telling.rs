@@ -1,5 +1,6 @@
 //! A run as its process sees it: the run tells how far it is and where it could be taken up, the process tells the worker.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -49,6 +50,8 @@ pub struct Teller<'a> {
     keep: Option<Keep<'a>>,
     keep_every: Duration,
     started: Instant,
+    /// Whether a user takes the curve so far.
+    pub is_enough: Arc<AtomicBool>,
     /// What the run does before it has rows to show.
     work: Arc<Watch>,
     /// Whether nobody has shown any of its curve yet.
@@ -115,7 +118,8 @@ impl<'a> Teller<'a> {
         };
         let is_fresh = growth.cycles.is_empty();
         let (told, drawn) = (Mutex::new(told), Mutex::default());
-        Teller { cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told, drawn }
+        let is_enough = Arc::default();
+        Teller { is_enough, cracks, keep, keep_every, started: Instant::now(), work: Arc::default(), is_fresh, told, drawn }
     }
 
     /// Passes on what was told since the last time; a look at the plate stays until it is time for a picture.
@@ -170,6 +174,10 @@ impl<'a> Teller<'a> {
 }
 
 impl Observer for Teller<'_> {
+    fn is_enough(&self) -> bool {
+        self.is_enough.load(Ordering::Relaxed)
+    }
+
     fn watch(&self) -> Option<Arc<Watch>> {
         Some(self.work.clone())
     }

@@ -91,6 +91,8 @@ fn a_job_can_be_cancelled_and_deleted() {
         assert_eq!(service.ended(&waiting)["state"], "cancelled");
         assert_eq!(service.ended(&running)["state"], "cancelled");
         service.post(&format!("{running}/cancel"), &json!({})).expect(409);
+        service.post(&format!("{running}/cancel?keep=yes"), &json!({})).expect(400);
+        service.post(&format!("{running}/cancel?keep=true"), &json!({})).expect(409);
         service.get(&format!("{running}/files/a_n.csv")).expect(409);
         for job in [&waiting, &running] {
             service.send("DELETE", job, &[], b"").expect(204);

@@ -194,7 +194,7 @@ fn the_page_leads_from_readings_to_remaining_life() {
         "document.querySelector('#job[data-job-state=succeeded]') || \
          document.querySelector('[data-chart=life] path[data-series]').getAttribute('d').length > {early}"
     ));
-    page.see("#view-run [data-plate=whole] .plate-body");
+    page.see("#view-run [data-plate=whole] .growing");
     walk.look("06_running");
     page.see("#job[data-job-state=succeeded]");
     page.see("[data-value=remaining_cycles]");
@@ -214,7 +214,8 @@ fn the_page_leads_from_readings_to_remaining_life() {
         "const place = document.querySelector('#place'); place.value = 500; place.dispatchEvent(new Event('input', { bubbles: true }));",
     );
     page.until("document.querySelector('[data-part=place]').textContent.includes('50 % of life')");
-    page.see("#view-run [data-plate=whole] .path");
+    page.see("#view-run [data-plate=whole] .way .to-come");
+    page.see("#view-run [data-plate=whole] .way path:not(.to-come)");
     page.see("[data-chart=factors] path[data-series=k1]");
     page.see("[data-action=report]");
 
@@ -257,6 +258,11 @@ fn the_page_leads_from_readings_to_remaining_life() {
     let opened = page.run("return window.opened").as_str().unwrap().to_owned();
     page.click("[data-part=further] [data-action=sensitivities]");
     page.see("[data-part=sensitivities] img:not([hidden])");
+    // The form knows what else its run found.
+    let found = page.run("return document.querySelector('#job').dataset.jobId").as_str().unwrap().to_owned();
+    page.open(&format!("{}/#/predict?from=predictions/{found}", service.url));
+    page.until("document.querySelector('#view-predict').textContent.includes('Further analysis: sensitivities')");
+    page.open(&format!("{}/#/predictions/{found}", service.url));
     page.click("[data-action=report]");
     let proposed =
         |key: &str| page.run(&format!("return document.querySelector(\"#report-dialog [data-key='report.{key}']\").value"));
@@ -298,6 +304,21 @@ fn the_page_leads_from_readings_to_remaining_life() {
     walk.start("#sweep-start");
     page.see("#job[data-job-state=succeeded]");
     page.see("[data-value=life_cycles]");
+
+    // Stopped where it is, a run keeps its curve.
+    page.open(&format!("{}/#/predict?from={first}", service.url));
+    page.see("#predict:not([disabled])");
+    // Finer, so that it has not ended when the wish comes to its worker.
+    page.fill("#view-predict [data-key='model.spacing_mm']", "0.5");
+    page.see("#predict:not([disabled])");
+    let stopped = walk.start("#predict");
+    page.click("[data-action=stop]");
+    page.see("#job[data-job-state=succeeded]");
+    page.until("document.querySelector('[data-part=result]')?.textContent.includes('Stopped early at')");
+    let summary = service.get(&format!("/v1/predictions/{stopped}")).json()["summary"].clone();
+    assert!(summary["stop_reason"] == "stopped" && summary["life_is_lower_bound"] == true, "{summary:#}");
+    assert!(summary["crack_length_final_mm"].as_f64() < done["summary"]["crack_length_final_mm"].as_f64());
+    walk.look("16_stopped");
 
     // Cancel and delete.
     page.open(&format!("{}/#/predict?from={first}", service.url));

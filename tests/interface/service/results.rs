@@ -137,6 +137,12 @@ fn remaining_life(service: &Server, job: &str, done: &Value) {
     assert!(report("").contains("Lab &lt;North&gt;") && !report("").contains("Inspection interval"), "{}", report(""));
     assert!(report(&format!("?crack_length_mm={middle}")).contains("Inspection interval"));
     service.get(&format!("{job}/report?factor=3")).expect(400);
+    // In the units of who asks, whatever others ask for.
+    for (query, own, other) in [("?units=us", " ksi", " MPa"), ("?units=si", " MPa", " ksi"), ("", " MPa", " ksi")] {
+        let text = report(query);
+        assert!(text.contains(own) && !text.contains(other), "{query}: {text}");
+    }
+    service.get(&format!("{job}/report?units=imperial")).expect(400);
 }
 
 /// Further analyses are runs with options, refused before they are run.

@@ -89,30 +89,54 @@ pub fn plate_svg(plate: &Plate, tables: &RunTables, size: Size) -> String {
     let [low, high] = bounding_box(&plate.outline_mm);
     let of_cracks: Vec<Point> =
         plate.cracks_mm.iter().flatten().chain(ways.iter().flat_map(|way| &way.places)).copied().collect();
-    let of_cracks = bounding_box(&of_cracks);
     let largest = |[low, high]: [Point; 2]| (high[0] - low[0]).max(high[1] - low[1]);
-    let is_small = largest(of_cracks) < SMALL * largest([low, high]);
-    let width = if is_small { 0.45 * size.width } else { size.width };
+    let of_cracks =
+        Some(bounding_box(&of_cracks)).filter(|own| !of_cracks.is_empty() && largest(*own) < SMALL * largest([low, high]));
+    let width = if of_cracks.is_some() { 0.45 * size.width } else { size.width };
     // Beside the plate there is room for loads only where some act there.
     let beside = if plate.loads.iter().any(|load| load.direction[0].abs() > 0.5) { AROUND } else { 14.0 };
     let room = [width - 2.0 * beside, size.height - 2.0 * AROUND - BELOW];
-    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
-    let middle = along(low, high, 0.5);
-    let origin = [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale];
-    let mut sketch = Sketch::new(scale, origin);
+    let mut sketch = middled([low, high], room, [0.5 * width, AROUND + 0.5 * room[1]]);
     let drawing = Drawing { plate, ways: &ways, life: tables.life(), text: size.text, width: size.width };
-    drawing.body(&mut sketch);
-    drawing.loads(&mut sketch);
-    drawing.cracks(&mut sketch, !is_small);
-    scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
-    if is_small {
-        drawing.detail(&mut sketch, of_cracks, size);
+    let detail = of_cracks.map(|own| drawing.detail(own, size));
+    let bar = [sketch.scale, high[0] - low[0]];
+    sketch.group(&view([0.0; 2], [width, size.height], sketch.scale, sketch.origin), |sketch| {
+        drawing.body(sketch);
+        drawing.loads(sketch);
+        drawing.cracks(sketch, detail.is_none());
+        scale_bar(sketch, [14.0, size.height - 8.0], bar, size.text);
+        if let Some((_, size, Sketch { scale, origin, .. })) = &detail {
+            let corners = [[0.0; 2], *size].map(|[x, y]| sketch.place([(x - origin[0]) / scale, (origin[1] - y) / scale]));
+            sketch.group(r#"class="frame""#, |sketch| sketch.frame(corners, "3 3"));
+        }
+    });
+    if let Some((place, [width, height], inner)) = detail {
+        let (origin, bar) = ([0, 1].map(|i| place[i] + inner.origin[i]), [inner.scale, width / inner.scale]);
+        let (corner, whole) = (place.map(|x| x - 1.0), [width + 2.0, height + 2.0 * size.text]);
+        sketch.group(&view(corner, whole, inner.scale, origin), |sketch| {
+            sketch.within(place, [width, height], inner);
+            scale_bar(sketch, [place[0] + 1.0, place[1] + height + 1.5 * size.text], bar, size.text);
+            sketch.group(r#"class="frame""#, |sketch| sketch.frame([place, [place[0] + width, place[1] + height]], ""));
+        });
     }
     if !ways.is_empty() {
         ramp(&mut sketch, size);
     }
-    let sentence = format!("Plate, {}; paths of {} crack tips, colored by cycles", plate.load, ways.len());
-    sketch.picture([size.width, size.height], &sentence)
+    let of_paths = |count| format!("; paths of {count} crack tips, colored by cycles");
+    let paths = Some(ways.len()).filter(|count| *count > 0).map_or_else(String::new, of_paths);
+    sketch.picture([size.width, size.height], &format!("Plate, {}{paths}", plate.load))
+}
+
+/// A sketch to scale in which a box of the plate fills the room about a pixel.
+fn middled([low, high]: [Point; 2], room: Point, [x, y]: Point) -> Sketch {
+    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
+    let middle = along(low, high, 0.5);
+    Sketch::new(scale, [x - middle[0] * scale, y + middle[1] * scale])
+}
+
+/// Attributes of a part of the picture that a page may show by itself: its corner and size, px, and its pixels to a mm with the pixel of (0, 0).
+fn view([x, y]: Point, [width, height]: Point, scale: f64, [left, top]: Point) -> String {
+    format!(r#"class="view" data-box="{x:.1} {y:.1} {width:.1} {height:.1}" data-mm="{scale} {left} {top}""#)
 }
 
 /// The plate at the left with cracks that grow as cycles go by, and at the right the curve with a dot that follows; SVG that moves by itself.
@@ -121,9 +145,7 @@ pub fn growth_svg(plate: &Plate, run: &RunRecord, tables: &RunTables, size: Size
     let [low, high] = bounding_box(&plate.outline_mm);
     let (width, life) = (0.5 * size.width, tables.life());
     let room = [width - 2.0 * AROUND, size.height - 2.0 * AROUND - BELOW];
-    let scale = (room[0] / (high[0] - low[0])).min(room[1] / (high[1] - low[1]));
-    let middle = along(low, high, 0.5);
-    let mut sketch = Sketch::new(scale, [0.5 * width - middle[0] * scale, AROUND + 0.5 * room[1] + middle[1] * scale]);
+    let mut sketch = middled([low, high], room, [0.5 * width, AROUND + 0.5 * room[1]]);
     let drawing = Drawing { plate, ways: &[], life, text: size.text, width: size.width };
     drawing.body(&mut sketch);
     drawing.loads(&mut sketch);
@@ -134,7 +156,8 @@ pub fn growth_svg(plate: &Plate, run: &RunRecord, tables: &RunTables, size: Size
         let times: Vec<f64> = lengths().map(|length| way.cycles.at(length) / life).collect();
         sketch.growing(&places, &times, COMPUTED, 3.5);
     }
-    scale_bar(&mut sketch, [14.0, size.height - 8.0], [scale, high[0] - low[0]], size.text);
+    let bar = [sketch.scale, high[0] - low[0]];
+    scale_bar(&mut sketch, [14.0, size.height - 8.0], bar, size.text);
     sketch.within([width, 0.0], [width, size.height], a_n_moving(run, tables, Size { width, ..size }));
     sketch.picture([size.width, size.height], &format!("Cracks as they grow over {life:.0} cycles, {}", plate.load))
 }
@@ -155,7 +178,11 @@ impl<'a> Drawing<'a> {
 
     /// Outline, holes and slots.
     pub(crate) fn body(&self, sketch: &mut Sketch) {
-        sketch.polygon(&self.plate.outline_mm, PLATE, EDGE);
+        sketch.group(r#"class="plate-body""#, |sketch| sketch.polygon(&self.plate.outline_mm, PLATE, EDGE));
+        sketch.group(r#"class="plate-hole""#, |sketch| self.holes(sketch));
+    }
+
+    fn holes(&self, sketch: &mut Sketch) {
         for hole in &self.plate.holes {
             sketch.circle([hole.x_mm, hole.y_mm], 0.5 * hole.diameter_mm, "white", EDGE);
         }
@@ -176,18 +203,15 @@ impl<'a> Drawing<'a> {
     /// First cracks in ink, ways in the colours of cycles, tips; with the marks of the life where they are asked for.
     fn cracks(&self, sketch: &mut Sketch, is_large: bool) {
         let width = if is_large { 4.0 } else { 2.4 };
-        for way in self.ways {
-            // Steps of three pixels, each in the colour of its middle.
-            let steps = (way.whole() * sketch.scale / 3.0).ceil().clamp(1.0, 400.0);
-            for step in 0..steps as usize {
-                let [from, to] = [step as f64, step as f64 + 1.08].map(|part| way.whole() * (part / steps).min(1.0));
-                let colour = colour(way.cycles.at(0.5 * (from + to)) / self.life);
-                sketch.path(&[sketch.place(way.at(from)), sketch.place(way.at(to))], &colour, width, "");
+        for (number, way) in self.ways.iter().enumerate() {
+            let group = format!(r#"class="way" data-tip="{number}" fill="none" stroke-width="{width}""#);
+            sketch.group(&group, |sketch| self.steps(sketch, way));
+        }
+        sketch.group(r#"class="flaw""#, |sketch| {
+            for ends in &self.plate.cracks_mm {
+                sketch.path(&ends.map(|end| sketch.place(end)), INK, if is_large { 5.0 } else { 3.2 }, "");
             }
-        }
-        for [from, to] in &self.plate.cracks_mm {
-            sketch.path(&[sketch.place(*from), sketch.place(*to)], INK, if is_large { 5.0 } else { 3.2 }, "");
-        }
+        });
         let mut taken = Vec::new();
         // Shares of the life stand beside the longest way, which is that of the crack that ends it but for equals.
         let longest = self.ways.iter().map(Way::whole).fold(0.0, f64::max);
@@ -196,14 +220,28 @@ impl<'a> Drawing<'a> {
             if is_large && way.whole() > 0.0 {
                 self.marks(sketch, way, named == Some(number), &mut taken);
             }
-            let end = sketch.place(way.at(way.whole()));
-            sketch.ring(end, if is_large { 4.5 } else { 3.0 }, INK, 1.8);
-            if is_large && self.ways.len() > 1 {
-                let [x, y] = [0, 1].map(|i| way.at(way.whole())[i] - way.at(0.0)[i]);
-                let size = x.hypot(y).max(1e-12);
-                let place = [end[0] + 16.0 * x / size, end[1] - 16.0 * y / size + 0.35 * self.text];
-                sketch.name(place, &number.to_string(), "middle", self.text, INK);
-            }
+            sketch.group(&format!(r#"class="tip" data-tip="{number}""#), |sketch| self.tip(sketch, way, number, is_large));
+        }
+    }
+
+    /// Steps of three pixels, each in the color of its middle.
+    fn steps(&self, sketch: &mut Sketch, way: &Way) {
+        let steps = (way.whole() * sketch.scale / 3.0).ceil().clamp(1.0, 400.0);
+        for step in 0..steps as usize {
+            let ends = [step as f64, step as f64 + 1.08].map(|part| way.whole() * (part / steps).min(1.0));
+            let color = colour(way.cycles.at(0.5 * (ends[0] + ends[1])) / self.life);
+            sketch.step(ends.map(|end| sketch.place(way.at(end))), &color, way.cycles.at(ends[1]));
+        }
+    }
+
+    fn tip(&self, sketch: &mut Sketch, way: &Way, number: usize, is_large: bool) {
+        let end = sketch.place(way.at(way.whole()));
+        sketch.ring(end, if is_large { 4.5 } else { 3.0 }, INK, 1.8);
+        if is_large && self.ways.len() > 1 {
+            let [x, y] = [0, 1].map(|i| way.at(way.whole())[i] - way.at(0.0)[i]);
+            let size = x.hypot(y).max(1e-12);
+            let place = [end[0] + 16.0 * x / size, end[1] - 16.0 * y / size + 0.35 * self.text];
+            sketch.name(place, &number.to_string(), "middle", self.text, INK);
         }
     }
 
@@ -228,13 +266,16 @@ impl<'a> Drawing<'a> {
             let places = [(1.0, 10.0), (-1.0, 10.0), (1.0, 28.0), (-1.0, 28.0)];
             // Words of the second row need room for their line beside words of the first; without room a mark has no words.
             let has_room = |&(side, out): &(f64, f64)| is_free(place(side, out), 2.0) && is_free(place(side, 10.0), 1.2);
-            if let Some((side, out)) = places.into_iter().find(|at| is_named && has_room(at)) {
-                let middle = place(side, out);
-                sketch.path(&[at, [0, 1].map(|i| at[i] + side * out * upper[i])], INK, 1.0, "");
-                sketch.name([middle[0], middle[1] + 0.35 * self.text], &format!("{share:.0} %"), "middle", self.text, INK);
-                taken.extend([middle, place(side, 10.0)]);
-            }
-            sketch.ring(at, 3.0, INK, 1.3);
+            let words = places.into_iter().find(|at| is_named && has_room(at));
+            sketch.group(&format!(r#"class="mark" data-cycles="{:.1}""#, share / 100.0 * self.life), |sketch| {
+                if let Some((side, out)) = words {
+                    let middle = place(side, out);
+                    sketch.path(&[at, [0, 1].map(|i| at[i] + side * out * upper[i])], INK, 1.0, "");
+                    sketch.name([middle[0], middle[1] + 0.35 * self.text], &format!("{share:.0} %"), "middle", self.text, INK);
+                    taken.extend([middle, place(side, 10.0)]);
+                }
+                sketch.ring(at, 3.0, INK, 1.3);
+            });
         }
     }
 
@@ -268,6 +309,10 @@ impl<'a> Drawing<'a> {
 
     /// What is held, and arrows of the loads, as long as the load is large there.
     pub(crate) fn arrows(&self, sketch: &mut Sketch) {
+        sketch.group(r#"class="plate-load""#, |sketch| self.held_and_pulled(sketch));
+    }
+
+    fn held_and_pulled(&self, sketch: &mut Sketch) {
         for [from, to] in &self.plate.held_mm {
             self.hold(sketch, *from, *to);
         }
@@ -315,27 +360,17 @@ impl<'a> Drawing<'a> {
         }
     }
 
-    /// A frame with the cracks and their ways, enlarged.
-    fn detail(&self, sketch: &mut Sketch, [low, high]: [Point; 2], size: Size) {
+    /// The cracks and their ways, enlarged: the corner and size of the part in the picture, px, and the part.
+    fn detail(&self, [low, high]: [Point; 2], size: Size) -> (Point, Point, Sketch) {
         let whole = [0.53 * size.width - 8.0, size.height - 24.0 - 2.0 * BELOW];
         let room = 0.22 * (high[0] - low[0]).max(high[1] - low[1]).max(1e-6);
-        let spans = [high[0] - low[0] + 2.0 * room, high[1] - low[1] + 2.0 * room];
-        let scale = (whole[0] / spans[0]).min(whole[1] / spans[1]);
-        let frame = [whole[0], (spans[1] * scale).max(0.55 * whole[0]).min(whole[1])];
-        let place = [0.47 * size.width, 24.0 + 0.5 * (whole[1] - frame[1])];
-        scale_bar(sketch, [place[0] + 1.0, place[1] + frame[1] + 1.5 * self.text], [scale, whole[0] / scale], self.text);
-        let middle = along(low, high, 0.5);
-        let mut inner = Sketch::new(scale, [0.5 * frame[0] - middle[0] * scale, 0.5 * frame[1] + middle[1] * scale]);
+        let part = [low.map(|x| x - room), high.map(|x| x + room)];
+        let mut inner = middled(part, whole, [0.0; 2]);
+        let frame = [whole[0], ((part[1][1] - part[0][1]) * inner.scale).max(0.55 * whole[0]).min(whole[1])];
+        inner.origin = [0, 1].map(|i| inner.origin[i] + 0.5 * frame[i]);
         self.body(&mut inner);
         self.cracks(&mut inner, true);
-        sketch.within(place, frame, inner);
-        let corner = |x: f64, y: f64| [place[0] + x * frame[0], place[1] + y * frame[1]];
-        sketch.path(&[corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0), corner(0.0, 0.0)], EDGE, 1.0, "");
-        // What the frame shows, in the whole plate.
-        let half = [0, 1].map(|i| 0.5 * frame[i] / scale);
-        let of_plate = |x: f64, y: f64| sketch.place([middle[0] + x * half[0], middle[1] + y * half[1]]);
-        let box_of = [of_plate(-1.0, -1.0), of_plate(1.0, -1.0), of_plate(1.0, 1.0), of_plate(-1.0, 1.0), of_plate(-1.0, -1.0)];
-        sketch.path(&box_of, "#7b8794", 1.0, "3 3");
+        ([0.47 * size.width, 24.0 + 0.5 * (whole[1] - frame[1])], frame, inner)
     }
 }
 
@@ -354,8 +389,10 @@ pub(crate) fn scale_bar(sketch: &mut Sketch, [x, y]: Point, [scale, span]: [f64;
     let power = 10f64.powf(most.log10().floor());
     let length = [5.0, 2.0, 1.0].into_iter().map(|part| part * power).find(|length| *length <= most).unwrap_or(power);
     let end = x + length * scale;
-    sketch.path(&[[x, y - 5.0], [x, y], [end, y], [end, y - 5.0]], EDGE, 1.2, "");
-    sketch.name([end + 6.0, y], &format!("{length} {}", name_of("mm")), "start", text, QUIET);
+    sketch.group(r#"class="plate-rule""#, |sketch| {
+        sketch.path(&[[x, y - 5.0], [x, y], [end, y], [end, y - 5.0]], EDGE, 1.2, "");
+        sketch.name([end + 6.0, y], &format!("{length} {}", name_of("mm")), "start", text, QUIET);
+    });
 }
 
 /// What the colours stand for.
