@@ -214,7 +214,7 @@ fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> peri
     let mut notes = Vec::new();
     let load = measured.load();
     if !table.contains_key("loading") && load.len() < 2 {
-        let remedy = [&["add a section [loading]".to_owned()][..], &measured.warnings].concat().join("; ");
+        let remedy = [&["add a section [loading]".to_owned()][..], &measured.warnings[..]].concat().join("; ");
         return Err(input_missing("loading", "is missing", remedy));
     }
     if !table.contains_key("loading") {
