@@ -162,7 +162,7 @@ export function createPredictView(materials) {
     try {
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;
       // One that is asked for by its address may be older than these.
-      if (wanted && !calibrations.some((one) => one.id === wanted)) calibrations.push(await getJson(`/v1/calibrations/${encodeURIComponent(wanted)}`));
+      if (wanted && wanted !== BY_HAND && !calibrations.some((one) => one.id === wanted)) calibrations.push(await getJson(`/v1/calibrations/${encodeURIComponent(wanted)}`));
       show(byId("law-problem"));
     } catch (error) {
       show(byId("law-problem"), problemBox(error, () => loadLaws(wanted)));
