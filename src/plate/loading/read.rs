@@ -209,7 +209,7 @@ pub fn mistakes(loading: &Value, beside: &[&str]) -> Vec<InputError> {
     }
     if let Some(key) = given.first(BARE) {
         if key.contains("_min") {
-            return one(given.refuse(key, "is not a key", "give stress_ratio = minimum / maximum beside the maximum"));
+            return one(given.refuse(key, "is not a key", "give the maximum with stress_ratio = minimum / maximum"));
         }
         return one(given.refuse(key, "ambiguous: maximum or range?", format!("give exactly one of {MAGNITUDES}")));
     }
