@@ -4,6 +4,7 @@ use std::path::Path;
 
 use perilife_base::columns::Table;
 use perilife_base::input::{Document, Folder};
+use perilife_base::units::shown::crack_length;
 use perilife_base::units::us::{System, renamed};
 use perilife_base::units::words::{in_units, with_keys};
 use perilife_growth::case::Case;
@@ -178,6 +179,14 @@ fn quantities_in_words_change_and_nothing_else() {
         in_units("crack 0.39370 inch, 13.872 ksi√in, 12 in the plate", System::Si),
         "crack 10.00 mm, 15.243 MPa√m, 12 in the plate"
     );
+}
+
+/// A short crack keeps its digits, and one of almost 10 mm has those of 10 mm.
+#[test]
+fn crack_lengths_have_the_digits_that_matter() {
+    let told =
+        [(5e-3, "5.00"), (1.27e-3, "1.27"), (0.127e-3, "0.127"), (9.99999e-3, "10.0"), (48.546e-3, "48.5"), (0.1016, "101.6")];
+    told.iter().for_each(|(metres, text)| assert_eq!(crack_length(*metres), *text));
 }
 
 #[test]
