@@ -121,11 +121,14 @@ impl CalibrationCase {
                 Ok(case) => case,
                 Err(error) => {
                     let read = keys().and_then(|keys| Ok((readings(&keys, &document.folder)?.0, keys)));
-                    let Ok((read, keys)) = read else { return Err(error) };
-                    let notes = complete(&mut table, &read, &keys)?;
-                    if notes.is_empty() {
-                        return Err(error);
-                    }
+                    // Why the readings do not give what is missing is the mistake then.
+                    let told = error.to_string();
+                    let is_theirs = told.contains("loading: is missing") || told.contains("crack_length_mm: is missing");
+                    let notes = match read.and_then(|(read, keys)| complete(&mut table, &read, &keys)) {
+                        Err(unread) if is_theirs => return Err(unread),
+                        Ok(notes) if !notes.is_empty() => notes,
+                        _ => return Err(error),
+                    };
                     let mut case = of_table(&table)?;
                     case.warnings.extend(notes);
                     case
@@ -210,9 +213,12 @@ fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> peri
     const LENGTH: &str = "crack_length_mm";
     let mut notes = Vec::new();
     let load = measured.load();
-    if !table.contains_key("loading") && load.len() > 1 {
-        let words = load.iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ");
-        notes.push(format!("loading: {words}, from the readings"));
+    if !table.contains_key("loading") && load.len() < 2 {
+        let remedy = [&["add a section [loading]".to_owned()][..], &measured.warnings[..]].concat().join("; ");
+        return Err(input_missing("loading", "is missing", remedy));
+    }
+    if !table.contains_key("loading") {
+        notes.push(format!("loading: {}, from the readings", measured.load_words()));
         let load = load.into_iter().map(|(key, value)| (key.to_owned(), Value::Float(value))).collect();
         table.insert("loading".to_owned(), Value::Table(load));
     }

@@ -88,13 +88,11 @@ impl MisfitAtEnds {
 
     /// Both ends in one line.
     pub fn words(&self) -> String {
-        let figure =
-            |value: f64, whole: f64, digits: usize| format!("{value:.*}", if value < whole { digits } else { digits - 1 });
         let end = |end: Misfit| {
-            let size = figure(end.rate_over_law_percent.abs(), 99.95, 1);
-            let sense = if end.rate_over_law_percent < 0.0 { "slower" } else { "faster" };
-            let [from, to] = [end.delta_k_from_mpa_sqrt_m, end.delta_k_to_mpa_sqrt_m].map(|k| figure(k, 9.995, 2));
-            format!("{size} % {sense} at {from} to {to}")
+            let size = end.rate_over_law_percent.abs();
+            let (digits, sense) = (usize::from(size < 99.95), if end.rate_over_law_percent < 0.0 { "slower" } else { "faster" });
+            let [from, to] = [end.delta_k_from_mpa_sqrt_m, end.delta_k_to_mpa_sqrt_m];
+            format!("{size:.digits$} % {sense} at {from:.2} to {to:.2}")
         };
         let ends: Vec<String> = [self.low, self.high].into_iter().flatten().map(end).collect();
         ends.join(", ").replacen("at", "at ΔK", 1)

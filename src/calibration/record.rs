@@ -14,7 +14,7 @@ use super::laws::{FitLaw, LawFits};
 use super::population::Population;
 use super::results::{record, tidy};
 use super::search::{Constants, FittedCurve};
-use perilife_base::units::{MM, MM_PER_CYCLE};
+use perilife_base::units::{MM, MM_PER_CYCLE, shown::crack_length, shown::name_of};
 use perilife_growth::case::record::{CurveRecord, FittedLaw, SourceFile};
 use perilife_laws::FatigueLaw;
 use perilife_laws::growth_law::GrowthLawKind;
@@ -226,7 +226,7 @@ impl LivesRecord {
             [self.life_measured, self.life_fitted, self.rms_life_error, self.rate_at_pivot_relative_error]
                 .map(|figure| figure.unwrap_or(f64::NAN));
         let life = 100.0 * (fitted / measured - 1.0);
-        let [from, to] = [self.from_crack_length_mm, self.to_crack_length_mm];
+        let [from, to] = [self.from_crack_length_mm, self.to_crack_length_mm].map(|length| crack_length(length * MM));
         let (rate, pivot) = (self.rate_at_pivot_mm_per_cycle, self.pivot_delta_k_mpa_sqrt_m);
         let (c, m) = (self.paris_c_mm_per_cycle, self.paris_m);
         let [low, high] = [self.delta_k_min_mpa_sqrt_m, self.delta_k_max_mpa_sqrt_m];
@@ -234,9 +234,10 @@ impl LivesRecord {
         let mut lines = vec![
             format!("{}, R = {}: {of_law}da/dN = {c:.3e} ΔK^{m:.3} (mm/cycle, MPa√m)", self.material, self.stress_ratio),
             format!("  Exponent       m = {m:.3}{}{source}", error(self.paris_m_error, 3)),
-            format!("  Rate           {rate:.3e} mm/cycle ± {:.1} % at the reference ΔK = {pivot:.1} MPa√m", 100.0 * rate_error),
+            format!("  Rate           {rate:.3e} mm/cycle ± {:.1} % at the reference ΔK = {pivot:.2} MPa√m", 100.0 * rate_error),
             format!(
-                "  Tested ΔK      {low:.2} to {high:.2} MPa√m (a = {from:.1} to {to:.1} mm, {count} specimen{})",
+                "  Tested ΔK      {low:.2} to {high:.2} MPa√m (a = {from} to {to} {}, {count} specimen{})",
+                name_of("mm"),
                 if count == 1 { "" } else { "s" }
             ),
             format!("  Fit            life {life:+.2} %, rms {:.1} % (fitted to {})", 100.0 * rms, self.fitted_to),

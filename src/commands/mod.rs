@@ -187,7 +187,7 @@ pub struct CommandLine {
     pub verbose: u8,
     /// Output units: si (mm, MPa, MPa√m) or us (in, ksi, ksi√in)
     ///
-    /// Inputs accept both. Always metric: fitted.toml, case.toml, checkpoints, ParaView, Parquet, option values without a unit.
+    /// Inputs accept both. Always metric: fitted.toml, case.toml, checkpoints, ParaView, Parquet.
     #[arg(
         long,
         value_name = "UNITS",

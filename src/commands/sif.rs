@@ -31,7 +31,7 @@ pub struct Args {
     /// Folder of stresses (element_free_galerkin), or table of --sweep
     #[arg(long, value_name = "DIR|FILE.csv", help_heading = "Output")]
     pub out: Option<PathBuf>,
-    /// K, T, β and compliance for these crack lengths, mm (--out FILE.csv)
+    /// K, T, β and compliance for crack lengths, in the unit of --units
     #[arg(long, value_name = "FIRST:LAST:STEP", conflicts_with_all = ["method", "paraview"], help_heading = "Method")]
     pub sweep: Option<String>,
     /// Write β(a) of the fastest tip for AFGROW and specimen.beta_file

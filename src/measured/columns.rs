@@ -59,9 +59,8 @@ pub struct Layout {
 }
 
 const KNOWN: &str = "known columns: specimen, cycles (N, kilocycles, megacycles), crack_length_mm (a [mm], crack_length_inch, \
-                     crack_length_m), \
-                     front and back, force_max_kn and force_min_kn; a wide table starts with cycles or crack length and has at least two \
-                     more columns, all of them specimens (S1, S2, ...; a1, a2, ... are ambiguous)";
+                     crack_length_m), front and back, force_max_kn and force_min_kn; a wide table starts with cycles or crack \
+                     length and has at least two more columns, all of them specimens (S1, S2, ...; a1, a2, ... are ambiguous)";
 
 /// Recognises the layout of a table by its header and by what the user says.
 /// Errors: columns that are not there, that say the same, or that do not make up a test; cells that leave the decimal sign open.
@@ -287,8 +286,7 @@ fn cycle_column(table: &Table, column: Column, import: &Import) -> Result<Column
         if let Some((line, text)) = table.preamble.iter().find(|(_, text)| is_of_thousands(text)) {
             return Err(Fault { line: Some(*line), value: Some(text), ..whole_file(&table.file) }.error(
                 "may give the unit of cycles; the header does not",
-                "set measured.cycle_unit = \"kilocycles\", or \"cycles\" (--cycle-unit), or name the unit in the \
-                 header",
+                "set measured.cycle_unit = \"kilocycles\", or \"cycles\" (--cycle-unit), or name the unit in the header",
             ));
         }
         given = Some(like);

@@ -53,6 +53,18 @@ impl Measured {
         load.map(|load| (key, round_off(load / unit))).into_iter().chain(ratio).collect()
     }
 
+    /// The same in words.
+    pub fn load_words(&self) -> String {
+        self.load().iter().map(|(key, value)| format!("{key} = {value}")).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Warning of one load of all readings that is not that of the case.
+    fn other_load(&self) -> Option<String> {
+        let (load, factor) = (self.load_words(), *self.curves.first()?.load_factor.first()?);
+        let is_other = !load.is_empty() && !load.starts_with("stress_ratio") && (factor - 1.0).abs() > STATED_DIFFERENCE;
+        is_other.then(|| format!("loading: ΔK of the readings ({load}) is used, {factor:.3} times that of the case; correct one"))
+    }
+
     /// Sets the readings against the specimen and the load of a case.
     /// Errors: readings beyond the specimen; loads that it cannot have.
     pub fn compare_with(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
@@ -70,6 +82,7 @@ impl Measured {
         self.check_lengths(limit, limit_name)?;
         self.check_half_lengths(specimen)?;
         self.resolve_loads(specimen, loading)?;
+        self.warnings.extend(self.other_load());
         self.curves.iter().try_for_each(|curve| compare(curve, specimen, loading))?;
         self.leave_fracture_out(specimen, material, loading)?;
         self.check_sides(specimen);

@@ -192,9 +192,11 @@ impl Message {
     }
 }
 
-/// Checks that did not pass, the most severe first, then warnings.
+/// Checks that did not pass, the most severe first, then warnings, and last what was not checked.
 pub fn messages(checks: &[Check], warnings: &[String]) -> Vec<Message> {
-    checks.iter().filter_map(Message::of).chain(warnings.iter().map(|line| Message::warning(line))).collect()
+    let (open, unchecked): (Vec<&Check>, Vec<&Check>) = checks.iter().partition(|check| check.verdict != Verdict::NotChecked);
+    let warnings = warnings.iter().map(|line| Message::warning(line));
+    open.into_iter().filter_map(Message::of).chain(warnings).chain(unchecked.into_iter().filter_map(Message::of)).collect()
 }
 
 /// The verdict over all checks.
@@ -288,17 +290,19 @@ fn small_scale_yielding(case: &Case, prediction: &Prediction) -> Option<Check> {
     const NAME: &str = "small_scale_yielding";
     let zone = plastic_zone(case, &prediction.curve)?;
     let percent = 100.0 * zone.life_share_too_large;
-    let never = zone.too_large_to.is_none() && zone.too_large_from == Some(zone.first.crack_length);
+    // A short crack at a hole outgrows its zone, and has another too large one at its end.
+    let (is_first, never) = (zone.too_large_from == Some(zone.first.crack_length), zone.life_share_too_large >= 1.0);
     let words = match zone.too_large_from {
         None => "LEFM (small-scale yielding): valid to the end".to_owned(),
         Some(from) if never => format!("LEFM (small-scale yielding): not valid from the start (a = {})", two_digits(from)),
         Some(from) => {
-            let until = zone.too_large_to.map_or_else(String::new, |to| format!(" to {}", two_digits(to)));
+            let again = if is_first { " and again at the end" } else { "" };
+            let until = zone.too_large_to.map_or_else(|| again.to_owned(), |to| format!(" to {}", two_digits(to)));
             format!("LEFM (small-scale yielding): not valid from a = {}{until} ({percent:.1} % of life)", two_digits(from))
         }
     };
     let remedy = match zone.too_small {
-        _ if never => "reduce the load: K is not valid for this crack",
+        _ if never => "reduce the load, or start with a longer crack: K is not valid for this one",
         "ligament" => "stop the analysis at this length (stop.crack_length_mm): growth beyond it is underestimated",
         _ => "start with a longer crack: growth of shorter ones is underestimated",
     };

@@ -24,7 +24,7 @@ use super::specimen_picture::{nodes_svg, tip_svg};
 use super::{factors, spectrum, vtk};
 use perilife_base::columns::Table;
 use perilife_base::error::{Error, Result};
-use perilife_base::units::{KN, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M};
+use perilife_base::units::{KN, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M, shown::crack_length, shown::name_of};
 use perilife_calibration::inspection::InspectFrom;
 use perilife_growth::case::needs;
 use perilife_growth::case::{Case, Model, RECORD};
@@ -335,7 +335,7 @@ fn phase_words(prediction: &Prediction) -> Option<String> {
 
 /// A length, m, at the start and the end.
 fn from_to(from: f64, to: f64) -> String {
-    format!("{:.1} → {:.1} mm", from / MM, to / MM)
+    format!("{} → {} {}", crack_length(from), crack_length(to), name_of("mm"))
 }
 
 /// Growth by the length of the specimen: in a plate the sum of all cracks.

@@ -112,7 +112,7 @@ fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) ->
     let Some(ligament) = specimen.ligament(longest) else {
         return criterion(NAME, rule.to_owned(), "unknown".to_owned(), None, "not applicable (no standard specimen)".to_owned());
     };
-    let found = format!("{:.1} mm", ligament / MM);
+    let found = format!("{:.2} mm", ligament / MM);
     let Some(strength) = calibration.yield_strength else {
         return criterion(NAME, rule.to_owned(), found, None, "not checked (no yield strength)".to_owned());
     };
@@ -120,7 +120,7 @@ fn ligament(calibration: &CalibrationCase, case: &Case, delta_k: &dyn Fn(f64) ->
     let asked = specimen.ligament_asked(most * loading.maximum, most * delta_k(longest) / loading.range_share(), strength);
     let holds = ligament >= asked;
     let remark = if holds { "met" } else { "readings with a smaller ligament are flagged ligament_yields" };
-    criterion(NAME, format!("{rule} = {:.1} mm", asked / MM), found, Some(holds), remark.to_owned())
+    criterion(NAME, format!("{rule} = {:.2} mm", asked / MM), found, Some(holds), remark.to_owned())
 }
 
 fn steps(curves: &[MeasuredCurve]) -> Criterion {

@@ -4,7 +4,7 @@ use toml::Value;
 
 use perilife_base::error::{Result, input};
 use perilife_base::input::{Document, LENGTH};
-use perilife_base::units::MM;
+use perilife_base::units::{MM, round_off, shown::length_given};
 use perilife_growth::case::Case;
 use perilife_growth::case::needs;
 use perilife_plate::specimen::SpecimenKind;
@@ -15,12 +15,12 @@ const LENGTHS_MOST: f64 = 10_000.0;
 /// Share of a step by which the last one may fall short.
 const SLACK: f64 = 1e-6;
 
-/// The lengths, m, of `first:last:step` in mm; the last one is always among them.
+/// The lengths, m, of `first:last:step`, each as [`length_given`]; the last one is always among them.
 /// Errors: [`perilife_base::error::Error::Input`] on the option.
 pub fn lengths(asked: &str) -> Result<Vec<f64>> {
-    let refuse = |problem: &str| input(KEY, asked, problem, "give first:last:step in mm, such as 10:40:1");
-    let numbers = asked.split(':').map(|part| part.trim().parse::<f64>()).collect::<std::result::Result<Vec<_>, _>>();
-    let Ok([first, last, step]) = numbers.as_deref() else { return Err(refuse("is not three numbers")) };
+    let refuse = |problem: &str| input(KEY, asked, problem, "give first:last:step, such as 10:40:1 or 0.4in:1.6in:0.05in");
+    let numbers = asked.split(':').map(|part| Some(round_off(length_given(part)? / MM))).collect::<Option<Vec<f64>>>();
+    let Some([first, last, step]) = numbers.as_deref() else { return Err(refuse("is not three lengths")) };
     for number in [first, last, step] {
         LENGTH.read(KEY, *number)?;
     }

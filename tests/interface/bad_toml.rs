@@ -178,6 +178,7 @@ const BAD: &[Bad] = &[
     plate("width_mm = 100\n", "", &["specimen.width_mm", "missing", "outline_mm"]),
     // Material
     panel("name = \"al2024-t3\"", "name = \"unobtainium\"", &[":8:", "material.name", "unobtainium", "al2024-t3"]),
+    panel("name = \"al2024-t3\"", "name = \"7075-T6\"", &[":8:", "material.name", "did you mean \"al7075-t6\"?"]),
     panel("name = \"al2024-t3\"", "youngs_modulus_gpa = 70", &["material.poisson_ratio", "missing"]),
     plate(
         "poisson_ratio = 0.3",
@@ -200,6 +201,8 @@ const BAD: &[Bad] = &[
         "stress = 48.28",
         &[":10:", "loading.stress", "maximum or range", "stress_max_mpa, stress_range_mpa"],
     ),
+    panel("stress_ratio = 0.2", "stress_min_mpa = 12", &[":11:", "loading.stress_min_mpa", "stress_ratio = minimum / maximum"]),
+    panel("stress_ratio = 0.2", "R = 0.2", &[":11:", "loading.R = 0.2", "did you mean stress_ratio?"]),
     panel(
         "stress_ratio = 0.2",
         "stress_ratio = 0.2\nsequence = [1, 2]",

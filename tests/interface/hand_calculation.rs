@@ -79,7 +79,7 @@ fn a_plate_is_refused_with_the_remedy() {
         .replace("crack_length_mm = 9.0", "cracks = [{ from_mm = [-9, 0], to_mm = [9, 0] }]");
     fs::write(dir.path().join("plate.toml"), plate).unwrap();
     for command in [&["predict", "plate.toml", "--out", "run"][..], &["check", "plate.toml"]] {
-        let words = ["plate.toml:14", "model.method = \"handbook\"", "(plate)", "method = \"peridynamics\""];
+        let words = ["plate.toml:14", "model.method = \"handbook\"", "(plate)", "remove it (nodes find K)"];
         assert_refused(&perilife(dir.path(), command), 2, &words);
     }
     assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);

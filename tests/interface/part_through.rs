@@ -149,7 +149,7 @@ fn the_example_runs_through_break_through_to_its_end() {
     let (stdout, stderr) =
         texts(&perilife(dir.path(), &["predict", "hole.toml", "--out", "run", "--cross-check", "--residual-strength", "-v"]));
     println!("{stderr}{stdout}");
-    assert!(stdout.contains("Breakthrough   after") && stdout.contains("depth 1.3 → 5.0 mm"), "{stdout}");
+    assert!(stdout.contains("Breakthrough   after") && stdout.contains("depth 1.27 → 5.00 mm"), "{stdout}");
     assert!(stdout.contains("Cross-check") && stdout.contains("no other method"), "{stdout}");
     assert!(stderr.contains("Newman-Raju K: ±5 % (source)"), "{stderr}");
     let (stdout, _) = texts(&perilife(dir.path(), &["check", "hole.toml", "-v"]));

@@ -312,7 +312,16 @@ fn other_commands_print_in_the_units_asked_for() {
             run(
                 here,
                 &[
-                    &["sif", &panel, "--sweep", "30:34:2", "--units", units, "--out", &format!("sweep_{units}.csv")][..],
+                    &[
+                        "sif",
+                        &panel,
+                        "--sweep",
+                        if units == "us" { "30mm:1.3385826771653544:2mm" } else { "30:34:2" },
+                        "--units",
+                        units,
+                        "--out",
+                        &format!("sweep_{units}.csv"),
+                    ][..],
                     &["--beta", &format!("beta_{units}.csv")],
                 ]
                 .concat(),

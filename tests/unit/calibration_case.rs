@@ -295,4 +295,32 @@ fn readings_say_load_and_first_crack_length_where_the_file_does_not() {
     }
     let error = read(&edge, "crack_length_mm", "50").unwrap_err().to_string();
     assert!(error.contains("loading: is missing"), "{error}");
+    // What the readings could give is missing because they are not understood: that is said.
+    let error = read(&edge, "crack length", "60.35").unwrap_err().to_string();
+    assert!(error.contains("crack length") && error.contains("measured.length_unit"), "{error}");
+}
+
+#[test]
+fn a_load_of_the_case_that_is_not_that_of_its_readings_is_told() {
+    let read = |head: &str, load: &str, text: &str| {
+        let rows = CURVES
+            .lines()
+            .enumerate()
+            .map(|(i, line)| if i == 0 { format!("{line},{head}\n") } else { format!("{line},{load}\n") });
+        let folder = tempdir().unwrap();
+        fs::write(folder.path().join("curves.csv"), rows.collect::<String>()).unwrap();
+        fs::write(folder.path().join("alloy.toml"), text).unwrap();
+        CalibrationCase::from_file(&folder.path().join("alloy.toml"), &[])
+    };
+    for (load, words) in
+        [("60.35", ""), ("120.7", "stress_ratio = 0.2) is used, 2.000 times that of the case"), ("30.175", "0.500 times")]
+    {
+        let told = read("stress_max_mpa,stress_ratio", &format!("{load},0.2"), GOOD).unwrap().warnings;
+        let line = told.iter().find(|line| line.contains("times that of the case"));
+        assert!(line.map_or(words.is_empty(), |line| !words.is_empty() && line.contains(words)), "{load}: {told:?}");
+    }
+    // A column that may be the load is named where a load is missing.
+    let open = GOOD.replace("[loading]\nkind = \"constant_amplitude\"\nstress_range_mpa = 48.28\nstress_ratio = 0.2\n", "");
+    let error = read("P (kN)", "20", &open).unwrap_err().to_string();
+    assert!(error.contains("loading: is missing") && error.contains("ignored columns: P (kN)"), "{error}");
 }

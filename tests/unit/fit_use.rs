@@ -99,6 +99,16 @@ fn a_short_crack_at_a_rim_is_not_called_a_ligament() {
     let check = of_run(&case(10.0), &run).into_iter().find(|check| check.name == "small_scale_yielding").unwrap();
     assert!(check.words.contains("not valid from a = 1.5 mm to 1.5 mm (") && !check.words.contains("100.0 %"), "{check:?}");
     let told = &made_up_run::result(&case(10.0), &run)["plastic_zone"];
+    // With too little ligament at the end as well it still holds in between.
+    let mut long = predict(&case(10.0), &Silent).unwrap();
+    long.curve.truncate(3);
+    for (row, needed) in long.curve.iter_mut().zip([1.75e-3_f64, 1.0e-3, 30.0e-3]) {
+        row.delta_k = 0.9 * 345e6 * (needed * std::f64::consts::FRAC_PI_4).sqrt();
+    }
+    let check = of_run(&case(10.0), &long).into_iter().find(|check| check.name == "small_scale_yielding").unwrap();
+    let is_valid_between =
+        check.verdict != Verdict::Failed && check.words.contains("not valid from a = 1.5 mm and again at the end (");
+    assert!(is_valid_between && !check.words.contains("100.0 %"), "{check:?}");
     assert!((told["first"]["ligament_mm"].as_f64().unwrap() - 13.5).abs() < 5e-3, "{told}");
     assert!(told["first"]["over_crack"].as_f64().unwrap() > told["first"]["over_ligament"].as_f64().unwrap());
 }

@@ -69,7 +69,7 @@ fn only_specimens_of_the_handbook_are_taken() {
     for (specimen, set) in [(plate, ""), (clamped.as_str(), ""), (PANEL, "specimen.length_mm=160")] {
         let set: Vec<&str> = [set].into_iter().filter(|set| !set.is_empty()).collect();
         let error = try_hand_case(specimen, &set).unwrap_err();
-        for words in ["model.method = \"handbook\"", "no K(a)", "\"peridynamics\"", "middle_tension"] {
+        for words in ["model.method = \"handbook\"", "no K(a)", "remove it (nodes find K)", "compact_tension"] {
             assert!(error.to_string().contains(words), "{words} in {error}");
         }
         assert_eq!(error.exit_code(), 2);

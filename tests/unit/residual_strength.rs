@@ -2,6 +2,7 @@
 
 use perilife_base::units::{MPA, MPA_SQRT_M};
 use perilife_growth::predict::StopReason;
+use perilife_growth::predict::judgement::breaks_at_once;
 use perilife_growth::predict::residual_strength::{check_strength, residual_strength};
 use perilife_plate::specimen::handbook::handbook;
 use perilife_results::run::strength_table as table;
@@ -70,6 +71,14 @@ fn a_required_load_ends_the_life() {
     let [by_factor, by_stress] = ["stop.limit_load_factor=2", "stop.required_strength_mpa=120.7"]
         .map(|key| hand_run(PANEL, &[toughness, key]).life().unwrap());
     assert!((by_factor / by_stress - 1.0).abs() < 1e-12);
+}
+
+/// K_max of the message is that under the required strength, not of the cycles.
+#[test]
+fn a_required_strength_that_the_plate_never_has_is_named() {
+    let set = ["material.toughness_mpa_sqrt_m=60", "stop.required_strength_mpa=700"];
+    let words = breaks_at_once(&hand_case(PANEL, &set), &hand_run(PANEL, &set)).unwrap();
+    assert!(words.starts_with("fails under the required strength, at the start: K_max "), "{words}");
 }
 
 #[test]

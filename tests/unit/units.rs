@@ -4,6 +4,7 @@ use std::path::Path;
 
 use perilife_base::columns::Table;
 use perilife_base::input::{Document, Folder};
+use perilife_base::units::shown::crack_length;
 use perilife_base::units::us::{System, renamed};
 use perilife_base::units::words::{in_units, with_keys};
 use perilife_growth::case::Case;
@@ -146,7 +147,7 @@ fn quantities_in_words_change_and_nothing_else() {
     let told = [
         ("life measured 253726, fitted 253539 cycles (-0.07 %)", "life measured 253726, fitted 253539 cycles (-0.07 %)"),
         ("Crack length   10.0 → 101.6 mm (tip 1 governs)", "Crack length   0.3937 → 4.000 inch (tip 1 governs)"),
-        ("rate 2.2405e-4 mm/cycle ± 1.87 % at ΔK = 15.243 MPa√m", "rate 8.8209e-6 in/cycle ± 1.87 % at ΔK = 13.872 ksi√in"),
+        ("rate 2.2405e-4 mm/cycle ± 1.87 % at ΔK = 15.243 MPa√m", "rate 8.821e-6 in/cycle ± 1.87 % at ΔK = 13.872 ksi√in"),
         ("calibrated ΔK  8.189 to 26.540 MPa√m", "calibrated ΔK  7.452 to 24.153 ksi√in"),
         ("11.3 % of life below ΔK 8.19, the lowest fitted", "11.3 % of life below ΔK 7.453 ksi√in, the lowest fitted"),
         ("plate, 300 × 100 × 2 mm, 1 crack", "plate, 11.81 × 3.937 × 0.07874 inch, 1 crack"),
@@ -156,15 +157,19 @@ fn quantities_in_words_change_and_nothing_else() {
         ),
         (
             "box (2.54, 0) to (-25.4, 5.08) mm; velocity (25400, free) mm/s",
-            "box (0.1000, 0) to (-1.000, 0.2000) inch; velocity (1000.0, free) in/s",
+            "box (0.1000, 0) to (-1.000, 0.2000) inch; velocity (1000, free) in/s",
         ),
-        ("at (12.7000, -25.4000) mm; near (25.4, 5.08 mm)", "at (0.500000, -1.00000) inch; near (1.000, 0.2000 inch)"),
+        ("at (12.7000, -25.4000) mm; near (25.4, 5.08 mm)", "at (0.5000, -1.000) inch; near (1.000, 0.2000 inch)"),
         ("give a length between 0.001 and 254 mm", "give a length between 3.937e-5 and 10.00 inch"),
         ("tips 1 and 5.08 mm of crack 2", "tips 1 and 0.2000 inch of crack 2"),
         ("da/dN = 1.0000e-8 ΔK^3 (mm/cycle, MPa√m)", "da/dN = 5.2236e-10 ΔK^3 (in/cycle, ksi√in)"),
         ("model.spacing_mm asks; 30000 points, N = 5 N", "model.spacing_mm asks; 30000 points, N = 1.124 lbf"),
         ("Crack length a, mm", "Crack length a, inch"),
-        ("E 73.1 GPa, 345 MPa, 4.448222 kN, 10 N/mm^1.5", "E 10.60 Msi, 50.04 ksi, 1.000000 kip, 10 N/mm^1.5"),
+        // Digits of the conversion are none of the quantity: 6 ksi, and a force of 0.8 kip.
+        ("stress 2.0684 to 41.3685 MPa", "stress 0.3000 to 6.000 ksi"),
+        ("force_max_kn = 3.55857729, 1.342 mm", "force_max_kn = 3.55857729, 0.05283 inch"),
+        ("force 3.5586 kN, crack 34.0868 mm", "force 0.8000 kip, crack 1.342 inch"),
+        ("E 73.1 GPa, 345 MPa, 4.448222 kN, 10 N/mm^1.5", "E 10.60 Msi, 50.04 ksi, 1.000 kip, 10 N/mm^1.5"),
     ];
     for (metric, us) in told {
         assert_eq!(in_units(metric, System::Us), us);
@@ -172,8 +177,16 @@ fn quantities_in_words_change_and_nothing_else() {
     }
     assert_eq!(
         in_units("crack 0.39370 inch, 13.872 ksi√in, 12 in the plate", System::Si),
-        "crack 10.000 mm, 15.243 MPa√m, 12 in the plate"
+        "crack 10.00 mm, 15.243 MPa√m, 12 in the plate"
     );
+}
+
+/// A short crack keeps its digits, and one of almost 10 mm has those of 10 mm.
+#[test]
+fn crack_lengths_have_the_digits_that_matter() {
+    let told =
+        [(5e-3, "5.00"), (1.27e-3, "1.27"), (0.127e-3, "0.127"), (9.99999e-3, "10.0"), (48.546e-3, "48.5"), (0.1016, "101.6")];
+    told.iter().for_each(|(metres, text)| assert_eq!(crack_length(*metres), *text));
 }
 
 #[test]
@@ -182,10 +195,7 @@ fn keys_in_words_are_those_of_the_units() {
         ("end the life there by stop.crack_length_mm: beyond it", "end the life there by stop.crack_length_in: beyond it"),
         ("give fatigue.delta_k_threshold_mpa_sqrt_m.", "give fatigue.delta_k_threshold_ksi_sqrt_in."),
         ("not above fatigue.initiation.limit_mpa = 137.9", "not above fatigue.initiation.limit_ksi = 20.00"),
-        (
-            "loading.force_max_n=4448.222 and pins[0].pin_diameter_mm",
-            "loading.force_max_lbf=1000.000 and pins[0].pin_diameter_in",
-        ),
+        ("loading.force_max_n=4448.222 and pins[0].pin_diameter_mm", "loading.force_max_lbf=1000 and pins[0].pin_diameter_in"),
         ("model.spacing_mm = 2.54 mm", "model.spacing_in = 0.1000 inch"),
         // What has no size here stays as it is.
         ("paris_c_mm_per_cycle = 1e-8, outline_mm = [[0, 1]]", "paris_c_mm_per_cycle = 1e-8, outline_mm = [[0, 1]]"),

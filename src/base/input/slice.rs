@@ -19,8 +19,7 @@ pub const OF_SCENES: &[(&str, &[&str])] = &[
 
 /// Remedy of a fatigue case that asks for points of several levels.
 pub const LEVELS_OF_SCENES: &str = "remove it: levels are for scenes without cycles (`perilife fracture`); for fatigue use \
-                                    method = \
-     \"element_free_galerkin\", whose nodes refine themselves";
+                                    method = \"element_free_galerkin\", whose nodes refine themselves";
 
 /// Reads what the program wrote, a record or a source of tests, as a `T` that denies unknown fields; what users write is read by their
 /// [`keys`](mod@crate::keys).

@@ -16,6 +16,9 @@ pub struct Kinds<'a> {
     pub all: &'a [(&'static str, &'static [Key])],
 }
 
+/// Symbols of engineers that stand for keys.
+const SYMBOLS: [(&str, &str); 3] = [("R", "stress_ratio"), ("C", "paris_c_mm_per_cycle"), ("m", "paris_m")];
+
 /// What a key is told that is not known here, and the known one that was meant.
 pub(super) fn stranger(
     given: Given<'_>,
@@ -46,7 +49,8 @@ pub(super) fn stranger(
         let problem = format!("is not a key of {tag} = \"{own}\"; applies only to {shown}{more}");
         return (told(problem, format!("remove it, or use {tag} = \"{first}\"")), None);
     }
-    let near = nearest(name, names());
+    let of_symbol = |known: &&str| SYMBOLS.iter().any(|(symbol, key)| symbol.eq_ignore_ascii_case(name) && key == known);
+    let near = names().find(of_symbol).map(str::to_owned).or_else(|| nearest(name, names()));
     (told("unknown key".into(), meant(near.as_deref(), names())), near)
 }
 

@@ -63,6 +63,12 @@ pub fn length_given(text: &str) -> Option<f64> {
     Some(number.trim().parse::<f64>().ok()? * size)
 }
 
+/// A crack length, m, in the unit that is shown: 5.00, 73.2 and 0.127 mm, 0.2000 inch; 9.9999 mm are 10.0.
+pub fn crack_length(metres: f64) -> String {
+    let (length, digits) = (metres / MM * per("mm"), if shown() == System::Us { 3.0 } else { 2.0 });
+    format!("{length:.*}", (digits - (1.0005 * length.max(1e-9)).log10().floor()).max(1.0) as usize)
+}
+
 /// Name of the unit that is shown in place of a metric one.
 pub fn name_of(metric: &'static str) -> &'static str {
     Unit::named(metric, System::Si).map_or(metric, |unit| unit.word(shown()))

@@ -237,16 +237,21 @@ fn mark_level(text: &str, numbers: &mut [Number], to: System) {
     }
 }
 
-/// A written number times a factor, with as many digits, and in the same form.
+/// A written number times a factor, in the same form, with the fewest digits that lie within its rounding: 3.5586 kN are 0.8000 kip.
 fn times(written: &str, factor: f64) -> String {
     let plain: String = written.replace('−', "-").chars().filter(|c| !SPACES.contains(c)).collect();
     let Ok(value) = plain.parse::<f64>() else { return written.to_owned() };
     let mantissa = plain.split('e').next().unwrap_or("");
     let significant = mantissa.trim_start_matches(['-', '+', '0', '.']).bytes().filter(u8::is_ascii_digit).count();
-    let (value, digits) = (clean(value * factor), significant.max(DIGITS_LEAST));
+    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let unit = value / mantissa.parse::<f64>().unwrap_or(1.0) / 10f64.powi(decimals as i32);
+    let (value, slack) = (clean(value * factor), 0.5 * factor * unit);
     if value == 0.0 {
         return "0".to_owned();
     }
+    let rounded = |digits: &usize| format!("{value:.*e}", digits - 1).parse::<f64>().unwrap_or(f64::NAN);
+    let says_it = |digits: &usize| (rounded(digits) - value).abs() <= slack;
+    let digits = (DIGITS_LEAST..significant).find(says_it).unwrap_or(significant.max(DIGITS_LEAST));
     // Its size is that of the rounded number: 9.9999 with four digits is 10.00.
     let rounded = format!("{value:.*e}", digits - 1);
     let size = rounded.split_once('e').and_then(|(_, size)| size.parse::<i32>().ok()).unwrap_or(0);

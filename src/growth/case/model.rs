@@ -162,8 +162,8 @@ fn check_formula(specimen: &Specimen) -> Result<()> {
         return Ok(());
     }
     let problem = format!("has no K(a) for this specimen ({})", specimen.kind);
-    let remedy = "use model.method = \"peridynamics\"; or middle_tension, single_edge_tension (ends free to rotate), \
-                  double_edge_tension at least 1.5 widths long, or compact_tension; or give specimen.beta_file";
+    let remedy = "remove it (nodes find K), or give specimen.beta_file; formulas: tension strips at least 1.5 widths long (no clamped \
+                  ends), compact_tension, single_edge_bend, eccentric_single_edge_tension";
     Err(input("model.method", "\"handbook\"", problem, remedy))
 }
 

@@ -55,9 +55,17 @@ pub fn judge(case: &Case, prediction: &Prediction) -> Result<Vec<String>> {
         _ => {}
     }
     warnings.extend(beyond_load(case, prediction));
+    warnings.extend(hardly_loaded(prediction));
     warnings.extend(fit_use::of_other_ratios(case, prediction));
     warnings.extend(no_interaction(case));
     Ok(warnings)
+}
+
+/// A load or a size whose unit slipped: thresholds of metals are from 1 MPa√m.
+fn hardly_loaded(prediction: &Prediction) -> Option<String> {
+    let most = prediction.curve.iter().map(|row| row.delta_k).fold(0.0, f64::max) / MPA_SQRT_M;
+    let words = "is below the threshold of any metal: check the units of load, thickness and crack length";
+    (0.0 < most && most < 0.5).then(|| format!("ΔK up to {most:.3} MPa√m {words}"))
 }
 
 /// Warning of the life beyond the table of the load, under its last row.
@@ -94,7 +102,8 @@ pub fn breaks_at_once(case: &Case, prediction: &Prediction) -> Option<String> {
     let load = case.loading.doing(row.work, row.crack_length) * required;
     let k_max = row.k_max_at(required, &case.loading);
     // A limit may be reached but for round-off.
-    let words = || first_load(case, load, Some(k_max).filter(|k| *k > 0.0));
+    let when = if required == 1.0 { "in the first cycle" } else { "under the required strength, at the start" };
+    let words = || Some(first_load(case, load, Some(k_max).filter(|k| *k > 0.0))?.replacen("in the first cycle", when, 1));
     prediction
         .stop
         .is_strength()

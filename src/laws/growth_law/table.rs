@@ -175,8 +175,7 @@ impl Table {
         let unsaid = (!self.says_ratio).then(|| {
             format!(
                 "the table of rates has no stress ratio: its rates are used at R = {} unchanged; give it in a column \
-                 stress_ratio or \
-                 by growth_table = {{ file = \"...\", stress_ratio = ... }}",
+                 stress_ratio or by growth_table = {{ file = \"...\", stress_ratio = ... }}",
                 ratios[1]
             )
         });

@@ -19,5 +19,5 @@ pub static MODEL: RetardationSpec = RetardationSpec {
         let factor = 1.0 - (1.0 - constants[0]) * (1.0 + 0.6 * ratio) * (1.0 - ratio);
         law.rate(now.k_max, factor.max(now.ratio))
     }),
-    underload: "does not support underloads",
+    underload: "not modeled",
 };

@@ -15,5 +15,5 @@ pub static MODEL: RetardationSpec = RetardationSpec {
         remedy: "fit to overload tests; 1 to 2 for many aluminum alloys",
     }],
     rate: Some(|constants, law, now, zone| (now.size / (zone.end() - now.a)).powf(constants[0]) * law.rate(now.k_max, now.ratio)),
-    underload: "does not support underloads",
+    underload: "not modeled",
 };

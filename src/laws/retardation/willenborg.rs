@@ -31,5 +31,5 @@ pub static MODEL: RetardationSpec = RetardationSpec {
         let ratio = ((now.ratio * now.k_max - reduction.max(0.0)) / effective).max(now.least);
         if now.k_max <= threshold || asked >= shutoff * now.k_max { 0.0 } else { law.rate(effective, ratio) }
     }),
-    underload: "does not support underloads",
+    underload: "not modeled",
 };

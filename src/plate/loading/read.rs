@@ -204,13 +204,14 @@ pub fn mistakes(loading: &Value, beside: &[&str]) -> Vec<InputError> {
     // First, since "unknown key" would not tell the user what to do.
     if let Some(key) = given.first(SEQUENCES) {
         let remedy = "write the sequence into a file: kind = \"spectrum\", spectrum_file = \"...\" and spectrum_scale_mpa, or \
-                      give constant \
-                      amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
+                      give constant amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
         return one(given.refuse(key, "is not a key of a load sequence", remedy));
     }
     if let Some(key) = given.first(BARE) {
-        let problem = "ambiguous: maximum or range?";
-        return one(given.refuse(key, problem, format!("give exactly one of {MAGNITUDES}")));
+        if key.contains("_min") {
+            return one(given.refuse(key, "is not a key", "give the maximum with stress_ratio = minimum / maximum"));
+        }
+        return one(given.refuse(key, "ambiguous: maximum or range?", format!("give exactly one of {MAGNITUDES}")));
     }
     perilife_base::keys::mistakes(given, Input::KEYS, beside, None)
 }

@@ -72,13 +72,13 @@ pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
             return Ok(of_record(&record));
         }
         let (files, records) = (names(), growth_data::records());
-        let near = nearest(name, files.iter().map(String::as_str).chain(records.iter().map(|record| record.name.as_str())));
+        let all = || files.iter().map(String::as_str).chain(records.iter().map(|record| record.name.as_str()));
+        let part = || all().find(|known| known.contains(&name.to_lowercase())).map(str::to_owned);
+        let near = nearest(name, all()).or_else(part);
         let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
         let files = files.join(", ");
-        let remedy = format!(
-            "{near}use one of {files}, an entry of `perilife list materials`, or the path of your own .toml \
-                              file"
-        );
+        let remedy =
+            format!("{near}use one of {files}, an entry of `perilife list materials`, or the path of your own .toml file");
         return Err(input("material.name", format!("\"{name}\""), "unknown material", remedy));
     };
     let document = Document::parse(text, name, Folder::none(), &[])?;

@@ -162,7 +162,7 @@ fn how(fit: &LivesRecord) -> String {
         FittedLaw::Paris => "Least squares on cycles at equal crack length",
     };
     let misfit = |of: Misfit| {
-        let [from, to] = [of.delta_k_from_mpa_sqrt_m, of.delta_k_to_mpa_sqrt_m].map(|k| PRINT.fixed(k, 1));
+        let [from, to] = [of.delta_k_from_mpa_sqrt_m, of.delta_k_to_mpa_sqrt_m].map(|k| PRINT.fixed(k, 2));
         format!("{} % at ΔK {from} to {to} MPa√m", PRINT.fixed(of.rate_over_law_percent, 1))
     };
     let ends: Vec<String> = [fit.misfit_at_ends.low, fit.misfit_at_ends.high].into_iter().flatten().map(misfit).collect();

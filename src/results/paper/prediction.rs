@@ -255,7 +255,7 @@ fn law(run: &RunRecord) -> Vec<(&'static str, String)> {
             .map_or_else(String::new, |error| format!(" ± {} %", PRINT.significant(100.0 * error, 2, f64::round)));
         rows.push((
             "Crack growth rate",
-            format!("{} mm/cycle{error} at ΔK {} MPa√m", PRINT.rate(rate, 3), PRINT.fixed(pivot, 1)),
+            format!("{} mm/cycle{error} at ΔK {} MPa√m", PRINT.rate(rate, 4), PRINT.fixed(pivot, 2)),
         ));
     }
     let exponent = law.paris_m.or(law.p);
@@ -274,7 +274,7 @@ fn law(run: &RunRecord) -> Vec<(&'static str, String)> {
         };
         rows.push(("Constant", format!("{} {value}", quoted(key))));
     }
-    let range = |[low, high]: [f64; 2]| format!("ΔK {} to {} MPa√m", PRINT.fixed(low, 1), PRINT.fixed(high, 1));
+    let range = |[low, high]: [f64; 2]| format!("ΔK {} to {} MPa√m", PRINT.fixed(low, 2), PRINT.fixed(high, 2));
     rows.push(("Tested ΔK range", law.range().map_or_else(|| recorded(None), range)));
     let specimens = run.band.as_ref().map(|band| {
         let assumed = if band.assumed_scatter { ", scatter assumed" } else { "" };

@@ -157,7 +157,7 @@ function drawRates(place, rates, s) {
 function lawCard(s) {
   const remarks = misfit(s.misfit_at_ends);
   return element("section", { class: "card answer", "aria-label": "Answer", "data-part": "result" },
-    element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 3)} ${STRESS_INTENSITY} (best-determined point)`),
+    element("div", null, element("h2", null, `Growth rate at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m, 4)} ${STRESS_INTENSITY} (best-determined point)`),
       element("p", { class: "life" }, scientific(s.rate_at_pivot_mm_per_cycle, 3), " ", element("small", null, "mm/cycle")),
       element("p", { class: "beside" }, element("strong", null, `± ${percent(s.rate_at_pivot_relative_error, 1)}`), " (one standard error)"),
       element("p", { class: "quiet" }, `C = ${scientific(levelShown(s.paris_c_mm_per_cycle, s.paris_m), 3)}; always quote C with m.`)),
@@ -168,7 +168,7 @@ function lawCard(s) {
         ["Life", `measured ${cycles(s.life_measured)}, fitted ${cycles(Math.round(s.life_fitted))} cycles (${deviation(s.life_fitted / s.life_measured - 1)})`],
         ["Fit error", `${percent(s.rms_life_error, 2)} rms of life`]].filter(Boolean), "exponent")),
     element("div", null, element("h2", null, "Validity"),
-      element("p", { class: "verdict" }, `For ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}`),
+      element("p", { class: "verdict" }, `For ΔK ${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`),
       element("ul", { class: "checks" }, remarks.map(([name, text]) => element("li", null, mark("note")[0], element("span", null, mark("note")[1], element("b", null, `${name}: `), text))))));
 }
 
@@ -207,7 +207,7 @@ function misfit({ low = null, high = null } = {}) {
   const end = (name, at) => {
     const share = at.rate_over_law_percent / 100;
     const [faster, longer] = share < 0 ? ["slower", "short"] : ["faster", "long"];
-    const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 3)} to ${significant(at.delta_k_to_mpa_sqrt_m, 3)} ${STRESS_INTENSITY}`;
+    const range = `ΔK ${significant(at.delta_k_from_mpa_sqrt_m, 4)} to ${significant(at.delta_k_to_mpa_sqrt_m, 4)} ${STRESS_INTENSITY}`;
     const size = percent(Math.abs(share), 1);
     return [name, `measured growth ${size} ${faster} than the law at ${range}; life there ${size} too ${longer} (${longer === "short" ? "conservative" : "non-conservative"})`];
   };

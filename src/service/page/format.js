@@ -130,8 +130,8 @@ export function words(name) {
 /** First letter large, for labels and starts of sentences. */
 export function sentence(text) {
   const line = String(text ?? "");
-  // A file or a key keeps its name.
-  if (/^\S*[._]\S/.test(line)) return line;
+  // A file, a key and a unit keep their name: kN, mm/cycle.
+  if (/^\S*[._]\S/.test(line) || /^(mm|um|nm|m|in|kN|lbf|kip|kgf|ksi)(\/| sqrt|$)/.test(line)) return line;
   return line.charAt(0).toUpperCase() + line.slice(1);
 }
 

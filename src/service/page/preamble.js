@@ -17,7 +17,7 @@ function linesOf(text) {
 }
 
 function numberOf(lines, names) {
-  const pattern = new RegExp(`(?:^|[\\s,;])(?:${names})\\s*(?:[[(]?(mm|inch|in)[\\])]?\\.?)?\\s*[=:;,\\t]\\s*"?${NUMBER}\\s*(mm|inch|in)?\\b`, "i");
+  const pattern = new RegExp(`(?:^|[\\s,;])(?:${names})\\s*(?:[[(]?(mm|inch|in)[\\])]?\\.?)?\\s*(?:[=:;,\\t]\\s*)+"?${NUMBER}\\s*(mm|inch|in)?\\b`, "i");
   const [, before, number, behind] = lines.map((line) => line.match(pattern)).find(Boolean) ?? [];
   return number && parseNumber(number) * (/in/i.test(before ?? behind ?? "") ? INCH : 1);
 }

@@ -95,7 +95,7 @@ export function createPredictView(materials) {
 
   function describe({ id, summary: s }) {
     const rate = `${scientific(s.rate_at_pivot_mm_per_cycle)} mm/cycle ± ${percent(s.rate_at_pivot_relative_error)}`;
-    const range = `${significant(s.delta_k_min_mpa_sqrt_m, 3)} to ${significant(s.delta_k_max_mpa_sqrt_m, 3)} MPa√m`;
+    const range = `${significant(s.delta_k_min_mpa_sqrt_m, 4)} to ${significant(s.delta_k_max_mpa_sqrt_m, 4)} MPa√m`;
     return element("p", { class: "quiet" },
       `${rate} at ΔK ${significant(s.pivot_delta_k_mpa_sqrt_m)} MPa√m, m ${significant(s.paris_m)} ± ${significant(s.paris_m_error, 2)}; `,
       `tested ΔK range ${range}. `,
@@ -170,7 +170,7 @@ export function createPredictView(materials) {
     try {
       calibrations = (await getJson("/v1/calibrations?limit=100&state=succeeded")).items;
       // One that is asked for by its address may be older than these.
-      if (wanted && !calibrations.some((one) => one.id === wanted)) calibrations.push(await getJson(`/v1/calibrations/${encodeURIComponent(wanted)}`));
+      if (wanted && wanted !== BY_HAND && !calibrations.some((one) => one.id === wanted)) calibrations.push(await getJson(`/v1/calibrations/${encodeURIComponent(wanted)}`));
       show(byId("law-problem"));
     } catch (error) {
       show(byId("law-problem"), problemBox(error, () => loadLaws(wanted)));

@@ -20,8 +20,7 @@ impl Spectrum {
     /// Errors: no file, or one that cannot be read, each by file, line and value; percentages beyond reason.
     pub(in crate::loading) fn read(input: &Input, folder: &Folder) -> Result<Spectrum> {
         let file = input.spectrum_file.as_deref().ok_or_else(|| {
-            let remedy = "name a file with the columns max, min, cycles, one column of peaks and valleys, or .spx, .sub, \
-                          FASTRAN";
+            let remedy = "name a file with the columns max, min, cycles, one column of peaks and valleys, or .spx, .sub, FASTRAN";
             input_missing("loading.spectrum_file", "is missing (required by kind = \"spectrum\")", remedy)
         })?;
         let (omission, truncation) = (input.omission_percent / 100.0, input.truncation_percent / 100.0);
