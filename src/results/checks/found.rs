@@ -184,7 +184,7 @@ fn cross_check(case: &Case, prediction: &Prediction) -> Option<Check> {
         LawSource::Factor(_) | LawSource::Missing(_) => EXPONENT_USUAL,
     };
     let (difference, at) = (100.0 * check.difference, two_digits(check.crack_length));
-    let percent = exponent * difference;
+    let percent = 100.0 * exponent * check.difference;
     let words = format!("K: {difference:+.1} % against the energy release rate at a = {at} ({percent:+.0} % in da/dN)");
     // A K that is too large makes lives too short.
     let side = Side::too_long(check.difference <= 0.0);
