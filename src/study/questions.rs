@@ -2,7 +2,7 @@
 //!
 //! A question is a table of [`Question`]. With `rows` it is several: each row has the keys of the table around it and its own. `over` is a list of
 //! axes, tables of lists whose columns go together; axes multiply, the first outermost. `set` names values. Every text may hold formulas in
-//! angle brackets (`values.rs`), over values, closed forms (`closed.rs`), readings of the case (`subject.rs`)
+//! angle brackets, over values and closed forms (`values.rs`), readings of the case (`subject.rs`)
 //! or of the computation that `by` names (`computations.rs`), and the same of `beside`, another case, behind `beside_`.
 
 use std::cell::{OnceCell, RefCell};
