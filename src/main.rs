@@ -3,22 +3,20 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use clap::{CommandFactory, FromArgMatches};
-use perilife::commands::CommandLine;
+use clap::FromArgMatches;
 use perilife::commands::console::{error_words, print_error_object};
+use perilife::commands::{CommandLine, command_line};
 use perilife_results::provenance::built_from;
 
 fn main() -> ExitCode {
     if let Some(commit) = option_env!("PERILIFE_COMMIT") {
         built_from(commit);
     }
-    let matches = CommandLine::command().get_matches();
+    let matches = command_line().get_matches();
     let is_json = |of_command: &clap::ArgMatches| matches!(of_command.try_get_one("json"), Ok(Some(true)));
     let is_json = matches.subcommand().is_some_and(|(_, of_command)| is_json(of_command));
     let line = CommandLine::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
-    line.start_log();
-    line.show_units();
-    line.watch_signals();
+    line.begin();
     match line.command.run() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -81,7 +81,6 @@ pub fn run(args: &Args) -> Result<()> {
     predict_each(cases, json!(record), (args, out), &place)
 }
 
-/// A case with the law that has just been fitted.
 fn with_law(mut document: Document, fitted: &Fitted<'_>, out: &Path) -> Result<Case> {
     if let Fitted::Lives(calibration, fit) = fitted {
         return case_of(&document)?.with_law(record(calibration, fit)).map_err(|error| document.locate(error));
@@ -97,14 +96,10 @@ fn with_law(mut document: Document, fitted: &Fitted<'_>, out: &Path) -> Result<C
 
 /// A law over K has its own influence of R.
 fn check_no_gamma(document: &Document) -> Result<()> {
-    match document.table.get("fatigue").and_then(|fatigue| fatigue.get("walker_gamma")) {
-        None => Ok(()),
-        Some(_) => Err(document.locate(input_missing(
-            "fatigue.walker_gamma",
-            "cannot be combined with this law, which includes R",
-            "remove it from the case",
-        ))),
-    }
+    let gamma = document.table.get("fatigue").and_then(|fatigue| fatigue.get("walker_gamma"));
+    let problem = "cannot be combined with this law, which includes R";
+    let refuse = |_| Err(document.locate(input_missing("fatigue.walker_gamma", problem, "remove it from the case")));
+    gamma.map_or(Ok(()), refuse)
 }
 
 /// Prints the report with the predictions: each case with the fit, in parallel, into its own folder, printed in their order.

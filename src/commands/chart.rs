@@ -15,7 +15,7 @@ use perilife_base::error::{Error, Result, input, input_missing};
 use perilife_base::input::Provenance;
 use perilife_results::output::{LockedFolder, Marker, RunKind, Share};
 use perilife_study::chart::schedule::{BenchmarkRecord, Effort, Request, measure};
-use perilife_study::chart::{BenchmarkRun, Machine, run, scenes};
+use perilife_study::chart::{BenchmarkRun, Machine, scenes, schedule};
 use perilife_study::speed::{self, Origin, digits, seconds};
 use perilife_study::tasks::Outcome;
 
@@ -83,7 +83,6 @@ pub fn measured(args: &Args) -> Result<Value> {
     Ok(object)
 }
 
-/// The command in words, as the user gave it.
 fn command(args: &Args) -> String {
     let quick = if args.quick { " --quick" } else { "" };
     let names = args.names.iter().map(|name| format!(" {name}")).collect::<String>();
@@ -108,13 +107,12 @@ fn line(record: &BenchmarkRecord) -> String {
     format!("  {:<20} {told}  {keys}", record.request.scene)
 }
 
-/// One run in this process, printed.
 fn once(args: &Args) -> Result<()> {
     let [name] = args.names.as_slice() else {
         return Err(input_missing("SCENE", "is not one scene, and --once runs one".to_owned(), "name one scene"));
     };
     let panel = scenes(std::slice::from_ref(name))?[0];
-    let ran = run::once(panel, &args.set);
+    let ran = schedule::once(panel, &args.set);
     if args.console.json {
         return args.console.object(&json!(Outcome::of(ran)));
     }

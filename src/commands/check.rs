@@ -25,9 +25,6 @@ pub struct Args {
     pub console: Console,
 }
 
-/// Lines of a long summary alone.
-const DETAILS: [&str; 7] = ["bonds", "points", "driver", "ageing", "handbook K", "first case", "law"];
-
 /// Checks the file, prints what was understood and draws the picture.
 pub fn run(args: &Args) -> Result<()> {
     let checked = check_file(&args.file, &args.set)?;
@@ -39,7 +36,7 @@ pub fn run(args: &Args) -> Result<()> {
         }
         None => {}
     }
-    let (long, short): (Vec<_>, Vec<_>) = checked.lines.iter().partition(|line| DETAILS.contains(&line.what));
+    let (long, short): (Vec<_>, Vec<_>) = checked.lines.iter().partition(|line| line.is_detail);
     let [mut lines, details] =
         [short, long].map(|lines| lines.iter().map(|line| labeled(line.what, &line.value)).collect::<Vec<_>>());
     lines.insert(0, format!("{}: valid input", args.file.display()));
@@ -50,7 +47,6 @@ pub fn run(args: &Args) -> Result<()> {
     args.console.object(&checked.json())
 }
 
-/// A line of a summary.
 fn labeled(label: &str, value: &str) -> String {
     let mut rest = label.chars();
     let first: String = rest.next().into_iter().flat_map(char::to_uppercase).collect();

@@ -38,7 +38,6 @@ pub struct Args {
     pub time_limit: Option<f64>,
 }
 
-/// A time that is not negative.
 fn seconds(text: &str) -> std::result::Result<f64, String> {
     let time = text.parse::<f64>().ok().filter(|time| Duration::try_from_secs_f64(*time).is_ok());
     time.ok_or_else(|| format!("`{text}` is not a time in seconds, 0 or more"))
@@ -80,8 +79,11 @@ impl Args {
             let done = perilife_runner::run(task, None, Some(folder), &progress);
             return Ok((self.within_limit(name, &progress, done)?, None));
         };
-        let from =
-            content(path)?.map(|bytes| TaskCheckpoint::of(task, &bytes)).transpose().map_err(|error| error.in_file(path))?;
+        let from = match fs::read(path) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => None,
+            read => Some(read.map_err(|error| Error::file(path, "cannot read", error))?),
+        };
+        let from = from.map(|bytes| TaskCheckpoint::of(task, &bytes)).transpose().map_err(|error| error.in_file(path))?;
         let keeper = self.keeper(task, read, path, progress)?;
         if let Some(from) = &from {
             console.note(&format!("{name}: resuming from {}: {}", path.display(), from.words()));
@@ -131,20 +133,10 @@ impl Args {
     }
 }
 
-/// How to go on from a checkpoint, in words.
 fn way_on(path: &Path) -> String {
     match path.is_file() {
         true => format!("run the same command to resume from {}", path.display()),
         false => format!("no checkpoint yet ({}); run the same command to start over", path.display()),
-    }
-}
-
-/// What stands in the file, if there is one.
-fn content(path: &Path) -> Result<Option<Vec<u8>>> {
-    match fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(Error::file(path, "cannot read", error)),
     }
 }
 
@@ -197,7 +189,6 @@ impl Watcher for Keeper {
 }
 
 impl Keeper {
-    /// Writes the file if it is time.
     fn may_write(&self, bytes: &dyn Fn() -> Vec<u8>) {
         // Times are whole at any moment, even those of a thread that died.
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);

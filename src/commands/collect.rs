@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::console::Console;
 use super::sweep::finish;
 use perilife_base::error::Result;
-use perilife_runner::sweep_folder::SweepFolder;
+use perilife_runner::sweep::SweepFolder;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -2,10 +2,9 @@
 
 use std::path::Path;
 
-use clap::CommandFactory;
 use clap_complete::{Shell, generate};
 
-use super::CommandLine;
+use super::command_line;
 use super::console::Console;
 use perilife_base::error::{Error, Result};
 use perilife_base::input::STREAM;
@@ -34,9 +33,8 @@ pub struct Args {
     pub form: Form,
 }
 
-/// Prints it.
 pub fn run(args: &Args) -> Result<()> {
-    let mut command = CommandLine::command();
+    let mut command = command_line();
     let shell = match args.form {
         Form::Bash => Shell::Bash,
         Form::Elvish => Shell::Elvish,

@@ -16,9 +16,8 @@ use perilife_base::units::MM;
 use perilife_base::units::shown::{told, told_of_file};
 use perilife_base::watch::Watch;
 use perilife_growth::predict::{Observer, Progress};
-use perilife_results::format::PLAIN;
+use perilife_results::format::{PLAIN, shown_result};
 use perilife_results::output::OutputFolder;
-use perilife_results::units::shown_result;
 use perilife_runner::scenes::{SceneObserver, SceneProgress};
 use perilife_runner::{Message, Summary, Watcher};
 
@@ -118,7 +117,6 @@ impl Console {
         self.print(summary)
     }
 
-    /// A progress bar on stderr, drawn only on a terminal.
     pub fn progress(&self, name: &str) -> RunProgress {
         self.progress_within(name, None)
     }
@@ -185,10 +183,8 @@ fn to_stdout(text: &str) -> Result<()> {
     }
 }
 
-/// Steps of a full bar.
 const STEPS: u64 = 1000;
 
-/// Whether a command has printed its JSON object.
 static HAS_OBJECT: AtomicBool = AtomicBool::new(false);
 
 /// Prints an error as a JSON object on stdout, if no other object is there.
@@ -213,7 +209,6 @@ pub fn print_error_object(error: &Error) {
     }
 }
 
-/// The message for stderr.
 pub fn error_words(error: &Error) -> String {
     let plain = match error {
         Error::Input(_) => told_of_file(&format!("error: {error}")),
@@ -260,7 +255,6 @@ pub struct RunProgress {
     looker: Option<JoinHandle<()>>,
 }
 
-/// What both threads know.
 #[derive(Debug, Default)]
 struct Shared {
     watch: Arc<Watch>,
@@ -270,7 +264,6 @@ struct Shared {
 }
 
 impl RunProgress {
-    /// On this bar, with an end after so long.
     pub fn new(bar: ProgressBar, limit: Option<Duration>) -> Self {
         let shared = Arc::new(Shared::default());
         let is_looked_at = !bar.is_hidden() || limit.is_some();

@@ -9,10 +9,9 @@ use perilife_base::error::{Error, Result, input};
 use perilife_base::input::Opened;
 use perilife_base::units::shown::asked;
 use perilife_base::units::us::System;
-use perilife_results::curve::{self, A_N_FILE, Row};
-use perilife_results::kept;
+use perilife_results::curve::{self, A_N_FILE, ROWS_MAX, Row, Sampling};
 use perilife_results::output::{OutputFile, Sort};
-use perilife_results::resample::{ROWS_MAX, Sampling};
+use perilife_results::paper;
 
 /// First line of an export, which a run's own table has not.
 const HEADER: &str = "cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle\n";
@@ -55,7 +54,7 @@ pub fn run(args: &Args) -> Result<()> {
 fn curve_of(folder: &Path, opened: &Opened) -> Result<(Vec<Row>, System)> {
     std::fs::read_dir(folder).map_err(|e| Error::file(folder, "cannot read the folder of a run", e))?;
     if folder.join(A_N_FILE).is_file() {
-        let (rows, of_run) = kept::curve(folder, A_N_FILE, opened)?;
+        let (rows, of_run) = paper::curve(folder, A_N_FILE, opened)?;
         return Ok((rows, asked().unwrap_or(of_run)));
     }
     let remedy = if folder.join("fitted.toml").is_file() {

@@ -16,7 +16,6 @@ pub struct Args {
     pub console: Console,
 }
 
-/// Prints the page.
 pub fn run(args: &Args) -> Result<()> {
     let text = page(&args.page).unwrap_or_default();
     args.console.result(text)?;

@@ -32,7 +32,7 @@ pub fn run(args: &Args) -> Result<()> {
         return keys(args);
     }
     let is_asked = |key: &str| what.as_ref().is_none_or(|what| key.contains(what.as_str()));
-    let all = [catalogue::lines(), perilife_study::catalogue::lines()].concat();
+    let all = [catalogue::lines(), perilife_study::catalogue()].concat();
     let mut lines: Vec<Vec<String>> = all
         .iter()
         .filter(|(key, ..)| is_asked(key))
@@ -54,7 +54,6 @@ pub fn run(args: &Args) -> Result<()> {
     args.console.object(&catalogue::json(all))
 }
 
-/// Keys of all sections, or of one.
 fn keys(args: &Args) -> Result<()> {
     let told = [catalogue::told(), catalogue::beside()].concat();
     let is_asked =

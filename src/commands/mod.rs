@@ -15,7 +15,6 @@ pub mod job;
 pub mod list;
 pub mod predict;
 pub mod rates;
-mod rates_of_materials;
 pub mod report;
 #[cfg(feature = "service")]
 pub mod serve;
@@ -35,7 +34,7 @@ pub mod signals;
 
 use std::path::Path;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use tracing_subscriber::EnvFilter;
 
 use perilife_base::error::Result;
@@ -80,6 +79,11 @@ macro_rules! commands {
             pub fn run(&self) -> Result<()> {
                 #[allow(unused_doc_comments, reason = "the attributes of a subcommand are at its arm too, for its condition")]
                 match self { $($($(#[$attribute])+ Command::$Name(args) => $module::run(args),)+)+ }
+            }
+
+            fn name(&self) -> &'static str {
+                #[allow(unused_doc_comments, reason = "as above")]
+                match self { $($($(#[$attribute])+ Command::$Name(_) => stringify!($module),)+)+ }
             }
         }
 
@@ -148,11 +152,17 @@ commands! {
     }
 }
 
-/// Template of `--help`: clap has no groups of subcommands.
-fn help_template() -> String {
+/// The command line; where help is asked for, with its subcommands by groups, which clap has not.
+pub fn command_line() -> clap::Command {
+    let all = CommandLine::command();
+    let is_short = |word: &str| word.starts_with('-') && !word.starts_with("--") && word.contains('h');
+    let asks = |word: String| ["help", "--help"].contains(&&*word) || is_short(&word);
+    let mut given = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).peekable();
+    if given.peek().is_some() && !given.any(asks) {
+        return all;
+    }
     let style = clap::builder::Styles::styled();
     let (head, name) = (style.get_header(), style.get_literal());
-    let all = Command::augment_subcommands(clap::Command::new("perilife"));
     let line = |command: &clap::Command| {
         format!("  {name}{:<12}{name:#} {}\n", command.get_name(), command.get_about().cloned().unwrap_or_default())
     };
@@ -162,7 +172,9 @@ fn help_template() -> String {
         if lines.is_empty() { lines } else { format!("{head}{title}:{head:#}\n{lines}\n") }
     };
     let groups: String = GROUPS.iter().map(of_group).collect();
-    format!("{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{groups}{head}Options:{head:#}\n{{options}}{{after-help}}")
+    all.help_template(format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{groups}{head}Options:{head:#}\n{{options}}{{after-help}}"
+    ))
 }
 
 /// Predict fatigue crack growth and life of cracked plates.
@@ -174,7 +186,6 @@ fn help_template() -> String {
     version,
     subcommand_required = true,
     arg_required_else_help = true,
-    help_template = help_template(),
     after_help = "Units: mm, MPa, GPa, N, MPa√m, mm/cycle, or with --units us inch, ksi, Msi, lbf, ksi√in, in/cycle; every key and column carries its own.\n\
                   Exit codes: 0 success, 2 invalid input, 3 no valid result, 4 I/O error, 128+n signal n.\n\
                   A run that ends by fracture, yield or separation exits 0; see stop_reason.\n\
@@ -203,37 +214,19 @@ pub struct CommandLine {
 }
 
 impl CommandLine {
-    /// Whether it ends on signals by itself, once what it began is done or given back.
-    fn is_service(&self) -> bool {
-        #[cfg(feature = "service")]
-        return matches!(self.command, Command::Serve(_) | Command::Worker(_));
-        #[cfg(not(feature = "service"))]
-        return false;
-    }
-
-    /// Has all commands but services and their jobs write and print in the units that were asked for: the page of a service converts.
-    pub fn show_units(&self) {
-        #[cfg(feature = "service")]
-        let is_job = matches!(self.command, Command::Job(_));
-        #[cfg(not(feature = "service"))]
-        let is_job = false;
-        if let Some(units) = self.units.filter(|_| !self.is_service() && !is_job) {
-            show(units);
-        }
-    }
-
-    /// Has signals that end the process leave nothing half-made behind.
-    pub fn watch_signals(&self) {
-        if !self.is_service() {
-            signals::fold_up_on_signals();
-        }
-    }
-
-    /// Sends the log to stderr, filtered by RUST_LOG or else by `--verbose`.
-    pub fn start_log(&self) {
+    /// Starts what goes with every command. Its log goes to stderr, filtered by RUST_LOG or else by `--verbose`. All but services and their
+    /// jobs write and print in the units that were asked for: the page of a service converts. Signals leave nothing half-made behind; services
+    /// end on them by themselves, once what they began is done or given back.
+    pub fn begin(&self) {
         let level = ["warn", "perilife=info", "perilife=debug"][usize::from(self.verbose.min(2))];
         let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
         // A second start (several calls in one test process) leaves the first log in place.
         let _ = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().try_init();
+        let name = self.command.name();
+        let is_service = ["serve", "worker"].contains(&name);
+        self.units.filter(|_| !is_service && name != "job").into_iter().for_each(show);
+        if !is_service {
+            signals::fold_up_on_signals();
+        }
     }
 }

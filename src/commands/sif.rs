@@ -12,7 +12,7 @@ use perilife_base::units::MM;
 use perilife_growth::predict::factor_sweep::factor_sweep;
 use perilife_growth::predict::tip_factors::StressIntensityMethod;
 use perilife_plate::specimen::beta::HEADER;
-use perilife_results::factor_sweep as tables;
+use perilife_results::factors as tables;
 use perilife_results::output::{OutputFile, OutputFolder, Sort};
 use perilife_runner::{Kind, Message, Task};
 
@@ -80,12 +80,11 @@ pub fn run(args: &Args) -> Result<()> {
     console.object(&summary.result)
 }
 
-/// Runs `perilife sif --sweep`.
 fn sweep(args: &Args, asked: &str) -> Result<()> {
     let console = &args.console;
-    let lengths = perilife_runner::factor_sweep::lengths(asked)?;
+    let lengths = perilife_runner::factors::lengths(asked)?;
     let document = Document::read(&args.case, &args.set)?;
-    let case = perilife_runner::factor_sweep::case(&document, &lengths)?;
+    let case = perilife_runner::factors::case(&document, &lengths)?;
     let out = args.out.as_deref().ok_or_else(|| input_missing("--out", "is missing", "name the table: --out FILE.csv"))?;
     let claim = |option, path: &Path, sign: &'static str| {
         OutputFile::claim(path, Sort { option, sign: sign.as_bytes() }, &document.folder.opened().so_far())

@@ -8,7 +8,6 @@ use signal_hook::iterator::Signals;
 
 use perilife_results::output::fold_up;
 
-/// Says how to go on, in the line at the end.
 type Way = Box<dyn Fn() -> String + Send>;
 
 static WAY: Mutex<Option<Way>> = Mutex::new(None);
@@ -19,7 +18,6 @@ pub fn say_at_the_end(words: &str) {
     go_on_by(move || words.clone());
 }
 
-/// Says then how to go on.
 pub fn go_on_by(words: impl Fn() -> String + Send + 'static) {
     *WAY.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(words));
 }

@@ -6,7 +6,6 @@ use super::console::Console;
 use perilife_base::error::Result;
 use perilife_results::output::{OutputFolder, RunKind, write_file};
 use perilife_study::stability::{self, Effort, SLOW, sweeps};
-use perilife_study::stability_picture;
 use perilife_study::stability_table as tables;
 
 #[derive(Debug, clap::Args)]
@@ -44,9 +43,9 @@ pub fn run(args: &Args) -> Result<()> {
             write("stability.json", format!("{object:#}\n"))?;
             for sweep in &sweeps {
                 let of_sweep: Vec<_> = records.iter().filter(|record| record.sweep.name == sweep.name).collect();
-                stability_picture::sweep(&path.join(format!("{}.svg", sweep.name)), sweep, &of_sweep)?;
+                tables::sweep(&path.join(format!("{}.svg", sweep.name)), sweep, &of_sweep)?;
             }
-            stability_picture::overview(&path.join("stability.svg"), &records)
+            tables::overview(&path.join("stability.svg"), &records)
         })?;
         drop(folder.finish()?);
     }

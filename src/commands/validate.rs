@@ -6,7 +6,7 @@ use super::console::Console;
 use perilife_base::error::{Error, Result};
 use perilife_base::input::Provenance;
 use perilife_results::output::{OutputFile, OutputFolder, RunKind, Sort};
-use perilife_study::validate::{page, picture, rows, sets};
+use perilife_study::validate::{page, rows, sets};
 
 #[derive(Debug, clap::Args)]
 #[command(
@@ -37,7 +37,7 @@ pub fn run(args: &Args) -> Result<()> {
     let rows = rows(&sets, &|set, rows| args.console.say(&page::lines(set, rows)));
     let (object, page) = (page::object(&rows), page::markdown(&sets, &rows));
     if let Some(folder) = folder {
-        let [csv, json, svg] = [page::csv(&rows), format!("{object:#}\n"), picture::svg(&rows)];
+        let [csv, json, svg] = [page::csv(&rows), format!("{object:#}\n"), page::svg(&rows)];
         folder.write(&[("validate.csv", &csv), ("validate.json", &json), ("validate.svg", &svg), ("validate.md", &page)])?;
     }
     markdown.map_or(Ok(()), |file| file.write(page.as_bytes()))?;

@@ -11,7 +11,6 @@ use perilife_base::error::{Error, Result, input};
 use perilife_service::store::url_of_file;
 use perilife_service::worker;
 
-/// The database in the folder of a service.
 const FILE: &str = "perilife.sqlite";
 
 /// Where a service keeps its jobs.
@@ -27,7 +26,6 @@ pub struct Place {
 }
 
 impl Place {
-    /// URL of the database of a service that was begun.
     pub fn url(&self) -> Result<String> {
         if let Some(url) = self.given()? {
             return Ok(url);
@@ -130,10 +128,10 @@ pub struct Work {
     #[arg(long, value_name = "MIB", default_value_t = 4096, value_parser = clap::value_parser!(u32).range(256..))]
     pub job_memory: u32,
     /// Time limit per job, h
-    #[arg(long, value_name = "HOURS", default_value_t = 24.0, value_parser = hours)]
+    #[arg(long, value_name = "HOURS", default_value_t = 24.0, value_parser = above_zero("hours"))]
     pub job_hours: f64,
     /// Delete finished jobs after this many days [default: never]
-    #[arg(long, value_name = "DAYS", value_parser = days)]
+    #[arg(long, value_name = "DAYS", value_parser = above_zero("days"))]
     pub keep_days: Option<f64>,
 }
 
@@ -142,14 +140,10 @@ fn threads(text: &str) -> std::result::Result<usize, String> {
     count.ok_or_else(|| format!("`{text}` is not 1 to 1024"))
 }
 
-fn hours(text: &str) -> std::result::Result<f64, String> {
-    let hours = text.parse().ok().filter(|hours| *hours > 0.0 && *hours < 1e6);
-    hours.ok_or_else(|| format!("`{text}` is not a time in hours above 0"))
-}
-
-fn days(text: &str) -> std::result::Result<f64, String> {
-    let days = text.parse().ok().filter(|days| *days > 0.0 && *days < 1e6);
-    days.ok_or_else(|| format!("`{text}` is not a time in days above 0"))
+/// Reads a time in hours or days.
+fn above_zero(unit: &str) -> impl Fn(&str) -> std::result::Result<f64, String> + Clone + Send + Sync + 'static + use<> {
+    let wrong = format!("is not a time in {unit} above 0");
+    move |text| text.parse().ok().filter(|time| *time > 0.0 && *time < 1e6).ok_or_else(|| format!("`{text}` {wrong}"))
 }
 
 impl Work {

@@ -24,7 +24,7 @@ mod _perilife {
     use perilife_measured::Import;
     use perilife_plate::material::{growth_data, library};
     use perilife_results::paper::{self, Signed};
-    use perilife_results::{factor_sweep as tables, provenance};
+    use perilife_results::{factors as tables, provenance};
     use perilife_runner::check::check as check_document;
     use perilife_runner::{Kind, Task};
     use pyo3::prelude::*;
@@ -115,8 +115,8 @@ mod _perilife {
     ) -> PyResult<(String, String, usize, Vec<String>)> {
         let document = document(source, name, &set, None, HashMap::new())?;
         let work = |told: &crate::watcher::Told| {
-            let lengths = perilife_runner::factor_sweep::lengths(lengths)?;
-            let case = perilife_runner::factor_sweep::case(&document, &lengths)?;
+            let lengths = perilife_runner::factors::lengths(lengths)?;
+            let case = perilife_runner::factors::case(&document, &lengths)?;
             let found = factor_sweep(&case, &lengths, true, told)?;
             let warnings = [case.warnings, found.warnings.clone()].concat();
             Ok((tables::table(&found).csv(), tables::beta_table(&found).csv(), found.lead, warnings))

@@ -1,16 +1,17 @@
-//! The band of the lives of a run: its figures, words, what readings of the plate itself say, and the inspection interval.
+//! The band of the lives of a run, what readings of the plate itself say, the inspection interval; numerical error, and the life by another method.
 
 use serde::{Deserialize, Serialize};
 
 use super::curve::{Row, curve};
-use super::format::{PLAIN, digits, short};
+use super::format::{PLAIN, digits, short, two_digits};
 use perilife_base::error::{Result, input};
 use perilife_base::units::MM;
 use perilife_calibration::inspection::{InspectFrom, Inspection, TipLengths};
 use perilife_calibration::population::intervals::Specimen;
 use perilife_calibration::population::plate::{Left, NoBand, Plate, PlateBand, Quantiles};
-use perilife_growth::case::{Case, Lot};
-use perilife_growth::predict::Prediction;
+use perilife_growth::case::{Case, Lot, Method, Model, coarse_points, usual_nodes};
+use perilife_growth::predict::error_estimate::{ErrorEstimate, error_estimate};
+use perilife_growth::predict::{Prediction, Silent, predict};
 use perilife_measured::MeasuredCurve;
 
 /// `band` of a result: cycles that 5, 50 and 95 % of specimens do not reach, and what they rest on.
@@ -32,7 +33,6 @@ impl BandRecord {
     }
 }
 
-/// Cycles that 5, 50 and 95 % of specimens do not live on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Remaining {
     pub remaining_cycles_p05: f64,
@@ -43,14 +43,12 @@ pub struct Remaining {
 /// `measured` of a result: what readings of the plate itself say.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OwnRecord {
-    pub remaining_cycles_p05: f64,
-    pub remaining_cycles_p50: f64,
-    pub remaining_cycles_p95: f64,
+    #[serde(flatten)]
+    pub left: Remaining,
     pub specimen: String,
     pub intervals: usize,
     pub crack_length_mm: f64,
     pub cycles: f64,
-    /// The same by the lot alone.
     pub of_lot: Remaining,
 }
 
@@ -62,14 +60,12 @@ pub struct Lives {
     is_lot_given: bool,
     is_lower_bound: bool,
     tips: Option<TipLengths>,
-    /// Cycles in a pass of a spectrum.
     per_pass: Option<f64>,
     rows: Vec<Row>,
     own: Option<Own>,
     inspection: Option<Inspection>,
 }
 
-/// What readings of the plate itself say.
 #[derive(Debug, Clone)]
 struct Own {
     specimen: Specimen,
@@ -121,7 +117,6 @@ impl Lives {
         Ok(())
     }
 
-    /// What is left from the length that was asked for.
     pub fn inspection(&self) -> Option<&Inspection> {
         self.inspection.as_ref()
     }
@@ -135,7 +130,6 @@ impl Lives {
         self.band.as_ref().ok().map(|(_, band)| band)
     }
 
-    /// `band` of the result.
     pub(super) fn band_record(&self) -> Option<BandRecord> {
         let (plate, band) = self.band.as_ref().ok()?;
         let [cycles_p05, cycles_p50, cycles_p95] = self.life()?;
@@ -147,23 +141,19 @@ impl Lives {
     /// `measured` of the result.
     pub(super) fn own_record(&self) -> Option<OwnRecord> {
         let own = self.own.as_ref()?;
-        let [remaining_cycles_p05, remaining_cycles_p50, remaining_cycles_p95] = own.left.quantiles;
-        let [low, middle, high] = own.of_lot.quantiles;
-        Some(OwnRecord {
+        let remaining = |[remaining_cycles_p05, remaining_cycles_p50, remaining_cycles_p95]: Quantiles| Remaining {
             remaining_cycles_p05,
             remaining_cycles_p50,
             remaining_cycles_p95,
+        };
+        Some(OwnRecord {
+            left: remaining(own.left.quantiles),
             specimen: own.specimen.name.clone(),
             intervals: own.specimen.intervals.len(),
             crack_length_mm: own.left.crack_length / MM,
             cycles: own.cycles,
-            of_lot: Remaining { remaining_cycles_p05: low, remaining_cycles_p50: middle, remaining_cycles_p95: high },
+            of_lot: remaining(own.of_lot.quantiles),
         })
-    }
-
-    /// The life in words, with the digits that its band deserves; `None` without a band.
-    pub fn life_words(&self) -> Option<String> {
-        self.life().map(|quantiles| band_words(&quantiles))
     }
 
     /// What the band rests on, and what was asked, in lines of a summary; a fleet has an interval of its own, cycles.
@@ -198,7 +188,6 @@ impl Lives {
     }
 }
 
-/// What an inspection says, in lines of a summary.
 fn inspection_words(inspection: &Inspection, per_pass: Option<f64>, of_fleet: Option<f64>) -> Vec<String> {
     let (length, factor, quantiles) = (short(inspection.crack_length_mm), inspection.factor, inspection.quantiles());
     let left = quantiles.map_or_else(|| format!("{} cycles", PLAIN.whole(inspection.remaining_cycles)), |all| band_words(&all));
@@ -212,7 +201,6 @@ fn inspection_words(inspection: &Inspection, per_pass: Option<f64>, of_fleet: Op
     vec![format!("  Remaining      {least}{left} from a = {length} mm{of_tip}"), format!("  Inspect every  {every}")]
 }
 
-/// Why readings narrow nothing.
 pub fn no_band_to_narrow(curve: &MeasuredCurve, why: &str) -> perilife_base::error::Error {
     let remedy = "set fatigue.fitted to a law fitted to several specimens of this material at this R";
     input("--measured", curve.source.file.display(), format!("cannot update the life: no scatter band ({why})"), remedy)
@@ -225,7 +213,6 @@ pub fn every_words(cycles: f64, band: Option<&Quantiles>, per_pass: Option<f64>)
     format!("{} cycles{passes}", PLAIN.promised(cycles, band))
 }
 
-/// The interval of an inspection, as the console says it.
 pub fn interval_words(inspection: &Inspection, per_pass: Option<f64>) -> String {
     every_words(inspection.inspection_interval_cycles, inspection.quantiles().as_ref(), per_pass)
 }
@@ -235,4 +222,90 @@ pub fn band_words(quantiles: &Quantiles) -> String {
     let digits = digits(quantiles);
     let [low, middle, high] = quantiles.map(|cycles| PLAIN.significant(cycles, digits, f64::round));
     format!("{middle} cycles (median; 90 % band {low} to {high})")
+}
+
+/// Estimated error of a life, and its cross-check.
+#[derive(Debug, Clone, Default)]
+pub struct Quality {
+    /// `None` where not asked for; else the estimate, or why there is none.
+    estimate: Option<std::result::Result<ErrorEstimate, String>>,
+    pub(super) second: Option<SecondOpinion>,
+}
+
+/// `cross_check` of a result: the life by the other engine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SecondOpinion {
+    pub method: String,
+    /// Its cycles to the crack length that both reach, and those of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycles: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cycles_of_run: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub difference_percent: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
+}
+
+impl Quality {
+    pub fn of(case: &Case, prediction: &Prediction, [estimate, cross_check]: [bool; 2]) -> Quality {
+        let estimate = (estimate && prediction.life().is_some()).then(|| error_estimate(case, prediction));
+        let second = cross_check.then(|| second_opinion(case, prediction));
+        Quality { estimate, second }
+    }
+
+    pub(super) fn basis(&self) -> Option<&str> {
+        self.estimate.as_ref()?.as_ref().ok().map(|estimate| &*estimate.basis)
+    }
+
+    /// Estimated error of life, percent, and path, mm; why there is none.
+    pub(super) fn stated(&self) -> ([Option<f64>; 2], Option<&String>) {
+        let stated = self.estimate.as_ref().and_then(|estimate| estimate.as_ref().ok());
+        let bounds = stated.map(|estimate| [estimate.life_percent, estimate.path / MM].map(two_digits));
+        ([0, 1].map(|place| bounds.map(|both| both[place])), self.estimate.as_ref().and_then(|estimate| estimate.as_ref().err()))
+    }
+
+    pub fn words(&self) -> Vec<String> {
+        let of_estimate = |estimate: &std::result::Result<ErrorEstimate, String>| match estimate {
+            Ok(ErrorEstimate { life_percent, path, .. }) => {
+                let path =
+                    if *path > 0.0 { format!(", ≤ {} mm in the path", short(two_digits(path / MM))) } else { String::new() };
+                format!("  Accuracy       numerical error ≤ {life_percent:.1} % of life{path} (estimate)")
+            }
+            Err(why) => format!("  Accuracy       numerical error not estimated: {why}"),
+        };
+        let mut lines: Vec<String> = self.estimate.iter().map(of_estimate).collect();
+        lines.extend(self.second.as_ref().map(|second| match (second.cycles, second.cycles_of_run, second.difference_percent) {
+            (Some(other), Some(own), Some(percent)) => {
+                let [other, own] = [other, own].map(|cycles| PLAIN.whole(cycles));
+                format!("  Cross-check    {} (coarse): {other} cycles, this run {own} ({percent:+.1} %)", second.method)
+            }
+            _ => format!("  Cross-check    {}: none, {}", second.method, second.failed.as_deref().unwrap_or_default()),
+        }));
+        lines
+    }
+}
+
+/// The life with K by another method: nodes for points and handbook, points for nodes.
+fn second_opinion(case: &Case, prediction: &Prediction) -> SecondOpinion {
+    let of = |method: Method, found: std::result::Result<[f64; 2], String>| {
+        let (cycles, failed) = (found.as_ref().ok().copied(), found.err());
+        let difference_percent = cycles.map(|[other, own]| 100.0 * (other / own - 1.0));
+        let [cycles, cycles_of_run] = [0, 1].map(|place| cycles.map(|both| both[place]));
+        SecondOpinion { method: method.name().to_owned(), cycles, cycles_of_run, difference_percent, failed }
+    };
+    if !case.specimen.is_through() {
+        return of(Method::ElementFreeGalerkin, Err("no other method supports part-through cracks".to_owned()));
+    }
+    let model = match case.model {
+        Model::Nodes(_) => Model::Points(coarse_points(case)),
+        Model::Handbook(_) | Model::Points(_) => Model::Nodes(usual_nodes(&case.specimen)),
+    };
+    let other = Case { model, chosen: None, ..case.driven_by_tips(case.specimen.clone()) };
+    let cycles = predict(&other, &Silent).map_err(|error| error.to_string()).and_then(|second| {
+        let common = prediction.crack_length_final().min(second.crack_length_final());
+        let at = |run: &Prediction| run.cycles_at(common).filter(|cycles| *cycles > 0.0);
+        at(&second).zip(at(prediction)).map(|(other, own)| [other, own]).ok_or_else(|| "its crack did not grow".to_owned())
+    });
+    of(model.method(), cycles)
 }

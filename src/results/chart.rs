@@ -2,15 +2,13 @@
 
 use std::path::Path;
 
-use super::axis::Axis;
-use super::labels::{Box2, place_labels};
+use super::axis::{Axis, Box2, place_labels};
 use super::output::write_file;
 use super::specimen_picture::sketch::Sketch;
 use perilife_base::error::Result;
 use perilife_plate::specimen::Point;
 
 pub const COMPUTED: &str = "#0b5fa5";
-/// A second quantity beside the computed one.
 pub const SECOND: &str = "#a8480a";
 /// Limits and what is not known.
 pub const NOTE: &str = "#7a5300";
@@ -35,7 +33,6 @@ pub struct Size {
     pub text: f64,
 }
 
-/// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mark {
     /// Computed: a line through the points.
@@ -65,7 +62,6 @@ pub fn linear(path: &Path, title: &str, names: [&str; 2], series: &[Series]) -> 
     draw(path, title, axes, names, series)
 }
 
-/// Names of the axes of growth rates.
 pub const OF_RATES: [&str; 2] = ["Stress intensity range ΔK, MPa√m", "Crack growth rate da/dN, mm/cycle"];
 
 /// Growth rate in mm/cycle against ΔK in MPa√m, both logarithmic.
@@ -81,14 +77,8 @@ pub fn growth_rate(path: &Path, title: &str, series: &[Series]) -> Result<()> {
     draw(path, title, axes, OF_RATES, &positive)
 }
 
-fn values(series: &[Series], pick: impl Fn(&(f64, f64)) -> f64) -> impl Iterator<Item = f64> {
-    series
-        .iter()
-        .flat_map(|s| &s.points)
-        .filter(|(x, y)| x.is_finite() && y.is_finite())
-        .map(pick)
-        .collect::<Vec<_>>()
-        .into_iter()
+fn values(series: &[Series], pick: fn(&(f64, f64)) -> f64) -> impl Iterator<Item = f64> {
+    series.iter().flat_map(|s| &s.points).filter(|(x, y)| x.is_finite() && y.is_finite()).map(pick)
 }
 
 /// A chart with the names of its series in rows above it.
@@ -211,7 +201,6 @@ impl Frame {
         self.sketch.name([right, bottom + 2.9 * text], x_name, "end", text, INK);
     }
 
-    /// Pixel of values.
     pub fn at(&self, [x, y]: Point) -> Point {
         let [left, top, right, bottom] = self.room;
         [left + self.axes[0].share(x) * (right - left), bottom - self.axes[1].share(y) * (bottom - top)]
@@ -249,7 +238,6 @@ impl Frame {
         &mut self.sketch
     }
 
-    /// The drawing, to be put into a larger one.
     pub fn into_sketch(self) -> Sketch {
         self.sketch
     }
@@ -261,14 +249,12 @@ impl Frame {
         self.sketch.area(&[[left, bottom], [left, top], [right, top], [right, bottom]], colour, opacity);
     }
 
-    /// The area between two lines.
     pub fn band(&mut self, low: &[Point], high: &[Point], opacity: f64) {
         let mut corners = self.pixels(low);
         corners.extend(self.pixels(high).into_iter().rev());
         self.sketch.area(&corners, COMPUTED, opacity);
     }
 
-    /// Measured values.
     pub fn circles(&mut self, points: &[Point]) {
         let radius = if self.size.text > 12.0 { 3.2 } else { 2.2 };
         self.pixels(points).into_iter().for_each(|place| self.sketch.ring(place, radius, INK, 1.1));
@@ -304,7 +290,6 @@ impl Frame {
         }
     }
 
-    /// Whether a value is within the axis along y.
     fn contains(&self, y: f64) -> bool {
         (0.0..=1.0).contains(&self.axes[1].share(y))
     }
@@ -323,7 +308,6 @@ impl Frame {
         }
     }
 
-    /// A remark in the lower left corner of the plot.
     pub fn remark(&mut self, words: &str) {
         let ([left, _, _, bottom], text) = (self.room, self.size.text);
         self.sketch.name([left + 6.0, bottom - 0.5 * text], words, "start", text, NOTE);
@@ -355,7 +339,6 @@ impl Frame {
         picture.within(place, [self.size.width, self.size.height], self.sketch);
     }
 
-    /// The whole picture, with a sentence for those who do not see it.
     pub fn finish(self, sentence: &str) -> String {
         self.sketch.picture([self.size.width, self.size.height], sentence)
     }

@@ -9,17 +9,26 @@ use super::axis::Axis;
 use super::band::{Lives as Band, every_words};
 use super::chart::{COMPUTED, Frame, LARGE, Mark, SECOND};
 use super::format::{PLAIN, chance, clean};
-use super::inspections::Asked;
 use super::output::write_file;
 use super::sweep::{LifeQuantiles, Lives};
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::units::MM;
 use perilife_calibration::inspection::Inspection;
+use perilife_calibration::sweep::detection::Detection;
 use perilife_calibration::sweep::fleet::{self, FleetLives, FleetPlate, Looked, Looks};
 use perilife_growth::case::{Case, Fleet};
 use perilife_growth::predict::{CurvePoint, Prediction};
 use perilife_plate::specimen::Point;
+
+/// What is asked for; a fleet is by the section of the case.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Asked {
+    pub detection: Option<Detection>,
+    pub first_inspection: Option<f64>,
+    /// Life at somewhat other input.
+    pub sensitivities: bool,
+}
 
 pub const FLEET_FILE: &str = "fleet.csv";
 pub const FLEET_CHART_FILE: &str = "fleet.svg";
@@ -41,7 +50,6 @@ pub struct FleetRecord {
     pub missed: Option<f64>,
 }
 
-/// What inspections make of a fleet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FleetInspections {
     pub detectable_mm: f64,
@@ -61,15 +69,14 @@ impl FleetInspections {
     }
 }
 
-/// Lives of a fleet with what they were drawn by.
 #[derive(Debug, Clone)]
 pub struct FleetReport {
-    fleet: Fleet,
+    pub record: FleetRecord,
     lives: FleetLives,
-    looks: Option<Looks>,
+    /// Lives in their order.
+    ranked: Lives,
     /// Life of the run, cycles.
     run: Option<f64>,
-    /// Cycles in a pass of a spectrum.
     per_pass: Option<f64>,
 }
 
@@ -90,61 +97,38 @@ impl FleetReport {
             first: asked.first_inspection,
         });
         let lives = fleet::lives(case, whole, fleet, band.band.as_ref().map(|(plate, _)| plate), looks)?;
-        let per_pass = case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass);
-        Ok(FleetReport { fleet: *fleet, lives, looks, run: own.life(), per_pass })
-    }
-
-    fn ranked(&self) -> Lives {
-        Lives::ranked(self.lives.plates.iter().map(|plate| (plate.life.cycles, plate.life.is_bound)))
-    }
-
-    fn clipped(&self) -> usize {
-        self.lives.plates.iter().filter(|plate| plate.life.is_clipped).count()
-    }
-
-    /// Cycles from detectable to the end of every plate, ranked as their lives.
-    fn windows(&self) -> Lives {
-        Lives::ranked(self.lives.plates.iter().filter_map(|plate| Some((plate.window?[1], plate.life.is_bound))))
-    }
-
-    /// Plates that break before their crack is as long as can be found.
-    fn never_found(&self) -> usize {
-        self.lives.plates.iter().filter(|plate| plate.window.is_some_and(|[_, left]| left == 0.0)).count()
-    }
-
-    /// What inspections make of the fleet.
-    fn inspections(&self, looks: Looks) -> FleetInspections {
-        let looked = self.lives.looked.as_ref();
-        FleetInspections {
+        let (plates, looked) = (&lives.plates, lives.looked.as_ref());
+        let ranked = Lives::ranked(plates.iter().map(|plate| (plate.life.cycles, plate.life.is_bound)));
+        // Cycles from detectable to the end of every plate, ranked as their lives.
+        let windows = Lives::ranked(plates.iter().filter_map(|plate| Some((plate.window?[1], plate.life.is_bound))));
+        let count = |is: fn(&FleetPlate) -> bool| plates.iter().filter(|plate| is(plate)).count();
+        let inspections = looks.map(|looks| FleetInspections {
             detectable_mm: clean(looks.detectable / MM),
             factor: looks.factor,
-            detectable_to_critical_cycles: self.windows().figures(),
-            break_before_detectable: self.never_found(),
+            detectable_to_critical_cycles: windows.figures(),
+            break_before_detectable: count(|plate| plate.window.is_some_and(|[_, left]| left == 0.0)),
             first_inspection_cycles: looked.map(|looked| looked.first),
             break_before_first_inspection: looked.map(|looked| looked.before_first),
             interval_cycles: looked.map(|looked| looked.every),
             missed_after: looked.map_or_else(Vec::new, |looked| looked.missed_after.clone()),
-        }
-    }
-
-    /// `fleet` of the result.
-    pub fn record(&self) -> FleetRecord {
-        let ranked = self.ranked();
+        });
         let mut ended_by: BTreeMap<String, usize> = BTreeMap::new();
-        self.lives.plates.iter().for_each(|plate| *ended_by.entry(plate.life.stop.name().to_owned()).or_default() += 1);
-        FleetRecord {
-            plates: self.lives.plates.len(),
-            seed: self.fleet.seed,
+        plates.iter().for_each(|plate| *ended_by.entry(plate.life.stop.name().to_owned()).or_default() += 1);
+        let record = FleetRecord {
+            plates: plates.len(),
+            seed: fleet.seed,
             life_cycles: ranked.figures(),
             unlimited: ranked.unlimited,
             lower_bounds: ranked.bounds,
-            shorter_than_known: self.clipped(),
+            shorter_than_known: count(|plate| plate.life.is_clipped),
             ended_by,
-            laws_drawn: self.lives.one_law.is_none(),
-            one_law_because: self.lives.one_law.clone(),
-            inspections: self.looks.map(|looks| self.inspections(looks)),
-            missed: self.lives.looked.as_ref().map(|looked| looked.missed),
-        }
+            laws_drawn: lives.one_law.is_none(),
+            one_law_because: lives.one_law.clone(),
+            inspections,
+            missed: looked.map(|looked| looked.missed),
+        };
+        let per_pass = case.loading.spectrum.as_ref().map(|spectrum| spectrum.per_pass);
+        Ok(FleetReport { record, lives, ranked, run: own.life(), per_pass })
     }
 
     /// `fleet.csv`: a row for each plate in the order in which they are drawn; no life where it is unlimited.
@@ -167,14 +151,13 @@ impl FleetReport {
             .exact("missed", numbers(&|plate| plate.missed.unwrap_or(f64::NAN)))
     }
 
-    /// Writes its picture into the folder of a run.
     pub fn write(&self, folder: &Path, case: &Case) -> Result<()> {
         write_file(&folder.join(FLEET_CHART_FILE), self.picture(&case.name).as_bytes())
     }
 
     /// The share of plates that have ended by a life, and the life of the run.
     fn picture(&self, name: &str) -> String {
-        let lives = self.ranked().sorted;
+        let lives = &self.ranked.sorted;
         let share = |i: usize| 100.0 * (i as f64 + 0.5) / lives.len() as f64;
         // One that goes on has not ended.
         let ended = lives.iter().enumerate().filter(|(_, (life, is_bound))| life.is_finite() && *life > 0.0 && !is_bound);
@@ -188,42 +171,37 @@ impl FleetReport {
         let mut frame = Frame::new(LARGE, &title, axes, names, &legend[..if self.run.is_some() { 2 } else { 1 }]);
         frame.line(&points, COMPUTED, 2.0, "");
         self.run.iter().for_each(|&run| frame.line(&[[run, 0.0], [run, 100.0]], SECOND, 1.2, "8 5"));
-        let quantiles = self.ranked().figures();
-        let marks = [(quantiles.p05, "5 %"), (quantiles.p50, "median")];
+        let marks = [(self.record.life_cycles.p05, "5 %"), (self.record.life_cycles.p50, "median")];
         marks.into_iter().filter_map(|(life, name)| Some((life?, name))).for_each(|(life, name)| frame.mark(life, name));
         frame.finish(&format!("{title}: failed plates against cycles"))
     }
 
     /// 5 % and median life.
     pub fn headline(&self) -> String {
-        let [low, middle, _] = words_of(&self.ranked());
-        format!("life 5 % {low}, median {middle} cycles ({} plates)", self.lives.plates.len())
+        let [low, middle, _] = words_of(&self.record.life_cycles);
+        format!("life 5 % {low}, median {middle} cycles ({} plates)", self.record.plates)
     }
 
-    /// Lines of a summary.
     pub fn words(&self) -> Vec<String> {
-        let ranked = self.ranked();
-        let [_, _, high] = words_of(&ranked);
-        let laws = if self.lives.one_law.is_some() { "; one growth law for all" } else { "" };
-        let mut lines = vec![format!(
-            "  Fleet          95 % {high} cycles; {} unlimited, {} lower bounds{laws}",
-            ranked.unlimited, ranked.bounds
-        )];
-        if self.clipped() > 0 {
+        let FleetRecord { unlimited, lower_bounds, shorter_than_known: clipped, .. } = self.record;
+        let [_, _, high] = words_of(&self.record.life_cycles);
+        let laws = if self.record.laws_drawn { "" } else { "; one growth law for all" };
+        let mut lines =
+            vec![format!("  Fleet          95 % {high} cycles; {unlimited} unlimited, {lower_bounds} lower bounds{laws}")];
+        if clipped > 0 {
             lines.push(format!(
-                "  Fleet          {} plates start below the shortest computed crack: their lives are lower bounds; start the case with a \
-                 shorter crack",
-                self.clipped()
+                "  Fleet          {clipped} plates start below the shortest computed crack: their lives are lower bounds; start the case \
+                 with a shorter crack"
             ));
         }
-        lines.extend(self.looks.map(|looks| self.looked_words(looks)));
+        lines.extend(self.record.inspections.as_ref().map(|looks| self.looked_words(looks)));
         lines
     }
 
     /// How long cracks can be found, and how likely they are not.
-    fn looked_words(&self, looks: Looks) -> String {
-        let [low, middle, high] = words_of(&self.windows());
-        let length = PLAIN.length(looks.detectable, 3);
+    fn looked_words(&self, looks: &FleetInspections) -> String {
+        let [low, middle, high] = words_of(&looks.detectable_to_critical_cycles);
+        let (length, never_found) = (PLAIN.length(looks.detectable_mm * MM, 3), looks.break_before_detectable);
         let missed = match &self.lives.looked {
             Some(Looked { first, every, before_first, missed, .. }) => format!(
                 "; inspected after {first:.0} cycles, then every {}: all miss the crack of a plate: {} ({before_first} plates fail before the \
@@ -231,7 +209,7 @@ impl FleetReport {
                 every_words(*every, None, self.per_pass),
                 chance(*missed)
             ),
-            None if self.never_found() > 0 => format!("; {} plates fail before a detectable crack", self.never_found()),
+            None if never_found > 0 => format!("; {never_found} plates fail before a detectable crack"),
             None => String::new(),
         };
         format!("  Fleet          from a = {length} to the end: 5 % {low}, median {middle}, 95 % {high} cycles{missed}")
@@ -239,11 +217,10 @@ impl FleetReport {
 }
 
 /// 5 %, median and 95 % in words.
-fn words_of(lives: &Lives) -> [String; 3] {
-    let words = lives.figures().words;
-    [words.p05, words.p50, words.p95].map(|words| {
-        let words = words.unwrap_or_else(|| "unknown".to_owned());
-        words.parse::<f64>().map_or(words, |life| PLAIN.significant(life, 4, f64::round))
+fn words_of(lives: &LifeQuantiles) -> [String; 3] {
+    [&lives.words.p05, &lives.words.p50, &lives.words.p95].map(|words| {
+        let words = words.as_deref().unwrap_or("unknown");
+        words.parse::<f64>().map_or_else(|_| words.to_owned(), |life| PLAIN.significant(life, 4, f64::round))
     })
 }
 

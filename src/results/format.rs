@@ -1,11 +1,19 @@
 //! Numbers as people read them: thousands apart, no more digits than a band or a stated error deserves, quantities in the units that are shown.
 //!
 //! What is rounded is the number in the unit that is shown; a rounded number is never converted.
+//!
+//! Results in US units, and back: numbers by the units that their keys end in, quantities in words. What the program reads back as input
+//! stays metric: `fitted.toml`, `case.toml` and `inputs/`, checkpoints; so do `case` in results, files for ParaView and Parquet.
+
+use std::borrow::Cow;
+
+use serde_json::{Map, Value};
 
 use perilife_base::units::MM;
 use perilife_base::units::shown::{name_of, per, shown};
 pub use perilife_base::units::us::clean;
 use perilife_base::units::us::{System, renamed};
+use perilife_base::units::words::with_keys;
 
 /// Half widths of a band above which a life has so many significant digits, and those below.
 const DIGITS: [(f64, usize); 2] = [(0.1, 2), (0.01, 3)];
@@ -14,7 +22,6 @@ const DIGITS_MOST: usize = 4;
 /// Half width of a life of which no error is stated.
 const UNSTATED: f64 = 0.01;
 
-/// How numbers are written.
 #[derive(Debug, Clone, Copy)]
 pub struct Format {
     /// Between thousands, from 10 000 on.
@@ -67,7 +74,6 @@ impl Format {
         self.digits(&format!("{:.*}", usize::try_from(-place).unwrap_or(0), to_whole(value / unit) * unit))
     }
 
-    /// Cycles with the digits that a band of them deserves.
     pub fn by_band(self, cycles: f64, band: &[f64; 3]) -> String {
         self.significant(cycles, digits(band), f64::round)
     }
@@ -133,7 +139,6 @@ pub fn digits([low, middle, high]: &[f64; 3]) -> usize {
     DIGITS.iter().find(|(width, _)| half > *width).map_or(DIGITS_MOST, |(_, digits)| *digits)
 }
 
-/// A number with at most four decimals.
 pub fn short(value: f64) -> String {
     trimmed(&format!("{value:.4}")).to_owned()
 }
@@ -155,4 +160,80 @@ pub fn two_digits(value: f64) -> f64 {
 /// Digits without zeros behind their decimal point.
 pub fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+/// Keys of results that stay as they are: what was given, names, hashes, lists of keys, and constants whose name says SI.
+const KEPT: [&str; 15] = [
+    "case",
+    "constants_si",
+    "commit",
+    "design",
+    "file",
+    "finished",
+    "fatigue",
+    "inputs",
+    "key",
+    "kinds",
+    "laws",
+    "name",
+    "overrides",
+    "sources",
+    "version",
+];
+/// Keys whose fields belong to the constants that stand beside them.
+const ERRORS: &str = "standard_errors";
+const CONSTANTS: &str = "constants";
+
+/// A result in the units of `to`: numbers by their keys, and quantities in words.
+pub fn of_result(value: &Value, to: System) -> Value {
+    match value {
+        Value::Object(fields) => of_fields(fields, fields, to),
+        Value::Array(items) => items.iter().map(|item| of_result(item, to)).collect(),
+        Value::String(words) => with_keys(words, to).into(),
+        other => other.clone(),
+    }
+}
+
+/// A result that was written in either units, in metric ones.
+pub fn metric_result(value: Value) -> Value {
+    let is_us = value.as_object().is_some_and(|fields| fields.keys().any(|key| renamed(key, System::Si).is_some()));
+    if is_us { of_result(&value, System::Si) } else { value }
+}
+
+fn of_fields(fields: &Map<String, Value>, beside: &Map<String, Value>, to: System) -> Value {
+    let field = |(key, value): (&String, &Value)| {
+        if KEPT.contains(&key.as_str()) {
+            return (key.clone(), value.clone());
+        }
+        if let (ERRORS, Some(errors), Some(constants)) =
+            (key.as_str(), value.as_object(), fields.get(CONSTANTS).and_then(Value::as_object))
+        {
+            return (key.clone(), of_fields(errors, constants, to));
+        }
+        let Some(new) = renamed(key, to) else { return (key.clone(), of_result(value, to)) };
+        match new.factor(|name| beside.get(name).and_then(Value::as_f64)) {
+            Ok(factor) => (new.name, scaled(value, factor)),
+            // Not known, or of an exponent that is not: as it is.
+            Err(_) if value.is_null() => (new.name, Value::Null),
+            Err(_) => (key.clone(), value.clone()),
+        }
+    };
+    Value::Object(fields.iter().map(field).collect())
+}
+
+fn scaled(value: &Value, factor: f64) -> Value {
+    match value {
+        Value::Number(number) => number.as_f64().map_or(Value::Null, |number| clean(number * factor).into()),
+        Value::Array(items) => items.iter().map(|item| scaled(item, factor)).collect(),
+        other => other.clone(),
+    }
+}
+
+pub fn shown_result(value: &Value) -> Cow<'_, Value> {
+    if shown() == System::Si { Cow::Borrowed(value) } else { Cow::Owned(of_result(value, shown())) }
+}
+
+/// Now, RFC 3339 in UTC to the second: `2026-11-25T19:01:55Z`.
+pub fn now() -> String {
+    humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string()
 }

@@ -14,7 +14,6 @@ use perilife_points::bond_law::BondLawKind;
 use perilife_points::refinement::Discretisation;
 use perilife_points::solver::SolverUsed;
 
-/// Keys that say how bonds resist.
 pub const OF_BONDS: [&str; 7] =
     ["bond_law", "kernel", "rotation", "surface_correction", "kinematics", "zero_energy_control", "zero_energy_factor"];
 
@@ -27,7 +26,6 @@ pub struct Choice {
     pub why: Option<String>,
 }
 
-/// The choices as one object, reasons under `why`.
 pub fn object(choices: &[Choice]) -> Map<String, Value> {
     let why = |choice: &Choice| Some((choice.key.to_owned(), choice.why.clone()?.into()));
     let why: Map<String, Value> = choices.iter().filter_map(why).collect();
@@ -62,7 +60,6 @@ pub fn of_case(case: &Case, figures: Option<&RunFigures>) -> Vec<Choice> {
     choices
 }
 
-/// How every pin bears, in words.
 pub fn pins(case: &Case) -> Vec<String> {
     let words = |load: &Load| match load {
         Load::Pin { hole, contact, .. } => Some(format!("hole {hole}: {}", contact.words())),
@@ -82,10 +79,12 @@ fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) 
     };
     let by_solver = used.map(|used| format!("; requested \"{}\", used {}", points.solver, used.meaning()));
     let springs_do = law.kind != BondLawKind::StateBased;
+    // A record of hand calculation fixes nothing.
+    let is_by_record = matches!(&case.law, LawSource::Fitted(record) if record.rate_constant.is_some());
     let chosen = |key, value: Value, default: &str, more: &str| {
         let why = if given(&case.echo, key) {
             "given in the case"
-        } else if is_fixed_by_record(case, key) {
+        } else if is_by_record && OF_RECORD.contains(&key) {
             "from the fitted law, which is valid for this choice only"
         } else {
             default
@@ -115,7 +114,6 @@ fn of_points(case: &Case, points: &PointSettings, figures: Option<&RunFigures>) 
     ]
 }
 
-/// Why its mechanics are computed by that method.
 fn why_method(case: &Case) -> String {
     case.chosen.as_ref().map_or_else(|| "given in the case".to_owned(), |why| format!("automatic: {why}"))
 }
@@ -180,14 +178,9 @@ pub fn given(echo: &Value, key: &str) -> bool {
     echo.get("model").is_some_and(|model| model.get(key).is_some())
 }
 
-/// Whether the fitted law of a case is meaningless without its choice of this key.
-fn is_fixed_by_record(case: &Case, key: &str) -> bool {
-    let LawSource::Fitted(record) = &case.law else { return false };
-    // A record of hand calculation fixes nothing.
-    record.rate_constant.is_some() && matches!(key, "bond_law" | "kernel" | "rotation" | "horizon_ratio" | "surface_correction")
-}
+/// Keys without whose choice a fitted law is meaningless.
+const OF_RECORD: [&str; 5] = ["bond_law", "kernel", "rotation", "horizon_ratio", "surface_correction"];
 
-/// How much of the plate was solved for.
 fn solved_part(figures: &RunFigures) -> &'static str {
     let (all, solved) = (figures.points, figures.points_solved);
     // A line of symmetry through a row of points leaves half a row more.
@@ -198,7 +191,6 @@ fn solved_part(figures: &RunFigures) -> &'static str {
     }
 }
 
-/// The cycles of load in words.
 pub fn loading(case: &Case) -> String {
     let (specimen, loading) = (&case.specimen, &case.loading);
     let (load, unit, symbol) = match specimen.load_measure {
@@ -239,7 +231,6 @@ pub fn loading(case: &Case) -> String {
     }
 }
 
-/// What cycles of a displacement move, in words.
 fn moved(specimen: &Specimen) -> &'static str {
     let is_gripped = specimen.supports.iter().any(|support| matches!(support, Support::ClampedEnds | Support::RigidEnds));
     let of_edge = |support: &Support| match *support {

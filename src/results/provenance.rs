@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use toml::Table;
 
+use super::format;
 use super::output::write_file;
-use super::time;
 use perilife_base::error::{Error, Result};
 use perilife_base::input::{OpenedFile, Provenance, sha256};
 
@@ -23,7 +23,6 @@ pub fn built_from(commit: &'static str) {
     let _ = COMMIT.set(commit);
 }
 
-/// A table that a result is read from later.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TableEntry {
     pub file: String,
@@ -31,7 +30,6 @@ pub struct TableEntry {
     pub bytes: usize,
 }
 
-/// A file that was read.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InputEntry {
     pub file: String,
@@ -70,13 +68,12 @@ impl MadeBy {
             tables: tables.into_iter().map(table).collect(),
             inputs: provenance.files.iter().zip(kept_names(&provenance.files)).map(input).collect(),
             overrides: provenance.overrides.clone(),
-            finished: Some(time::now()),
+            finished: Some(format::now()),
             commit: COMMIT.get().map(|commit| (*commit).to_owned()),
         }
     }
 }
 
-/// Adds to the object of a result what made it.
 pub fn add<'t>(object: &mut Value, provenance: &Provenance, tables: impl IntoIterator<Item = (&'t Path, &'t str)>) {
     if let (Some(fields), Ok(Value::Object(made_by))) =
         (object.as_object_mut(), serde_json::to_value(MadeBy::of(provenance, tables)))

@@ -5,16 +5,14 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::band::{BandRecord, Lives, OwnRecord};
+use super::answers::{InspectionsRecord, SensitivityRecord};
+use super::band::{BandRecord, Lives, OwnRecord, Quality, SecondOpinion};
 use super::checks::{Check, Judgement, Validity, validity, verdict};
 use super::fleet::FleetRecord;
 use super::format::clean;
-use super::inspections::InspectionsRecord;
 use super::model_words;
 use super::pictures::plate::Plate;
 use super::provenance::MadeBy;
-use super::quality::{Quality, SecondOpinion};
-use super::sensitivities::SensitivityRecord;
 use super::spectrum::SpectrumRecord;
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
@@ -26,8 +24,7 @@ use perilife_growth::end_of_life::{critical_length, critical_lengths};
 use perilife_growth::predict::fit_use::life_share_extrapolated;
 use perilife_growth::predict::laws::paris_law;
 use perilife_growth::predict::part_through::PartThroughLife;
-use perilife_growth::predict::plastic_zone;
-use perilife_growth::predict::{CurvePoint, GoverningCrack, Prediction, StopReason};
+use perilife_growth::predict::{CurvePoint, GoverningCrack, Prediction, StopReason, plastic_zone};
 use perilife_growth::record::TipRecord;
 use perilife_plate::specimen::part_through::{BREAK_THROUGH, Limit, STATED_ERROR};
 
@@ -91,7 +88,6 @@ pub struct RunRecord {
     pub plate: Option<Plate>,
     #[serde(flatten)]
     pub made_by: MadeBy,
-    /// Why the life does not count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refused: Option<String>,
 }
@@ -195,7 +191,6 @@ pub struct ZoneRecord {
     pub over_thickness: f64,
 }
 
-/// K against the energy of the plate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EnergyBalance {
     pub compared: usize,
@@ -409,7 +404,12 @@ impl LawUsed {
 
     fn of(case: &Case, prediction: &Prediction) -> Self {
         let hand = !case.spends_bond_life();
-        let source = if case.law_record.is_some() { "fitted" } else { "inline" };
+        let source = match &case.law {
+            LawSource::Missing(_) => "missing",
+            LawSource::Fitted(_) => "fitted",
+            LawSource::Paris(_) | LawSource::Factor(_) if case.law_record.is_some() => "fitted",
+            _ => "inline",
+        };
         let given = LawUsed {
             source: source.to_owned(),
             a_used: case.fatigue_law(prediction.figures.horizon).ok().filter(|_| !hand).map(|law| law.a),
@@ -418,16 +418,9 @@ impl LawUsed {
             ..LawUsed::default()
         };
         match &case.law {
-            LawSource::Inline(law) => LawUsed {
-                source: "inline".to_owned(),
-                a: Some(law.a),
-                p: Some(law.p),
-                horizon_mm: known(law.horizon / MM),
-                ..given
-            },
+            LawSource::Inline(law) => LawUsed { a: Some(law.a), p: Some(law.p), horizon_mm: known(law.horizon / MM), ..given },
             LawSource::Paris(law) => LawUsed { paris_c_mm_per_cycle: known(law.c / MM_PER_CYCLE), paris_m: Some(law.m), ..given },
             LawSource::Fitted(record) => LawUsed {
-                source: "fitted".to_owned(),
                 law: Some(record.law.name().to_owned()),
                 curve: record.curve.clone(),
                 a: Some(record.a).filter(|a| a.is_finite()),
@@ -446,7 +439,7 @@ impl LawUsed {
                 ..given
             },
             LawSource::Factor(law) => LawUsed { constants_si: Some(law.constants_si()), ..given },
-            LawSource::Missing(path) => LawUsed { source: "missing".to_owned(), file: Some(path.display().to_string()), ..given },
+            LawSource::Missing(path) => LawUsed { file: Some(path.display().to_string()), ..given },
         }
     }
 }

@@ -5,36 +5,33 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::answers::{Answers, Asked};
-use super::band::Lives;
+use super::band::{Lives, Quality, band_words};
 use super::chart::{self, LARGE, Mark, Series};
-use super::checks::{Judgement, Message, messages};
+use super::checks::{Judgement, Message, Validity, messages};
 use super::curve::{self, RunTables};
-use super::damage::{DamagePicture, cycles_and_length};
+use super::factors;
 use super::format::PLAIN;
 use super::output::{Room, write_file, write_json, write_table};
 use super::pictures::curves::{a_n_svg, k_svg};
 use super::pictures::plate::{self, growth_svg, plate_svg};
 use super::pictures::section::section_svg;
-use super::pictures::spectrum::spectrum_svg;
 use super::pictures::stress::stress_svg;
 use super::provenance::{self, MadeBy};
-use super::quality::Quality;
 use super::record::{RESULT_FILE, RunRecord};
+use super::snapshots::{self, DamagePicture, cycles_and_length};
 use super::specimen_picture::{nodes_svg, tip_svg};
-use super::{factors, spectrum, vtk};
+use super::spectrum::{self, spectrum_svg};
 use perilife_base::columns::Table;
 use perilife_base::error::{Error, Result};
 use perilife_base::units::{KN, MM, MM_PER_CYCLE, MPA, MPA_SQRT_M, shown::crack_length, shown::name_of};
 use perilife_calibration::inspection::InspectFrom;
-use perilife_growth::case::needs;
-use perilife_growth::case::{Case, Model, RECORD};
-use perilife_growth::predict::fit_use;
+use perilife_growth::case::{Case, Model, RECORD, needs};
 use perilife_growth::predict::judgement::breaks_at_once;
 use perilife_growth::predict::moment::stress_field;
 use perilife_growth::predict::part_through::PartThroughLife;
 use perilife_growth::predict::plastic_zone::{self, PlasticZone};
 use perilife_growth::predict::residual_strength::{Strength, residual_strength};
-use perilife_growth::predict::{Prediction, StopReason};
+use perilife_growth::predict::{Prediction, StopReason, fit_use};
 use perilife_measured::MeasuredCurve;
 use perilife_plate::specimen::handbook::handbook;
 use perilife_plate::specimen::part_through::{SOURCE, STATED_ERROR};
@@ -77,7 +74,6 @@ pub const FIGURES: [&str; 30] = [
 /// What is wanted beside a run of cycles.
 #[derive(Debug, Clone, Default)]
 pub struct Wanted {
-    /// Residual strength over crack length.
     pub strength: bool,
     /// Readings of the plate itself, set against its case, that narrow the band of what it has left.
     pub readings: Option<MeasuredCurve>,
@@ -91,7 +87,6 @@ pub struct Wanted {
     pub cross_check: bool,
 }
 
-/// A run with all that was found about it.
 #[derive(Debug)]
 pub struct Judged {
     pub record: RunRecord,
@@ -130,7 +125,9 @@ impl Judged {
         let mut record = RunRecord::of(case, prediction, &judgement, &lives, &quality);
         let (strengths, missed) = strengths.map_or_else(|error| (None, Some(error)), |strengths| (strengths, None));
         let (answers, unanswered) = answers.map_or_else(|error| (Answers::default(), Some(error)), |answers| (answers, None));
-        answers.add_to(&mut record);
+        record.inspections.clone_from(&answers.inspections);
+        record.fleet = answers.fleet.as_ref().map(|fleet| fleet.record.clone());
+        record.sensitivities = answers.sensitivities.as_ref().map(|all| all.0.clone());
         judgement.refusal = judgement.refusal.or(missed).or(unanswered);
         let kept = [curve::a_n(case, prediction, lives.columns()), curve::crack_path(prediction, &case.specimen.cracks)];
         let kept = kept.map(Table::with_text);
@@ -176,7 +173,7 @@ impl Judged {
             self.draw(folder, case, prediction)?;
             self.strengths.as_ref().map_or(Ok(()), |strengths| write_strength(folder, case, strengths))?;
         }
-        vtk::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)
+        snapshots::write_wanted(folder, case.output, &prediction.grid, &prediction.snapshots)
     }
 
     /// Pictures of a run: plate, a-N, K and rates; damage of fatigue bonds; nodes and stress of the node model.
@@ -248,11 +245,15 @@ impl Judged {
     /// Lines of a summary, the answer first.
     pub fn words(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
         let (is_refused, record) = (self.record.refused.is_some(), &self.record);
+        let is_valid = record.verdict_kind != Validity::NotValid;
         let by_error = |life: f64| format!("{} cycles", PLAIN.by_error(life, record.error_estimate_percent));
-        let life = record.life_cycles.map(|life| self.lives.life_words().unwrap_or_else(|| by_error(life)));
+        let life = record
+            .life_cycles
+            .map(|life| self.lives.life().map(|quantiles| band_words(&quantiles)).unwrap_or_else(|| by_error(life)));
         let run = match life {
             _ if breaks_at_once(case, prediction).is_some() => "no life: the plate fails in the first cycle".to_owned(),
             Some(life) if is_refused => format!("no valid life ({life} computed; see the failed check)"),
+            Some(life) if !is_valid => format!("not valid (life {life} computed; see the failed check)"),
             Some(life) if prediction.stop == StopReason::EnteredHole => format!("{life} until the crack enters the hole"),
             Some(life) if record.life_is_lower_bound => format!("life ≥ {life}"),
             Some(life) if prediction.stop.is_lower_bound() => format!("{life} until the analysis stopped"),
@@ -263,7 +264,7 @@ impl Judged {
         let passes = record.passes.filter(|passes| *passes > 0.0 && record.band.is_none());
         let passes = passes.map_or_else(String::new, |passes| format!(" ({} passes)", PLAIN.significant(passes, 4, f64::round)));
         let (name, run) = (&case.name, run + &passes);
-        let mut lines = match self.answers.headline().filter(|_| self.judgement.refusal.is_none()) {
+        let mut lines = match self.answers.headline().filter(|_| is_valid) {
             // The run is one plate, and its life may exceed all of a fleet.
             Some(fleet) => vec![format!("{name}: {fleet}"), format!("  Nominal run    {run}")],
             None => vec![format!("{name}: {run}")],
@@ -284,7 +285,6 @@ impl Judged {
         lines
     }
 
-    /// Lines of a long summary beside those.
     pub fn details(&self, case: &Case, prediction: &Prediction) -> Vec<String> {
         let figures = &prediction.figures;
         let model = format!("{} points, {} rows of the curve, {} solves", figures.points, figures.blocks + 1, figures.solves);
@@ -310,7 +310,6 @@ pub fn write_input(folder: &Path, case: &Case) -> Result<()> {
     provenance::write(folder, "predict", input, &case.provenance)
 }
 
-/// Bytes that a run of this case will write, roughly.
 pub fn room(case: &Case) -> Room {
     let texts: usize = case.provenance.files.iter().map(|file| file.content.len()).sum();
     let tables = 32_000 + texts as u64;
@@ -333,7 +332,6 @@ fn phase_words(prediction: &Prediction) -> Option<String> {
     })
 }
 
-/// A length, m, at the start and the end.
 fn from_to(from: f64, to: f64) -> String {
     format!("{} → {} {}", crack_length(from), crack_length(to), name_of("mm"))
 }
@@ -419,7 +417,6 @@ pub fn strength_table(case: &Case, strengths: &[Strength]) -> Table {
         .words("governed_by", strengths.iter().map(Strength::governed_by))
 }
 
-/// Draws the residual strength of a run.
 fn write_strength(folder: &Path, case: &Case, curve: &[Strength]) -> Result<()> {
     let (_, axis, size) = unit(case);
     let series = |name: &str, mark, pick: &dyn Fn(&Strength) -> Option<f64>| Series {

@@ -1,17 +1,20 @@
-//! A spectrum in words and figures: what a case was understood to load its plate with, and how often its passes came.
+//! A spectrum in words and figures: what a case was understood to load its plate with, how often its passes came; `spectrum.svg`.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::axis::Axis;
+use super::chart::{COMPUTED, Frame, Size};
 use super::format::{clean, short};
+use super::specimen_picture::sketch::Sketch;
 use perilife_growth::case::Case;
 use perilife_growth::predict::{Prediction, StopReason};
 use perilife_plate::loading::spectrum::Spectrum;
+use perilife_plate::specimen::Point;
 
 /// Shares of the largest load whose exceedances are told.
 const LEVELS: [f64; 4] = [0.9, 0.75, 0.5, 0.25];
 
-/// Bars of the histogram of ranges.
 pub const BARS: usize = 20;
 /// Levels of the maxima that are written, at the most.
 const MAXIMA_MOST: usize = 200;
@@ -25,7 +28,6 @@ pub struct SpectrumCurves {
     pub cycles_by_range: Vec<f64>,
 }
 
-/// `spectrum` of a result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpectrumRecord {
     pub file: String,
@@ -66,7 +68,6 @@ fn exceedances(spectrum: &Spectrum) -> [f64; 4] {
     LEVELS.map(|level| spectrum.cycles.iter().filter(|cycle| cycle.max > level).map(|cycle| cycle.count).sum())
 }
 
-/// What was understood of a spectrum, in a line.
 pub fn more_words(case: &Case, spectrum: &Spectrum) -> String {
     let left_out = if spectrum.omitted > 0.0 { format!(" ({} more omitted)", short(spectrum.omitted)) } else { String::new() };
     let passes =
@@ -135,4 +136,50 @@ impl SpectrumRecord {
             retardation: case.retardation.as_ref().map_or_else(none, |model| model.json()),
         })
     }
+}
+
+const BAR: f64 = 0.7;
+const POINTS: usize = 400;
+
+/// Exceedances of the maxima, left, and histogram of the ranges, right, of a pass.
+pub fn spectrum_svg(spectrum: &Spectrum, size: Size) -> String {
+    let half = Size { width: 0.5 * size.width, ..size };
+    let mut picture = Sketch::new(1.0, [0.0; 2]);
+    exceedances_frame(spectrum, half).beside(&mut picture, [0.0; 2]);
+    ranges(spectrum, half).beside(&mut picture, [half.width, 0.0]);
+    let sentence = format!("Exceedances and ranges of the {:.0} cycles of a pass", spectrum.per_pass);
+    picture.picture([size.width, size.height], &sentence)
+}
+
+/// Maxima over how many of a pass are as large or larger, a stair.
+fn exceedances_frame(spectrum: &Spectrum, size: Size) -> Frame {
+    let mut stair: Vec<Point> = Vec::new();
+    for (level, count) in thinned(spectrum, POINTS) {
+        if let Some([before, _]) = stair.last().copied() {
+            stair.push([before, level]);
+        }
+        stair.push([count, level]);
+    }
+    let counts = stair.iter().map(|point| point[0]);
+    let axes = [Axis::logarithmic(counts), Axis::linear(stair.iter().map(|point| point[1]).chain([0.0]))];
+    let mut frame = Frame::new(size, "", axes, ["Peak exceedances per pass", "Peak / maximum load"], &[]);
+    frame.line(&stair, COMPUTED, 2.0, "");
+    frame
+}
+
+/// Cycles of a pass by their range, over a logarithmic axis where they differ much.
+fn ranges(spectrum: &Spectrum, size: Size) -> Frame {
+    let (counts, largest) = spectrum.ranges(BARS);
+    let some = || counts.iter().copied().filter(|count| *count > 0.0);
+    let [low, high] = some().fold([f64::INFINITY, 0.0], |[low, high], count| [low.min(count), high.max(count)]);
+    let floor = if high > 50.0 * low { 0.5 * low } else { 0.0 };
+    let y = if floor > 0.0 { Axis::logarithmic_between(floor, 1.5 * high) } else { Axis::linear([0.0, high].into_iter()) };
+    let axes = [Axis::linear_in([0.0, largest].into_iter(), 5.0), y];
+    let mut frame = Frame::new(size, "", axes, ["Range / maximum load", "Cycles per pass"], &[]);
+    let width = largest / BARS as f64;
+    for (place, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
+        let [from, to] = [(place as f64 + 0.08) * width, (place as f64 + 0.92) * width];
+        frame.band(&[[from, floor], [to, floor]], &[[from, *count], [to, *count]], BAR);
+    }
+    frame
 }

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::output::{Room, write_file, write_json};
 use super::pictures::stress::stress_svg;
 use super::specimen_picture::nodes_svg;
-use super::{provenance, record::RESULT_FILE, vtk};
+use super::{provenance, record::RESULT_FILE, snapshots};
 use perilife_base::error::Result;
 use perilife_base::raster::Snapshot;
 use perilife_base::units::shown::{column, per, told};
@@ -91,7 +91,6 @@ impl StressesRecord {
     }
 }
 
-/// One line a rim, in the units that are shown.
 pub fn table(stressed: &Stressed) -> String {
     let [x, y] = ["x_mm", "y_mm"].map(column);
     let [largest, least] = ["largest MPa", "least MPa"].map(told);
@@ -113,7 +112,6 @@ pub fn table(stressed: &Stressed) -> String {
     text
 }
 
-/// How they were computed, in one line.
 pub fn words(case: &Case, stressed: &Stressed) -> String {
     let gross = stressed.gross.map_or(String::new(), |gross| format!(", gross stress {:.3} MPa", gross / MPA));
     let settled = stressed.change.map_or(String::new(), |change| format!(", last change {:.2} %", 100.0 * change));
@@ -142,7 +140,6 @@ pub fn warnings(stressed: &Stressed) -> Vec<String> {
     warnings
 }
 
-/// Bytes that the files will have, roughly.
 pub fn room(case: &Case) -> Room {
     const OF_POINT: f64 = 60.0;
     let points = 100.0 * case.specimen.area() / case.nodes().resolution.far.powi(2);
@@ -172,5 +169,5 @@ pub fn write(folder: &Path, case: &Case, stressed: &Stressed, result: &Value) ->
         remaining_life: Vec::new(),
         stress: stressed.stress.clone(),
     };
-    vtk::write_wanted(folder, case.output, &stressed.grid, &[snapshot])
+    snapshots::write_wanted(folder, case.output, &stressed.grid, &[snapshot])
 }

@@ -15,9 +15,7 @@ use perilife_calibration::sweep::draw::label;
 use perilife_calibration::sweep::{DrawnCase, Sweep, design};
 use perilife_growth::predict::StopReason;
 
-/// File that says what a sweep consists of.
 pub const PLAN_FILE: &str = "plan.json";
-/// File of a case that says what came of it.
 pub const OUTCOME_FILE: &str = "outcome.toml";
 pub const TABLE_FILE: &str = "sweep.csv";
 pub const FIGURES_FILE: &str = "sweep.json";
@@ -30,7 +28,6 @@ const FAILURES_MAX: usize = 100;
 pub struct Plan {
     pub version: String,
     pub name: String,
-    /// The sweep file as it was read.
     pub design: Value,
     pub columns: Vec<String>,
     pub cases: Vec<PlannedCase>,
@@ -43,28 +40,22 @@ pub struct PlannedCase {
     pub values: Vec<String>,
 }
 
-/// What came of a case.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Outcome {
     pub input: String,
-    /// Cycles to the end of the run.
     pub life_cycles: Option<f64>,
-    /// Why it ended.
     pub stop_reason: Option<String>,
     /// Whether that is less than what the plate lives, all that could end it sooner being checked.
     pub life_is_lower_bound: Option<bool>,
     pub crack_length_final_mm: Option<f64>,
     pub wall_s: f64,
-    /// Why there is no result.
     pub problem: Option<String>,
     /// Whether a machine was to blame and not the input, so that the next call tries again.
     #[serde(default)]
     pub try_again: bool,
-    /// What the user should know.
     #[serde(default)]
     pub warnings: Vec<String>,
-    /// Whether the files of the run stand beside this.
     pub has_files: bool,
 }
 
@@ -96,20 +87,8 @@ impl Outcome {
         }
     }
 
-    /// A case without a result.
     pub fn failed(case: &DrawnCase, problem: &str, wall_s: f64) -> Self {
-        Outcome {
-            input: case.hash.clone(),
-            life_cycles: None,
-            stop_reason: None,
-            life_is_lower_bound: None,
-            crack_length_final_mm: None,
-            wall_s,
-            problem: Some(problem.to_owned()),
-            try_again: false,
-            warnings: Vec::new(),
-            has_files: false,
-        }
+        Outcome { input: case.hash.clone(), wall_s, problem: Some(problem.to_owned()), ..Outcome::default() }
     }
 }
 
@@ -125,9 +104,14 @@ impl Plan {
             cases: cases.iter().map(planned).collect(),
         }
     }
+
+    /// As [`read_plan`] gives it back: numbers may be of another type, of the same value.
+    pub fn as_read(&self) -> Plan {
+        let read = serde_json::to_string(self).ok().and_then(|text| serde_json::from_str(&text).ok());
+        read.unwrap_or_else(|| self.clone())
+    }
 }
 
-/// A value as the table writes it.
 fn written(value: &toml::Value) -> String {
     match value {
         toml::Value::Float(number) => exact_text(*number),
@@ -171,27 +155,22 @@ pub struct SweepRecord {
     pub unlimited: usize,
     pub lower_bounds: usize,
     pub life_cycles: LifeQuantiles,
-    /// The first `FAILURES_MAX`.
     pub failures: Vec<Failure>,
     pub missing_cases: Vec<String>,
     pub warnings: Vec<SharedWarning>,
     pub columns: Vec<String>,
     pub design: Value,
     pub version: String,
-    /// Time of this call.
     pub wall_s: f64,
-    /// Time of the runs.
     pub computing_s: f64,
 }
 
-/// A case without a result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Failure {
     pub case: String,
     pub problem: String,
 }
 
-/// A warning of several cases.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SharedWarning {
     pub cases: usize,
@@ -254,11 +233,11 @@ pub struct QuantileWords {
     pub p95: Option<String>,
 }
 
+#[derive(Debug, Clone)]
 pub(super) struct Lives {
     /// Upwards, each with whether it is a lower bound; unlimited ones at the end, infinite.
     pub sorted: Vec<(f64, bool)>,
     pub unlimited: usize,
-    /// How many are lower bounds.
     pub bounds: usize,
 }
 
@@ -292,7 +271,6 @@ impl Lives {
         if is_bound { (None, Some(format!("above {value:.0}"))) } else { (Some(value), Some(format!("{value:.0}"))) }
     }
 
-    /// Quantiles by [`quantile`].
     pub fn figures(&self) -> LifeQuantiles {
         let [p05, p50, p95] = [0.05, 0.5, 0.95].map(|q| self.quantile(q));
         let ends = || self.sorted.iter().filter(|(life, _)| life.is_finite()).map(|(life, _)| *life);
@@ -307,7 +285,6 @@ impl Lives {
     }
 }
 
-/// Writes table, record and picture into the folder of a sweep; returns the record.
 pub fn write(folder: &Path, plan: &Plan, outcomes: &[Option<Outcome>], wall_s: f64) -> Result<SweepRecord> {
     let record = SweepRecord::of(plan, outcomes, wall_s);
     write_table(folder, &table(plan, outcomes))?;
@@ -344,15 +321,6 @@ fn draw(path: &Path, plan: &Plan, outcomes: &[Option<Outcome>]) -> Result<()> {
     chart::linear(path, &title("distribution of life"), ["Life N, cycles", "Share of cases that have ended, %"], &[series])
 }
 
-impl Plan {
-    /// As [`read_plan`] gives it back: numbers may be of another type, of the same value.
-    pub fn as_read(&self) -> Plan {
-        let read = serde_json::to_string(self).ok().and_then(|text| serde_json::from_str(&text).ok());
-        read.unwrap_or_else(|| self.clone())
-    }
-}
-
-/// Reads the plan of a folder; `None` where there is none.
 pub fn read_plan(folder: &Path) -> Result<Option<Plan>> {
     let path = folder.join(PLAN_FILE);
     let text = match std::fs::read_to_string(&path) {
@@ -373,7 +341,6 @@ pub fn read_outcome(folder: &Path, input: &str) -> Option<Outcome> {
     toml::from_str::<Outcome>(&text).ok().filter(|outcome| outcome.input == input)
 }
 
-/// Warnings that the figures list at most.
 const WARNINGS_MAX: usize = 20;
 
 /// Warnings by number of cases; those that differ in their numbers only are one, told by the first case that has it. Where they begin with a

@@ -141,12 +141,10 @@ pub fn beside() -> Vec<Told> {
         .collect()
 }
 
-/// The JSON Schema of case and calibration files.
 pub fn schema() -> Value {
     told::schema("perilife case or calibration", &told())
 }
 
-/// Every key in tables of the guide.
 pub fn manual() -> String {
     told().iter().chain(&beside()).map(Told::manual).collect()
 }

@@ -1,19 +1,21 @@
-//! Stress intensity factors of every crack tip by several methods, and on nodes the stress of the plate, with or without cracks.
+//! Stress intensity factors of every crack tip by several methods, or over crack length, and on nodes the stress of the plate.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use super::{Done, Message, Summary};
 use perilife_base::error::{Error, Result, input};
-use perilife_base::units::shown::{per, told};
-use perilife_base::units::{MM, MPA, MPA_SQRT_M};
-use perilife_growth::case::Case;
+use perilife_base::input::{Document, LENGTH};
+use perilife_base::units::shown::{length_given, per, told};
+use perilife_base::units::{MM, MPA, MPA_SQRT_M, round_off};
+use perilife_growth::case::{Case, needs};
 use perilife_growth::predict::pin_arcs;
 use perilife_growth::predict::tip_factors::{MethodResult, StressIntensityMethod, TipResult, stress_intensity};
 use perilife_growth::stress_concentration::stressed;
+use perilife_plate::specimen::SpecimenKind;
 use perilife_plate::specimen::handbook::handbook_beside;
 use perilife_points::crack_tip::TipState;
 use perilife_results::model_words;
@@ -25,7 +27,6 @@ pub struct SifRecord {
     /// Contact of the pins with their holes, in words.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pins: Vec<String>,
-    /// The formula beside the methods, and its range.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub handbook: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,8 +71,7 @@ impl TipRecord {
             t_stress_mpa: result.t_stress.map(|t_stress| t_stress / MPA),
             note: result.note.clone(),
         };
-        let named =
-            |result: &MethodResult| (result.method.name().to_owned(), serde_json::to_value(method(result)).unwrap_or_default());
+        let named = |result: &MethodResult| (result.method.name().to_owned(), json!(method(result)));
         let [x, y] = tip.tip.position;
         TipRecord {
             x_mm: x / MM,
@@ -114,15 +114,13 @@ pub(super) fn of(case: &Case, methods: &[StressIntensityMethod], on_nodes: bool,
         found.stresses = Some(StressesRecord::of(&stressed));
         done = Done::Stresses(Box::new(stressed));
     }
-    // Figures and text have a form in JSON.
-    let result = serde_json::to_value(found).unwrap_or_default();
+    let result = json!(found);
     let mut figures = result.clone();
     figures["name"] = case.name.clone().into();
     let messages = messages.iter().map(|line| Message::warning(line)).collect();
     Ok(Summary { result, figures, printed: tables, lines, messages, done, ..Summary::default() })
 }
 
-/// What the methods say of their results, each once.
 fn notes(case: &Case, tips: &[TipResult]) -> Result<Vec<String>> {
     let results = || tips.iter().flat_map(|tip| &tip.methods);
     if tips.iter().all(|tip| tip.methods.is_empty()) {
@@ -185,4 +183,45 @@ fn table(case: &Case, tips: &[TipResult]) -> String {
         }
     }
     text
+}
+
+const KEY: &str = "--sweep";
+const LENGTHS_MOST: f64 = 10_000.0;
+/// Share of a step by which the last one may fall short.
+const SLACK: f64 = 1e-6;
+
+/// The lengths, m, of `first:last:step`, each as [`length_given`]; the last one is always among them.
+/// Errors: [`perilife_base::error::Error::Input`] on the option.
+pub fn lengths(asked: &str) -> Result<Vec<f64>> {
+    let refuse = |problem: &str| input(KEY, asked, problem, "give first:last:step, such as 10:40:1 or 0.4in:1.6in:0.05in");
+    let numbers = asked.split(':').map(|part| Some(round_off(length_given(part)? / MM))).collect::<Option<Vec<f64>>>();
+    let Some([first, last, step]) = numbers.as_deref() else { return Err(refuse("is not three lengths")) };
+    for number in [first, last, step] {
+        LENGTH.read(KEY, *number)?;
+    }
+    if first >= last {
+        return Err(refuse("must increase"));
+    }
+    let steps = ((last - first) / step - SLACK).ceil();
+    if steps > LENGTHS_MOST {
+        return Err(refuse("has more than 10000 lengths"));
+    }
+    let length = |i: usize| if i as f64 >= steps { *last } else { first + i as f64 * step };
+    Ok((0..=steps as usize).map(|i| length(i) * MM).collect())
+}
+
+/// The case of a document whose crack is to be followed from the first of these lengths, m; where it stops is not looked at.
+/// Errors: wrong input; a plate that this machine has no memory for.
+pub fn case(document: &Document, lengths: &[f64]) -> Result<Case> {
+    let mut start = document.clone();
+    start.table.remove("stop");
+    let kind = start.table.get("specimen").and_then(|specimen| specimen.get("kind")).and_then(toml::Value::as_str);
+    if kind.and_then(|kind| kind.parse().ok()).is_some_and(|kind: SpecimenKind| kind.sharing().is_some())
+        && let Some(specimen) = start.table.get_mut("specimen").and_then(toml::Value::as_table_mut)
+    {
+        specimen.insert("crack_length_mm".to_owned(), toml::Value::Float(lengths[0] / MM));
+    }
+    let case = Case::plate_of(&start)?;
+    needs::of_case(&case).within_machine().map_err(|error| document.locate(error))?;
+    Ok(case)
 }

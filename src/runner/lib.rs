@@ -6,25 +6,19 @@
 //!
 //! Imports `results` and what it imports, and `scenes`; service, program and Python import it.
 
-mod draft;
-pub mod factor_sweep;
-mod factors;
+pub mod factors;
 pub mod guide;
 pub mod sweep;
-pub mod scene_model;
-pub mod scene_picture;
 pub mod scene_results;
 pub mod catalogue;
 pub mod check;
-pub mod sweep_folder;
 mod task;
 
 pub use perilife_scenes as scenes;
 
-pub use draft::{Draft, put_law};
 pub use perilife_results::checks::Message;
 pub use perilife_results::run::{Judged, Wanted};
-pub use task::{Kind, Task};
+pub use task::{Draft, Kind, Task, put_law};
 
 use std::path::Path;
 use std::time::Instant;
@@ -50,7 +44,7 @@ use perilife_results::sweep::Plan;
 use perilife_results::{fit, stresses};
 use perilife_scenes::checkpoint::SceneCheckpoint;
 use perilife_scenes::{Fracture, Scene, SceneEnd, SceneObserver};
-use sweep_folder::SweepFolder;
+use sweep::SweepFolder;
 
 /// Receives progress and warnings of a run of whatever kind.
 pub trait Watcher: Observer + SceneObserver {
@@ -60,7 +54,6 @@ pub trait Watcher: Observer + SceneObserver {
 
 impl Watcher for Silent {}
 
-/// What came of a run.
 #[derive(Debug, Default)]
 pub struct Summary {
     /// Content of `result.json`, `fit.json` or `sweep.json`.
@@ -70,7 +63,6 @@ pub struct Summary {
     pub printed: String,
     /// The result in words, the answer first.
     pub lines: Vec<String>,
-    /// More lines of a long summary.
     pub details: Vec<String>,
     /// Checks that did not pass and warnings, the most severe first.
     pub messages: Vec<Message>,
@@ -79,7 +71,6 @@ pub struct Summary {
     done: Done,
 }
 
-/// What its files are made of.
 #[derive(Debug, Default)]
 enum Done {
     #[default]
@@ -140,7 +131,6 @@ impl Summary {
     }
 }
 
-/// Where an earlier run of a task stood.
 #[derive(Debug)]
 pub enum TaskCheckpoint {
     Cycles(Box<Checkpoint>),
@@ -159,7 +149,6 @@ impl TaskCheckpoint {
         }
     }
 
-    /// How far the run had come, in words.
     pub fn words(&self) -> String {
         match self {
             TaskCheckpoint::Cycles(kept) => {
@@ -234,8 +223,7 @@ pub fn of_prediction(case: &Case, prediction: Prediction, wanted: &Wanted, watch
     let mut judged = Judged::of(case, &prediction, wanted).inspect_err(|_| by_run())?;
     let (lines, details, messages) = (judged.words(case, &prediction), judged.details(case, &prediction), judged.messages());
     let refusal = judged.take_refusal();
-    // Figures and text have a form in JSON.
-    let result = serde_json::to_value(&judged.record).unwrap_or_default();
+    let result = json!(judged.record);
     let figures = perilife_results::run::figures(&result);
     let done = Done::Cycles(Box::new(prediction), Box::new(judged));
     Ok(Summary { result, figures, lines, details, messages, refusal, done, ..Summary::default() })
@@ -244,8 +232,7 @@ pub fn of_prediction(case: &Case, prediction: Prediction, wanted: &Wanted, watch
 pub fn of_scene(scene: &Scene, fracture: Fracture, watcher: &dyn Watcher) -> Summary {
     fracture.warnings.iter().for_each(|warning| watcher.warn(warning));
     let tables = scene_results::tables(&fracture);
-    // Figures and text have a form in JSON.
-    let result = serde_json::to_value(scene_results::record(scene, &fracture, &tables)).unwrap_or_default();
+    let result = json!(scene_results::record(scene, &fracture, &tables));
     let is_bad = matches!(fracture.end, SceneEnd::NoConvergence | SceneEnd::Unstable);
     let bad = || Error::Mechanics(format!("{}: {}: {}", scene.name, fracture.end, fracture.end.meaning()));
     let (figures, lines, refusal) = (result.clone(), scene_results::words(scene, &fracture), is_bad.then(bad));

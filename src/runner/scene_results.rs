@@ -5,19 +5,18 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::scene_model;
 use perilife_base::columns::Table;
 use perilife_base::error::Result;
 use perilife_base::raster::Snapshot;
 use perilife_base::units::{KN, MM};
 use perilife_plate::specimen::Point;
 use perilife_results::chart::{self, Mark, Series};
-use perilife_results::damage::DamagePicture;
-use perilife_results::model_words::{self, clean};
+use perilife_results::model_words::{self, ANGLE, Choice, RATIO, SPACING, TWO_SPRINGS, clean, given};
 use perilife_results::output::{Room, write_file, write_json};
 use perilife_results::provenance::{self, MadeBy};
 use perilife_results::record::RESULT_FILE;
-use perilife_results::vtk;
+use perilife_results::snapshots;
+use perilife_results::snapshots::DamagePicture;
 use perilife_scenes::outcome::{HistoryRow, PathPoint};
 use perilife_scenes::scene::{Action, Procedure, SceneLaw, SceneLoad};
 use perilife_scenes::{Fracture, Scene, SceneEnd};
@@ -30,7 +29,6 @@ fn rows(fracture: &Fracture) -> impl Iterator<Item = &HistoryRow> {
     fracture.history.iter().filter(finite)
 }
 
-/// `history.csv`: one row a recorded step.
 fn history(fracture: &Fracture) -> Table {
     let column = |of: fn(&HistoryRow) -> f64| rows(fracture).map(of);
     Table::new("history.csv")
@@ -64,12 +62,10 @@ pub fn tables(fracture: &Fracture) -> [(Table, String); 3] {
         .map(Table::with_text)
 }
 
-/// Bytes that a scene will write, roughly.
 pub fn room(scene: &Scene) -> Room {
     Room { tables: 64_000, all: scene.budget().disk_bytes as u64 }
 }
 
-/// Writes all files of a scene into `folder`.
 pub fn write(folder: &Path, scene: &Scene, (fracture, tables): (&Fracture, &[(Table, String)]), result: &Value) -> Result<()> {
     // Tables and figures first: what a full disk cuts off are pictures.
     tables.iter().try_for_each(|(table, text)| write_file(&folder.join(&table.file), text.as_bytes()))?;
@@ -82,7 +78,7 @@ pub fn write(folder: &Path, scene: &Scene, (fracture, tables): (&Fracture, &[(Ta
         draw_charts(folder, scene, fracture)?;
         draw_plate(folder, scene, fracture, &snapshots)?;
     }
-    vtk::write_wanted(folder, scene.output, &fracture.grid, &snapshots)
+    snapshots::write_wanted(folder, scene.output, &fracture.grid, &snapshots)
 }
 
 /// Load and broken bonds over displacement; in time also load, broken bonds and energies over time.
@@ -131,7 +127,6 @@ fn draw_plate(folder: &Path, scene: &Scene, fracture: &Fracture, snapshots: &[Sn
     Ok(())
 }
 
-/// When a snapshot was taken.
 fn caption(scene: &Scene, fracture: &Fracture, snapshot: &Snapshot) -> Vec<String> {
     match scene.procedure {
         Procedure::Static => vec!["static".to_owned()],
@@ -148,7 +143,6 @@ fn caption(scene: &Scene, fracture: &Fracture, snapshot: &Snapshot) -> Vec<Strin
     }
 }
 
-/// Path of every front, m.
 fn paths(fracture: &Fracture) -> Vec<Vec<Point>> {
     let count = fracture.path.iter().map(|point| point.tip + 1).max().unwrap_or(0);
     let mut paths = vec![Vec::new(); count];
@@ -222,7 +216,6 @@ pub struct SceneRecord {
     pub made_by: MadeBy,
 }
 
-/// Where a crack front stands at the end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FrontEnd {
     pub tip: usize,
@@ -233,7 +226,6 @@ pub struct FrontEnd {
     pub damage: f64,
 }
 
-/// How a scene is loaded.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadingRecord {
     pub procedure: String,
@@ -246,7 +238,6 @@ pub struct LoadingRecord {
     pub kinds: Vec<String>,
 }
 
-/// By what bonds break.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DamageRecord {
     pub law: String,
@@ -288,7 +279,7 @@ pub fn record(scene: &Scene, fracture: &Fracture, tables: &[(Table, String)]) ->
         wall_s: figures.wall_s,
         memory_mb: figures.memory_mb,
         loading: loading(scene),
-        model: model_words::object(&scene_model::of_scene(scene, Some(fracture.grid.spacing))),
+        model: model_words::object(&of_scene(scene, Some(fracture.grid.spacing))),
         damage: damage(scene),
         warnings: scene.warnings.iter().chain(&fracture.warnings).cloned().collect(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -354,4 +345,34 @@ fn damage(scene: &Scene) -> DamageRecord {
         final_stretch: damage.nonlinear.map(|law| law.last),
         printed_law: damage.nonlinear.map(|law| law.printed),
     }
+}
+
+/// The model of a scene; `finest` is the least spacing of its points, m, once they are laid.
+pub fn of_scene(scene: &Scene, finest: Option<f64>) -> Vec<Choice> {
+    let model = &scene.model;
+    let chosen = |key, value: Value, default: &str| {
+        let why = if given(&scene.echo, key) { "set in the file" } else { default };
+        Choice { key, value, why: Some(why.to_owned()) }
+    };
+    let mut choices = match model.law {
+        SceneLaw::Bonds(law) => vec![
+            chosen("bond_law", law.kind.name().into(), TWO_SPRINGS),
+            chosen("kernel", law.kernel.name().into(), "default: as published"),
+            chosen("rotation", law.rotation.name().into(), "default: no energy of rigid rotation"),
+            chosen("surface_correction", law.surface_correction.name().into(), "default: as published"),
+            chosen("kinematics", if model.finite { "finite" } else { "small" }.into(), "default: small strains"),
+        ],
+        SceneLaw::Correspondence { control, factor } => vec![
+            chosen("bond_law", "correspondence".into(), TWO_SPRINGS),
+            chosen("zero_energy_control", control.name().into(), "default: does not affect uniform strain"),
+            chosen("zero_energy_factor", factor.into(), "default: bending, shear and a pressed disc together"),
+        ],
+    };
+    choices.push(chosen("discretisation", model.arrangement.name().into(), "default: one spacing"));
+    choices.push(chosen("spacing_mm", clean(model.spacing / MM).into(), SPACING));
+    choices.extend(finest.map(|finest| Choice { key: "finest_spacing_mm", value: clean(finest / MM).into(), why: None }));
+    choices.push(chosen("horizon_ratio", model.horizon_ratio.into(), RATIO));
+    choices.push(chosen("lattice_angle_deg", clean(model.lattice_angle.to_degrees()).into(), ANGLE));
+    choices.push(chosen("solver", model.solver.name().into(), "default: that of the procedure"));
+    choices
 }

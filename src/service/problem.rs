@@ -97,8 +97,11 @@ impl Problem {
 
     /// Come back later.
     pub fn too_many(detail: impl Into<String>, seconds: u32) -> Self {
-        let problem = Problem::new(StatusCode::TOO_MANY_REQUESTS, "Too many requests", detail);
-        Problem { retry_after: Some(seconds), ..problem }
+        Problem::new(StatusCode::TOO_MANY_REQUESTS, "Too many requests", detail).later(seconds)
+    }
+
+    pub fn later(self, seconds: u32) -> Self {
+        Problem { retry_after: Some(seconds), ..self }
     }
 
     /// A fault of this program: told without its inner workings, which stand in the log.
@@ -129,8 +132,7 @@ impl From<Error> for Problem {
                 // Input from outside names no files: this is the disk of the server.
                 tracing::error!("{detail}");
                 let detail = "the disk of the server cannot be written just now; nothing is lost, try again";
-                let problem = Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Storage unavailable", detail);
-                Problem { retry_after: Some(DATABASE_BACK_S), ..problem }
+                Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Storage unavailable", detail).later(DATABASE_BACK_S)
             }
         }
     }
@@ -155,8 +157,7 @@ impl From<sqlx::Error> for Problem {
         if store::is_gone(&error) {
             tracing::warn!("the database cannot be used: {error}");
             let detail = "the database cannot be used just now; nothing that was accepted is lost, try again";
-            let problem = Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Storage unavailable", detail);
-            return Problem { retry_after: Some(DATABASE_BACK_S), ..problem };
+            return Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Storage unavailable", detail).later(DATABASE_BACK_S);
         }
         tracing::error!("the database refuses a statement: {error}");
         Problem::internal()

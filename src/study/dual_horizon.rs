@@ -1,7 +1,7 @@
 //! Points of several levels: what the dual horizon keeps, and what a change of level does to uniform strain.
 
-use super::figures::Figures;
-use super::uniform_tension::{rest_within_rim, steel, strip};
+use super::uniform_tension::{self, laws, rest_within_rim, steel, strip};
+use super::values::Figures;
 use perilife_base::error::{Error, Result};
 use perilife_base::units::MM;
 use perilife_plate::material::{Material, Plane};
@@ -25,18 +25,6 @@ pub const PUBLISHED: BondLaw = BondLaw {
 const STRAIN: f64 = 1e-3;
 /// Spacing of their coarse points, m.
 const SPACING: f64 = 2.0 * MM;
-
-/// Bond laws that springs can carry, with all kernels, rotations and corrections; without tangential springs rotation has no say.
-pub fn laws() -> impl Iterator<Item = BondLaw> {
-    let springs = BondLawKind::ALL.iter().filter(|kind| **kind != BondLawKind::StateBased);
-    let with_kernels = springs.flat_map(|&kind| Kernel::ALL.iter().map(move |&kernel| (kind, kernel)));
-    let with_rotations =
-        with_kernels.flat_map(|(kind, kernel)| Rotation::ALL.iter().map(move |&rotation| (kind, kernel, rotation)));
-    let told_apart = with_rotations.filter(|(kind, _, rotation)| kind.is_two_parameter() || *rotation == Rotation::Resisted);
-    told_apart.flat_map(|(kind, kernel, rotation)| {
-        SurfaceCorrection::ALL.iter().map(move |&surface_correction| BondLaw { kind, kernel, rotation, surface_correction })
-    })
-}
 
 /// A material that springs can be: E = 200 GPa, plane stress, ν that of the bond-based law or 0.7 of it.
 pub fn material(law: &BondLaw) -> Material {
@@ -155,12 +143,7 @@ pub fn patch_of(law: &str) -> Result<Figures> {
 }
 
 /// The law whose changes of level are balanced.
-const BALANCED: BondLaw = BondLaw {
-    kind: BondLawKind::TwoParameter,
-    kernel: Kernel::Conical,
-    rotation: Rotation::Resisted,
-    surface_correction: SurfaceCorrection::Balanced,
-};
+pub(super) const BALANCED: BondLaw = BondLaw { rotation: Rotation::Resisted, ..uniform_tension::BALANCED };
 
 /// Resultant and moment of a disorderly displacement on three levels around flaws, largest of all laws; the least moment of laws whose
 /// tangential springs resist rotation.

@@ -15,31 +15,19 @@
 //! new miss nor the end of an old one goes unseen.
 
 pub mod cases;
-pub mod catalogue;
 pub mod chart;
-pub mod closed;
-mod computations;
-pub mod disc;
+pub mod computations;
 pub mod dual_horizon;
-pub mod figures;
-mod moving;
+pub mod moving;
 pub mod questions;
-mod readings;
-pub mod references;
-pub mod scene_strength;
 pub mod speed;
 pub mod stability;
-pub mod stability_picture;
 pub mod stability_table;
-mod standard;
-mod static_scenes;
 pub mod subject;
-pub mod table;
 pub mod tasks;
-pub mod tension_plate;
 pub mod uniform_tension;
 pub mod validate;
-mod values;
+pub mod values;
 pub mod verification;
 
 use std::sync::LazyLock;
@@ -47,15 +35,17 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 use toml::Table as Toml;
 
+use chart::{Family, SCENES, Status};
 use perilife_base::error::Result;
+use perilife_base::kinds::KindLine;
 use perilife_base::watch::Silent;
 use questions::{Asker, Question, SHARED, each, file, read};
+use stability::SWEEPS;
 use tasks::{chosen, side_by_side};
 use values::combinations;
 
-pub use table::{KnownMiss, Table, VerificationRow};
+pub use verification::{KnownMiss, Table, VerificationRow};
 
-/// A group of rows that are computed together.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Topic {
@@ -66,7 +56,6 @@ pub struct Topic {
     /// How many of its rows are known to miss their bounds.
     #[serde(default)]
     pub misses: usize,
-    /// Values that its questions share.
     #[serde(default)]
     pub set: Toml,
     pub ask: Vec<Toml>,
@@ -114,7 +103,6 @@ pub fn read_topics() -> Result<Vec<Topic>> {
 
 pub static TOPICS: LazyLock<Vec<Topic>> = LazyLock::new(|| read_topics().unwrap_or_default());
 
-/// The topics of these names, all where no name is given.
 pub fn topics(names: &[String]) -> Result<Vec<&'static Topic>> {
     if TOPICS.is_empty() {
         read_topics()?;
@@ -185,4 +173,16 @@ pub fn faults(topics: &[&Topic], rows: &[VerificationRow]) -> Vec<String> {
         (found != *misses).then(|| format!("{name}: {found} rows miss their bounds, {misses} are pinned (`misses` of the topic)"))
     });
     failing.chain(miscounted).collect()
+}
+
+/// Names of topics, scenes and sweeps, as `perilife list` shows them: key, name, meaning.
+pub fn catalogue() -> Vec<(String, String, String)> {
+    let words = |line: KindLine| (line.key.to_owned(), line.name.to_owned(), line.meaning.to_owned());
+    let mut all = Vec::new();
+    all.extend(TOPICS.iter().map(|topic| ("verify NAME".to_owned(), topic.name.to_owned(), topic.about.clone())));
+    all.extend(validate::built_in().into_iter().map(|(name, title)| ("validate NAME".to_owned(), name, title)));
+    all.extend(SCENES.iter().map(|scene| ("chart SCENE".to_owned(), scene.name.clone(), scene.about.clone())));
+    all.extend([Family::lines(), Status::lines(), validate::Kind::lines()].into_iter().flatten().map(words));
+    all.extend(SWEEPS.iter().map(|sweep| ("stability NAME".to_owned(), sweep.name.clone(), sweep.about.clone())));
+    all
 }

@@ -2,7 +2,7 @@
 //!
 //! A question is a table of [`Question`]. With `rows` it is several: each row has the keys of the table around it and its own. `over` is a list of
 //! axes, tables of lists whose columns go together; axes multiply, the first outermost. `set` names values. Every text may hold formulas in
-//! angle brackets (`values.rs`), over values, closed forms (`closed.rs`), readings of the case (`subject.rs`)
+//! angle brackets, over values and closed forms (`values.rs`), readings of the case (`subject.rs`)
 //! or of the computation that `by` names (`computations.rs`), and the same of `beside`, another case, behind `beside_`.
 
 use std::cell::{OnceCell, RefCell};
@@ -11,11 +11,10 @@ use std::rc::Rc;
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::cases::overrides;
+use super::cases::{Reference, overrides};
 use super::computations::computed;
-use super::figures::Figures;
-use super::references::Reference;
 use super::subject::{Source, Subject, Watcher, once};
+use super::values::Figures;
 use super::values::{Values, combinations, wrong};
 use perilife_base::error::{Error, Result};
 
@@ -36,7 +35,6 @@ pub struct Question {
     pub when: Option<Value>,
     /// Axes over which the reading is taken: its largest less its least value counts.
     pub spread: Vec<Table>,
-    /// What is compared, in words.
     pub quantity: String,
     pub read: String,
     /// What it should be; left out, the reading is itself an error in percent.
@@ -47,7 +45,6 @@ pub struct Question {
     pub miss: Option<Miss>,
 }
 
-/// Another case.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Beside {
@@ -99,13 +96,11 @@ pub fn each(table: &Table, values: &Table, ask: &mut dyn FnMut(&Question, &Table
     Ok(())
 }
 
-/// A case or a computation that is asked about.
 enum Asked<'o> {
     Case(Box<Subject<'o>>),
     Computed(Figures),
 }
 
-/// The case of a question, where it asks about one.
 fn source(question: &Question, case: &str, plate: &str) -> Result<Option<Source>> {
     Ok(match question.by.as_deref() {
         None if !plate.is_empty() => Some(Source::Grown(Reference::named(plate)?)),
@@ -118,14 +113,12 @@ fn source(question: &Question, case: &str, plate: &str) -> Result<Option<Source>
 /// How many cases are kept for further questions.
 const KEPT: usize = 6;
 
-/// Who asks, and what was computed last.
 pub struct Asker<'o> {
     observer: &'o dyn Watcher,
     kept: RefCell<Vec<(String, Rc<Asked<'o>>)>>,
 }
 
 impl<'o> Asker<'o> {
-    /// Nothing is computed yet.
     pub fn new(observer: &'o dyn Watcher) -> Self {
         Asker { observer, kept: RefCell::default() }
     }
@@ -151,7 +144,6 @@ impl<'o> Asker<'o> {
     }
 }
 
-/// A question being answered.
 pub struct Asking<'a, 'o> {
     asker: &'a Asker<'o>,
     question: &'a Question,
@@ -161,7 +153,6 @@ pub struct Asking<'a, 'o> {
 }
 
 impl<'o> Asking<'_, 'o> {
-    /// The value of a number or a formula.
     pub fn figure(&self, value: &Value) -> Result<f64> {
         Values { table: self.values, reading: &|name, values| Some(self.reading(name, values)) }.figure(value)
     }
@@ -170,7 +161,6 @@ impl<'o> Asking<'_, 'o> {
         Values { table: self.values, reading: &|name, values| Some(self.reading(name, values)) }.number(formula)
     }
 
-    /// A text with its brackets filled.
     pub fn text(&self, text: &str) -> Result<String> {
         Values { table: self.values, reading: &|name, values| Some(self.reading(name, values)) }.text(text)
     }
@@ -188,7 +178,6 @@ impl<'o> Asking<'_, 'o> {
         Subject::new(source, &[overrides(&keys), more.to_vec()].concat(), self.asker.observer)
     }
 
-    /// Points or nodes, and solves.
     pub fn size(&self) -> (usize, usize) {
         self.own.get().map_or((0, 0), |own| if let Asked::Case(subject) = &**own { subject.size() } else { (0, 0) })
     }

@@ -4,9 +4,9 @@
 use std::cell::OnceCell;
 use std::path::Path;
 
-use super::cases::{by_name, plate_alone};
-use super::references::{Compared, Curve, Reference, SHARES, compare, largest};
-use super::standard::{by_quadrature, growth_error, k_of_elements};
+use super::cases::{
+    Compared, Curve, Reference, SHARES, by_name, by_quadrature, compare, growth_error, k_of_elements, largest, plate_alone,
+};
 use super::uniform_tension::{strip, uniform_tension_with};
 use perilife_base::error::{Error, Result};
 use perilife_base::units::MM;
@@ -34,7 +34,6 @@ use perilife_points::state::Bonds;
 use perilife_points::stress_intensity::{TipFrame, derivatives_at};
 use perilife_scenes::SceneObserver;
 
-/// Who watches a run, of cycles or of a scene.
 pub trait Watcher: Observer + SceneObserver {}
 impl<W: Observer + SceneObserver> Watcher for W {}
 
@@ -45,7 +44,6 @@ const COMPARED: f64 = 0.99;
 /// Shares of the way of a tip that was hardly begun when a joint ended it: it has no cycles to compare.
 const BEGUN: f64 = 0.05;
 
-/// Where the text of a case comes from.
 #[derive(Debug, Clone)]
 pub enum Source {
     Text(String),
@@ -55,7 +53,6 @@ pub enum Source {
     Grown(&'static Reference),
 }
 
-/// A case, and what was computed of it.
 pub struct Subject<'o> {
     source: Source,
     set: Vec<String>,
@@ -101,10 +98,6 @@ impl<'o> Subject<'o> {
         once(&self.run, || predict(&self.case, self.observer))
     }
 
-    fn first(&self) -> Result<&CurvePoint> {
-        Ok(&self.run()?.curve[0])
-    }
-
     fn last(&self) -> Result<&CurvePoint> {
         let run = self.run()?;
         Ok(&run.curve[run.curve.len() - 1])
@@ -126,7 +119,6 @@ impl<'o> Subject<'o> {
         self.tip(tip)?.factors.map_or_else(|| fault(format!("tip {tip} has no K")), Ok)
     }
 
-    /// Factors by the ring or on nodes.
     fn by(&self, method: StressIntensityMethod, tip: f64) -> Result<[f64; 2]> {
         let found =
             once(&self.methods[usize::from(method != StressIntensityMethod::Ring)], || stress_intensity(&self.case, &[method]))?;
@@ -163,7 +155,6 @@ impl<'o> Subject<'o> {
         if let Source::Grown(reference) = self.source { Ok(reference) } else { fault("not a plate of data/reference") }
     }
 
-    /// How the tips went against the reference.
     fn compared(&self) -> Result<&Vec<Compared>> {
         once(&self.compared, || Ok(compare(self.run()?, self.reference()?.tips()?, f64::INFINITY)))
     }
@@ -203,7 +194,7 @@ impl<'o> Subject<'o> {
             }
             "growth" => Ok(self.last()?.tips[number(0) as usize].growth),
             "first_kink" => Ok(first_kink(&self.case, self.run()?, number(0) as usize)),
-            "first_t" => Ok(self.first()?.tips[number(0) as usize].t_stress.unwrap_or(f64::NAN)),
+            "first_t" => Ok(self.run()?.curve[0].tips[number(0) as usize].t_stress.unwrap_or(f64::NAN)),
             "handed_cycles" => Ok(self.handed()?.cycles),
             "handed_growth" => Ok(self.handed()?.tips[0].growth),
             "stress" => Ok(self.case.loading.maximum),
@@ -259,7 +250,6 @@ impl<'o> Subject<'o> {
         }
     }
 
-    /// A figure of this run beside another.
     pub fn beside(&self, other: &Subject<'_>, name: &str) -> Option<Result<f64>> {
         let curves = |subject: &Subject<'_>| -> Result<Vec<Curve>> {
             let run = subject.run()?;
@@ -400,7 +390,6 @@ fn cycles_to(run: &Prediction, tip: usize, at: f64) -> f64 {
     })
 }
 
-/// The first kink of a tip, rad.
 fn first_kink(case: &Case, run: &Prediction, tip: usize) -> f64 {
     let [a, b] = case.specimen.tips[tip].direction;
     let [from, to] = [0, 1].map(|row: usize| run.curve[row].tips[tip].position);

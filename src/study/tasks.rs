@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 
 use perilife_base::error::{Error, Result, input};
 
-/// What came of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome<T> {
@@ -37,7 +36,6 @@ impl<T> Outcome<T> {
         if let Outcome::Done(result) = self { Some(result) } else { None }
     }
 
-    /// Why there is none.
     pub fn reason(&self) -> Option<&str> {
         match self {
             Outcome::Done(_) => None,

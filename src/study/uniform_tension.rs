@@ -1,12 +1,13 @@
 //! Errors of a plate in uniform tension, and plates with holes, slots and slanted edges that can be in it.
 
-use perilife_base::error::Result;
+use super::values::{Figures, Keys};
+use perilife_base::error::{Error, Result};
 use perilife_base::units::MM;
 use perilife_plate::material::{Material, Plane};
 use perilife_plate::specimen::geometry::{direction, edges};
 use perilife_plate::specimen::{Hole, Load, Point, Slot, Specimen, SpecimenKind};
 use perilife_points::body::Body;
-use perilife_points::bond_law::BondLaw;
+use perilife_points::bond_law::{BondLaw, BondLawKind, Kernel, Rotation, SurfaceCorrection};
 use perilife_points::net::Net;
 use perilife_points::solver::field::Layout;
 use perilife_points::solver::{Equilibrium, SolverKind, Symmetry};
@@ -124,13 +125,11 @@ pub(super) fn without_rigid_motion(seats: &[Point], field: Vec<Point>) -> Vec<Po
 pub struct Shape {
     /// What it has beside straight edges along the rows.
     pub name: &'static str,
-    /// The plate, 60 x 80 mm.
     pub specimen: Specimen,
     /// Angle of the rows to the edges, rad.
     pub angle: f64,
 }
 
-/// Plates for a spacing of 1 mm.
 pub fn shapes() -> Vec<Shape> {
     let plain = || strip(60.0 * MM, 80.0 * MM);
     let shape = |name, specimen| Shape { name, specimen, angle: 0.0 };
@@ -189,4 +188,63 @@ fn loaded_inside(mut specimen: Specimen) -> Specimen {
         specimen.loads.push(Load::Edge { from: a, to: b, traction: [0.0, direction(a, b)[0]] });
     }
     specimen
+}
+
+/// Size along the load and across it, and spacing, m. Exact: `u = p x / E` along and `-ν p y / E` across; the published figures put the load
+/// on the last column of points, the balanced correction brings its own, consistent loads.
+const SIZE: [f64; 2] = [1.0, 0.5];
+const SPACING: f64 = 0.01;
+const HORIZON_RATIO: f64 = 3.015;
+
+/// The default law with the balanced correction.
+pub const BALANCED: BondLaw = BondLaw {
+    kind: BondLawKind::TwoParameter,
+    kernel: Kernel::Conical,
+    rotation: Rotation::Free,
+    surface_correction: SurfaceCorrection::Balanced,
+};
+
+/// Bond laws that springs can carry, with all kernels, rotations and corrections; without tangential springs rotation has no say.
+pub fn laws() -> impl Iterator<Item = BondLaw> {
+    let springs = BondLawKind::ALL.iter().filter(|kind| **kind != BondLawKind::StateBased);
+    let with_kernels = springs.flat_map(|&kind| Kernel::ALL.iter().map(move |&kernel| (kind, kernel)));
+    let with_rotations =
+        with_kernels.flat_map(|(kind, kernel)| Rotation::ALL.iter().map(move |&rotation| (kind, kernel, rotation)));
+    let told_apart = with_rotations.filter(|(kind, _, rotation)| kind.is_two_parameter() || *rotation == Rotation::Resisted);
+    told_apart.flat_map(|(kind, kernel, rotation)| {
+        SurfaceCorrection::ALL.iter().map(move |&surface_correction| BondLaw { kind, kernel, rotation, surface_correction })
+    })
+}
+
+fn errors(law: &BondLaw, poisson_ratio: f64) -> Result<Errors> {
+    uniform_tension(&strip(SIZE[1], SIZE[0]), law, poisson_ratio, SPACING, HORIZON_RATIO, 0.0)
+}
+
+pub fn plate(keys: &Keys<'_>) -> Result<Figures> {
+    let law = BondLaw {
+        kind: keys.get("law")?,
+        kernel: keys.get("kernel")?,
+        rotation: keys.get("rotation")?,
+        surface_correction: keys.get("correction")?,
+    };
+    let found = errors(&law, keys.get("nu")?)?;
+    Ok(vec![("along", found.along), ("along_inside", found.along_inside), ("across", found.across)])
+}
+
+/// The worst of all laws of springs with the balanced correction.
+pub fn worst() -> Result<Figures> {
+    let (mut along, mut across, mut count) = (0.0_f64, 0.0_f64, 0.0);
+    for law in laws().filter(|law| law.surface_correction == SurfaceCorrection::Balanced) {
+        let found = errors(&law, if law.kind == BondLawKind::BondBased { 1.0 / 3.0 } else { 0.1 })?;
+        (along, across, count) = (along.max(found.along), across.max(found.across), count + 1.0);
+    }
+    Ok(vec![("along", along), ("across", across), ("laws", count)])
+}
+
+/// A plate with holes, slots or slanted edges, by its place among [`shapes`].
+pub fn shape(keys: &Keys<'_>) -> Result<Figures> {
+    let place: usize = keys.get("shape")?;
+    let shape = shapes().into_iter().nth(place).ok_or_else(|| Error::Mechanics(format!("no shape {place}")))?;
+    let found = uniform_tension(&shape.specimen, &BALANCED, 0.3, MM, HORIZON_RATIO, shape.angle)?;
+    Ok(vec![("overall", found.overall)])
 }

@@ -1,21 +1,26 @@
-//! Verification rows as text, CSV, JSON and as tables for documents.
+//! Rows of a verification, the judgement over them, as text, CSV, JSON and as tables for documents.
 
 use std::cmp::Ordering;
+use std::time::Instant;
 
 use serde_json::{Value, json};
 
-use crate::{Topic, VerificationRow};
+use super::Topic;
+use super::values::percent;
 use perilife_base::cells::defused;
 
 pub fn line(row: &VerificationRow) -> String {
-    let mark = verdict(row);
+    let mark = match (row.ok(), row.fails()) {
+        (true, _) => "ok",
+        (false, true) => "FAIL",
+        (false, false) => "miss",
+    };
     let figures = format!("{:>12} against {:>12}", number(row.computed), number(row.reference));
     let known = row.known_miss.as_ref().map_or_else(String::new, |miss| format!(", known miss {} %", bound(miss.bound_percent)));
     let error = format!("{:+.3} % (bound {} %{known})", row.error_percent, bound(row.bound_percent));
     format!("  {mark:<5} {:<62} {figures}  {error}, {:.1} s", row.quantity, row.wall_s)
 }
 
-/// All rows as one JSON object, `{"rows": [...]}`.
 pub fn object(rows: &[VerificationRow]) -> Value {
     let row = |row: &VerificationRow| {
         json!({
@@ -29,7 +34,6 @@ pub fn object(rows: &[VerificationRow]) -> Value {
     json!({ "rows": rows.iter().map(row).collect::<Vec<_>>() })
 }
 
-/// All rows as CSV, one header line.
 pub fn csv(rows: &[VerificationRow]) -> String {
     let mut text =
         "name,quantity,computed,reference,error_percent,bound_percent,ok,known_miss,source,wall_s,miss_bound_percent\n"
@@ -82,7 +86,6 @@ pub(super) fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-/// Share of its bound that a row takes.
 fn share(row: &VerificationRow) -> f64 {
     (row.error_percent / row.bound_percent).abs()
 }
@@ -142,14 +145,6 @@ pub(super) fn four_digits(value: f64) -> String {
     format!("{:.*}", decimals.max(0) as usize, (value / unit).round() * unit)
 }
 
-fn verdict(row: &VerificationRow) -> &'static str {
-    match (row.ok(), row.fails()) {
-        (true, _) => "ok",
-        (false, true) => "FAIL",
-        (false, false) => "miss",
-    }
-}
-
 /// Six digits, with an exponent only where it helps.
 fn number(value: f64) -> String {
     let size = value.abs();
@@ -158,4 +153,92 @@ fn number(value: f64) -> String {
     }
     let digits = if size >= 1000.0 { 0 } else { 4 };
     format!("{value:.digits$}")
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct VerificationRow {
+    pub name: &'static str,
+    /// What is compared, with unit and conditions.
+    pub quantity: String,
+    pub computed: f64,
+    /// What it should be; 0 where the figure is itself an error in percent.
+    pub reference: f64,
+    /// Error in percent of the reference, or the figure itself where the reference is 0.
+    pub error_percent: f64,
+    /// Largest size of the error that is accepted.
+    pub bound_percent: f64,
+    /// Why the bound is not met and how far the error may go all the same, where that is known.
+    pub known_miss: Option<KnownMiss>,
+    pub source: String,
+    /// Seconds spent since the row before.
+    pub wall_s: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct KnownMiss {
+    pub reason: String,
+    /// Second bound on the size of the error, percent: what is known and a tenth of it, so that a miss cannot grow unseen.
+    pub bound_percent: f64,
+}
+
+impl VerificationRow {
+    /// Whether the error keeps its bound; an error that is not a number does not.
+    pub fn ok(&self) -> bool {
+        self.error_percent.abs() <= self.bound_percent
+    }
+
+    /// Whether the row fails the verification: bound missed for no known reason, or by more than is known.
+    pub fn fails(&self) -> bool {
+        !self.ok() && !self.known_miss.as_ref().is_some_and(|miss| self.error_percent.abs() <= miss.bound_percent)
+    }
+}
+
+#[derive(Debug)]
+pub struct Table {
+    name: &'static str,
+    rows: Vec<VerificationRow>,
+    last: Instant,
+}
+
+impl Table {
+    pub fn new(name: &'static str) -> Self {
+        Table { name, rows: Vec::new(), last: Instant::now() }
+    }
+
+    /// A figure against its reference (not 0); the bound is on `100 |computed / reference - 1|`.
+    pub fn compare(&mut self, quantity: impl Into<String>, computed: f64, reference: f64, bound_percent: f64, source: &str) {
+        self.push(quantity.into(), computed, reference, percent(computed, reference), bound_percent, source);
+    }
+
+    pub fn error(&mut self, quantity: impl Into<String>, error_percent: f64, bound_percent: f64, source: &str) {
+        self.push(quantity.into(), error_percent, 0.0, error_percent, bound_percent, source);
+    }
+
+    /// Gives the last row the reason of a miss and the error that is known, percent; a row that keeps its bound has none.
+    pub fn known_miss(&mut self, reason: &str, known_percent: f64) {
+        if let Some(row) = self.rows.last_mut().filter(|row| !row.ok()) {
+            row.known_miss = Some(KnownMiss { reason: reason.to_owned(), bound_percent: 1.1 * known_percent.abs() });
+        }
+    }
+
+    pub fn into_rows(self) -> Vec<VerificationRow> {
+        self.rows
+    }
+
+    fn push(&mut self, quantity: String, computed: f64, reference: f64, error_percent: f64, bound_percent: f64, source: &str) {
+        let wall_s = self.last.elapsed().as_secs_f64();
+        self.last = Instant::now();
+        let row = VerificationRow {
+            name: self.name,
+            quantity,
+            computed,
+            reference,
+            error_percent,
+            bound_percent,
+            known_miss: None,
+            source: source.to_owned(),
+            wall_s,
+        };
+        self.rows.push(row);
+    }
 }

@@ -3,12 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use perilife_results::curve::{self, Row};
-use perilife_results::resample::cycles_over_length;
 use tempfile::{TempDir, tempdir};
 
 use crate::interface::cli::{assert_refused, perilife, texts};
 use crate::support::{made_up_case, made_up_run};
+use perilife_results::curve::{self, Row, cycles_over_length};
 
 /// A folder with the made-up run in `run/`.
 fn fabricated() -> TempDir {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use perilife_study::closed::{Collinear, growth_integral};
+use perilife_study::values::{Collinear, growth_integral};
 
 #[test]
 fn two_collinear_cracks_have_the_tabulated_factors() {

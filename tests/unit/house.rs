@@ -90,7 +90,7 @@ fn no_table_is_read_by_the_process_that_made_it() {
         names.sort();
         names
     };
-    let doors = ["results/curve.rs", "results/kept.rs", "results/paper/folder.rs", "service/api/results.rs"];
+    let doors = ["results/curve.rs", "results/paper/folder.rs", "service/api/results.rs"];
     assert_eq!(with("Table::read("), doors);
     assert_eq!(with("judgement::judge("), ["results/checks.rs"]);
 }

@@ -5,24 +5,22 @@ use std::path::Path;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use perilife_growth::case::Case;
-use perilife_growth::predict::StopReason;
-use perilife_plate::specimen::Point;
-use perilife_results::chart::{self, Mark, Series};
-use perilife_results::chart::{COMPUTED, LARGE};
-use perilife_results::curve::Row;
-use perilife_results::curve::{RunTables, TipRows};
-use perilife_results::damage::{DamagePicture, cycles_and_length};
-use perilife_results::labels::{Box2, along, place_labels};
-use perilife_results::pictures::curves::{a_n_svg, k_svg};
-use perilife_results::pictures::plate::{HoleDrawn, LoadDrawn, Plate, SIZE, plate_svg};
-use perilife_results::record::RunRecord;
-use perilife_results::specimen_picture::sketch::{CRACK, Sketch};
-use perilife_results::specimen_picture::specimen_svg;
-use perilife_results::{curve, vtk};
 use tempfile::tempdir;
 
 use crate::support::{made_up_case, made_up_run};
+use perilife_growth::case::Case;
+use perilife_growth::predict::StopReason;
+use perilife_plate::specimen::Point;
+use perilife_results::axis::{Box2, along, place_labels};
+use perilife_results::chart::{self, COMPUTED, LARGE, Mark, Series};
+use perilife_results::curve::{self, Row, RunTables, TipRows};
+use perilife_results::pictures::curves::{a_n_svg, k_svg};
+use perilife_results::pictures::plate::{HoleDrawn, LoadDrawn, Plate, SIZE, plate_svg};
+use perilife_results::record::RunRecord;
+use perilife_results::snapshots;
+use perilife_results::snapshots::{DamagePicture, cycles_and_length};
+use perilife_results::specimen_picture::sketch::{CRACK, Sketch};
+use perilife_results::specimen_picture::specimen_svg;
 
 const LENGTHS: [&str; 2] = ["Cycles N", "Crack length a, mm"];
 /// Lattice angles that matter: the image and the mesh.
@@ -126,7 +124,7 @@ fn paraview_files_read_back() {
     let dir = tempdir().unwrap();
     for (angle, extension) in ANGLES.into_iter().zip(["vti", "vtu"]) {
         let run = made_up_run::prediction(angle);
-        vtk::write_series(dir.path(), &run.grid, &run.snapshots).unwrap();
+        snapshots::write_series(dir.path(), &run.grid, &run.snapshots).unwrap();
         let list = fs::read_to_string(dir.path().join("run.pvd")).unwrap();
         for (number, snapshot) in run.snapshots.iter().enumerate() {
             let name = format!("plate_{number:04}.{extension}");
@@ -150,7 +148,7 @@ fn paraview_files_read_back() {
 #[test]
 fn a_turned_lattice_is_squares_of_its_own_size() {
     let run = made_up_run::prediction(0.35);
-    let file = vtk::mesh(&run.grid, &run.snapshots[0]);
+    let file = snapshots::mesh(&run.grid, &run.snapshots[0]);
     let points = reals(array(&file, "points").1);
     let corners: Vec<i64> =
         array(&file, "connectivity").1.chunks_exact(8).map(|b| i64::from_le_bytes(b.try_into().unwrap())).collect();
@@ -167,7 +165,7 @@ fn a_turned_lattice_is_squares_of_its_own_size() {
 #[test]
 fn places_outside_the_material_are_hidden() {
     let run = made_up_run::prediction(0.0);
-    let file = vtk::image(&run.grid, &run.snapshots[0]);
+    let file = snapshots::image(&run.grid, &run.snapshots[0]);
     let ghosts = array(&file, "vtkGhostType").1;
     assert_eq!(ghosts.len(), run.grid.point_at.len());
     assert!(ghosts.iter().zip(&run.grid.point_at).all(|(ghost, point)| (*ghost == 2) == point.is_none()));

@@ -1,5 +1,9 @@
 //! The band of lives on a plate that was run: rows, what has none and why, inspections, digits.
 
+use toml::Table;
+
+use crate::support::hand_cases::{PANEL, hand_case};
+use crate::support::made_up_case::fitted;
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_calibration::inspection::{InspectFrom, Inspection};
 use perilife_calibration::population::fit;
@@ -7,17 +11,11 @@ use perilife_calibration::population::intervals::{INTERVALS_MAX, IntervalReading
 use perilife_calibration::population::plate::Plate;
 use perilife_growth::case::{Case, LawSource, Lot};
 use perilife_growth::predict::{Prediction, Silent, predict};
-use perilife_results::answers::Asked;
-use perilife_results::band::{Lives, band_words};
+use perilife_results::answers::{Asked, InspectionsRecord};
+use perilife_results::band::{Lives, Quality, band_words};
 use perilife_results::checks::Judgement;
 use perilife_results::curve::{self, BAND_COLUMNS, Row, left_of_table};
-use perilife_results::inspections::InspectionsRecord;
-use perilife_results::quality::Quality;
 use perilife_results::record::RunRecord;
-use toml::Table;
-
-use crate::support::hand_cases::{PANEL, hand_case};
-use crate::support::made_up_case::fitted;
 
 /// Rates of a few specimens that differ by a tenth, with a ripple along each.
 const FACTORS: [f64; 5] = [1.0, 1.12, 0.9, 1.05, 0.95];

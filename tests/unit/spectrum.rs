@@ -10,7 +10,7 @@ use perilife_laws::spectrum_law::SpectrumLaw;
 use perilife_plate::loading::Loading;
 use perilife_plate::loading::spectrum::rainflow::rainflow;
 use perilife_plate::loading::spectrum::{Cycle, Spectrum, SpectrumFormat};
-use perilife_results::pictures::spectrum::spectrum_svg;
+use perilife_results::spectrum::spectrum_svg;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 

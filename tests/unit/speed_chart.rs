@@ -3,13 +3,11 @@
 use std::cell::RefCell;
 
 use perilife_base::error::Error;
-use perilife_study::chart::choice::choices;
-use perilife_study::chart::run::Model;
-use perilife_study::chart::schedule::{BenchmarkRecord, Effort, Request, measure};
-use perilife_study::chart::{BenchmarkRun, Chart, Family, SCENES, Status, scenes};
-use perilife_study::closed::concentration_of;
+use perilife_study::chart::schedule::{BenchmarkRecord, Effort, Model, Request, measure};
+use perilife_study::chart::{BenchmarkRun, Chart, Family, SCENES, Status, choices, scenes};
 use perilife_study::speed::{COLUMNS, Origin, beaten, csv, fastest_within, markdown, never_on_front, svg};
 use perilife_study::tasks::Outcome;
+use perilife_study::values::concentration_of;
 
 /// A run that took and found so much.
 fn run(wall_s: f64, error_percent: f64) -> BenchmarkRun {

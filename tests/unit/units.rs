@@ -9,7 +9,7 @@ use perilife_base::units::us::{System, renamed};
 use perilife_base::units::words::{in_units, with_keys};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{Silent, predict};
-use perilife_results::units::of_result;
+use perilife_results::format::of_result;
 use serde_json::json;
 use toml::Value;
 

@@ -12,7 +12,7 @@ use std::path::Path;
 use perilife_base::input::Document;
 use perilife_growth::case::Case;
 use perilife_growth::predict::{Prediction, Silent, predict};
-use perilife_study::references::{Compared, REFERENCES, compare, tips_of_table};
+use perilife_study::cases::{Compared, REFERENCES, compare, tips_of_table};
 
 use crate::support::shared::shared;
 

@@ -33,7 +33,7 @@ fn spread(run: &Fracture, x: f64) -> f64 {
 
 /// Heights of the points in the column x that are cracked at the end, mm, from below.
 fn cracked_rows(run: &Fracture, x: f64) -> Vec<f64> {
-    perilife_study::scene_strength::cracked_rows(run, 1e-3 * x).into_iter().map(|y| 1e3 * y).collect()
+    perilife_study::moving::cracked_rows(run, 1e-3 * x).into_iter().map(|y| 1e3 * y).collect()
 }
 
 /// Two cracks at a distance in mm, which end farther apart than they began.

@@ -5,7 +5,7 @@ use perilife_base::units::MM;
 use perilife_growth::case::Case;
 use perilife_growth::predict::factor_sweep::{FactorSweep, factor_sweep};
 use perilife_growth::predict::{Silent, predict};
-use perilife_results::factor_sweep::{SIGN, beta_table, table};
+use perilife_results::factors::{SIGN, beta_table, table};
 
 use crate::support::hand_cases::{ALL, PANEL, hand_case, try_hand_case_in};
 use crate::support::plates::try_case;

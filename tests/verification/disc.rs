@@ -7,7 +7,7 @@ use perilife_growth::predict::Silent;
 use perilife_scenes::outcome::Fracture;
 use perilife_scenes::scene::ZeroEnergyControl;
 use perilife_scenes::{Scene, SceneEnd, run};
-use perilife_study::disc::{
+use perilife_study::computations::{
     CONTROL, DIAMETER, ElasticDisc, SPACING, TENSILE_STRENGTH, THICKNESS, TRAVEL, elastic, hondros, hondros_displacement, scene,
 };
 

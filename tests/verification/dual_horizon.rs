@@ -11,7 +11,8 @@ use perilife_scenes::failure::critical_stretch;
 use perilife_scenes::fronts::CRACKED;
 use perilife_scenes::scene::{Action, DamageLaw, Discretisation, RefinedRegion, Scene};
 use perilife_scenes::{Fracture, SceneEnd};
-use perilife_study::dual_horizon::{PUBLISHED, Patch, forces, laws, material, patch};
+use perilife_study::dual_horizon::{PUBLISHED, Patch, forces, material, patch};
+use perilife_study::uniform_tension::laws;
 
 use crate::support::noise::Noise;
 use crate::support::scenes::{a_box, law, plate, refined, torn};

@@ -1,11 +1,9 @@
 //! The error that is stated with a life is above the one it has; `perilife verify estimates` has more plates and tolerances.
 
+use crate::support::plates::pulled_plate;
 use perilife_growth::predict::error_estimate::error_estimate;
 use perilife_growth::predict::{Silent, predict};
-use perilife_study::cases::{AUTO, POINTS, case};
-use perilife_study::references::{Reference, compare, largest};
-
-use crate::support::plates::pulled_plate;
+use perilife_study::cases::{AUTO, POINTS, Reference, case, compare, largest};
 
 #[test]
 fn a_life_is_within_the_error_that_is_stated() {

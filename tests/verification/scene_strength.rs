@@ -8,7 +8,7 @@ use perilife_scenes::Scene;
 use perilife_scenes::assembly::preview;
 use perilife_scenes::trapping::trapping;
 use perilife_study::cases::overrides;
-use perilife_study::scene_strength::growth_load;
+use perilife_study::moving::growth_load;
 
 use crate::support::shared::shared;
 
@@ -78,7 +78,7 @@ fn a_notched_square_bears_what_its_fracture_energy_says() {
 fn a_plate_under_1_mpa_branches() {
     let Some(path) = shared("field/mechanics4/scene_strength/branching_1mpa.toml") else { return };
     let run = perilife_scenes::run(&Scene::from_file(&path, &[]).unwrap(), &Silent).unwrap();
-    let rows = perilife_study::scene_strength::cracked_rows(&run, 0.04);
+    let rows = perilife_study::moving::cracked_rows(&run, 0.04);
     assert!(rows.iter().any(|y| *y > 5e-3) && rows.iter().any(|y| *y < -5e-3), "cracked rows {rows:?}");
     assert!(rows.iter().all(|y| y.abs() > 2e-3), "nothing between the branches: {rows:?}");
 }

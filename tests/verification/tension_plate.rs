@@ -2,8 +2,7 @@
 //! the balanced one.
 
 use perilife_points::bond_law::{BondLaw, Kernel, SurfaceCorrection};
-use perilife_study::tension_plate::BALANCED;
-use perilife_study::uniform_tension::{Shape, shapes, strip, uniform_tension};
+use perilife_study::uniform_tension::{BALANCED, Shape, shapes, strip, uniform_tension};
 
 /// A small plate, 20 x 36 points. Asked for are 0.5 %, 0.1 % is the aim; twelve neighbours (horizon ratio below 2.2) are too few for
 /// all equations at once.

@@ -15,9 +15,9 @@ use perilife_base::error::{Error, Result};
 use perilife_calibration::sweep::DrawnCase;
 use perilife_results::output::write_file;
 use perilife_results::provenance::INPUTS;
+use perilife_results::snapshots::PARAVIEW;
 use perilife_results::sweep::Outcome;
-use perilife_results::vtk::PARAVIEW;
-use perilife_runner::sweep_folder::SweepFolder;
+use perilife_runner::sweep::SweepFolder;
 use perilife_service::job::{Job, JobKind, State, Submission};
 use perilife_service::store::{self, FileEntry, NewJob, Origin, Room, Store, Submitted, is_gone};
 use perilife_service::with_store;
@@ -34,7 +34,6 @@ const LOOKED_AT: usize = 64;
 /// A file of a result: name and content.
 type File = (String, Vec<u8>);
 
-/// As many jobs as a sweep has.
 const ROOM: Room = Room { queued: i64::MAX, bytes: i64::MAX };
 
 /// Has cases run, and fetches what comes of them.
@@ -72,7 +71,6 @@ pub fn run(url: &str, cases: &[&DrawnCase], folder: &SweepFolder, with_files: bo
     })?
 }
 
-/// Asks the database until it answers.
 async fn patiently<T>(ask: impl AsyncFn() -> store::Result<T>) -> store::Result<T> {
     loop {
         match ask().await {

@@ -1,13 +1,10 @@
 //! Folders of results: that of a run, made beside its place and published when it is whole; that of a sweep, which stays between calls.
 
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
-use super::lock::{Lock, Share};
-use super::marker::{InputOf, Marker, RunKind, files_in};
-use super::staging::{MARKER, OLD, Staging, all, parent_of, resolved, temporary_beside, visible_beside};
-use super::{said, write_file};
+use super::staging::{Lock, MARKER, OLD, Share, Staging, all, parent_of, resolved, temporary_beside, visible_beside};
+use super::{InputOf, Marker, RunKind, files_in, said, write_file};
 use perilife_base::error::{Error, Result, input};
 use perilife_base::input::{Provenance, STREAM};
 
@@ -75,7 +72,6 @@ impl LockedFolder {
         Ok(folder)
     }
 
-    /// Takes part in a folder that is there.
     pub fn join(path: &Path) -> Result<Self> {
         let action = "cannot use this folder";
         let target = fs::canonicalize(path).map_err(|error| Error::file(path, action, error))?;
@@ -122,12 +118,10 @@ impl OutputFolder {
         Ok(OutputFolder { name: path.to_path_buf(), marker, warning, staging, place })
     }
 
-    /// Where to write until the folder is finished.
     pub fn path(&self) -> &Path {
         self.staging.path()
     }
 
-    /// Where the results will be, as the user named it.
     pub fn name(&self) -> &Path {
         &self.name
     }
@@ -169,7 +163,6 @@ impl OutputFolder {
         Ok(self.place)
     }
 
-    /// Writes the marker with all files.
     fn list(&self) -> io::Result<()> {
         let marker = Marker { files: files_in(self.path(), "")?, ..self.marker.clone() };
         fs::write(self.path().join(MARKER), marker.text())

@@ -8,9 +8,9 @@ use super::{
 };
 use crate::chart::Size;
 use crate::curve::RunTables;
+use crate::format::shown_result;
 use crate::pictures::fit::{FitTables, RateFitted, law_svg};
 use crate::pictures::plate::{Plate, plate_svg};
-use crate::units::shown_result;
 use perilife_base::units::shown::per;
 use perilife_calibration::lack_of_fit::Misfit;
 use perilife_calibration::readings::Reading;
@@ -67,7 +67,6 @@ fn answer(fit: &LivesRecord) -> String {
     cards("fit", [of_rate, of_m, valid([fit.delta_k_min_mpa_sqrt_m, fit.delta_k_max_mpa_sqrt_m], &ratio)])
 }
 
-/// Card of the tested range.
 fn valid(range: [f64; 2], ratios: &str) -> (&'static str, String, String) {
     let [low, high] = range.map(|k| PRINT.fixed(k * per("MPa√m"), 2));
     ("Valid for ΔK", format!("{low} to {high}"), format!("MPa√m, R = {ratios}"))
@@ -180,7 +179,6 @@ fn how(fit: &LivesRecord) -> String {
     )
 }
 
-/// The fitted curve by its knots.
 fn curve(fit: &LivesRecord) -> String {
     let Some(curve) = &fit.curve else { return String::new() };
     let row = |i: usize| {
@@ -202,7 +200,6 @@ fn curve(fit: &LivesRecord) -> String {
     )
 }
 
-/// Lives of several specimens, measured and fitted.
 fn specimens(fit: &LivesRecord) -> String {
     if fit.specimens.len() < 2 {
         return String::new();

@@ -1,47 +1,35 @@
-//! Source of a report, read from the folder of a run or a fit.
+//! Source of a report, read from the folder of a run or a fit: its tables, as the result beside them says they were written, and pictures.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use super::Drawings;
-use crate::curve::{A_N_FILE, CRACK_PATH_FILE, RunTables};
-use crate::kept::{check_listed, listed, refuse};
+use crate::curve::{A_N_FILE, CRACK_PATH_FILE, Row, RunTables};
+use crate::format::metric_result;
 use crate::pictures::fit::{BAND_FILE, CURVES_FILE, FIT_FILE, FitTables, RATES_FITTED_FILE, READINGS_FILE, RateFitted};
 use crate::pictures::plate::Plate;
 use crate::record::{RESULT_FILE, RunRecord};
-use crate::units::metric_result;
 use perilife_base::columns::{AGAIN, Table};
 use perilife_base::error::{Error, InputError, Result, input};
-use perilife_base::input::Opened;
+use perilife_base::input::{Opened, sha256};
+use perilife_base::units::us::System;
 use perilife_calibration::record::{LivesRecord, RatesRecord};
 
 const GIVE: &str = "give the results folder of `perilife predict` or `perilife calibrate`";
 
-/// A run or a fit with its tables.
 pub enum Source {
-    /// Of `perilife predict`.
     Run {
-        /// `result.json`.
         run: Box<RunRecord>,
         tables: RunTables,
         /// Its pictures that the tables cannot give.
         drawings: Drawings,
     },
     /// Of `perilife calibrate`, to readings.
-    Lives {
-        /// `fit.json`.
-        fit: Box<LivesRecord>,
-        plate: Option<Box<Plate>>,
-        tables: FitTables,
-    },
+    Lives { fit: Box<LivesRecord>, plate: Option<Box<Plate>>, tables: FitTables },
     /// Of `perilife calibrate`, to rates.
-    Laws {
-        /// `fit.json`.
-        fit: Box<RatesRecord>,
-        rates: Vec<RateFitted>,
-    },
+    Laws { fit: Box<RatesRecord>, rates: Vec<RateFitted> },
 }
 
 /// Reads the folder; all that is read is added to `opened`.
@@ -103,7 +91,6 @@ impl Files<'_> {
         Ok(Source::Lives { fit: record, plate, tables })
     }
 
-    /// A record as its command wrote it.
     fn typed<R: DeserializeOwned>(&self, object: &Value, name: &str) -> Result<R> {
         serde_path_to_error::deserialize(object).map_err(|error| {
             let path = error.path().to_string();
@@ -152,5 +139,101 @@ impl Files<'_> {
 
     fn damaged(&self, name: &str, problem: String) -> Error {
         refuse(&self.folder.join(name), problem)
+    }
+}
+
+const NAMES: [&str; 4] = ["spectrum.svg", "section.svg", "fleet.svg", "sensitivities.svg"];
+const ELEMENTS: [&str; 10] = ["svg", "g", "rect", "path", "line", "circle", "polygon", "polyline", "text", "tspan"];
+
+#[derive(Debug, Default)]
+pub struct Drawings(BTreeMap<&'static str, String>);
+
+impl Drawings {
+    /// Those of a folder; all that is read is added to `opened`. Files that this program did not draw are not shown.
+    /// Errors: a file that cannot be read.
+    pub(super) fn read(folder: &Path, opened: &Opened) -> Result<Self> {
+        let mut found = BTreeMap::new();
+        for name in NAMES {
+            let path = folder.join(name);
+            if !path.is_file() {
+                continue;
+            }
+            let text = String::from_utf8_lossy(&opened.read(&path, name)?).trim_end().to_owned();
+            if is_drawing(&text) {
+                found.insert(name, text);
+            }
+        }
+        Ok(Drawings(found))
+    }
+
+    pub(super) fn get(&self, name: &str) -> Option<&str> {
+        self.0.get(name).map(String::as_str)
+    }
+}
+
+/// Whether a text draws and does nothing else: it becomes part of a page.
+fn is_drawing(text: &str) -> bool {
+    let tags = || text.split('<').skip(1).map(|rest| rest.split_once('>').map_or(rest, |(tag, _)| tag));
+    let is_known = |tag: &str| {
+        let name = tag.trim_start_matches('/').split(|c: char| !c.is_ascii_alphanumeric()).next().unwrap_or_default();
+        ELEMENTS.contains(&name)
+    };
+    let acts = |tag: &str| {
+        let handles = |part: &str| part.starts_with("on") && part.contains('=');
+        tag.contains("href") || tag.contains("url(") || tag.split_whitespace().any(handles)
+    };
+    text.starts_with("<svg ") && text.ends_with("</svg>") && tags().all(|tag| is_known(tag) && !acts(tag))
+}
+
+pub(crate) fn refuse(path: &Path, problem: String) -> Error {
+    Error::Input(Box::new(InputError {
+        file: Some(path.to_path_buf()),
+        problem,
+        remedy: AGAIN.to_owned(),
+        ..InputError::default()
+    }))
+}
+
+/// What a result says of one of its tables; `None` of an earlier version.
+pub fn listed<'r>(result: &'r Value, name: &str) -> Option<&'r Value> {
+    result["tables"].as_array().into_iter().flatten().find(|entry| entry["file"] == name)
+}
+
+/// Compares a table with the entry of a result about it.
+/// Errors: one that is cut off, or not the one that was written; `by` names the file that says so.
+pub fn check_listed(path: &Path, table: &[u8], entry: &Value, by: &str) -> Result<()> {
+    let bytes = entry["bytes"].as_u64().unwrap_or(0);
+    match table.len() as u64 {
+        length if length < bytes => Err(refuse(path, format!("is cut off: {length} of the {bytes} bytes that the run wrote"))),
+        _ if entry["sha256"] != sha256(table) => Err(refuse(path, format!("is not the table that the run wrote, by {by}"))),
+        _ => Ok(()),
+    }
+}
+
+/// The rows of the curve of a folder, as its run wrote it by the `result.json` beside it (without that file there is nothing to compare
+/// with), and the units of its text.
+/// Errors: a table that is not as it was written.
+pub fn curve(folder: &Path, name: &str, opened: &Opened) -> Result<(Vec<Row>, System)> {
+    let (path, beside) = (folder.join(name), folder.join(RESULT_FILE));
+    let bytes = opened.read(&path, name)?;
+    let rows = || {
+        let table = Table::read(&String::from_utf8_lossy(&bytes), &path)?;
+        Ok((Row::of_table(&table)?, table.units))
+    };
+    if !beside.is_file() {
+        return rows();
+    }
+    let Ok(result) = serde_json::from_slice::<Value>(&opened.read(&beside, RESULT_FILE)?) else {
+        return Err(refuse(&path, format!("cannot be checked: {RESULT_FILE} is truncated or damaged")));
+    };
+    if let Some(entry) = listed(&result, name) {
+        check_listed(&path, &bytes, entry, RESULT_FILE)?;
+        return rows();
+    }
+    // A run of an earlier version says its life alone.
+    let (rows, units) = rows()?;
+    match (result["life_cycles"].as_f64(), rows.last().map(|row| row.cycles)) {
+        (Some(life), Some(last)) if last < life => Err(refuse(&path, format!("ends at {last} cycles, and the run at {life}"))),
+        _ => Ok((rows, units)),
     }
 }

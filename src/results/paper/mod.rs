@@ -3,34 +3,28 @@
 //! Its source is the results folder; pictures are drawn again at the size of the page.
 
 mod answers;
-mod drawings;
 mod fit;
 mod folder;
-mod part_through;
 mod prediction;
-mod signed;
-mod spectrum;
-
-pub use drawings::Drawings;
-pub use folder::{Source, read};
-pub use signed::Signed;
 
 use std::path::Path;
+
+use toml::Table;
 
 use super::chart::Size;
 use super::format::{self, Format};
 use super::output::{OutputFile, Sort};
 use super::specimen_picture::sketch::escaped;
+pub use folder::{Drawings, Source, curve, read};
 use perilife_base::error::Result;
-use perilife_base::input::Opened;
+use perilife_base::input::{Document, Folder, Opened, Sections};
+use perilife_base::keys::{Section, key, section};
 use perilife_base::units::shown::told;
 
 /// Mark at the head of a report by which a later one may replace it.
 pub const SIGN: &str = "<meta name=\"generator\" content=\"perilife report\">";
 const STYLE: &str = include_str!("paper.css");
-/// Numbers of a report.
 const PRINT: Format = format::PRINT;
-/// Size of a chart in a report, px.
 const CHART: Size = Size { width: 330.0, height: 215.0, text: 10.5 };
 
 /// The report of a run or a fit, in the units that are shown.
@@ -65,12 +59,10 @@ pub fn write(folder: &Path, out: &Path, signed: &Signed) -> Result<(usize, bool)
     Ok((page.len(), is_file))
 }
 
-/// A value in words, or a dash.
 fn known(value: Option<f64>, words: impl FnOnce(f64) -> String) -> String {
     value.map_or_else(|| "–".to_owned(), words)
 }
 
-/// Text, or "not recorded".
 fn recorded(text: Option<&str>) -> String {
     match text.map(str::trim).filter(|text| !text.is_empty()) {
         Some(text) => quoted(text),
@@ -78,7 +70,6 @@ fn recorded(text: Option<&str>) -> String {
     }
 }
 
-/// Text escaped for markup, also within quotes.
 fn quoted(text: &str) -> String {
     escaped(text).replace('"', "&quot;")
 }
@@ -175,7 +166,6 @@ fn terms(rows: &[(&str, String)]) -> String {
     format!("<dl class=\"terms\">{}</dl>\n", rows.iter().map(row).collect::<String>())
 }
 
-/// Title of a section after the signatures.
 fn title(words: &str) -> String {
     format!("<h1 class=\"sheet\">{words}</h1>\n")
 }
@@ -192,7 +182,6 @@ fn picture(drawings: &Drawings, name: &str, caption: &str) -> String {
     drawings.get(name).map_or_else(String::new, |svg| figure(svg, caption, "wide"))
 }
 
-/// A symbol with its word for screen readers.
 fn mark(holds: Option<bool>) -> String {
     let (class, word, drawing) = match holds {
         Some(true) => ("ok", "Passed", "<circle cx=\"9\" cy=\"9\" r=\"8\"/><path d=\"M5.2 9.2l2.6 2.7 5-5.6\"/>"),
@@ -207,7 +196,6 @@ fn mark(holds: Option<bool>) -> String {
     )
 }
 
-/// The first `most` files with their hashes.
 fn hashes<'f>(files: impl Iterator<Item = (&'f str, &'f str)>, most: usize) -> String {
     let line = |(name, hash): (&str, &str)| {
         let name = Path::new(name).file_name().map_or(name.into(), |last| last.to_string_lossy());
@@ -223,4 +211,68 @@ fn hashes<'f>(files: impl Iterator<Item = (&'f str, &'f str)>, most: usize) -> S
         lines.push(recorded(None));
     }
     format!("<p class=\"hashes\">{}</p>\n", lines.join("<br>"))
+}
+
+const SECTION: &str = "report";
+
+perilife_base::keys! {
+    /// Section `[report]` of a file of report data; `None` is printed as "not recorded".
+    #[derive(Debug, Clone, Default)]
+    pub struct Signed {
+        laboratory: Option<String> = key("laboratory", "Laboratory: name, address, accreditation");
+        customer: Option<String> = key("customer", "Customer: name, contact");
+        project: Option<String> = key("project", "Project");
+        number: Option<String> = key("number", "Report number");
+        revision: Option<String> = key("revision", "Revision");
+        revision_reason: Option<String> = key("revision_reason", "Reason for the revision");
+        date: Option<String> = key("date", "Date of issue");
+        operator: Option<String> = key("operator", "Operator: tested or prepared by");
+        reviewer: Option<String> = key("reviewer", "Reviewer");
+        approver: Option<String> = key("approver", "Approver");
+        product_form: Option<String> = key("product_form", "Product form and heat treatment");
+        orientation: Option<String> = key("orientation", "Crack plane orientation: L-T, T-L, ...; location in the product");
+        notch: Option<String> = key("notch", "Notch: form, preparation");
+        precracking: Option<String> = key("precracking", "Precracking: final ΔK, R and crack size");
+        machine: Option<String> = key("machine", "Test machine, load cell");
+        waveform: Option<String> = key("waveform", "Waveform and frequency");
+        environment: Option<String> = key("environment", "Environment: medium, temperature, humidity");
+        crack_measurement: Option<String> = key("crack_measurement", "Crack size measurement: method, equipment");
+        crack_resolution: Option<String> = key("crack_resolution", "Resolution of crack size");
+        interruptions: Option<String> = key("interruptions", "Interruptions: occurrences that could affect the data");
+    }
+}
+
+impl Signed {
+    /// Reads section `[report]` of a TOML file; `set` are overrides `report.KEY=VALUE`.
+    /// Errors: a file that cannot be read; an unknown key; a value that is not text.
+    pub fn read(file: Option<&Path>, set: &[String]) -> Result<Self> {
+        let document = match file {
+            Some(path) => Document::read(path, set)?,
+            None => Document::parse("", SECTION, Folder::none(), set)?,
+        };
+        let read = || section(Sections::of(&document.table, &[SECTION], &[])?.optional(SECTION), SECTION);
+        read().map_err(|error| document.locate(error))
+    }
+
+    /// From the keys of section `[report]`.
+    /// Errors: an unknown key; a value that is not text.
+    pub fn of(keys: Table) -> Result<Self> {
+        section(&keys.into(), SECTION)
+    }
+
+    pub(super) fn number_words(&self) -> Option<String> {
+        let revision = self.revision.as_ref().map_or_else(String::new, |revision| format!(", revision {revision}"));
+        Some(format!("{}{revision}", self.number.as_ref()?))
+    }
+
+    /// The test conditions that ASTM E647 asks for, with the labels of their keys.
+    pub(super) fn conditions(&self) -> impl Iterator<Item = (&'static str, Option<&str>)> {
+        macro_rules! of {
+            ($($key:ident),+) => { [$((stringify!($key), self.$key.as_deref())),+] };
+        }
+        let first = of!(product_form, orientation, notch, precracking, machine, waveform, environment);
+        let all = first.into_iter().chain(of!(crack_measurement, crack_resolution, interruptions));
+        let label = |name| Self::KEYS.iter().find(|key| key.name == name).map_or(name, |key| key.label_and_hint().0);
+        all.map(move |(name, value)| (label(name), value))
+    }
 }

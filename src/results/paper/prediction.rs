@@ -4,8 +4,8 @@ use serde_json::Value;
 
 use super::answers::quantile_words;
 use super::{
-    Drawings, PRINT, Signed, answers, cards, figure, hashes, known, letter, mark, part_through, prose, quoted, recorded,
-    signatures, software, spectrum, table, terms, text,
+    Drawings, PRINT, Signed, answers, cards, figure, hashes, known, letter, mark, prose, quoted, recorded, signatures, software,
+    table, terms, text,
 };
 use crate::band::{every_words, interval_words};
 use crate::chart::Size;
@@ -44,8 +44,8 @@ pub fn body(run: &RunRecord, tables: &RunTables, drawings: &Drawings, signed: &S
     page += &signatures(signed, "Prepared by");
     page += &software(&run.version, run.made_by.commit.as_deref());
     page += &hashes(run.made_by.inputs.iter().map(|file| (&*file.file, &*file.sha256)), HASHES_MOST);
-    page += &spectrum::section(run, drawings);
-    page += &part_through::section(run, tables, drawings);
+    page += &answers::of_spectrum(run, drawings);
+    page += &answers::of_part_through(run, tables, drawings);
     page += &answers::sections(run, drawings);
     (format!("Crack growth life, {name}"), page, run.version.clone())
 }
@@ -313,7 +313,6 @@ fn checks(run: &RunRecord) -> String {
     format!("<h2>Validity</h2>\n{open}{passed}")
 }
 
-/// What a check that passed has checked.
 fn title_of(check: &Check) -> String {
     match &*check.name {
         "lack_of_fit" => "fit quality".to_owned(),
@@ -332,12 +331,7 @@ fn messages(warnings: &[String]) -> String {
 }
 
 fn effect(check: &Check) -> String {
-    let side = match check.side {
-        Some(Side::Conservative) => "conservative",
-        Some(Side::NonConservative) => "non-conservative",
-        Some(Side::Either) => "either direction",
-        None => "",
-    };
+    let side = check.side.map_or("", Side::words);
     match check.effect_percent {
         Some(percent) => format!("{} %, {side}", PRINT.short((10.0 * percent.abs()).round() / 10.0)),
         None if side.is_empty() => "unknown".to_owned(),

@@ -11,7 +11,6 @@ use perilife_plate::specimen::Point;
 
 /// Color of K at the deepest point of a part-through crack.
 const THIRD: &str = COLOURS[2];
-/// Opacity of the scatter band.
 const BAND: f64 = 0.18;
 /// Segments of the cubic between two rows.
 const PARTS: usize = 8;
@@ -111,7 +110,6 @@ fn tips_together(ends: &[(usize, Point)], spans: Point, colours: &[&'static str]
     groups.into_iter().map(|(tips, end)| (name(&tips), end, colours[tips[0]])).collect()
 }
 
-/// Extent of points along both axes.
 fn spans(points: &[Point]) -> Point {
     [0, 1].map(|axis| {
         let values = || points.iter().map(|point| point[axis]);

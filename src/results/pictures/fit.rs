@@ -23,7 +23,6 @@ pub const BAND_FILE: &str = "fit_band.csv";
 pub const READINGS_FILE: &str = "readings.csv";
 /// Rates that a law over K was fitted to.
 pub const RATES_FITTED_FILE: &str = "fit_rates.csv";
-/// Stress ratios that count as one.
 const RATIO_ALIKE: f64 = 0.0051;
 /// Most stress ratios that a picture tells apart.
 const RATIOS_DRAWN: usize = 6;
@@ -31,7 +30,6 @@ const RATIOS_DRAWN: usize = 6;
 const CIRCLES_MAX: usize = 160;
 /// Rates from which circles would hide the law and each other: dots then.
 const CIRCLES_OF_RATES_MAX: usize = 400;
-/// Pieces that a curve of rates is drawn by.
 const CURVE_POINTS: usize = 40;
 /// Share of an area that the band of the fit covers with its colour.
 const BAND: f64 = 0.3;
@@ -73,7 +71,6 @@ pub fn lives_svg(curves: &[Lives], fitted_to: &str, band: &[[f64; 3]], size: Siz
 pub struct LawCurve {
     /// Name at its end; may be empty.
     pub name: String,
-    /// In order of ΔK.
     pub points: Vec<Point>,
     /// Where the errors of rate and exponent have no correlation.
     pub pivot: Option<Point>,
@@ -110,7 +107,6 @@ struct CurveRow {
     cycles_fitted: f64,
 }
 
-/// What the tables of a fit to readings say.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitTables {
     pub readings: Vec<Reading>,
@@ -143,7 +139,6 @@ impl FitTables {
         Ok(FitTables { readings: readings.records()?, curves: all, band, law, fitted_to: fit.fitted_to.clone() })
     }
 
-    /// Crack length over cycles.
     pub fn lives_svg(&self, size: Size) -> String {
         lives_svg(&self.curves, &self.fitted_to, &self.band, size)
     }
@@ -161,11 +156,8 @@ impl FitTables {
 pub struct RateFitted {
     pub series: String,
     pub stress_ratio: f64,
-    /// ΔK, MPa√m.
     pub delta_k_mpa_sqrt_m: f64,
-    /// Measured rate, mm/cycle.
     pub da_dn_mm_per_cycle: f64,
-    /// Rate of the law there, mm/cycle.
     pub da_dn_fitted_mm_per_cycle: f64,
 }
 

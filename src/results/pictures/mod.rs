@@ -4,5 +4,4 @@ pub mod curves;
 pub mod fit;
 pub mod plate;
 pub mod section;
-pub mod spectrum;
 pub mod stress;

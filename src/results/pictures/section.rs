@@ -9,14 +9,12 @@ use perilife_growth::predict::part_through::PartThroughLife;
 use perilife_growth::predict::{CurvePoint, Prediction};
 use perilife_plate::specimen::{PartThrough, Point};
 
-/// Shares of the cycles at which the front is drawn.
 const SHARES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// What is shown of the width beside the front, over its last length and over the thickness.
 const BESIDE: [f64; 2] = [0.6, 1.0];
 /// Room around the section, and for words above it, px.
 const AROUND: f64 = 30.0;
 const ABOVE: f64 = 64.0;
-/// Height of a section at the most, px.
 const HIGH: f64 = 300.0;
 
 /// SVG text; `None` of a crack that goes through from the start.

@@ -43,7 +43,6 @@ enum Of {
 }
 
 impl Of {
-    /// In the unit that is shown.
     fn value(self, stress: &Stress) -> f64 {
         in_shown(match self {
             Of::VonMises => stress.von_mises(),
@@ -59,7 +58,6 @@ impl Of {
     }
 }
 
-/// A stress, Pa, in the unit that is shown.
 fn in_shown(stress: f64) -> f64 {
     per("MPa") * stress / MPA
 }

@@ -1,6 +1,5 @@
 //! Is an input file right, and what would be run? What was understood of it, in words and as a drawing, without running it.
 
-mod preview;
 mod understood;
 
 use std::path::Path;
@@ -9,12 +8,12 @@ use serde::{Serialize, Serializer};
 use serde_json::map::Entry;
 use serde_json::{Map, Value};
 
-use self::preview::{as_input, is_quick, preview};
-pub use self::understood::Line;
-use self::understood::{built as built_words, case_lines, curves_line, line, plate_lines, points_words, rates_line, sweep_lines};
-use crate::scene_model;
-use crate::scene_picture::scene_svg;
-use crate::{Kind, Task};
+pub use super::check::understood::Line;
+use super::check::understood::{
+    as_input, built as built_words, case_lines, curves_line, detail, is_quick, line, plate_lines, points_words, preview,
+    rates_line, sweep_lines,
+};
+use super::{Kind, Task, scene_results};
 use perilife_base::error::Result;
 use perilife_base::input::{Document, Provenance};
 use perilife_base::units::{MM, MPA};
@@ -23,22 +22,22 @@ use perilife_calibration::laws::case::LawCase;
 use perilife_calibration::sweep::design::{self, CASES_MAX};
 use perilife_calibration::sweep::{DrawnCase, Sweep};
 use perilife_calibration::template::refuse_table;
-use perilife_growth::case::Case;
-use perilife_growth::case::needs;
+use perilife_growth::case::{Case, needs};
 use perilife_growth::predict::judgement::refuse_beforehand;
+use perilife_plate::specimen::{Edge, Point, Specimen};
 use perilife_results::checks::{self, Check};
 use perilife_results::model_words::{self, mm, short};
 use perilife_results::pictures::plate::Plate;
-use perilife_results::specimen_picture::specimen_svg;
+use perilife_results::specimen_picture::sketch::{HELD, LOAD, Sketch};
+use perilife_results::specimen_picture::{drawing, specimen_svg};
 use perilife_results::spectrum::{SpectrumCurves, curves};
 use perilife_scenes::Scene;
 use perilife_scenes::assembly::preview as preview_scene;
-use perilife_scenes::scene::{Action, DamageLaw, Procedure, SceneLoad, SceneSupport};
+use perilife_scenes::read::around;
+use perilife_scenes::scene::{Action, DamageLaw, Procedure, Region, SceneLoad, SceneSupport};
 
-/// What a file asks for, checked.
 #[derive(Debug, Default, Serialize)]
 pub struct Checked {
-    /// A file with mistakes gives an error.
     ok: bool,
     /// `case`, `calibration`, `fracture` or `sweep`.
     pub kind: &'static str,
@@ -57,19 +56,16 @@ pub struct Checked {
     pub spectrum: Option<SpectrumCurves>,
     #[serde(rename = "case")]
     pub echo: Value,
-    /// Files that were read for it.
     #[serde(skip)]
     pub provenance: Provenance,
 }
 
 impl Checked {
     pub fn json(&self) -> Value {
-        // Text and figures have a form in JSON.
-        serde_json::to_value(self).unwrap_or_default()
+        serde_json::json!(self)
     }
 }
 
-/// Lines by what they are of.
 fn understood<S: Serializer>(lines: &[Line], serializer: S) -> std::result::Result<S::Ok, S::Error> {
     let mut understood: Map<String, Value> = Map::new();
     for line in lines {
@@ -133,7 +129,6 @@ fn checked_sweep(sweep: &Sweep, cases: &[DrawnCase]) -> Result<Checked> {
     Ok(checked)
 }
 
-/// A case, with its warnings so far.
 fn checked_case(document: &Document, kind: &'static str, case: &Case, warnings: &[String]) -> Result<Checked> {
     let budget = needs::of_case(case);
     let preview = budget.within_machine().and_then(|()| preview(case)).map_err(|error| document.locate(error))?;
@@ -164,7 +159,13 @@ fn checked_scene(document: &Document, scene: &Scene) -> Result<Checked> {
     let (lines, of_points) = scene_lines(scene).map_err(|error| document.locate(error))?;
     let (name, echo, provenance) = (scene.name.clone(), scene.echo.clone(), scene.provenance.clone());
     let warnings = [&scene.warnings[..], &of_points].concat();
-    let drawing = scene_drawing(scene);
+    let loads = scene.drives.iter().map(|drive| format!("blue: {}", drive_words(drive)));
+    let holds = scene.holds.iter().map(|hold| format!("green: {}", hold_words(hold)));
+    let mut told: Vec<String> = loads.chain(holds).collect();
+    let more = told.len().saturating_sub(LINES_MAX);
+    told.truncate(LINES_MAX);
+    told.extend((more > 0).then(|| format!("and {more} more loads and supports")));
+    let drawing = scene_svg(scene, &procedure_words(scene), &told);
     Ok(Checked { ok: true, kind: "fracture", name, lines, warnings, drawing, echo, provenance, ..Checked::default() })
 }
 
@@ -181,7 +182,7 @@ fn scene_lines(scene: &Scene) -> Result<(Vec<Line>, Vec<String>)> {
     let is_quick = budget.bonds <= BONDS_BUILT && is_quick(&budget, &scene.specimen);
     let built = is_quick.then(|| preview_scene(scene).map_err(as_input)).transpose()?;
     let specimen = &scene.specimen;
-    let chosen = scene_model::of_scene(scene, None);
+    let chosen = scene_results::of_scene(scene, None);
     let micro = scene.echo.get("micro_cracks").and_then(|section| section.get("count")).and_then(serde_json::Value::as_u64);
     let cracks = specimen.cracks.len() - micro.unwrap_or(0) as usize;
     let micro_words = micro.map_or_else(String::new, |count| format!(", {count} micro cracks"));
@@ -194,8 +195,8 @@ fn scene_lines(scene: &Scene) -> Result<(Vec<Line>, Vec<String>)> {
     let points = points_words(&counts, [fine, coarse], [asked * fine / coarse, horizon], &chosen);
     let mut lines = plate_lines(specimen, &scene.material, ("flaws", cracks, micro_words));
     lines.extend([
-        line("law", model_words::words(&chosen, &model_words::OF_BONDS)),
-        line("points", points),
+        detail("law", model_words::words(&chosen, &model_words::OF_BONDS)),
+        detail("points", points),
         line("procedure", procedure_words(scene)),
     ]);
     lines.extend(scene.drives.iter().map(|drive| line("load", drive_words(drive))));
@@ -218,17 +219,6 @@ fn procedure_words(scene: &Scene) -> String {
             format!("motion over {duration:e} s, {step}, solver {solver}")
         }
     }
-}
-
-/// The drawing of a scene with its loads and supports in words.
-fn scene_drawing(scene: &Scene) -> String {
-    let loads = scene.drives.iter().map(|drive| format!("blue: {}", drive_words(drive)));
-    let holds = scene.holds.iter().map(|hold| format!("green: {}", hold_words(hold)));
-    let mut lines: Vec<String> = loads.chain(holds).collect();
-    let more = lines.len().saturating_sub(LINES_MAX);
-    lines.truncate(LINES_MAX);
-    lines.extend((more > 0).then(|| format!("and {more} more loads and supports")));
-    scene_svg(scene, &procedure_words(scene), &lines)
 }
 
 fn drive_words(drive: &SceneLoad) -> String {
@@ -274,4 +264,61 @@ fn damage_words(scene: &Scene) -> String {
         _ => String::new(),
     };
     format!("{}{limit}", damage.law)
+}
+
+const ARROW: f64 = 38.0;
+/// Fill of driven and of held points.
+const DRIVEN_FILL: &str = "#b9cfe8";
+const HELD_FILL: &str = "#c9d19a";
+
+/// SVG text of the plate of a scene; `procedure` says in words how it is worked through, `lines` what loads and holds it.
+///
+/// Red: cracks. Blue: loads, with the points that are driven in a tinted box. Green: points that are held.
+pub fn scene_svg(scene: &Scene, procedure: &str, lines: &[String]) -> String {
+    drawing(&scene.name, procedure, &scene.specimen, lines, |sketch| {
+        for hold in &scene.holds {
+            region(sketch, &hold.region, scene, HELD_FILL, HELD);
+        }
+        for drive in &scene.drives {
+            let motion = match drive.action {
+                // Drawn with the loads of the plate.
+                Action::Traction(_) => continue,
+                Action::Displacement(values) | Action::Velocity(values) => values.map(|value| value.unwrap_or(0.0)),
+                Action::Platen(motion) => motion,
+            };
+            let middle = region(sketch, &drive.region, scene, DRIVEN_FILL, LOAD);
+            arrow(sketch, middle, &drive.region, motion, &scene.specimen);
+        }
+    })
+}
+
+/// A box around a region; returns its middle.
+fn region(sketch: &mut Sketch, region: &Region, scene: &Scene, fill: &str, stroke: &str) -> Point {
+    let (low, high) = around(region, scene.model.spacing, &scene.specimen);
+    sketch.polygon(&[low, [high[0], low[1]], high, [low[0], high[1]]], fill, stroke);
+    [0, 1].map(|i| 0.5 * (low[i] + high[i]))
+}
+
+/// The arrow of a motion: out of the plate where it pulls, up to the plate where it presses on a side.
+fn arrow(sketch: &mut Sketch, middle: Point, region: &Region, motion: Point, specimen: &Specimen) {
+    let size = motion[0].hypot(motion[1]);
+    if size == 0.0 {
+        return;
+    }
+    let way = [ARROW * motion[0] / size, -ARROW * motion[1] / size];
+    let mut start = sketch.place(middle);
+    if let Region::Edge { edge, .. } = region {
+        let normal = edge.normal();
+        let [low, high] = perilife_plate::specimen::geometry::bounding_box(&specimen.outline);
+        let mut foot = middle;
+        match edge {
+            Edge::Top | Edge::Bottom => foot[1] = if *edge == Edge::Top { high[1] } else { low[1] },
+            Edge::Left | Edge::Right => foot[0] = if *edge == Edge::Right { high[0] } else { low[0] },
+        }
+        let presses = motion[0] * normal[0] + motion[1] * normal[1] < 0.0;
+        let out = if presses { ARROW + 8.0 } else { 8.0 };
+        let foot = sketch.place(foot);
+        start = [foot[0] + out * normal[0], foot[1] - out * normal[1]];
+    }
+    sketch.arrow(start, [start[0] + way[0], start[1] + way[1]], LOAD, 2.4);
 }

@@ -1,29 +1,32 @@
 //! What every request can reach; places of which there are so many: for each caller, for each role, for all.
 
 use std::collections::HashMap;
+use std::fs::{File, OpenOptions};
+use std::io::Write as _;
 use std::net::IpAddr;
 use std::num::NonZeroU32;
-use std::path::PathBuf;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
+use axum::http::{Method, StatusCode};
 use governor::{DefaultKeyedRateLimiter, Quota, RateLimiter};
+use serde_json::json;
 use tokio::sync::{Notify, OwnedSemaphorePermit, RwLock, Semaphore};
 
-use super::caller::{Audit, Caller};
 use crate::problem::{Answer, Problem};
 use crate::store::{Role, Store, Token};
 use crate::worker;
+use perilife_base::error::{Error, Result};
 
-/// How much a request may ask for.
 #[derive(Debug, Clone)]
 pub struct Limits {
     /// Bytes of a body, all files together.
     pub body_bytes: usize,
     pub files: usize,
     pub points: f64,
-    /// Memory that a case may take up, bytes.
     pub case_bytes: f64,
     /// Jobs of one owner that wait.
     pub queued: i64,
@@ -34,14 +37,12 @@ pub struct Limits {
     pub writes_per_second: NonZeroU32,
     /// Bodies read and checked at a time, so that memory is bounded: the others wait.
     pub bodies_at_once: usize,
-    /// Of them those of one caller.
     pub bodies_of_caller: usize,
     /// Of them those of all callers together who may only read.
     pub bodies_of_readers: usize,
     /// Streams of events, and waits for the end of a job, of one caller at a time.
     pub streams_of_caller: usize,
     pub connections: usize,
-    /// Time in which an answer must begin.
     pub answer_within: Duration,
 }
 
@@ -71,7 +72,6 @@ impl Default for Limits {
 /// Whole curves in memory at a time.
 const CURVES_AT_ONCE: usize = 16;
 
-/// Who is let in.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Security {
     /// Whether every request needs a token. Without, only this machine can reach the service, and all who can may do all.
@@ -84,14 +84,12 @@ pub struct Security {
 
 /// Time for which a token that was found good is not looked up again.
 const TOKEN_FRESH: Duration = Duration::from_secs(10);
-/// Tokens remembered at most.
 const TOKENS_REMEMBERED: usize = 1000;
 
 /// What every request can reach.
 #[derive(Debug, Clone)]
 pub struct App {
     pub store: Store,
-    /// How much a request may ask for.
     pub limits: Limits,
     pub security: Security,
     /// Told of new jobs.
@@ -149,13 +147,11 @@ impl App {
 
     /// A place for a stream of events, or a wait for the end of a job.
     pub fn stream(&self, caller: &Caller) -> Answer<[Place; 2]> {
-        let own = self.streams.take(&caller.name).ok_or_else(|| {
-            Problem::too_many(format!("{} streams of yours are open, which is all this server takes", self.streams.most()), 5)
-        })?;
-        let all = self.all_streams.take("").ok_or_else(|| {
-            Problem::too_many(format!("{} streams are open, which is all this server takes", self.all_streams.most()), 5)
-        })?;
-        Ok([own, all])
+        let take = |places: &Places, key: &str, whose: &str| {
+            let full = || format!("{} streams{whose} are open, which is all this server takes", places.most());
+            places.take(key).ok_or_else(|| Problem::too_many(full(), 5))
+        };
+        Ok([take(&self.streams, &caller.name, " of yours")?, take(&self.all_streams, "", "")?])
     }
 
     /// An address as others reach it.
@@ -170,26 +166,16 @@ impl App {
         within(&self.shared.requests) && (!is_write || within(&self.shared.writes))
     }
 
-    /// Forgets callers that have not asked for a while.
     pub fn forget_callers(&self) {
         self.shared.requests.retain_recent();
         self.shared.writes.retain_recent();
         self.bodies.forget();
     }
 
-    /// The token with this hash, if it was looked up a moment ago.
-    pub async fn fresh_token(&self, hash: &str) -> Option<Token> {
-        self.known_token(hash).await.filter(|(_, at)| at.elapsed() < TOKEN_FRESH).map(|(token, _)| token)
-    }
-
-    /// Whose token with this hash was when it was last looked up: enough to count his requests.
-    pub async fn known_name(&self, hash: &str) -> Option<String> {
-        self.known_token(hash).await.map(|(token, _)| token.name)
-    }
-
-    async fn known_token(&self, hash: &str) -> Option<(Token, Instant)> {
+    /// The token with this hash as it was when it was last looked up, and whether that was a moment ago.
+    pub async fn known_token(&self, hash: &str) -> Option<(Token, bool)> {
         let known = self.shared.tokens.read().await;
-        known.iter().find(|(known, ..)| known == hash).map(|(_, token, at)| (token.clone(), *at))
+        known.iter().find(|(known, ..)| known == hash).map(|(_, token, at)| (token.clone(), at.elapsed() < TOKEN_FRESH))
     }
 
     /// The token with this hash, if there is one that has not ended.
@@ -236,17 +222,14 @@ pub struct Place {
 }
 
 impl Places {
-    /// So many for each key.
     pub fn new(most: usize) -> Self {
         Places(Arc::new(Counted { most, taken: Mutex::default() }))
     }
 
-    /// How many there are for each key.
     pub fn most(&self) -> usize {
         self.0.most
     }
 
-    /// A place of this key, if one is free.
     pub fn take(&self, key: &str) -> Option<Place> {
         let mut taken = self.0.taken.lock().unwrap_or_else(PoisonError::into_inner);
         let count = taken.entry(key.to_owned()).or_default();
@@ -287,7 +270,6 @@ pub struct BodyPlace {
 }
 
 impl BodyPlaces {
-    /// So many for each caller, for all who may only read, and for all.
     pub fn new(of_caller: usize, of_readers: usize, of_all: usize) -> Self {
         BodyPlaces {
             most_of_caller: of_caller,
@@ -319,5 +301,62 @@ impl BodyPlaces {
         let most = self.most_of_caller;
         let in_use = |places: &Arc<Semaphore>| Arc::strong_count(places) > 1 || places.available_permits() < most;
         self.of_callers.lock().unwrap_or_else(PoisonError::into_inner).retain(|_, places| in_use(places));
+    }
+}
+
+/// Who asks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Caller {
+    /// Name of the token; empty where none is needed.
+    pub name: String,
+    /// What he may do.
+    pub role: Role,
+    /// Hash of the token; empty where none is needed.
+    pub token: String,
+}
+
+impl Caller {
+    /// Refuses who may not.
+    pub fn must_be(&self, role: Role) -> Answer<()> {
+        if self.role >= role {
+            return Ok(());
+        }
+        let detail = format!("requires role {role}; your token has {}", self.role);
+        Err(Problem::new(StatusCode::FORBIDDEN, "Forbidden", detail))
+    }
+
+    /// Refuses who may not do something with a job of this owner.
+    pub fn must_own(&self, owner: &str) -> Answer<()> {
+        self.must_be(if owner == self.name { Role::Run } else { Role::Admin })
+    }
+}
+
+/// The file that it is written to.
+#[derive(Debug)]
+pub struct Audit(Mutex<File>);
+
+impl Audit {
+    /// Appends to a file, which nobody else may read if it is made now.
+    pub fn open(path: &Path) -> Result<Audit> {
+        let file = OpenOptions::new().create(true).append(true).mode(0o600).open(path);
+        Ok(Audit(Mutex::new(file.map_err(|error| Error::file(path, "cannot append to", error))?)))
+    }
+
+    /// Writes down a request that changed something, or that was refused for who made it.
+    pub fn write(&self, caller: Option<&Caller>, address: IpAddr, method: &Method, path: &str, status: StatusCode) {
+        let is_read = matches!(*method, Method::GET | Method::HEAD);
+        if is_read && ![StatusCode::UNAUTHORIZED, StatusCode::FORBIDDEN].contains(&status) {
+            return;
+        }
+        let line = json!({
+            "time": humantime::format_rfc3339_millis(SystemTime::now()).to_string(),
+            "caller": caller.map(|caller| caller.name.as_str()), "role": caller.map(|caller| caller.role.name()),
+            "address": address.to_string(), "method": method.as_str(), "path": path, "status": status.as_u16(),
+        });
+        let mut file = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        // In one call, so that lines of two processes do not mix.
+        if let Err(error) = file.write_all(format!("{line}\n").as_bytes()) {
+            tracing::error!("the audit log cannot be written: {error}");
+        }
     }
 }

@@ -13,7 +13,7 @@ use serde_json::Value;
 use utoipa::{IntoParams, ToSchema};
 
 use super::App;
-use super::caller::Caller;
+use super::app::Caller;
 use super::documents::{self, JobRequest};
 use super::watching::has_room;
 use crate::job::{Job, JobKind, State, is_id};

@@ -14,11 +14,9 @@ use sha2::{Digest, Sha256};
 use utoipa::ToSchema;
 
 use super::App;
-use super::app::BodyPlace;
-use super::caller::Caller;
+use super::app::{BodyPlace, Caller};
 use super::security::BODY_WITHIN;
-use crate::job::{FITTED, JobKind, State, Submission, is_id};
-use crate::look::Look;
+use crate::job::{FITTED, JobKind, Look, State, Submission, is_id};
 use crate::problem::{Answer, Problem};
 use crate::store::{Origin, hex};
 use crate::worker;
@@ -72,7 +70,6 @@ pub type Fields = (BTreeMap<String, String>, Vec<(String, Vec<u8>)>);
 
 /// A body that was read, with its room among those that may be in memory, and its hash.
 pub struct Body {
-    /// What was asked for.
     pub asked: JobRequest,
     /// Hash of it.
     pub fingerprint: String,
@@ -289,10 +286,7 @@ async fn submission(app: &App, kind: Option<JobKind>, asked: JobRequest) -> Answ
         check_name("file", &name)?;
         files.push((name, content));
     }
-    let mut text = text_of(given)?;
-    if let Some(table) = text.parse::<toml::Table>().ok().filter(|table| names_no_readings(table) && !files.is_empty()) {
-        text = with_readings(table, &files)?;
-    }
+    let text = with_readings(text_of(given)?, &files)?;
     let with_fitted = asked.calibration.is_some();
     if let Some(id) = &asked.calibration {
         files.retain(|(name, _)| name != FITTED);
@@ -383,13 +377,12 @@ fn text_of(given: Value) -> Answer<String> {
     }
 }
 
-fn names_no_readings(table: &toml::Table) -> bool {
-    let names = |measured: &toml::Value| ["files", "rates"].iter().any(|key| measured.get(key).is_some());
-    JobKind::of(table) == JobKind::Calibration && !table.get("measured").is_some_and(names)
-}
-
 /// A calibration that names no files uses all that came with it.
-fn with_readings(mut table: toml::Table, files: &[(String, Vec<u8>)]) -> Answer<String> {
+fn with_readings(text: String, files: &[(String, Vec<u8>)]) -> Answer<String> {
+    let names = |measured: &toml::Value| ["files", "rates"].iter().any(|key| measured.get(key).is_some());
+    let is_short = |table: &toml::Table| JobKind::of(table) == JobKind::Calibration && !table.get("measured").is_some_and(names);
+    let table = text.parse::<toml::Table>().ok().filter(|table| !files.is_empty() && is_short(table));
+    let Some(mut table) = table else { return Ok(text) };
     let measured = table.entry("measured").or_insert_with(|| toml::Table::new().into());
     if let Some(measured) = measured.as_table_mut() {
         measured.insert("files".to_owned(), files.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().into());

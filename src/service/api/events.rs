@@ -13,8 +13,7 @@ use tokio::sync::mpsc::{Sender, channel};
 use tokio_stream::wrappers::ReceiverStream;
 
 use super::App;
-use super::app::Place;
-use super::caller::Caller;
+use super::app::{Caller, Place};
 use super::collections::{job_of, view};
 use crate::job::JobKind;
 use crate::problem::{Answer, Problem};

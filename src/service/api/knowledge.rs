@@ -1,22 +1,26 @@
-//! What the service is and knows: itself, every kind of every key, materials, its page.
+//! What the service is and knows: itself, every kind of every key, materials, its page, the guide; a look at input before anything is run.
 
-use axum::extract::State;
+use axum::extract::{Path, Request, State};
 use axum::http::{HeaderMap, Method, Uri, header};
-use axum::response::{IntoResponse, Response};
+use axum::response::{Html, IntoResponse, Response};
 use axum::{Extension, Json};
+use pulldown_cmark::html::push_html;
+use pulldown_cmark::{CowStr, Event, Options, Parser, Tag};
 use rust_embed::Embed;
 use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
 
 use super::App;
-use super::caller::Caller;
+use super::app::Caller;
+use super::documents::{self, JobRequest, look};
+use crate::job::{FIELDS, Found, Look};
 use crate::problem::{Answer, Problem};
 use crate::store::{Role, hex};
 use perilife_base::input::Folder;
 use perilife_plate::material::growth_data;
 use perilife_plate::material::library::{self, Property};
-use perilife_runner::catalogue;
+use perilife_runner::{catalogue, guide};
 
 /// The service and what it allows.
 #[derive(Serialize, ToSchema)]
@@ -110,4 +114,91 @@ pub async fn page(method: Method, uri: Uri, headers: HeaderMap) -> Response {
     }
     let media_type = mime_guess::from_path(name).first_or_octet_stream().to_string();
     (fixed, [(header::CONTENT_TYPE, media_type)], file.data).into_response()
+}
+
+pub async fn guide_index() -> Answer<Html<String>> {
+    html("index", "", "guide/")
+}
+
+pub async fn guide_page(Path(name): Path<String>) -> Answer<Html<String>> {
+    html(&name, "../", "")
+}
+
+/// A page in the frame of the service; `root` and `guide` are relative addresses, so that a proxy may add a prefix.
+fn html(name: &str, root: &str, guide: &str) -> Answer<Html<String>> {
+    let text = guide::page(name).ok_or_else(|| Problem::not_found("page of the guide"))?;
+    let title = text.lines().next().unwrap_or_default().trim_start_matches("# ");
+    let mut body = String::new();
+    push_html(&mut body, Parser::new_ext(text, Options::ENABLE_TABLES).map(|event| served(event, guide)));
+    // What scrolls by itself on a narrow window must be reachable by keyboard.
+    let body = body.replace("<pre>", "<pre tabindex=\"0\">").replace("<table>", "<table tabindex=\"0\">");
+    Ok(Html(format!(
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
+         <title>{title} · perilife</title><link rel=\"icon\" href=\"{root}icon.svg\" type=\"image/svg+xml\"><link rel=\"stylesheet\" href=\"{root}style.css\">\
+         <link rel=\"stylesheet\" href=\"{root}guide.css\"><script src=\"{root}theme.js\"></script></head><body><header class=\"top\"><div class=\"top-inner\">\
+         <span class=\"brand\">perilife</span><nav aria-label=\"Main\"><a href=\"{root}./\">Service</a><a href=\"{guide}index\">Guide</a>\
+         <a href=\"{root}docs/\">API</a></nav><div class=\"theme\"><button type=\"button\" class=\"button bare\" id=\"theme\">Light / dark</button>\
+         </div></div></header><main class=\"guide\">{body}</main></body></html>"
+    )))
+}
+
+/// Links to pages of the guide are those of the service.
+fn served<'a>(event: Event<'a>, guide: &str) -> Event<'a> {
+    let Event::Start(Tag::Link { link_type, dest_url, title, id }) = event else { return event };
+    let page = dest_url.strip_suffix(".md").filter(|page| guide::page(page).is_some());
+    let dest_url = page.map_or_else(|| dest_url.clone(), |page| CowStr::from(format!("{guide}{page}")));
+    Event::Start(Tag::Link { link_type, dest_url, title, id })
+}
+
+/// A form of files of readings.
+#[derive(ToSchema)]
+#[expect(dead_code, reason = "describes a form")]
+struct Readings {
+    /// Files (repeatable).
+    #[schema(value_type = String, format = Binary)]
+    file: Vec<u8>,
+    /// `mm`, `inch` or `m`, where the header does not say it.
+    length_unit: Option<String>,
+    /// `cycles`, `kilocycles` or `megacycles`, where the header does not say it.
+    cycle_unit: Option<String>,
+    /// Unit of loads, where the header does not say it.
+    load_unit: Option<String>,
+    /// `.` or `,`, where the file leaves it open.
+    decimal: Option<String>,
+    /// Sheet of a workbook, by name or number.
+    sheet: Option<String>,
+    /// JSON object of columns by name, as `columns` of `[measured]`.
+    columns: Option<String>,
+    /// JSON list of rows that are left out by their lines, as `leave_out` of `[measured]`.
+    leave_out: Option<String>,
+}
+
+/// Reads measured a-N curves: what was understood, and every row that is wrong.
+#[utoipa::path(post, path = "/v1/measured", tag = "inputs",
+    request_body(content = inline(Readings), content_type = "multipart/form-data"),
+    responses((status = 200, body = Found), (status = 400, body = Problem), (status = 413, body = Problem)))]
+pub async fn measured(State(app): State<App>, Extension(caller): Extension<Caller>, request: Request) -> Answer<Response> {
+    let room = app.bodies.wait(&caller).await?;
+    let (fields, files) = documents::form(&app, request).await?;
+    if let Some(name) = fields.keys().find(|name| !FIELDS.contains(&name.as_str())) {
+        return Err(Problem::bad_request(format!("the form has a field `{name}`; known are file, {}", FIELDS.join(", "))));
+    }
+    if files.is_empty() {
+        return Err(Problem::bad_request("the form has no `file`: send at least one"));
+    }
+    let (found, ..) = look(&app, Look::Measured { fields, files }, room, true).await?;
+    Ok(json(found))
+}
+
+/// JSON that a look has written.
+fn json(text: String) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
+}
+
+/// Checks a case, a calibration, a sweep or a fracture scene without running it: what was understood, and a drawing.
+#[utoipa::path(post, path = "/v1/check", tag = "inputs", request_body = JobRequest,
+    responses((status = 200, body = Value), (status = 400, body = Problem), (status = 422, body = Problem)))]
+pub async fn check(State(app): State<App>, Extension(caller): Extension<Caller>, request: Request) -> Answer<Response> {
+    let body = documents::read(&app, &caller, request).await?;
+    documents::looked(&app, body, None).await.map(|(found, ..)| json(found))
 }

@@ -1,4 +1,4 @@
-//! Who may ask, how often, and what browsers are told.
+//! Who may ask, how often, and what browsers are told; who has changed what, and who was refused, a line of JSON each.
 
 use std::net::{IpAddr, SocketAddr};
 use std::time::Duration;
@@ -13,7 +13,7 @@ use axum::response::{IntoResponse, Response};
 use tokio::time::timeout;
 use tokio_stream::StreamExt;
 
-use super::caller::Caller;
+use super::app::Caller;
 use super::{App, Security};
 use crate::problem::{Answer, Problem};
 use crate::store::{Role, hash};
@@ -81,21 +81,22 @@ async fn caller_of(app: &App, address: IpAddr, head: &Parts) -> Answer<Option<Ca
     }
     let token = token_of(&head.headers).filter(|_| needs_token);
     let hash = token.map(hash);
-    let (fresh, name) = match &hash {
-        Some(hash) => (app.fresh_token(hash).await, app.known_name(hash).await),
-        None => (None, None),
+    let known = match &hash {
+        Some(hash) => app.known_token(hash).await,
+        None => None,
     };
     // Who guesses tokens is held to the limit of his address before the store is asked; who is known has his own, even behind
     // the same proxy.
-    if !app.may_ask(name.as_deref(), address, is_write) {
+    if !app.may_ask(known.as_ref().map(|(token, _)| &*token.name), address, is_write) {
         return Err(Problem::too_many("rate limit exceeded; retry later", 1));
     }
     if !needs_token {
         return Ok(Some(Caller { name: String::new(), role: Role::Admin, token: String::new() }));
     }
-    let known = match (fresh, &hash) {
-        (None, Some(hash)) => app.token(hash).await?,
-        (fresh, _) => fresh,
+    let known = match (known, &hash) {
+        (Some((token, true)), _) => Some(token),
+        (_, Some(hash)) => app.token(hash).await?,
+        _ => None,
     };
     let is_open = !(path.starts_with("/v1/") || path == "/metrics") || path == "/v1/service";
     match known {
@@ -169,7 +170,7 @@ pub async fn in_room(request: Request, next: Next) -> Response {
         return next.run(request).await;
     }
     let problem = Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Too many connections", "all connections are taken; try again");
-    closed(Problem { retry_after: Some(1), ..problem }.into_response())
+    closed(problem.later(1).into_response())
 }
 
 /// An answer after which the connection is closed.
@@ -259,7 +260,6 @@ const DOCS: &str = "default-src 'none'; script-src 'self'; style-src 'self' 'uns
 /// Results are looked at, never run.
 const DATA: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox; frame-ancestors 'none'";
 
-/// Headers of every answer.
 pub async fn headers(request: Request, next: Next) -> Response {
     let path = request.uri().path().to_owned();
     let mut response = next.run(request).await;

@@ -97,7 +97,7 @@ pub async fn ready(Shared(app): Shared<App>) -> Answer<&'static str> {
 }
 
 fn refused(why: String) -> Problem {
-    Problem { retry_after: Some(TRY_AFTER_S), ..Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Not ready", why) }
+    Problem::new(StatusCode::SERVICE_UNAVAILABLE, "Not ready", why).later(TRY_AFTER_S)
 }
 
 /// Refuses a disk that is nearly full.

@@ -7,13 +7,11 @@ use super::queue::{CANCEL, KEEP};
 use super::{Dialect, Origin, Result, Store, files};
 use crate::job::{Job, JobKind, State, Submission, time};
 
-/// A job to be stored.
 #[derive(Debug, Clone)]
 pub struct NewJob<'a> {
     pub kind: JobKind,
     /// Name of the token that submits it.
     pub owner: &'a str,
-    /// The calibration whose law it uses.
     pub calibration: Option<&'a str>,
     /// Key by which a repeated request is known.
     pub idempotency_key: Option<&'a str>,
@@ -23,7 +21,6 @@ pub struct NewJob<'a> {
     pub room: i64,
 }
 
-/// What became of a submission.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Submitted {
     New(String),
@@ -49,11 +46,9 @@ pub struct Room {
 #[derive(Debug, Clone, Default)]
 pub struct Listing {
     pub jobs: Vec<Job>,
-    /// Where the next part begins, if there is one.
     pub next: Option<String>,
 }
 
-/// Which jobs are listed.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Wanted<'a> {
     /// Of this kind; of all where none is named.
@@ -65,7 +60,6 @@ pub struct Wanted<'a> {
     pub archived: bool,
     /// From behind this job on.
     pub after: Option<&'a str>,
-    /// So many.
     pub limit: u32,
 }
 
@@ -76,11 +70,9 @@ pub struct Change {
     pub note: Option<String>,
     /// Report data, JSON.
     pub report: Option<String>,
-    /// Whether it is put away.
     pub archived: Option<bool>,
 }
 
-/// Columns of a [`Job`].
 const COLUMNS: &str = "id, kind, name, note, report, archived, owner, state, calibration, created_ms, started_ms, finished_ms, cancel_asked, \
                        revision, fence, failures, reason, not_before_ms, progress, problem, summary";
 
@@ -99,19 +91,14 @@ impl Store {
         let mut transaction = self.begin().await?;
         if self.dialect == Dialect::Postgres {
             // One of an owner's submissions at a time, or two could both find the last place free. SQLite has one writer anyway.
-            sqlx::query("SELECT pg_advisory_xact_lock(hashtextextended($1, 0))")
-                .bind(new.owner)
-                .execute(&mut *transaction)
-                .await?;
+            run!(&mut *transaction, "SELECT pg_advisory_xact_lock(hashtextextended($1, 0))"; new.owner)?;
         }
         if let Some(earlier) = earlier(&mut transaction, new.owner, new.idempotency_key, new.fingerprint).await? {
             return Ok(earlier);
         }
-        let queued: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM jobs WHERE state = 'queued' AND owner = $1")
-            .bind(new.owner)
-            .fetch_one(&mut *transaction)
-            .await?;
-        if queued >= room.queued {
+        let queued =
+            sqlx::query_scalar::<_, i64>("SELECT COUNT(*) FROM jobs WHERE state = 'queued' AND owner = $1").bind(new.owner);
+        if queued.fetch_one(&mut *transaction).await? >= room.queued {
             return Ok(Submitted::QueueFull);
         }
         let stored = sqlx::query_scalar("SELECT bytes FROM stored WHERE owner = $1").bind(new.owner);
@@ -127,8 +114,7 @@ impl Store {
             "INSERT INTO jobs (id, kind, name, owner, state, calibration, turn, room, bytes, created_ms)
              VALUES ($1, $2, $3, $4, 'queued', $5, $6, $7, $8, {now})",
         ); &id, new.kind.name(), &new.submission.name, new.owner, new.calibration, turn, new.room, bytes + new.room)?;
-        let most = sqlx::query("UPDATE stored SET most = $2 WHERE owner = $1").bind(new.owner).bind(room.bytes);
-        most.execute(&mut *transaction).await?;
+        run!(&mut *transaction, "UPDATE stored SET most = $2 WHERE owner = $1"; new.owner, room.bytes)?;
         run!(&mut *transaction, "INSERT INTO submissions (job, content, options) VALUES ($1, $2, $3)";
             &id, content, serde_json::to_string(&new.submission.options).unwrap_or_default())?;
         for (name, content) in &new.submission.files {
@@ -150,7 +136,6 @@ impl Store {
         earlier(&mut *self.pool.acquire().await?, owner, key, fingerprint).await
     }
 
-    /// A job.
     pub async fn job(&self, kind: JobKind, id: &str) -> Result<Option<Job>> {
         let statement = format!("SELECT {COLUMNS} FROM jobs WHERE id = $1 AND kind = $2");
         let row = sqlx::query(self.sql(&statement)).bind(id).bind(kind.name()).fetch_optional(&self.pool).await?;
@@ -170,7 +155,6 @@ impl Store {
         sqlx::query_scalar("SELECT revision FROM jobs WHERE id = $1").bind(id).fetch_optional(&self.pool).await
     }
 
-    /// What was asked for.
     pub async fn submission(&self, id: &str) -> Result<Option<Submission>> {
         let row = sqlx::query("SELECT content, options FROM submissions WHERE job = $1").bind(id);
         let Some(row) = row.fetch_optional(&self.pool).await? else { return Ok(None) };
@@ -288,7 +272,6 @@ impl Store {
         sqlx::query_scalar(oldest).fetch_one(&self.pool).await
     }
 
-    /// Jobs in each state.
     pub async fn counts(&self) -> Result<Vec<(String, i64)>> {
         let rows = sqlx::query("SELECT state, COUNT(*) FROM jobs GROUP BY state").fetch_all(&self.pool).await?;
         rows.iter().map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).collect()
@@ -322,7 +305,6 @@ async fn turn(connection: &mut sqlx::AnyConnection, owner: &str) -> Result<i64> 
     Ok(own.map_or(0, |own| own + 1).max(number(2)?.unwrap_or(0)))
 }
 
-/// A row of [`COLUMNS`].
 fn job_of(row: &AnyRow) -> Result<Job> {
     let name = |column: &str| -> Result<String> { row.try_get(column) };
     let moment = |column: &str| -> Result<Option<String>> { Ok(row.try_get::<Option<i64>, _>(column)?.map(time)) };

@@ -49,7 +49,6 @@ pub(super) const KEEP: i64 = 2;
 /// What a sign of life brings back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Heartbeat {
-    /// Go on.
     Held,
     /// Somebody asks for the end of the job.
     Cancel,
@@ -76,10 +75,8 @@ pub enum Finish {
     SpaceFull(i64),
 }
 
-/// How a job ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// Its last state.
     pub state: State,
     /// The figures of its result, JSON.
     pub summary: Option<String>,
@@ -93,7 +90,6 @@ pub struct Outcome {
 pub struct Growth {
     /// Number of the first entry; 0 starts over.
     pub from: usize,
-    /// Cycles since N = 0.
     pub cycles: Vec<f64>,
     pub crack_length_mm: Vec<f64>,
     /// Position of every tip, mm.
@@ -105,7 +101,6 @@ pub struct Growth {
 pub struct Told {
     /// How far it is, JSON.
     pub progress: Option<String>,
-    /// More of its curve.
     pub growth: Option<Growth>,
     /// What is said of a picture, JSON, and its PNG.
     pub picture: Option<(String, Vec<u8>)>,
@@ -246,7 +241,6 @@ impl Store {
         row.map(|row| Ok((row.try_get(0)?, row.try_get(1)?))).transpose()
     }
 
-    /// The latest picture of a job.
     pub async fn picture(&self, id: &str) -> Result<Option<Vec<u8>>> {
         sqlx::query_scalar("SELECT content FROM pictures WHERE job = $1").bind(id).fetch_optional(&self.pool).await
     }
@@ -284,7 +278,7 @@ impl Store {
     /// Gives a job that was held for so long back to the queue, behind those of others, if one of an owner waits who has nothing running,
     /// and this job's owner has all `workers` of its process, or it was held for long enough. Whether it did: it must have been kept.
     pub async fn give_way(&self, claim: &Claim, workers: usize, held: Duration) -> Result<bool> {
-        let changed = sqlx::query(self.sql(
+        let changed = run!(&self.pool, self.sql(
             "UPDATE jobs SET state = 'queued', worker = NULL, lease_until_ms = NULL, revision = revision + 1,
                 turn = $3 + (SELECT MAX(turn) FROM turns)
              WHERE id = $1 AND fence = $2 AND state = 'running'
@@ -293,14 +287,9 @@ impl Store {
                 AND EXISTS (SELECT 1 FROM jobs other WHERE other.state = 'queued' AND other.owner <> jobs.owner
                     AND COALESCE(other.not_before_ms, other.created_ms) < {now} - $6
                     AND other.owner NOT IN (SELECT owner FROM jobs WHERE state = 'running'))",
-        ))
-        .bind(&claim.id)
-        .bind(claim.fence)
-        .bind(1 + (held.as_secs() / TURN.as_secs()) as i64)
-        .bind(i64::from(held >= HELD))
-        .bind(workers.max(2) as i64)
-        .bind(PATIENT.as_millis() as i64);
-        Ok(changed.execute(&self.pool).await?.rows_affected() > 0)
+        ); &claim.id, claim.fence, 1 + (held.as_secs() / TURN.as_secs()) as i64, i64::from(held >= HELD), workers.max(2) as i64,
+            PATIENT.as_millis() as i64)?;
+        Ok(changed.rows_affected() > 0)
     }
 
     /// Gives a job back to the queue, not counted as having been tried: it is not to blame.

@@ -188,7 +188,6 @@ pub(super) async fn expect(connection: &mut sqlx::AnyConnection) -> Result<()> {
     }
 }
 
-/// Refuses tables of another version.
 fn of_another_version(other: i64) -> sqlx::Error {
     let remedy = if (FIRST..VERSION).contains(&other) {
         "back up, then start `perilife serve` once to migrate the schema"

@@ -25,24 +25,20 @@ const RUN_AGAIN: Duration = Duration::from_secs(10);
 /// Bytes in a megabyte, as messages count them.
 const MEGABYTE: u64 = 1_000_000;
 
-/// How a run ended.
 enum End {
     /// With figures, JSON, and files in the folder.
     Done(String),
     /// Without a result, by its input: a problem as JSON.
     Failed(String),
-    /// The disk of this machine does not take its files.
     NoRoom(String),
     Died(Death),
     /// It took longer than a job may.
     OutOfTime,
-    /// Somebody asked for it.
     Cancelled,
     /// It waits again, from its checkpoint on, since jobs of others wait.
     GaveWay,
     /// The job is not this worker's any more.
     Lost,
-    /// This process stops.
     Shutdown,
 }
 
@@ -121,7 +117,6 @@ fn begin(
 /// What a user is told of a worker that cannot begin; the log says more.
 const CANNOT_BEGIN: &str = "a worker cannot write its temporary folder or start a process";
 
-/// Folder of the results in that of a job.
 const RESULTS: &str = "results";
 
 /// Tells the store what the process tells, until it ends or is to end; `None` if it ended without a word.
@@ -247,8 +242,7 @@ fn conclude(shared: &Shared, claim: &Claim, end: End, folder: &Path) {
         }
         End::Died(Death::Panicked(said)) => {
             tracing::error!(job = claim.id, "the run panicked: {said}");
-            let problem = serde_json::to_string(&Problem::internal()).ok();
-            hand_in(shared, claim, &ended(State::Failed, problem), "panic");
+            hand_in(shared, claim, &failed(&Problem::internal()), "panic");
         }
         End::Died(Death::Other(why)) => {
             put_back(shared, claim, StatusCode::INTERNAL_SERVER_ERROR, &format!("the process of the job {why}"), "killed");
@@ -287,8 +281,11 @@ fn put_back(shared: &Shared, claim: &Claim, status: StatusCode, why: &str, reaso
 }
 
 fn fail(shared: &Shared, claim: &Claim, status: StatusCode, title: &str, detail: &str, reason: &'static str) {
-    let problem = serde_json::to_string(&Problem::new(status, title, detail)).ok();
-    hand_in(shared, claim, &ended(State::Failed, problem), reason);
+    hand_in(shared, claim, &failed(&Problem::new(status, title, detail)), reason);
+}
+
+fn failed(problem: &Problem) -> Outcome {
+    ended(State::Failed, serde_json::to_string(problem).ok())
 }
 
 fn ended(state: State, problem: Option<String>) -> Outcome {
@@ -336,8 +333,7 @@ fn hand_in(shared: &Shared, claim: &Claim, outcome: &Outcome, reason: &'static s
                 tracing::warn!(job = claim.id, "the result cannot be stored: {error}");
                 tries += 1;
                 if !is_gone(&error) && outcome.state == State::Succeeded {
-                    let problem = serde_json::to_string(&Problem::internal()).ok();
-                    return hand_in(shared, claim, &ended(State::Failed, problem), "store");
+                    return hand_in(shared, claim, &failed(&Problem::internal()), "store");
                 }
                 if !is_gone(&error) || (shared.is_stopping() && tries >= LAST_TRIES) {
                     return;

@@ -6,7 +6,6 @@
 pub mod child;
 mod job;
 mod process;
-mod telling;
 
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -27,7 +26,6 @@ use zip::write::SimpleFileOptions;
 use super::store::{ResultFile, Store};
 use perilife_base::error::{Error, Result};
 
-/// How workers work.
 #[derive(Debug, Clone)]
 pub struct Settings {
     pub jobs: usize,
@@ -71,7 +69,6 @@ const TRY_EVERY: Duration = Duration::from_secs(1);
 /// Time between two tidyings of the store.
 const TIDY_EVERY: Duration = Duration::from_secs(60);
 
-/// What the threads of a process share.
 #[derive(Debug)]
 struct Shared {
     store: Store,
@@ -218,7 +215,6 @@ fn files(folder: &Path) -> Result<Vec<ResultFile>> {
     Ok(files.filter(|file| !file.name.starts_with('.')).collect())
 }
 
-/// Bytes of all files below a folder.
 fn bytes(folder: &Path) -> u64 {
     let within = |path: PathBuf| match std::fs::symlink_metadata(&path) {
         Ok(about) if about.is_dir() => bytes(&path),

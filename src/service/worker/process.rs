@@ -18,8 +18,7 @@ use rustix::process::{Pid, Resource, Rlimit, Signal, kill_process_group, prlimit
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use crate::job::{JobKind, Submission};
-use crate::look::Look;
+use crate::job::{JobKind, Look, Submission};
 use crate::problem::{Answer, Problem};
 use crate::store::Growth;
 use perilife_base::watch;
@@ -43,7 +42,6 @@ pub struct JobProcess {
 /// How a process ended without having said so.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Death {
-    /// It wanted more memory than it may have.
     OutOfMemory,
     /// It panicked: a fault of the program. What it said.
     Panicked(String),
@@ -52,7 +50,6 @@ pub enum Death {
 }
 
 impl JobProcess {
-    /// Starts the process with an order, for so many threads.
     pub fn start(program: &Path, order: &Order, memory: u64, threads: usize) -> io::Result<JobProcess> {
         let (ours, theirs) = UnixStream::pair()?;
         let mut child = Command::new(program)
@@ -193,7 +190,6 @@ fn death(status: ExitStatus, said: &str) -> Death {
     }
 }
 
-/// The last of what is said.
 fn tail(mut from: impl io::Read) -> Vec<u8> {
     let (mut kept, mut piece) = (Vec::new(), [0; TAIL]);
     while let Ok(count @ 1..) = from.read(&mut piece) {
@@ -203,7 +199,6 @@ fn tail(mut from: impl io::Read) -> Vec<u8> {
     kept
 }
 
-/// What a process is to do.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Order {
     Run(Box<Run>),
@@ -225,12 +220,10 @@ pub struct Run {
     pub checkpoint_every: Duration,
 }
 
-/// What a run tells.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum News {
     /// How far it is, [`crate::job::JobProgress`] as JSON.
     Progress(String),
-    /// More of its curve.
     Growth(Growth),
     /// What is said of a picture, JSON, and its PNG.
     Picture(String, Vec<u8>),
@@ -244,7 +237,6 @@ pub enum News {
     NoRoom(String, u64),
 }
 
-/// Longest frame.
 const MOST: u32 = 1 << 31;
 
 pub fn write_frame(mut to: impl Write, value: &impl Serialize) -> io::Result<()> {

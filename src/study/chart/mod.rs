@@ -1,37 +1,33 @@
 //! Speed against accuracy: what a result costs with every method, and how far it is from a truth that none of them gave.
 //!
-//! A [`Panel`] is a question with a name (`data/studies/chart.toml`). Its [`choice`]s are methods, resolutions, laws, solvers and steps. [`run`] makes one run of a
+//! A [`Panel`] is a question with a name (`data/studies/chart.toml`). Its [`Choice`]s are methods, resolutions, laws, solvers and steps. [`schedule::once`] makes one run of a
 //! choice; [`schedule`] makes all of them in random order, each in a process of its own, beside reference runs. What is refused or
 //! fails is a point of the [`Chart`] as well, with its reason.
 
-pub mod choice;
-pub mod run;
 pub mod schedule;
-
-pub use choice::{Choice, Family};
-pub use run::BenchmarkRun;
 
 use std::sync::LazyLock;
 
 use serde::Deserialize;
 use toml::Table;
 
-use super::closed::percent;
+use super::cases::overrides;
 use super::questions::{Asker, Question, SHARED, file, read};
 use super::subject::{Subject, Watcher};
 use super::tasks::{Outcome, chosen};
+use super::values::{Values, percent};
 use perilife_base::error::Result;
+use perilife_base::units::MM;
 use perilife_calibration::median::median;
 use perilife_growth::case::Case;
+pub use schedule::BenchmarkRun;
 
-/// A scene of the chart.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Panel {
     /// Name, as `perilife chart NAME` takes it.
     pub name: String,
     pub about: String,
-    /// What its choices are chosen by.
     pub tags: Vec<String>,
     pub quantity: String,
     pub truth: String,
@@ -44,12 +40,10 @@ pub struct Panel {
     set: Table,
 }
 
-/// What a run of a scene found.
 #[derive(Debug)]
 pub struct Found {
     pub case: Case,
     pub error_percent: f64,
-    /// Distance of the path from that of the truth, rms, mm.
     pub path_rms_mm: Option<f64>,
     /// Points or nodes; 0 of a hand calculation.
     pub points: usize,
@@ -61,7 +55,6 @@ impl Panel {
         self.tags.iter().any(|own| own == tag)
     }
 
-    /// Whether cracks grow in it.
     pub fn grows(&self) -> bool {
         self.is("grows")
     }
@@ -92,11 +85,11 @@ impl Panel {
 #[serde(deny_unknown_fields)]
 struct Measured {
     scene: Vec<Panel>,
-    choice: Vec<choice::Offer>,
+    choice: Vec<Offer>,
 }
 
 /// Scenes in the order of the panels, and what is offered for them, from their file; `tests/unit/studies.rs` reads it with its errors.
-pub fn read_scenes() -> Result<(Vec<Panel>, Vec<choice::Offer>)> {
+pub fn read_scenes() -> Result<(Vec<Panel>, Vec<Offer>)> {
     let Measured { mut scene, choice } = read(file("chart.toml", include_str!("../../../data/studies/chart.toml"))?)?;
     let shared = file("shared.toml", SHARED)?;
     for panel in &mut scene {
@@ -105,11 +98,10 @@ pub fn read_scenes() -> Result<(Vec<Panel>, Vec<choice::Offer>)> {
     Ok((scene, choice))
 }
 
-static READ: LazyLock<(Vec<Panel>, Vec<choice::Offer>)> = LazyLock::new(|| read_scenes().unwrap_or_default());
+static READ: LazyLock<(Vec<Panel>, Vec<Offer>)> = LazyLock::new(|| read_scenes().unwrap_or_default());
 
 pub static SCENES: LazyLock<&'static [Panel]> = LazyLock::new(|| &READ.0);
 
-/// The scenes of these names, all where no name is given.
 pub fn scenes(names: &[String]) -> Result<Vec<&'static Panel>> {
     if SCENES.is_empty() {
         read_scenes()?;
@@ -118,7 +110,6 @@ pub fn scenes(names: &[String]) -> Result<Vec<&'static Panel>> {
 }
 
 perilife_base::kinds! {
-    /// What came of a point of the chart.
     pub enum Status for "status of the chart" {
         Measured = "measured": "completed; time is the median of its runs",
         Refused = "refused": "case refused",
@@ -132,7 +123,6 @@ perilife_base::kinds! {
 pub struct Point {
     pub panel: &'static Panel,
     pub choice: Choice,
-    /// What came of its last run.
     pub outcome: Outcome<BenchmarkRun>,
     pub walls: Vec<f64>,
     /// The same over those of the reference run beside it.
@@ -151,7 +141,6 @@ impl Point {
         }
     }
 
-    /// Median of the wall times, s.
     pub fn wall_s(&self) -> Option<f64> {
         (!self.walls.is_empty()).then(|| median(&self.walls))
     }
@@ -178,7 +167,6 @@ impl Point {
         Some((self.wall_s()?, self.outcome.done()?.error_percent)).filter(|(_, error)| error.is_finite())
     }
 
-    /// The command that repeats a run of it.
     pub fn command(&self) -> String {
         let sets = self.choice.set.iter().map(|key| {
             let plain = key.chars().all(|c| c.is_ascii_alphanumeric() || "._=-".contains(c));
@@ -214,7 +202,6 @@ impl Chart {
         Chart { points, reference_s: median(&known), machine: Machine::here() }
     }
 
-    /// Scenes that have points, in their order.
     pub fn scenes(&self) -> Vec<&'static Panel> {
         SCENES.iter().filter(|panel| self.of(panel).next().is_some()).collect()
     }
@@ -253,7 +240,6 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// The machine at hand.
     pub fn here() -> Self {
         // The name of the variant, without what it holds.
         let name = format!("{:?}", pulp::Arch::new());
@@ -270,5 +256,65 @@ impl std::fmt::Display for Machine {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Machine { version, threads, instruction_set } = self;
         write!(f, "perilife {version}, {threads} threads, {instruction_set}")
+    }
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    pub family: Family,
+    /// What tells it from the default of its family, in words; empty for that default.
+    pub words: String,
+    pub set: Vec<String>,
+    pub is_quick: bool,
+}
+
+perilife_base::kinds! {
+    /// Families of methods: a colour of the chart each.
+    pub enum Family for "method of the chart" {
+        Auto = "auto": "default (automatic choice)",
+        TipField = "tip_field": "points and bonds, growth driven by K",
+        ElementFree = "element_free_galerkin": "element-free Galerkin nodes, growth driven by K",
+        Handbook = "handbook": "handbook K, life by quadrature",
+        BondStrain = "bond_strain": "bond_strain (published bond law)",
+        BondLaw = "bond_law": "another bond law, kernel or correction than the default",
+        Solver = "solver": "another solver than the default",
+    }
+}
+
+/// A choice that the file offers to scenes with a tag, or to all.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Offer {
+    family: Family,
+    #[serde(default)]
+    words: String,
+    /// Keys, with formulas of the default `spacing_mm` of the scene.
+    #[serde(default)]
+    keys: String,
+    #[serde(default)]
+    quick: bool,
+    tag: Option<String>,
+}
+
+/// The choices of a scene, the default first.
+pub fn choices(panel: &Panel) -> Result<Vec<Choice>> {
+    let spacing_mm = panel.case(&[])?.points().spacing / MM;
+    let values = Table::from_iter([("spacing_mm".to_owned(), spacing_mm.into())]);
+    let offered = READ.1.iter().filter(|offer| offer.tag.as_ref().is_none_or(|tag| panel.is(tag)));
+    let choice = |offer: &Offer| {
+        let set = overrides(&Values::alone(&values).text(&offer.keys)?);
+        Ok(Choice { family: offer.family, words: offer.words.clone(), set, is_quick: offer.quick })
+    };
+    offered.map(choice).collect()
+}
+
+impl Choice {
+    pub fn name(&self) -> String {
+        if self.words.is_empty() { self.family.name().to_owned() } else { format!("{}, {}", self.family, self.words) }
+    }
+
+    /// Whether it is what runs when nothing is asked for.
+    pub fn is_default(&self) -> bool {
+        self.words.is_empty() && (self.family == Family::Auto || self.set.is_empty())
     }
 }

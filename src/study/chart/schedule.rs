@@ -6,12 +6,16 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use serde::{Deserialize, Serialize};
 
-use super::choice::{Choice, choices};
-use super::run::BenchmarkRun;
-use super::{Chart, Panel, Point, SCENES};
+use super::{Chart, Choice, Found, Panel, Point, SCENES, choices};
 use crate::tasks::Outcome;
 use perilife_base::error::Result;
+use perilife_base::machine;
+use perilife_base::units::MM;
+use perilife_calibration::median::median;
 use perilife_calibration::sweep::distribution::shuffle;
+use perilife_growth::case::{self, Case, Method};
+use perilife_growth::predict::Silent;
+use perilife_laws::Driver;
 
 /// Seed of the order: the same runs in the same order every time.
 const SEED: u64 = 1;
@@ -20,7 +24,6 @@ const REFERENCE_FRESH_S: f64 = 20.0;
 /// Runs of a point by the seconds of its first one: up to these seconds, so many.
 const RUNS: [(f64, usize); 3] = [(2.0, 5), (20.0, 3), (f64::INFINITY, 1)];
 
-/// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// Quick choices only, a run each.
@@ -41,7 +44,6 @@ impl Effort {
     }
 }
 
-/// What is run: a scene by name, and keys.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Request {
     pub scene: String,
@@ -53,14 +55,12 @@ pub struct Request {
 pub struct BenchmarkRecord {
     pub request: Request,
     pub outcome: Outcome<BenchmarkRun>,
-    /// Seconds of the reference run beside it.
     pub reference_s: f64,
 }
 
 /// Runs a request in a process of its own, no longer than so many seconds.
 pub type Isolated<'a> = &'a dyn Fn(&Request, f64) -> Result<Outcome<BenchmarkRun>>;
 
-/// Keeps every run as it ends.
 pub type Keep<'a> = &'a mut dyn FnMut(&BenchmarkRecord) -> Result<()>;
 
 struct Measuring<'a> {
@@ -75,15 +75,12 @@ struct Measuring<'a> {
 
 impl Measuring<'_> {
     fn reference(&mut self) -> Result<f64> {
-        let fresh = self.reference.filter(|(_, at)| at.elapsed().as_secs_f64() < REFERENCE_FRESH_S);
-        let wall = match fresh {
-            Some((wall, _)) => return Ok(wall),
-            None => {
-                // The default run of the first scene.
-                let request = Request { scene: SCENES[0].name.clone(), set: Vec::new() };
-                (self.isolated)(&request, f64::INFINITY)?.done().map_or(f64::NAN, |run| run.wall_s)
-            }
-        };
+        if let Some((wall, _)) = self.reference.filter(|(_, at)| at.elapsed().as_secs_f64() < REFERENCE_FRESH_S) {
+            return Ok(wall);
+        }
+        // The default run of the first scene.
+        let request = Request { scene: SCENES[0].name.clone(), set: Vec::new() };
+        let wall = (self.isolated)(&request, f64::INFINITY)?.done().map_or(f64::NAN, |run| run.wall_s);
         self.reference = Some((wall, Instant::now()));
         self.references.push(wall);
         Ok(wall)
@@ -153,4 +150,87 @@ fn point<'r>(panel: &'static Panel, choice: Choice, records: impl Iterator<Item 
         point.outcome = record.outcome.clone();
     }
     point
+}
+
+/// Seconds that a run shorter than them is repeated for.
+const SHORT_S: f64 = 0.05;
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BenchmarkRun {
+    /// Seconds of wall time, set-up included; the median where a short run was repeated.
+    pub wall_s: f64,
+    pub memory_mb: f64,
+    pub error_percent: f64,
+    pub path_rms_mm: Option<f64>,
+    pub points: usize,
+    pub solves: usize,
+    pub model: Model,
+}
+
+/// The model of a run, by the names of an input file.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Model {
+    /// What drives the cracks; empty where none grows.
+    pub driver: String,
+    /// Bond law; empty without bonds.
+    pub bond_law: String,
+    pub solver: String,
+    /// `lattice`, `nodes`, or empty.
+    pub discretisation: String,
+    /// Spacing of points, or of nodes far from cracks, mm.
+    pub spacing_mm: Option<f64>,
+    pub horizon_ratio: Option<f64>,
+    /// Error of a step asked for, percent; largest step of a tip over its room on nodes.
+    pub step: Option<f64>,
+}
+
+/// Runs a scene with these keys in this process; its peak of memory is that of the process.
+pub fn once(panel: &Panel, set: &[String]) -> Result<BenchmarkRun> {
+    let timed = || -> Result<(Found, f64)> {
+        let started = Instant::now();
+        Ok((panel.found(set, &Silent)?, started.elapsed().as_secs_f64()))
+    };
+    let (found, first) = timed()?;
+    let mut walls = vec![first];
+    while walls.iter().sum::<f64>() < SHORT_S {
+        walls.push(timed()?.1);
+    }
+    Ok(BenchmarkRun {
+        wall_s: median(&walls),
+        memory_mb: machine::peak_mb(),
+        error_percent: found.error_percent.abs(),
+        path_rms_mm: found.path_rms_mm,
+        points: found.points,
+        solves: found.solves,
+        model: Model::of(&found.case, panel.grows()),
+    })
+}
+
+impl Model {
+    fn of(case: &Case, grows: bool) -> Model {
+        let mm = |metres: f64| Some((1e6 * metres / MM).round() / 1e6);
+        let driver = |name: &str| if grows { name.to_owned() } else { String::new() };
+        match case.model {
+            case::Model::Points(points) => Model {
+                driver: driver(case.fatigue.driver.name()),
+                bond_law: points.bond_law.kind.name().to_owned(),
+                solver: points.solver.name().to_owned(),
+                discretisation: "lattice".to_owned(),
+                spacing_mm: mm(points.spacing),
+                horizon_ratio: Some(points.horizon_ratio),
+                step: grows.then_some(case.fatigue.step_error_percent),
+            },
+            case::Model::Nodes(nodes) => Model {
+                driver: driver(Driver::TipField.name()),
+                solver: "direct".to_owned(),
+                discretisation: "nodes".to_owned(),
+                spacing_mm: mm(nodes.resolution.far),
+                step: grows.then_some(nodes.step_share),
+                ..Model::default()
+            },
+            case::Model::Handbook(_) => {
+                Model { driver: driver(Method::Handbook.name()), solver: "quadrature".to_owned(), ..Model::default() }
+            }
+        }
+    }
 }

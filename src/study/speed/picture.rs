@@ -4,9 +4,8 @@ use std::f64::consts::PI;
 
 use super::{Origin, seconds};
 use crate::chart::{Chart, Family, Panel, Point};
-use perilife_results::axis::Axis;
+use perilife_results::axis::{Axis, Box2, place_labels};
 use perilife_results::chart::{COMPUTED, Frame, INK, NOTE, SECOND, Size, width_of};
-use perilife_results::labels::{Box2, place_labels};
 use perilife_results::specimen_picture::sketch::Sketch;
 
 /// Size of a panel, and of the head and the foot, px.
@@ -25,7 +24,6 @@ const GREY: &str = "#55606d";
 const PALE: &str = "#8893a1";
 const SHADE: &str = "#e9edf2";
 const DEFAULT: &str = "#f2c14e";
-/// A place in the picture, px.
 type Pixel = [f64; 2];
 
 pub fn svg(chart: &Chart, origin: &Origin) -> String {
@@ -46,7 +44,6 @@ pub fn svg(chart: &Chart, origin: &Origin) -> String {
     sketch.picture(size, "Run time against error, one panel per scene")
 }
 
-/// Title, and what colours and marks mean.
 fn head(sketch: &mut Sketch, chart: &Chart) {
     sketch.name([16.0, 26.0], "Run time against error", "start", 18.0, INK);
     let mut x = 16.0;
@@ -77,7 +74,6 @@ fn colour(family: Family) -> &'static str {
     }
 }
 
-/// The mark of a solver about a centre.
 fn mark(sketch: &mut Sketch, solver: &str, at: Pixel, r: f64, fill: &str, rim: &str) {
     let corners: &[Pixel] = match solver {
         "multigrid" => &[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
@@ -89,7 +85,6 @@ fn mark(sketch: &mut Sketch, solver: &str, at: Pixel, r: f64, fill: &str, rim: &
     outlined(sketch, corners.iter().map(|[u, v]| [at[0] + r * u, at[1] + r * v]).collect(), fill, rim);
 }
 
-/// A filled polygon with a rim.
 fn outlined(sketch: &mut Sketch, mut corners: Vec<Pixel>, fill: &str, rim: &str) {
     sketch.area(&corners, fill, 1.0);
     corners.extend(corners.first().copied());
@@ -190,7 +185,6 @@ fn names(sketch: &mut Sketch, drawn: &[(&Point, Pixel)], taken: &[Pixel], frame:
     }
 }
 
-/// The name of a point beside its mark.
 fn short_name(point: &Point) -> String {
     let family = match point.choice.family {
         Family::Auto => "auto",
@@ -210,7 +204,6 @@ fn short_name(point: &Point) -> String {
     }
 }
 
-/// A star of five points about a centre.
 fn star([x, y]: Pixel) -> Vec<Pixel> {
     let corner = |i: usize| {
         let (sin, cos) = (PI * i as f64 / 5.0).sin_cos();

@@ -5,20 +5,22 @@
 //! the usual one, are found by bisection. Every run has a [`Budget`] of cycle blocks and seconds, and a panic is a failure with a
 //! name, so that nothing hangs and nothing is left out.
 
-mod budget;
-
-use std::sync::LazyLock;
-use std::time::Instant;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock, mpsc};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 use toml::Table;
-
-pub use budget::{Budget, BudgetedRun, within};
 
 use super::questions::{Asker, SHARED, each, file, read};
 use super::subject::Watcher;
 use super::tasks::{Outcome, chosen, side_by_side};
 use perilife_base::error::Result;
+use perilife_base::watch::{self, Watch};
+use perilife_growth::predict::{Observer, Progress};
+use perilife_scenes::{SceneObserver, SceneProgress};
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -31,7 +33,6 @@ pub struct Method {
     ask: Table,
 }
 
-/// A parameter that is taken across its range.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sweep {
@@ -41,14 +42,12 @@ pub struct Sweep {
     pub about: String,
     /// The parameter, as the axis of the picture names it.
     pub parameter: String,
-    /// Its unit; empty where it has none.
     #[serde(default)]
     pub unit: String,
     pub values: Vec<f64>,
     /// Value that is usual, from which the safe range is sought in both directions; one of the values.
     #[serde(default)]
     pub usual: f64,
-    /// Whether there are none between the values.
     #[serde(default)]
     pub only_values: bool,
     /// Error up to which a result counts as right, percent.
@@ -56,7 +55,6 @@ pub struct Sweep {
     /// What is asked, with the parameter as the value `it`; its largest error counts.
     ask: Table,
     pub methods: Vec<Method>,
-    /// Values that all sweeps share.
     #[serde(skip)]
     shared: Table,
 }
@@ -77,14 +75,12 @@ pub fn read_sweeps() -> Result<Vec<Sweep>> {
 
 pub static SWEEPS: LazyLock<Vec<Sweep>> = LazyLock::new(|| read_sweeps().unwrap_or_default());
 
-/// How a run is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
     /// Error within the bound of the sweep.
     Stable,
     /// A result beyond it.
     Degraded,
-    /// No result.
     Failed,
 }
 
@@ -99,7 +95,6 @@ impl Status {
 }
 
 impl Sweep {
-    /// Judgement over an outcome.
     pub fn status(&self, outcome: &Outcome<f64>) -> Status {
         match outcome.done() {
             Some(error) if error.abs() <= self.bound_percent => Status::Stable,
@@ -121,13 +116,11 @@ impl Sweep {
         Ok(worst)
     }
 
-    /// First and last value.
     pub fn range(&self) -> [f64; 2] {
         [self.values[0], self.values[self.values.len() - 1]]
     }
 }
 
-/// A method across a parameter.
 #[derive(Clone)]
 pub struct StabilityRecord {
     pub sweep: &'static Sweep,
@@ -141,7 +134,6 @@ pub struct StabilityRecord {
     pub wall_s: f64,
 }
 
-/// How thorough.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
     /// Every so many-th value is run.
@@ -158,15 +150,12 @@ pub const SLOW: [(&str, &str); 2] =
     [("horizon_ratio", "bond_strain by its own strain"), ("ageing", "bond_strain, ageing everywhere")];
 
 impl Effort {
-    /// All values, ends to 2 %.
     pub const FULL: Effort =
         Effort { stride: 1, resolution: 0.02, budget: Budget { seconds: 60.0, blocks: 4000 }, with_slow: true };
-    /// Every third value, ends to 20 %.
     pub const QUICK: Effort =
         Effort { stride: 3, resolution: 0.2, budget: Budget { seconds: 20.0, blocks: 1000 }, with_slow: false };
 }
 
-/// The sweeps of these names, all where no name is given.
 pub fn sweeps(names: &[String]) -> Result<Vec<&'static Sweep>> {
     if SWEEPS.is_empty() {
         read_sweeps()?;
@@ -236,4 +225,80 @@ fn values(sweep: &Sweep, stride: usize) -> Vec<f64> {
     let last = sweep.values.len() - 1;
     let is_chosen = |(at, value): &(usize, &f64)| at % stride == 0 || *at == last || **value == sweep.usual;
     sweep.values.iter().enumerate().filter(is_chosen).map(|(_, value)| *value).collect()
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Budget {
+    pub seconds: f64,
+    /// Cycle blocks or recorded steps.
+    pub blocks: usize,
+}
+
+/// A run under its budget: the observer of all that is predicted in it.
+pub struct BudgetedRun {
+    budget: Budget,
+    watch: Arc<Watch>,
+    blocks: AtomicUsize,
+}
+
+impl BudgetedRun {
+    fn may_go_on(&self) -> bool {
+        let done = self.blocks.fetch_add(1, Ordering::Relaxed) + 1;
+        if done >= self.budget.blocks {
+            // What has begun is asked to end at once.
+            self.watch.cancel();
+        }
+        !self.watch.is_cancelled()
+    }
+}
+
+impl Observer for BudgetedRun {
+    fn block_done(&self, _progress: &Progress) -> bool {
+        self.may_go_on()
+    }
+
+    fn watch(&self) -> Option<Arc<Watch>> {
+        Some(self.watch.clone())
+    }
+}
+
+impl SceneObserver for BudgetedRun {
+    fn step_done(&self, _progress: &SceneProgress) -> bool {
+        self.may_go_on()
+    }
+
+    fn watch(&self) -> Option<Arc<Watch>> {
+        Some(self.watch.clone())
+    }
+}
+
+/// What comes of some work within a budget: an error in percent, or why there is none.
+pub fn within(budget: Budget, work: impl FnOnce(&BudgetedRun) -> Result<f64>) -> Outcome<f64> {
+    let run = BudgetedRun { budget, watch: Arc::default(), blocks: AtomicUsize::new(0) };
+    let ran_out = AtomicBool::new(false);
+    let (over, is_over) = mpsc::channel::<()>();
+    let done = thread::scope(|scope| {
+        let (watch, ran_out) = (run.watch.clone(), &ran_out);
+        scope.spawn(move || {
+            if is_over.recv_timeout(Duration::from_secs_f64(budget.seconds)) == Err(mpsc::RecvTimeoutError::Timeout) {
+                ran_out.store(true, Ordering::Relaxed);
+                watch.cancel();
+            }
+        });
+        let watch = run.watch.clone();
+        let done = catch_unwind(AssertUnwindSafe(|| watch::with(Some(watch), || work(&run))));
+        drop(over);
+        done
+    });
+    match done {
+        Err(panic) => {
+            let owned = panic.downcast_ref::<String>().map(String::as_str);
+            let words = owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("without a message");
+            Outcome::Failed(format!("panic: {words}"))
+        }
+        Ok(_) if ran_out.load(Ordering::Relaxed) => Outcome::Stopped(format!("not done within {} s", budget.seconds)),
+        Ok(_) if run.watch.is_cancelled() => Outcome::Stopped(format!("not done within {} blocks", budget.blocks)),
+        Ok(Ok(error)) if !error.is_finite() => Outcome::Failed(format!("the result is {error}")),
+        Ok(result) => Outcome::of(result),
+    }
 }
