@@ -2,11 +2,12 @@
 //!
 //! Per cycle block: take the cyclic strain of the fatigue bonds, spend their lives until the next one breaks, break it, find the new
 //! equilibrium, follow the tips. At N = 0 cracks and slots are clean cuts, and all bonds have their whole lives. A crack that began at a
-//! slot goes on by the K of its tips ([`super::hand_over`]).
+//! slot goes on by the K of its tips ([`hand_over`]).
 
+mod history;
+pub mod hand_over;
 mod overload;
 mod stop;
-mod history;
 
 use std::sync::Arc;
 
@@ -16,14 +17,13 @@ use super::cross_check::CrossCheck;
 use super::end_of_life::{End, first_end};
 use super::points::initial_factor;
 use super::record::{CurvePoint, StopReason, TipRecord};
-use super::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State, plate};
+use super::{CrackGrowth, Fields, SolverStatistics, plate};
 use crate::ageing::{candidates, fatigue_bonds, strain_share, threshold_strain};
 use crate::case::Case;
 use history::{History, RunState};
 use overload::{overstretched, stretched};
 use perilife_base::error::{Error, Result};
 use perilife_laws::curve::Shape;
-use perilife_laws::response::Response;
 use perilife_laws::{FatigueLaw, FatigueSettings};
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_points::body::{Body, Bond};
@@ -76,13 +76,6 @@ pub struct BondStrainState {
     past: History,
     broken_bonds: usize,
     statistics: SolverStatistics,
-}
-
-impl BondStrainState {
-    /// All bonds that are broken, those of the initial cracks among them, ascending.
-    pub fn broken(&self) -> &[Bond] {
-        &self.broken
-    }
 }
 
 impl<'a> BondStrain<'a> {
@@ -141,15 +134,7 @@ impl<'a> BondStrain<'a> {
         let record = |tip: &CrackTip| {
             let lead = lead * (tip.growth / self.body.horizon()).min(1.0);
             let position = [0, 1].map(|i| tip.position[i] - lead * tip.direction[i]);
-            TipRecord {
-                state: tip.state,
-                position,
-                growth: tip.growth - lead,
-                factors: None,
-                t_stress: None,
-                response: Response::PROPORTIONAL,
-                growth_rate: None,
-            }
+            TipRecord::unread(tip.state, position, tip.growth - lead)
         };
         self.run.tips.iter().map(record).collect()
     }
@@ -233,12 +218,52 @@ impl<'a> BondStrain<'a> {
         let run = &mut self.run;
         run.track.record(records, run.broken_bonds, work);
         // The length averaged over a spacing of growth is known up to a known end once the run is a spacing further; the curve stops there.
-        let is_past = |end: &End| run.track.last().towards(end, &case.specimen) >= end.crack_length + case.points().spacing;
+        let (last, spacing) = (run.track.last(), case.points().spacing);
+        let is_past = |end: &End| end.length_of(&case.specimen, last) >= end.crack_length + spacing;
         let reason = reason.or_else(|| self.end.filter(is_past).map(|end| end.reason));
         if reason.is_none() {
             self.look_around();
         }
         Ok(reason)
+    }
+
+    /// All that the next blocks depend on.
+    pub fn state(&self) -> BondStrainState {
+        let run = &self.run;
+        BondStrainState {
+            law: constants(&self.law),
+            broken: run.bonds.broken(&self.body),
+            life: run.life.begun(),
+            tips: run.tips.clone(),
+            near_limit: run.near_limit.clone(),
+            past: run.track.past.clone(),
+            broken_bonds: run.broken_bonds,
+            statistics: self.statistics(),
+        }
+    }
+
+    /// Goes on from a state, in place of the first row; whether it is one of this plate and law.
+    /// Errors: no equilibrium.
+    pub fn restore(&mut self, state: BondStrainState) -> Result<bool> {
+        let (body, run) = (self.body.clone(), &mut self.run);
+        let places = body.multiplier.len();
+        let mut named = state.near_limit.iter().chain(state.life.iter().map(|(bond, _)| bond)).chain(&state.broken);
+        let known = named.all(|&bond| (bond as usize) < places);
+        let tips = run.tips.len();
+        if !(known && state.law == constants(&self.law) && state.tips.len() == tips && state.past.fits(tips)) {
+            return Ok(false);
+        }
+        state.broken.iter().for_each(|&bond| run.bonds.cut(&body, bond));
+        state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
+        (run.tips, run.near_limit) = (state.tips, state.near_limit);
+        run.track.past = state.past;
+        (run.broken_bonds, run.solves, run.iterations) =
+            (state.broken_bonds, state.statistics.solves, state.statistics.iterations);
+        run.had_window = state.statistics.solver == Some(SolverUsed::Window);
+        self.equilibrium = solver(self.case, &body, run);
+        self.settle_first()?;
+        self.look_around();
+        Ok(true)
     }
 }
 
@@ -251,12 +276,8 @@ impl CrackGrowth for BondStrain<'_> {
         Ok(())
     }
 
-    fn now(&self) -> GrowthStatus<'_> {
-        let track = &self.run.track;
-        let row = track.last();
-        let cycles = track.cycles();
-        let (crack_length, tips) = (row.crack_length, row.tips());
-        GrowthStatus { cycles, crack_length, delta_k: f64::NAN, response: Response::PROPORTIONAL, limit_load: None, tips }
+    fn now(&self) -> &CurvePoint {
+        self.run.track.last()
     }
 
     fn body(&self) -> Option<Arc<Body>> {
@@ -291,43 +312,6 @@ impl CrackGrowth for BondStrain<'_> {
             }
         }
         Ok(())
-    }
-
-    fn state(&self) -> State {
-        let run = &self.run;
-        State::Bonds(BondStrainState {
-            law: constants(&self.law),
-            broken: run.bonds.broken(&self.body),
-            life: run.life.begun(),
-            tips: run.tips.clone(),
-            near_limit: run.near_limit.clone(),
-            past: run.track.past().clone(),
-            broken_bonds: run.broken_bonds,
-            statistics: self.statistics(),
-        })
-    }
-
-    fn restore(&mut self, state: State) -> Result<bool> {
-        let State::Bonds(state) = state else { return Ok(false) };
-        let (body, run) = (self.body.clone(), &mut self.run);
-        let places = body.multiplier.len();
-        let mut named = state.near_limit.iter().chain(state.life.iter().map(|(bond, _)| bond)).chain(&state.broken);
-        let known = named.all(|&bond| (bond as usize) < places);
-        let tips = run.tips.len();
-        if !(known && state.law == constants(&self.law) && state.tips.len() == tips && state.past.fits(tips)) {
-            return Ok(false);
-        }
-        state.broken.iter().for_each(|&bond| run.bonds.cut(&body, bond));
-        state.life.iter().for_each(|&(bond, life)| run.life.set(bond, life));
-        (run.tips, run.near_limit) = (state.tips, state.near_limit);
-        run.track.past = state.past;
-        (run.broken_bonds, run.solves, run.iterations) =
-            (state.broken_bonds, state.statistics.solves, state.statistics.iterations);
-        run.had_window = state.statistics.solver == Some(SolverUsed::Window);
-        self.equilibrium = solver(self.case, &body, run);
-        self.settle_first()?;
-        self.look_around();
-        Ok(true)
     }
 
     fn close(&mut self, stop: StopReason) -> Result<StopReason> {
@@ -370,7 +354,7 @@ impl CrackGrowth for BondStrain<'_> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        self.warnings.clone()
+        self.warnings.iter().cloned().chain(self.why_no_tips()).collect()
     }
 }
 

@@ -83,21 +83,13 @@ perilife_base::kinds! {
 /// What the input file chose explicitly. A fitted record supplies the rest and must agree with these.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Choices {
-    /// `model.bond_law`.
     pub bond_law: Option<BondLawKind>,
-    /// `model.kernel`.
     pub kernel: Option<Kernel>,
-    /// `model.rotation`.
     pub rotation: Option<Rotation>,
-    /// `model.surface_correction`.
     pub surface_correction: Option<SurfaceCorrection>,
-    /// `model.horizon_ratio`.
     pub horizon_ratio: Option<f64>,
-    /// `fatigue.ageing`.
     pub ageing: Option<Ageing>,
-    /// `fatigue.zone_radius_horizons`.
     pub zone_radius_horizons: Option<f64>,
-    /// `fatigue.walker_gamma`.
     pub walker_gamma: Option<f64>,
 }
 

@@ -26,7 +26,7 @@ use std::sync::Arc;
 use super::cross_check::EnergyBalance;
 use super::end_of_life::{End, first_end};
 use super::record::{CurvePoint, TipRecord};
-use super::{CrackGrowth, Fields, SolverStatistics, State};
+use super::{CrackGrowth, Fields, SolverStatistics};
 use crate::case::Case;
 pub use meeting::Segment;
 use perilife_base::error::{Result, input, input_missing};
@@ -109,12 +109,6 @@ pub trait CrackedPlate: Sized {
     fn rebuild(&mut self, _case: &Case, _cracks: &CracksState) -> Result<()> {
         Ok(())
     }
-
-    /// A run as state of a checkpoint.
-    fn state(run: CracksRun<Self::Saved>) -> State;
-
-    /// The run of a checkpoint, if it is one of this engine.
-    fn of_state(state: State) -> Option<CracksRun<Self::Saved>>;
 
     /// The plate as points and bonds, where it is that.
     fn body(&self) -> Option<Arc<Body>> {

@@ -1,7 +1,7 @@
 //! Where a run ends: crack lengths at which a standard specimen is at its end, known before any run since its K(a) and its net section
 //! are; and of a run by K of its tips the reasons known before an increment, and those that lie within one.
 
-use super::record::{CurvePoint, StopReason, TipRecord};
+use super::record::{CurvePoint, StopReason};
 use crate::case::Case;
 use perilife_plate::loading::LoadControl;
 use perilife_plate::specimen::Specimen;
@@ -32,8 +32,8 @@ impl End {
     }
 
     /// The same of a row.
-    pub fn length_of(&self, specimen: &Specimen, crack_length: f64, tips: &[TipRecord]) -> f64 {
-        self.length(specimen, crack_length, tips.iter().map(|tip| tip.growth))
+    pub fn length_of(&self, specimen: &Specimen, row: &CurvePoint) -> f64 {
+        self.length(specimen, row.crack_length, row.tips.iter().map(|tip| tip.growth))
     }
 }
 
@@ -148,7 +148,7 @@ pub(super) fn reason_to_stop(
     if let Some(breaks) = breaks {
         return Some(strength_reason(case, breaks));
     }
-    let length = |end: &End| end.length_of(&case.specimen, last.crack_length, &last.tips);
+    let length = |end: &End| end.length_of(&case.specimen, last);
     if let Some(end) = end.filter(|end| length(end) >= end.crack_length * (1.0 - ROUND_OFF)) {
         return Some(end.reason);
     }

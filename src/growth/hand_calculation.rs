@@ -3,9 +3,9 @@
 //! `N(a) = ∫ da / (da/dN)` from the initial crack length, by the law over K of the case; no growth at or below the threshold. Costs less than a millisecond.
 //! The crack length of a `plate` is that of all cracks, whose n tips grow alike: `da = n × growth of a tip`.
 
+use super::CrackGrowth;
 use super::end_of_life::{self, End, first_end};
 use super::record::{CurvePoint, StopReason, TipRecord};
-use super::{CrackGrowth, GrowthStatus, State};
 use crate::case::Case;
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::quadrature::integrate;
@@ -14,7 +14,6 @@ use perilife_laws::growth_law::GrowthLaw;
 use perilife_laws::response::Response;
 use perilife_plate::loading::residual::ResidualStress;
 use perilife_plate::specimen::LengthConvention;
-use perilife_plate::specimen::geometry::along;
 use perilife_plate::specimen::green::centre_crack;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_points::crack_tip::TipState;
@@ -130,34 +129,15 @@ impl<'a> HandCalculation<'a> {
         // Pressed shut.
         let k_max = if k_max < 0.0 { 0.0 } else { k_max };
         let growth = (crack_length - specimen.crack_length) / self.sharing;
-        let ahead = |seed: &perilife_plate::specimen::TipSeed| {
-            along(seed.position, [0, 1].map(|i| seed.position[i] + seed.direction[i]), growth)
-        };
-        let row = CurvePoint {
-            is_solved: true,
-            cycles,
-            crack_length,
-            delta_k: k_max * loading.range_share(),
-            growth_rate: self.rate(crack_length),
-            work: f64::NAN,
-            limit_load: self.case.limit_load_at(crack_length),
-            broken_bonds: 0,
-            tips: specimen
-                .tips
-                .iter()
-                .map(|seed| TipRecord {
-                    state: TipState::Active,
-                    position: ahead(seed),
-                    growth,
-                    factors: Some([k_max, 0.0]),
-                    t_stress: None,
-                    response,
-                    growth_rate: Some(self.rate(crack_length)),
-                })
-                .collect(),
-            depth: None,
+        let growth_rate = self.rate(crack_length);
+        let tip = |seed| TipRecord {
+            factors: Some([k_max, 0.0]),
             response,
+            growth_rate: Some(growth_rate),
+            ..TipRecord::ahead(seed, growth)
         };
+        let row = CurvePoint::bare(cycles, crack_length, specimen.tips.iter().map(tip).collect());
+        let row = CurvePoint { growth_rate, limit_load: self.case.limit_load_at(crack_length), ..row };
         row.with_response(k_max, response, loading)
     }
 
@@ -229,23 +209,12 @@ impl CrackGrowth for HandCalculation<'_> {
         Ok(())
     }
 
-    fn now(&self) -> GrowthStatus<'_> {
-        self.last().status()
+    fn now(&self) -> &CurvePoint {
+        self.last()
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
         Some(&*self.law)
-    }
-
-    fn state(&self) -> State {
-        State::Rows(self.curve.clone())
-    }
-
-    fn restore(&mut self, state: State) -> Result<bool> {
-        let State::Rows(curve) = state else { return Ok(false) };
-        let fits = !curve.is_empty();
-        self.curve = curve;
-        Ok(fits)
     }
 
     fn curve(&mut self) -> Vec<CurvePoint> {

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::cracks::scales::Scales;
 use super::cracks::tip::{AtLoad, CracksState, Reading};
-use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment};
-use super::{Fields, SolverStatistics, State};
+use super::cracks::{CrackedPlate, Cracks, Parted, Segment};
+use super::{Fields, SolverStatistics};
 use crate::case::{Case, REFINED, suits_points};
 use crate::cross_check::largest_difference;
 use perilife_base::error::{Error, Result};
@@ -236,14 +236,6 @@ impl CrackedPlate for NodePlate {
     fn restore(&mut self, saved: NodeState) -> bool {
         self.state = saved;
         true
-    }
-
-    fn state(run: CracksRun<NodeState>) -> State {
-        State::Nodes(run)
-    }
-
-    fn of_state(state: State) -> Option<CracksRun<NodeState>> {
-        if let State::Nodes(run) = state { Some(run) } else { None }
     }
 
     fn grid(&self, case: &Case) -> Option<PointGrid> {

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use super::cracks::scales::Scales;
 use super::cracks::steering::equivalent_factor;
 use super::cracks::tip::{CracksState, Reading, Tip};
-use super::cracks::{CrackedPlate, Cracks, CracksRun, Parted, Segment, initial_tips};
-use super::{Fields, SolverStatistics, State, plate};
+use super::cracks::{CrackedPlate, Cracks, Parted, Segment, initial_tips};
+use super::{Fields, SolverStatistics, plate};
 use crate::case::Case;
 use contact::{ClosedPlace, Contact};
 use perilife_base::error::{Error, Result};
@@ -272,14 +272,6 @@ impl CrackedPlate for PointPlate {
     fn rebuild(&mut self, case: &Case, cracks: &CracksState) -> Result<()> {
         self.equilibrium = solver(case, &self.body, &self.bonds);
         self.solve(case, cracks)
-    }
-
-    fn state(run: CracksRun<PointState>) -> State {
-        State::Tips(run)
-    }
-
-    fn of_state(state: State) -> Option<CracksRun<PointState>> {
-        if let State::Tips(run) = state { Some(run) } else { None }
     }
 
     fn body(&self) -> Option<Arc<Body>> {

@@ -1,11 +1,12 @@
 //! THE MAIN PAGE: from a case to its a-N curve.
 //!
 //! A plate of points and bonds is in equilibrium under the maximum load. Every crack is a line whose tips grow by their own stress
-//! intensity; [`increment`] is that theory, one equation a call. Other drivers are advanced by the same record of the run: bonds
+//! intensity; [`increment`] is that theory, one equation a call. Other stages of a life come before it or in its place ([`chain::Stage`]): bonds
 //! that fail by their own strain (`fatigue.driver = "bond_strain"`), which hand a crack from a slot over to the K of its tip, and K of a
 //! handbook (`model.method = "handbook"`), which hands a crack that has grown through the thickness over to the K of its tips. Command, service
-//! and calibration all come through here. The theory in the order of the rooms stands in `src/README.md`.
+//! and calibration all come through here. The theory in the order of the rooms is in `src/README.md`.
 
+pub mod chain;
 pub mod checkpoint;
 pub mod error_estimate;
 pub mod factor_curve;
@@ -33,13 +34,9 @@ pub use record::Observer;
 
 use std::cell::OnceCell;
 
-use crate::bond_strain::BondStrain;
-use crate::case::{Case, Engine, needs};
+use crate::case::{Case, needs};
 use crate::cracks::{CrackedPlate, Cracks};
-use crate::hand_calculation::HandCalculation;
-use crate::nodes::ElementFree;
-use crate::points::TipField;
-use crate::{hand_over, part_through as front};
+use chain::Chain;
 use checkpoint::Checkpoint;
 use perilife_base::error::Result;
 use perilife_base::parallel::in_pool;
@@ -50,7 +47,7 @@ use record::Record;
 /// Errors: wrong input that shows only now (spacing against plate or memory, no fatigue law), or mechanics that fail before there
 /// is a curve.
 pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
-    watched(case, observer, || follow(Record::new(case, observer).after_phase_one()?))
+    follow(case, None, observer)
 }
 
 /// Goes on with a run of a case from a checkpoint of it; gives what [`predict`] gives, bit for bit, its wall time counted from the
@@ -58,41 +55,19 @@ pub fn predict(case: &Case, observer: &dyn Observer) -> Result<Prediction> {
 /// Errors: as [`predict`]; [`perilife_base::error::Error::Input`] if the checkpoint is not one of this case.
 pub fn resume(case: &Case, checkpoint: Checkpoint, observer: &dyn Observer) -> Result<Prediction> {
     checkpoint.check(case)?;
-    watched(case, observer, || follow(Record::new(case, observer).after_phase_one()?.resumed_from(checkpoint)))
+    follow(case, Some(checkpoint), observer)
 }
 
-/// A run under the eyes of its observer from building the plate on.
-fn watched(case: &Case, observer: &dyn Observer, run: impl FnOnce() -> Result<Prediction> + Send) -> Result<Prediction> {
+/// The stages of a life under the eyes of its observer: cracks form, grow by what drives them, and are handed over.
+fn follow(case: &Case, from: Option<Checkpoint>, observer: &dyn Observer) -> Result<Prediction> {
     needs::of_case(case).within_machine()?;
+    let run = || {
+        let record = Record::new(case, observer);
+        let (first, later) = (OnceCell::new(), OnceCell::new());
+        let chain = Chain::start(record.case(), &first, &later)?;
+        record.follow(chain, from)
+    };
     in_pool(|| watch::with(observer.watch(), || watch::unless_cancelled(&case.name, run())))
-}
-
-/// A run by what its case asks to be driven by.
-fn follow(record: Record<'_>) -> Result<Prediction> {
-    let case = &record.case().clone();
-    if let Some(reason) = record.ends_in_phase_one() {
-        return record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |_| Ok(Some(reason)));
-    }
-    match case.engine() {
-        Engine::Handbook => {
-            record.follow(&mut HandCalculation::start(case, laws::growth_law(case)?)?, |hand| hand.next_interval())
-        }
-        Engine::PartThrough => {
-            let (later, both) = (OnceCell::new(), [laws::growth_law(case)?, laws::growth_law(case)?]);
-            record.follow(&mut front::start(case, &later, both, laws::order(case)?)?, |run| run.advance(increment))
-        }
-        Engine::Points => record.follow(&mut TipField::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),
-        Engine::Nodes => record.follow(&mut ElementFree::start(case, laws::growth_law(case)?)?, |cracks| Ok(increment(cracks))),
-        Engine::BondsThenPoints => {
-            let later = OnceCell::new();
-            let law = |horizon| laws::bond_law(case, horizon);
-            record.follow(&mut hand_over::start(case, &later, law, laws::growth_law(case)?)?, |run| run.advance(increment))
-        }
-        Engine::Bonds => {
-            let law = |horizon| laws::bond_law(case, horizon);
-            record.follow(&mut BondStrain::start(case, law)?, |bonds| bonds.next_break())
-        }
-    }
 }
 
 /// One increment of all cracks by the stress intensity of their tips, which makes one row; the reason why there is no next one.

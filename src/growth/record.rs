@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::GrowthStatus;
 use crate::case::Case;
 use perilife_laws::response::Response;
 use perilife_plate::loading::Loading;
-use perilife_plate::specimen::{CrackLine, Point, Specimen};
+use perilife_plate::specimen::geometry::along;
+use perilife_plate::specimen::{CrackLine, Point, Specimen, TipSeed};
 use perilife_points::crack_tip::TipState;
 
 perilife_base::kinds! {
@@ -44,6 +44,14 @@ impl StopReason {
     }
 }
 
+/// What ends a step of a stage of a life other than its next row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Turn {
+    /// The next stage takes over.
+    HandOver,
+    Stop(StopReason),
+}
+
 /// State of one tip at a recorded step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct TipRecord {
@@ -60,6 +68,19 @@ pub struct TipRecord {
     pub response: Response,
     /// Growth rate, m/cycle; `None` where `factors` is in runs by K.
     pub growth_rate: Option<f64>,
+}
+
+impl TipRecord {
+    /// A tip with nothing read around it.
+    pub fn unread(state: TipState, position: Point, growth: f64) -> Self {
+        TipRecord { state, position, growth, factors: None, t_stress: None, response: Response::PROPORTIONAL, growth_rate: None }
+    }
+
+    /// A tip that has grown straight ahead.
+    pub fn ahead(seed: &TipSeed, growth: f64) -> Self {
+        let towards = [0, 1].map(|i| seed.position[i] + seed.direction[i]);
+        TipRecord::unread(TipState::Active, along(seed.position, towards, growth), growth)
+    }
 }
 
 /// The end in the thickness of the front of a crack that did not go through at the start, at a recorded step.
@@ -102,6 +123,23 @@ pub struct CurvePoint {
 }
 
 impl CurvePoint {
+    /// A row of these tips, of which no K, rate, work or limit load is known.
+    pub fn bare(cycles: f64, crack_length: f64, tips: Vec<TipRecord>) -> Self {
+        CurvePoint {
+            is_solved: true,
+            cycles,
+            crack_length,
+            delta_k: f64::NAN,
+            growth_rate: f64::NAN,
+            work: f64::NAN,
+            limit_load: None,
+            broken_bonds: 0,
+            tips,
+            depth: None,
+            response: Response::PROPORTIONAL,
+        }
+    }
+
     /// Whether it is of the front of a crack that does not go through.
     pub fn is_of_front(&self) -> bool {
         self.depth.is_some_and(|depth| depth.k_i.is_some())
@@ -126,17 +164,12 @@ impl CurvePoint {
         let (k_max, growth_rate) = lead.unwrap_or((f64::NAN, f64::NAN));
         let crack_length = case.specimen.crack_length_after(&growths);
         CurvePoint {
-            is_solved: true,
-            cycles,
-            crack_length,
             limit_load: case.limit_load(crack_length, cracks),
             delta_k: case.loading.range_share() * k_max,
             growth_rate,
             work,
             broken_bonds,
-            tips,
-            depth: None,
-            response: Response::PROPORTIONAL,
+            ..CurvePoint::bare(cycles, crack_length, tips)
         }
     }
 
@@ -146,10 +179,9 @@ impl CurvePoint {
         CurvePoint { delta_k: row.range_share(loading) * k_max, ..row }
     }
 
-    /// Where the run stands in it.
-    pub fn status(&self) -> GrowthStatus<'_> {
-        let CurvePoint { cycles, crack_length, delta_k, response, limit_load, ref tips, .. } = *self;
-        GrowthStatus { cycles, crack_length, delta_k, response, limit_load, tips }
+    /// Growth of all tips together, m.
+    pub fn growth(&self) -> f64 {
+        self.tips.iter().map(|tip| tip.growth).sum()
     }
 
     /// Share of K_max that counts as range, as [`Loading::range_share`], of the largest cycle.

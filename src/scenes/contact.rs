@@ -26,8 +26,8 @@
 //! broken bonds, a branch) there is no plane and no column.
 
 use super::bonds::BondState;
+use super::quasi_static::stiffness::LinearSpring;
 use super::scene::{Procedure, Scene, SceneLaw};
-use crate::levels::stiffness::LinearSpring;
 use perilife_base::raster::Snapshot;
 use perilife_base::units::{MM, place_mm};
 use perilife_plate::specimen::geometry::{Places, segments_touch};

@@ -5,17 +5,17 @@
 //!
 //! Imports `base`, `plate` and `points`; only `runner` and `study` import it.
 //!
-//! A scene is points and bonds ([`crate::levels`]), forces between them with damage ([`interaction`]), loads ([`boundary`]) and a
+//! A scene is points and bonds ([`build`], [`dual_horizon`]), forces between them with damage ([`interaction`]), loads ([`boundary`]) and a
 //! procedure. What changes is the state of the bonds ([`bonds`], written by the interaction) and the motion (written by the
 //! procedure).
 
 pub mod assembly;
 pub mod bonds;
 pub mod boundary;
-pub mod levels;
 pub mod checkpoint;
 pub mod contact;
 pub mod correspondence;
+pub mod dual_horizon;
 pub mod dynamics;
 pub mod failure;
 pub mod fronts;

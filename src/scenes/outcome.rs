@@ -65,7 +65,6 @@ pub struct SceneFigures {
     pub time_step: f64,
     /// How flanks stand at the end, where they are kept apart.
     pub touching: Option<Touching>,
-    /// Wall time, s.
     pub wall_s: f64,
     /// Peak memory of the process, MB.
     pub memory_mb: f64,

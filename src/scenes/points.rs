@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::correspondence::NET_LAW;
+use super::dual_horizon::{self, MultiLevelSpec};
 use super::scene::{Action, Discretisation, LoadRamp, Region, Scene, SceneLaw, SceneLoad, SceneSolver};
-use crate::levels::dual_horizon::{self, MultiLevelSpec};
 use perilife_base::error::{Result, input};
 use perilife_base::units::MM;
 use perilife_plate::specimen::geometry::{along, bounding_box};

@@ -13,8 +13,8 @@ use perilife_points::solver::field::Layout;
 use perilife_points::solver::{Equilibrium, SolverKind, Symmetry};
 use perilife_points::state::Bonds;
 use perilife_scenes::bonds::BondState;
-use perilife_scenes::levels::equilibrium::FullLoad;
 use perilife_scenes::quasi_static::equilibrium;
+use perilife_scenes::quasi_static::equilibrium::FullLoad;
 
 /// Largest errors of displacement in percent.
 #[derive(Debug, Clone, Copy, PartialEq)]

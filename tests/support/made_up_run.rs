@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use perilife_base::raster::{PointGrid, Snapshot};
 use perilife_growth::case::Case;
 use perilife_growth::predict::{CurvePoint, Prediction, RunFigures, StopReason, TipRecord};
-use perilife_laws::response::Response;
 use perilife_plate::specimen::{Crack, Point};
+use perilife_points::crack_tip::TipState;
 use perilife_points::solver::SolverUsed;
 use perilife_results::run::{Judged, Wanted};
 
@@ -64,28 +64,9 @@ fn curve() -> Vec<CurvePoint> {
             cycles += 0.2e-3 / growth_rate;
         }
         let y = y0 + 1.2e-3 * (1.0 - (-growth / 2e-3).exp());
-        let tip = |sign: f64| TipRecord {
-            state: perilife_points::crack_tip::TipState::Active,
-            position: [sign * (x0 + growth), sign * y],
-            growth,
-            factors: None,
-            t_stress: None,
-            response: Response::PROPORTIONAL,
-            growth_rate: None,
-        };
-        curve.push(CurvePoint {
-            is_solved: true,
-            cycles,
-            crack_length,
-            delta_k,
-            growth_rate,
-            work: 1.0 + crack_length,
-            limit_load: None,
-            broken_bonds: 9 * step,
-            tips: vec![tip(-1.0), tip(1.0)],
-            depth: None,
-            response: Response::PROPORTIONAL,
-        });
+        let tip = |sign: f64| TipRecord::unread(TipState::Active, [sign * (x0 + growth), sign * y], growth);
+        let row = CurvePoint::bare(cycles, crack_length, vec![tip(-1.0), tip(1.0)]);
+        curve.push(CurvePoint { delta_k, growth_rate, work: 1.0 + crack_length, broken_bonds: 9 * step, ..row });
     }
     curve
 }

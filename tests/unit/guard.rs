@@ -1,25 +1,15 @@
 //! Runs that would count nonsense, or never end.
 
 use perilife_base::error::Error;
-use perilife_growth::GrowthStatus;
 use perilife_growth::predict::record::{BLOCKS_WITHOUT_GROWTH, Guard};
-use perilife_growth::record::{StopReason, TipRecord};
-use perilife_laws::response::Response;
+use perilife_growth::record::{CurvePoint, StopReason, TipRecord};
 
-fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> GrowthStatus<'_> {
-    GrowthStatus { cycles, crack_length, delta_k: 1.0, response: Response::PROPORTIONAL, limit_load: None, tips }
+fn now(cycles: f64, crack_length: f64, tips: &[TipRecord]) -> CurvePoint {
+    CurvePoint::bare(cycles, crack_length, tips.to_vec())
 }
 
 fn tip(growth: f64) -> TipRecord {
-    TipRecord {
-        state: perilife_points::crack_tip::TipState::Active,
-        position: [growth, 0.0],
-        growth,
-        factors: None,
-        t_stress: None,
-        response: Response::PROPORTIONAL,
-        growth_rate: None,
-    }
+    TipRecord::unread(perilife_points::crack_tip::TipState::Active, [growth, 0.0], growth)
 }
 
 #[test]

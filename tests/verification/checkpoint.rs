@@ -8,7 +8,7 @@ use perilife_growth::case::Case;
 use perilife_growth::predict::checkpoint::Checkpoint;
 use perilife_growth::predict::{Observer, Prediction, Progress, Silent, predict, resume};
 
-use crate::support::plates::{BOND_STRAIN, TIP_FIELD, case};
+use crate::support::plates::{BOND_STRAIN, case};
 
 /// Keeps every checkpoint as the bytes of its file, and the blocks before it.
 #[derive(Default)]
@@ -88,10 +88,7 @@ const HOLE: &str = "kind=\"plate\"\nwidth_mm=60\nlength_mm=100\nthickness_mm=2\n
 
 const FINE: &str = "model.spacing_mm=1";
 const BONDS: &str = BOND_STRAIN;
-const TIPS: &str = TIP_FIELD;
-/// Short steps, so that a crack across a small plate takes some hundred blocks.
-const SHORT: &str = "fatigue.step_error_percent=0.03";
-/// The same where points are coarse, so that a row takes some hundredths of a second.
+/// Short steps, so that a crack across a small plate takes some hundred blocks: coarse points, a row of some hundredths of a second.
 const SHORTER: &str = "fatigue.step_error_percent=0.005";
 
 /// Name, `[specimen]`, settings; every one has a checkpoint at least.
@@ -129,20 +126,6 @@ fn all() -> Vec<Scene> {
             vec![BONDS, "model.solver=multigrid", "fatigue.ageing=everywhere", "stop.crack_length_mm=28"],
         ),
         ("multigrid, two cracks", TWO, vec![BONDS, "model.spacing_mm=2.5", "model.solver=multigrid", "stop.crack_length_mm=22"]),
-        ("tips, slant", SLANT, vec![TIPS, SHORT, FINE]),
-        ("tips, two cracks, state-based", TWO, vec![TIPS, SHORT, FINE, "model.bond_law=state_based"]),
-        ("tips, hole, window", HOLE, vec![TIPS, SHORT, "model.spacing_mm=0.8", "model.solver=window"]),
-        (
-            "nodes, slant",
-            SLANT,
-            vec![
-                "model.method=element_free_galerkin",
-                TIPS,
-                "model.spacing_mm=5",
-                "stop.crack_length_mm=40",
-                "output.paraview=true",
-            ],
-        ),
     ]
 }
 

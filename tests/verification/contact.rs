@@ -9,8 +9,7 @@ use perilife_plate::specimen::geometry::segments_touch;
 use perilife_points::body::pre_crack::cutting_line;
 use perilife_scenes::bonds::BondState;
 use perilife_scenes::contact::NetContact;
-use perilife_scenes::levels::equilibrium::FullLoad;
-use perilife_scenes::quasi_static::equilibrium::{Equilibrium, Shape};
+use perilife_scenes::quasi_static::equilibrium::{Equilibrium, FullLoad, Shape};
 use perilife_scenes::{Fracture, Scene, boundary::Boundary};
 
 use crate::support::shared::shared;

@@ -8,7 +8,6 @@ use crate::case::{Case, Engine};
 use crate::end_of_life::End;
 use crate::record::{CurvePoint, TipRecord};
 use perilife_laws::growth_rate::{LengthAverage, Rate, Sample, rates, release_rate_at_end};
-use perilife_laws::response::Response;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
 use perilife_plate::specimen::{LengthConvention, Specimen};
 use perilife_points::body::{Body, Bond};
@@ -24,33 +23,6 @@ const RELEASE_KNOWN_HORIZONS: f64 = 2.0;
 /// Initial crack length, in horizons, below which the finite horizon matters by more than some percent in rate.
 const SHORT_CRACK_HORIZONS: f64 = 5.0;
 
-/// The plate after a block.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Row {
-    pub cycles: f64,
-    /// Crack length, m.
-    pub crack_length: f64,
-    work: f64,
-    broken_bonds: usize,
-    tips: Vec<TipRecord>,
-}
-
-impl Row {
-    /// What is set against a length at which a run ends, m.
-    pub(super) fn towards(&self, end: &End, specimen: &Specimen) -> f64 {
-        end.length_of(specimen, self.crack_length, &self.tips)
-    }
-
-    pub fn tips(&self) -> &[TipRecord] {
-        &self.tips
-    }
-
-    /// Growth of all tips together, m.
-    fn growth(&self) -> f64 {
-        self.tips.iter().map(|tip| tip.growth).sum()
-    }
-}
-
 /// All rows of a run so far.
 pub struct GrowthHistory {
     pub past: History,
@@ -65,7 +37,7 @@ pub struct GrowthHistory {
 /// What a track has taken down.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct History {
-    rows: Vec<Row>,
+    rows: Vec<CurvePoint>,
     cycles: f64,
     /// Longest crack so far as the ways of its tips have it, m.
     longest: f64,
@@ -93,12 +65,7 @@ impl GrowthHistory {
         }
     }
 
-    /// What was taken down so far.
-    pub(super) fn past(&self) -> &History {
-        &self.past
-    }
-
-    pub(super) fn last(&self) -> &Row {
+    pub(super) fn last(&self) -> &CurvePoint {
         // The first row is recorded before the first block.
         &self.past.rows[self.past.rows.len() - 1]
     }
@@ -120,7 +87,7 @@ impl GrowthHistory {
         let crack_length = self.specimen.crack_length_after(&growth);
         self.past.longest = self.past.longest.max(crack_length);
         let crack_length = crack_length.min(self.limit);
-        self.past.rows.push(Row { cycles: self.past.cycles, crack_length, work, broken_bonds, tips });
+        self.past.rows.push(CurvePoint { work, broken_bonds, ..CurvePoint::bare(self.past.cycles, crack_length, tips) });
     }
 
     /// Ends the curve at a run-out: the crack stands where it is.
@@ -168,14 +135,18 @@ impl GrowthHistory {
         warnings
     }
 
-    fn samples(&self, rows: &[Row]) -> Vec<Sample> {
-        rows.iter()
-            .map(|row| Sample { cycles: row.cycles, crack_length: row.crack_length, growth: row.growth(), work: row.work })
-            .collect()
+    fn samples(&self, rows: &[CurvePoint]) -> Vec<Sample> {
+        let sample = |row: &CurvePoint| Sample {
+            cycles: row.cycles,
+            crack_length: row.crack_length,
+            growth: row.growth(),
+            work: row.work,
+        };
+        rows.iter().map(sample).collect()
     }
 
     /// The rows with lengths averaged over one spacing of growth.
-    fn averaged(&self, spacing: f64) -> Vec<Row> {
+    fn averaged(&self, spacing: f64) -> Vec<CurvePoint> {
         let cycles: Vec<f64> = self.past.rows.iter().map(|row| row.cycles).collect();
         let lengths: Vec<f64> = self.past.rows.iter().map(|row| row.crack_length).collect();
         // A spacing of growth at every tip.
@@ -198,7 +169,7 @@ impl GrowthHistory {
         let mut rows = self.averaged(body.lattice.spacing);
         if let Some(cycles_max) = self.run_out {
             // The crack stands where it is until then.
-            rows.extend(rows.last().cloned().map(|row| Row { cycles: cycles_max, ..row }));
+            rows.extend(rows.last().cloned().map(|row| CurvePoint { cycles: cycles_max, ..row }));
         }
         if let Some(end) = end {
             end_at(&mut rows, &end, &case.specimen);
@@ -225,22 +196,16 @@ impl GrowthHistory {
             }
             case.limit_load(crack_length, &cracks)
         };
-        let point = |(i, row): (usize, &Row)| CurvePoint {
-            is_solved: true,
+        let point = |(i, row): (usize, &CurvePoint)| CurvePoint {
             limit_load: limit_load(&row.tips, row.crack_length),
-            cycles: row.cycles,
-            crack_length: row.crack_length,
             delta_k: match &self.formula {
                 Some(_) if row.crack_length >= self.limit * (1.0 - 1e-9) => f64::NAN,
                 Some(formula) => formula.delta_k(row.crack_length, case.loading.maximum, share),
                 None => share * (rate[i].energy_release_rate * case.material.plane_modulus()).sqrt(),
             },
             growth_rate: fastest(i),
-            work: row.work,
-            broken_bonds: row.broken_bonds,
             tips: tips_with_rates(&row.tips, of_tips.iter().map(|tip| tip[i].growth_rate)),
-            depth: None,
-            response: Response::PROPORTIONAL,
+            ..row.clone()
         };
         rows.iter().enumerate().map(point).collect()
     }
@@ -254,23 +219,16 @@ fn tips_with_rates(tips: &[TipRecord], rates: impl Iterator<Item = f64>) -> Vec<
 }
 
 /// Ends the rows at a crack length that they pass.
-fn end_at(rows: &mut Vec<Row>, end: &End, specimen: &Specimen) {
-    let length = |row: &Row| row.towards(end, specimen);
+fn end_at(rows: &mut Vec<CurvePoint>, end: &End, specimen: &Specimen) {
+    let length = |row: &CurvePoint| end.length_of(specimen, row);
     let Some(past) = rows.iter().position(|row| length(row) >= end.crack_length).filter(|&past| past > 0) else { return };
     rows.truncate(past + 1);
-    let before = rows[past - 1].clone();
-    let row = &mut rows[past];
-    let share = (end.crack_length - length(&before)) / (length(row) - length(&before));
-    let between = |a: f64, b: f64| a + share * (b - a);
-    row.cycles = between(before.cycles, row.cycles);
+    let (before, row) = (&rows[past - 1], &rows[past]);
+    let share = (end.crack_length - length(before)) / (length(row) - length(before));
+    let last = CurvePoint { is_solved: true, ..row.clone().between(before, share) };
     // Where that is the length of the row there is no rounding between.
-    row.crack_length =
-        if specimen.has_several_cracks() { between(before.crack_length, row.crack_length) } else { end.crack_length };
-    row.work = between(before.work, row.work);
-    for (tip, old) in row.tips.iter_mut().zip(&before.tips) {
-        tip.growth = between(old.growth, tip.growth);
-        tip.position = [0, 1].map(|i| between(old.position[i], tip.position[i]));
-    }
+    let crack_length = if specimen.has_several_cracks() { last.crack_length } else { end.crack_length };
+    rows[past] = CurvePoint { crack_length, ..last };
 }
 
 pub(super) struct RunState {

@@ -51,7 +51,7 @@ pub(super) fn at_section(case: &Case, curve: &[CurvePoint]) -> Option<End> {
 
 /// The reason that counts where a run had passed a known end before it stopped for another reason.
 pub(super) fn settled(end: Option<End>, (track, specimen): (&GrowthHistory, &Specimen), stop: StopReason) -> StopReason {
-    end.filter(|end| track.last().towards(end, specimen) >= end.crack_length).map_or(stop, |end| end.reason)
+    end.filter(|end| end.length_of(specimen, track.last()) >= end.crack_length).map_or(stop, |end| end.reason)
 }
 
 /// Bonds between tips and an edge or hole less than one spacing ahead; those tips end.

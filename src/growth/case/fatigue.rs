@@ -17,7 +17,6 @@ use perilife_plate::specimen::{LengthConvention, LoadMeasure, Specimen, Specimen
 
 const CYCLES_MAX: f64 = 1e9;
 
-/// `[fatigue]`, read.
 pub(super) struct Fatigue {
     pub settings: FatigueSettings,
     /// `None` where the file gives no law, as in a calibration.
@@ -117,7 +116,6 @@ fn read_step_error(slice: &FatigueKeys, has_tips: bool) -> Result<f64> {
 const REQUIRED: &str = "the load";
 
 perilife_base::keys! {
-    /// Keys of `[stop]`.
     pub struct StopKeys {
         crack_length: Option<f64> = length("crack_length_mm", "Final crack length");
         crack_depth: Option<f64> = length("crack_depth_mm", "Final crack depth: of a part-through crack");

@@ -13,7 +13,6 @@ const LOAD_SCATTER_MAX: f64 = 0.3;
 const LENGTH_KEY: &str = "fleet.initial_length_mm";
 
 perilife_base::keys! {
-    /// Keys of `[fleet]`.
     pub struct FleetKeys {
         plates: usize = number("plates", "Plates: how many", "a number", 1.0, 1e5), or "1000" PLATES;
         seed: u64 = key("seed", "Seed of all draws"), or "0" 0;

@@ -220,11 +220,11 @@ impl Case {
         case
     }
 
-    /// The same case of which the crack is through after some cycles, on this plate of nodes.
-    pub fn with_through_crack(&self, specimen: Specimen, cycles: f64) -> Case {
+    /// The same case of which the crack is through, on this plate of nodes.
+    pub fn with_through_crack(&self, specimen: Specimen) -> Case {
         let mut case = Case { model: Model::Nodes(usual_nodes(&specimen)), specimen, ..self.clone() };
         case.fatigue.driver = Driver::TipField;
-        (case.stop.crack_depth, case.stop.cycles_max) = (f64::INFINITY, case.stop.cycles_max - cycles);
+        case.stop.crack_depth = f64::INFINITY;
         case
     }
 

@@ -55,7 +55,6 @@ const fn of(owners: &'static [&'static str], key: Key) -> Key {
 }
 
 perilife_base::keys! {
-    /// Keys of `[model]`.
     pub struct ModelKeys {
         method: Method = key("method", "Method"), or "auto" Method::Auto;
         spacing: Option<f64> = length(SPACING, "Spacing: of points, or of nodes far from cracks");

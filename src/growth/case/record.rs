@@ -59,23 +59,16 @@ pub struct FittedRecord {
     pub stress_ratio: f64,
     /// `model.method` of the fit. A record of `handbook` holds C and m; its a, horizon_mm and spacing_mm are nan.
     pub method: String,
-    /// `model.bond_law`.
     pub bond_law: String,
-    /// `model.kernel`.
     pub kernel: String,
-    /// `model.rotation`.
     pub rotation: String,
-    /// `model.surface_correction`.
     pub surface_correction: String,
-    /// `fatigue.ageing`.
     pub ageing: String,
-    /// `fatigue.zone_radius_horizons`.
     pub zone_radius_horizons: f64,
     /// Young's modulus of the calibration.
     pub youngs_modulus_gpa: f64,
     /// Poisson's ratio of the calibration.
     pub poisson_ratio: f64,
-    /// `material.plane`.
     pub plane: String,
     pub thickness_mm: f64,
     pub material: String,

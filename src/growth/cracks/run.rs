@@ -8,7 +8,7 @@ use super::tip::{CracksState, Tip};
 use super::{CrackedPlate, Cracks};
 use crate::cross_check::CrossCheck;
 use crate::record::{CurvePoint, TipRecord};
-use crate::{CrackGrowth, Fields, GrowthStatus, SolverStatistics, State};
+use crate::{CrackGrowth, Fields, SolverStatistics};
 use perilife_base::error::{Error, Result};
 use perilife_base::raster::PointGrid;
 use perilife_base::units::place_mm;
@@ -74,6 +74,24 @@ impl<P: CrackedPlate> Cracks<'_, P> {
     }
 }
 
+impl<P: CrackedPlate> Cracks<'_, P> {
+    /// All that the next increments depend on where the solver is built anew.
+    pub fn run(&self) -> CracksRun<P::Saved> {
+        let (cracks, plate) = (self.state.clone(), self.plate.save());
+        CracksRun { cracks, plate, curve: self.curve.clone(), warnings: self.warnings.clone() }
+    }
+
+    /// Goes on from a run, in place of the first row; whether it is one of this plate.
+    pub fn restore(&mut self, run: CracksRun<P::Saved>) -> bool {
+        let CracksRun { cracks, plate, curve, warnings } = run;
+        if curve.is_empty() || !cracks.fits(&self.state) || !self.plate.restore(plate) {
+            return false;
+        }
+        (self.state, self.curve, self.warnings) = (cracks, curve, warnings);
+        self.rebuild_solver().is_ok()
+    }
+}
+
 impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
     fn open(&mut self) -> Result<()> {
         let name = &self.case.name;
@@ -96,8 +114,8 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
         Ok(())
     }
 
-    fn now(&self) -> GrowthStatus<'_> {
-        self.last().status()
+    fn now(&self) -> &CurvePoint {
+        self.last()
     }
 
     fn body(&self) -> Option<Arc<Body>> {
@@ -123,24 +141,6 @@ impl<P: CrackedPlate> CrackGrowth for Cracks<'_, P> {
     fn rebuild_solver(&mut self) -> Result<()> {
         self.rows_at_rebuild = self.rows_solved();
         self.plate.rebuild(self.case, &self.state)
-    }
-
-    fn state(&self) -> State {
-        P::state(CracksRun {
-            cracks: self.state.clone(),
-            plate: self.plate.save(),
-            curve: self.curve.clone(),
-            warnings: self.warnings.clone(),
-        })
-    }
-
-    fn restore(&mut self, state: State) -> Result<bool> {
-        let Some(CracksRun { cracks, plate, curve, warnings }) = P::of_state(state) else { return Ok(false) };
-        if curve.is_empty() || !cracks.fits(&self.state) || !self.plate.restore(plate) {
-            return Ok(false);
-        }
-        (self.state, self.curve, self.warnings) = (cracks, curve, warnings);
-        Ok(self.rebuild_solver().is_ok())
     }
 
     fn curve(&mut self) -> Vec<CurvePoint> {

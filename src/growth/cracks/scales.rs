@@ -111,7 +111,7 @@ impl Scales {
         let measure = (percent / STEP_ERROR_PERCENT).sqrt().min(1.0) * horizon;
         Scales {
             // Bonds do not show a kink before it is as long as the core of its tip; after that cycles in the root make short slant cracks live
-            // 0.4 to 0.7 % shorter, which are too short already (`tests/verification/hard_plates.rs`).
+            // 0.4 to 0.7 % shorter, which are too short already (`tests/verification/cracked_plate.rs`).
             by_root: false,
             step: StepScales {
                 error: 0.01 * percent,

@@ -13,23 +13,17 @@ mod overloads;
 pub use neighbours::Neighbours;
 pub use overloads::Order;
 
-use std::cell::OnceCell;
-
+use super::CrackGrowth;
 use super::end_of_life::strength_reason;
-use super::nodes::ElementFree;
-use super::record::{CurvePoint, DepthRecord, StopReason, TipRecord};
-use super::relay::{HandOver, Relay, Turn};
-use super::{CrackGrowth, GrowthStatus, State};
+use super::record::{CurvePoint, DepthRecord, StopReason, TipRecord, Turn};
 use crate::case::Case;
 use fronts::{Fronts, Grown, STEP_MOST};
 use overloads::Overloads;
 use perilife_base::error::{Error, Result, input_missing};
 use perilife_base::units::MM;
 use perilife_laws::growth_law::GrowthLaw;
-use perilife_laws::response::Response;
 use perilife_laws::retardation::Underway;
-use perilife_plate::specimen::geometry::along;
-use perilife_points::crack_tip::TipState;
+use perilife_plate::specimen::PartThrough;
 
 /// [`CrackGrowth`] of a crack that does not go through.
 pub struct PartThroughGrowth<'a> {
@@ -41,74 +35,52 @@ pub struct PartThroughGrowth<'a> {
     curve: Vec<CurvePoint>,
 }
 
-/// A front that hands over to the tips of the through crack that it becomes.
-pub struct BreakThrough<'a> {
-    /// The case once the crack is through.
-    later: &'a OnceCell<Case>,
-    /// The law that drives its tips then.
-    law: Option<Box<dyn GrowthLaw>>,
+/// The case once the crack of a front is through, at its last row.
+/// Errors: a plate without room for it.
+pub fn broken_through(case: &Case, last: &CurvePoint) -> Result<Case> {
+    Ok(case.with_through_crack(flaw(case)?.through(&case.specimen, last.crack_length)?))
 }
 
-/// Growth of the crack of a case; `later` gets the case once it is through. The law is given twice, for both parts of the run, and what the
-/// order of its loads needs.
-/// Errors: a specimen whose crack goes through.
-pub fn start<'a>(
-    case: &'a Case,
-    later: &'a OnceCell<Case>,
-    [law, law_of_tips]: [Box<dyn GrowthLaw>; 2],
-    order: Option<Order>,
-) -> Result<Relay<BreakThrough<'a>>> {
-    let flaw = case.specimen.part_through.ok_or_else(|| {
-        input_missing("specimen.kind", "is one of a through crack", "give a specimen with a part-through crack")
-    })?;
-    let fronts = Fronts { case, flaw, neighbours: Neighbours::of(case, &flaw)?, law };
-    let spectrum = case.loading.spectrum.as_deref();
-    let overloads = spectrum.zip(order).map(|(spectrum, order)| Overloads::start(&fronts, spectrum, order));
-    let front = PartThroughGrowth { fronts, step: STEP_MOST, overloads, curve: Vec::new() };
-    Ok(Relay::new(front, BreakThrough { later, law: Some(law_of_tips) }))
+/// What the user should know of the row at which the crack is through.
+pub fn note(row: &CurvePoint) -> String {
+    let CurvePoint { cycles, crack_length, .. } = row;
+    let length = crack_length / MM;
+    format!(
+        "breakthrough after {cycles:.0} cycles at c = {length:.3} mm; then a straight through crack of that length (K from nodes)"
+    )
 }
 
-impl<'a> HandOver for BreakThrough<'a> {
-    type First = PartThroughGrowth<'a>;
-    type Second = ElementFree<'a>;
+fn flaw(case: &Case) -> Result<PartThrough> {
+    let problem = "is one of a through crack";
+    case.specimen.part_through.ok_or_else(|| input_missing("specimen.kind", problem, "give a specimen with a part-through crack"))
+}
 
-    fn step(&self, front: &mut PartThroughGrowth<'a>) -> Result<Option<Turn>> {
-        front.next_step()
+impl<'a> PartThroughGrowth<'a> {
+    /// The crack of a case before its first row, with what the order of its loads needs.
+    /// Errors: a specimen whose crack goes through; no K beside other holes.
+    pub fn start(case: &'a Case, law: Box<dyn GrowthLaw>, order: Option<Order>) -> Result<Self> {
+        let flaw = flaw(case)?;
+        let fronts = Fronts { case, flaw, neighbours: Neighbours::of(case, &flaw)?, law };
+        let spectrum = case.loading.spectrum.as_deref();
+        let overloads = spectrum.zip(order).map(|(spectrum, order)| Overloads::start(&fronts, spectrum, order));
+        Ok(PartThroughGrowth { fronts, step: STEP_MOST, overloads, curve: Vec::new() })
     }
 
-    fn second(&mut self, front: &PartThroughGrowth<'a>, last: &CurvePoint) -> Result<Option<ElementFree<'a>>> {
-        let Some(law) = self.law.take() else { return Ok(None) };
-        let Fronts { case, flaw, .. } = &front.fronts;
-        let plate = flaw.through(&case.specimen, last.crack_length)?;
-        ElementFree::start(self.later.get_or_init(|| case.with_through_crack(plate, last.cycles)), law).map(Some)
-    }
-
-    fn take(&self, front: &mut PartThroughGrowth<'a>, rows: &[CurvePoint]) -> Result<bool> {
-        front.replay(rows.iter().take_while(|row| row.is_of_front()).cloned().collect())
-    }
-
-    fn completed(&self, front: &PartThroughGrowth<'a>, row: CurvePoint) -> CurvePoint {
-        let depth = DepthRecord { depth: front.fronts.flaw.through_depth(), k_i: None, growth_rate: None };
-        CurvePoint { depth: row.depth.or(Some(depth)), ..row }
-    }
-
-    fn note(&self, front: &PartThroughGrowth<'a>, start: Option<&CurvePoint>) -> Option<String> {
-        let Some(CurvePoint { cycles, crack_length, .. }) = start else { return front.why_no_through_crack() };
-        let length = crack_length / MM;
-        Some(format!(
-            "breakthrough after {cycles:.0} cycles at c = {length:.3} mm; then a straight through crack of that length (K from nodes)"
-        ))
+    /// Where the loads and the zone at the face are after the last row, where their order counts.
+    pub fn overload(&self) -> Option<Underway> {
+        self.overloads.as_ref().map(|overloads| overloads.at[1])
     }
 }
 
 impl PartThroughGrowth<'_> {
     fn last(&self) -> &CurvePoint {
-        // `open` or `restore` makes the first row, before the first step.
+        // `open` makes the first row, before the first step.
         &self.curve[self.curve.len() - 1]
     }
 
     /// Adds the next row; what ends the growth of the front there.
-    fn next_step(&mut self) -> Result<Option<Turn>> {
+    /// Errors: a growth rate that is no number.
+    pub fn next_step(&mut self) -> Result<Option<Turn>> {
         let from = self.place(self.last());
         if let Some(ending) = self.ending(from) {
             return Ok(Some(ending));
@@ -224,44 +196,15 @@ impl PartThroughGrowth<'_> {
         let Fronts { case, flaw, .. } = &self.fronts;
         let (factors, rates) = (self.fronts.factors(axes), self.fronts.rates(axes));
         let growth = axes[1] - flaw.half_length;
-        let ahead = |at: [f64; 2], way: [f64; 2]| along(at, [0, 1].map(|i| at[i] + way[i]), growth);
-        let tip = |seed: &perilife_plate::specimen::TipSeed| TipRecord {
-            state: TipState::Active,
-            position: ahead(seed.position, seed.direction),
-            growth,
-            factors: Some([factors[1], 0.0]),
-            t_stress: None,
-            response: Response::PROPORTIONAL,
-            growth_rate: Some(rates[1]),
-        };
+        let tip =
+            |seed| TipRecord { factors: Some([factors[1], 0.0]), growth_rate: Some(rates[1]), ..TipRecord::ahead(seed, growth) };
         CurvePoint {
-            is_solved: true,
-            cycles,
-            crack_length: axes[1],
             delta_k: case.loading.range_share() * factors[0].max(factors[1]),
             growth_rate: rates[0].max(rates[1]),
-            work: f64::NAN,
             limit_load: case.material.yield_strength.map(|strength| flaw.limit_stress(axes, strength)),
-            broken_bonds: 0,
-            tips: case.specimen.tips.iter().map(tip).collect(),
             depth: Some(DepthRecord { depth: axes[0], k_i: Some(factors[0]), growth_rate: Some(rates[0]) }),
-            response: Response::PROPORTIONAL,
+            ..CurvePoint::bare(cycles, axes[1], case.specimen.tips.iter().map(tip).collect())
         }
-    }
-
-    /// Takes the rows of the front of an earlier run; where the order of loads counts, step by step, since every zone depends on all steps before.
-    fn replay(&mut self, rows: Vec<CurvePoint>) -> Result<bool> {
-        let Some(last) = rows.last().map(|row| (row.cycles, row.crack_length)) else { return Ok(false) };
-        if self.overloads.is_some() {
-            self.open()?;
-            for _ in 1..rows.len() {
-                self.next_step()?;
-            }
-            let now = self.last();
-            return Ok((now.cycles, now.crack_length) == last);
-        }
-        self.curve = rows;
-        Ok(true)
     }
 
     /// Why a run that was not asked to ends at break-through.
@@ -282,8 +225,8 @@ impl CrackGrowth for PartThroughGrowth<'_> {
         Ok(())
     }
 
-    fn now(&self) -> GrowthStatus<'_> {
-        self.last().status()
+    fn now(&self) -> &CurvePoint {
+        self.last()
     }
 
     fn law(&self) -> Option<&dyn GrowthLaw> {
@@ -295,16 +238,7 @@ impl CrackGrowth for PartThroughGrowth<'_> {
         self.curve.clone()
     }
 
-    fn state(&self) -> State {
-        State::Rows(self.curve.clone())
-    }
-
-    fn restore(&mut self, state: State) -> Result<bool> {
-        let State::Rows(curve) = state else { return Ok(false) };
-        self.replay(curve)
-    }
-
-    fn overload(&self) -> Option<Underway> {
-        self.overloads.as_ref().map(|overloads| overloads.at[1])
+    fn warnings(&self) -> Vec<String> {
+        self.why_no_through_crack().into_iter().collect()
     }
 }

@@ -57,7 +57,7 @@ fn factor(case: &Case, flaw: &PartThrough, c: f64) -> Result<f64> {
     let all = flaw.through(&case.specimen, c)?;
     let mut alone = all.clone();
     alone.holes.drain(..all.holes.len() - flaw.own_holes());
-    let [with, without] = [all, alone].map(|plate| initial_tips::<NodePlate>(&case.with_through_crack(plate, 0.0)));
+    let [with, without] = [all, alone].map(|plate| initial_tips::<NodePlate>(&case.with_through_crack(plate)));
     let [with, without] = [with?.tips, without?.tips];
     let over = with.iter().zip(&without).filter_map(|(with, without)| Some(with.factors?[0] / without.factors?[0]));
     let most = over.fold(0.0, f64::max);

@@ -8,17 +8,17 @@
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use super::chain::{Chain, ChainState};
 use super::outcome::Progress;
 use super::snapshot::Snapshots;
 use crate::case::Case;
-use crate::{CrackGrowth, State};
 use perilife_base::error::Result;
 use perilife_base::raster::Snapshot;
 use perilife_base::sealed::{Seal, dense, refused, sparse};
 
 /// First bytes of a checkpoint.
 pub const SIGN: &[u8] = b"perilife checkpoint\n";
-const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 8 };
+const SEAL: Seal = Seal { of: "this program", magic: SIGN, form: 9 };
 
 /// State of a run at one of the places where its solver is built anew.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ pub struct Checkpoint {
     snapshots: Pictures,
     /// Time spent on the run so far, s.
     wall_s: f64,
-    growth: State,
+    chain: ChainState,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -54,19 +54,19 @@ struct Picture {
 
 impl Checkpoint {
     /// Where a run of a case with this [`hash`] stands.
-    pub(super) fn new(case: [u8; 32], growth: State, snapshots: &Snapshots, progress: &Progress, wall_s: f64) -> Self {
+    pub(super) fn new(case: [u8; 32], chain: ChainState, snapshots: &Snapshots, progress: &Progress, wall_s: f64) -> Self {
         let Progress { cycles, crack_length, share } = *progress;
-        Checkpoint { case, cycles, crack_length, share, snapshots: Pictures::of(snapshots), wall_s, growth }
+        Checkpoint { case, cycles, crack_length, share, snapshots: Pictures::of(snapshots), wall_s, chain }
     }
 
     /// Puts a run at its start where this one stood; returns its pictures, and the time spent on it so far, s.
     /// Errors: it is that of another law or plate.
-    pub(super) fn restore(self, growth: &mut dyn CrackGrowth) -> Result<(Snapshots, f64)> {
+    pub(super) fn restore(self, chain: &mut Chain<'_>) -> Result<(Snapshots, f64)> {
         let picture_fits = |picture: &Picture| {
             let mut points = picture.damage.iter().chain(&picture.remaining_life);
             points.all(|(point, _)| (*point as usize) < picture.displacement.len())
         };
-        if self.snapshots.all.iter().all(picture_fits) && growth.restore(self.growth)? {
+        if self.snapshots.all.iter().all(picture_fits) && chain.restore(self.chain)? {
             return Ok((self.snapshots.into_snapshots(), self.wall_s));
         }
         Err(refused("is that of another plate or law"))

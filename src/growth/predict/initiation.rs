@@ -1,14 +1,13 @@
-//! Phase I of a life: the cycles until the cracks of a case have formed at the rims of holes ([`SnLaw`]), before they grow.
+//! Phase I of a life: the cycles until the cracks of a case have formed at the rims of holes ([`perilife_laws::initiation::SnLaw`]), before they grow.
 //!
 //! The plate is solved without the cracks that have tips; cuts between holes, such as a crack that was stopped by drilled holes, stay. The hole with the
 //! largest stress decides: once its crack has formed, all cracks of the case are taken to be there, which is on the safe side for the others.
 
-use super::CurvePoint;
 use crate::case::Case;
 use crate::stress_concentration::stressed;
 use perilife_base::error::{Error, Result, input_missing};
-use perilife_base::units::{MM, MPA};
-use perilife_laws::initiation::{KEY, SnLaw};
+use perilife_base::units::{MM, MPA, round_off};
+use perilife_laws::initiation::KEY;
 use perilife_nodes::rim_stress::{Rim, StressAt};
 use perilife_plate::specimen::geometry::distance;
 use perilife_plate::specimen::{CrackLine, Point, Specimen};
@@ -86,20 +85,15 @@ fn mouths(specimen: &Specimen) -> Result<Vec<(usize, Point)>> {
 }
 
 impl PhaseOne {
-    /// Counts the cycles of rows from the start of phase I.
-    pub(super) fn precede(&self, curve: &mut [CurvePoint]) {
-        let before = self.cycles.unwrap_or(0.0);
-        curve.iter_mut().for_each(|row| row.cycles += before);
-    }
-
     /// What the user should know.
-    pub(super) fn warnings(&self, law: &SnLaw) -> Vec<String> {
+    pub(super) fn warnings(&self, case: &Case) -> Vec<String> {
+        let limit = case.fatigue.initiation.map_or(0.0, |law| law.limit);
         let mut words = vec![match self.cycles {
             Some(_) => "initiation: life from the given S-N curve; its scatter is in neither the band nor the error".to_owned(),
             None => format!(
                 "no initiation: local stress range {:.1} MPa ≤ fatigue.initiation.limit_mpa = {:.1} MPa",
                 self.range / MPA,
-                law.limit / MPA
+                limit / MPA
             ),
         }];
         if self.aside > ASIDE {
@@ -108,6 +102,16 @@ impl PhaseOne {
         }
         if !self.is_settled {
             words.push("initiation: the stress at the hole edge still changed by 0.3 % or more on finer nodes".to_owned());
+        }
+        words.push(format!("initiation: S-N curve assumed valid at R = {}", round_off(case.loading.ratio)));
+        let largest = self.range / (1.0 - case.loading.ratio);
+        if let Some(strength) = case.material.yield_strength.filter(|strength| largest > *strength) {
+            words.push(format!(
+                "initiation: elastic local stress {:.1} MPa exceeds the yield strength {:.1} MPa; an elastic S-N curve is not valid there: treat \
+                 the initiation life as a guess, or give the curve of tests at the same concentration and load",
+                largest / MPA,
+                strength / MPA
+            ));
         }
         words
     }

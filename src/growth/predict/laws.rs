@@ -1,7 +1,6 @@
 //! The law of a case in the form that its driver needs: of bonds, or over K.
 
 use super::CurvePoint;
-use crate::CrackGrowth;
 use crate::case::{Case, LawSource};
 use crate::part_through::Order;
 use crate::rate_constant::rate_constant;
@@ -43,12 +42,11 @@ pub fn order(case: &Case) -> Result<Option<Order>> {
 
 /// Refuses growth from a K that lies beyond what the law says, where the law wants that.
 /// So is growth to where a residual stress is not known.
-pub fn check_within(case: &Case, growth: &dyn CrackGrowth) -> Result<()> {
+pub fn check_within(case: &Case, now: &CurvePoint, law: Option<&dyn GrowthLaw>) -> Result<()> {
     if let Some(residual) = &case.loading.residual {
-        growth.now().tips.iter().try_for_each(|tip| residual.check(tip.position))?;
+        now.tips.iter().try_for_each(|tip| residual.check(tip.position))?;
     }
-    let Some(law) = growth.law().filter(|law| law.is_refused_beyond()) else { return Ok(()) };
-    let now = growth.now();
+    let Some(law) = law.filter(|law| law.is_refused_beyond()) else { return Ok(()) };
     let ratio = now.response.ratio(case.loading.ratio);
     let Some(problem) = law.beyond(now.k_max(&case.loading), ratio) else { return Ok(()) };
     let at = format!("{problem}, at a crack length of {:.3} mm", now.crack_length / MM);

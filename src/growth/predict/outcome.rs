@@ -1,7 +1,7 @@
 //! What a run gives and how it reports while it goes on.
 
+use super::chain::Chain;
 use super::initiation::PhaseOne;
-use crate::CrackGrowth;
 use crate::cracks::steering::equivalent_factor;
 pub use crate::cross_check::CrossCheck;
 pub use crate::record::{CurvePoint, StopReason, TipRecord};
@@ -31,9 +31,7 @@ pub struct RunFigures {
     pub solver: Option<SolverUsed>,
     /// Actual lattice spacing, m.
     pub spacing: f64,
-    /// Horizon, m.
     pub horizon: f64,
-    /// Wall time, s.
     pub wall_s: f64,
     /// Peak memory of the process, MB.
     pub memory_mb: f64,
@@ -41,8 +39,8 @@ pub struct RunFigures {
 
 impl RunFigures {
     /// Of a run that is over, after so many blocks and seconds.
-    pub(super) fn of(growth: &dyn CrackGrowth, blocks: usize, wall_s: f64) -> Self {
-        let (body, statistics) = (growth.body(), growth.statistics());
+    pub(super) fn of(chain: &Chain<'_>, blocks: usize, wall_s: f64) -> Self {
+        let (body, statistics) = (chain.stage.body(), chain.statistics());
         let body = body.as_deref();
         RunFigures {
             points: body.map_or(statistics.points_solved, |body| body.points.len()),
@@ -110,7 +108,6 @@ impl Prediction {
         Some(rows[0].cycles + share * (rows[1].cycles - rows[0].cycles))
     }
 
-    /// Crack length at the end, mm.
     pub fn crack_length_final_mm(&self) -> f64 {
         self.crack_length_final() / MM
     }

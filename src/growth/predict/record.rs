@@ -3,19 +3,18 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::chain::Chain;
 use super::checkpoint::{self, Checkpoint};
-use super::initiation::{PhaseOne, phase_one};
 use super::retarded::{self, Recounted};
 use super::snapshot::Snapshots;
 use super::way::Way;
 use super::{CrossCheck, CurvePoint, GoverningCrack, Prediction, Progress, RunFigures, StopReason, TipRecord};
 use super::{laws, pin_arcs, plastic_zone, tip_factors};
 use crate::case::{Case, Engine};
-use crate::{CrackGrowth, GrowthStatus, plate};
+use crate::{CrackGrowth, plate};
 use perilife_base::error::{Error, Result};
-use perilife_base::raster::PointGrid;
-use perilife_base::raster::Snapshot;
-use perilife_base::units::{MPA, MPA_SQRT_M, round_off};
+use perilife_base::raster::{PointGrid, Snapshot};
+use perilife_base::units::{MPA, MPA_SQRT_M};
 use perilife_base::watch::{Silent, Watch};
 
 /// Exponent from which small causes decide: an error of direction of a tenth of a degree has become some 10° at 2 e³.
@@ -48,7 +47,7 @@ pub trait Observer: Sync {
     fn begun(&self, _start: &Progress, _tips: &[TipRecord]) {}
     /// Called after every cycle block since N = 0, before [`Observer::block_done`], with where the tips are now.
     fn grown(&self, _tips: &[TipRecord]) {}
-    /// Called with every snapshot; its cycles count from the start of the run, which may be before N = 0.
+    /// Called with every snapshot.
     fn looked(&self, _snapshot: &Snapshot, _grid: &PointGrid) {}
 }
 
@@ -64,8 +63,6 @@ pub struct Record<'a> {
     /// The case with the spacing that its body has: whatever a run measures in spacings and horizons, it measures in these.
     case: Case,
     hash: [u8; 32],
-    checkpoint: Option<Checkpoint>,
-    phase_one: Option<PhaseOne>,
     observer: &'a dyn Observer,
 }
 
@@ -77,7 +74,7 @@ impl<'a> Record<'a> {
         if let Some(points) = case.model.points_mut() {
             points.spacing = points.fitting_spacing(&case.specimen);
         }
-        Record { started: Instant::now(), case, hash, checkpoint: None, phase_one: None, observer }
+        Record { started: Instant::now(), case, hash, observer }
     }
 
     /// The case that its run is of: the one given, with the spacing that its body has.
@@ -85,73 +82,43 @@ impl<'a> Record<'a> {
         &self.case
     }
 
-    /// Counts phase I before the run, whose growth has the cycles that it leaves.
-    /// Errors: as [`phase_one`].
-    pub(super) fn after_phase_one(mut self) -> Result<Self> {
-        self.phase_one = phase_one(&self.case)?;
-        if self.ends_in_phase_one().is_none() {
-            self.case.stop.cycles_max -= self.phase_one.and_then(|phase| phase.cycles).unwrap_or(0.0);
-        }
-        Ok(self)
-    }
-
-    /// Why the run ends before its cracks have formed.
-    pub(super) fn ends_in_phase_one(&self) -> Option<StopReason> {
-        match self.phase_one?.cycles {
-            None => Some(StopReason::NothingAges),
-            Some(cycles) if cycles >= self.case.stop.cycles_max => Some(StopReason::RunOut),
-            Some(_) => None,
-        }
-    }
-
-    /// Goes on from where an earlier run of the same case stood.
-    pub(super) fn resumed_from(self, checkpoint: Checkpoint) -> Self {
-        Record { checkpoint: Some(checkpoint), ..self }
-    }
-
-    /// Advances a run increment by increment, from the start or from where an earlier run stood, until there is a reason to stop.
+    /// Advances a life step by step, from the start or from where an earlier run was, until there is a reason to stop.
     ///
     /// Mechanics that fail after the first row end the run as [`StopReason::NoConvergence`]: the rows so far stay, and the error is
     /// among the warnings.
     /// Errors: those of the first row; a run that was cancelled; wrong input that shows only on the way.
-    pub fn follow<G: CrackGrowth>(
-        self,
-        growth: &mut G,
-        mut increment: impl FnMut(&mut G) -> Result<Option<StopReason>>,
-    ) -> Result<Prediction> {
-        let ends_early = self.ends_in_phase_one();
-        let Record { started, case, hash, checkpoint, phase_one, observer } = self;
-        let case = &case;
-        let is_new = checkpoint.is_none();
-        let (mut snapshots, earlier_s) = match checkpoint {
-            Some(checkpoint) => checkpoint.restore(growth)?,
-            None => growth.open().map(|()| (Snapshots::default(), 0.0))?,
+    pub fn follow(self, mut chain: Chain<'_>, from: Option<Checkpoint>) -> Result<Prediction> {
+        let Record { started, case, hash, observer } = self;
+        let (case, chain) = (&case, &mut chain);
+        let mut way = Way::default();
+        let (mut snapshots, earlier_s) = match from {
+            Some(checkpoint) => checkpoint.restore(chain)?,
+            None => {
+                chain.open()?;
+                observer.begun(&way.progress(case, chain), &chain.now().tips);
+                (Snapshots::default(), 0.0)
+            }
         };
         let mut guard = Guard::default();
         let mut failure = None;
-        let mut way = Way::default();
-        if is_new {
-            observer.begun(&way.progress(case, growth), growth.now().tips);
-        }
         let stop = loop {
-            laws::check_within(case, growth)?;
-            if let Some((snapshot, grid)) = snapshots.follow(growth) {
+            laws::check_within(case, chain.now(), chain.stage.law())?;
+            if let Some((snapshot, grid)) = snapshots.follow(chain) {
                 observer.looked(snapshot, &grid);
             }
-            if growth.should_rebuild_solver() {
+            if chain.stage.should_rebuild_solver() {
                 let elapsed_s = earlier_s + started.elapsed().as_secs_f64();
-                let progress = way.progress(case, growth);
-                observer.may_keep(&|| Checkpoint::new(hash, growth.state(), &snapshots, &progress, elapsed_s));
-                if growth.rebuild_solver().is_err() {
+                let progress = way.progress(case, chain);
+                observer.may_keep(&|| Checkpoint::new(hash, chain.state(), &snapshots, &progress, elapsed_s));
+                if chain.stage.rebuild_solver().is_err() {
                     break StopReason::NoConvergence;
                 }
             }
-            let before = growth.now().cycles;
-            let reason = increment(growth).or_else(|error| end_of_mechanics(error, &mut failure))?;
-            let now = growth.now();
-            let reason = reason.or(guard.check(before, &now)?);
-            observer.grown(now.tips);
-            let goes_on = observer.block_done(&way.progress(case, growth));
+            let before = chain.now().cycles;
+            let reason = chain.step().or_else(|error| end_of_mechanics(error, &mut failure))?;
+            let reason = reason.or(guard.check(before, chain.now())?);
+            observer.grown(&chain.now().tips);
+            let goes_on = observer.block_done(&way.progress(case, chain));
             if let Some(reason) = reason.or_else(|| observer.is_enough().then_some(StopReason::Stopped)) {
                 break reason;
             }
@@ -159,50 +126,40 @@ impl<'a> Record<'a> {
                 return Err(Error::Mechanics(format!("{}: the run was canceled", case.name)));
             }
         };
-        let stop = growth.close(stop).or_else(|error| end_of_mechanics(error, &mut failure).map(|end| end.unwrap_or(stop)))?;
-        snapshots.finish(growth);
+        let stop =
+            chain.stage.close(stop).or_else(|error| end_of_mechanics(error, &mut failure).map(|end| end.unwrap_or(stop)))?;
+        snapshots.finish(chain);
         // The curve is handed over once; what growth knows of it is asked before.
-        let of_growth = growth.warnings();
-        let mut curve = growth.curve();
-        let counted = growth.overload();
+        let of_growth = chain.warnings();
+        let curve = chain.curve();
+        let counted = chain.overload();
         let recounted = retarded::recount(case, &curve, stop, counted)?;
         let end = counted.is_none().then_some(stop);
         let of_zones = recounted.as_ref().and_then(|own| retarded::other_zones(case, &curve, own, end));
         // Rows of a front are retarded as they grow, and what they would take without is not known.
         let unretarded_cycles = recounted.as_ref().filter(|_| counted.is_none()).and(curve.last()).map(|row| row.cycles);
-        let (stop, of_order) = match recounted {
-            Some(Recounted { curve: new, stop, warning }) => {
-                snapshots.recount(&curve, &new);
-                curve = new;
-                (stop, warning)
+        let Recounted { curve, stop, warning } = match recounted {
+            Some(recounted) => {
+                snapshots.recount(&curve, &recounted.curve);
+                recounted
             }
-            None => (stop, None),
+            None => Recounted { curve, stop, warning: None },
         };
-        if let Some(phase) = &phase_one {
-            let before = curve.clone();
-            phase.precede(&mut curve);
-            if ends_early == Some(StopReason::RunOut) {
-                curve.iter_mut().for_each(|row| row.cycles = case.stop.cycles_max);
-            }
-            snapshots.recount(&before, &curve);
-        }
         snapshots.keep_within(&curve);
         let wall_s = earlier_s + started.elapsed().as_secs_f64();
         let last = curve.last().map_or(0.0, |row| row.cycles);
         let governing = GoverningCrack::of(&case.specimen, &curve);
         let at = |total: f64| curve.iter().find(|row| row.crack_length >= total).map_or(total, |row| governing.length(row));
-        let cross_check = growth.cross_check(last).map(|check| CrossCheck { crack_length: at(check.crack_length), ..check });
-        let mut warnings = warnings(case, growth, of_growth, &curve);
-        warnings.extend(of_order.into_iter().chain(of_zones));
-        warnings.extend(failure);
-        warnings.extend(phase_one.zip(case.fatigue.initiation).into_iter().flat_map(|(phase, law)| phase.warnings(&law)));
-        warnings.extend(phase_one.iter().flat_map(|phase| of_local_stress(case, phase)));
+        let cross_check = chain.cross_check(last).map(|check| CrossCheck { crack_length: at(check.crack_length), ..check });
+        let mut warnings = warnings(case, &*chain.stage, of_growth, &curve);
+        warnings.extend(warning.into_iter().chain(of_zones).chain(failure));
+        warnings.extend(chain.phase_one.iter().flat_map(|phase| phase.warnings(case)));
         Ok(Prediction {
-            phase_one,
+            phase_one: chain.phase_one,
             stop,
-            figures: RunFigures::of(growth, curve.len() - 1, wall_s),
+            figures: RunFigures::of(chain, curve.len() - 1, wall_s),
             snapshots: snapshots.taken,
-            grid: growth.grid().unwrap_or_else(PointGrid::none),
+            grid: chain.stage.grid().unwrap_or_else(PointGrid::none),
             curve,
             cross_check,
             unretarded_cycles,
@@ -234,22 +191,6 @@ fn warnings(case: &Case, growth: &dyn CrackGrowth, of_growth: Vec<String>, curve
     let is_on_points = case.engine() == Engine::Points;
     warnings.extend(curve.first().filter(|_| is_on_points).and_then(|row| tip_factors::beside_nodes(case, &row.tips)));
     warnings
-}
-
-/// Warnings of the local stress that the S-N curve is applied to: its ratio, and yield.
-fn of_local_stress(case: &Case, phase: &PhaseOne) -> Vec<String> {
-    let ratio = round_off(case.loading.ratio);
-    let mut words = vec![format!("initiation: S-N curve assumed valid at R = {ratio}")];
-    let largest = phase.range / (1.0 - case.loading.ratio);
-    if let Some(strength) = case.material.yield_strength.filter(|strength| largest > *strength) {
-        words.push(format!(
-            "initiation: elastic local stress {:.1} MPa exceeds the yield strength {:.1} MPa; an elastic S-N curve is not valid there: treat \
-             the initiation life as a guess, or give the curve of tests at the same concentration and load",
-            largest / MPA,
-            strength / MPA
-        ));
-    }
-    words
 }
 
 /// What the user should know of tips whose straight path is unstable, with T where it has become so.
@@ -291,7 +232,7 @@ pub struct Guard {
 impl Guard {
     /// Takes in the row after a block; the reason to stop where no tip has grown for too long. Runs without tips have none to watch.
     /// Errors: [`Error::Mechanics`]: cycles or crack length that are no finite number, or cycles that fall.
-    pub fn check(&mut self, before: f64, now: &GrowthStatus<'_>) -> Result<Option<StopReason>> {
+    pub fn check(&mut self, before: f64, now: &CurvePoint) -> Result<Option<StopReason>> {
         for (what, value) in [("cycles", now.cycles), ("crack length", now.crack_length)] {
             if !value.is_finite() {
                 let problem = format!("the {what} after a block came out as {value} (crack length {:.6e} m)", now.crack_length);

@@ -26,7 +26,7 @@ pub(super) struct Recounted {
 }
 
 /// The rows of a run with the cycles of the retarded tip, ended where no cycles or no growth are left; `None` where nothing is retarded. Rows of a
-/// front that does not go through have their cycles already; `counted` is where its end at the face stands after them.
+/// front that does not go through have their cycles already; `counted` is where its end at the face is after them.
 /// Errors: a case without law.
 pub(super) fn recount(
     case: &Case,
@@ -40,6 +40,9 @@ pub(super) fn recount(
     let (law, mean): (Box<dyn GrowthLaw>, _) = (law_of_cycle(case)?, growth_law(case)?);
     let laws = Laws { law: &*law, mean: &*mean, retardation: Some(retardation) };
     let mut march = March::new(laws, spectrum, counted.unwrap_or_else(|| Underway::start(spectrum)));
+    if counted.is_none() {
+        march.at.cycles = first.cycles;
+    }
     let mut zones: Vec<Option<Zone>> = vec![march.at.zone; first.tips.len()];
     let mut rows: Vec<CurvePoint> = curve[..=of_front].to_vec();
     let mut lead = 0;

@@ -1,9 +1,9 @@
 //! Pictures of the damaged plate along a run.
 
+use super::chain::Chain;
+use crate::Fields;
 use crate::record::CurvePoint;
-use crate::{CrackGrowth, Fields, GrowthStatus};
-use perilife_base::raster::PointGrid;
-use perilife_base::raster::Snapshot;
+use perilife_base::raster::{PointGrid, Snapshot};
 
 /// Snapshots between the first and the last.
 const BETWEEN: f64 = 20.0;
@@ -20,38 +20,38 @@ pub struct Snapshots {
 
 impl Snapshots {
     /// Takes the plate at N = 0, and then whenever the cracks have grown enough.
-    pub fn follow(&mut self, growth: &mut dyn CrackGrowth) -> Option<(&Snapshot, PointGrid)> {
-        let now = growth.now();
+    pub fn follow(&mut self, chain: &mut Chain<'_>) -> Option<(&Snapshot, PointGrid)> {
+        let now = chain.now();
         let is_first = self.taken.is_empty();
         if !is_first && now.growth() < self.next {
             return None;
         }
-        let grid = growth.grid()?;
+        let grid = chain.stage.grid()?;
         if is_first {
             self.step = grid.columns.min(grid.rows) as f64 * grid.spacing / BETWEEN;
         }
         self.next = now.growth() + self.step;
-        self.take(growth).map(|snapshot| (snapshot, grid))
+        self.take(chain).map(|snapshot| (snapshot, grid))
     }
 
     /// Takes the last snapshot, where something has changed since the one before.
-    pub fn finish(&mut self, growth: &mut dyn CrackGrowth) {
-        let GrowthStatus { cycles, crack_length, .. } = growth.now();
-        if growth.grid().is_some()
+    pub fn finish(&mut self, chain: &mut Chain<'_>) {
+        let CurvePoint { cycles, crack_length, .. } = *chain.now();
+        if chain.stage.grid().is_some()
             && self.taken.last().is_none_or(|last| last.crack_length < crack_length || last.cycles < cycles)
         {
-            self.take(growth);
+            self.take(chain);
         }
     }
 
     /// Takes the plate as it stands. A picture that takes an equilibrium which is not found is left out: the curve counts more.
-    fn take(&mut self, growth: &mut dyn CrackGrowth) -> Option<&Snapshot> {
-        let fields = growth.fields().unwrap_or_else(|error| {
+    fn take(&mut self, chain: &mut Chain<'_>) -> Option<&Snapshot> {
+        let fields = chain.stage.fields().unwrap_or_else(|error| {
             tracing::warn!("a snapshot is omitted: {error}");
             None
         });
         let Fields { displacement, damage, remaining_life, stress } = fields?;
-        let GrowthStatus { cycles, crack_length, .. } = growth.now();
+        let CurvePoint { cycles, crack_length, .. } = *chain.now();
         self.taken.push(Snapshot { cycles, crack_length, displacement, damage, remaining_life, stress });
         self.taken.last()
     }

@@ -1,9 +1,9 @@
 //! How far a run has come on its way: a guess for who waits, on which nothing that is computed depends.
 
 use super::Progress;
+use super::chain::Chain;
 use crate::case::Case;
-use crate::record::TipRecord;
-use crate::{CrackGrowth, GrowthStatus};
+use crate::record::{CurvePoint, TipRecord};
 use perilife_plate::loading::LoadControl;
 use perilife_plate::specimen::geometry::{direction, distance, edges};
 use perilife_plate::specimen::{Hole, Point, Specimen, TipSeed};
@@ -20,8 +20,8 @@ pub(super) struct Way {
 
 impl Way {
     /// Progress to the nearest end: length or cycle limit, edges straight ahead, toughness (K² ∝ a), collapse load (linear).
-    pub(super) fn progress(&mut self, case: &Case, growth: &dyn CrackGrowth) -> Progress {
-        let now = growth.now();
+    pub(super) fn progress(&mut self, case: &Case, chain: &Chain<'_>) -> Progress {
+        let now = chain.now();
         let grown = now.growth();
         let specimen = &case.specimen;
         // Of several cracks that of the longest on its way to the end.
@@ -30,8 +30,7 @@ impl Way {
         let start = specimen.shortest_crack();
         let by_length =
             if case.stop.crack_length.is_finite() { (length - start) / (case.stop.crack_length - start) } else { 0.0 };
-        let ahead =
-            [Some(until_rims(&case.specimen, &now)), until_toughness(case, &now), self.until_limit_load(case, &now, grown)];
+        let ahead = [Some(until_rims(&case.specimen, now)), until_toughness(case, now), self.until_limit_load(case, now, grown)];
         let left = ahead.into_iter().flatten().filter(|left| !left.is_nan()).fold(f64::INFINITY, f64::min).max(0.0);
         let by_growth = if grown > 0.0 { grown / (grown + left) } else { 0.0 };
         let share = by_length.max(by_growth).max(now.cycles / case.stop.cycles_max).clamp(0.0, 1.0);
@@ -40,7 +39,7 @@ impl Way {
     }
 
     /// Growth left until the weakest section yields, m.
-    fn until_limit_load(&mut self, case: &Case, now: &GrowthStatus<'_>, grown: f64) -> Option<f64> {
+    fn until_limit_load(&mut self, case: &Case, now: &CurvePoint, grown: f64) -> Option<f64> {
         if !case.stop.by_net_section || case.loading.control != LoadControl::Load {
             return None;
         }
@@ -53,14 +52,14 @@ impl Way {
 }
 
 /// Growth left until K_max is the toughness, m.
-fn until_toughness(case: &Case, now: &GrowthStatus<'_>) -> Option<f64> {
+fn until_toughness(case: &Case, now: &CurvePoint) -> Option<f64> {
     let k_max = case.stop.required.unwrap_or(1.0) * now.k_max(&case.loading);
     let ratio = case.toughness_at_end()? / k_max;
     Some(now.crack_length * (ratio * ratio - 1.0))
 }
 
 /// Growth of all tips until each has met a rim straight on, m.
-fn until_rims(specimen: &Specimen, now: &GrowthStatus<'_>) -> f64 {
+fn until_rims(specimen: &Specimen, now: &CurvePoint) -> f64 {
     let of_tip = |(tip, seed): (&TipRecord, &TipSeed)| match tip.state {
         // On from where it began; in its first direction while it stands there.
         TipState::Active if distance(seed.position, tip.position) > 0.0 => {

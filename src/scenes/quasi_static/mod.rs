@@ -9,6 +9,7 @@ pub mod equilibrium;
 pub mod path;
 pub mod relaxation;
 pub mod steps;
+pub mod stiffness;
 
 use super::bonds::BondState;
 use super::checkpoint::Course;
@@ -16,8 +17,8 @@ use super::failure::Failure;
 use super::interaction::Interaction;
 use super::outcome::{Fracture, SceneFigures};
 use super::scene::{DamageLaw, Procedure, Scene, SceneLaw, SceneSolver};
-use crate::levels::equilibrium::FullLoad;
 use account::Walked;
+use equilibrium::FullLoad;
 use perilife_base::error::{Result, input};
 use relaxation::Relaxation;
 

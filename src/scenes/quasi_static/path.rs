@@ -27,8 +27,7 @@ use super::super::failure::Failure;
 use super::super::outcome::SceneEnd;
 use super::account::{Account, State, Walked};
 use super::control::Control;
-use super::equilibrium::{Equilibrium, Kept, Shape};
-use crate::levels::equilibrium::FullLoad;
+use super::equilibrium::{Equilibrium, FullLoad, Kept, Shape};
 use perilife_base::error::{Error, Result};
 use perilife_plate::specimen::Crack;
 
@@ -71,7 +70,7 @@ pub fn follow(
             let mut shape = Shape::at_rest(size);
             equilibrium.solve(bonds, &mut shape)?;
             full.check_balance(net, &shape.force)?;
-            Standing::first(shape)
+            Standing { shape, elastic: true, growth: GROWTH, ..Standing::default() }
         }
         Some((at, kept)) if at.shape.u.len() == size && at.shape.force.len() == size => {
             equilibrium.renew(&kept, bonds);
@@ -106,7 +105,7 @@ struct Walk<'a, 'n> {
 }
 
 /// Where a walk stands between two states: all that the next one depends on beside bonds and solver.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct Standing {
     shape: Shape,
     account: Account,
@@ -249,23 +248,5 @@ impl Walk<'_, '_> {
         let on_ray = |values: &[f64]| values.iter().map(|v| level * v).collect::<Vec<f64>>();
         let (u, force) = (on_ray(&self.at.shape.u), on_ray(&self.at.shape.force));
         self.at.account.row(self.course, &u, &force, None, bonds)
-    }
-}
-
-impl Standing {
-    /// Before the first damage.
-    fn first(shape: Shape) -> Self {
-        Standing {
-            shape,
-            account: Account::default(),
-            states: 0,
-            elastic: true,
-            growth: GROWTH,
-            broken: 0,
-            broken_at_row: 0,
-            load_at_row: 0.0,
-            level_at_row: 0.0,
-            load_peak: 0.0,
-        }
     }
 }

@@ -21,8 +21,8 @@ use super::super::checkpoint::{Course, of_another};
 use super::super::interaction::{Damaging, Interaction, Memory};
 use super::super::outcome::SceneEnd;
 use super::account::{Account, State, Walked};
+use super::equilibrium::FullLoad;
 use super::relaxation::{Loads, Relaxation, RestEnd, Rested, Swing, mobility};
-use crate::levels::equilibrium::FullLoad;
 use perilife_base::error::Result;
 
 /// Smallest step over the nominal one.
@@ -35,7 +35,7 @@ const DAMAGED: f64 = 0.1;
 const FAILED: f64 = 0.9;
 
 /// Where a run stands after a row: all that its next steps depend on beside bonds and interaction.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 struct Standing {
     u: Vec<f64>,
     account: Account,
@@ -61,14 +61,7 @@ pub fn follow(
     let relaxation = &Relaxation { broken: BROKEN, ..*relaxation };
     let (nominal, size) = (1.0 / steps as f64, full.held.len());
     let mut at = match course.take_up::<(Standing, Memory)>(bonds)? {
-        None => Standing {
-            u: vec![0.0; size],
-            account: Account::default(),
-            step: nominal,
-            evaluations: 0,
-            peak: 0.0,
-            breaking: false,
-        },
+        None => Standing { u: vec![0.0; size], step: nominal, ..Standing::default() },
         Some((at, memory)) if at.u.len() == size && interaction.restore(&memory, bonds) => at,
         Some(_) => return Err(of_another()),
     };

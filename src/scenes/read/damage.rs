@@ -19,7 +19,6 @@ const fn stretch(name: &'static str, text: &'static str) -> Key {
 }
 
 perilife_base::keys! {
-    /// Keys of `[damage]`.
     pub struct DamageKeys {
         law: DamageLaw = key("law", "Damage law"), or "none" DamageLaw::None;
         enters: Option<DamageEntry> = key("enters", "Where damage acts in point laws: default influence");

@@ -32,7 +32,6 @@ const SPEED: Quantity = Quantity { what: "a velocity", unit: "mm/s", low: -1e8, 
 pub const TIME: Quantity = Quantity { what: "a time", unit: "s", low: 0.0, high: 1e6, si: 1.0 };
 
 perilife_base::keys! {
-    /// Keys of one load of a scene.
     pub struct LoadKeys {
         kind: LoadKind = key("kind", "Kind of load");
         edges: Option<Vec<Edge>> = key("edges", "Loaded sides");

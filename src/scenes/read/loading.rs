@@ -28,7 +28,6 @@ perilife_base::keys! {
 /// Key of a load and of all of them.
 const RAMP: &str = "ramp_s";
 
-/// What `[loading]` asks for.
 pub struct Loading {
     pub drives: Vec<SceneLoad>,
     /// How they are worked through.

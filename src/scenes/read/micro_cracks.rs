@@ -24,7 +24,6 @@ const SHORT: Quantity = Quantity { what: "a length", unit: "mm", low: 0.0, high:
 const ANGLE: &str = "an angle in degrees";
 
 perilife_base::keys! {
-    /// Keys of `[micro_cracks]`.
     pub struct MicroCrackKeys {
         seed: u64 = key("seed", "Seed of all draws");
         count: usize = number("count", "Number of cracks", "a whole number", 1.0, 20_000.0);

@@ -24,7 +24,6 @@ perilife_base::kinds! {
 const OF_POINTS: (&str, &[&str]) = ("bond_law", &["correspondence"]);
 
 perilife_base::keys! {
-    /// Keys of `[model]` of a scene.
     pub struct ModelKeys {
         bond_law: Option<String> = key("bond_law", "Bond law: default two_parameter");
         kernel: Option<Kernel> = key("kernel", "Kernel: weight of bonds over their length");

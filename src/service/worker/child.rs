@@ -359,10 +359,7 @@ impl Observer for Teller<'_> {
 
     fn looked(&self, snapshot: &Snapshot, grid: &PointGrid) {
         let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
-        // The picture is taken where the run stands; its cycles may count from before N = 0.
-        let cycles = told.progress.map_or(0.0, |progress| progress.cycles);
-        let snapshot = Snapshot { cycles, ..snapshot.clone() };
-        let paths = told.paths.clone();
+        let (snapshot, paths) = (snapshot.clone(), told.paths.clone());
         told.look = Some(LivePicture { snapshot, grid: grid.clone(), cracks: self.cracks.to_vec(), paths });
     }
 
