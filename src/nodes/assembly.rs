@@ -42,12 +42,10 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// For a plate of so many nodes.
     pub fn of(nodes: usize) -> Self {
         Scratch { numbers: vec![u32::MAX; nodes], ..Scratch::default() }
     }
 
-    /// Takes the shape functions at all points.
     fn read(&mut self, plate: &Discretisation, leaf: usize, points: &[QuadraturePoint]) -> Result<()> {
         let (mut left_out, size) = (0.0, plate.grid.spacing(leaf));
         self.values.clear();
@@ -89,7 +87,6 @@ impl Scratch {
         }
     }
 
-    /// Gradients and strains at all points.
     fn fill(&mut self, plate: &Discretisation, thickness: f64) {
         let Scratch { values, ends, fields, numbers, nodes, enriched, gradients, strains, stresses, .. } = self;
         let (n, m, points, tips) = (2 * nodes.len(), enriched.len(), ends.len(), plate.axes.len());

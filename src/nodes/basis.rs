@@ -75,7 +75,6 @@ trait Basis<const M: usize> {
     fn at_origin(&self, origin: Point, scale: f64) -> [[f64; M]; 3];
 }
 
-/// 1, x, y.
 #[derive(Debug, Clone, Copy)]
 struct Linear;
 
@@ -89,7 +88,6 @@ impl Basis<3> for Linear {
     }
 }
 
-/// 1, x, y, x², xy, y².
 #[derive(Debug, Clone, Copy)]
 struct Quadratic;
 
@@ -272,12 +270,10 @@ impl Basis<7> for Intrinsic<'_> {
 }
 
 impl AnyBasis {
-    /// Of a plate with these tips.
     pub fn new(kind: BasisKind, enrichment: Enrichment, axes: &[TipAxes]) -> Self {
         AnyBasis { kind, tips: if enrichment == Enrichment::Intrinsic { axes.to_vec() } else { Vec::new() } }
     }
 
-    /// Whether it is 1, x, y everywhere.
     pub fn is_linear(&self) -> bool {
         self.kind == BasisKind::Linear && self.tips.is_empty()
     }

@@ -51,7 +51,6 @@ impl Square {
     }
 }
 
-/// Loads and supports.
 #[derive(Debug, Clone, Default)]
 pub struct Boundary {
     /// Forces on the unknowns at unit nominal load, N, those of grips last; where sides are moved, what moves them by 1 m.

@@ -54,7 +54,6 @@ pub struct QuadraturePoint {
     pub area: f64,
 }
 
-/// What divides the cells of a plate.
 pub struct Dividers {
     sides: Vec<[Point; 2]>,
     cracks: Vec<[Point; 2]>,
@@ -71,7 +70,6 @@ pub struct OfCell {
 }
 
 impl Dividers {
-    /// Those of a plate with its cracks.
     pub fn of(plate: &Discretisation) -> Self {
         let grid = &plate.grid;
         let pieces = plate.obstacles.cuts.iter().flat_map(|cut| cut.points.windows(2)).map(|piece| [piece[0], piece[1]]);
@@ -176,7 +174,6 @@ fn holds(piece: &[Point], at: Point, slack: f64) -> bool {
     })
 }
 
-/// Mean of the corners of a piece.
 pub fn middle(piece: &[Point]) -> Point {
     [0, 1].map(|i| piece.iter().map(|corner| corner[i]).sum::<f64>() / piece.len() as f64)
 }

@@ -108,7 +108,6 @@ impl Segment {
 }
 
 pub struct Contact {
-    /// Segments in contact.
     pub pressed: Vec<Pressed>,
     /// Their forces on the unknowns, N.
     pub forces: Vec<f64>,

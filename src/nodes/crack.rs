@@ -148,7 +148,6 @@ impl TipAxes {
         if self.is_beside_bend(at) { (r, theta - std::f64::consts::TAU.copysign(theta)) } else { (r, theta) }
     }
 
-    /// A vector in the axes of the tip.
     pub fn to_axes(&self, [x, y]: Point) -> Point {
         let [c, s] = self.ahead;
         [c * x + s * y, c * y - s * x]

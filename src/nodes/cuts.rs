@@ -29,7 +29,6 @@ pub struct Cut {
 /// Everything that parts nodes from points.
 #[derive(Debug, Clone, Default)]
 pub struct Obstacles {
-    /// Cracks and slots.
     pub cuts: Vec<Cut>,
     holes: Vec<Hole>,
     /// Sides of slots, and of an outline that is not convex.
@@ -70,7 +69,6 @@ impl NearCut {
 pub type Way = (f64, Point);
 
 impl Obstacles {
-    /// Of a plate with these cuts.
     pub fn new(specimen: &Specimen, cuts: Vec<Cut>) -> Self {
         let outline = &specimen.outline;
         let n = outline.len();
@@ -141,7 +139,6 @@ impl Near {
             && self.holes.iter().all(misses)
     }
 
-    /// Whether nothing is near.
     pub fn is_empty(&self) -> bool {
         self.cuts.is_empty() && self.holes.is_empty() && self.edges.is_empty()
     }

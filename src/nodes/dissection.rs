@@ -46,7 +46,6 @@ struct Plan {
     parts: Vec<Plan>,
 }
 
-/// A part of the plate with its factor.
 #[derive(Debug)]
 struct Subdomain {
     front: FrontalMatrix,

@@ -29,7 +29,6 @@ const ON_FACE: f64 = 1e-7;
 /// Angle from the line behind a tip below which a face is straight, as sine.
 const STRAIGHT: f64 = 1e-9;
 
-/// What a tip has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipFactors {
     /// K_I and K_II, Pa√m.

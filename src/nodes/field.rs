@@ -27,7 +27,6 @@ use perilife_plate::williams::Elasticity;
 /// Distance from a tip, in its spacings, within which nodes carry its fields.
 pub const ENRICHED_SPACINGS: f64 = 3.0;
 
-/// What a leaf sees.
 #[derive(Debug, Clone, Default)]
 struct Neighbourhood {
     nodes: Vec<u32>,
@@ -43,7 +42,6 @@ impl Neighbourhood {
     }
 }
 
-/// A plate of nodes.
 #[derive(Debug, Clone)]
 pub struct Discretisation {
     pub grid: Grid,
@@ -277,7 +275,6 @@ impl Discretisation {
     }
 }
 
-/// Adds a multiple of a vector.
 fn add(sum: &mut Point, factor: f64, vector: &Point) {
     sum.iter_mut().zip(vector).for_each(|(sum, component)| *sum += factor * component);
 }
