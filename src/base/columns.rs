@@ -17,7 +17,6 @@ const DIGITS: usize = 10;
 /// Remedy for files of results that are not as they were written.
 pub const AGAIN: &str = "the folder is damaged: copy it again, or rerun the case";
 
-/// How numbers are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Digits {
     /// With 10 to 15 significant digits: unit conversion may disturb the last of the 17 that a double carries.
@@ -44,9 +43,7 @@ struct Column {
 /// Columns of equal length under the name of their file; an empty cell is NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// Name of the file, or the path that it was read from.
     pub file: PathBuf,
-    /// Units of the text that it was read from.
     pub units: System,
     columns: Vec<Column>,
 }
@@ -67,12 +64,10 @@ impl Table {
         self.with(name, Cells::numbers(values, Digits::Few))
     }
 
-    /// Adds numbers that read back bit for bit.
     pub fn exact(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = impl Into<Option<f64>>>) -> Self {
         self.with(name, Cells::numbers(values, Digits::All))
     }
 
-    /// Adds whole numbers.
     pub fn counts(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = usize>) -> Self {
         self.with(name, Cells::Numbers(values.into_iter().map(|count| count as f64).collect(), Digits::None))
     }
@@ -82,7 +77,6 @@ impl Table {
         self.words(name, values.into_iter().map(|words| defused(&words.to_string()).into_owned()))
     }
 
-    /// Adds text of this program.
     pub fn words<W: ToString>(self, name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = W>) -> Self {
         self.with(name, Cells::Words(values.into_iter().map(|words| words.to_string()).collect()))
     }
@@ -288,7 +282,6 @@ impl Cells {
     }
 }
 
-/// The number of a cell, NaN of an empty one.
 fn number(cell: &str) -> Option<f64> {
     if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok().filter(|value: &f64| value.is_finite()) }
 }
@@ -303,7 +296,6 @@ pub fn number_text(value: f64) -> String {
     rounded_text(value, 14)
 }
 
-/// With so many digits behind the first.
 fn rounded_text(value: f64, digits: usize) -> String {
     placed(value, &format!("{value:.digits$e}"))
 }

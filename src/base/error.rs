@@ -18,11 +18,9 @@ pub enum Error {
     /// A file could not be read or written (exit code 4).
     #[error("{}: {action}: {source}", path.display())]
     File {
-        /// The file or folder in question.
         path: PathBuf,
         /// What was tried, for example "cannot read" (reads well after the path and a colon).
         action: &'static str,
-        /// What the operating system answered.
         #[source]
         source: std::io::Error,
     },
@@ -151,7 +149,6 @@ pub fn input(key: &str, value: impl fmt::Display, problem: impl Into<String>, re
     }))
 }
 
-/// Input error about a key that is missing or a combination of keys.
 pub fn input_missing(key: &str, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
     Error::Input(Box::new(InputError {
         key: Some(key.to_owned()),

@@ -7,7 +7,6 @@ use std::sync::OnceLock;
 
 use crate::error::{Result, input};
 
-/// The committed table as text.
 pub const TABLE: &str = include_str!("../../data/boundaries.csv");
 pub const COLUMNS: &str = "sweep,method,parameter,is_safe,low,high,bound_percent,version,date";
 
@@ -63,7 +62,6 @@ pub fn all() -> &'static [Limit] {
     READ.get_or_init(|| parse(TABLE).unwrap_or_default())
 }
 
-/// The limit of a method in a sweep, if one was measured.
 pub fn of(sweep: &str, method: &str) -> Option<&'static Limit> {
     all().iter().find(|limit| limit.sweep == sweep && limit.method == method)
 }

@@ -19,7 +19,6 @@ pub struct Snapshot {
     pub stress: Vec<f64>,
 }
 
-/// Lattice of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PointGrid {
     /// Lattice spacing, m; the finest one where there are several.
@@ -37,7 +36,6 @@ pub struct PointGrid {
 }
 
 impl PointGrid {
-    /// That of a run without points.
     pub fn none() -> PointGrid {
         PointGrid { spacing: f64::NAN, columns: 0, rows: 0, origin: [0.0; 2], angle: 0.0, point_at: Vec::new() }
     }

@@ -13,7 +13,6 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub struct Seal {
     /// What a file that does not begin with `magic` is no checkpoint of, in words.
     pub of: &'static str,
-    /// First bytes.
     pub magic: &'static [u8],
     /// Form of what follows; one higher with every change of it, or of what the program does with it.
     pub form: u32,
@@ -48,7 +47,6 @@ impl Seal {
     }
 }
 
-/// A checkpoint that cannot be taken up.
 pub fn refused(problem: impl Into<String>) -> Error {
     Error::Input(Box::new(InputError {
         problem: problem.into(),

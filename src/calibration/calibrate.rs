@@ -65,7 +65,6 @@ impl Calibration {
         }
     }
 
-    /// What the user should know.
     pub fn warnings(&self) -> &[String] {
         match self {
             Calibration::Lives(calibration) => &calibration.warnings,
@@ -73,7 +72,6 @@ impl Calibration {
         }
     }
 
-    /// Finds the constants.
     pub fn fit(&self, observer: &dyn Observer) -> Result<Fitted<'_>> {
         Ok(match self {
             Calibration::Lives(calibration) => Fitted::Lives(calibration, Box::new(calibrate(calibration, observer)?)),
@@ -83,7 +81,6 @@ impl Calibration {
 }
 
 impl Fitted<'_> {
-    /// What the user should know about the fit.
     pub fn warnings(&self) -> &[String] {
         match self {
             Fitted::Lives(_, fit) => &fit.warnings,

@@ -12,7 +12,6 @@ use perilife_measured::MeasuredCurve;
 pub const DELTA_K_RATIO_MIN: f64 = 2.0;
 
 perilife_base::kinds! {
-    /// Constants a calibration can fit.
     pub enum Parameter for "fit.parameters" {
         A = "a": "the constant A",
         P = "p": "the exponent p",
@@ -20,7 +19,6 @@ perilife_base::kinds! {
 }
 
 perilife_base::keys! {
-    /// Keys of `[fit]`.
     pub struct FitKeys {
         parameters: Vec<Parameter> = key("parameters", "Fitted constants"), or "a, p" vec![Parameter::A, Parameter::P];
         p: Option<f64> = key("p", "Exponent p: given, not fitted");
@@ -36,12 +34,8 @@ pub(super) fn exponent(fit: &FitKeys, folder: &Folder, method: Method, delta_k_r
     let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
     if !parameters.contains(&Parameter::A) {
         let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
-        return Err(input(
-            "fit.parameters",
-            format!("[{}]", names.join(", ")),
-            "does not contain a, which is always fitted",
-            remedy,
-        ));
+        let problem = "does not contain a, which is always fitted";
+        return Err(input("fit.parameters", format!("[{}]", names.join(", ")), problem, remedy));
     }
     match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
         (_, Some(p), Some(_)) => Err(input("fit.p", p, "conflicts with record", "give p or record")),
@@ -85,7 +79,6 @@ pub struct Exponent {
     pub error: f64,
     /// `given`, or the file of the record; empty where it is fitted.
     source: String,
-    /// What the user should know about it.
     pub warning: Option<String>,
 }
 

@@ -32,13 +32,11 @@ pub struct FitTask<'a> {
     pub curves: &'a [MeasuredCurve],
     /// p given by the user; `None` fits it.
     pub fixed_p: Option<f64>,
-    /// Which lives count.
     pub criterion: Criterion,
     /// ΔK of the handbook (Pa√m) at a crack length (m).
     pub delta_k: &'a dyn Fn(f64) -> f64,
 }
 
-/// Result of a calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
     /// The curve that the constants are shown beside: the pointwise median of several specimens, or the only one.
@@ -46,7 +44,6 @@ pub struct Fit {
     pub specimens: Vec<FittedCurve>,
     /// Covariance of the record's (ln A, p).
     pub confidence: Confidence,
-    /// Paris equivalents of the record.
     pub paris: Paris,
     /// The curve of the rates, where that is the law that is written.
     pub curve: Option<CurveLaw>,
@@ -54,7 +51,6 @@ pub struct Fit {
     pub power_law_misfit: Option<MisfitAtEnds>,
     /// By how much the law misses the curve that it was fitted to at its first and last readings.
     pub misfit_at_ends: MisfitAtEnds,
-    /// Readings that do not belong.
     pub left_out: Vec<LeaveOut>,
     /// The bonds that A and p of the record are of; without them they are C (m/cycle, MPa√m) and m.
     pub bonds: Option<Bonds>,
@@ -62,7 +58,6 @@ pub struct Fit {
     pub own_path: Option<OwnPath>,
     /// Scatter of the specimens; `None` where their readings do not tell it.
     pub population: Option<Population>,
-    /// What the user should know.
     pub warnings: Vec<String>,
 }
 

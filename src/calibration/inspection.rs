@@ -57,7 +57,6 @@ pub struct InspectFrom {
 }
 
 impl InspectFrom {
-    /// Refuses a factor below 1.
     pub fn check(&self) -> Result<()> {
         if self.factor.is_finite() && self.factor >= 1.0 {
             return Ok(());
@@ -71,7 +70,6 @@ impl InspectFrom {
 pub struct TipLengths {
     /// By tip; empty of the end of a slot.
     pub lengths: Vec<Vec<f64>>,
-    /// The tip that ends the life.
     pub leads: usize,
 }
 

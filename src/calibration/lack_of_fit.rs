@@ -30,13 +30,10 @@ pub struct Misfit {
 /// Misfit at both ends, whatever its standard error; `None` without growth there.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MisfitAtEnds {
-    /// The first readings.
     pub low: Option<Misfit>,
-    /// The last ones.
     pub high: Option<Misfit>,
 }
 
-/// Least intervals of an end.
 const INTERVALS_MIN: usize = 2;
 
 /// Misfit of the typical specimen at its first and last readings, those within a tenth of the range of ln ΔK, or two intervals: the mean over
@@ -86,7 +83,6 @@ impl MisfitAtEnds {
         misfits.max_by(|a, b| a.abs().total_cmp(&b.abs()))
     }
 
-    /// Both ends in one line.
     pub fn words(&self) -> String {
         let figure =
             |value: f64, whole: f64, digits: usize| format!("{value:.*}", if value < whole { digits } else { digits - 1 });

@@ -14,20 +14,16 @@ use perilife_laws::paris::ParisLaw;
 /// Intervals of crack length for the straight line: on the Virkler window 1 mm, as long as a lattice spacing.
 const INTERVALS: usize = 40;
 
-/// Paris equivalents of a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paris {
     /// C in mm/cycle and MPa√m.
     pub c: f64,
-    /// Exponent m.
     pub m: f64,
-    /// Its standard error; 0 where p was given.
     pub m_error: f64,
     /// Pivot ΔK, MPa√m.
     pub pivot: f64,
     /// Rate at the pivot, mm/cycle.
     pub rate_at_pivot: f64,
-    /// Its relative standard error.
     pub rate_at_pivot_error: f64,
     /// Smallest ΔK of the window, MPa√m.
     pub delta_k_min: f64,

@@ -30,7 +30,6 @@ const GRADIENT_MIN: f64 = -0.08 * 1.05 / MM;
 /// Readings on each side of the middle one of a parabola.
 const HALF_SPAN: usize = 3;
 
-/// First line of a table of rates.
 pub const HEADER: &str = "specimen,cycles,crack_length_mm,delta_k_mpa_sqrt_m,da_dn_mm_per_cycle,flags,stress_ratio\n";
 
 perilife_base::kinds! {
@@ -41,7 +40,6 @@ perilife_base::kinds! {
     }
 }
 
-/// Growth rate at one crack length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatePoint {
     pub cycles: f64,
@@ -57,7 +55,6 @@ pub struct RatePoint {
     pub ratio: f64,
     /// Largest difference of crack length between sides at the readings of the point, m.
     pub side_difference: f64,
-    /// What speaks against the point.
     pub flags: Flags,
 }
 
@@ -69,7 +66,6 @@ impl RatePoint {
     }
 }
 
-/// What speaks against a rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Flags {
     /// A step of crack length at this point is under 0.25 mm, or near the threshold under ten times the precision of a reading.

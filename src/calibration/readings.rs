@@ -48,9 +48,7 @@ pub struct Reading {
     pub delta_k_mpa_sqrt_m: Option<f64>,
     /// `None` at the ends of a record.
     pub da_dn_mm_per_cycle: Option<f64>,
-    /// How the rate was taken.
     pub method: String,
-    /// What speaks against it.
     pub marks: String,
     /// Why it does not count; empty where it does.
     pub left_out: String,

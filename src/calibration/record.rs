@@ -57,7 +57,6 @@ pub struct LivesRecord {
     pub life_fitted: Figure,
     /// Name of the curve that the lives are of: that of a specimen, or `median` or `mean`.
     pub fitted_to: String,
-    /// Fit window.
     pub from_crack_length_mm: f64,
     pub to_crack_length_mm: f64,
     pub delta_k_min_mpa_sqrt_m: f64,
@@ -97,7 +96,6 @@ pub struct SpecimenRecord {
     pub rms_life_error: Figure,
 }
 
-/// A fit of laws to rates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RatesRecord {
     pub law: GrowthLawKind,
@@ -387,7 +385,6 @@ fn strength(margin: f64) -> &'static str {
     }
 }
 
-/// A number with some significant digits.
 fn figure(value: &Value, digits: usize) -> String {
     let value = value.as_f64().unwrap_or(f64::INFINITY);
     if value != 0.0 && !(1e-3..1e4).contains(&value.abs()) {

@@ -5,7 +5,6 @@ pub mod description;
 pub mod forman;
 pub mod nasgro;
 pub mod paris;
-mod rising;
 pub mod table;
 pub mod walker;
 
@@ -22,7 +21,6 @@ pub use walker::Walker;
 const LAWS: &[&GrowthLawSpec] = &[&bonds::LAW, &paris::LAW, &walker::LAW, &forman::LAW, &nasgro::LAW, &table::LAW];
 
 perilife_base::kinds! {
-    /// Which law of growth a case has.
     pub struct GrowthLawKind of GrowthLawSpec in LAWS for "fatigue.growth_law"
 }
 
@@ -60,7 +58,6 @@ pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
 pub struct Acting {
     /// ΔK of ASTM E647, Pa√m.
     pub delta_k: f64,
-    /// Stress ratio R.
     pub ratio: f64,
     /// Share of the growth that is by them.
     pub share: f64,
@@ -120,7 +117,6 @@ pub trait GrowthLaw: std::fmt::Debug + Send + Sync {
     }
 }
 
-/// A law with its constants, or rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FactorLaw {
     pub kind: GrowthLawKind,

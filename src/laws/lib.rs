@@ -35,10 +35,7 @@ perilife_base::kinds! {
         TipField = "tip_field": "direction and rate of each tip from its K_I and K_II; bonds across the path are cut",
         BondStrain = "bond_strain": "each bond loses life by its own strain and the crack follows broken bonds; from a slot, until K of the tip takes over",
     }
-}
 
-perilife_base::kinds! {
-    /// Which bonds age.
     pub enum Ageing for "fatigue.ageing" {
         CrackTip = "crack_tip": "bonds within zone_radius_horizons × horizon of a crack tip",
         Everywhere = "everywhere": "all bonds",

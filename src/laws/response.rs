@@ -27,7 +27,6 @@ pub struct Response {
 }
 
 impl Response {
-    /// K in proportion to the load.
     pub const PROPORTIONAL: Response = Response { count: 0, loads: [0.0; LOADS_MOST], factors: [0.0; LOADS_MOST] };
 
     /// By pairs of load over the largest, ascending, and K over K_max; fewer than two, or K that is not known, are a proportion.
@@ -47,7 +46,6 @@ impl Response {
         Response::new(&[[0.0, share], [1.0, 1.0]])
     }
 
-    /// Whether K is in proportion to the load.
     pub fn is_proportional(&self) -> bool {
         self.count == 0
     }

@@ -27,7 +27,6 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     pub name: String,
-    /// Column of the specimen's name.
     pub specimen: Option<Column>,
     pub cycles: Column,
     /// Crack length; of several the mean counts.
@@ -44,17 +43,14 @@ pub struct Series {
     pub own: Vec<usize>,
 }
 
-/// What the columns of one file are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
-    /// How specimens are laid out.
     pub shape: Shape,
     /// Columns of the specimens: one series where all rows have the same columns.
     pub series: Vec<Series>,
     pub decimal: Decimal,
     /// What separates columns; empty where cells are stored, not written.
     pub separator: &'static str,
-    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
@@ -358,12 +354,10 @@ fn loads(table: &Table, columns: &[Column], import: &Import, warnings: &mut Vec<
     Ok(if says_cycle { (found, Vec::new()) } else { (Vec::new(), found) })
 }
 
-/// Whether a column holds stresses.
 pub(super) fn is_stress(column: &Column) -> bool {
     matches!(column.unit, Named::Is(unit) if unit.is_stress())
 }
 
-/// The line that says which columns of a wide table are not specimens.
 fn not_specimens(table: &Table, columns: &[Column]) -> Option<String> {
     let statistics = columns.iter().filter(|column| column.role == Role::Statistic);
     let names: Vec<&str> = statistics.map(|column| table.header[column.index].as_str()).collect();

@@ -11,12 +11,10 @@ use perilife_base::table::{Fault, Table};
 use perilife_base::units::{MM, round_off};
 use perilife_plate::specimen::{LoadMeasure, Specimen, SpecimenKind};
 
-/// Fewest readings a curve can have.
 pub const READINGS_MIN: usize = 5;
 
 /// Fall of a crack length over the scatter of readings, and over the whole growth, beyond which a reading is a typing error.
 const FALL_SCATTERS: f64 = 10.0;
-/// See [`FALL_SCATTERS`].
 const FALL_SHARE: f64 = 0.02;
 
 /// Slack of window ends against readings, m: `9.0 mm` in a file and in a key need not be the same binary number.
@@ -41,7 +39,6 @@ pub struct MeasuredCurve {
     pub left_out: Vec<bool>,
     /// Precision of a reading, m, where the user says it.
     pub precision: Option<f64>,
-    /// Where the readings stand.
     pub source: Source,
 }
 
@@ -49,7 +46,6 @@ pub struct MeasuredCurve {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stated {
     pub role: Role,
-    /// Whether it holds stresses.
     pub is_stress: bool,
     pub column: String,
     /// What a number of the file is multiplied by for SI units.
@@ -75,7 +71,6 @@ pub struct Source {
     pub length_unit: f64,
     /// Whether the file has lengths tip to tip, of which the half was taken.
     pub is_tip_to_tip: bool,
-    /// Whether the specimen has the name of its file.
     pub is_named_by_file: bool,
     /// Cycles of the file at the first reading of a window, which counts them from 0.
     pub cycles_before: f64,
@@ -148,7 +143,6 @@ impl MeasuredCurve {
         self.load_factor.is_empty() && !self.left_out.contains(&true)
     }
 
-    /// Whether the growth up to a reading counts.
     pub fn counts(&self, reading: usize) -> bool {
         self.left_out.get(reading) != Some(&true)
     }
@@ -231,12 +225,10 @@ impl MeasuredCurve {
     }
 }
 
-/// Curves of one or many files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
     /// One curve per specimen, in the order of the files.
     pub curves: Vec<MeasuredCurve>,
-    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
@@ -313,7 +305,6 @@ impl Measured {
         Ok(())
     }
 
-    /// Takes typing errors out of the curves.
     pub(super) fn exclude_typing_errors(&mut self) {
         let mut left_out = Vec::new();
         for curve in self.curves.iter_mut().filter(|curve| curve.cycles.len() > READINGS_MIN) {

@@ -11,11 +11,9 @@ use perilife_base::table::{Row, Table};
 
 /// Cells that answer what the name of the column asks.
 const YES: &str = "yes y true t 1 x ja j oui si wahr vrai";
-/// See [`YES`].
 const NO: &str = "no n false f 0 nein non falsch faux";
 /// Cells that say whether the reading counts, whatever the name of the column asks.
 const COUNTS: &str = "ok good valid keep kept use used include included accept accepted pass passed";
-/// See [`COUNTS`].
 const COUNTS_NOT: &str = "bad invalid reject rejected outlier exclude excluded discard discarded fail failed";
 /// Further words of remarks on readings that do not count.
 const REMARKS: &str = "void voided unusable ungueltig verworfen ausreisser rejete rejetee invalide rechazado scartato";

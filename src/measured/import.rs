@@ -53,7 +53,6 @@ impl LeaveOut {
         before < to - slack && after > from + slack
     }
 
-    /// Line and value, or specimen and cycles.
     pub fn place(&self) -> String {
         let named = |name: &Option<String>, what| name.as_ref().map_or_else(String::new, |name| format!("{what}{name} "));
         let [from, to] = [self.from_cycles, self.to_cycles].map(Option::unwrap_or_default);

@@ -6,7 +6,6 @@ use super::curve::{Measured, READINGS_MIN};
 use super::import::LeaveOut;
 use perilife_base::error::{Result, input, input_missing};
 
-/// Most names of specimens in a message.
 const NAMES_MAX: usize = 20;
 
 impl Measured {

@@ -26,8 +26,7 @@ mod table;
 use std::path::{Path, PathBuf};
 
 pub use columns::{Layout, Series, Shape};
-pub use curve::first_of;
-pub use curve::{Loads, Measured, MeasuredCurve, PROBLEMS_MAX, READINGS_MIN, Source, side_difference_max};
+pub use curve::{Loads, Measured, MeasuredCurve, PROBLEMS_MAX, READINGS_MIN, Source, first_of, side_difference_max};
 pub use import::{ColumnNames, Import, LeaveOut, check_left_out};
 pub use loads::{LoadHistory, SAME_LOAD, ratio_warnings};
 pub use perilife_base::table::names::{Column, Named, Role};
@@ -62,12 +61,9 @@ pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
 /// What a file holds although some of it is wrong.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Survey {
-    /// Column names as written.
     pub header: Vec<String>,
-    /// Cells of the first rows below them.
     pub first_rows: Vec<Vec<String>>,
     pub layout: Option<Layout>,
-    /// Curves of the good rows.
     pub measured: Measured,
     /// What is wrong, row by row, up to [`PROBLEMS_MAX`].
     pub problems: Vec<InputError>,

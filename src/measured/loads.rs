@@ -10,8 +10,7 @@ use perilife_base::error::{Result, input_missing};
 use perilife_base::linear_fit::line;
 use perilife_base::table::Fault;
 use perilife_base::table::names::Role;
-use perilife_base::units::round_off;
-use perilife_base::units::{KN, MM, MPA, MPA_SQRT_M};
+use perilife_base::units::{KN, MM, MPA, MPA_SQRT_M, round_off};
 use perilife_plate::loading::{Loading, SAME_RATIO};
 use perilife_plate::material::Material;
 use perilife_plate::specimen::handbook::{HandbookFormula, handbook};
@@ -25,9 +24,7 @@ const STATED_DIFFERENCE: f64 = 0.02;
 
 /// Share of the plate, multiple of the toughness and leap of K beyond which a reading is of the fracture and not of fatigue.
 const LIGAMENT_LEFT: f64 = 0.95;
-/// See [`LIGAMENT_LEFT`].
 const TOUGHNESS_FACTOR: f64 = 1.5;
-/// See [`LIGAMENT_LEFT`].
 const LEAP_OF_K: f64 = 2.0;
 
 impl Measured {
@@ -58,11 +55,8 @@ impl Measured {
     pub fn compare_with(&mut self, specimen: &Specimen, material: &Material, loading: &Loading) -> Result<()> {
         if let Some(course) = loading.course() {
             let problem = "depends on crack length; the load of readings comes from their own columns";
-            return Err(input_missing(
-                &course.key,
-                problem,
-                "give one number, and the load of every reading as a column such as force_max_n",
-            ));
+            let remedy = "give one number, and the load of every reading as a column such as force_max_n";
+            return Err(input_missing(&course.key, problem, remedy));
         }
         let (limit, limit_name) = specimen.length_limit();
         self.take_whole_lengths(specimen);
@@ -134,10 +128,8 @@ impl Measured {
                 let value = round_off(curve.crack_length[first] / curve.source.length_unit).to_string();
                 let fault = Fault { key: Some(&curve.source.length_column), value: Some(&value), ..curve.fault(first) };
                 let problem = format!("is at fracture ({why}); only {first} readings precede it");
-                return Err(fault.error(
-                    problem,
-                    format!("give at least {READINGS_MIN} readings of fatigue growth; check the unit and the load"),
-                ));
+                let remedy = format!("give at least {READINGS_MIN} readings of fatigue growth; check the unit and the load");
+                return Err(fault.error(problem, remedy));
             }
             let more = curve.cycles.len() - first - 1;
             left_out.push(format!(
@@ -311,7 +303,6 @@ impl MeasuredCurve {
         (0..self.cycles.len()).map(of_step).collect()
     }
 
-    /// Loads over the growth of the crack.
     pub fn load_history(&self) -> LoadHistory {
         let mut history =
             LoadHistory { lengths: Vec::with_capacity(self.cycles.len()), factors: Vec::with_capacity(self.cycles.len()) };

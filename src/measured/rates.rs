@@ -41,14 +41,12 @@ const HARMLESS: &str = "load_changes";
 pub struct RateRow {
     /// Test it belongs to: its file, and the specimen where the file names one. Rows of a test follow each other.
     pub series: String,
-    /// Where it stands, for messages.
     pub place: String,
     pub line: usize,
     /// Tensile ΔK, Pa√m.
     pub delta_k: f64,
     /// da/dN, m/cycle.
     pub rate: f64,
-    /// Stress ratio R.
     pub ratio: f64,
 }
 
@@ -70,11 +68,9 @@ pub struct RateTable {
     pub rows: Vec<RateRow>,
     /// Rows that carry a flag of `perilife rates`.
     pub flagged: usize,
-    /// What else the user should know.
     pub warnings: Vec<String>,
     /// Names of the columns of ΔK and da/dN.
     pub columns: [String; 2],
-    /// Whether the table, or the user, says its stress ratio.
     pub says_ratio: bool,
     /// Units of ΔK and da/dN, for those who read a result.
     pub units: [&'static str; 2],
@@ -262,10 +258,9 @@ pub fn read(bytes: &[u8], file: &Path, keys: &RateFileKeys) -> Result<RateTable>
     if let Some(row) = table.rows.iter().find(|row| row.ratio < 0.0) {
         let Some(range) = keys.delta_k else {
             let fault = Fault { line: Some(row.line), key: Some("delta_k"), ..whole_file(file) };
-            return Err(fault.error(
-                format!("R = {}: is ΔK the full range (1 − R) K_max or K_max (ASTM E647)?", row.ratio),
-                "set delta_k = \"full\" (NASGRO and many laboratories) or \"tensile\" (ASTM E647, `perilife rates`)",
-            ));
+            let problem = format!("R = {}: is ΔK the full range (1 − R) K_max or K_max (ASTM E647)?", row.ratio);
+            let remedy = "set delta_k = \"full\" (NASGRO and many laboratories) or \"tensile\" (ASTM E647, `perilife rates`)";
+            return Err(fault.error(problem, remedy));
         };
         table.range = Some(range);
     }
@@ -317,7 +312,6 @@ fn without_columns(table: &Table) -> perilife_base::error::Error {
     )
 }
 
-/// The error of rates without a stress ratio.
 pub fn lacks_ratio(file: &str, key: &str) -> perilife_base::error::Error {
     let remedy = format!("add a column stress_ratio, or write {{ file = \"{file}\", stress_ratio = ... }}");
     input_missing(key, "is not a column, and no stress_ratio is set for the file", remedy)

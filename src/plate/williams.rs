@@ -6,12 +6,9 @@
 
 use crate::material::{Material, Plane};
 
-/// Symmetry of an eigenfunction about the crack plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Symmetry {
-    /// Opens the crack.
     Opening,
-    /// Slides the faces.
     Sliding,
 }
 
@@ -27,7 +24,6 @@ pub struct Elasticity {
 }
 
 impl Elasticity {
-    /// Constants of a material.
     #[inline]
     pub fn of(material: &Material) -> Self {
         let nu = material.poisson_ratio;
@@ -78,7 +74,6 @@ fn mutual_energy(stress: &[f64; 3], auxiliary: &[[f64; 2]; 2]) -> f64 {
     stress[0] * auxiliary[0][0] + stress[1] * auxiliary[1][1] + stress[2] * (auxiliary[0][1] + auxiliary[1][0])
 }
 
-/// An eigenfunction: order n and symmetry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Eigenfunction {
     /// Order n; displacement goes with r^(n/2).

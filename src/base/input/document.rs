@@ -18,7 +18,6 @@ const BY_SET: &str = " (value given by --set)";
 /// A parsed input file that still knows where everything stands in the text.
 #[derive(Debug, Clone)]
 pub struct Document {
-    /// Name of the case: the file stem.
     pub name: String,
     /// Where the files lie that it names.
     pub folder: Folder,
@@ -89,7 +88,6 @@ impl Document {
         Error::Input(Box::new(InputError { more: all, ..first }))
     }
 
-    /// The same of one mistake.
     fn locate_one(&self, trouble: InputError) -> InputError {
         let mut trouble = Box::new(trouble);
         // An option of the command line stands in no file.
@@ -127,7 +125,6 @@ impl Document {
         Ok(())
     }
 
-    /// Applies one override.
     fn set(&mut self, text: &str) -> Result<()> {
         let refuse = |problem: &str| {
             input(
@@ -277,7 +274,6 @@ impl<'t> Sections<'t> {
         self.given(section).unwrap_or(&self.empty)
     }
 
-    /// A section that may be left out.
     pub fn given(&self, section: &str) -> Option<&Value> {
         self.table.get(section)
     }

@@ -37,7 +37,6 @@ impl Folder {
         Folder::at_hand([])
     }
 
-    /// Files given with their content.
     pub fn at_hand(files: impl IntoIterator<Item = (String, Vec<u8>)>) -> Self {
         Folder { disk: None, at_hand: Arc::new(files.into_iter().collect()), opened: Opened::default() }
     }
@@ -53,7 +52,6 @@ impl Folder {
         &self.opened
     }
 
-    /// What messages call a file.
     pub fn path(&self, name: &str) -> PathBuf {
         match &self.disk {
             Some(folder) if !self.at_hand.contains_key(name) => folder.join(name),
@@ -117,19 +115,16 @@ impl FileId {
     }
 }
 
-/// A file as it was read.
 #[derive(Debug, Clone)]
 pub struct OpenedFile {
     /// As the user or the input file names it.
     pub name: String,
-    /// Where it lay, if on disk.
     pub path: Option<PathBuf>,
     pub id: Option<FileId>,
     pub content: Arc<[u8]>,
 }
 
 impl OpenedFile {
-    /// SHA-256 of its bytes, hexadecimal.
     pub fn sha256(&self) -> String {
         sha256(&self.content)
     }
@@ -147,7 +142,6 @@ pub fn sha256(bytes: &[u8]) -> String {
 #[derive(Debug, Clone, Default)]
 pub struct Opened(Arc<Mutex<Provenance>>);
 
-/// What an input was made of.
 #[derive(Debug, Clone, Default)]
 pub struct Provenance {
     /// Every file that was read, in order, each once; the first is the input itself.
@@ -213,7 +207,6 @@ fn stdin() -> Result<Vec<u8>> {
     Ok(content)
 }
 
-/// Bytes of a file as text.
 pub(super) fn text_of(bytes: Vec<u8>, path: &Path) -> Result<String> {
     String::from_utf8(bytes).map_err(|error| {
         let message = format!("is not UTF-8 text (byte {})", error.utf8_error().valid_up_to() + 1);

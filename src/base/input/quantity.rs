@@ -13,9 +13,7 @@ pub struct Quantity {
     pub what: &'static str,
     /// Unit as in the key, may be empty.
     pub unit: &'static str,
-    /// Smallest value accepted, in that unit.
     pub low: f64,
-    /// Largest value accepted, in that unit.
     pub high: f64,
     /// SI units in one of that unit.
     pub si: f64,
@@ -35,7 +33,6 @@ pub const FRACTURE_ENERGY: Quantity = Quantity { what: "an energy", unit: "J/m²
 pub const DENSITY: Quantity = Quantity { what: "a density", unit: "kg/m³", low: 1e-3, high: 1e6, si: 1.0 };
 pub const TIME: Quantity = Quantity { what: "a time", unit: "s", low: 1e-15, high: 1e6, si: 1.0 };
 
-/// A plain number within bounds.
 pub const fn number(what: &'static str, low: f64, high: f64) -> Quantity {
     Quantity { what, unit: "", low, high, si: 1.0 }
 }
@@ -60,7 +57,6 @@ impl Quantity {
         value.map(|value| self.read(key, value)).transpose()
     }
 
-    /// What would be right.
     pub fn remedy(&self) -> String {
         let text = format!("give {} between {} and {} {}", self.what, self.low, self.high, self.unit);
         text.trim_end().to_owned()

@@ -49,7 +49,6 @@ pub(super) fn path_steps(path: &str) -> Vec<String> {
     path.split(['.', '[']).map(|step| step.trim_end_matches(']').to_owned()).filter(|step| !step.is_empty()).collect()
 }
 
-/// A number, whole or not.
 pub fn number_of(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
 }

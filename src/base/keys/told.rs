@@ -94,7 +94,6 @@ impl Told {
         self.rows().into_iter().flat_map(of).collect()
     }
 
-    /// A table of the guide.
     pub fn manual(&self) -> String {
         let row = |(path, key): (String, Key)| {
             let twin = key.twin().map(|(twin, ..)| format!(", `{twin}`")).unwrap_or_default();
@@ -107,7 +106,6 @@ impl Told {
         )
     }
 
-    /// a class of the Python package.
     pub fn stub(&self) -> String {
         class(&class_name("", &self.section), &self.keys, self.tag)
     }
@@ -124,7 +122,6 @@ impl Told {
     }
 }
 
-/// The JSON Schema of a file of these sections.
 pub fn schema(title: &str, sections: &[Told]) -> Json {
     let (mut properties, mut required) = (Map::new(), Vec::new());
     for told in sections {

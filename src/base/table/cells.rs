@@ -9,7 +9,6 @@ use crate::error::{Error, InputError, Result};
 /// Longest cell or row repeated in a message.
 const SHOWN: usize = 40;
 
-/// Most columns of a table of readings.
 pub const COLUMNS_MAX: usize = 4096;
 
 /// Lines that a note of rows left out names.
@@ -18,7 +17,6 @@ const LINES_SHOWN: usize = 10;
 /// Rows that a message about a table of unknown shape shows.
 const ROWS_SHOWN: usize = 5;
 
-/// What stands between columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Separator {
     Tab,
@@ -27,7 +25,6 @@ pub enum Separator {
     Bar,
     /// Two blanks or more, so that names may have blanks.
     Gap,
-    /// Any number of blanks.
     Blanks,
 }
 
@@ -59,7 +56,6 @@ impl Separator {
     }
 }
 
-/// Cells of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     pub file: PathBuf,
@@ -68,7 +64,6 @@ pub struct Table {
     /// Column names with the units of a row of units below the header.
     pub names: Vec<String>,
     pub header_line: usize,
-    /// Rows below the header.
     pub rows: Vec<Row>,
     /// First and last line of text behind the readings, which holds none.
     pub footer: Option<[usize; 2]>,
@@ -76,7 +71,6 @@ pub struct Table {
     pub separator: Option<Separator>,
     /// Lines above the header, and comments there.
     pub preamble: Vec<(usize, String)>,
-    /// What else the user should know.
     pub notes: Vec<String>,
 }
 
@@ -84,7 +78,6 @@ pub struct Table {
 pub struct Row {
     /// Line in the file, counted from 1.
     pub line: usize,
-    /// As many cells as the header has.
     pub cells: StringRecord,
 }
 
@@ -99,7 +92,6 @@ impl Row {
     }
 }
 
-/// What is wrong with a place of a file.
 pub struct Fault<'a> {
     pub file: &'a Path,
     pub line: Option<usize>,
@@ -109,7 +101,6 @@ pub struct Fault<'a> {
 }
 
 impl Fault<'_> {
-    /// The input error that says so.
     pub fn error(&self, problem: impl Into<String>, remedy: impl Into<String>) -> Error {
         Error::Input(Box::new(InputError {
             file: Some(self.file.to_path_buf()),
@@ -152,7 +143,6 @@ impl Table {
         Ok(())
     }
 
-    /// A complaint about a name in the header.
     pub fn header_fault(&self, column: usize) -> Fault<'_> {
         let name = self.header[column].as_str();
         Fault {
@@ -163,7 +153,6 @@ impl Table {
         }
     }
 
-    /// A complaint about a cell.
     pub fn cell_fault<'a>(&'a self, row: &'a Row, column: usize) -> Fault<'a> {
         let cell = row.cell(column);
         let value = if cell.is_empty() { "\"\"" } else { cell };
@@ -190,7 +179,6 @@ impl Table {
     }
 }
 
-/// A complaint about the file as a whole.
 pub fn whole_file(file: &Path) -> Fault<'_> {
     Fault { file, line: None, key: None, value: None }
 }

@@ -21,12 +21,10 @@ const SAMPLE: usize = 400;
 /// Lines among which the header is looked for.
 const PREAMBLE_MAX: usize = 200;
 
-/// Where the table stands among the rows of a cut.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TableBounds {
     /// The header; `None` where the table has none.
     header: Option<usize>,
-    /// First row of readings.
     body: usize,
     columns: usize,
     /// Whether the header names what a test has.
@@ -180,9 +178,8 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
 /// Header and readings of rows that may have a preamble.
 /// Errors: less than two columns.
 pub(super) fn assemble(mut rows: Vec<Row>, file: &Path, words: &dyn Vocabulary) -> Result<Table> {
-    let Some(place) = place(&rows, words) else {
-        return Err(whole_file(file).error("is not a table of 2 to 4096 columns", words.remedy()));
-    };
+    let place =
+        place(&rows, words).ok_or_else(|| whole_file(file).error("is not a table of 2 to 4096 columns", words.remedy()))?;
     let cells = |row: &Row| (0..place.columns).map(|column| row.cell(column).to_owned()).collect::<Vec<String>>();
     let header = match place.header {
         Some(header) => cells(&rows[header]),

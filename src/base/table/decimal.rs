@@ -8,7 +8,6 @@ use super::cells::{Row, Separator, Table};
 use super::numerals::{Decimal, Evidence, evidence, number};
 use crate::error::{Error, Result};
 
-/// A column of numbers that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Numbers {
     /// Its place in the header.
@@ -70,7 +69,6 @@ fn by_the_rest(table: &Table, columns: &[Numbers], seen: &[Seen<'_>]) -> Option<
     }
 }
 
-/// Cells of a column that tell something.
 struct Seen<'t> {
     column: usize,
     all_numbers: bool,

@@ -48,7 +48,6 @@ fn unmarked_utf16(bytes: &[u8]) -> Option<&'static Encoding> {
     }
 }
 
-/// A line of the file with its number.
 pub(super) type Line<'a> = (usize, &'a str);
 
 impl Separator {

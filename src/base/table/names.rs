@@ -19,13 +19,11 @@ const NAME_MAX: usize = 200;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// Readings of crack length.
     Readings,
     /// Rates over ΔK: the forms of readings, K_max and K_min.
     Rates,
     /// Cycles or turning points of a spectrum.
     Spectrum,
-    /// Residual stress over the plate.
     ResidualStress,
     /// β over crack length: the forms of readings, and β.
     Beta,
@@ -39,7 +37,6 @@ impl Kind {
     }
 }
 
-/// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -59,13 +56,11 @@ pub enum Role {
     Range,
     /// Half of the range.
     Amplitude,
-    /// Mean load of a cycle.
     Mean,
     /// Smallest over largest load.
     Ratio,
     /// Loads in their order.
     Value,
-    /// Range of the stress intensity.
     DeltaK,
     /// Stress intensity at maximum load, in tables of rates.
     KMax,
@@ -80,22 +75,15 @@ pub enum Role {
     CountsNot,
     /// Of several specimens or of a model.
     Statistic,
-    /// Place in the plate.
     X,
-    /// See [`Role::X`].
     Y,
-    /// Stress component σ_y.
     StressY,
-    /// Stress component σ_x.
     StressX,
-    /// Stress component τ_xy.
     ShearXy,
     Beta,
-    /// Another quantity of a test.
     Other,
     /// Speaks of cycles, crack length or load, and is not a form of them.
     Unclear,
-    /// None that the vocabulary has.
     Unknown,
 }
 
@@ -133,7 +121,6 @@ const LOAD: Unit = Unit::Load(LoadUnit::Newton);
 const INTENSITY: Unit = Unit::Intensity(IntensityUnit::MpaSqrtM);
 const RATE: Unit = Unit::Rate(RateUnit::Millimetre);
 
-/// Forms of a kind of table, by role.
 type Forms = BTreeMap<Role, BTreeMap<Measure, String>>;
 
 /// Forms and words of a kind of table, with what they mean.
@@ -157,7 +144,6 @@ static PARTS: LazyLock<HashMap<Kind, Part>> = LazyLock::new(|| {
     kinds.iter().map(|(kind, forms)| (*kind, of(forms))).collect()
 });
 
-/// The unit that a name says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Named {
     No,

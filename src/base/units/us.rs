@@ -77,7 +77,6 @@ impl Unit {
     }
 }
 
-/// A key or column in the other system.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Renamed {
     pub name: String,

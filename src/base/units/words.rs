@@ -237,7 +237,6 @@ fn mark_level(text: &str, numbers: &mut [Number], to: System) {
     }
 }
 
-/// A written number times a factor, with as many digits, and in the same form.
 fn times(written: &str, factor: f64) -> String {
     let plain: String = written.replace('−', "-").chars().filter(|c| !SPACES.contains(c)).collect();
     let Ok(value) = plain.parse::<f64>() else { return written.to_owned() };

@@ -15,7 +15,6 @@ use perilife_laws::growth_law::{GrowthLawKind, paris};
 use perilife_measured::rates::lacks_ratio;
 use perilife_measured::{MeasuredCurve, RangeKind, RateFile, RateFileKeys, RateRow};
 
-/// A checked fit of laws.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawCase {
     pub name: String,
@@ -29,13 +28,11 @@ pub struct LawCase {
     pub sources: Vec<SourceFile>,
     /// The test, where rates are taken from readings.
     pub test: Option<Box<CalibrationCase>>,
-    /// What the user should know.
     pub warnings: Vec<String>,
     /// Units that the tables were read in, one line a table.
     pub units: Vec<String>,
     /// What ΔK was in the tables at negative R, where a row has one.
     pub range: Option<RangeKind>,
-    /// The input as given.
     pub echo: serde_json::Value,
 }
 
@@ -49,8 +46,6 @@ perilife_base::keys! {
         from: Option<f64> = intensity("from_delta_k_mpa_sqrt_m", "Fit window: from this ΔK");
         to: Option<f64> = intensity("to_delta_k_mpa_sqrt_m", "Fit window: to this ΔK");
     }
-}
-perilife_base::keys! {
     /// Keys of `[fit]` that only laws have.
     pub struct LawKeys {
         law: Option<FitLaw> = key("law", "Growth law to fit: default paris");
@@ -70,7 +65,6 @@ pub fn is_law_fit(table: &Table) -> bool {
 }
 
 impl LawCase {
-    /// Reads the file and the tables it names.
     pub fn from_document(document: &Document) -> Result<Self> {
         Self::build(document).map_err(|error| document.locate(error))
     }

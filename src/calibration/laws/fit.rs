@@ -20,7 +20,6 @@ const AT_END: f64 = 1e-3;
 /// Smallest over largest eigenvalue of scaled normal equations below which constants trade against each other without end.
 const SINGULAR: f64 = 1e-13;
 
-/// A constant of a fitted law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constant {
     /// Its key in `[fatigue]`.
@@ -59,7 +58,6 @@ impl LawFit {
         self.constants.iter().filter(|constant| constant.value.is_finite())
     }
 
-    /// Root mean square of the residuals.
     pub fn rms(&self) -> f64 {
         (self.residuals.iter().map(|residual| residual * residual).sum::<f64>() / self.residuals.len() as f64).sqrt()
     }
@@ -246,7 +244,6 @@ impl<'a> Candidate<'a> {
         Ok(candidate)
     }
 
-    /// Constants that are searched.
     pub fn free(&self) -> impl Iterator<Item = &'static Parameter> {
         self.constants.iter().zip(&self.given).filter(|(_, given)| given.is_none()).map(|(constant, _)| constant)
     }
@@ -255,7 +252,6 @@ impl<'a> Candidate<'a> {
         self.rows.iter().map(RateRow::k_max).fold(0.0, f64::max)
     }
 
-    /// Keys and values of all constants but C.
     pub fn constants(&self, variables: &[f64]) -> Vec<(&'static str, f64)> {
         let mut variables = variables.iter();
         let raw: Vec<f64> =

@@ -5,7 +5,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Steps after which a search has failed.
 const STEPS_MAX: usize = 2000;
 /// Share by which a sum of squares has to fall for a step to count.
 const PROGRESS: f64 = 1e-13;
@@ -21,19 +20,16 @@ const DIFFERENCE: f64 = 1e-6;
 /// ln of the rates of a law at all rows but for their level; `None` where the law has no rate at one of them.
 pub(super) type Shape<'a> = &'a (dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync);
 
-/// Where a sum of squares is least.
 #[derive(Debug, Clone)]
 pub(super) struct Minimum {
     pub at: Vec<f64>,
     pub level: f64,
-    /// Measured less fitted.
     pub residuals: Vec<f64>,
     /// Derivatives of the shape over the variables, a column each.
     pub slopes: DMatrix<f64>,
 }
 
 impl Minimum {
-    /// Sum of the squares of the residuals.
     pub fn sum(&self) -> f64 {
         self.residuals.iter().map(|residual| residual * residual).sum()
     }
@@ -73,7 +69,6 @@ pub(super) fn minimise(shape: Shape<'_>, measured: &[f64], start: &[f64], bounds
     None
 }
 
-/// A place of the search.
 struct Point {
     at: DVector<f64>,
     level: f64,

@@ -39,7 +39,6 @@ impl FitLaw {
         kinds().map(|kind| FitLaw(Some(kind))).chain([FitLaw(None)])
     }
 
-    /// Name in input and result files.
     pub fn name(self) -> &'static str {
         self.0.map_or("best", GrowthLawKind::name)
     }
@@ -60,7 +59,6 @@ fn kinds() -> impl Iterator<Item = GrowthLawKind> {
 const ROUND_OFF: f64 = 1e-20;
 /// Rates beyond this factor of the law, or below its inverse, are named.
 const FACTOR: f64 = 3.0;
-/// Most rows that are named.
 const NAMED: usize = 5;
 /// A law whose residuals are larger than those of another by this factor is not chosen; a law that misses smooth curves through the tests
 /// by this factor more than the rates do does not bend as they do.
@@ -72,17 +70,14 @@ const CORRELATION_MAX: f64 = 0.7;
 /// Difference of the criterion above which a law that was asked for is the wrong one.
 const WORSE: f64 = 10.0;
 
-/// All laws fitted to the same rates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawFits {
-    /// Each law, fitted or left out.
     pub candidates: Vec<LawFit>,
     pub chosen: usize,
     /// Criterion of the next best law less that of the chosen one; `None` where no other law is left.
     pub margin: Option<(GrowthLawKind, f64)>,
     /// How many independent rates the rates count as.
     pub effective_rates: f64,
-    /// What the user should know.
     pub warnings: Vec<String>,
 }
 
@@ -182,13 +177,11 @@ impl Smooth {
         Smooth { residuals }
     }
 
-    /// Pairs of neighbours of one test.
     fn pairs<'a>(&'a self, rows: &'a [RateRow]) -> impl Iterator<Item = [f64; 2]> + 'a {
         let same = |i: &usize| rows[*i].series == rows[*i - 1].series && self.residuals[*i].is_finite();
         (1..rows.len()).filter(same).map(|i| [self.residuals[i - 1], self.residuals[i]])
     }
 
-    /// How many independent rates they are.
     fn effective_rates(&self, rows: &[RateRow]) -> f64 {
         let all = rows.len() as f64;
         let known = || self.residuals.iter().filter(|residual| residual.is_finite());

@@ -27,7 +27,6 @@ use perilife_laws::STEADY_EXPONENTS;
 use perilife_laws::curve::{CurveLaw, EFFECTS, KNOTS, ROUGHNESS};
 use reml::{Effects, EffectsMatrix, Group, PARAMETERS, Parameters, Penalty, estimate, likelihood, minimise};
 
-/// Specimens from which on no scatter is assumed.
 const SPECIMENS_FOR_SCATTER: usize = 10;
 /// τ: rms departure of a shape from a straight line, ln of rate.
 const SHAPE_DEVIATION: f64 = 0.2;
@@ -46,7 +45,6 @@ const SLOPE_START: f64 = 3.0;
 const SLOPE_SAME: f64 = 1e-7;
 /// Most integrals with a new law.
 const LAWS_MAX: usize = 60;
-/// Most searches for the variances.
 const ROUNDS_MAX: usize = 8;
 /// Curvature by which a given slope is held.
 const HELD: f64 = 1e14;
@@ -56,7 +54,6 @@ const HELD: f64 = 1e14;
 pub struct Between {
     /// Standard deviation of ln rate at the pivot.
     pub level: f64,
-    /// Standard deviation of the slope.
     pub slope: f64,
     pub correlation: f64,
 }
@@ -68,7 +65,6 @@ impl Between {
     }
 }
 
-/// One specimen in the lot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Member {
     pub name: String,
@@ -78,7 +74,6 @@ pub struct Member {
     pub slope: f64,
     /// ln rate at the pivot and slope of its own readings alone, shape as of all; the slope that of the lot where it has one interval.
     pub own: [f64; 2],
-    /// Intervals that its readings make up.
     pub intervals: usize,
     /// Mean square of its noise over that of the model: far above 1 where the specimen is unlike the others.
     pub misfit: f64,
@@ -109,7 +104,6 @@ pub struct Population {
 }
 
 impl Population {
-    /// The law that lives are predicted by.
     pub fn life_law(&self) -> CurveLaw {
         CurveLaw { level: self.law.level + self.level_of_lives, ..self.law }
     }
@@ -147,9 +141,7 @@ impl Population {
 struct Priors {
     /// Place and standard deviation of ln sd of level and slope, artanh of their correlation, ln s, ln ℓ, ln w, ln r.
     normal: [(f64, f64); PARAMETERS],
-    /// Smallest of them.
     least: [f64; PARAMETERS],
-    /// Largest of them.
     most: [f64; PARAMETERS],
 }
 

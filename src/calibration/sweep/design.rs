@@ -22,7 +22,6 @@ const SEED: u64 = 1;
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Design {
-    /// How cases are chosen.
     pub kind: DesignKind,
     pub cases: usize,
     pub seed: u64,
@@ -30,7 +29,6 @@ pub struct Design {
     pub vary: Vec<Vary>,
 }
 
-/// A sweep file with its base case.
 #[derive(Debug, Clone)]
 pub struct Sweep {
     pub name: String,
@@ -39,21 +37,16 @@ pub struct Sweep {
     pub design: Design,
 }
 
-/// Whether these are the sections of a sweep.
 pub fn is_sweep(table: &Table) -> bool {
     table.contains_key("design")
 }
 
 perilife_base::keys! {
-    /// The sweep file as a whole.
     pub struct SweepKeys {
         case: String = key("case", "Base case: its file");
         design: DesignKeys = key("design", "Design: grid or random");
         vary: Vec<Value> = key("vary", "Keys that vary"), or "none" Vec::new();
     }
-}
-perilife_base::keys! {
-    /// Keys of `[design]`.
     pub struct DesignKeys {
         kind: DesignKind = key("kind", "Design");
         samples: Option<usize> = key("samples", "Number of cases: of a random design");
@@ -95,12 +88,8 @@ fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design>
     }
     if let Some(scatter) = keys.scatter.filter(|_| kind != DesignKind::FittedScatter) {
         let remedy = format!("remove it, or use kind = \"{}\"", DesignKind::FittedScatter);
-        return Err(input(
-            "design.scatter",
-            format!("\"{scatter}\""),
-            format!("cannot be combined with kind = \"{kind}\""),
-            remedy,
-        ));
+        let problem = format!("cannot be combined with kind = \"{kind}\"");
+        return Err(input("design.scatter", format!("\"{scatter}\""), problem, remedy));
     }
     let cases = match kind {
         DesignKind::Grid => grid_size(keys, &vary, most)?,
@@ -114,7 +103,6 @@ fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design>
     Ok(Design { kind, cases, seed: keys.seed.unwrap_or(SEED), scatter: keys.scatter.unwrap_or(Scatter::Specimens), vary })
 }
 
-/// Number of combinations.
 fn grid_size(keys: &DesignKeys, vary: &[Vary], most: usize) -> Result<usize> {
     let stranger = keys.samples.map(|n| ("design.samples", n as u64)).or(keys.seed.map(|seed| ("design.seed", seed)));
     if let Some((key, value)) = stranger {

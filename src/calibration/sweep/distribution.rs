@@ -11,21 +11,17 @@ use statrs::distribution::{ContinuousCDF, Normal};
 pub enum Distribution {
     /// Every value between two is equally likely.
     Uniform {
-        /// Lowest value.
         from: f64,
-        /// Highest value.
         to: f64,
     },
-    /// The logarithm is uniform.
     LogUniform {
-        /// Lowest value, above zero.
         from: f64,
-        /// Highest value.
         to: f64,
     },
-    /// Gauss.
-    Normal { mean: f64, deviation: f64 },
-    /// The logarithm is normal.
+    Normal {
+        mean: f64,
+        deviation: f64,
+    },
     LogNormal {
         median: f64,
         /// Standard deviation of the natural logarithm.

@@ -11,15 +11,13 @@ use super::vary::{DesignKind, Spread};
 use perilife_base::error::{Error, InputError, Result, input_missing};
 use perilife_base::input::{Document, Folder, value_at};
 use perilife_growth::case::record::FittedRecord;
-use perilife_growth::case::remove_law;
-use perilife_growth::case::{Case, LawSource, Method, fitted_record};
+use perilife_growth::case::{Case, LawSource, Method, fitted_record, remove_law};
 
 /// Name of a drawn record among the files of its case.
 const FITTED: &str = "fitted.toml";
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnCase {
-    /// Number, from 1.
     pub number: usize,
     /// Its name: that of the base case with the number.
     pub name: String,
@@ -33,13 +31,11 @@ pub struct DrawnCase {
 }
 
 impl DrawnCase {
-    /// The case, checked.
     pub fn read(&self) -> Result<Case> {
         let folder = Folder::at_hand(self.files.iter().cloned());
         Case::from_document(&Document::parse(&self.text, &self.name, folder, &[])?)
     }
 
-    /// Number as folders and tables write it.
     pub fn label(&self) -> String {
         label(self.number)
     }
@@ -122,7 +118,6 @@ impl Sweep {
         values
     }
 
-    /// The scatter of the law of the base case.
     fn law(&self) -> Result<LawScatter> {
         let fitted =
             value_at(&Value::Table(self.base.table.clone()), "fatigue.fitted").and_then(|name| name.as_str().map(str::to_owned));

@@ -4,17 +4,19 @@ use serde::Serialize;
 
 use super::FactorLaw;
 use super::description::{GAMMA, Given, GrowthLawSpec, RatedRow, Rates, TableEnds, UNSAID};
-use super::rising::rising;
 use perilife_base::error::{Error, InputError, Result, input, input_missing};
+use perilife_base::keys::Key;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
 use perilife_plate::loading::SAME_RATIO;
 
-/// What it says of itself.
 pub static LAW: GrowthLawSpec = GrowthLawSpec {
     name: "table",
     meaning: "da/dN over ΔK, and over R, as rows of a CSV file",
     constants: &[GAMMA],
-    others: &["growth_table", "growth_table_ends"],
+    others: &[
+        Key::of_choice::<String>("growth_table", "Table of rates: its file"),
+        Key::of_choice::<TableEnds>("growth_table_ends", "Ends of the table: beyond its rows; default refused"),
+    ],
     read: Some(|given, law| Ok(FactorLaw { table: Some(read(given)?), ..FactorLaw::new(law, Vec::new()) })),
     ..UNSAID
 };
@@ -30,7 +32,6 @@ const NEAR_RATIO: f64 = 0.005;
 /// alone holds at another by Walker's exponent (1970): its rate is that at `ΔK₀ = K_max (1-R)^γ (1-R₀)^(1-γ)`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Table {
-    /// By rising ratio.
     pub curves: Vec<Curve>,
     /// Whether K beyond the ends takes the rate of the end; else it is refused.
     pub holds_ends: bool,
@@ -41,15 +42,12 @@ pub struct Table {
     /// ln of rate and of ΔK at two ratios, at every row of either: of each curve (twice itself) and of it with the next, in turn.
     #[serde(skip)]
     bands: Vec<Vec<[f64; 3]>>,
-    /// What the user should know of its rows.
     #[serde(skip)]
     notes: Vec<String>,
 }
 
-/// Rates at one stress ratio.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Curve {
-    /// Stress ratio R.
     pub ratio: f64,
     /// ΔK in Pa√m and da/dN in m/cycle, both rising.
     pub rows: Vec<[f64; 2]>,
@@ -90,7 +88,6 @@ impl Table {
         Table { bands: pairs.collect(), curves, holds_ends, walker_gamma, says_ratio, notes: Vec::new() }
     }
 
-    /// Lowest and highest ratio.
     fn ends(&self) -> [f64; 2] {
         [&self.curves[0], &self.curves[self.curves.len() - 1]].map(|curve| curve.ratio)
     }
@@ -277,4 +274,29 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         return Err(wrong(None, "rows", 0.0, "are too few".to_owned()));
     }
     Ok((curves, notes))
+}
+
+const POINTS_MIN: usize = 3;
+
+/// ΔK and rates of a rising curve through rates by rising ΔK: medians, which outliers do not move, of as few neighbours as make it rise, and straight
+/// on from them to the ends. `None`: too few rates, or none that rises.
+fn rising(pairs: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
+    let logs: Vec<[f64; 2]> = pairs.iter().map(|pair| pair.map(f64::ln)).collect();
+    let of = |size: usize| {
+        let mut curve: Vec<[f64; 2]> = logs.chunks_exact(size).map(|some| [0, 1].map(|k| median(some, k))).collect();
+        for (end, next, place) in [(0, 1, 0), (curve.len() - 1, curve.len() - 2, logs.len() - 1)] {
+            let ([x, y], [x_next, y_next]) = (curve[end], curve[next]);
+            curve[end] = [logs[place][0], y + (logs[place][0] - x) * (y_next - y) / (x_next - x)];
+        }
+        let rises = curve.windows(2).all(|pair| pair[0][0] < pair[1][0] && pair[0][1] < pair[1][1]);
+        rises.then_some(curve)
+    };
+    let curve = (3..=logs.len() / POINTS_MIN).step_by(2).find_map(of)?;
+    Some(curve.iter().map(|pair| pair.map(f64::exp)).collect())
+}
+
+fn median(some: &[[f64; 2]], k: usize) -> f64 {
+    let mut values: Vec<f64> = some.iter().map(|pair| pair[k]).collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }

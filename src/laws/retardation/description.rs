@@ -9,14 +9,12 @@ use perilife_plate::material::Plane;
 pub type Rate = fn(&[f64], &dyn GrowthLaw, &Now, &Zone) -> f64;
 
 pub struct RetardationSpec {
-    /// Name in input and result files.
     pub name: &'static str,
     pub meaning: &'static str,
     pub constants: &'static [Constant],
     /// da/dN, m/cycle, of a cycle whose plastic zone stays within that of an overload, by the constants in SI units; `None` where nothing is
     /// retarded.
     pub rate: Option<Rate>,
-    /// What the model says of underloads.
     pub underload: &'static str,
 }
 
@@ -24,11 +22,9 @@ pub struct RetardationSpec {
 pub struct Constant {
     /// Key in `[loading]`.
     pub key: &'static str,
-    /// Unit and bounds of reason.
     pub quantity: Quantity,
     /// Value, SI, in a case that does not give it, by its plane state and the threshold ΔK_th of its law; `None`: it is refused.
     pub default: fn(Plane, Option<f64>) -> Option<f64>,
-    /// What to give where it is missing.
     pub remedy: &'static str,
 }
 
@@ -39,7 +35,6 @@ impl Constant {
     }
 }
 
-/// A cycle at a tip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Now {
     /// Way of the tip, m.
@@ -74,6 +69,3 @@ impl Zone {
         self.from + self.size
     }
 }
-
-pub static NONE: RetardationSpec =
-    RetardationSpec { name: "none", meaning: "no load interaction", constants: &[], rate: None, underload: "none" };

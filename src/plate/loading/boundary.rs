@@ -15,7 +15,6 @@ use perilife_base::input::{Quantity, number, number_of, shorten, table_of};
 use perilife_base::keys::{Given, key, section};
 use perilife_base::units::{MM, place_mm, round_mm};
 
-/// Key of bending in the plane.
 const BENT: &str = "edge_bending_ratio";
 
 /// Resultant of pins that pull against each other, over the sum of their forces.
@@ -24,7 +23,6 @@ const BALANCED: f64 = 1e-6;
 const LEVEL: f64 = 1e-4;
 
 perilife_base::keys! {
-    /// One side of `[supports]`.
     #[derive(Debug)]
     pub struct SupportEntry {
         depth: f64 = key("rows_mm", "Depth of the support: from the side into the plate").of(DEPTH), or "one row" 0.0;
@@ -211,12 +209,8 @@ pub(super) fn read_supports(supports: Option<&Value>, specimen: &mut Specimen) -
         let (x, y) = (fix.contains(&Component::X), fix.contains(&Component::Y));
         let along_normal = if edge.normal()[0] == 0.0 { (y, high[1] - low[1]) } else { (x, high[0] - low[0]) };
         if depth >= along_normal.1 / 2.0 {
-            return Err(input(
-                &format!("{path}.rows_mm"),
-                round_mm(depth),
-                "supports half of the plate or more",
-                "reduce the depth",
-            ));
+            let remedy = "reduce the depth";
+            return Err(input(&format!("{path}.rows_mm"), round_mm(depth), "supports half of the plate or more", remedy));
         }
         let stretches = stretches(edge, specimen, &path)?;
         specimen.supports.extend(stretches.into_iter().map(|(from, to)| Support::Fixed { from, to, depth, x, y }));
@@ -259,10 +253,8 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
             asked.to_vec()
         }
     };
-    let Some(first) = loaded.first().copied() else {
-        let remedy = "name the loaded sides, for example [\"top\", \"bottom\"]";
-        return Err(input_missing(KEY, "is empty: nothing is loaded", remedy));
-    };
+    let remedy = "name the loaded sides, for example [\"top\", \"bottom\"]";
+    let first = loaded.first().copied().ok_or_else(|| input_missing(KEY, "is empty: nothing is loaded", remedy))?;
     let mut areas = Vec::new();
     for edge in &loaded {
         let length: f64 = stretches(*edge, specimen, KEY)?.iter().map(|(from, to)| distance(*from, *to)).sum();

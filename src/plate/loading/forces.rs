@@ -16,7 +16,6 @@ pub(super) const KEYS: [&str; 2] = ["loading.pins", "loading.rollers"];
 const ON_OUTLINE: f64 = 1e-6;
 
 perilife_base::keys! {
-    /// One entry of `pins`.
     #[derive(Debug)]
     pub struct PinEntry {
         hole: usize = key("hole", "Hole: counted from 0 in specimen.holes");
@@ -29,9 +28,6 @@ perilife_base::keys! {
         youngs_modulus: f64 = modulus("pin_youngs_modulus_gpa", "Young's modulus of the pin"), or "210 (steel)" YOUNGS_MODULUS;
         poisson_ratio: f64 = number("pin_poisson_ratio", "Poisson's ratio of the pin", POISSON, 0.0, 0.499), or "0.3 (steel)" POISSON_RATIO;
     }
-}
-perilife_base::keys! {
-    /// One entry of `rollers`.
     #[derive(Debug)]
     pub struct RollerEntry {
         at: Point = coordinate("at_mm", "Contact center: [x, y] on the outline");
@@ -75,12 +71,8 @@ fn force_of(path: &str, pin: &PinEntry, beside_edges: bool, specimen: &Specimen)
         }
         (true, _, Some(share)) => {
             let problem = "is a share of a force; with loaded edges the nominal load is a stress";
-            Err(input(
-                &format!("{path}.share"),
-                share,
-                problem,
-                "give bearing_ratio = P / (d h) over the stress of the first edge",
-            ))
+            let remedy = "give bearing_ratio = P / (d h) over the stress of the first edge";
+            Err(input(&format!("{path}.share"), share, problem, remedy))
         }
         (true, None, None) => {
             let remedy = "give P / (d h) of the pin over the stress of the first edge of loading.edges";

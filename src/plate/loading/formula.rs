@@ -3,7 +3,6 @@
 //! Rules of written mathematics: `-x^2` is -(x²), `a^b^c` is a^(b^c), `1/2` is a half. (Crates that read formulas bind the minus before
 //! the power, or divide whole numbers without remainder; either would turn a stress into another one without a word.)
 
-/// A function of one number, or of two.
 #[derive(Debug, Clone, Copy)]
 enum Function {
     One(fn(f64) -> f64),
@@ -26,7 +25,6 @@ const FUNCTIONS: &[(&str, Function)] = &[
     ("max", Function::Two(f64::max)),
 ];
 
-/// What a formula is made of.
 pub const KNOWN: &str = "numbers, x, y, pi, + - * / ^, brackets, sin cos tan atan sinh cosh tanh exp ln sqrt abs min max";
 /// Brackets and signs within each other at the most.
 const DEPTH_MOST: usize = 100;
@@ -43,7 +41,6 @@ enum Step {
     Two(fn(f64, f64) -> f64),
 }
 
-/// A formula, read.
 #[derive(Debug, Clone)]
 pub struct Formula(Vec<Step>);
 

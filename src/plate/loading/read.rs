@@ -7,31 +7,21 @@ use toml::Value;
 use super::course::{LoadCourse, Size};
 use super::residual::ResidualStress;
 use super::spectrum::Spectrum;
-use super::{DISPLACEMENT, Input, LoadControl, Loading, LoadingKind, OF_SPECTRUM, PLACES, UNIT_FORCE, UNIT_STRESS};
-use super::{boundary, grips};
+use super::{
+    DISPLACEMENT, Input, LoadControl, Loading, LoadingKind, OF_SPECTRUM, PLACES, UNIT_FORCE, UNIT_STRESS, boundary, grips,
+};
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
 use perilife_base::error::{self, Error, InputError, Result, input, input_missing};
 use perilife_base::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS};
-use perilife_base::keys::{Given, Plain, Section};
+use perilife_base::keys::{Given, Plain, Section, Unjudged};
 use perilife_base::units::MPA;
 
 /// Keys that ask for a load history.
 const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "history", "rainflow", "overloads"];
 
 /// Keys that do not say whether they mean maximum or range.
-const BARE: &[&str] = &[
-    "stress",
-    "stress_mpa",
-    "stress_amplitude_mpa",
-    "stress_mean_mpa",
-    "stress_min_mpa",
-    "force",
-    "force_n",
-    "force_kn",
-    "load",
-    "load_n",
-    "load_kn",
-];
+const BARE: &str =
+    "stress stress_mpa stress_amplitude_mpa stress_mean_mpa stress_min_mpa force force_n force_kn load load_n load_kn";
 
 const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";
 
@@ -208,7 +198,7 @@ pub fn mistakes(loading: &Value, beside: &[&str]) -> Vec<InputError> {
                       amplitude: stress_range_mpa or stress_max_mpa with stress_ratio";
         return one(given.refuse(key, "is not a key of a load sequence", remedy));
     }
-    if let Some(key) = given.first(BARE) {
+    if let Some(key) = given.first(&BARE.split(' ').collect::<Vec<_>>()) {
         let problem = "ambiguous: maximum or range?";
         return one(given.refuse(key, problem, format!("give exactly one of {MAGNITUDES}")));
     }
@@ -232,9 +222,10 @@ fn read_ratio(ratio: Option<f64>) -> Result<f64> {
 }
 
 impl Input {
-    /// Keys of a load with what is given.
     fn magnitudes(&self) -> impl Iterator<Item = (&'static str, Option<Size>, Quantity, Of)> {
-        let plain = |given: Option<Plain>| given.map(|given| Size::One(given.0));
+        let scale = |given: Option<Plain>| given.map(|given| Size::One(given.0));
+        // One below zero gets the remedy of compression, not that of a wrong number.
+        let displacement = |given: Option<Unjudged>| given.map(|given| Size::One(given.0));
         [
             ("stress_max_mpa", self.stress_max_mpa.clone(), STRESS, Of::Stress),
             ("stress_range_mpa", self.stress_range_mpa.clone(), STRESS, Of::Stress),
@@ -242,10 +233,10 @@ impl Input {
             ("force_range_n", self.force_range_n.clone(), FORCE, Of::Force),
             ("force_max_kn", self.force_max_kn.clone(), FORCE_KN, Of::Force),
             ("force_range_kn", self.force_range_kn.clone(), FORCE_KN, Of::Force),
-            ("spectrum_scale_mpa", plain(self.spectrum_scale_mpa), STRESS, Of::Stress),
-            ("spectrum_scale_n", plain(self.spectrum_scale_n), FORCE, Of::Force),
-            ("displacement_max_mm", plain(self.displacement_max_mm), DISPLACEMENT, Of::Displacement),
-            ("displacement_range_mm", plain(self.displacement_range_mm), DISPLACEMENT, Of::Displacement),
+            ("spectrum_scale_mpa", scale(self.spectrum_scale_mpa), STRESS, Of::Stress),
+            ("spectrum_scale_n", scale(self.spectrum_scale_n), FORCE, Of::Force),
+            ("displacement_max_mm", displacement(self.displacement_max_mm), DISPLACEMENT, Of::Displacement),
+            ("displacement_range_mm", displacement(self.displacement_range_mm), DISPLACEMENT, Of::Displacement),
         ]
         .into_iter()
     }
@@ -258,7 +249,6 @@ enum Of {
     Displacement,
 }
 
-/// The one load magnitude of the file.
 struct Magnitude {
     key: String,
     /// As given, in the unit of its key.
@@ -281,9 +271,7 @@ impl Magnitude {
         let remedy = format!("give exactly one of {wanted}");
         // A second one has been refused.
         let mut given = slice.magnitudes().filter_map(|(key, value, quantity, of)| Some((key, value?, quantity, of)));
-        let Some((key, given, quantity, of)) = given.next() else {
-            return Err(input_missing(example, "no load given", remedy));
-        };
+        let (key, given, quantity, of) = given.next().ok_or_else(|| input_missing(example, "no load given", &remedy))?;
         let path = format!("loading.{key}");
         if !wanted.split(", ").any(|known| known == key) {
             return Err(input(&path, given, format!("cannot be combined with kind = \"{kind}\""), remedy));

@@ -48,13 +48,10 @@ pub fn across([xx, yy, xy]: Components, [x, y]: Point) -> Point {
     [xx * x + xy * y, xy * x + yy * y]
 }
 
-/// Residual stress over a plate.
 #[derive(Clone)]
 pub struct ResidualStress {
     field: Field,
-    /// Formulas, or the file.
     words: String,
-    /// Hash of the file.
     sha256: String,
     key: &'static str,
 }
@@ -81,7 +78,6 @@ enum Field {
     Plane(Box<DelaunayTriangulation<Sample>>),
 }
 
-/// A point of a file.
 #[derive(Debug, Clone, Copy)]
 struct Sample {
     at: Point,
@@ -118,7 +114,6 @@ impl ResidualStress {
         self.key
     }
 
-    /// Formula or file in words.
     pub fn words(&self) -> &str {
         &self.words
     }

@@ -3,7 +3,6 @@
 
 use serde::Deserialize;
 
-/// A record of the file, in its units.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GrowthRecord {
@@ -61,7 +60,6 @@ impl GrowthRecord {
         format!("{}, {}, {}, {}", self.alloy, self.form, self.orientation, self.environment)
     }
 
-    /// Where its law was checked, in words.
     pub fn checked(&self) -> &str {
         if self.checked.is_empty() { "not checked against tests" } else { &self.checked }
     }

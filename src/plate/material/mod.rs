@@ -13,7 +13,6 @@ use perilife_base::input::{DENSITY, Folder};
 use perilife_base::keys::{Given, Plain, Section, energy, intensity, key, modulus, number, section, stress};
 
 perilife_base::kinds! {
-    /// Plane state of the plate.
     pub enum Plane for "material.plane" {
         Stress = "stress": "plane stress: thin plate",
         Strain = "strain": "plane strain: thick plate",
@@ -29,7 +28,6 @@ pub struct Material {
     pub youngs_modulus: f64,
     /// Poisson's ratio ν.
     pub poisson_ratio: f64,
-    /// Plane stress or plane strain.
     pub plane: Plane,
     /// Yield strength, Pa.
     pub yield_strength: Option<f64>,
@@ -76,7 +74,6 @@ impl Material {
 }
 
 perilife_base::keys! {
-    /// Keys of `[material]`.
     pub struct Input {
         name: Option<String> = key("name", "Material: a name of `perilife list materials`, or the path of your own .toml file");
         youngs_modulus: Option<Plain> = modulus(E, "Young's modulus E");

@@ -22,7 +22,6 @@ use perilife_base::table::{self, Fault, whole_file};
 use perilife_base::units::round_mm;
 
 pub const KEY: &str = "specimen.beta_file";
-/// First line of the file.
 pub const HEADER: &str = "crack_length_mm,beta";
 /// Share of a length by which the table may end before it.
 const SLACK: f64 = 1e-9;

@@ -16,7 +16,6 @@ pub struct CrackLine {
     pub points: Vec<Point>,
 }
 
-/// Which end of which line a tip is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct LineEnd {
     pub line: usize,
@@ -143,7 +142,6 @@ impl CrackLine {
         if at_last { self.points.push(to) } else { self.points.insert(0, to) }
     }
 
-    /// Its straight pieces, in its own sense.
     #[inline]
     pub fn pieces(&self) -> impl Iterator<Item = [Point; 2]> + '_ {
         self.points.windows(2).map(|piece| [piece[0], piece[1]])

@@ -12,7 +12,6 @@ pub enum LengthConvention {
 }
 
 impl Specimen {
-    /// Number of tips of a crack.
     #[inline]
     pub fn tips_of(&self, line: &CrackLine) -> usize {
         let ends = |tip: &&TipSeed| !tip.from_slot && [true, false].iter().any(|&at_last| line.end(at_last) == tip.position);
@@ -73,13 +72,11 @@ impl Specimen {
         self.convention == LengthConvention::SumOfTips && self.crack_lines().len() > 1 && self.has_sharp_tips()
     }
 
-    /// Key that its cracks were given by.
     #[inline]
     pub fn crack_key(&self) -> &'static str {
         self.kind.crack_key(self.convention)
     }
 
-    /// The cracks as lines, in their order.
     pub fn crack_lines(&self) -> Vec<CrackLine> {
         let mut lines: Vec<CrackLine> = Vec::with_capacity(self.cracks.len());
         for crack in &self.cracks {
@@ -91,7 +88,6 @@ impl Specimen {
         lines
     }
 
-    /// Takes these lines for its cracks.
     #[inline]
     pub fn set_crack_lines(&mut self, lines: &[CrackLine]) {
         let pieces = |line: &CrackLine| {

@@ -180,7 +180,6 @@ impl Places {
         cells
     }
 
-    /// Whether there is none.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
@@ -271,9 +270,7 @@ perilife_base::kinds! {
         Left = "left": "side at the smallest x",
         Right = "right": "side at the largest x",
     }
-}
 
-perilife_base::kinds! {
     /// Components a support holds.
     pub enum Component for "supports.fix" {
         X = "x": "no displacement along x",

@@ -30,11 +30,9 @@ pub use part_through::{FrontTip, PartThrough};
 pub use pin::Bearing;
 pub use read::{PART_THROUGH, from_value, mistakes};
 
-/// A point of the plate, metres.
 pub type Point = [f64; 2];
 
 perilife_base::kinds! {
-    /// Shapes a case can name.
     pub enum SpecimenKind for "specimen.kind" {
         MiddleTension = "middle_tension": "plate with a central crack, M(T) of ASTM E647; crack length = half length a",
         SingleEdgeTension = "single_edge_tension": "plate with one edge crack; needs ends = pinned, clamped or uniform_stress",
@@ -55,17 +53,12 @@ perilife_base::kinds! {
         WedgeOpening = "wedge_opening": "modified WOL of Novak and Rolfe, half height 0.486 W, loaded by pins; crack length from the load line",
         Cruciform = "cruciform": "cruciform with a central crack, uniaxial or biaxial; crack length = half length",
     }
-}
 
-perilife_base::kinds! {
-    /// Heads of a lug.
     pub enum Head for "specimen.head" {
         Straight = "straight": "square end, edge_distance_mm from the hole center",
         Round = "round": "half circle about the hole center",
     }
-}
 
-perilife_base::kinds! {
     /// How the ends of a single edge tension specimen are held.
     pub enum Ends for "specimen.ends" {
         Pinned = "pinned": "rigid grips free to rotate about a pin on the centerline",
@@ -74,32 +67,25 @@ perilife_base::kinds! {
     }
 }
 
-/// A circle cut out of the plate.
+/// A circle cut out of the plate, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hole {
-    /// Centre, m.
     pub centre: Point,
-    /// Radius, m.
     pub radius: f64,
 }
 
-/// A straight slot of constant width with square ends, cut out of the plate.
+/// A straight slot of constant width with square ends, cut out of the plate, m: the middles of both ends, and the width across.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slot {
-    /// Middle of one end, m.
     pub from: Point,
-    /// Middle of the other end, m.
     pub to: Point,
-    /// Width across, m.
     pub width: f64,
 }
 
-/// A straight through crack, or a straight piece of one with bends.
+/// A straight through crack, or a straight piece of one with bends; ends in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crack {
-    /// One end, m.
     pub from: Point,
-    /// Other end, m.
     pub to: Point,
     /// Whether it goes on from the end of the crack before it in the list, as the next piece of the same line.
     pub continues: bool,
@@ -112,11 +98,10 @@ impl Crack {
     }
 }
 
-/// Where growth can start: a crack end inside the plate, or the middle of a slot's end face that lies in the material
+/// Where growth can start, m: a crack end inside the plate, or the middle of a slot's end face that lies in the material
 /// (unless a crack starts from that face).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TipSeed {
-    /// Position, m.
     pub position: Point,
     /// Unit vector in which the crack or slot points, out of itself into the material.
     pub direction: Point,
@@ -124,38 +109,20 @@ pub struct TipSeed {
     pub from_slot: bool,
 }
 
-/// A load on part of the boundary, per unit of the case's load magnitude.
+/// A load on part of the boundary, per unit of the case's load magnitude: on a straight stretch of the outline between two ends, m, or a pin.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Load {
-    /// Uniform traction on a straight stretch of the outline.
-    /// `traction` is in Pa per Pa of the case's nominal stress (so 1.0 normal to the edge for plain tension).
-    Edge {
-        /// One end of the stretch, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// Traction on the plate, Pa per Pa.
-        traction: Point,
-    },
-    /// Traction on a straight stretch of the outline that varies linearly from one end to the other: bending in the plane.
-    Bent {
-        /// One end of the stretch, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// Traction on the plate at both ends, Pa per Pa.
-        tractions: [Point; 2],
-    },
+    /// Uniform traction, Pa per Pa of the case's nominal stress (so 1.0 normal to the edge for plain tension).
+    Edge { from: Point, to: Point, traction: Point },
+    /// Traction that varies linearly from one end to the other, Pa per Pa: bending in the plane.
+    Bent { from: Point, to: Point, tractions: [Point; 2] },
     /// A pin, which bears on the rim of its hole. `force` is in N per unit of the case's nominal load (N per N, or N per Pa beside loaded edges), along
     /// the unit vector `direction`.
     Pin {
         /// Index into `Specimen::holes`.
         hole: usize,
-        /// Unit vector of the force on the plate.
         direction: Point,
-        /// Force on the plate, N per N or N per Pa.
         force: f64,
-        /// Where it touches the hole.
         contact: Bearing,
     },
 }
@@ -194,37 +161,16 @@ impl Load {
     }
 }
 
+/// What holds a straight stretch of the outline between two ends, m, or the ends of a plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Support {
     /// Points within `depth` of the straight outline stretch `from`-`to` (at least one row) keep the named components at zero.
-    Fixed {
-        /// One end of the stretch, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// How deep into the plate the hold reaches, m.
-        depth: f64,
-        /// Whether the x component is held.
-        x: bool,
-        /// Whether the y component is held.
-        y: bool,
-    },
+    Fixed { from: Point, to: Point, depth: f64, x: bool, y: bool },
     /// Both ends move as rigid blocks that do not rotate (clamped grips); the relative displacement along y is what the load asks.
     ClampedEnds,
     /// The straight stretch `from`-`to` is moved as it is: every place of it by `way` of the displacement of the load along the unit
-    /// vector `direction`, so that it neither bends nor turns.
-    Moved {
-        /// One end of the stretch, m.
-        from: Point,
-        /// Other end, m.
-        to: Point,
-        /// Unit vector of the displacement.
-        direction: Point,
-        /// Displacement of the stretch over that of the load.
-        way: f64,
-        /// Whether the component across the displacement is held at zero; else the stretch slides in its grip.
-        held: bool,
-    },
+    /// vector `direction`, so that it neither bends nor turns. Unless `held` at zero across the displacement it slides in its grip.
+    Moved { from: Point, to: Point, direction: Point, way: f64, held: bool },
     /// Both ends move as rigid blocks that may rotate (pinned grips): end rows are made stiff, load is uniform over them.
     RigidEnds,
     /// What the body does not know of takes up the loads, so that they need not balance: supports and driven points of a fracture
@@ -249,11 +195,9 @@ pub struct Specimen {
     pub outline: Vec<Point>,
     pub holes: Vec<Hole>,
     pub slots: Vec<Slot>,
-    /// Through cracks at the start.
     pub cracks: Vec<Crack>,
     /// Crack ends that can grow, in the order of result columns.
     pub tips: Vec<TipSeed>,
-    /// Thickness, m.
     pub thickness: f64,
     /// Characteristic width of the specimen's standard: W, m (C(T): from the load line).
     pub width: f64,
@@ -265,13 +209,10 @@ pub struct Specimen {
     pub crack_plane_x: Option<f64>,
     /// Crack length at the start in the specimen's convention, m.
     pub crack_length: f64,
-    /// How growth of tips adds up to crack length.
     pub convention: LengthConvention,
-    /// Loads per unit of nominal load.
     pub loads: Vec<Load>,
     /// Pressure on the faces of all cracks, also where they grow, per unit of nominal load: Pa per Pa, or Pa per N.
     pub crack_pressure: f64,
-    /// Whether the nominal load is a stress or a force.
     pub load_measure: LoadMeasure,
     /// Supports; empty means the loads are in equilibrium by themselves and the plate floats.
     pub supports: Vec<Support>,

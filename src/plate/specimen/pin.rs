@@ -18,7 +18,6 @@ pub const POISSON_RATIO: f64 = 0.3;
 /// Diameter of the pin over that of the hole up to which it still goes in: round-off of the input.
 const FITS: f64 = 1.0 + 1e-9;
 
-/// Where a pin bears on its hole.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Bearing {
     /// Nothing is known of the pin: a cosine over this half angle, rad. It is [`LOOSE_PIN`] of pins that pull against each other, as in test
@@ -54,7 +53,6 @@ pub struct Contact {
     pub pieces: Vec<RimForce>,
 }
 
-/// Force of a pin on a piece of rim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RimForce {
     /// Middle of the piece, rad, from the direction of the force of the pin, counter-clockwise.
@@ -66,7 +64,6 @@ pub struct RimForce {
 }
 
 perilife_base::keys! {
-    /// Keys of the pin of a specimen.
     #[derive(Debug)]
     pub struct PinKeys {
         half_angle: Option<f64> = number("pin_half_angle_deg", "Half angle of the contact arc, °: 90 for a close-fitting pin", ARC, 1.0, 90.0);
@@ -77,9 +74,7 @@ perilife_base::keys! {
     }
 }
 
-/// What an angle of contact is.
 pub const ARC: &str = "an angle in degrees, 90 for a close-fitting pin";
-/// What a Poisson's ratio is.
 pub const POISSON: &str = "a Poisson's ratio";
 
 impl Bearing {
@@ -120,7 +115,6 @@ impl Bearing {
         }
     }
 
-    /// In words, for answers.
     pub fn words(&self) -> String {
         match self {
             Bearing::Unknown(half_angle) => format!("contact ±{:.0}° assumed", half_angle.to_degrees()),

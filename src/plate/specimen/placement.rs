@@ -27,19 +27,13 @@ pub(super) fn check_holes(specimen: &Specimen) -> Result<()> {
         if !inside || distance_to_polygon(hole.centre, &specimen.outline) < hole.radius + TOUCH {
             let problem =
                 format!("extends past the outline (center {}, radius {} mm)", given_mm(hole.centre), round_mm(hole.radius));
-            return Err(input_missing(
-                &format!("specimen.holes[{i}]"),
-                problem,
-                "move it inside, or draw the opening into outline_mm",
-            ));
+            let remedy = "move it inside, or draw the opening into outline_mm";
+            return Err(input_missing(&format!("specimen.holes[{i}]"), problem, remedy));
         }
         for (j, other) in specimen.holes[..i].iter().enumerate() {
             if distance(hole.centre, other.centre) < hole.radius + other.radius + TOUCH {
-                return Err(input_missing(
-                    &format!("specimen.holes[{i}]"),
-                    format!("overlaps holes[{j}]"),
-                    "move the holes apart",
-                ));
+                let remedy = "move the holes apart";
+                return Err(input_missing(&format!("specimen.holes[{i}]"), format!("overlaps holes[{j}]"), remedy));
             }
         }
     }

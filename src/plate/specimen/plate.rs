@@ -32,7 +32,6 @@ const ITEMS_MAX: usize = 500;
 /// Corners of a drawing, whose arcs have many.
 const CORNERS_MAX: usize = 4000;
 
-/// What the keys of an outline say.
 const OUTLINE: &str = "the outline";
 
 perilife_base::keys! {
@@ -49,22 +48,16 @@ perilife_base::keys! {
         cracks: Vec<CrackKeys> = key("cracks", "Cracks: straight or kinked"), or "none" Vec::new();
         notches: Vec<NotchKeys> = key("notches", "Notches: straight slots with square ends"), or "none" Vec::new();
     }
-}
-perilife_base::keys! {
     pub(super) struct HoleKeys {
         x: f64 = coordinate("x_mm", "Hole center, x");
         y: f64 = coordinate("y_mm", "Hole center, y");
         diameter: f64 = length("diameter_mm", "Hole diameter");
     }
-}
-perilife_base::keys! {
     struct CrackKeys {
         from: Option<Point> = coordinate("from_mm", "One end: [x, y]");
         to: Option<Point> = coordinate("to_mm", "Other end: [x, y]");
         path: Option<Vec<Point>> = coordinate("path_mm", "Corners of a kinked crack: both ends included");
     }
-}
-perilife_base::keys! {
     struct NotchKeys {
         from: Point = coordinate("from_mm", "One end: [x, y]");
         to: Point = coordinate("to_mm", "Other end: [x, y]");
@@ -239,7 +232,6 @@ fn items<I, T>(key: &str, list: &[I], read: impl Fn(&I, &str) -> Result<T>) -> R
     list.iter().enumerate().map(|(i, item)| read(item, &format!("{key}[{i}]"))).collect()
 }
 
-/// Corners of a crack, both ends included.
 fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
     const REMEDY: &str = "give from_mm and to_mm, or path_mm = [[x, y], [x, y], ...]";
     let line = match (item.from, item.to, &item.path) {
@@ -271,7 +263,6 @@ fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
     Ok(line.clone())
 }
 
-/// Two different end points.
 fn ends(path: &str, from: Point, to: Point) -> Result<(Point, Point)> {
     if distance(from, to) < 1e-6 {
         return Err(input_missing(path, "has zero length: from_mm and to_mm coincide", "give two different points"));

@@ -20,16 +20,8 @@ pub const PART_THROUGH: &[&str] = &[
 ];
 
 /// Keys that only such a flaw has.
-const PART_THROUGH_KEYS: &[&str] = &[
-    "crack_depth_mm",
-    "crack_half_length_mm",
-    "depth_mm",
-    "surface_length_mm",
-    "crack_shape",
-    "aspect_ratio",
-    "a_over_c",
-    "corner_radius_mm",
-];
+const PART_THROUGH_KEYS: &str =
+    "crack_depth_mm crack_half_length_mm depth_mm surface_length_mm crack_shape aspect_ratio a_over_c corner_radius_mm";
 
 /// What to give for a flaw that does not go through.
 fn give_a_kind() -> String {
@@ -106,7 +98,9 @@ fn kind_of(table: &Table) -> Result<SpecimenKind> {
 pub fn mistakes(value: &Value) -> Vec<InputError> {
     let found = Given::of(value, "specimen").and_then(|given| {
         let kind = kind_of(given.table)?;
-        if let Some(key) = given.first(PART_THROUGH_KEYS).filter(|_| kind.part_through().is_none()) {
+        if let Some(key) =
+            given.first(&PART_THROUGH_KEYS.split(' ').collect::<Vec<_>>()).filter(|_| kind.part_through().is_none())
+        {
             let problem = format!("applies only to part-through cracks; {kind} has a through crack");
             return Err(given.refuse(key, problem, give_a_kind()));
         }

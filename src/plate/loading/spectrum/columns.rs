@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use super::content::{Content, RawCycle, SpectrumFormat};
+use super::formats::{Content, RawCycle, SpectrumFormat};
 use perilife_base::error::Result;
 use perilife_base::table::names::{Kind, Named, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};
@@ -34,7 +34,6 @@ fn ends([max, min, range, mean, ratio]: [Option<f64>; 5]) -> Option<[f64; 2]> {
     })
 }
 
-/// What columns of these roles are.
 fn format_of(roles: &[Role]) -> Option<SpectrumFormat> {
     let has = |role: Role| roles.contains(&role);
     let given = |role: Role| has(role).then_some(1.0);
@@ -48,7 +47,6 @@ fn format_of(roles: &[Role]) -> Option<SpectrumFormat> {
     }
 }
 
-/// Whether a line of names is a header of a spectrum.
 pub(super) fn is_header(line: &str) -> bool {
     let names = line.split([',', ';', '\t', '|']).filter(|name| !name.trim().is_empty());
     let roles: Vec<Role> = names.filter_map(|name| Some(WORDS.role(name)?.0)).collect();
@@ -110,7 +108,6 @@ pub(super) fn read(
 struct Read {
     index: usize,
     role: Role,
-    /// What its numbers are multiplied by.
     factor: f64,
 }
 

@@ -5,16 +5,12 @@
 
 mod classes;
 mod columns;
-mod content;
-mod fastran;
+mod formats;
 pub mod rainflow;
 mod read;
-mod rows;
-mod spx;
-mod sub;
 
 pub use classes::Class;
-pub use content::SpectrumFormat;
+pub use formats::SpectrumFormat;
 
 use std::fmt;
 
@@ -52,7 +48,6 @@ impl Cycle {
 #[derive(Clone, PartialEq)]
 pub struct Spectrum {
     pub file: String,
-    /// How the file was read.
     pub format: SpectrumFormat,
     /// Cycles in their order; turning points give a cycle the place of its maximum.
     pub cycles: Vec<Cycle>,
@@ -72,7 +67,6 @@ pub struct Spectrum {
     pub classes: Vec<Class>,
     /// How many kinds of cycles there are: pairs of maximum and minimum that differ.
     pub kinds: usize,
-    /// What the user should know of its file.
     pub notes: Vec<String>,
     sha256: String,
 }
@@ -96,7 +90,6 @@ impl Spectrum {
         self.cycles.iter().filter(|cycle| cycle.count * self.period < OFTEN && !is_whole(cycle.count, self.period))
     }
 
-    /// Smallest load over the largest.
     pub fn smallest(&self) -> f64 {
         self.cycles.iter().map(|cycle| cycle.min).fold(f64::INFINITY, f64::min)
     }

@@ -4,10 +4,9 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use super::classes::{classes, kinds};
-use super::content::{Content, RawCycle, SpectrumFormat};
+use super::formats::{self, Content, RawCycle, SpectrumFormat, fault, rows};
 use super::rainflow::rainflow;
-use super::rows::{fault, rows};
-use super::{Cycle, PERIOD_MOST, Spectrum, columns, fastran, is_whole, spx, sub};
+use super::{Cycle, PERIOD_MOST, Spectrum, columns, is_whole};
 use crate::loading::Input;
 use perilife_base::error::{Result, input, input_missing};
 use perilife_base::input::Folder;
@@ -121,13 +120,13 @@ fn content(
         "spx" => Some(SpectrumFormat::Spx),
         "sub" => Some(SpectrumFormat::Sub),
         _ if first.starts_with('<') => Some(SpectrumFormat::Spx),
-        _ if fastran::is_of(first, second) => Some(SpectrumFormat::Fastran),
+        _ if formats::is_fastran(first, second) => Some(SpectrumFormat::Fastran),
         _ => None,
     });
     let content = match format {
-        Some(SpectrumFormat::Spx) => spx::read(&text)?,
-        Some(SpectrumFormat::Sub) => sub::read(rows(&text))?,
-        Some(SpectrumFormat::Fastran) => fastran::read(rows(&text))?,
+        Some(SpectrumFormat::Spx) => formats::spx(&text)?,
+        Some(SpectrumFormat::Sub) => formats::sub(rows(&text))?,
+        Some(SpectrumFormat::Fastran) => formats::fastran(rows(&text))?,
         Some(SpectrumFormat::Cycles | SpectrumFormat::TurningPoints) | None => {
             return columns::read(without_remarks(&text).as_bytes(), file, format, scale);
         }

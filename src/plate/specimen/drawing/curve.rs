@@ -11,18 +11,15 @@ pub const TURN: f64 = TAU / 144.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
-    /// m.
     pub centre: Point,
     /// Angle that it turns by, rad, positive counter-clockwise.
     pub sweep: f64,
 }
 
-/// A piece of a curve, from the end of the one before it.
+/// A piece of a curve, from the end of the one before it to a place, m: an arc, or straight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// Its end, m.
     pub to: Point,
-    /// The arc that it is; else it is straight.
     pub arc: Option<Arc>,
 }
 
@@ -32,10 +29,8 @@ impl Piece {
     }
 }
 
-/// Pieces end to end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// Its start, m.
     pub from: Point,
     /// In order; at least one.
     pub pieces: Vec<Piece>,

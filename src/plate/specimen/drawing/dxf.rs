@@ -9,16 +9,12 @@ use crate::specimen::Point;
 
 /// What to do with an entity that is none of these.
 const DRAW_IT: &str = "draw it as one of them; delete it only if it is not part of the plate (text, dimensions)";
-/// Entities that say nothing of a shape.
 const SILENT: [&str; 2] = ["SEQEND", "VIEWPORT"];
 /// Flags of a polyline: closed; one fitted by curves or splines; one in space or a mesh.
 const CLOSED: i64 = 1;
-/// See [`CLOSED`].
 const FITTED: i64 = 2 | 4;
-/// See [`CLOSED`].
 const IN_SPACE: i64 = 8 | 16 | 64;
 
-/// Flag of a layer that is frozen.
 const FROZEN: i64 = 1;
 /// Size of a coordinate that is round-off, in units of the drawing.
 const ROUND_OFF: f64 = 1e-6;
@@ -111,7 +107,6 @@ fn hidden_layers<'t>(groups: &[Group<'t>]) -> Vec<(&'t str, &'static str)> {
     records.filter_map(hidden).collect()
 }
 
-/// Those of the section ENTITIES.
 fn entities<'t>(groups: &[Group<'t>]) -> Vec<Entity<'t>> {
     let begins = |pair: &[Group<'_>]| pair[0].1 == "SECTION" && (pair[1].0, pair[1].1) == (2, "ENTITIES");
     let first = groups.windows(2).position(begins).map_or(groups.len(), |at| at + 2);
@@ -169,7 +164,6 @@ impl Entity<'_> {
         }
     }
 
-    /// The first value of a code.
     fn number(&self, code: i64) -> Result<Option<f64>, Fault> {
         self.groups.iter().find(|group| group.0 == code).map(|group| self.value(group)).transpose()
     }

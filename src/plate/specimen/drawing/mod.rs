@@ -21,7 +21,6 @@ use perilife_base::input::Folder;
 use perilife_base::units::{INCH, MM, place_mm};
 
 pub const KEY: &str = "specimen.outline_file";
-/// Layers that a drawing may have.
 const LAYERS: [&str; 3] = ["outline", "holes", "cracks"];
 /// Distance of ends that are one, over the size of the drawing.
 const TOLERANCE: f64 = 1e-4;
@@ -40,9 +39,7 @@ perilife_base::kinds! {
         Millimetre = "mm": "drawing unit: millimeter",
         Inch = "inch": "drawing unit: inch",
     }
-}
 
-perilife_base::kinds! {
     /// Planes of symmetry of a plate of which a half is drawn.
     pub enum SymmetryPlane for "specimen.outline_symmetry" {
         X = "x=0": "the half on one side of x = 0 is drawn",
@@ -53,7 +50,6 @@ perilife_base::kinds! {
 /// What a drawing says of a plate, m.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
-    /// Corners in order around the plate.
     pub outline: Vec<Point>,
     pub holes: Vec<Hole>,
     pub cracks: Vec<Vec<Point>>,
@@ -66,14 +62,12 @@ pub(super) struct Drawing {
     millimetres: Option<f64>,
 }
 
-/// A line of a file.
 pub(super) struct Drawn {
     layer: String,
     what: String,
     curve: Curve,
 }
 
-/// What is wrong with a drawing, and what to do.
 pub(super) struct Fault {
     problem: String,
     remedy: String,

@@ -20,13 +20,10 @@ const SHEARED: [f64; 13] = [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 
 /// Rounds in which both ends of a section are chosen in turn.
 const ROUNDS_MOST: usize = 4;
 
-/// A line from rim to rim.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Cut {
     pub points: Vec<Point>,
-    /// What is left of the material on it.
     pub ligaments: Vec<[Point; 2]>,
-    /// Pieces along cracks.
     pub cracked: Vec<[Point; 2]>,
 }
 

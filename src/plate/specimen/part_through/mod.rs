@@ -28,13 +28,11 @@ const KINDS: &[&PartThroughSpec] =
 
 /// Relative error of K that its source states.
 pub const STATED_ERROR: f64 = 0.05;
-/// Where K comes from, in words.
 pub const SOURCE: &str = "Newman and Raju 1984, NASA TM-85793";
 
 /// When a crack is through and what it is then, in words.
 pub const BREAK_THROUGH: &str = "breakthrough at a/t = 1; then a straight through crack of length c";
 
-/// How well, in words.
 pub const RANGE: &str = "5 % for a/t ≤ 0.8, a/c = 0.2 to 2, crack < half of the width";
 
 pub struct PartThroughSpec {
@@ -72,7 +70,6 @@ struct PlateLetters {
     of_width: f64,
 }
 
-/// A range for which formulas are made.
 #[derive(Debug, Clone, Copy)]
 pub struct Limit {
     pub name: &'static str,
