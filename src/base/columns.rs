@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::de::DeserializeOwned;
 
 use crate::cells::{defused, quoted};
-use crate::error::{Error, InputError, Result};
+use crate::error::{Error, InputError, Result, fail_if};
 use crate::units::shown::shown;
 use crate::units::us::{Renamed, System, renamed};
 use crate::units::words::in_units;
@@ -213,10 +213,8 @@ impl Table {
                 columns = record.iter().map(|name| (name.to_owned(), Vec::new())).collect();
                 continue;
             }
-            if record.len() != columns.len() {
-                let problem = format!("has {} cells under {} columns", record.len(), columns.len());
-                return Err(table.bad(at(record.position()), None, None, &problem));
-            }
+            let problem = || format!("has {} cells under {} columns", record.len(), columns.len());
+            fail_if!(record.len() != columns.len(), table.bad(at(record.position()), None, None, &problem()));
             columns.iter_mut().zip(&record).for_each(|((_, cells), cell)| cells.push(cell.to_owned()));
         }
         table.columns =

@@ -157,3 +157,14 @@ pub fn input_missing(key: &str, problem: impl Into<String>, remedy: impl Into<St
         ..InputError::default()
     }))
 }
+
+/// Returns an error where something is wrong: `fail_if!(length <= 0.0, input(KEY, length, problem, remedy));`.
+#[macro_export]
+macro_rules! fail_if {
+    ($wrong:expr, $error:expr) => {
+        if $wrong {
+            return Err($error);
+        }
+    };
+}
+pub use crate::fail_if;

@@ -5,7 +5,7 @@
 
 use std::sync::OnceLock;
 
-use crate::error::{Result, input};
+use crate::error::{Result, fail_if, input};
 
 pub const TABLE: &str = include_str!("../../data/boundaries.csv");
 pub const COLUMNS: &str = "sweep,method,parameter,is_safe,low,high,bound_percent,version,date";
@@ -45,9 +45,7 @@ pub fn parse(text: &str) -> Result<Vec<Limit>> {
     };
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().map_err(|error| broken(&error, "is not a header"))?.iter().collect::<Vec<_>>().join(",");
-    if header != COLUMNS {
-        return Err(broken(&header, "is not the header of a table of boundaries"));
-    }
+    fail_if!(header != COLUMNS, broken(&header, "is not the header of a table of boundaries"));
     let limit = |row: csv::Result<LimitRow>| {
         let (sweep, method, parameter, is_safe, low, high, bound_percent, version, date) =
             row.map_err(|error| broken(&error, "is not a row of a table of boundaries"))?;

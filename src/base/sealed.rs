@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
 
-use crate::error::{Error, InputError, Result};
+use crate::error::{Error, InputError, Result, fail_if};
 
 /// Program by which a checkpoint can be taken up.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -40,9 +40,7 @@ impl Seal {
             return Err(refused(format!("written by perilife {other}; this is {VERSION}")));
         }
         let (sum, content) = rest.split_first_chunk::<32>().ok_or_else(damaged)?;
-        if Sha256::digest(content)[..] != sum[..] {
-            return Err(damaged());
-        }
+        fail_if!(Sha256::digest(content)[..] != sum[..], damaged());
         postcard::from_bytes(content).map_err(|_| damaged())
     }
 }

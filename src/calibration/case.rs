@@ -6,7 +6,7 @@ use toml::{Table, Value};
 
 use crate::criterion::Criterion;
 use crate::exponent::{Exponent, FitKeys, delta_k_ratio, exponent};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::{Document, Folder, sha256};
 use perilife_base::keys::{Need, Plain, all, key, length, section};
 use perilife_base::kinds::Named as _;
@@ -113,9 +113,7 @@ impl CalibrationCase {
                     let read = keys().and_then(|keys| Ok((readings(&keys, &document.folder)?.0, keys)));
                     let Ok((read, keys)) = read else { return Err(error) };
                     let notes = complete(&mut table, &read, &keys)?;
-                    if notes.is_empty() {
-                        return Err(error);
-                    }
+                    fail_if!(notes.is_empty(), error);
                     let mut case = of_table(&table)?;
                     case.warnings.extend(notes);
                     case
@@ -263,9 +261,7 @@ fn unrecorded(case: &Case) -> Option<String> {
 
 /// Curves of the measured files, and what the record says about the files.
 fn readings(keys: &MeasuredKeys, folder: &Folder) -> Result<(Measured, Vec<SourceFile>)> {
-    if keys.files.is_empty() {
-        return Err(input("measured.files", "[]", "has no file", "name at least one measured a-N curve"));
-    }
+    fail_if!(keys.files.is_empty(), input("measured.files", "[]", "has no file", "name at least one measured a-N curve"));
     check_left_out(&keys.leave_out, &keys.files)?;
     let mut measured = Measured::default();
     let mut sources = Vec::with_capacity(keys.files.len());

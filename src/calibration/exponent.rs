@@ -2,7 +2,7 @@
 
 use super::criterion::Criterion;
 use super::laws::FitLaw;
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::keys::key;
 use perilife_growth::case::{Method, fitted_record};
@@ -32,11 +32,9 @@ perilife_base::keys! {
 pub(super) fn exponent(fit: &FitKeys, folder: &Folder, method: Method, delta_k_ratio: Option<f64>) -> Result<Exponent> {
     let parameters = &fit.parameters;
     let names: Vec<String> = parameters.iter().map(|parameter| format!("\"{parameter}\"")).collect();
-    if !parameters.contains(&Parameter::A) {
-        let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
-        let problem = "does not contain a, which is always fitted";
-        return Err(input("fit.parameters", format!("[{}]", names.join(", ")), problem, remedy));
-    }
+    let remedy = "write parameters = [\"a\", \"p\"], or [\"a\"] with p = ...";
+    let problem = "does not contain a, which is always fitted";
+    fail_if!(!parameters.contains(&Parameter::A), input("fit.parameters", format!("[{}]", names.join(", ")), problem, remedy));
     match (parameters.contains(&Parameter::P), fit.p, fit.record.as_deref()) {
         (_, Some(p), Some(_)) => Err(input("fit.p", p, "conflicts with record", "give p or record")),
         (true, Some(p), None) => Err(input("fit.p", p, "is both given and fitted", "remove p, or write parameters = [\"a\"]")),

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::population::plate::Quantiles;
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, fail_if, input};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
 use perilife_growth::case::Case;
@@ -94,10 +94,9 @@ impl TipLengths {
         };
         let (shortest, longest) = (lengths[0], lengths[lengths.len() - 1]);
         let length = from.crack_length_mm;
-        if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve: the crack of tip {tip} has {shortest:.4} to {longest:.4} mm");
-            return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them, or another tip"));
-        }
+        let problem = || format!("is not on the curve: the crack of tip {tip} has {shortest:.4} to {longest:.4} mm");
+        let remedy = "give a length between them, or another tip";
+        fail_if!(!(shortest..=longest).contains(&length), input(from.names[0], format!("{length} mm"), problem(), remedy));
         let after = lengths.partition_point(|known| *known < length).clamp(1, lengths.len() - 1);
         let (a, b) = (lengths[after - 1], lengths[after]);
         let share = if b > a { (length - a) / (b - a) } else { 1.0 };
@@ -125,10 +124,9 @@ impl Inspection {
         }
         let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, [length, _])| length), curve[curve.len() - 1]);
         let (shortest, longest) = (curve[0][0], end[0]);
-        if !(shortest..=longest).contains(&length) {
-            let problem = format!("is not on the curve, {shortest} to {longest} mm");
-            return Err(input(from.names[0], format!("{length} mm"), problem, "give a length between them"));
-        }
+        let problem = || format!("is not on the curve, {shortest} to {longest} mm");
+        let remedy = "give a length between them";
+        fail_if!(!(shortest..=longest).contains(&length), input(from.names[0], format!("{length} mm"), problem(), remedy));
         let cycles_at = of_tip.map_or_else(|| Monotone::new(curve.iter().copied()).at(length), |(_, [_, cycles])| cycles);
         let remaining = end[1] - cycles_at;
         Ok(Inspection {

@@ -1,7 +1,7 @@
 //! Cycles at which readings, and rows of a run, reach a length; several specimens as one curve, the pointwise median of cycles at equal
 //! crack length.
 
-use perilife_base::error::{Error, Result, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input_missing};
 use perilife_base::monotone::Monotone;
 use perilife_base::units::MM;
 use perilife_measured::{MeasuredCurve, READINGS_MIN};
@@ -79,11 +79,9 @@ pub fn common_lengths(curves: &[MeasuredCurve]) -> Result<Vec<f64>> {
     let start = curves.iter().filter_map(|curve| curve.crack_length.first().copied()).fold(0.0, f64::max);
     let longest = |curve: &MeasuredCurve| curve.crack_length.iter().copied().fold(0.0, f64::max);
     let end = curves.iter().map(longest).fold(f64::INFINITY, f64::min);
-    if end - start <= SAME_LENGTH {
-        let problem = "contain specimens whose crack lengths do not overlap: no common median";
-        let remedy = "calibrate them one by one, or give curves over the same range";
-        return Err(input_missing("measured.files", problem, remedy));
-    }
+    let problem = "contain specimens whose crack lengths do not overlap: no common median";
+    let remedy = "calibrate them one by one, or give curves over the same range";
+    fail_if!(end - start <= SAME_LENGTH, input_missing("measured.files", problem, remedy));
     let counts: Vec<f64> = curves.iter().map(|curve| curve.cycles.len() as f64).collect();
     let points = (median(&counts) as usize).max(READINGS_MIN);
     let step = (end - start) / (points - 1) as f64;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::curve::{Measured, READINGS_MIN};
 use super::import::LeaveOut;
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 
 const NAMES_MAX: usize = 20;
 
@@ -60,11 +60,9 @@ impl Measured {
         let count = curve.cycles.len();
         let covered = |step: usize| window.covers(curve.cycles[step - 1], curve.cycles[step]);
         let steps: Vec<usize> = (1..count).filter(|&step| covered(step)).collect();
-        if steps.is_empty() {
-            let problem = format!("contains no reading of specimen {}", curve.specimen);
-            let remedy = format!("its readings go from {} to {} cycles", curve.cycles[0], curve.cycles[count - 1]);
-            return Err(input(&format!("{key}.from_cycles"), from_cycles, problem, remedy));
-        }
+        let problem = || format!("contains no reading of specimen {}", curve.specimen);
+        let remedy = || format!("its readings go from {} to {} cycles", curve.cycles[0], curve.cycles[count - 1]);
+        fail_if!(steps.is_empty(), input(&format!("{key}.from_cycles"), from_cycles, problem(), remedy()));
         curve.left_out.resize(count, false);
         steps.into_iter().for_each(|step| curve.left_out[step] = true);
         Ok(place)

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::columns::{Layout, Series, Shape, is_stress};
 use super::curve::{Loads, Measured, MeasuredCurve, READINGS_MIN, Source, Stated, first_of};
-use perilife_base::error::{Error, Result};
+use perilife_base::error::{Error, Result, fail_if};
 use perilife_base::linear_fit::line;
 use perilife_base::table::Decimal;
 use perilife_base::table::names::{Column, Role};
@@ -131,18 +131,12 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
     let mut a = 0.0;
     for &column in &series.lengths {
         let on_side = number(column)?;
-        if on_side <= 0.0 {
-            let remedy = "give the crack length as the test standard of the specimen defines it";
-            return Err(fault(column).error("is not above 0", remedy));
-        }
+        let remedy = "give the crack length as the test standard of the specimen defines it";
+        fail_if!(on_side <= 0.0, fault(column).error("is not above 0", remedy));
         a += on_side / series.lengths.len() as f64;
     }
-    if n < 0.0 {
-        return Err(fault(cycles).error("is negative", "count cycles from 0 upwards"));
-    }
-    if n > CYCLES_MAX {
-        return Err(fault(cycles).error("is more than 1e15 cycles", "check the number and its unit"));
-    }
+    fail_if!(n < 0.0, fault(cycles).error("is negative", "count cycles from 0 upwards"));
+    fail_if!(n > CYCLES_MAX, fault(cycles).error("is more than 1e15 cycles", "check the number and its unit"));
     match curve.cycles.last() {
         Some(&before) if n == before => {
             let remedy = "remove duplicate cycle counts";
@@ -155,9 +149,7 @@ fn add_reading(curve: &mut MeasuredCurve, table: &Table, row: &Row, decimal: Dec
         }
         _ => {}
     }
-    if a > LENGTH_MAX {
-        return Err(fault(series.lengths[0]).error("is more than 100 m", "check the number and its unit"));
-    }
+    fail_if!(a > LENGTH_MAX, fault(series.lengths[0]).error("is more than 100 m", "check the number and its unit"));
     let sides = series.sides.iter().map(|side| number(*side)).collect::<Result<Vec<f64>>>()?;
     let load = load(table, row, decimal, series)?;
     if sides.len() > 1 {

@@ -4,15 +4,14 @@ use std::path::Path;
 
 use super::exclusion_flags::exclude_flagged;
 use super::import::{Import, LeaveOut};
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, fail_if, input};
 use perilife_base::table::{self, Table};
 
 /// Cuts the bytes of a file into cells. Rows that are left out by their lines go, and those that the table itself marks as not counting.
 /// Errors: as [`table::read`] and [`take_rows_out`]; a Parquet file.
 pub(super) fn read(bytes: &[u8], file: &Path, import: &Import) -> Result<Table> {
-    if bytes.starts_with(b"PAR1") {
-        return Err(table::whole_file(file).error("is a Parquet file, which is not supported", "save the table as CSV or .xlsx"));
-    }
+    let remedy = "save the table as CSV or .xlsx";
+    fail_if!(bytes.starts_with(b"PAR1"), table::whole_file(file).error("is a Parquet file, which is not supported", remedy));
     let mut table = table::read(bytes, file, import)?;
     take_rows_out(&mut table, &import.left_out)?;
     exclude_flagged(&mut table, import)?;

@@ -9,7 +9,7 @@ use toml::{Table, Value};
 use super::folder::{Folder, OpenedFile, STREAM, text_of};
 use super::slice::{path_steps, shorten, value_at};
 use super::us_keys::{Written, as_written, metric, to_metric, twin};
-use crate::error::{Error, InputError, Result, input, input_missing};
+use crate::error::{Error, InputError, Result, fail_if, input, input_missing};
 use crate::keys::nearest;
 
 /// What is said of a value that an option overrides.
@@ -136,9 +136,7 @@ impl Document {
         };
         let (key, value) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
         let (key, value) = (key.trim(), value.trim());
-        if value.is_empty() {
-            return Err(refuse("has no value"));
-        }
+        fail_if!(value.is_empty(), refuse("has no value"));
         let other = key.rsplit_once('.').and_then(|(above, last)| Some(format!("{above}.{}", twin(last)?)));
         let is_set = |other: &String| value_at(&Value::Table(self.as_given.clone()), other).is_some();
         if let Some(other) = other.filter(|other| self.overridden.contains(&metric(key)) && is_set(other)) {
@@ -162,9 +160,7 @@ impl Document {
     fn put_as_given(&mut self, key: &str, value: Value) -> std::result::Result<(), &'static str> {
         const NO_TABLE: &str = "its parent is not a table";
         let steps = path_steps(key);
-        if steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()) {
-            return Err("expected SECTION.KEY=VALUE");
-        }
+        fail_if!(steps.len() < 2 || key.split('.').any(|step| step.trim().is_empty()), "expected SECTION.KEY=VALUE");
         let (last, parents) = (&steps[steps.len() - 1], &steps[..steps.len() - 1]);
         let mut place = self.as_given.entry(parents[0].clone()).or_insert_with(|| Value::Table(Table::new()));
         for step in &parents[1..] {
@@ -258,9 +254,7 @@ impl<'t> Sections<'t> {
                     nearest(name, known.iter().copied()).map_or_else(String::new, |near| format!("did you mean [{near}]? "));
                 return Err(input(name, shorten(value), what, format!("{near}known sections: {}", known.join(", "))));
             }
-            if !value.is_table() {
-                return Err(input(name, shorten(value), "is not a section", format!("add a section [{name}]")));
-            }
+            fail_if!(!value.is_table(), input(name, shorten(value), "is not a section", format!("add a section [{name}]")));
         }
         Ok(Sections { table, empty: Value::Table(Table::new()) })
     }

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use sha2::{Digest, Sha256};
 
-use crate::error::{Error, Result, input, input_missing};
+use crate::error::{Error, Result, fail_if, input, input_missing};
 
 /// A place that relative names start from, and what was opened through it.
 #[derive(Debug, Clone)]
@@ -198,9 +198,8 @@ fn read(path: &Path) -> Result<(Vec<u8>, Option<FileId>)> {
 /// All of standard input, which can be read once.
 fn stdin() -> Result<Vec<u8>> {
     static IS_READ: AtomicBool = AtomicBool::new(false);
-    if IS_READ.swap(true, Ordering::Relaxed) {
-        return Err(input("file", STREAM, "standard input was already read", "name it once, and files for the others"));
-    }
+    let remedy = "name it once, and files for the others";
+    fail_if!(IS_READ.swap(true, Ordering::Relaxed), input("file", STREAM, "standard input was already read", remedy));
     let mut content = Vec::new();
     let read = std::io::stdin().lock().read_to_end(&mut content);
     read.map_err(|error| Error::file(Path::new(STREAM), "cannot read", error))?;

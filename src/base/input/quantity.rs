@@ -1,6 +1,6 @@
 //! Physical quantities of input files: unit, range of reason, conversion to SI.
 
-use crate::error::{Result, input};
+use crate::error::{Result, fail_if, input};
 use crate::units::{GPA, MM, MPA, MPA_SQRT_M};
 
 /// A kind of number in an input file.
@@ -40,15 +40,9 @@ pub const fn number(what: &'static str, low: f64, high: f64) -> Quantity {
 impl Quantity {
     /// The value of `key` in SI units, or words about what is wrong with it.
     pub fn read(&self, key: &str, value: f64) -> Result<f64> {
-        if !value.is_finite() {
-            return Err(input(key, value, "is not a finite number", self.remedy()));
-        }
-        if value <= 0.0 && self.low > 0.0 {
-            return Err(input(key, value, "must be above zero", self.remedy()));
-        }
-        if value < self.low || value > self.high {
-            return Err(input(key, value, "is out of range", self.remedy()));
-        }
+        fail_if!(!value.is_finite(), input(key, value, "is not a finite number", self.remedy()));
+        fail_if!(value <= 0.0 && self.low > 0.0, input(key, value, "must be above zero", self.remedy()));
+        fail_if!(value < self.low || value > self.high, input(key, value, "is out of range", self.remedy()));
         Ok(value * self.si)
     }
 

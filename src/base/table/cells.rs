@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 
-use crate::error::{Error, InputError, Result};
+use crate::error::{Error, InputError, Result, fail_if};
 
 /// Longest cell or row repeated in a message.
 const SHOWN: usize = 40;
@@ -132,9 +132,7 @@ impl Table {
         if out == 0 {
             return Ok(());
         }
-        if out == all {
-            return Err(whole_file(&self.file).error(format!("has no usable row: each is {why}"), remedy));
-        }
+        fail_if!(out == all, whole_file(&self.file).error(format!("has no usable row: each is {why}"), remedy));
         let shown: Vec<String> = lines.iter().take(LINES_SHOWN).map(usize::to_string).collect();
         let more = if out > LINES_SHOWN { ", ..." } else { "" };
         let lines = format!("line{} {}{more}", if out == 1 { "" } else { "s" }, shown.join(", "));

@@ -13,7 +13,7 @@ use super::lines::Line;
 use super::names::{is_unit_or_blank, with_unit};
 use super::numerals::is_number;
 use crate::cells::{ROWS_MAX, SMALLER, TEXT_MAX, restored, too_many};
-use crate::error::Result;
+use crate::error::{Result, fail_if};
 
 /// Lines that separators are compared on.
 const SAMPLE: usize = 400;
@@ -41,9 +41,7 @@ pub(super) fn text(text: &str, file: &Path, words: &dyn Vocabulary) -> Result<Ta
     check_size(text, file)?;
     let is_comment = |line: &str| ["#", "%", "//"].iter().any(|sign| line.trim_start().starts_with(sign));
     let (lines, comments): (Vec<Line<'_>>, Vec<Line<'_>>) = written_lines(text).partition(|(_, line)| !is_comment(line));
-    if lines.is_empty() {
-        return Err(whole_file(file).error("is empty", words.remedy()));
-    }
+    fail_if!(lines.is_empty(), whole_file(file).error("is empty", words.remedy()));
     let sample = &lines[..lines.len().min(SAMPLE)];
     let mut candidates: Vec<(Merit, Separator)> = Vec::new();
     for separator in Separator::ALL {
@@ -169,9 +167,7 @@ fn whole(separator: Separator, lines: &[Line<'_>], comments: &[Line<'_>], file: 
             check_width(row, columns, lines, separator, file)?;
         }
     }
-    if table.rows.is_empty() {
-        return Err(whole_file(file).error("has a header but no rows", words.remedy()));
-    }
+    fail_if!(table.rows.is_empty(), whole_file(file).error("has a header but no rows", words.remedy()));
     Ok(table)
 }
 

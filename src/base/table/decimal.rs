@@ -6,7 +6,7 @@
 
 use super::cells::{Row, Separator, Table};
 use super::numerals::{Decimal, Evidence, evidence, number};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, fail_if};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Numbers {
@@ -39,9 +39,7 @@ pub fn decide(table: &Table, columns: &[Numbers], given: Option<Decimal>) -> Res
         // Whole thousands beside decimals of the same sign, and thousands where none can be: one of two programs wrote the column.
         let own_sign = column.counts && seen.open[decided as usize].is_some() && seen.proofs[decided as usize].is_none();
         let other_sign = !column.counts && seen.open[decided.other() as usize].is_some();
-        if own_sign || other_sign {
-            return Err(open(seen).unwrap_or_else(|| table.header_fault(seen.column).error("is ambiguous", "")));
-        }
+        fail_if!(own_sign || other_sign, open(seen).unwrap_or_else(|| table.header_fault(seen.column).error("is ambiguous", "")));
     }
     Ok(decided)
 }

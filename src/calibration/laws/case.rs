@@ -5,7 +5,7 @@ use toml::{Table, Value};
 use super::{FitLaw, Given, LawFits, fit_laws};
 use crate::case::{CalibrationCase, source};
 use crate::outliers::{StepRate, step_rates};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::{Document, value_at};
 use perilife_base::keys::{Key, Section, intensity, key, section};
 use perilife_base::table::units::{IntensityUnit, RateUnit};
@@ -103,10 +103,8 @@ impl LawCase {
         } else {
             case.material = alone(&rest.table)?;
         }
-        if case.sources.is_empty() {
-            let remedy = "name tables of da/dN over ΔK: rates = [\"...csv\"], or a-N readings: files = [\"...csv\"]";
-            return Err(input_missing("measured.rates", "is missing", remedy));
-        }
+        let remedy = "name tables of da/dN over ΔK: rates = [\"...csv\"], or a-N readings: files = [\"...csv\"]";
+        fail_if!(case.sources.is_empty(), input_missing("measured.rates", "is missing", remedy));
         case.window(&rates)?;
         Ok(case)
     }
@@ -114,9 +112,7 @@ impl LawCase {
     fn add_table(&mut self, keys: &RateFileKeys, document: &Document) -> Result<()> {
         let (found, bytes) = keys.read(&document.folder, "measured.rates")?;
         let path = document.folder.path(&keys.file);
-        if !found.says_ratio {
-            return Err(lacks_ratio(&keys.file, "measured.rates").in_file(&path));
-        }
+        fail_if!(!found.says_ratio, lacks_ratio(&keys.file, "measured.rates").in_file(&path));
         self.warnings.extend(found.warnings);
         self.flagged += found.flagged;
         if let Some(range) = found.range {
@@ -146,10 +142,8 @@ impl LawCase {
 
     fn window(&mut self, keys: &RatesKeys) -> Result<()> {
         let (from, to) = (keys.from.unwrap_or(0.0), keys.to.unwrap_or(f64::INFINITY));
-        if from >= to {
-            let problem = format!("is not above from_delta_k_mpa_sqrt_m = {}", from / MPA_SQRT_M);
-            return Err(input("measured.to_delta_k_mpa_sqrt_m", to / MPA_SQRT_M, problem, "give a window with rates"));
-        }
+        let problem = || format!("is not above from_delta_k_mpa_sqrt_m = {}", from / MPA_SQRT_M);
+        fail_if!(from >= to, input("measured.to_delta_k_mpa_sqrt_m", to / MPA_SQRT_M, problem(), "give a window with rates"));
         self.rows.retain(|row| (from * (1.0 - 1e-9)..=to * (1.0 + 1e-9)).contains(&row.delta_k));
         let count = self.rows.len();
         if count < 3 {

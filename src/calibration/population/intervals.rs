@@ -2,7 +2,7 @@
 //! and both as the law of a lot sees them, means over their cycles.
 
 use crate::median::{NORMAL_MEDIAN, median};
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, fail_if, input};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_laws::curve::{CurveLaw, EFFECTS};
 use perilife_measured::MeasuredCurve;
@@ -117,10 +117,8 @@ impl Specimen {
                 intervals.push(Interval { cycles, ..integrate(&lengths, zone, delta_k)? });
             }
         }
-        if intervals.is_empty() {
-            let remedy = "give readings over more growth";
-            return Err(input("measured.files", name, "has no growth beyond the scatter of its readings", remedy));
-        }
+        let remedy = "give readings over more growth";
+        fail_if!(intervals.is_empty(), input("measured.files", name, "has no growth beyond the scatter of its readings", remedy));
         Ok(Specimen { name: name.to_owned(), intervals })
     }
 }

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use assess::assess;
 use intervals::{IntervalRow, Specimen, rows};
 use noise::Noise;
-use perilife_base::error::{Error, Result, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input_missing};
 use perilife_base::units::{MM, MPA_SQRT_M};
 use perilife_laws::STEADY_EXPONENTS;
 use perilife_laws::curve::{CurveLaw, EFFECTS, KNOTS, ROUGHNESS};
@@ -269,9 +269,7 @@ fn slope_of_readings(specimens: &[Specimen], found: &Found) -> Option<f64> {
 fn start(specimens: &[Specimen], slope: Option<f64>) -> Result<CurveLaw> {
     let all = || specimens.iter().flat_map(|specimen| &specimen.intervals);
     let count = all().count();
-    if count == 0 {
-        return Err(input_missing("measured.files", "contain no growth", "give at least one specimen with two readings"));
-    }
+    fail_if!(count == 0, input_missing("measured.files", "contain no growth", "give at least one specimen with two readings"));
     let (mut low, mut high, mut sum, mut cycles) = (f64::INFINITY, f64::NEG_INFINITY, 0.0, 0.0);
     for interval in all() {
         for &end in interval.ends.iter().flatten().filter(|end| end.is_finite()) {

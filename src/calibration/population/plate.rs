@@ -10,7 +10,7 @@ use super::Population;
 use super::forecast::{BEYOND_MAX, CELLS, Forecast, Life, Lot};
 use super::intervals::{INTERVALS_MAX, Interval, IntervalReading, Specimen, Zones};
 use super::student::t_quantile;
-use perilife_base::error::{Error, Result, input};
+use perilife_base::error::{Error, Result, fail_if, input};
 use perilife_base::monotone::Monotone;
 use perilife_base::table::Fault;
 use perilife_base::units::{MM, MPA_SQRT_M, round_off};
@@ -144,9 +144,7 @@ impl Plate {
 
     fn new(lot: Population, case: &Case, prediction: &Prediction) -> std::result::Result<Self, NoBand> {
         let (Some(life), rows) = (prediction.life(), &prediction.curve) else { return Err("the life is unlimited".to_owned()) };
-        if life <= 0.0 {
-            return Err("no crack grew".to_owned());
-        }
+        fail_if!(life <= 0.0, "no crack grew".to_owned());
         let (way, governing) = (way(case, prediction), GoverningCrack::of(&case.specimen, rows));
         let known: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].delta_k.is_finite() && rows[i].delta_k > 0.0).collect();
         let [low, high] = [lot.law.range[0] / BEYOND_MAX, lot.law.range[1] * BEYOND_MAX];
@@ -170,9 +168,7 @@ impl Plate {
             is_longer.then(|| (way[i], rows[i].delta_k))
         });
         let rising: Vec<(f64, f64)> = rising.collect();
-        if rising.len() < 2 || rows[last].cycles <= rows[first].cycles {
-            return Err("no crack grew".to_owned());
-        }
+        fail_if!(rising.len() < 2 || rows[last].cycles <= rows[first].cycles, "no crack grew".to_owned());
         let factors = TipFactors::new(rising.iter().copied());
         let zones = Zones::new(way[first], way[last], &|way| factors.at(way)).map_err(words)?;
         let t = t_quantile(SHARES[2], lot.freedom);

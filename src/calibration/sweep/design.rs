@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use super::vary::{DesignKind, Spread, Vary};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Document;
 use perilife_base::keys::{self, key};
 
@@ -83,9 +83,8 @@ fn read_design(keys: &DesignKeys, vary: &[Value], most: usize) -> Result<Design>
             return Err(input(&place, format!("\"{}\"", one.key), "is given twice", "give each key once"));
         }
     }
-    if vary.is_empty() && kind != DesignKind::FittedScatter {
-        return Err(input_missing("vary", "is missing: no key varies", "write a section [[vary]] with a key and its values"));
-    }
+    let remedy = "write a section [[vary]] with a key and its values";
+    fail_if!(vary.is_empty() && kind != DesignKind::FittedScatter, input_missing("vary", "is missing: no key varies", remedy));
     if let Some(scatter) = keys.scatter.filter(|_| kind != DesignKind::FittedScatter) {
         let remedy = format!("remove it, or use kind = \"{}\"", DesignKind::FittedScatter);
         let problem = format!("cannot be combined with kind = \"{kind}\"");
@@ -114,13 +113,9 @@ fn grid_size(keys: &DesignKeys, vary: &[Vary], most: usize) -> Result<usize> {
 }
 
 fn check_size(key: &str, cases: usize, most: usize) -> Result<usize> {
-    if cases == 0 {
-        return Err(input(key, cases, "must be at least 1", "give at least 1"));
-    }
-    if cases > most {
-        let problem = format!("makes {cases} cases; limit {most}");
-        return Err(input(key, format!("{cases} cases"), problem, "make it smaller, or allow more by --most"));
-    }
+    fail_if!(cases == 0, input(key, cases, "must be at least 1", "give at least 1"));
+    let problem = || format!("makes {cases} cases; limit {most}");
+    fail_if!(cases > most, input(key, format!("{cases} cases"), problem(), "make it smaller, or allow more by --most"));
     Ok(cases)
 }
 

@@ -3,7 +3,7 @@
 use toml::Value;
 
 use super::distribution::Distribution;
-use perilife_base::error::{Error, Result, input, input_missing};
+use perilife_base::error::{Error, Result, fail_if, input, input_missing};
 use perilife_base::keys::{Given, key, section};
 use perilife_growth::case::SECTIONS;
 use perilife_laws::growth_law::description::law_keys;
@@ -102,9 +102,7 @@ impl Reader<'_> {
         self.given.refuse_any(&OF_DISTRIBUTIONS, problem, "give values, or from, to and count")?;
         let Some(values) = &self.input.values else { return self.spaced(most) };
         self.given.refuse_any(&OF_SPACING, "conflicts with values", "give values, or from, to and count")?;
-        if values.is_empty() {
-            return Err(input(&self.key("values"), "[]", "is empty", "give at least one value"));
-        }
+        fail_if!(values.is_empty(), input(&self.key("values"), "[]", "is empty", "give at least one value"));
         if let Some(value) = values.iter().find(|value| value.as_float().is_some_and(|number| !number.is_finite())) {
             return Err(input(&self.key("values"), value, "is not a finite number", "give finite numbers"));
         }
@@ -195,24 +193,18 @@ impl Reader<'_> {
 
     fn rising(&self) -> Result<[f64; 2]> {
         let (from, to) = (self.number("from", self.input.from)?, self.number("to", self.input.to)?);
-        if from >= to {
-            return Err(input(&self.key("to"), to, format!("is not above from = {from}"), "give from < to"));
-        }
+        fail_if!(from >= to, input(&self.key("to"), to, format!("is not above from = {from}"), "give from < to"));
         Ok([from, to])
     }
 
     fn number(&self, key: &str, value: Option<f64>) -> Result<f64> {
         let value = value.ok_or_else(|| self.missing(key))?;
-        if !value.is_finite() {
-            return Err(input(&self.key(key), value, "is not a finite number", "give a finite number"));
-        }
+        fail_if!(!value.is_finite(), input(&self.key(key), value, "is not a finite number", "give a finite number"));
         Ok(value)
     }
 
     fn above_zero(&self, key: &str, value: f64) -> Result<f64> {
-        if value <= 0.0 {
-            return Err(input(&self.key(key), value, "must be above zero", "give a number above zero"));
-        }
+        fail_if!(value <= 0.0, input(&self.key(key), value, "must be above zero", "give a number above zero"));
         Ok(value)
     }
 

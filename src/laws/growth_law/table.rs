@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::FactorLaw;
 use super::description::{GAMMA, Given, GrowthLawSpec, RatedRow, Rates, TableEnds, UNSAID};
-use perilife_base::error::{Error, InputError, Result, input, input_missing};
+use perilife_base::error::{Error, InputError, Result, fail_if, input, input_missing};
 use perilife_base::keys::Key;
 use perilife_base::units::{MM_PER_CYCLE, MPA_SQRT_M, round_off};
 use perilife_plate::loading::SAME_RATIO;
@@ -270,9 +270,7 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         ));
         curves.push(curve);
     }
-    if curves.is_empty() {
-        return Err(wrong(None, "rows", 0.0, "are too few".to_owned()));
-    }
+    fail_if!(curves.is_empty(), wrong(None, "rows", 0.0, "are too few".to_owned()));
     Ok((curves, notes))
 }
 

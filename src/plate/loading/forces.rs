@@ -5,7 +5,7 @@ use toml::Table;
 use crate::specimen::geometry::{along, distance, distance_to_segment, unit};
 use crate::specimen::pin::{ARC, POISSON, POISSON_RATIO, PinKeys, YOUNGS_MODULUS};
 use crate::specimen::{Bearing, Load, Point, Specimen};
-use perilife_base::error::{Result, input};
+use perilife_base::error::{Result, fail_if, input};
 use perilife_base::input::{Quantity, number as plain};
 use perilife_base::keys::{Given, coordinate, key, length, modulus, number};
 use perilife_base::units::round_mm;
@@ -46,10 +46,9 @@ pub(super) fn read_pins(given: &Given<'_>, pins: &[PinEntry], beside_edges: bool
         let empty = Table::new();
         let entry = given.table.get("pins").and_then(|pins| pins.get(i)?.as_table());
         let entry = Given { table: entry.unwrap_or(&empty), path: &path };
-        if pin.hole >= specimen.holes.len() {
-            let problem = format!("is not a hole of this plate, which has {}", specimen.holes.len());
-            return Err(input(&format!("{path}.hole"), pin.hole, problem, "count specimen.holes from 0"));
-        }
+        let problem = || format!("is not a hole of this plate, which has {}", specimen.holes.len());
+        let remedy = "count specimen.holes from 0";
+        fail_if!(pin.hole >= specimen.holes.len(), input(&format!("{path}.hole"), pin.hole, problem(), remedy));
         let force = force_of(&path, pin, beside_edges, specimen)?;
         let direction = direction_of(&path, pin.direction)?;
         let &PinEntry { half_angle, diameter, friction, youngs_modulus, poisson_ratio, .. } = pin;
@@ -114,9 +113,7 @@ pub(super) fn read_rollers(rollers: &[RollerEntry], specimen: &mut Specimen) -> 
 }
 
 fn check_count(key: &str, given: usize, example: &str) -> Result<()> {
-    if given > 100 {
-        return Err(input(key, format!("{given} entries"), "are too many", format!("give up to 100 {example}")));
-    }
+    fail_if!(given > 100, input(key, format!("{given} entries"), "are too many", format!("give up to 100 {example}")));
     Ok(())
 }
 

@@ -3,6 +3,8 @@
 //! Rules of written mathematics: `-x^2` is -(x²), `a^b^c` is a^(b^c), `1/2` is a half. (Crates that read formulas bind the minus before
 //! the power, or divide whole numbers without remainder; either would turn a stress into another one without a word.)
 
+use perilife_base::error::fail_if;
+
 #[derive(Debug, Clone, Copy)]
 enum Function {
     One(fn(f64) -> f64),
@@ -154,9 +156,7 @@ impl Reader<'_> {
 
     fn signed(&mut self) -> Result<(), String> {
         self.depth += 1;
-        if self.depth > DEPTH_MOST {
-            return Err(self.wrong("is nested too deeply"));
-        }
+        fail_if!(self.depth > DEPTH_MOST, self.wrong("is nested too deeply"));
         if self.take(b'-') {
             self.signed()?;
             self.steps.push(Step::One(|a| -a));

@@ -11,7 +11,7 @@ use super::{
     DISPLACEMENT, Input, LoadControl, Loading, LoadingKind, OF_SPECTRUM, PLACES, UNIT_FORCE, UNIT_STRESS, boundary, grips,
 };
 use crate::specimen::{LengthConvention, LoadMeasure, Specimen};
-use perilife_base::error::{self, Error, InputError, Result, input, input_missing};
+use perilife_base::error::{self, Error, InputError, Result, fail_if, input, input_missing};
 use perilife_base::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS};
 use perilife_base::keys::{Given, Plain, Section, Unjudged};
 use perilife_base::units::MPA;
@@ -150,13 +150,9 @@ fn read_crack_pressure(input: &Input, specimen: &Specimen) -> Result<Option<f64>
     const KEY: &str = "loading.crack_pressure_mpa";
     let Some(pressure) = input.crack_pressure else { return Ok(None) };
     let given = pressure / MPA;
-    if !specimen.kind.is_plate() {
-        let problem = format!("cannot be combined with {}, whose handbook K includes its own load only", specimen.kind);
-        return Err(error::input(KEY, given, problem, "use kind = \"plate\""));
-    }
-    if specimen.cracks.is_empty() {
-        return Err(error::input(KEY, given, "requires a crack", "give specimen.cracks"));
-    }
+    let problem = || format!("cannot be combined with {}, whose handbook K includes its own load only", specimen.kind);
+    fail_if!(!specimen.kind.is_plate(), error::input(KEY, given, problem(), "use kind = \"plate\""));
+    fail_if!(specimen.cracks.is_empty(), error::input(KEY, given, "requires a crack", "give specimen.cracks"));
     Ok(Some(pressure))
 }
 

@@ -17,7 +17,7 @@ use super::Input;
 use super::formula::{Formula, KNOWN};
 use crate::specimen::geometry::{along, distance};
 use crate::specimen::{CrackLine, Point};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::{Folder, shorten};
 use perilife_base::table::names::{Kind, Named, Role};
 use perilife_base::table::quantities::{Words, in_si, numbers};
@@ -218,9 +218,7 @@ fn of_formulas((own, units): Key, given: &Value) -> Result<ResidualStress> {
         }
         other => return Err(input(own, shorten(other), "is not a formula", REMEDY)),
     };
-    if field.iter().all(Option::is_none) {
-        return Err(input_missing(own, "gives no component", REMEDY));
-    }
+    fail_if!(field.iter().all(Option::is_none), input_missing(own, "gives no component", REMEDY));
     Ok(ResidualStress { field: Field::Formulas(field, units), words: given.to_string(), sha256: String::new(), key: own })
 }
 
@@ -262,9 +260,7 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
     let from = farthest(first.at);
     let to = farthest(from);
     let length = distance(from, to);
-    if length <= 0.0 {
-        return Err(fault(Some(samples[1].0), "x", "", "repeats the previous point", "give each point once"));
-    }
+    fail_if!(length <= 0.0, fault(Some(samples[1].0), "x", "", "repeats the previous point", "give each point once"));
     let beside = |at: Point| ((to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0])).abs() / length;
     let same = |line: usize| fault(Some(line), "x", "", "repeats the point of another row", "give each point once");
     if samples.iter().all(|(_, sample)| beside(sample.at) < ROUND_OFF * length) {
@@ -282,9 +278,7 @@ fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
         triangles
             .insert(sample)
             .map_err(|error| fault(Some(line), "x", "", &format!("is not a position: {error}"), "check its unit"))?;
-        if triangles.num_vertices() == before {
-            return Err(same(line));
-        }
+        fail_if!(triangles.num_vertices() == before, same(line));
     }
     Ok(Field::Plane(Box::new(triangles)))
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use perilife_base::error::Result;
+use perilife_base::error::{Result, fail_if};
 use perilife_base::keys::{Given, length, modulus, number};
 use perilife_base::units::GPA;
 
@@ -99,10 +99,8 @@ impl Bearing {
             return of_elastic.map_or(Ok(Bearing::Unknown(LOOSE_PIN)), missing);
         };
         let radius = diameter / 2.0;
-        if radius > hole * FITS {
-            let problem = format!("is larger than the hole ({} mm); interference fits are not supported", 2e3 * hole);
-            return Err(given.refuse(OF_ELASTIC[0], problem, "use a pin smaller than its hole"));
-        }
+        let problem = || format!("is larger than the hole ({} mm); interference fits are not supported", 2e3 * hole);
+        fail_if!(radius > hole * FITS, given.refuse(OF_ELASTIC[0], problem(), "use a pin smaller than its hole"));
         let PinKeys { youngs_modulus, poisson_ratio, .. } = *keys;
         Ok(Bearing::Elastic(Pin { radius: radius.min(hole), youngs_modulus, poisson_ratio, found: None }))
     }

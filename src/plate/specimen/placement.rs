@@ -5,7 +5,7 @@ use super::geometry::{
     nearest_of_segment, point_in_polygon, segments_touch, turn_at,
 };
 use super::{Crack, CrackLine, Hole, Point, Slot, Specimen, TipSeed};
-use perilife_base::error::{Result, input_missing};
+use perilife_base::error::{Result, fail_if, input_missing};
 use perilife_base::units::{given_mm, round_mm};
 
 /// What lies closer than this counts as touching, m: far below any spacing, far above round-off.
@@ -122,10 +122,9 @@ pub(super) fn place_cracks(
         for (j, &crack) in cracks.iter().enumerate() {
             check_path(specimen, crack, &key)?;
             // Of cracks that share an end, too, which are one by now.
-            if cracks[..j].iter().any(|other| is_overlap(crack, *other)) {
-                let problem = "folds back on itself or overlaps a crack that shares its end";
-                return Err(input_missing(&key, problem, "give every part of a crack once"));
-            }
+            let problem = "folds back on itself or overlaps a crack that shares its end";
+            let remedy = "give every part of a crack once";
+            fail_if!(cracks[..j].iter().any(|other| is_overlap(crack, *other)), input_missing(&key, problem, remedy));
             if let Some(other) = specimen.cracks.iter().find(|other| is_overlap(crack, **other)) {
                 let line =
                     specimen.crack_lines().iter().position(|line| line.pieces().any(|piece| piece == [other.from, other.to]));
@@ -165,10 +164,8 @@ pub(super) fn place_cracks(
             || [false, true].iter().all(|&at_last| distance_to_polygon(line.end(at_last), &specimen.outline) <= TOUCH);
         if specimen.tips_of(line) == 0 && (is_from_edge_to_edge() || specimen.tips.is_empty()) {
             let key = format!("specimen.cracks[{i}]");
-            if is_joined() {
-                let problem = "meets another crack and has no tip inside the material";
-                return Err(input_missing(&key, problem, "end one of them inside the plate"));
-            }
+            let problem = "meets another crack and has no tip inside the material";
+            fail_if!(is_joined(), input_missing(&key, problem, "end one of them inside the plate"));
             let problem = "has no tip inside the material (a tip within 1 % of its length from an edge counts as on it)";
             return Err(input_missing(&key, problem, "end it inside the plate"));
         }

@@ -22,7 +22,7 @@ use super::geometry::{bounding_box, distance, polygon_area, segments_touch, self
 use super::keys::{LENGTH, THICKNESS, WIDTH};
 use super::placement::{check_holes, place_cracks, place_slots};
 use super::{Hole, LengthConvention, Point, Slot, Specimen, SpecimenKind};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::input::Folder;
 use perilife_base::keys::{Given, Section, coordinate, key, length};
 use perilife_base::units::place_mm;
@@ -189,10 +189,8 @@ fn polygon(corners: &[Point]) -> Result<Vec<Point>> {
     if outline.len() > 1 && outline.first() == outline.last() {
         outline.pop();
     }
-    if outline.len() > ITEMS_MAX {
-        let remedy = format!("give 3 to {ITEMS_MAX} corners in order");
-        return Err(input(KEY, format!("{} points", corners.len()), "is not an outline", remedy));
-    }
+    let remedy = || format!("give 3 to {ITEMS_MAX} corners in order");
+    fail_if!(outline.len() > ITEMS_MAX, input(KEY, format!("{} points", corners.len()), "is not an outline", remedy()));
     simple(outline, KEY)
 }
 
@@ -214,10 +212,8 @@ fn simple(mut outline: Vec<Point>, key: &str) -> Result<Vec<Point>> {
     }
     let area = polygon_area(&outline);
     let [low, high] = bounding_box(&outline);
-    if area.abs() < 1e-6 * (high[0] - low[0]).max(high[1] - low[1]).powi(2) {
-        let remedy = "give the corners in order around the plate";
-        return Err(input(key, count, "encloses no area", remedy));
-    }
+    let remedy = "give the corners in order around the plate";
+    fail_if!(area.abs() < 1e-6 * (high[0] - low[0]).max(high[1] - low[1]).powi(2), input(key, count, "encloses no area", remedy));
     if area < 0.0 {
         outline.reverse();
     }
@@ -264,8 +260,7 @@ fn crack_path(item: &CrackKeys, path: &str) -> Result<Vec<Point>> {
 }
 
 fn ends(path: &str, from: Point, to: Point) -> Result<(Point, Point)> {
-    if distance(from, to) < 1e-6 {
-        return Err(input_missing(path, "has zero length: from_mm and to_mm coincide", "give two different points"));
-    }
+    let remedy = "give two different points";
+    fail_if!(distance(from, to) < 1e-6, input_missing(path, "has zero length: from_mm and to_mm coincide", remedy));
     Ok((from, to))
 }

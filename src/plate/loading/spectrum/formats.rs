@@ -4,7 +4,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 use super::columns;
-use perilife_base::error::{Error, InputError, Result};
+use perilife_base::error::{Error, InputError, Result, fail_if};
 
 perilife_base::kinds! {
     pub enum SpectrumFormat for "loading.spectrum_format" {
@@ -78,10 +78,8 @@ pub(super) fn sub<'a>(mut rows: impl Iterator<Item = Row<'a>>) -> Result<Content
         // A title in words stands for one with an unknown number of rows.
         let count = if is_numbers(title) { cells(title).next().and_then(|cell| cell.parse::<usize>().ok()) } else { None };
         let is_title = !is_numbers(title) || cells(title).count() == 1;
-        if !is_title && !has_title {
-            let remedy = "give a title line first, with the number of rows that follow";
-            return Err(fault(Some(line), "row", title, "expected the title line of a .sub file", remedy));
-        }
+        let remedy = "give a title line first, with the number of rows that follow";
+        fail_if!(!is_title && !has_title, fault(Some(line), "row", title, "expected the title line of a .sub file", remedy));
         if !is_title {
             found.push(cycle_of_row((line, title))?);
             continue;
@@ -134,10 +132,8 @@ pub(super) fn fastran<'a>(mut rows: impl Iterator<Item = Row<'a>>) -> Result<Con
         return Err(fault(Some(line), "header", text, "is not `points Smax Smin INVERT ICLIP`", OF_FASTRAN));
     };
     for (name, value) in [("INVERT", invert), ("ICLIP", clip)] {
-        if value != 0.0 {
-            let remedy = "write the final points, with 0 here; truncation_percent clips peaks";
-            return Err(fault(Some(line), name, &value.to_string(), "is not supported (it changes the points)", remedy));
-        }
+        let remedy = "write the final points, with 0 here; truncation_percent clips peaks";
+        fail_if!(value != 0.0, fault(Some(line), name, &value.to_string(), "is not supported (it changes the points)", remedy));
     }
     let mut found = Vec::new();
     for (line, text) in rows {
@@ -145,10 +141,8 @@ pub(super) fn fastran<'a>(mut rows: impl Iterator<Item = Row<'a>>) -> Result<Con
             found.push(number(line, "point", cell)?);
         }
     }
-    if found.len() != points as usize {
-        let problem = format!("is not the number of points that follow, {}", found.len());
-        return Err(fault(Some(line), "points", &points.to_string(), &problem, OF_FASTRAN));
-    }
+    let problem = || format!("is not the number of points that follow, {}", found.len());
+    fail_if!(found.len() != points as usize, fault(Some(line), "points", &points.to_string(), &problem(), OF_FASTRAN));
     let ends = found.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(*x), high.max(*x)]);
     let scale = (most - least) / (ends[1] - ends[0]);
     // Where all are equal nothing turns, which is refused where points are counted.

@@ -6,6 +6,7 @@
 use super::curve::{Arc, Curve, Piece, bulged};
 use super::{Drawing, Drawn, Fault, known_layer, place};
 use crate::specimen::Point;
+use perilife_base::error::fail_if;
 
 /// What to do with an entity that is none of these.
 const DRAW_IT: &str = "draw it as one of them; delete it only if it is not part of the plate (text, dimensions)";
@@ -32,9 +33,7 @@ struct Entity<'t> {
 /// Reads a file; millimetres of a unit by `$INSUNITS`.
 /// Errors: text that is no DXF; entities that are no plain lines.
 pub fn read(text: &str) -> Result<Drawing, Fault> {
-    if text.starts_with("AutoCAD Binary DXF") {
-        return Err(Fault::of("is a binary DXF", "save it as ASCII DXF"));
-    }
+    fail_if!(text.starts_with("AutoCAD Binary DXF"), Fault::of("is a binary DXF", "save it as ASCII DXF"));
     let groups = groups(text)?;
     let unit = groups.windows(2).find(|pair| pair[0].1 == "$INSUNITS").map(|pair| pair[1].1);
     let millimetres = match unit.unwrap_or("0") {
@@ -82,9 +81,8 @@ fn groups(text: &str) -> Result<Vec<Group<'_>>, Fault> {
             break;
         }
     }
-    if !groups.iter().any(|group| (group.0, group.1) == (0, "EOF")) {
-        return Err(Fault::of("ends before its end mark EOF", "save it again as ASCII DXF (the file is truncated)"));
-    }
+    let remedy = "save it again as ASCII DXF (the file is truncated)";
+    fail_if!(!groups.iter().any(|group| (group.0, group.1) == (0, "EOF")), Fault::of("ends before its end mark EOF", remedy));
     Ok(groups)
 }
 
@@ -134,9 +132,7 @@ impl Entity<'_> {
     /// Refuses what a viewer does not show: it might be meant or not.
     fn check_shown(&self, hidden: &[(&str, &str)]) -> Result<(), Fault> {
         const REMEDY: &str = "show it if it is part of the plate, else delete it";
-        if self.number(60)? == Some(1.0) {
-            return Err(self.refused("is hidden (group code 60)", REMEDY));
-        }
+        fail_if!(self.number(60)? == Some(1.0), self.refused("is hidden (group code 60)", REMEDY));
         match hidden.iter().find(|(layer, _)| layer.eq_ignore_ascii_case(self.layer_name())) {
             Some((_, why)) => Err(self.refused(why, REMEDY)),
             None => Ok(()),
@@ -152,12 +148,8 @@ impl Entity<'_> {
             let values = groups.map(|group| self.value(group)).collect::<Result<Vec<_>, Fault>>()?;
             Ok::<_, Fault>(values.into_iter().find(|value| value.abs() > ROUND_OFF))
         };
-        if self.number(230)?.is_some_and(|z| z < 0.0) {
-            return Err(self.refused("has extrusion -z", REMEDY));
-        }
-        if first_not(&[210, 220])?.is_some() {
-            return Err(self.refused("is drawn in a tilted plane (extrusion not along z)", REMEDY));
-        }
+        fail_if!(self.number(230)?.is_some_and(|z| z < 0.0), self.refused("has extrusion -z", REMEDY));
+        fail_if!(first_not(&[210, 220])?.is_some(), self.refused("is drawn in a tilted plane (extrusion not along z)", REMEDY));
         match first_not(&[30, 31, 38])? {
             Some(z) => Err(self.refused(&format!("is at z = {z}"), REMEDY)),
             None => Ok(()),

@@ -7,7 +7,7 @@ use crate::specimen::keys::{HOLE_DIAMETER, LENGTH, THICKNESS, WIDTH};
 use crate::specimen::placement::check_holes;
 use crate::specimen::plate::{HoleKeys, read_holes};
 use crate::specimen::{Hole, Specimen};
-use perilife_base::error::{Result, input, input_missing};
+use perilife_base::error::{Result, fail_if, input, input_missing};
 use perilife_base::keys::{Given, Key, Section, key, length, number, part};
 use perilife_base::units::round_mm;
 
@@ -44,10 +44,8 @@ pub(in crate::specimen) fn from_value(
     let given = Given::of(value, "specimen")?;
     let (own, radius, cracks) = if description.has_hole {
         let KeysAtHole { own, diameter, cracks } = KeysAtHole::read(&given)?;
-        if diameter >= own.width {
-            let problem = format!("must be below the width {} mm", round_mm(own.width));
-            return Err(given.refuse(HOLE_DIAMETER.name, problem, "use a smaller hole or a wider plate"));
-        }
+        let problem = || format!("must be below the width {} mm", round_mm(own.width));
+        fail_if!(diameter >= own.width, given.refuse(HOLE_DIAMETER.name, problem(), "use a smaller hole or a wider plate"));
         (own, diameter / 2.0, cracks)
     } else {
         (Keys::read(&given)?, 0.0, 1)
