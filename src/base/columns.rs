@@ -11,9 +11,7 @@ use crate::units::shown::shown;
 use crate::units::us::{Renamed, System, renamed};
 use crate::units::words::in_units;
 
-/// Significant digits of a number at the least.
 const DIGITS: usize = 10;
-
 /// Remedy for files of results that are not as they were written.
 pub const AGAIN: &str = "the folder is damaged: copy it again, or rerun the case";
 
@@ -193,7 +191,6 @@ impl Table {
         text
     }
 
-    /// The number that stands in a row under a name.
     fn sibling(&self, name: &str, row: usize) -> Option<f64> {
         self.columns.iter().find(|column| column.name == name)?.cells.number(row)
     }
@@ -223,7 +220,6 @@ impl Table {
         Ok(table)
     }
 
-    /// Columns in US units in metric ones.
     fn go_metric(&mut self) {
         let changes: Vec<(usize, Renamed, Vec<f64>)> = (0..self.columns.len())
             .filter_map(|place| {

@@ -69,7 +69,6 @@ impl Error {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct InputError {
     pub file: Option<PathBuf>,
-    /// Line of the file, counted from 1.
     pub line: Option<usize>,
     /// Key (`specimen.crack_length_mm`) or column (`cycles`).
     pub key: Option<String>,
@@ -83,7 +82,6 @@ pub struct InputError {
 
 /// Mistakes of one file that are told at once; the rest is counted.
 const TOLD_AT_ONCE: usize = 10;
-
 /// Most characters of a key or value that a message repeats: what a user gave may be a whole file.
 pub const VALUE_MAX: usize = 200;
 /// Most characters of a sentence of a message, which may repeat names.
@@ -158,9 +156,15 @@ pub fn input_missing(key: &str, problem: impl Into<String>, remedy: impl Into<St
     }))
 }
 
-/// Returns an error where something is wrong: `fail_if!(length <= 0.0, input(KEY, length, problem, remedy));`.
+/// Returns an error where something is wrong: `fail_if!(length <= 0.0, input(KEY, length, problem, remedy));`, or
+/// `fail_if!(let Some(second) = columns.next(), fault(second));`.
 #[macro_export]
 macro_rules! fail_if {
+    (let $wrong:pat = $value:expr, $error:expr) => {
+        if let $wrong = $value {
+            return Err($error);
+        }
+    };
     ($wrong:expr, $error:expr) => {
         if $wrong {
             return Err($error);

@@ -16,7 +16,6 @@ pub struct KindLine {
 
 /// What [`kinds!`](crate::kinds!) declares.
 pub trait Named: Sized {
-    /// Lines of `perilife list`.
     fn lines() -> Vec<KindLine>;
     fn find(text: &str) -> Option<Self>;
 }
@@ -64,7 +63,6 @@ macro_rules! kinds {
     };
     (names of $Kind:ident) => {
         impl $Kind {
-            /// Lines of `perilife list`.
             pub fn lines() -> Vec<$crate::kinds::KindLine> {
                 Self::all().map(|k| $crate::kinds::KindLine { key: Self::KEY, name: k.name(), meaning: k.meaning() }).collect()
             }

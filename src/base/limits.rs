@@ -13,7 +13,6 @@ pub const COLUMNS: &str = "sweep,method,parameter,is_safe,low,high,bound_percent
 /// The safe range of a method over one parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
-    /// Sweep of `perilife stability`.
     pub sweep: String,
     pub method: String,
     pub parameter: String,

@@ -13,13 +13,9 @@ use crate::error::{Error, Result};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Stage {
-    /// Points are laid into the plate.
     Points = 1,
-    /// Bonds are drawn between them.
     Bonds,
-    /// Bonds near the rim are balanced.
     Rim,
-    /// Loads and supports are put on.
     Loads,
     Solver,
     Equilibrium,

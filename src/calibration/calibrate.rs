@@ -33,9 +33,7 @@ const SAME_LENGTH: f64 = 1e-9;
 /// A checked calibration file.
 #[derive(Debug, Clone)]
 pub enum Calibration {
-    /// Lives of readings, by the law of Paris.
     Lives(Box<CalibrationCase>),
-    /// Rates, by laws over K.
     Rates(Box<LawCase>),
 }
 

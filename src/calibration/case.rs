@@ -22,7 +22,6 @@ use perilife_plate::specimen::{Specimen, SpecimenKind};
 
 /// Slack of crack lengths against each other, m: binary fractions of a mm need not agree to the last bit.
 const LENGTH_SLACK: f64 = 1e-9;
-
 /// What the specimen's crack may be longer than the first reading besides, m: its rounding in a report.
 const START_SLACK: f64 = 5e-5;
 /// Share by which the specimen's crack may be longer than the first reading: 12 mm are 0.4724 in of four decimals, or 11.999 mm.
@@ -41,10 +40,8 @@ pub struct CalibrationCase {
     pub window: [f64; 2],
     /// Yield strength of the material, Pa, by which readings are judged.
     pub yield_strength: Option<f64>,
-    /// The exponent: fitted, given, or of a record.
     pub exponent: Exponent,
     pub criterion: Criterion,
-    /// Measured files with their hashes.
     pub sources: Vec<SourceFile>,
     /// Readings that do not count, with the reasons.
     pub left_out: Vec<LeaveOut>,
@@ -219,10 +216,9 @@ fn complete(table: &mut Table, measured: &Measured, keys: &MeasuredKeys) -> Resu
 
 /// Readings under a spectrum have no one ΔK.
 fn refuse_spectrum(case: &Case) -> Result<()> {
-    if let Some(residual) = &case.loading.residual {
-        let problem = "cannot be combined with a calibration (ΔK and rate at one R)";
-        return Err(input(residual.key(), residual.words(), problem, "calibrate on readings of plates without residual stress"));
-    }
+    let problem = "cannot be combined with a calibration (ΔK and rate at one R)";
+    let remedy = "calibrate on readings of plates without residual stress";
+    fail_if!(let Some(residual) = &case.loading.residual, input(residual.key(), residual.words(), problem, remedy));
     if case.loading.spectrum.is_none() {
         return Ok(());
     }
@@ -259,7 +255,6 @@ fn unrecorded(case: &Case) -> Option<String> {
     (case.fatigue.threshold > 0.0).then(|| line.to_owned())
 }
 
-/// Curves of the measured files, and what the record says about the files.
 fn readings(keys: &MeasuredKeys, folder: &Folder) -> Result<(Measured, Vec<SourceFile>)> {
     fail_if!(keys.files.is_empty(), input("measured.files", "[]", "has no file", "name at least one measured a-N curve"));
     check_left_out(&keys.leave_out, &keys.files)?;
@@ -282,7 +277,6 @@ pub fn source(file: &str, bytes: &[u8]) -> SourceFile {
     SourceFile { file: file.to_owned(), sha256: sha256(bytes) }
 }
 
-/// Ends of the fit window with their slack, m.
 fn window_ends(keys: &MeasuredKeys) -> [f64; 2] {
     [keys.from.unwrap_or(0.0) - LENGTH_SLACK, keys.to.unwrap_or(f64::INFINITY) + LENGTH_SLACK]
 }

@@ -49,11 +49,10 @@ pub(super) fn exponent(fit: &FitKeys, folder: &Folder, method: Method, delta_k_r
         },
         (false, Some(p), None) => Ok(Exponent { fixed: Some(p), source: "given".to_owned(), ..Exponent::default() }),
         (false, None, Some(file)) => Exponent::of_record(file, folder, method),
-        (false, None, None) => Err(input_missing(
-            "fit.p",
-            "is missing",
-            "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]",
-        )),
+        (false, None, None) => {
+            let remedy = "give the exponent p, or record = \"fitted.toml\", or fit it too: parameters = [\"a\", \"p\"]";
+            Err(input_missing("fit.p", "is missing", remedy))
+        }
     }
 }
 
@@ -106,11 +105,9 @@ impl Exponent {
             let warning = format!("ΔK varies by a factor of {delta_k_ratio:.2}, enough to fit p; {file} not used");
             return Ok(Exponent { warning: Some(warning), ..Self::default() });
         }
-        let warning = format!(
-            "ΔK varies only by a factor of {delta_k_ratio:.2} (need {DELTA_K_RATIO_MIN}): p = {:.4} ± {:.4} taken from {file}",
-            of_record.fixed.unwrap_or(f64::NAN),
-            of_record.error
-        );
+        let (p, error) = (of_record.fixed.unwrap_or(f64::NAN), of_record.error);
+        let few = format!("ΔK varies only by a factor of {delta_k_ratio:.2} (need {DELTA_K_RATIO_MIN})");
+        let warning = format!("{few}: p = {p:.4} ± {error:.4} taken from {file}");
         Ok(Exponent { warning: Some(warning), ..of_record })
     }
 }

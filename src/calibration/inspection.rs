@@ -118,10 +118,9 @@ impl Inspection {
     ) -> Result<Self> {
         from.check()?;
         let of_tip = tips.map(|tips| tips.of_curve(curve, from)).transpose()?;
-        if let (None, Some(tip)) = (of_tip, from.tip) {
-            let problem = "applies only to kind = \"plate\"; this specimen has one crack length";
-            return Err(input(from.names[2], tip, problem, "remove it"));
-        }
+        let problem = "applies only to kind = \"plate\"; this specimen has one crack length";
+        let remedy = "remove it";
+        fail_if!(let (None, Some(tip)) = (of_tip, from.tip), input(from.names[2], tip, problem, remedy));
         let (length, end) = (of_tip.map_or(from.crack_length_mm, |(_, [length, _])| length), curve[curve.len() - 1]);
         let (shortest, longest) = (curve[0][0], end[0]);
         let problem = || format!("is not on the curve, {shortest} to {longest} mm");

@@ -55,7 +55,6 @@ pub fn misfit_at_ends(measured: &[MeasuredCurve], law: &[MeasuredCurve], delta_k
     MisfitAtEnds { low: typical(0), high: typical(1) }
 }
 
-/// Misfits of a specimen at its first and its last readings.
 fn misfits(measured: &MeasuredCurve, law: &MeasuredCurve, delta_k: &dyn Fn(f64) -> f64) -> [Option<Misfit>; 2] {
     let log: Vec<f64> = (0..measured.cycles.len()).map(|reading| log_k(measured, reading, delta_k)).collect();
     let last = log.len() - 1; // a curve has five readings

@@ -33,13 +33,10 @@ const DEVIATION_MIN: f64 = 0.01;
 /// τ of the shape, as in [`super::population`], wide.
 const SHAPE_DEVIATION: f64 = 0.3;
 const STEPS: (usize, f64) = (40, 1e-6);
-
 /// Fewest rates for a line that a few of them cannot move.
 const RATES_MIN: usize = 6;
-
 /// Rates that a line is drawn through at the most, evenly picked: slopes of all pairs are taken.
 const RATES_MAX: usize = 2000;
-
 const RUNS_NAMED: usize = 5;
 
 /// Rate of growth from one reading to a later one.
@@ -56,7 +53,6 @@ pub struct StepRate {
 /// Line `ln da/dN = intercept + m ln ΔK` in m/cycle and MPa√m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct RobustLine {
-    /// ln of the rate at 1 MPa√m.
     pub intercept: f64,
     pub m: f64,
 }
@@ -258,7 +254,6 @@ pub fn doubts_beside(curve: &MeasuredCurve, runs: &[OutlierRun], delta_k: &dyn F
     named(curve, runs).into_iter().chain(shift).collect()
 }
 
-/// Warnings that name the runs of a curve by line, with the window that leaves them out.
 fn named(curve: &MeasuredCurve, runs: &[OutlierRun]) -> Vec<String> {
     let mut lines: Vec<String> = runs.iter().take(RUNS_NAMED).map(|run| run_warning(curve, *run)).collect();
     if runs.len() > RUNS_NAMED {
@@ -294,7 +289,6 @@ fn run_warning(curve: &MeasuredCurve, run: OutlierRun) -> String {
     )
 }
 
-/// File and lines of readings, to go in front of a message.
 fn place(curve: &MeasuredCurve, from: usize, to: usize) -> String {
     match curve.source.lines.len() {
         0 => String::new(),
@@ -305,13 +299,10 @@ fn place(curve: &MeasuredCurve, from: usize, to: usize) -> String {
 /// F above which two levels are certain. The split is chosen among many, so that ordinary tables of F do not hold; of 34 panels of one
 /// alloy under constant load one reaches it.
 pub const F_MAX: f64 = 60.0;
-
 /// Smallest ratio of the levels worth a word: computed curves scatter so little that any bend is certain.
 const RATIO_MIN: f64 = 1.1;
-
 /// Share of rates that may be left to a warning of their own.
 const FEW: f64 = 0.1;
-
 const SIDE_MIN: usize = 3;
 
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -11,7 +11,6 @@ use perilife_measured::MeasuredCurve;
 
 /// Lengths at which ΔK is tabulated; Simpson's rule on them integrates the Virkler panel to 1e-9.
 const INTERVALS: usize = 400;
-
 /// Pieces of Simpson's rule between two readings of different loads.
 const PIECES_OF_STEP: usize = 2;
 

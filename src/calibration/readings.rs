@@ -11,7 +11,6 @@ use perilife_measured::{LeaveOut, MeasuredCurve};
 
 /// Readings from which a curve has rates by parabolas through seven of them.
 const SEVEN: usize = 7;
-/// Why a reading outside the fit window does not count.
 const OUTSIDE: &str = "outside the fit window";
 
 /// The table: ΔK, MPa√m, by that of the load of the case, Pa√m, at a length, m; a rate stands beside the reading in its middle, a secant

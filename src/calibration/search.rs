@@ -17,7 +17,6 @@ use perilife_measured::{MeasuredCurve, READINGS_MIN};
 const TOLERANCE: f64 = 1e-8;
 /// Distance from an end of [`STEADY_EXPONENTS`] at which the smallest misfit is taken to lie beyond it.
 const AT_END: f64 = 1e-3;
-
 /// Growth that all specimens have in common, over all of theirs, from which on a median of them is a picture of all.
 const COMMON_SHARE: f64 = 0.8;
 

@@ -29,7 +29,6 @@ pub fn refuse_table(path: &Path) -> Result<()> {
     })))
 }
 
-/// What the table says, and `<...>` for the rest.
 fn lines(name: &str, found: &Survey) -> String {
     let curves = &found.measured.curves;
     let columns = match &found.layout {

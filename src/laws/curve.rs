@@ -56,7 +56,6 @@ impl CurveLaw {
         self.range[1] / self.range[0]
     }
 
-    /// Spacing of the knots in ln ΔK.
     fn knot_spacing(&self) -> f64 {
         self.range_ratio().ln() / (KNOTS + 1) as f64
     }

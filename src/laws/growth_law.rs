@@ -42,13 +42,11 @@ pub fn doubt(law: &dyn GrowthLaw, ratio: f64) -> Option<String> {
     let (delta_k, rate) = ELSEWHERE.iter().find_map(|factor| rate_at(factor * METALS.0))?;
     let [low, high] = METALS.1.map(|rate| rate * (delta_k / METALS.0).powf(METALS_EXPONENT));
     (!(low..=high).contains(&rate)).then(|| {
+        let k = delta_k / MPA_SQRT_M;
         format!(
-            "the rate at ΔK = {:.0} MPa√m is {rate:.2e} mm/cycle, outside {low:.0e} to {high:.0e} mm/cycle, the range of \
-             metals: check the units of rate, \
-             crack length, cycles, load and stress intensity (m/cycle is 1000 mm/cycle; C for ksi√in and in/cycle must be \
-             multiplied by \
-             25.4 / 1.0988^m)",
-            delta_k / MPA_SQRT_M
+            "the rate at ΔK = {k:.0} MPa√m is {rate:.2e} mm/cycle, outside {low:.0e} to {high:.0e} mm/cycle, the range of metals: \
+             check the units of rate, crack length, cycles, load and stress intensity (m/cycle is 1000 mm/cycle; C for ksi√in \
+             and in/cycle must be multiplied by 25.4 / 1.0988^m)"
         )
     })
 }

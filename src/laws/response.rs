@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 
 /// Loads of a cycle for which K is known, at the most: lower ones, the largest, and the one that opens the tip.
 const LOADS_MOST: usize = LOWER_LOADS_MOST + 2;
-
 /// Difference from the largest K that is round-off.
 const ROUND_OFF: f64 = 1e-9;
 /// Difference of K over K_max between mirror twins at the most.

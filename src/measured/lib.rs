@@ -6,7 +6,7 @@
 //! Imports `base` and `plate`.
 //!
 //! In the order data flows: what the user says of files (`import`); the `header` that column names make up ([`perilife_base::table::names`]); the cells
-//! of a `table` (cut by [`perilife_base::table`]) without rows that `exclusion_flags` exclude; its `columns`; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
+//! of a table (cut by [`perilife_base::table`]) without rows that `leave_out` and `exclusion_flags` exclude; its `columns`; `readings` of every specimen, which make up a `curve` with `loads`, some of them left out (`leave_out`); or `rates` of growth over ΔK.
 //!
 //! Every complaint names file, line, column and value. A crack length that falls from one reading to the next is reading noise and
 //! accepted; cycles that fall or repeat are a mistake of the file and refused.
@@ -21,7 +21,6 @@ mod exclusion_flags;
 pub mod rates;
 mod wide_rates;
 mod readings;
-mod table;
 
 use std::path::{Path, PathBuf};
 
@@ -53,7 +52,7 @@ pub fn read_into(opened: &Opened, files: &[PathBuf], import: &Import) -> Result<
 
 /// Reads the bytes of one file; `file` is only named in messages and, where there is no specimen column, in the curve.
 pub fn parse(bytes: &[u8], file: &Path, import: &Import) -> Result<Measured> {
-    let table = table::read(bytes, file, import)?;
+    let table = leave_out::table_of(bytes, file, import)?;
     let layout = columns::recognise(&table, import)?;
     curves_of(&table, &layout, import.of_plate, &mut Err)
 }
@@ -81,7 +80,7 @@ pub fn survey(bytes: &[u8], file: &Path, import: &Import) -> Survey {
         other => Err(other),
     };
     let mut look = || {
-        let table = table::read(bytes, file, import)?;
+        let table = leave_out::table_of(bytes, file, import)?;
         survey.header.clone_from(&table.header);
         survey.first_rows = table.first_cells();
         let layout = columns::recognise(&table, import)?;

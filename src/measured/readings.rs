@@ -15,10 +15,8 @@ use perilife_plate::specimen::LoadMeasure;
 
 /// More cycles than any test has run: beyond it the unit is wrong.
 const CYCLES_MAX: f64 = 1e15;
-
 /// Longer than any specimen, m: beyond it the unit is wrong.
 const LENGTH_MAX: f64 = 100.0;
-
 /// What is done about a bad row: an error ends the reading.
 type Fate<'a> = &'a mut dyn FnMut(Error) -> Result<()>;
 
@@ -39,24 +37,17 @@ pub(super) fn curves_of(table: &Table, layout: &Layout, of_plate: bool, fate: Fa
         let stands = curve.crack_length.iter().all(|length| *length <= curve.crack_length[0]) && curve.cycles.len() > 1;
         let (count, least) = (curve.cycles.len(), if of_plate || stands { 1 } else { READINGS_MIN });
         if count < least {
-            fate(specimen().error(
-                format!("has {count} reading{}", if count == 1 { "" } else { "s" }),
-                format!("give at least {least} readings for every specimen"),
-            ))?;
+            let problem = format!("has {count} reading{}", if count == 1 { "" } else { "s" });
+            fate(specimen().error(problem, format!("give at least {least} readings for every specimen")))?;
         } else if layout.shape == Shape::WideLengths && curve.crack_length.last() <= curve.crack_length.first() {
-            fate(specimen().error(
-                "does not increase: not a crack length",
-                "remove columns of other quantities from a wide table, or set measured.columns.length",
-            ))?;
+            let remedy = "remove columns of other quantities from a wide table, or set measured.columns.length";
+            fate(specimen().error("does not increase: not a crack length", remedy))?;
         }
         let falls = curve.crack_length.windows(2).filter(|pair| pair[1] < pair[0]).count();
         if falls > 0 {
-            falling.push(format!(
-                "{}: specimen {}: crack length drops at {falls} of {} readings (treated as noise)",
-                table.file.display(),
-                curve.specimen,
-                curve.cycles.len()
-            ));
+            let (file, name) = (table.file.display(), &curve.specimen);
+            falling
+                .push(format!("{file}: specimen {name}: crack length drops at {falls} of {count} readings (treated as noise)"));
         }
     }
     measured.warnings.extend(first_of(falling));

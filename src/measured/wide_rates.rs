@@ -16,9 +16,7 @@ use perilife_base::table::{Fault, Row, Table, whole_file};
 
 /// A rate with its ΔK at every stress ratio, in the units of the file.
 type WideRow = (f64, Vec<f64>);
-/// Stress ratios, and rows with a ΔK at each.
 type Wide = (Vec<f64>, Vec<WideRow>);
-/// A number by the place of its column.
 type Placed = (usize, f64);
 
 /// The rows of a file of such a kind as a table with its units in the header; `None` of other files.

@@ -24,7 +24,6 @@ pub struct Elasticity {
 }
 
 impl Elasticity {
-    #[inline]
     pub fn of(material: &Material) -> Self {
         let nu = material.poisson_ratio;
         let kappa = match material.plane {
@@ -36,7 +35,6 @@ impl Elasticity {
     }
 
     /// Those of another material, E in Pa, in the same plane state.
-    #[inline]
     pub fn another(&self, youngs_modulus: f64, poisson_ratio: f64) -> Self {
         Elasticity::of(&Material::elastic(youngs_modulus, poisson_ratio, self.plane))
     }
@@ -166,7 +164,6 @@ impl PolarPoint {
 }
 
 /// Coefficient of the n = 1 function over the factor it stands for: K_I = a₁ √(2π), K_II = -b₁ √(2π).
-#[inline]
 pub fn coefficient_of_unit_factor(symmetry: Symmetry) -> f64 {
     let size = 1.0 / (2.0 * std::f64::consts::PI).sqrt();
     match symmetry {

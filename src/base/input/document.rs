@@ -12,7 +12,6 @@ use super::us_keys::{Written, as_written, metric, to_metric, twin};
 use crate::error::{Error, InputError, Result, fail_if, input, input_missing};
 use crate::keys::nearest;
 
-/// What is said of a value that an option overrides.
 const BY_SET: &str = " (value given by --set)";
 
 /// A parsed input file that still knows where everything stands in the text.
@@ -117,7 +116,6 @@ impl Document {
         self.read_units().map_err(|error| self.locate(error))
     }
 
-    /// Makes the table anew from what was written.
     fn read_units(&mut self) -> Result<()> {
         let mut table = self.as_given.clone();
         self.written = to_metric(&mut table)?;
@@ -127,12 +125,8 @@ impl Document {
 
     fn set(&mut self, text: &str) -> Result<()> {
         let refuse = |problem: &str| {
-            input(
-                "--set",
-                format!("\"{text}\""),
-                problem,
-                "write --set section.key=value, for example --set model.spacing_mm=0.5",
-            )
+            let remedy = "write --set section.key=value, for example --set model.spacing_mm=0.5";
+            input("--set", format!("\"{text}\""), problem, remedy)
         };
         let (key, value) = text.split_once('=').ok_or_else(|| refuse("has no ="))?;
         let (key, value) = (key.trim(), value.trim());

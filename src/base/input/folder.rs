@@ -195,7 +195,6 @@ fn read(path: &Path) -> Result<(Vec<u8>, Option<FileId>)> {
     read().map_err(|error| Error::file(path, "cannot read", error))
 }
 
-/// All of standard input, which can be read once.
 fn stdin() -> Result<Vec<u8>> {
     static IS_READ: AtomicBool = AtomicBool::new(false);
     let remedy = "name it once, and files for the others";

@@ -29,7 +29,6 @@ pub const FORCE: Quantity = Quantity { what: "a force", unit: "N", low: 1e-6, hi
 pub const FORCE_KN: Quantity = Quantity { what: "a force", unit: "kN", low: 1e-9, high: 1e7, si: crate::units::KN };
 pub const INTENSITY: Quantity = Quantity { what: "a stress intensity", unit: "MPa√m", low: 1e-9, high: 1e6, si: MPA_SQRT_M };
 pub const FRACTURE_ENERGY: Quantity = Quantity { what: "an energy", unit: "J/m²", low: 1e-6, high: 1e12, si: 1.0 };
-
 pub const DENSITY: Quantity = Quantity { what: "a density", unit: "kg/m³", low: 1e-3, high: 1e6, si: 1.0 };
 pub const TIME: Quantity = Quantity { what: "a time", unit: "s", low: 1e-15, high: 1e6, si: 1.0 };
 

@@ -59,7 +59,6 @@ pub fn shorten(value: &Value) -> String {
     if text.chars().count() <= 80 { text } else { text.chars().take(77).chain("...".chars()).collect() }
 }
 
-/// serde's message to key, value, problem and remedy.
 fn explain(error: &toml::de::Error, value: &Value, path: &str) -> Error {
     let message = error.message();
     let whole = error.to_string();

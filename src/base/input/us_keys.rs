@@ -11,9 +11,8 @@ use super::slice::{number_of, path_steps, shorten, value_at};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Written {
-    /// Its place as readers name it, `specimen.width_mm`.
+    /// Its place as readers name it, `specimen.width_mm`, and in the file, `specimen.width_in`.
     metric: String,
-    /// Its place in the file, `specimen.width_in`.
     us: String,
     value: Value,
 }

@@ -49,7 +49,6 @@ pub(super) fn stranger(
     (told("unknown key".into(), meant(near.as_deref(), names())), near)
 }
 
-/// A name without its unit, if it has one.
 fn stem(name: &str) -> Option<&str> {
     UNITS.iter().find_map(|unit| name.strip_suffix(unit.suffix(System::Si))?.strip_suffix('_'))
 }

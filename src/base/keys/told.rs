@@ -100,10 +100,8 @@ impl Told {
             format!("| `{path}`{twin} | {} | {} | {} |\n", key.text, key.range().replace('|', "\\|"), key.left_out())
         };
         let rows: String = self.rows().into_iter().map(row).collect();
-        format!(
-            "### `[{}]`\n\n{}\n\n| key | meaning | values | default |\n|---|---|---|---|\n{rows}\n",
-            self.section, self.meaning
-        )
+        let head = "| key | meaning | values | default |\n|---|---|---|---|";
+        format!("### `[{}]`\n\n{}\n\n{head}\n{rows}\n", self.section, self.meaning)
     }
 
     pub fn stub(&self) -> String {

@@ -6,15 +6,9 @@ use csv::StringRecord;
 
 use crate::error::{Error, InputError, Result, fail_if};
 
-/// Longest cell or row repeated in a message.
 const SHOWN: usize = 40;
-
 pub const COLUMNS_MAX: usize = 4096;
-
-/// Lines that a note of rows left out names.
 const LINES_SHOWN: usize = 10;
-
-/// Rows that a message about a table of unknown shape shows.
 const ROWS_SHOWN: usize = 5;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,7 +70,6 @@ pub struct Table {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// Line in the file, counted from 1.
     pub line: usize,
     pub cells: StringRecord,
 }
@@ -181,7 +174,6 @@ pub fn whole_file(file: &Path) -> Fault<'_> {
     Fault { file, line: None, key: None, value: None }
 }
 
-/// A cell as a message repeats it: not longer than one can read.
 fn shown(text: &str) -> String {
     if text.chars().count() <= SHOWN {
         return text.to_owned();

@@ -15,10 +15,7 @@ use super::numerals::is_number;
 use crate::cells::{ROWS_MAX, SMALLER, TEXT_MAX, restored, too_many};
 use crate::error::{Result, fail_if};
 
-/// Lines that separators are compared on.
 const SAMPLE: usize = 400;
-
-/// Lines among which the header is looked for.
 const PREAMBLE_MAX: usize = 200;
 
 #[derive(Debug, Clone, Copy)]
@@ -128,7 +125,6 @@ fn without_footer(rows: &[Row]) -> usize {
     rows.iter().rposition(has_number).map_or(rows.len(), |last| last + 1)
 }
 
-/// A row below the header of nothing but units.
 fn is_row_of_units(row: &Row) -> bool {
     // `1000, 1` is a reading.
     let is_text = |cell: &str| !cell.is_empty() && !is_number(cell);
@@ -234,12 +230,9 @@ fn check_width(row: &Row, columns: usize, lines: &[Line<'_>], separator: Separat
     let fault = Fault { file, line: Some(row.line), key: None, value: Some(text) };
     let other = Separator::ALL.iter().filter(|other| **other != separator).filter_map(|other| other.character());
     let mixes = other.into_iter().any(|character| character != ',' && text.contains(character));
-    let problem = format!(
-        "has {} {} where the header has {columns}, cut at {}",
-        row.cells.len(),
-        if row.cells.len() == 1 { "column" } else { "columns" },
-        separator.name()
-    );
+    let (count, at) = (row.cells.len(), separator.name());
+    let unit = if count == 1 { "column" } else { "columns" };
+    let problem = format!("has {count} {unit} where the header has {columns}, cut at {at}");
     Err(if mixes {
         fault.error(format!("{problem}, and mixes separators"), "separate every row as the header is separated")
     } else if separator == Separator::Comma && row.cells.len() > columns {

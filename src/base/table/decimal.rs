@@ -105,11 +105,7 @@ fn open_column(table: &Table, row: &Row, column: usize) -> Error {
 }
 
 fn contradiction(table: &Table, point: (&Row, usize), comma: (&Row, usize)) -> Error {
-    let problem = format!(
-        "has a decimal comma, but {} = {} on line {} a decimal point",
-        table.header[point.1],
-        point.0.cell(point.1),
-        point.0.line
-    );
+    let (name, cell, line) = (&table.header[point.1], point.0.cell(point.1), point.0.line);
+    let problem = format!("has a decimal comma, but {name} = {cell} on line {line} a decimal point");
     table.cell_fault(comma.0, comma.1).error(problem, "use one decimal sign in the whole file")
 }

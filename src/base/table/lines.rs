@@ -68,7 +68,6 @@ impl Separator {
         }
     }
 
-    /// Cells of a line, at the most.
     fn cells(self, text: &str) -> usize {
         match self.character() {
             Some(character) => text.matches(character).count() + 1,

@@ -37,6 +37,7 @@ impl Kind {
     }
 }
 
+/// What a column holds; loads are those of a cycle, K those of tables of rates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -46,15 +47,10 @@ pub enum Role {
     Length,
     /// Crack length by an instrument.
     Method,
-    /// Length of one crack on one side of the specimen.
     Side,
-    /// Largest load of a cycle.
     Max,
-    /// Smallest load of a cycle.
     Min,
-    /// Largest less smallest load of a cycle.
     Range,
-    /// Half of the range.
     Amplitude,
     Mean,
     /// Smallest over largest load.
@@ -62,16 +58,13 @@ pub enum Role {
     /// Loads in their order.
     Value,
     DeltaK,
-    /// Stress intensity at maximum load, in tables of rates.
     KMax,
-    /// Stress intensity at minimum load, in tables of rates.
     KMin,
     /// da/dN.
     Rate,
     Width,
     Thickness,
     Counts,
-    /// Whether the reading does not count.
     CountsNot,
     /// Of several specimens or of a model.
     Statistic,
@@ -120,9 +113,7 @@ const CYCLES: Unit = Unit::Cycles(CycleUnit::Cycles);
 const LOAD: Unit = Unit::Load(LoadUnit::Newton);
 const INTENSITY: Unit = Unit::Intensity(IntensityUnit::MpaSqrtM);
 const RATE: Unit = Unit::Rate(RateUnit::Millimetre);
-
 type Forms = BTreeMap<Role, BTreeMap<Measure, String>>;
-
 /// Forms and words of a kind of table, with what they mean.
 type Part = HashMap<String, Vec<(Role, Measure)>>;
 

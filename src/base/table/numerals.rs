@@ -34,7 +34,6 @@ impl Decimal {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Evidence {
     NoNumber,
-    /// No sign that could be a decimal one.
     Whole,
     Proves(Decimal),
     /// Three digits behind the only sign, which may separate thousands.

@@ -91,7 +91,6 @@ fn sheet_fault<'a>(file: &'a Path, sheet: &'a str) -> Fault<'a> {
 /// What the sheets of a workbook that were read so far take up.
 #[derive(Default)]
 struct Taken {
-    /// Cells, empty ones among them.
     cells: usize,
     /// Bytes of their text: cells share it in the file, but not here.
     text: usize,

@@ -23,7 +23,6 @@ impl System {
 /// A unit of both systems, the metric one first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// End of keys and columns.
     suffix: [&'static str; 2],
     /// Name in words, pictures and messages.
     pub(super) word: [&'static str; 2],

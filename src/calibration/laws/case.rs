@@ -18,7 +18,6 @@ use perilife_measured::{MeasuredCurve, RangeKind, RateFile, RateFileKeys, RateRo
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawCase {
     pub name: String,
-    /// Rates inside the window.
     pub rows: Vec<RateRow>,
     pub law: FitLaw,
     pub given: Given,
@@ -179,7 +178,6 @@ impl LawCase {
     }
 }
 
-/// Some keys of a section, taken out of it.
 fn taken(table: &mut Table, section: &str, keys: &[&str]) -> Result<Value> {
     let mut taken = Table::new();
     if let Some(value) = table.get_mut(section) {

@@ -22,9 +22,8 @@ const SINGULAR: f64 = 1e-13;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constant {
-    /// Its key in `[fatigue]`.
     pub key: &'static str,
-    /// Value in the unit of the key.
+    /// Value in the unit of its key in `[fatigue]`.
     pub value: f64,
     /// Standard error; `None` where it was given.
     pub error: Option<f64>,
@@ -41,7 +40,6 @@ pub struct LawFit {
     pub residuals: Vec<f64>,
     /// Akaike's information criterion for small samples; NaN where there is no fit.
     pub aicc: f64,
-    /// Why it is out of question.
     pub left_out: Option<String>,
     /// Its factor that no rate tells, and that is 1.
     pub lacks: Option<&'static str>,
@@ -118,7 +116,6 @@ pub(super) fn fit(kind: GrowthLawKind, given: &Given, rows: &[RateRow]) -> LawFi
     }
 }
 
-/// Every combination of the starts of the variables.
 fn starts(free: &[Parameter]) -> Vec<Vec<f64>> {
     free.iter().fold(vec![Vec::new()], |all, parameter| {
         let [first, second] = parameter.starts;
@@ -127,7 +124,6 @@ fn starts(free: &[Parameter]) -> Vec<Vec<f64>> {
     })
 }
 
-/// A constant whose best value is an end of its range.
 fn at_end(free: &[Parameter], best: &Minimum) -> Option<String> {
     let (parameter, low) = free.iter().zip(&best.at).find_map(|(parameter, &value)| {
         let [low, high] = parameter.bounds;
@@ -209,7 +205,6 @@ pub(super) fn check_given(given: &Given) -> Result<()> {
     Ok(())
 }
 
-/// A law with some constants given, over some rows.
 #[derive(Debug, Clone)]
 struct Candidate<'a> {
     pub kind: GrowthLawKind,

@@ -16,7 +16,6 @@ const ROUND_OFF: f64 = 1e-12;
 const DAMPING_MAX: f64 = 1e14;
 /// Difference of a variable by which slopes are taken.
 const DIFFERENCE: f64 = 1e-6;
-
 /// ln of the rates of a law at all rows but for their level; `None` where the law has no rate at one of them.
 pub(super) type Shape<'a> = &'a (dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync);
 
@@ -95,7 +94,6 @@ fn clamped(mut at: DVector<f64>, bounds: &[[f64; 2]]) -> DVector<f64> {
     at
 }
 
-/// Whether a variable is free to follow the gradient.
 fn can_move(value: f64, gradient: f64, [low, high]: [f64; 2]) -> bool {
     !(value <= low && gradient < 0.0 || value >= high && gradient > 0.0)
 }
@@ -110,7 +108,6 @@ pub(super) fn without_level(slopes: &DMatrix<f64>) -> DMatrix<f64> {
     projected
 }
 
-/// Marquardt's step of the variables that can move.
 fn damped_step(normal: &DMatrix<f64>, gradient: &DVector<f64>, moves: &[bool], damping: f64) -> Option<DVector<f64>> {
     let mut matrix = normal.clone();
     let mut right = gradient.clone();

@@ -128,7 +128,6 @@ fn judged(kind: GrowthLawKind, given: &Given, rows: &[RateRow], effective: f64) 
     if simpler.left_out.is_none() { LawFit { lacks: Some(of), ..simpler } } else { law }
 }
 
-/// The place of the law asked for, or of the best.
 fn choose(candidates: &[LawFit], wanted: FitLaw) -> Result<usize> {
     if let Some(kind) = wanted.0 {
         let place = candidates.iter().position(|candidate| candidate.kind == kind).unwrap_or(0);
@@ -207,13 +206,10 @@ impl Smooth {
         }
         let scatter: f64 = known.iter().map(|&row| self.residuals[row].powi(2)).sum();
         let [bend, scatter] = [bend, scatter].map(|sum| (sum / known.len() as f64).sqrt());
-        (!known.is_empty() && bend > (RMS_FACTOR * scatter).max(BEND_MIN)).then(|| {
-            format!(
-                "law {} misses the shape of the data: rms {bend:.3} in ln da/dN, {scatter:.3} for a smooth curve per test; \
-                 growth_law = \"table\" with growth_table uses the rates directly",
-                law.kind
-            )
-        })
+        let misses = format!("rms {bend:.3} in ln da/dN, {scatter:.3} for a smooth curve per test");
+        let remedy = "growth_law = \"table\" with growth_table uses the rates directly";
+        (!known.is_empty() && bend > (RMS_FACTOR * scatter).max(BEND_MIN))
+            .then(|| format!("law {} misses the shape of the data: {misses}; {remedy}", law.kind))
     }
 }
 
@@ -246,11 +242,8 @@ fn warnings(fits: &LawFits, rows: &[RateRow]) -> Vec<String> {
         lines.push(format!("law {} is not the best: {kind} is better by {:.1} in AICc", law.kind, -margin));
     }
     if fits.effective_rates < 0.9 * rows.len() as f64 {
-        lines.push(format!(
-            "neighboring rates are correlated (seven-point polynomial): {} rates weigh as {:.0}",
-            rows.len(),
-            fits.effective_rates
-        ));
+        let (count, weight) = (rows.len(), fits.effective_rates);
+        lines.push(format!("neighboring rates are correlated (seven-point polynomial): {count} rates weigh as {weight:.0}"));
     }
     let far: Vec<String> = (rows.iter().zip(&law.residuals))
         .filter(|(_, residual)| residual.abs() > FACTOR.ln())

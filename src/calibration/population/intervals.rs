@@ -28,7 +28,6 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 /// Pieces in which a path is divided into equal parts of the zone coordinate.
 const PATH_PIECES: usize = 400;
-
 /// ΔK (Pa√m) at a crack length (m), of one specimen or plate under its own loads.
 pub type RangeOfK<'a> = &'a dyn Fn(f64) -> f64;
 /// The same of all tips whose growth adds up to the length.
@@ -43,12 +42,10 @@ pub struct IntervalReading {
     pub counts: bool,
 }
 
-/// Growth from one crack length to a longer one.
+/// Growth from one crack length, m, to a longer one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interval {
-    /// Crack length at its start, m.
     pub from: f64,
-    /// Crack length at its end, m.
     pub to: f64,
     /// Measured cycles; NaN of a cell.
     pub cycles: f64,

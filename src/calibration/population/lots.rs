@@ -9,7 +9,6 @@ pub const MEDIAN: f64 = 0.116;
 pub const DEVIATION: f64 = 0.435;
 /// Degrees of freedom of a scatter that is assumed.
 pub const FREEDOM: f64 = 6.0;
-
 /// Standard deviation of ln rate between lots: root mean square of that of steels in air at R < 0.5 and above, mean + 2 sd over mean rate 1.70 and
 /// 2.20 of all lots and laboratories together (BS 7910:2013), without the scatter within a lot.
 pub const BETWEEN_LOTS: f64 = 0.316;

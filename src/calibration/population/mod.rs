@@ -39,11 +39,8 @@ const SHAPE_RANGE_MIN: f64 = 1.3;
 const SHAPE_INTERVALS_MIN: usize = KNOTS + 3;
 /// Range of ΔK below which rates of every exponent are alike.
 const RANGE_MIN: f64 = 1.01;
-/// Exponent from which the search for the law starts.
 const SLOPE_START: f64 = 3.0;
-/// Change of m at which the law stands still.
 const SLOPE_SAME: f64 = 1e-7;
-/// Most integrals with a new law.
 const LAWS_MAX: usize = 60;
 const ROUNDS_MAX: usize = 8;
 /// Curvature by which a given slope is held.
@@ -174,7 +171,6 @@ impl Priors {
         (0..PARAMETERS).map(one).sum()
     }
 
-    /// Where the search starts: noise as large as the residuals of the law.
     fn start(&self, residual: f64) -> Parameters {
         let place = self.normal.map(|(place, _)| place);
         let scatter = place[3] + (residual / 0.22).clamp(1e-3, 10.0).ln();
@@ -182,7 +178,6 @@ impl Priors {
     }
 }
 
-/// Logarithm of a limit; no limit where there is none.
 fn limit(value: f64) -> f64 {
     if value.is_finite() { value.ln() } else { value }
 }
@@ -265,7 +260,6 @@ fn slope_of_readings(specimens: &[Specimen], found: &Found) -> Option<f64> {
     Some(found.covariance[(1, 1)].max(0.0).sqrt())
 }
 
-/// Range, pivot, and the power law from which the search starts.
 fn start(specimens: &[Specimen], slope: Option<f64>) -> Result<CurveLaw> {
     let all = || specimens.iter().flat_map(|specimen| &specimen.intervals);
     let count = all().count();

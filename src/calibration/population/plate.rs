@@ -32,10 +32,8 @@ const CELLS_OF_PIECE: usize = CELLS / 2;
 const REST_MAX: f64 = 0.02;
 /// Share of a length by which two of it may differ.
 const SAME_LENGTH: f64 = 1e-9;
-
 /// Cycles that 5, 50 and 95 % of specimens do not reach.
 pub type Quantiles = [f64; 3];
-
 /// Why a plate has no band, in words.
 pub type NoBand = String;
 
@@ -49,10 +47,8 @@ pub struct Plate {
     way: Vec<f64>,
     /// Crack length in the specimen's convention at every row, m.
     lengths: Vec<f64>,
-    /// ΔK over that way.
     factors: TipFactors,
     zones: Zones,
-    /// t of [`SHARES`].
     t: [f64; 3],
     /// First and last row between which ΔK is known and in range.
     known: [usize; 2],
@@ -66,13 +62,12 @@ pub struct PlateBand {
     pub reached: Vec<Quantiles>,
     /// Cycles from there to the end of the run; NaN where ΔK is not known.
     pub left: Vec<Quantiles>,
-    /// Share of the life outside the calibrated range of ΔK.
     pub share_outside: f64,
 }
 
+/// What is left at a crack length, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Left {
-    /// Crack length, m.
     pub crack_length: f64,
     /// Cycles to the end of the run by its own constants.
     pub cycles: f64,
@@ -390,10 +385,8 @@ fn scaled(quantiles: Quantiles, run: f64, of: f64) -> Quantiles {
 
 fn out_of_range(lot: &Population, delta_k: f64) -> NoBand {
     let [low, high] = lot.law.range.map(|k| k / MPA_SQRT_M);
-    format!(
-        "ΔK = {:.2} MPa√m is more than a factor {BEYOND_MAX} outside the tested {low:.2} to {high:.2} MPa√m",
-        delta_k / MPA_SQRT_M
-    )
+    let k = delta_k / MPA_SQRT_M;
+    format!("ΔK = {k:.2} MPa√m is more than a factor {BEYOND_MAX} outside the tested {low:.2} to {high:.2} MPa√m")
 }
 
 fn words(error: Error) -> NoBand {

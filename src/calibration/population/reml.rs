@@ -29,7 +29,6 @@ const STEPS_MAX: u64 = 100;
 const LEVEL_FREE: f64 = 1.0;
 /// Likelihood where a covariance is not positive definite.
 const IMPOSSIBLE: f64 = 1e12;
-
 pub(super) type Effects = SVector<f64, EFFECTS>;
 pub(super) type EffectsMatrix = SMatrix<f64, EFFECTS, EFFECTS>;
 pub(super) type Parameters = [f64; PARAMETERS];

@@ -17,7 +17,6 @@ perilife_base::kinds! {
 
 /// Cases that a sweep may have unless more are asked for.
 pub const CASES_MAX: usize = 10_000;
-/// Seed where the file gives none.
 const SEED: u64 = 1;
 
 #[derive(Debug, Clone, PartialEq)]

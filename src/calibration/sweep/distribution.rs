@@ -9,7 +9,6 @@ use statrs::distribution::{ContinuousCDF, Normal};
 /// A distribution with its parameters, in the unit of its key.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Distribution {
-    /// Every value between two is equally likely.
     Uniform {
         from: f64,
         to: f64,

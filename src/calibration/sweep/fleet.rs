@@ -258,7 +258,6 @@ impl LotRates {
     }
 }
 
-/// Initial crack length, m, at a probability.
 fn length(of: InitialLength, probability: f64) -> f64 {
     match of {
         InitialLength::LogNormal { median, deviation_ln } => median * (deviation_ln * normal_quantile(probability)).exp(),

@@ -87,7 +87,6 @@ fn check_key(key: &str, path: &str, kind: DesignKind) -> Result<()> {
     Ok(())
 }
 
-/// A `[[vary]]` with its place in the file.
 struct Reader<'a> {
     input: &'a VaryKeys,
     given: Given<'a>,

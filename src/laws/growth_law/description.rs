@@ -101,7 +101,6 @@ pub(super) const NEAR_FRACTURE: Evidence = Evidence("needs rates near fracture",
 pub(super) const NEAR_THRESHOLD: Evidence = Evidence("needs rates near the threshold", false);
 pub(super) const RATIOS: Evidence = Evidence("needs rates at several stress ratios", true);
 const POWER: Evidence = Evidence("needs rates over a wide range of ΔK", false);
-
 const THRESHOLD: &str = "delta_k_threshold_mpa_sqrt_m";
 /// Level C of a law.
 pub(super) const fn rate_of(what: &'static str) -> Quantity {
@@ -142,7 +141,6 @@ impl Constant {
 }
 
 impl GrowthLawSpec {
-    /// Keys that no law of other constants has.
     fn own_keys(&self) -> Vec<&'static str> {
         let constants = self.constants.iter().filter(|constant| !constant.is_shared());
         constants.map(|constant| constant.key).chain(self.others.iter().map(|key| key.name)).collect()

@@ -22,7 +22,6 @@ pub static LAW: GrowthLawSpec = GrowthLawSpec {
 };
 
 const KEY: &str = "fatigue.growth_table";
-
 /// Distance of a ratio from that of a curve up to which it has the whole of it, not the rates alone that the next one has too.
 const NEAR_RATIO: f64 = 0.005;
 
@@ -170,12 +169,8 @@ impl Table {
     /// What is to be said of one that scatters, or names no stress ratio, or others than those of the cycles, smallest and largest.
     pub fn lines(&self, ratios: [f64; 2]) -> Vec<String> {
         let unsaid = (!self.says_ratio).then(|| {
-            format!(
-                "the table of rates has no stress ratio: its rates are used at R = {} unchanged; give it in a column \
-                 stress_ratio or \
-                 by growth_table = {{ file = \"...\", stress_ratio = ... }}",
-                ratios[1]
-            )
+            let remedy = "give it in a column stress_ratio or by growth_table = { file = \"...\", stress_ratio = ... }";
+            format!("the table of rates has no stress ratio: its rates are used at R = {} unchanged; {remedy}", ratios[1])
         });
         let mut lines: Vec<String> = self.notes.iter().cloned().chain(unsaid).collect();
         lines.extend(ratios.iter().filter_map(|ratio| self.beyond_ratio(*ratio)));
@@ -209,10 +204,10 @@ fn read(given: &Given<'_>) -> Result<Table> {
     if let Some([problem, _]) = table.outside(ratio).filter(|_| ratio > last && (is_one || !holds_ends)) {
         let remedy = match is_one {
             true => "give fatigue.walker_gamma (ΔK at R = K_max (1-R)^gamma), or add rates at this ratio to the table".to_owned(),
-            false => format!(
-                "add rates at this ratio to the table, or use those of R = {last} by growth_table_ends = \"held\" \
-                 (non-conservative)"
-            ),
+            false => {
+                let held = format!("use those of R = {last} by growth_table_ends = \"held\" (non-conservative)");
+                format!("add rates at this ratio to the table, or {held}")
+            }
         };
         return Err(input(KEY, format!("\"{}\"", rates.file), problem, remedy));
     }
@@ -264,10 +259,8 @@ fn curves(rates: &Rates) -> Result<(Vec<Curve>, Vec<String>)> {
         let (band, points) = (curve.with(&curve), curve.rows.len());
         let squares: f64 = pairs.iter().map(|[k, rate]| (rate.ln() - log_rate(&band, 0.0, k.ln())).powi(2)).sum();
         let rms = (squares / count as f64).sqrt();
-        notes.push(format!(
-            "{}: rates at R = {ratio} scatter; rising curve of {points} points used, rms of {count} rates {rms:.3} in ln(da/dN)",
-            rates.file
-        ));
+        let used = format!("rising curve of {points} points used, rms of {count} rates {rms:.3} in ln(da/dN)");
+        notes.push(format!("{}: rates at R = {ratio} scatter; {used}", rates.file));
         curves.push(curve);
     }
     fail_if!(curves.is_empty(), wrong(None, "rows", 0.0, "are too few".to_owned()));

@@ -35,29 +35,24 @@ impl Constant {
     }
 }
 
+/// A tip at maximum load: its way and plastic zone in m, K in Pa√m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Now {
-    /// Way of the tip, m.
     pub a: f64,
-    /// K at maximum load, Pa√m.
     pub k_max: f64,
     pub ratio: f64,
     /// Least stress ratio that the law knows.
     pub least: f64,
-    /// Its plastic zone, m.
     pub size: f64,
     /// K_max/(σ_Y √(πa)): its maximum over the yield strength, of a crack in a wide plate with this K (McClung 1994).
     pub stress_over_yield: f64,
 }
 
-/// The plastic zone of the last overload, which is the state of a tip.
+/// The plastic zone of the last overload, which is the state of a tip: way after it and size in m, K at its maximum in Pa√m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Zone {
-    /// Way of the tip after the overload, m.
     pub from: f64,
-    /// Its size, m.
     pub size: f64,
-    /// K at the maximum of the overload, Pa√m.
     pub k_max: f64,
     /// Least K since then, that of the overload included, Pa√m.
     pub k_min: f64,

@@ -16,7 +16,6 @@ use perilife_base::keys::{Given, key, section};
 use perilife_base::units::{MM, place_mm, round_mm};
 
 const BENT: &str = "edge_bending_ratio";
-
 /// Resultant of pins that pull against each other, over the sum of their forces.
 const BALANCED: f64 = 1e-6;
 /// Resultant of loads over the largest of them, and its moment over that times the plate, up to which they are in balance.
@@ -54,7 +53,6 @@ fn fit_unknown_pins(specimen: &mut Specimen) {
     }
 }
 
-/// Puts loads and supports on the specimen, as [`apply`].
 fn apply_loads(given: &Given<'_>, input: &Input, supports: Option<&Value>, specimen: &mut Specimen) -> Result<f64> {
     if specimen.kind.is_plate() {
         return apply_to_plate(given, input, supports, specimen);
@@ -234,10 +232,9 @@ fn load_edges(given: &Given<'_>, input_: &Input, held: &[Edge], specimen: &mut S
     let loaded: Vec<Edge> = match asked {
         None => [Edge::Top, Edge::Bottom].into_iter().filter(|edge| !held.contains(edge)).collect(),
         Some(asked) => {
-            if let Some(edge) = asked.iter().find(|edge| held.contains(edge)) {
-                let remedy = "load another side, or remove this support";
-                return Err(input(KEY, edge, "is supported by [supports] and cannot be loaded", remedy));
-            }
+            let problem = "is supported by [supports] and cannot be loaded";
+            let remedy = "load another side, or remove this support";
+            fail_if!(let Some(edge) = asked.iter().find(|edge| held.contains(edge)), input(KEY, edge, problem, remedy));
             if let Some((i, edge)) = asked.iter().enumerate().find(|(i, edge)| asked[..*i].contains(edge)) {
                 return Err(input(&format!("{KEY}[{i}]"), edge, "is repeated", "name each side once"));
             }

@@ -11,7 +11,6 @@ use perilife_base::keys::{Given, coordinate, key, length, modulus, number};
 use perilife_base::units::round_mm;
 
 pub(super) const KEYS: [&str; 2] = ["loading.pins", "loading.rollers"];
-
 /// Distance from the outline below which a place lies on it, m.
 const ON_OUTLINE: f64 = 1e-6;
 
@@ -117,7 +116,6 @@ fn check_count(key: &str, given: usize, example: &str) -> Result<()> {
     Ok(())
 }
 
-/// Direction of a force, of length 1.
 fn direction_of(path: &str, given: [f64; 2]) -> Result<Point> {
     unit(given).ok_or_else(|| {
         let remedy = "give [x, y] of the force on the plate, for example [0, 1]";

@@ -28,10 +28,8 @@ const FUNCTIONS: &[(&str, Function)] = &[
 ];
 
 pub const KNOWN: &str = "numbers, x, y, pi, + - * / ^, brackets, sin cos tan atan sinh cosh tanh exp ln sqrt abs min max";
-/// Brackets and signs within each other at the most.
 const DEPTH_MOST: usize = 100;
 
-/// A step of the evaluation on a stack of numbers.
 #[derive(Debug, Clone)]
 enum Step {
     Number(f64),
@@ -245,7 +243,6 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The values in brackets behind a name of the caller.
     fn values(&mut self, name: String) -> Result<(), String> {
         let mut count = 0;
         if self.take(b'(') {

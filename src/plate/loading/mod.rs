@@ -148,7 +148,6 @@ pub const UNIT_FORCE: f64 = perilife_base::units::KN;
 impl Loading {
     /// Load of the cycle over [`Loading::maximum`], on a plate with this crack length, m, on which the latter does this work `Σ f·u`, J: `δ_max / δ` where
     /// a displacement is repeated.
-    #[inline]
     pub fn share(&self, work: f64, crack_length: f64) -> f64 {
         match &self.control {
             LoadControl::Load => 1.0,
@@ -176,7 +175,6 @@ impl Loading {
     }
 
     /// Smallest and largest stress ratio of the cycles that open the crack.
-    #[inline]
     pub fn ratios(&self) -> [f64; 2] {
         self.spectrum.as_ref().map_or([self.ratio; 2], |spectrum| spectrum.ratios)
     }
@@ -203,7 +201,6 @@ impl Loading {
     }
 
     /// Largest displacement of a cycle, m, where that is what is repeated.
-    #[inline]
     pub fn displacement(&self) -> Option<f64> {
         match self.control {
             LoadControl::Displacement { maximum, .. } => Some(maximum),
@@ -213,7 +210,6 @@ impl Loading {
 
     /// Share of the maximum that counts as range, `1 - max(R, 0)`: a closed crack does not open under compression
     /// (theory: closure assumption for negative R).
-    #[inline]
     pub fn range_share(&self) -> f64 {
         1.0 - self.ratio.max(0.0)
     }

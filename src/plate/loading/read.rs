@@ -16,7 +16,6 @@ use perilife_base::input::{FORCE, FORCE_KN, Folder, Quantity, STRESS};
 use perilife_base::keys::{Given, Plain, Section, Unjudged};
 use perilife_base::units::MPA;
 
-/// Keys that ask for a load history.
 const SEQUENCES: &[&str] = &["sequence", "sequences", "blocks", "spectrum", "history", "rainflow", "overloads"];
 
 /// Keys that do not say whether they mean maximum or range.
@@ -24,7 +23,6 @@ const BARE: &str =
     "stress stress_mpa stress_amplitude_mpa stress_mean_mpa stress_min_mpa force force_n force_kn load load_n load_kn";
 
 const MAGNITUDES: &str = "stress_max_mpa, stress_range_mpa, force_max_n, force_range_n, force_max_kn, force_range_kn";
-
 const SCALES: &str = "spectrum_scale_mpa, spectrum_scale_n";
 const DISPLACEMENTS: &str = "displacement_max_mm, displacement_range_mm";
 

@@ -35,11 +35,8 @@ const FORMULAS: [Key; 3] = [
 ];
 /// Distance from a line over its length within which points lie on it, and beyond its ends within which they are at its end.
 const ROUND_OFF: f64 = 1e-6;
-/// Pieces of the initial cracks whose ends are looked at.
 const LOOKED_AT: usize = 40;
-/// Largest stress, MPa.
 const MOST: f64 = 1e5;
-
 /// σ_x, σ_y, τ_xy, Pa.
 pub type Components = [f64; 3];
 
@@ -230,7 +227,6 @@ const WORDS: Words = Words {
     remedy: "name the columns x_mm, y_mm, stress_mpa (or x_in, y_in, stress_ksi), and stress_x_mpa, shear_xy_mpa if available",
 };
 
-/// Rows of places and stresses below a header.
 fn of_table(bytes: &[u8], file: &Path) -> Result<Field> {
     let table = table::read(bytes, file, &WORDS)?;
     let roles = WORDS.roles(&table)?;

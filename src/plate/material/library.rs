@@ -70,10 +70,8 @@ pub fn find(name: &str, folder: &Folder) -> Result<MaterialFile> {
         let near = nearest(name, files.iter().map(String::as_str).chain(records.iter().map(|record| record.name.as_str())));
         let near = near.map_or_else(String::new, |near| format!("did you mean \"{near}\"? "));
         let files = files.join(", ");
-        let remedy = format!(
-            "{near}use one of {files}, an entry of `perilife list materials`, or the path of your own .toml \
-                              file"
-        );
+        let known = "an entry of `perilife list materials`, or the path of your own .toml file";
+        let remedy = format!("{near}use one of {files}, {known}");
         return Err(input("material.name", format!("\"{name}\""), "unknown material", remedy));
     };
     let document = Document::parse(text, name, Folder::none(), &[])?;

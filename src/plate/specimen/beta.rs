@@ -158,7 +158,6 @@ impl BetaTable {
     }
 }
 
-/// A row of the file, SI.
 #[derive(Debug, Clone, Copy)]
 struct BetaRow {
     line: usize,
@@ -168,7 +167,6 @@ struct BetaRow {
 }
 
 impl BetaRow {
-    /// What is wrong with it, its length as the file has it.
     fn fault(self, file: &Path, name: &str, problem: impl Into<String>, remedy: &str) -> Error {
         let length = ((self.length / self.unit * 1e6).round() / 1e6).to_string();
         Fault { line: Some(self.line), key: Some(name), value: Some(&length), ..whole_file(file) }.error(problem, remedy)
@@ -183,7 +181,6 @@ const WORDS: Words = Words {
     remedy: "begin with crack_length_mm,beta (or crack_length_in,beta), then one pair a line",
 };
 
-/// The rows of the table, and the name of the column of lengths.
 fn rows(bytes: &[u8], file: &Path) -> Result<(Vec<BetaRow>, String)> {
     let table = table::read(bytes, file, &WORDS)?;
     let roles = WORDS.roles(&table)?;

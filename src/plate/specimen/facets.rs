@@ -8,10 +8,9 @@ pub const PER_SPACING: f64 = 8.0;
 /// Depth in spacings at which a piece is asked whether it has material behind it.
 const BEHIND: f64 = 1e-3;
 
-/// A short piece of the rim, m.
+/// A short piece of the rim about its middle, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facet {
-    /// Its middle.
     pub at: Point,
     /// Unit vector out of the material.
     pub normal: Point,

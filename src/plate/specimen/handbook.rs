@@ -11,15 +11,12 @@ use super::{BetaTable, Specimen, SpecimenKind};
 /// Plates shorter than this many widths are stiffer or softer than the long strip of the formulas by more than their
 /// error (a square plate with a/W = 0.5: 3.00 against 2.83 for a single edge crack).
 pub const SHORTEST_LENGTH_OVER_WIDTH: f64 = 1.5;
-
 /// Slack of the range of a formula: 20 mm of 100 mm is 0.2 less a rounding.
 const RANGE_SLACK: f64 = 1e-9;
-
 /// A figure over relative crack length.
 pub(super) type Curve = fn(f64) -> f64;
 /// The factor of K over relative crack length and [`HandbookFormula::shape`].
 pub(super) type Factor = fn(f64, f64) -> f64;
-
 /// Error of K, above which a formula is looked at beside others and gives no life.
 const ERROR_OF_LIVES: f64 = 0.01;
 
@@ -110,7 +107,6 @@ pub fn handbook(specimen: &Specimen) -> Option<HandbookFormula> {
     })
 }
 
-/// K by a table of β, whose error nobody states.
 fn of_table(specimen: &Specimen, table: &BetaTable) -> HandbookFormula {
     let Specimen { width, thickness, .. } = *specimen;
     HandbookFormula {
@@ -212,7 +208,6 @@ impl HandbookFormula {
         self.limit * self.width / self.cracks
     }
 
-    /// Relative crack length of the formula: 2a/W or a/W.
     fn relative_length(&self, crack_length: f64) -> f64 {
         self.cracks * crack_length / self.width
     }

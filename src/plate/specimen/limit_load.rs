@@ -255,7 +255,6 @@ impl<'a> Plate<'a> {
     }
 }
 
-/// A piece of what is left of a cut, on its chord.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     from: f64,

@@ -92,7 +92,6 @@ pub struct Crack {
 }
 
 impl Crack {
-    #[inline]
     pub fn straight(from: Point, to: Point) -> Self {
         Crack { from, to, continues: false }
     }
@@ -132,13 +131,11 @@ const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 impl Load {
     /// Whether it is a pin whose contact follows from the load.
-    #[inline]
     pub fn is_elastic_pin(&self) -> bool {
         matches!(self, Load::Pin { contact: Bearing::Elastic(_), .. })
     }
 
     /// The stretch of the outline that it loads, with the tractions at both ends; `None` of a pin.
-    #[inline]
     pub fn on_edge(&self) -> Option<(Point, Point, [Point; 2])> {
         match *self {
             Load::Edge { from, to, traction } => Some((from, to, [traction; 2])),
@@ -149,7 +146,6 @@ impl Load {
 
     /// Two places with forces, N per m of thickness, that have force and moment of what acts on an edge from one share of its way to
     /// another; none of a pin.
-    #[inline]
     pub fn forces_between(&self, [start, end]: [f64; 2]) -> Vec<(Point, Point)> {
         let Some((from, to, tractions)) = self.on_edge() else { return Vec::new() };
         let half = 0.5 * (end - start) * geometry::distance(from, to);
@@ -203,9 +199,8 @@ pub struct Specimen {
     pub width: f64,
     /// Width that the lattice spacing has to divide, m (C(T): 1.25 W).
     pub gross_width: f64,
-    /// A line y = const through a horizontal crack that must fall between two rows of points; None = free.
+    /// Lines through a horizontal and a vertical crack that must fall between two rows and columns of points; `None`: free.
     pub crack_plane_y: Option<f64>,
-    /// A line x = const through a vertical crack that must fall between two columns of points; None = free.
     pub crack_plane_x: Option<f64>,
     /// Crack length at the start in the specimen's convention, m.
     pub crack_length: f64,
@@ -256,14 +251,12 @@ impl Specimen {
     }
 
     /// Whether its ends are clamped or sides of it moved straight, so that they do not turn.
-    #[inline]
     pub fn has_straight_grips(&self) -> bool {
         self.supports.iter().any(|support| matches!(support, Support::ClampedEnds | Support::Moved { .. }))
     }
 
     /// Section over which the nominal stress makes the force `P` of the sides that are moved straight, m²: `P δ = Σ F_i u_i` with
     /// `u_i = way_i δ`.
-    #[inline]
     pub fn moved_section(&self) -> Option<f64> {
         let area = |support: &Support| match *support {
             Support::Moved { from, to, way, .. } => Some(way * geometry::distance(from, to) * self.thickness),
@@ -273,7 +266,6 @@ impl Specimen {
     }
 
     /// Size of the plate along y, m.
-    #[inline]
     pub fn length(&self) -> f64 {
         let [low, high] = geometry::bounding_box(&self.outline);
         high[1] - low[1]
@@ -281,7 +273,6 @@ impl Specimen {
 
     /// Sizes of the flaws that spacing and horizon have to resolve, m: half length of a crack with two tips, whole length of one with
     /// one tip, length of a slot; C(T) from the load line.
-    #[inline]
     pub fn flaw_sizes(&self) -> Vec<f64> {
         if !self.kind.is_plate() {
             return vec![self.crack_length];
@@ -292,7 +283,6 @@ impl Specimen {
     }
 
     /// The smallest of the [`Specimen::flaw_sizes`], m.
-    #[inline]
     pub fn smallest_flaw(&self) -> f64 {
         self.flaw_sizes().into_iter().fold(f64::INFINITY, f64::min)
     }
@@ -306,7 +296,6 @@ impl Specimen {
     }
 
     /// Area of the material, m²: outline less holes and slots.
-    #[inline]
     pub fn area(&self) -> f64 {
         let holes: f64 = self.holes.iter().map(|hole| std::f64::consts::PI * hole.radius * hole.radius).sum();
         let slots: f64 = self.slots.iter().map(|slot| self.length_inside(slot.from, slot.to) * slot.width).sum();

@@ -29,12 +29,10 @@ pub enum Bearing {
     Elastic(Pin),
 }
 
-/// A round pin in a hole at least as large.
+/// A round pin in a hole at least as large; SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pin {
-    /// Radius, m.
     pub radius: f64,
-    /// Young's modulus, Pa.
     pub youngs_modulus: f64,
     pub poisson_ratio: f64,
     /// Forces of contact at maximum load on the plate with its initial cracks, once they are found.
@@ -49,7 +47,6 @@ pub struct Contact {
     pub pressure: f64,
     /// Share of the force of the pin that bears elsewhere once contact is sought with the displacement of the solved plate.
     pub residual: f64,
-    /// Pieces of rim of equal size with their forces.
     pub pieces: Vec<RimForce>,
 }
 
@@ -128,9 +125,7 @@ impl Pin {
         let pin = format!("{:.4} mm, E {:.0} GPa", 2e3 * radius, youngs_modulus / GPA);
         let Some(contact) = found else { return pin };
         let [from, to] = contact.ends.map(f64::to_degrees);
-        format!(
-            "{pin}: contact {from:.1}° to {to:+.1}° at N = 0, peak pressure {:.0} MPa",
-            contact.pressure / perilife_base::units::MPA
-        )
+        let peak = contact.pressure / perilife_base::units::MPA;
+        format!("{pin}: contact {from:.1}° to {to:+.1}° at N = 0, peak pressure {peak:.0} MPa")
     }
 }

@@ -184,11 +184,9 @@ fn closely_passed(specimen: &Specimen, lines: &[CrackLine]) -> Vec<String> {
                 .map(|&at_last| distance(line.end(at_last), hole.centre) - hole.radius)
                 .fold(f64::INFINITY, f64::min);
             (gap <= MOUTH * line.length() && end > MOUTH * line.length()).then(|| {
-                format!(
-                    "specimen.cracks[{i}] passes holes[{j}] at {} mm: the ligament is too thin to resolve and K may be far \
-                     off; end the crack in the hole and start another beyond it",
-                    round_mm(gap.max(0.0))
-                )
+                let thin = "the ligament is too thin to resolve and K may be far off";
+                let remedy = "end the crack in the hole and start another beyond it";
+                format!("specimen.cracks[{i}] passes holes[{j}] at {} mm: {thin}; {remedy}", round_mm(gap.max(0.0)))
             })
         };
         specimen.holes.iter().enumerate().filter_map(near).collect::<Vec<_>>()
@@ -229,7 +227,6 @@ fn with_shared_ends_joined(specimen: &Specimen, paths: Vec<Vec<Point>>) -> Vec<(
     }
 }
 
-/// Whether a path goes through a place, or ends there.
 fn passes(path: &[Point], at: Point) -> bool {
     path.windows(2).any(|piece| distance_to_segment(at, piece[0], piece[1]) < TOUCH)
 }
@@ -320,12 +317,8 @@ fn at_mouth(specimen: &Specimen, [end, other]: [Point; 2], length: f64, key: &st
     let Some((gap, mouth)) = mouth(specimen, end, other).filter(|(gap, _)| *gap <= MOUTH * length) else {
         return (end, false);
     };
-    notes.push(format!(
-        "{key} ends {} mm from an edge (under 1 % of its length, {} mm): moved to the edge, at {}",
-        round_mm(gap),
-        round_mm(length),
-        given_mm(mouth)
-    ));
+    let near = format!("{} mm from an edge (under 1 % of its length, {} mm)", round_mm(gap), round_mm(length));
+    notes.push(format!("{key} ends {near}: moved to the edge, at {}", given_mm(mouth)));
     (mouth, true)
 }
 

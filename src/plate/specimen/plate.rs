@@ -31,7 +31,6 @@ use perilife_base::units::place_mm;
 const ITEMS_MAX: usize = 500;
 /// Corners of a drawing, whose arcs have many.
 const CORNERS_MAX: usize = 4000;
-
 const OUTLINE: &str = "the outline";
 
 perilife_base::keys! {
@@ -130,7 +129,6 @@ pub(super) fn read_holes(list: &[HoleKeys]) -> Result<Vec<Hole>> {
     items("specimen.holes", list, |item, _| Ok(Hole { centre: [item.x, item.y], radius: item.diameter / 2.0 }))
 }
 
-/// What the drawing of a plate says, where it has one.
 fn drawn(given: &Given<'_>, own: &Keys, folder: &Folder) -> Result<Option<Shape>> {
     let Some(file) = &own.file else {
         let problem = "applies only to outline_file, which is missing";

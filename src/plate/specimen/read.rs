@@ -19,11 +19,9 @@ pub const PART_THROUGH: &[&str] = &[
     "surface_crack_at_hole",
 ];
 
-/// Keys that only such a flaw has.
 const PART_THROUGH_KEYS: &str =
     "crack_depth_mm crack_half_length_mm depth_mm surface_length_mm crack_shape aspect_ratio a_over_c corner_radius_mm";
 
-/// What to give for a flaw that does not go through.
 fn give_a_kind() -> String {
     let known: Vec<&str> =
         SpecimenKind::ALL.iter().filter(|kind| kind.part_through().is_some()).map(|kind| kind.name()).collect();
@@ -57,7 +55,6 @@ impl SpecimenKind {
         matches!(self, SpecimenKind::MiddleTension | SpecimenKind::Cruciform)
     }
 
-    /// What is wrong with the keys of its section by themselves.
     fn mistakes(self, given: Given<'_>) -> Vec<InputError> {
         let all: Vec<_> = SpecimenKind::ALL.iter().map(|kind| (kind.name(), kind.keys())).collect();
         keys::mistakes(

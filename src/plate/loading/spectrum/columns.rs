@@ -169,10 +169,10 @@ fn refuse_pairs(table: &Table) -> Result<()> {
     let Some(first) = table.rows.first().filter(|_| table.rows.iter().all(|row| row.cell(0).contains(','))) else {
         return Ok(());
     };
-    Err(Fault { line: Some(first.line), value: Some(first.cell(0)), ..whole_file(&table.file) }.error(
-        "ambiguous: two columns, or one with decimal commas",
-        "set loading.spectrum_format = \"cycles\" (maximum, minimum) or \"turning_points\" (decimal commas), or name the columns",
-    ))
+    let remedy =
+        "set loading.spectrum_format = \"cycles\" (maximum, minimum) or \"turning_points\" (decimal commas), or name the columns";
+    let fault = Fault { line: Some(first.line), value: Some(first.cell(0)), ..whole_file(&table.file) };
+    Err(fault.error("ambiguous: two columns, or one with decimal commas", remedy))
 }
 
 fn nameless(table: &Table) -> perilife_base::error::Error {
@@ -184,13 +184,11 @@ fn nameless(table: &Table) -> perilife_base::error::Error {
     };
     let fault = Fault { line, key: Some("row"), value: shown.as_deref(), ..whole_file(&table.file) };
     let count = table.header.len();
-    fault.error(
-        format!("has {count} {} without a known name", if count == 1 { "column" } else { "columns" }),
-        format!("{REMEDY}; or set loading.spectrum_format = \"cycles\" for the columns maximum, minimum, cycles"),
-    )
+    let columns = if count == 1 { "column" } else { "columns" };
+    let remedy = format!("{REMEDY}; or set loading.spectrum_format = \"cycles\" for the columns maximum, minimum, cycles");
+    fault.error(format!("has {count} {columns} without a known name"), remedy)
 }
 
-/// Refuses lines of numbers above the table, which would be lost, but a number of its rows.
 fn check_preamble(table: &Table) -> Result<()> {
     let title = (table.header_line, table.header.join(" "));
     for (line, text) in table.preamble.iter().chain([&title]).filter(|(line, _)| *line > 0) {

@@ -100,7 +100,6 @@ fn is_numbers(line: &str) -> bool {
     cells(line).all(|cell| cell.parse::<f64>().is_ok())
 }
 
-/// A row `max min cycles`, or `max min` of one cycle.
 fn cycle_of_row((line, text): Row<'_>) -> Result<RawCycle> {
     let values: Vec<f64> = cells(text).map(|cell| number(line, "row", cell)).collect::<Result<_>>()?;
     match values[..] {
@@ -112,7 +111,6 @@ fn cycle_of_row((line, text): Row<'_>) -> Result<RawCycle> {
 
 const OF_FASTRAN: &str = "give a title, a line `points Smax Smin INVERT ICLIP`, then that number of peaks and valleys";
 
-/// The five numbers of the second line, if it is one.
 fn fastran_header(line: &str) -> Option<[f64; 5]> {
     let values: Vec<f64> = cells(line).map(|cell| cell.parse().ok()).collect::<Option<_>>()?;
     <[f64; 5]>::try_from(values).ok().filter(|[points, most, least, ..]| points.fract() == 0.0 && *points >= 2.0 && most > least)

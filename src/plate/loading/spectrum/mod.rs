@@ -21,12 +21,10 @@ pub const WHOLE: f64 = 1e-6;
 /// Times that a cycle comes in a period, in the mean, from which periods are alike although it comes once more or less.
 const OFTEN: f64 = 10.0;
 
-/// Loads that come again and again: from a minimum to a maximum, so many times.
+/// Loads that come again and again: from a minimum to a maximum, both over the largest of the spectrum, so many times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cycle {
-    /// Largest load over the largest of the spectrum; at most 1.
     pub max: f64,
-    /// Smallest load over the same; below `max`.
     pub min: f64,
     /// How often it comes in a pass, one after the other; below 1 of one that is not in every pass.
     pub count: f64,

@@ -88,7 +88,6 @@ impl Spectrum {
     }
 }
 
-/// Fewest passes in which all cycles come a whole number of times.
 fn period(cycles: &[Cycle]) -> f64 {
     let mut fractions: Vec<f64> = cycles.iter().map(|cycle| cycle.count).filter(|count| count.fract() != 0.0).collect();
     fractions.sort_by(f64::total_cmp);

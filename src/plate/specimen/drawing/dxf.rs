@@ -8,22 +8,17 @@ use super::{Drawing, Drawn, Fault, known_layer, place};
 use crate::specimen::Point;
 use perilife_base::error::fail_if;
 
-/// What to do with an entity that is none of these.
 const DRAW_IT: &str = "draw it as one of them; delete it only if it is not part of the plate (text, dimensions)";
 const SILENT: [&str; 2] = ["SEQEND", "VIEWPORT"];
 /// Flags of a polyline: closed; one fitted by curves or splines; one in space or a mesh.
 const CLOSED: i64 = 1;
 const FITTED: i64 = 2 | 4;
 const IN_SPACE: i64 = 8 | 16 | 64;
-
 const FROZEN: i64 = 1;
 /// Size of a coordinate that is round-off, in units of the drawing.
 const ROUND_OFF: f64 = 1e-6;
-
-/// A group: code, value, line of the value.
 type Group<'t> = (i64, &'t str, usize);
 
-/// An entity: its type, its line and its groups.
 struct Entity<'t> {
     kind: &'t str,
     line: usize,
@@ -191,7 +186,6 @@ impl Entity<'_> {
         Fault::at(&self.layer(), &self.words(), problem, remedy)
     }
 
-    /// Its curve; `vertices` follow a POLYLINE.
     fn curve(&self, vertices: &[Entity<'_>]) -> Result<Curve, Fault> {
         let circle = |entity: &Self| Ok::<_, Fault>((entity.point(10)?, entity.needed(40)?));
         match self.kind {
@@ -229,7 +223,6 @@ impl Entity<'_> {
         }
     }
 
-    /// Corners with the bulges behind them.
     fn polyline(&self, corners: &[(Point, f64)]) -> Result<Curve, Fault> {
         let flags = self.number(70)?.unwrap_or(0.0) as i64;
         if self.kind == "POLYLINE" && flags & (FITTED | IN_SPACE) != 0 {

@@ -92,7 +92,6 @@ fn known_layer(name: &str) -> Option<&'static str> {
     LAYERS.into_iter().find(|layer| layer.eq_ignore_ascii_case(name))
 }
 
-/// A place in words, in the unit that it is given in.
 fn place([x, y]: Point) -> String {
     let round = |value: f64| (value * 1e4).round() / 1e4 + 0.0;
     format!("({}, {})", round(x), round(y))
@@ -110,7 +109,6 @@ pub fn read(file: &str, folder: &Folder, unit: Option<DrawingUnit>, symmetry: Op
     shape(drawing.lines, scale, symmetry).map_err(|fault| fault.error(file))
 }
 
-/// Metres in a unit of the drawing.
 fn scale(millimetres: Option<f64>, unit: Option<DrawingUnit>, file: &str) -> Result<f64> {
     const UNIT: &str = "specimen.outline_unit";
     let given = unit.map(|unit| (unit, if unit == DrawingUnit::Inch { INCH } else { MM }));

@@ -106,7 +106,6 @@ pub(super) fn from_value(description: &SpecimenSpec, value: &Value, notes: &mut 
     Ok(Specimen { loads, supports, crack_length, convention, load_measure, own_formula: formula, ..plate })
 }
 
-/// What a `plate` says of its cracks and holes begins like this.
 const CRACKS: &str = "specimen.cracks[";
 const HOLES: &str = "specimen.holes[";
 

@@ -16,7 +16,6 @@ use perilife_base::keys::{Given, Section, length};
 use perilife_base::units::round_mm;
 
 pub(super) const KIND: SpecimenSpec = SpecimenSpec { kind: SpecimenKind::SingleEdgeBend, keys: Keys::KEYS, layout };
-
 /// Width of a contact over W.
 const CONTACT: f64 = 0.05;
 /// Span over W of the standards.
